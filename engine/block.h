@@ -1,0 +1,66 @@
+/// What a block file includes. A block is a value: its parameters and nothing mutable.
+///
+///   template <class Real> struct MyBlock {                  // a plain struct instead: scalar only, run lane by lane
+///     Real gain;                                            // parameters: Real is tunable; int, bool, string, enum, lists structural
+///     struct In  { Real u; };                               // ports: Real, Vector<const Real>, Many<Real>
+///     struct Out { Real y; };                               //        Real, Vector<Real>
+///     struct State  { Real x; };                            // continuous states: all Reals, or all Vector<Real> (state_vector)
+///     struct Memory { … };                                  // discrete memory: trivially copyable, Vector<Real> for buffers
+///     struct Mode   { … };                                  // piecewise constant: held while a solver integrates
+///     struct Crossings { Real g; };                         // functions whose passage through zero is an event
+///     static constexpr auto describe();                     // block(sentence, parameter…, input…, output…, buffer…, crossing…)
+///     void check(const Checker&);                           // rules between parameters; reads files; scalar block only
+///     void prepare(double sample_time | const Setup&);      // derived constants, once a run
+///     void start(State&) const, start(Memory&) const, start(Mode&) const;   // default: zeros
+///     void outputs(…, Out&) const;
+///     void derivatives(…, State& rate) const;
+///     void update(…, Memory&) const;                        // the next memory, from frozen inputs, at every sample
+///     void accept(…, Memory&) const;                        // continuous memory: after every accepted solver step
+///     void decide(…, Mode&) const;                          // which piece holds now: at samples, steps and events, never inside a step
+///     void jump(…, State&) const;                           // resets states at an event, from frozen inputs
+///     void crossings(…, Crossings&) const;
+///     double next_stop(double now) const;                   // the next time (s) at which it is not smooth
+///   };
+///   LOOPWRIGHT_BLOCK(MyBlock)
+///
+/// Where … is, a method takes any of `const Instant&, const In&, const State&, const Memory&, const Mode&`.
+/// Any method but prepare, start and check may return a Fault.
+#pragma once
+#include <cmath>
+#include <numbers>
+#include "engine/block/registry.h"
+#include "models/real/functions.h"
+
+namespace loopwright {
+
+using std::numbers::pi;
+
+#ifdef LOOPWRIGHT_LANE_REAL  // compiled into a module for one instruction set: lane kernels only
+template <template <class> class B>
+bool register_block(std::string_view type, std::string_view) {
+  lane_kernels<LOOPWRIGHT_LANE_REAL>().emplace(type, kernels_of<B<LOOPWRIGHT_LANE_REAL>, LOOPWRIGHT_LANE_REAL>());
+  return true;
+}
+template <class B>
+bool register_block(std::string_view, std::string_view) { return true; }
+#else
+template <class B>
+bool register_scalar(std::string_view type, std::string_view file, bool lane_wise) {
+  BlockInfo info = info_of<B>(type);
+  const size_t name = file.rfind('/'), room = file.rfind('/', name - 1);
+  info.room = file.substr(room + 1, name - room - 1);
+  info.source = file;
+  info.lane_wise = lane_wise;
+  add_block(std::move(info), kernels_of<B, double>());
+  return true;
+}
+template <template <class> class B>
+bool register_block(std::string_view type, std::string_view file) { return register_scalar<B<double>>(type, file, true); }
+template <class B>
+bool register_block(std::string_view type, std::string_view file) { return register_scalar<B>(type, file, false); }
+#endif
+
+#define LOOPWRIGHT_BLOCK(Type) \
+  [[maybe_unused]] static const bool registered_##Type = ::loopwright::register_block<Type>(#Type, __FILE__);
+
+}  // namespace loopwright

@@ -1,0 +1,13 @@
+# Writes OUTPUT, a C++ source that holds files as constants. ASSETS: a list of name=file.
+# Bytes go in as numbers, so that no content (quotes, brackets, any length) can break the source.
+set(source "// Made by embed.cmake.\n#include \"tools/report/assets.h\"\n\nnamespace loopwright::report::assets {\n")
+foreach(asset IN LISTS ASSETS)
+  string(REGEX MATCH "^([a-z_]+)=(.*)$" matched "${asset}")
+  set(name ${CMAKE_MATCH_1})
+  file(READ "${CMAKE_MATCH_2}" bytes HEX)
+  string(REGEX REPLACE "(................................)" "\\1\n" bytes "${bytes}")
+  string(REGEX REPLACE "([0-9a-f][0-9a-f])" "'\\\\x\\1'," bytes "${bytes}")
+  string(APPEND source "static constexpr char ${name}_bytes[] = {\n${bytes}};\n"
+                       "const std::string_view ${name}(${name}_bytes, sizeof ${name}_bytes);\n")
+endforeach()
+file(WRITE "${OUTPUT}" "${source}}  // namespace loopwright::report::assets\n")

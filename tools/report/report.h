@@ -1,0 +1,107 @@
+/// Results as one page: values that say what to show, and functions that write them as HTML or as plain text.
+///
+/// An HTML page is complete in itself. It loads nothing from a network or from another file, suits light and dark
+/// screens and paper, and lets a reader zoom, pan and read values off every plot.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace loopwright::report {
+
+/// One curve: points (x[i], y[i]) in the units of the plot's axes. x and y have the same length.
+/// A value that is not finite is a gap, as is one ≤ 0 on a logarithmic axis.
+struct Series {
+  enum class Shape {
+    line,    ///< joined in the order given; x may turn back (hysteresis, Nyquist)
+    points,  ///< a cloud: error against position or velocity
+    steps    ///< held until the next point: what a sampled controller puts out
+  };
+  std::string name;
+  std::vector<double> x, y;
+  Shape shape = Shape::line;
+};
+
+struct Axis {
+  std::string label;         ///< "Tracking error"
+  std::string unit;          ///< "m", "N*s/m"; empty or "1": none. The page picks mm, µm … by what is in view
+  bool logarithmic = false;  ///< base 10
+};
+
+/// A scope. Plots of one page with the same `group` share their x axis: zoom, pan and cursor move together,
+/// and neighbours are stacked closely.
+struct Plot {
+  std::string title;
+  Axis x, y;
+  std::vector<Series> series;
+  std::string group;    ///< empty: on its own
+  std::string caption;  ///< sentences below the plot
+};
+
+/// Columns whose cells are numbers are right-aligned. Rows may be shorter than the head, never longer.
+struct Table {
+  std::vector<std::string> head;
+  std::vector<std::vector<std::string>> rows;
+  std::string caption;
+};
+
+struct Paragraph {
+  std::string text;  ///< a blank line starts a new paragraph
+};
+
+/// The few numbers that a reader looks for first.
+struct KeyNumbers {
+  struct Number {
+    std::string label;  ///< "Tracking error, RMS"
+    std::string value;  ///< "1.84", as it shall be read
+    std::string unit;   ///< "um"; empty or "1": none
+    std::string note;   ///< "was 14.2 µm"
+  };
+  std::vector<Number> numbers;
+};
+
+/// A vector picture. The SVG goes into the page as it is, so it must come from a trusted writer.
+struct Picture {
+  std::string svg;
+  std::string caption;
+  std::string text;  ///< what the picture says, for readers of plain text
+};
+
+struct Code {
+  std::string text;
+  std::string caption;  ///< file name or language
+};
+
+struct Notice {
+  enum class Severity { note, good, warning, error };
+  Severity severity = Severity::note;
+  std::string text;
+};
+
+using Item = std::variant<Paragraph, KeyNumbers, Plot, Table, Picture, Code, Notice>;
+
+struct Section {
+  std::string title;
+  std::vector<Item> items;
+};
+
+struct Page {
+  std::string title, subtitle;
+  std::vector<std::pair<std::string, std::string>> facts;  ///< where the results come from: ("Diagram", "stage.json")
+  std::vector<Section> sections;
+};
+
+/// The page as HTML. Long series are thinned so that the whole page holds at most 200 000 points; extremes stay.
+/// Throws std::invalid_argument, naming the plot or table, when x and y differ in length or a row is too long.
+std::string to_html(const Page& page);
+
+/// Writes to_html(page) under `path`, whole or not at all. Throws as to_html, and when the file cannot be written.
+void write_html(const std::filesystem::path& path, const Page& page);
+
+/// The same story for a terminal: plots become the range, mean and outline of each series.
+/// Throws as to_html.
+std::string to_text(const Page& page);
+
+}  // namespace loopwright::report
