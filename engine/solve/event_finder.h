@@ -1,0 +1,68 @@
+/// Finds where crossing functions change sign within a step, on the step's dense output.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/solve/ode.h"
+
+namespace loopwright {
+
+class Stepper;
+
+/// Keeps for every crossing the sign it last had, so that a value of exactly zero is neither lost nor counted
+/// twice: an event is a change from one sign to the other, at the first time where the new sign is seen. A
+/// touch without a change of sign is no event.
+class EventFinder {
+ public:
+  EventFinder(const OdeSystem& system, int samples_per_step);
+
+  bool empty() const { return sign_.empty(); }
+  std::span<const int8_t> fired() const { return fired_; }
+
+  /// Forgets every sign: a new solution begins.
+  void forget();
+
+  enum class Found : uint8_t { nothing, event, fault, non_finite };
+
+  /// Takes the values afresh at (t, x), after a start or restart. Returns nothing, fault or non_finite.
+  Found begin(Stepper& stepper, double t, const double* x);
+
+  /// Looks for the first event in (from, to] of the stepper's last step, the values at `from` being known. If
+  /// there is one, time() and state() are those of the right end of its bracket, a few roundings of t wide,
+  /// and fired() lists every crossing that changed sign in the bracket.
+  Found scan(Stepper& stepper, double from, double to, const Crossing* wanted);
+  double time() const { return right_.t; }
+  const double* state() const { return right_.x.data(); }
+
+  /// Says that nothing has fired since the last scan.
+  void clear_fired();
+
+ private:
+  /// The solution and its crossing values at one time.
+  struct Sample {
+    double t = 0.0;
+    std::vector<double> x, value;
+  };
+
+  Found look(Stepper& stepper, double t, Sample& sample);
+  Found evaluate(Stepper& stepper, Sample& sample);
+  bool changed(size_t crossing, const Sample& sample, const Crossing* wanted) const;
+  bool any_changed(const Sample& sample, const Crossing* wanted) const;
+  void pass(const Sample& sample);
+  double next_sample(double from, double to, double& departure) const;
+  double secant(double left_weight, double right_weight, const Crossing* wanted) const;
+  Found locate(Stepper& stepper, double to, const Crossing* wanted);
+  Found gather_simultaneous(Stepper& stepper, double to, const Crossing* wanted);
+  void report(const Crossing* wanted);
+
+  OdeSystem system_;
+  int samples_per_step_;
+  std::vector<int8_t> sign_;       ///< the last sign that was not zero; 0: none yet
+  std::vector<int8_t> fired_;      ///< at the last event: +1 rose, -1 fell
+  std::vector<double> zero_band_;  ///< a crossing that just fired counts as zero up to this size
+  bool leaving_zero_ = false;      ///< some crossing has just fired and has no sign yet
+  Sample left_, right_, trial_;    ///< left_: where the signs were taken last
+};
+
+}  // namespace loopwright

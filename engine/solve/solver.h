@@ -1,0 +1,150 @@
+/// Variable-step integration of an OdeSystem with stop times, events and dense output: dopri5, cvode-bdf,
+/// cvode-adams.
+///
+/// How a run uses it:
+///     Solver solver(options, system);
+///     solver.start(t0, x0);
+///     each stretch without a known discontinuity:
+///       do result = solver.step(t_stop, wanted)         // record in between with solver.interpolate
+///       while result.status == stepped
+///       if result.status == event: handle solver.fired() at (solver.t(), solver.x())
+///       if anything jumped: solver.restart(t, x)        // state, held signal, right-hand side
+#pragma once
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/solve/event_finder.h"
+#include "engine/solve/method.h"
+#include "engine/solve/ode.h"
+
+namespace loopwright {
+
+class Stepper;
+
+/// Below this the estimated error of a step is mostly rounding.
+inline constexpr double smallest_relative_tolerance = 1e-13;
+
+struct SolverOptions {
+  Method method = Method::dopri5;
+  double relative_tolerance =
+      1e-6;  ///< error a step may make, as part of |x|. Smaller: more digits, more steps
+  double absolute_tolerance =
+      1e-9;  ///< added to it, in the state's unit: below this size a state is of no interest
+  std::vector<double>
+      absolute_tolerances;    ///< one a state, when their sizes differ widely; empty: the scalar for all
+  double initial_step = 0.0;  ///< [s] first trial; 0: chosen from the size of x, f and its change
+  double maximum_step = std::numeric_limits<double>::infinity();  ///< [s] so as not to pass over short pulses
+  int64_t maximum_steps_between_stops =
+      1'000'000;             ///< trials, rejected ones too: a stuck run ends with a reason
+  int crossing_samples = 4;  ///< looks at the crossings in each step; more find shorter double crossings
+
+  /// What is wrong with these options for a system of so many states, one sentence an entry; empty: nothing.
+  std::vector<std::string> problems(int states) const;
+};
+
+enum class SolverStatus : uint8_t {
+  stepped,         ///< one step further, nothing happened
+  reached_stop,    ///< t() is t_stop exactly
+  event,           ///< crossings went through zero, see fired()
+  step_too_small,  ///< the error estimate asks for a step that rounding swallows
+  no_convergence,  ///< the implicit equations of a step could not be solved at any useful step size
+  too_many_steps,  ///< maximum_steps_between_stops was spent
+  non_finite,      ///< a derivative, crossing function or state is infinite or not a number
+  block_fault,     ///< a block refused to be evaluated
+  wrong_answer,    ///< the integrator claimed success, but its time or state cannot be right
+  stop_in_past     ///< t_stop lies before t(), or is not a number
+};
+/// "the step size fell below rounding"; fit to follow "solver stopped at t = …: ".
+std::string_view to_text(SolverStatus status);
+/// Whether integration may go on after this status.
+constexpr bool succeeded(SolverStatus status) { return status <= SolverStatus::event; }
+
+/// Counts since start().
+struct SolverStatistics {
+  int64_t steps = 0;                ///< accepted
+  int64_t error_test_failures = 0;  ///< rejected for their error
+  int64_t convergence_failures =
+      0;  ///< rejected for no solution of their equations, a fault or a non-finite value
+  int64_t derivative_evaluations = 0;  ///< all of them, those for Jacobians too
+  int64_t jacobian_evaluations = 0;
+  int64_t crossing_evaluations = 0;
+  int64_t restarts = 0;
+  int64_t events = 0;
+  int64_t stiff_steps = 0;  ///< dopri5: checked steps with h|λ| beyond its stability limit
+  bool stiff = false;       ///< dopri5: so many in a row that stability, not accuracy, sets the step
+  int stiffest_state = -1;  ///< the state with the largest error when that was seen first
+  double smallest_step =
+      std::numeric_limits<double>::infinity();  ///< [s] among the steps that no stop time cut short
+  int64_t trials() const { return steps + error_test_failures + convergence_failures; }
+};
+
+struct Advance {
+  SolverStatus status;
+  double t;  ///< [s] where the solution now stands; after a failure, the end of the last good step
+};
+
+/// Integrates one system. After construction nothing of its own allocates, throws or formats.
+/// f and the crossing functions are never evaluated outside the stretch from start or restart to t_stop.
+class Solver {
+ public:
+  /// Throws std::invalid_argument with every problem of the options or of the system.
+  Solver(const SolverOptions& options, const OdeSystem& system);
+  Solver(Solver&&) noexcept;
+  Solver& operator=(Solver&&) noexcept;
+  ~Solver();
+
+  /// Begins a new solution at t [s] with x[states]: forgets everything, statistics too, so that runs repeat
+  /// bit by bit.
+  void start(double t, const double* x);
+
+  /// Goes on at t [s] with x[states] after a discontinuity: forgets the solution's past. One-step methods
+  /// keep their step size. Crossing values are taken afresh; a crossing that has just fired must leave zero
+  /// before it fires again, and one found exactly at zero keeps the sign it last had.
+  void restart(double t, const double* x);
+
+  /// One step of at most up to t_stop, or up to the first event in it. `wanted[crossings]` are the directions
+  /// that count; null: either, for all.
+  Advance step(double t_stop, const Crossing* wanted = nullptr);
+
+  /// Steps until t_stop, an event or a failure.
+  Advance advance(double t_stop, const Crossing* wanted = nullptr);
+
+  double t() const { return t_; }                                                   ///< [s]
+  std::span<const double> x() const { return {x_, static_cast<size_t>(states_)}; }  ///< the state at t()
+
+  /// The solution anywhere between step_begin() and t(), to the accuracy of the method.
+  double step_begin() const;
+  void interpolate(double t, double* x) const;
+
+  /// After an event, for each crossing: +1 it rose through zero, -1 it fell, 0 neither.
+  std::span<const int8_t> fired() const { return events_.fired(); }
+
+  /// The state with the largest weighted error in the last tried step, so that a message can name its block;
+  /// -1: none.
+  int worst_state() const;
+
+  const SolverStatistics& statistics() const;
+
+ private:
+  void stand_at_restart(double t);
+  Advance stand_at_event();
+  Advance stand_at(double t, double t_stop);
+  SolverStatus take_step(double t_stop);
+
+  std::unique_ptr<Stepper> stepper_;
+  EventFinder events_;
+  std::vector<double> x_between_;  ///< the state at t(), if that is not an end of the integrator's step
+  const double* x_ = nullptr;
+  double t_ = 0.0;
+  int states_ = 0;
+  bool signs_known_ = false;  ///< the crossings at t() have been looked at
+  int64_t maximum_trials_ = 0;
+  int64_t trials_at_stop_ = 0;
+};
+
+}  // namespace loopwright

@@ -1,0 +1,37 @@
+/// Owners for the objects of SUNDIALS, which are released by functions of their own.
+#pragma once
+#include <nvector/nvector_serial.h>
+#include <sundials/sundials_context.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
+
+#include <memory>
+#include <new>
+#include <type_traits>
+
+namespace loopwright::sundials {
+
+/// Calls the matching function of SUNDIALS when an owner ends.
+struct Release {
+  void operator()(SUNContext context) const { SUNContext_Free(&context); }
+  void operator()(N_Vector vector) const { N_VDestroy(vector); }
+  void operator()(SUNMatrix matrix) const { SUNMatDestroy(matrix); }
+  void operator()(SUNLinearSolver solver) const { SUNLinSolFree(solver); }
+  void operator()(SUNNonlinearSolver solver) const { SUNNonlinSolFree(solver); }
+};
+template <class Handle> using Owner = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
+
+/// Takes over a handle that SUNDIALS has just made; it returns null only when memory is exhausted.
+template <class Handle> Owner<Handle> own(Handle handle) {
+  if (handle == nullptr) throw std::bad_alloc();
+  return Owner<Handle>(handle);
+}
+
+inline Owner<SUNContext> make_context() {
+  SUNContext context = nullptr;
+  SUNContext_Create(nullptr, &context);
+  return own(context);
+}
+
+}  // namespace loopwright::sundials
