@@ -1,0 +1,355 @@
+#include "engine/diagram/expression.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <fmt/format.h>
+#include <muParser.h>
+#include <numbers>
+#include <unordered_map>
+
+namespace loopwright {
+namespace {
+
+constexpr size_t longest_expression = 1000;  // characters; bounds the work on hostile input
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+
+/// The end of a number such as 1.5e-3, so that its e is not taken for a name.
+size_t end_of_number(std::string_view text, size_t at) {
+  const auto skip_digits = [text](size_t i) {
+    while (i < text.size() && is_digit(text[i])) ++i;
+    return i;
+  };
+  at = skip_digits(at);
+  if (at < text.size() && text[at] == '.') at = skip_digits(at + 1);
+  if (at < text.size() && (text[at] == 'e' || text[at] == 'E')) {
+    const size_t sign = at + 1 < text.size() && (text[at + 1] == '+' || text[at + 1] == '-') ? 1 : 0;
+    const size_t end = skip_digits(at + 1 + sign);
+    if (end > at + 1 + sign) return end;
+  }
+  return at;
+}
+
+/// muParser's '=' would assign to a parameter.
+size_t find_assignment(std::string_view text) {
+  for (size_t at = 0; at < text.size(); ++at) {
+    if (text[at] != '=') continue;
+    const bool is_comparison =
+        (at > 0 && std::string_view("<>!=").find(text[at - 1]) != std::string_view::npos) ||
+        (at + 1 < text.size() && text[at + 1] == '=');
+    if (!is_comparison) return at;
+  }
+  return std::string_view::npos;
+}
+
+std::string plain_words(const mu::ParserError& error) {
+  switch (error.GetCode()) {
+    case mu::ecUNEXPECTED_EOF:
+      return "the expression ends too early";
+    case mu::ecMISSING_PARENS:
+      return "a closing parenthesis is missing";
+    case mu::ecUNEXPECTED_PARENS:
+      return "a parenthesis stands at a wrong place";
+    case mu::ecTOO_MANY_PARAMS:
+      return "a function has too many arguments";
+    case mu::ecTOO_FEW_PARAMS:
+      return "a function has too few arguments";
+    case mu::ecUNEXPECTED_ARG_SEP:
+    case mu::ecUNEXPECTED_ARG:
+      return "a comma stands at a wrong place";
+    case mu::ecUNEXPECTED_VAL:
+    case mu::ecUNEXPECTED_VAR:
+    case mu::ecUNEXPECTED_FUN:
+      return "an operator is missing";
+    case mu::ecUNEXPECTED_OPERATOR:
+      return "an operator stands at a wrong place";
+    case mu::ecUNEXPECTED_CONDITIONAL:
+    case mu::ecMISSING_ELSE_CLAUSE:
+    case mu::ecMISPLACED_COLON:
+      return "a condition is not of the form a ? b : c";
+    default:
+      return "the expression cannot be read";
+  }
+}
+
+/// An expression compiled by muParser, with the numbers of its parameters at hand.
+class Compiled {
+ public:
+  Compiled(std::string_view expression, const std::vector<std::string>& names) : numbers_(names.size()) {
+    parser().ClearVar();
+    for (size_t i = 0; i < names.size(); ++i) parser().DefineVar(names[i], &numbers_[i]);
+    parser().SetExpr(std::string(expression));
+  }
+  ~Compiled() { parser().ClearVar(); }
+  Compiled(const Compiled&) = delete;
+  Compiled& operator=(const Compiled&) = delete;
+
+  /// Throws mu::ParserError when the expression cannot be read.
+  double operator()(const std::vector<double>& numbers) {
+    std::ranges::copy(numbers, numbers_.begin());
+    int results = 0;
+    const double* values = parser().Eval(results);
+    if (results != 1) throw mu::ParserError(mu::ecUNEXPECTED_ARG_SEP);
+    return values[0];
+  }
+
+  static bool has_function(std::string_view name) { return parser().GetFunDef().contains(std::string(name)); }
+  static std::vector<std::string> functions() {
+    std::vector<std::string> names;
+    for (const auto& [name, function] : parser().GetFunDef()) names.push_back(name);
+    return names;
+  }
+
+ private:
+  /// Making a parser costs far more than using it.
+  static mu::Parser& parser() {
+    thread_local mu::Parser instance = [] {
+      mu::Parser parser;
+      parser.DefineConst("pi", std::numbers::pi);
+      parser.DefineConst("e", std::numbers::e);
+      return parser;
+    }();
+    return instance;
+  }
+
+  std::vector<double> numbers_;
+};
+
+// ---- The unit of a result
+// --------------------------------------------------------------------------------------
+
+constexpr double mixes_units = std::numeric_limits<double>::quiet_NaN();
+
+/// b in f ~ λ^b, a multiple of 1/12; not a number when f is no power of λ.
+double exponent_of_growth(double at_one, double at_two, double at_three) {
+  const auto rounded = [at_one](double grown, double lambda) {
+    const double exponent = std::log(grown / at_one) / std::log(lambda);
+    const double nearest = std::round(exponent * 12) / 12;
+    return std::abs(exponent - nearest) < 1e-9 ? nearest : mixes_units;
+  };
+  const double from_two = rounded(at_two, 2), from_three = rounded(at_three, 3);
+  return from_two == from_three ? from_two : mixes_units;
+}
+
+enum class UnitFinding { known, mixed, zero, no_result };
+
+/// The unit of f found by rescaling, from one set of numbers.
+UnitFinding unit_at(Compiled& f, const std::vector<Quantity>& parameters, const std::vector<double>& numbers,
+                    Unit& unit) {
+  const double at_one = f(numbers);
+  if (!std::isfinite(at_one)) return UnitFinding::no_result;
+  if (at_one == 0) return UnitFinding::zero;
+  for (size_t base = 0; base < unit.exponents.size(); ++base) {
+    const auto grown = [&](double lambda) {
+      std::vector<double> rescaled = numbers;
+      for (size_t i = 0; i < parameters.size(); ++i)
+        if (parameters[i].unit) rescaled[i] *= std::pow(lambda, double{parameters[i].unit->exponents[base]});
+      return f(rescaled);
+    };
+    const double exponent = exponent_of_growth(at_one, grown(2), grown(3));
+    if (std::isnan(exponent)) return UnitFinding::mixed;
+    unit.exponents[base] = static_cast<float>(exponent);
+  }
+  return UnitFinding::known;
+}
+
+/// Numbers of several magnitudes: beside a small generic number even a small constant of the wrong unit
+/// shows.
+UnitFinding unit_of(Compiled& f, const std::vector<Quantity>& parameters, Unit& unit) {
+  UnitFinding finding = UnitFinding::no_result;
+  for (const double magnitude : {1.0, 1e-6, 1e6}) {
+    std::vector<double> numbers;
+    for (size_t i = 0; i < parameters.size(); ++i) {
+      const double generic =
+          magnitude * (1 + std::fmod(0.6180339887498949 * static_cast<double>(i + 1), 1.0));
+      numbers.push_back(parameters[i].unit ? generic : parameters[i].number);
+    }
+    Unit here;
+    const UnitFinding found = unit_at(f, parameters, numbers, here);
+    if (found == UnitFinding::no_result) continue;
+    if (found == UnitFinding::mixed) return found;
+    if (found == UnitFinding::zero) {
+      if (finding == UnitFinding::no_result) finding = found;
+      continue;
+    }
+    if (finding == UnitFinding::known && !(unit == here)) return UnitFinding::mixed;
+    unit = here;
+    finding = found;
+  }
+  return finding;
+}
+
+// ---- Messages
+// --------------------------------------------------------------------------------------------------
+
+class Evaluator {
+ public:
+  Evaluator(std::string_view expression, const ExpressionSite& site, Problems& problems)
+      : expression_(expression), site_(site), problems_(problems) {}
+
+  std::optional<Quantity> run() {
+    if (!is_readable() || !find_names()) return {};
+    if (names_.size() == 1 && uses_.size() == 1 && trimmed() == names_[0]) return parameters_[0];
+    try {
+      Compiled f(expression_, names_);
+      return value_with_unit(f);
+    } catch (const mu::ParserError& error) {
+      report(plain_words(error), static_cast<size_t>(std::max(error.GetPos(), 0)));
+    } catch (const std::exception&) {  // muParser lets some errors of the standard library through
+      report("the expression cannot be read", 0);
+    }
+    return {};
+  }
+
+ private:
+  Place place_of(size_t offset) const {
+    Place place = site_.place;
+    constexpr size_t quote_and_equals = 2;
+    // With escapes in the text, offsets in the file are not those in the expression.
+    const bool stands_there =
+        place.file && std::string_view(place.file->text)
+                          .substr(std::min<size_t>(place.offset, place.file->text.size()))
+                          .substr(0, expression_.size() + quote_and_equals)
+                          .ends_with(expression_);
+    if (stands_there)
+      place.offset += static_cast<uint32_t>(quote_and_equals + std::min(offset, expression_.size()));
+    return place;
+  }
+
+  Problem& report(std::string message, size_t offset) {
+    Problem& problem = problems_.error(place_of(offset), site_.pointer, site_.block, std::move(message));
+    problem.found = fmt::format("={}", expression_.substr(0, 200));
+    return problem;
+  }
+
+  std::string_view trimmed() const {
+    const size_t begin = std::min(expression_.find_first_not_of(' '), expression_.size());
+    return expression_.substr(begin, expression_.find_last_not_of(' ') + 1 - begin);
+  }
+
+  bool is_readable() {
+    if (expression_.size() > longest_expression) {
+      report(fmt::format("an expression is longer than {} characters", longest_expression), 0).found.clear();
+      return false;
+    }
+    if (trimmed().empty()) {
+      report("the expression is empty", 0).expected = "an expression after '=', as in \"=2*pi*40\"";
+      return false;
+    }
+    if (const size_t at = find_assignment(expression_); at != expression_.npos) {
+      report("an expression cannot assign", at).hint = "== compares";
+      return false;
+    }
+    return true;
+  }
+
+  bool find_names() {
+    uses_ = names_in(expression_);
+    bool all_known = true;
+    for (const NameUse& use : uses_) {
+      if (use.is_function) {
+        all_known &= is_function(use);
+        continue;
+      }
+      if (std::ranges::find(names_, use.name) != names_.end()) continue;
+      const Quantity* quantity = site_.lookup(use, place_of(use.offset));
+      all_known &= quantity != nullptr;
+      names_.emplace_back(use.name);
+      parameters_.push_back(quantity ? *quantity : Quantity{});
+    }
+    return all_known;
+  }
+
+  bool is_function(const NameUse& use) {
+    if (Compiled::has_function(use.name)) return true;
+    Problem& problem = report(fmt::format("there is no function \"{}\"", use.name), use.offset);
+    const std::string near = nearest_name(use.name, Compiled::functions());
+    if (!near.empty()) problem.hint = fmt::format("did you mean \"{}\"?", near);
+    return false;
+  }
+
+  std::optional<Quantity> value_with_unit(Compiled& f) {
+    std::vector<double> numbers;
+    for (const Quantity& parameter : parameters_) numbers.push_back(parameter.number);
+    Quantity result{f(numbers), {}};
+    if (!std::isfinite(result.number)) {
+      Problem& problem = report("the result of the expression is not a finite number", 0);
+      problem.found += fmt::format(", which is {}{}", result.number, with_values());
+      return {};
+    }
+    const bool has_units =
+        std::ranges::any_of(parameters_, [](const Quantity& p) { return p.unit.has_value(); });
+    if (!has_units) return result;
+    Unit unit;
+    const UnitFinding finding = unit_of(f, parameters_, unit);
+    if (finding == UnitFinding::known) result.unit = unit;
+    if (finding == UnitFinding::known || finding == UnitFinding::zero)
+      return result;  // a zero fits every unit
+    Problem& problem = report(finding == UnitFinding::mixed ? "the expression mixes units"
+                                                            : "the unit of the expression cannot be found",
+                              0);
+    problem.found += with_units();
+    if (finding == UnitFinding::mixed)
+      problem.hint = "a number can be given a unit as a parameter: {\"value\": 3, \"unit\": \"m\"}";
+    return {};
+  }
+
+  std::string with_values() const {
+    std::string text;
+    for (size_t i = 0; i < names_.size(); ++i)
+      text += fmt::format("{} {} = {}", i == 0 ? " with" : ",", names_[i], parameters_[i].number);
+    return text;
+  }
+
+  std::string with_units() const {
+    std::string text = " with";
+    for (size_t i = 0; i < names_.size(); ++i) {
+      const std::string unit = parameters_[i].unit ? "in " + to_string(*parameters_[i].unit) : "without unit";
+      text += fmt::format("{} {} {}", i == 0 ? "" : ",", names_[i], unit);
+    }
+    return text;
+  }
+
+  std::string_view expression_;
+  const ExpressionSite& site_;
+  Problems& problems_;
+  std::vector<NameUse> uses_;
+  std::vector<std::string> names_;  // of the parameters, each once
+  std::vector<Quantity> parameters_;
+};
+
+}  // namespace
+
+bool is_constant_name(std::string_view name) { return name == "pi" || name == "e"; }
+
+std::vector<NameUse> names_in(std::string_view expression) {
+  std::vector<NameUse> uses;
+  for (size_t at = 0; at < expression.size();) {
+    const char c = expression[at];
+    if (is_digit(c) || (c == '.' && at + 1 < expression.size() && is_digit(expression[at + 1]))) {
+      at = end_of_number(expression, at);
+      continue;
+    }
+    if (!is_letter(c)) {
+      ++at;
+      continue;
+    }
+    const size_t begin = at;
+    while (at < expression.size() && (is_letter(expression[at]) || is_digit(expression[at]))) ++at;
+    const std::string_view name = expression.substr(begin, at - begin);
+    const size_t next = std::min(expression.find_first_not_of(' ', at), expression.size());
+    const bool is_function = next < expression.size() && expression[next] == '(';
+    if (is_function || !is_constant_name(name)) uses.push_back({name, begin, is_function});
+  }
+  return uses;
+}
+
+std::optional<Quantity> evaluate(std::string_view expression, const ExpressionSite& site,
+                                 Problems& problems) {
+  return Evaluator(expression, site, problems).run();
+}
+
+}  // namespace loopwright

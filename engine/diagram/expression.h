@@ -1,0 +1,52 @@
+/// Expressions such as "=2*pi*observer_cutoff" over named parameters, evaluated by muParser, with the unit of
+/// the result.
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+#include "engine/diagram/problem.h"
+#include "engine/diagram/unit.h"
+
+namespace loopwright {
+
+/// A number in SI. Without a unit it is a bare number, which takes the unit that its user expects.
+struct Quantity {
+  double number = 0;
+  std::optional<Unit> unit;
+};
+
+/// A name in an expression, and where it stands (in bytes).
+struct NameUse {
+  std::string_view name;
+  size_t offset = 0;
+  bool is_function = false;
+};
+
+/// The names in an expression, in their order; pi and e are left out.
+std::vector<NameUse> names_in(std::string_view expression);
+
+/// True for what an expression cannot use as the name of a parameter: pi and e.
+bool is_constant_name(std::string_view name);
+
+/// Where a message about an expression points, and what its names mean.
+struct ExpressionSite {
+  Place place;  ///< of the text in the file: its opening quote
+  std::string pointer, block;
+  /// The quantity of a name; null when the name stands for no number, which `lookup` has then reported.
+  std::function<const Quantity*(const NameUse& use, const Place& place)> lookup;
+};
+
+/// The value of an expression (without its '='), or nothing after a problem. Known are + - * / ^,
+/// comparisons, ?:,
+/// && and ||, pi, e, and sin cos tan asin acos atan atan2 sinh cosh tanh asinh acosh atanh sqrt exp ln log
+/// log2 log10 abs sign rint min max sum avg.
+///
+/// Unit of the result: every parameter with a unit is given a generic positive number, and each SI base unit
+/// is made 1/λ as large, so that a parameter in m^a grows by λ^a. If the result grows by λ^b for λ = 2 and 3,
+/// b is its exponent; otherwise the expression mixes units, which is a problem. Parameters without unit keep
+/// their value, and a result of such parameters alone is a bare number.
+std::optional<Quantity> evaluate(std::string_view expression, const ExpressionSite& site, Problems& problems);
+
+}  // namespace loopwright
