@@ -31,13 +31,12 @@ void check_recording(const Recording& recording);
 
 /// How strictly a recording is read. Every default refuses what would mislead later.
 struct ReadOptions {
-  bool allow_not_finite = false;  ///< a NaN is a hole in a measurement: it spoils every sum it enters
-  int most_problems = 20;         ///< one screenful shows what is wrong; the rest is counted
-  size_t longest_line = 1 << 20;  ///< [bytes] CSV: some 50,000 columns; beyond that it is no table
-  bool leave_out_misfits =
-      false;            ///< MAT: variables that fit no column are errors, so that none is lost unseen
-  int time_limit = 60;  ///< [s] MAT: a damaged file can send the MAT library into an endless loop
-  size_t memory_limit = size_t{8} << 30;  ///< [bytes] MAT: a damaged size can ask for more than there is
+  bool allow_not_finite = false;    ///< a NaN is a hole in a measurement: it spoils every sum it enters
+  int most_problems = 20;           ///< one screenful shows what is wrong; the rest is counted
+  size_t longest_line = 1 << 20;    ///< [bytes] CSV: some 50,000 columns; beyond that it is no table
+  bool leave_out_misfits = false;   ///< MAT: a variable that fits no column is an error, not lost unseen
+  int time_limit = 60;              ///< [s] MAT: damaged files can send the MAT library into an endless loop
+  size_t memory_limit = 8ul << 30;  ///< [bytes] MAT: a damaged size can ask for more than there is
 };
 
 }  // namespace loopwright

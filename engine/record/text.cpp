@@ -138,7 +138,7 @@ std::string excerpt(std::string_view text) {
 
 std::string_view trim(std::string_view text) {
   const size_t first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
+  if (first == std::string_view::npos) return text.substr(0, 0);  // still a place in the text
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
@@ -153,7 +153,7 @@ std::u16string to_utf16(std::string_view text) {
   std::u16string result;
   while (!text.empty()) {
     Character character = first_character(text);
-    if (character.length == 0) character = {0xFFFD, 1};
+    if (character.length == 0) character = {0xDC00u + static_cast<unsigned char>(text[0]), 1};
     if (character.code >= 0x10000) {
       result += static_cast<char16_t>(0xD800 + ((character.code - 0x10000) >> 10));
       result += static_cast<char16_t>(0xDC00 + ((character.code - 0x10000) & 0x3FF));
@@ -173,6 +173,9 @@ std::string from_utf16(std::u16string_view text) {
     char32_t code = text[i];
     if (is_high(text[i]) && i + 1 < text.size() && is_low(text[i + 1])) {
       code = 0x10000 + ((code - 0xD800) << 10) + (text[++i] - 0xDC00u);
+    } else if (text[i] >= 0xDC80 && text[i] < 0xDD00) {
+      result += static_cast<char>(text[i] - 0xDC00);
+      continue;
     } else if (is_high(text[i]) || is_low(text[i])) {
       code = 0xFFFD;
     }

@@ -26,7 +26,8 @@ std::string_view trim(std::string_view text);
 /// Appends the shortest decimal number that reads back as the same double.
 void append_number(std::string& text, double value);
 
-/// UTF-16 as MATLAB keeps its text. Bytes that are not UTF-8, and half surrogate pairs, become U+FFFD.
+/// UTF-16 as MATLAB keeps its text. A byte b that is not UTF-8 becomes the lone surrogate 0xDC00 + b and
+/// comes back as it was (as in Python, PEP 383); other lone surrogates become U+FFFD.
 std::u16string to_utf16(std::string_view text);
 std::string from_utf16(std::u16string_view text);
 

@@ -1,0 +1,71 @@
+#include <algorithm>
+
+#include "engine/record/atomic_file.h"
+#include "engine/record/csv.h"
+#include "engine/record/csv_syntax.h"
+#include "engine/record/text.h"
+
+namespace loopwright {
+namespace {
+
+/// Would be read as something else if it stood in a file without the signature.
+bool needs_signature(const Column& column) {
+  return escape(column.name) != column.name || escape(column.unit, "[]") != column.unit ||
+         csv::looks_like_number(column.name);
+}
+
+std::string heading(const Column& column, bool with_escapes) {
+  std::string text = with_escapes ? escape(column.name) : column.name;
+  const bool name_seems_to_have_unit = csv::split_heading(text).name != text;
+  if (!column.unit.empty() || name_seems_to_have_unit) {
+    text += " [";
+    text += with_escapes ? escape(column.unit, "[]") : column.unit;
+    text += ']';
+  }
+  const bool must_be_quoted = text.find_first_of(",;\"") != std::string::npos || text.starts_with('#');
+  if (!must_be_quoted) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string_view("\"\"") : std::string_view(&c, 1);
+  return quoted + '"';
+}
+
+std::string header(const Recording& recording) {
+  const bool with_signature =
+      !recording.facts.empty() || std::ranges::any_of(recording.columns, needs_signature);
+  std::string text;
+  if (with_signature) text.append(csv::signature) += '\n';
+  for (const auto& [key, value] : recording.facts) {
+    text += "# " + escape(key, ":") + ":";
+    if (!value.empty()) text += " " + escape(value);
+    text += '\n';
+  }
+  for (const Column& column : recording.columns) {
+    if (&column != &recording.columns.front()) text += ',';
+    text += heading(column, with_signature);
+  }
+  return text += '\n';
+}
+
+}  // namespace
+
+void write_csv(const std::string& path, const Recording& recording) {
+  check_recording(recording);
+  AtomicFile file(path);
+  constexpr size_t chunk = 1 << 20;  // bounds the memory; longer writes are not faster
+  std::string text = header(recording);
+  for (size_t row = 0; row < recording.rows(); ++row) {
+    for (const Column& column : recording.columns) {
+      append_number(text, column.values[row]);
+      text += ',';
+    }
+    text.back() = '\n';
+    if (text.size() >= chunk) {
+      file.write(text);
+      text.clear();
+    }
+  }
+  file.write(text);
+  file.commit();
+}
+
+}  // namespace loopwright

@@ -1,0 +1,312 @@
+#include "engine/record/csv.h"
+
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <limits>
+
+#include "engine/record/text.h"
+#include "support.h"
+
+namespace loopwright {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+Recording parse(std::string text, Problems& problems, const ReadOptions& options = {}) {
+  return parse_csv(std::make_shared<SourceFile>(SourceFile{"data.csv", std::move(text)}), problems, options);
+}
+
+Recording parse_right(const std::string& text, const ReadOptions& options = {}) {
+  Problems problems;
+  Recording recording = parse(text, problems, options);
+  EXPECT_TRUE(problems.list().empty()) << problems.text();
+  return recording;
+}
+
+std::string problems_of(const std::string& text, const ReadOptions& options = {}) {
+  Problems problems;
+  const Recording recording = parse(text, problems, options);
+  EXPECT_TRUE(problems.has_errors());
+  EXPECT_TRUE(recording.columns.empty()) << "a recording with errors must not be used";
+  return problems.text();
+}
+
+std::vector<std::string> names(const Recording& recording) {
+  std::vector<std::string> list;
+  for (const Column& column : recording.columns) list.push_back(column.name);
+  return list;
+}
+
+void expect_round_trip(const Recording& recording) {
+  const TemporaryFolder folder;
+  write_csv(folder / "a.csv", recording);
+  Problems problems;
+  const Recording back = read_csv(folder / "a.csv", problems);
+  EXPECT_EQ(problems.text(), "");
+  expect_same(recording, back);
+  EXPECT_EQ(folder.count_files(), 1u);
+}
+
+TEST(CsvRoundTrip, RestoresRandomBitPatternsExactly) {
+  std::mt19937_64 random(1);
+  Recording recording;
+  for (const char* const name : {"time", "a", "b", "c"}) {
+    Column& column = recording.columns.emplace_back(Column{name, "m", edge_numbers()});
+    while (column.values.size() < 50'000) column.values.push_back(any_finite(random));
+  }
+  expect_round_trip(recording);
+}
+
+TEST(CsvRoundTrip, RestoresDenormals) {
+  std::mt19937_64 random(2);
+  Recording recording{{{"x", "", {}}}, {}};
+  for (int i = 0; i < 20'000; ++i)
+    recording.columns[0].values.push_back(std::bit_cast<double>(random() & 0x800F'FFFF'FFFF'FFFFu));
+  expect_round_trip(recording);
+}
+
+TEST(CsvRoundTrip, RestoresAwkwardNamesUnitsAndFacts) { expect_round_trip(awkward_recording()); }
+
+TEST(CsvRoundTrip, RestoresEachAwkwardNameAlone) {
+  const Recording all = awkward_recording();
+  for (const Column& column : all.columns) expect_round_trip(Recording{{column}, {}});
+  for (const Column& column : all.columns)
+    expect_round_trip(Recording{{column, {"other", "s", {4, 5, 6}}}, {}});
+}
+
+TEST(CsvRoundTrip, RestoresRandomTexts) {
+  std::mt19937_64 random(3);
+  constexpr std::string_view alphabet = "ab1[]()\\nx:;,\t\n\r \"'#.\xC3\xA9\xFF=";
+  const auto text = [&](size_t least) {
+    std::string result;
+    const size_t length = least + random() % 8;
+    while (result.size() < length) result += alphabet[random() % alphabet.size()];
+    return result;
+  };
+  for (int i = 0; i < 300; ++i) {
+    Recording recording;
+    for (const std::string end : {"1", "2", "3"})
+      recording.columns.push_back({text(1) + end, text(0), {any_finite(random), any_finite(random)}});
+    for (size_t facts = random() % 3; facts > 0; --facts) recording.facts.emplace_back(text(0), text(0));
+    expect_round_trip(recording);
+    if (HasFailure()) FAIL() << "recording " << i;
+  }
+}
+
+TEST(CsvRoundTrip, RestoresNanAndInfinityWhenTheyArePermitted) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const Recording recording{{{"x", "", {infinity, -infinity, std::nan(""), 1}}}, {}};
+  const TemporaryFolder folder;
+  write_csv(folder / "a.csv", recording);
+  Problems problems;
+  const Recording back = read_csv(folder / "a.csv", problems, {.allow_not_finite = true});
+  ASSERT_EQ(back.rows(), 4u) << problems.text();
+  EXPECT_EQ(back.columns[0].values[0], infinity);
+  EXPECT_EQ(back.columns[0].values[1], -infinity);
+  EXPECT_TRUE(std::isnan(back.columns[0].values[2]));
+}
+
+TEST(CsvWrite, IsPlainWhenNothingNeedsEscaping) {
+  const TemporaryFolder folder;
+  write_csv(folder / "a.csv", {{{"time", "s", {0, 0.1}}, {"motor.force[2]", "", {-0.0, 1e300}}}, {}});
+  EXPECT_EQ(bytes_of(folder / "a.csv"), "time [s],motor.force[2]\n0,-0\n0.1,1e+300\n");
+}
+
+TEST(CsvWrite, PutsFactsFirst) {
+  const TemporaryFolder folder;
+  write_csv(folder / "a.csv", {{{"x", "m", {1}}}, {{"plan", "ab12"}, {"two", "a\nb"}}});
+  EXPECT_EQ(bytes_of(folder / "a.csv"), "# loopwright recording: 1\n# plan: ab12\n# two: a\\nb\nx [m]\n1\n");
+}
+
+TEST(CsvWrite, RefusesRecordingsThatAreNotWellFormed) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(write_csv(folder / "a.csv", {{{"x", "", {1}}, {"x", "", {2}}}, {}}), std::invalid_argument);
+  EXPECT_THROW(write_csv(folder / "a.csv", {{{"x", "", {1}}, {"y", "", {}}}, {}}), std::invalid_argument);
+  EXPECT_THROW(write_csv(folder / "a.csv", {{{"", "", {1}}}, {}}), std::invalid_argument);
+  EXPECT_EQ(folder.count_files(), 0u);
+}
+
+TEST(CsvRead, UnderstandsOtherPeoplesFiles) {
+  const std::vector<std::string> same_table = {
+      "t,x\n0,1.5\n1,-2e3\n",        // plain
+      "t,x\n0,1.5\n1,-2e3",          // no newline at the end
+      "t,x\r\n0,1.5\r\n1,-2e3\r\n",  // Windows
+      "t,x\r0,1.5\r1,-2e3\r",        // old Macintosh
+      "\xEF\xBB\xBFt,x\n0,1.5\n1,-2e3\n",
+      "t;x\n0;1.5\n1;-2e3\n",
+      "t\tx\n0\t1.5\n1\t-2e3\n",
+      "t x\n0 1.5\n1    -2e3\n",
+      "  t   x  \n  0 1.5  \n  1 -2e3\n",
+      " t , x \n 0 ,\t1.5 \n1, -2e3 \n",
+      "\"t\",\"x\"\n0,1.5\n1,-2e3\n",
+      "\"t\";x\n\"0\";\"1.5\"\n+1;-2.0E+03\n",
+      "t,x\n\n0,1.5\n1,-2e3\n\n\n",
+      "t,x\n0,1.5\n# paused here\n1,-2e3\n",
+      "# t,x\n0,1.5\n1,-2e3\n",  // numpy.savetxt
+      "# t x\n0 1.5\n1 -2e3\n",  // gnuplot
+  };
+  for (const std::string& text : same_table) {
+    const Recording recording = parse_right(text);
+    ASSERT_THAT(names(recording), ElementsAre("t", "x")) << text;
+    EXPECT_THAT(recording.columns[0].values, ElementsAre(0, 1)) << text;
+    EXPECT_THAT(recording.columns[1].values, ElementsAre(1.5, -2000)) << text;
+  }
+}
+
+TEST(CsvRead, NamesColumnsThatHaveNoHeader) {
+  const Recording recording = parse_right("0,1\n2,3\n");
+  EXPECT_THAT(names(recording), ElementsAre("c1", "c2"));
+  EXPECT_THAT(recording.columns[1].values, ElementsAre(1, 3));
+}
+
+TEST(CsvRead, TakesUnitsFromBrackets) {
+  const Recording recording = parse_right("t [s],speed[m/s],force[2],\"a, b [N]\"\n1,2,3,4\n");
+  EXPECT_THAT(names(recording), ElementsAre("t", "speed", "force[2]", "a, b"));
+  EXPECT_EQ(recording.columns[0].unit, "s");
+  EXPECT_EQ(recording.columns[1].unit, "m/s");
+  EXPECT_EQ(recording.columns[2].unit, "");
+  EXPECT_EQ(recording.columns[3].unit, "N");
+}
+
+TEST(CsvRead, TakesFactsFromCommentsLiterally) {
+  const Recording recording = parse_right("# file: C:\\new\n# recorded at 10:30:00\n#\nt\n1\n");
+  const std::vector<std::pair<std::string, std::string>> facts = {
+      {"file", "C:\\new"}, {"comment", "recorded at 10:30:00"}, {"comment", ""}};
+  EXPECT_EQ(recording.facts, facts);
+}
+
+TEST(CsvRead, ReadsOneColumn) {
+  EXPECT_THAT(parse_right("x\n1\n2\n").columns[0].values, ElementsAre(1, 2));
+  EXPECT_THAT(parse_right("1\n2").columns[0].values, ElementsAre(1, 2));
+}
+
+TEST(CsvProblems, NameTheSpotOfEveryBadCellAtOnce) {
+  const std::string text = problems_of("t,x\n0,1\n1,abc\n2,\n3,4,5\n4\n5,nan\n6,1e999\n");
+  EXPECT_THAT(text, HasSubstr("data.csv:3:3: error: column \"x\": text where a number should be"));
+  EXPECT_THAT(text, HasSubstr("found: abc"));
+  EXPECT_THAT(text, HasSubstr("data.csv:4:3: error: column \"x\": an empty cell"));
+  EXPECT_THAT(text, HasSubstr("data.csv:5:1: error: a row of another length"));
+  EXPECT_THAT(text, HasSubstr("found: 3 cells"));
+  EXPECT_THAT(text, HasSubstr("data.csv:6:1: error: a row of another length"));
+  EXPECT_THAT(text, HasSubstr("data.csv:7:3: error: column \"x\": not a finite number"));
+  EXPECT_THAT(text, HasSubstr("data.csv:8:3: error: column \"x\": a number beyond the range of a double"));
+  EXPECT_THAT(text, HasSubstr("6 errors"));
+}
+
+TEST(CsvProblems, AreCappedAndTheRestCounted) {
+  std::string text = "t,x\n";
+  for (int i = 0; i < 100; ++i) text += "1,?\n";
+  Problems problems;
+  parse(text, problems);
+  ASSERT_EQ(problems.list().size(), 21u);
+  EXPECT_THAT(problems.list().back().message, HasSubstr("80 more problems"));
+  Problems few;
+  parse(text, few, {.most_problems = 3});
+  EXPECT_EQ(few.list().size(), 4u);
+}
+
+TEST(CsvProblems, ExplainDecimalCommasOnce) {
+  const std::string semicolons = problems_of("t;x\n0,0;1,5\n0,1;2,5\n");
+  EXPECT_THAT(semicolons, HasSubstr("data.csv:2:1: error: column \"t\": a decimal comma"));
+  EXPECT_THAT(semicolons, HasSubstr("3 more problems"));
+  EXPECT_THAT(problems_of("t x\n0,0 1,5\n"), HasSubstr("a decimal comma"));
+  EXPECT_THAT(problems_of("t\tx\n0,0\t1,5\n"), HasSubstr("a decimal comma"));
+  EXPECT_THAT(problems_of("0,0;1,5\n0,1;2,5\n"), HasSubstr("a decimal comma"));
+  EXPECT_THAT(problems_of("t,x\n0,001,1,5\n"), HasSubstr("decimal commas?"));
+  EXPECT_THAT(problems_of("x\n1,5\n"), HasSubstr("decimal commas?"));
+}
+
+TEST(CsvProblems, TellAFileThatIsNoTable) {
+  EXPECT_THAT(problems_of(""), HasSubstr("the file is empty"));
+  EXPECT_THAT(problems_of("# only: facts\n"), HasSubstr("no table of numbers"));
+  EXPECT_THAT(problems_of("t,x\n"), HasSubstr("no rows"));
+  EXPECT_THAT(problems_of(std::string("t,x\n1,\0002\n", 9)),
+              HasSubstr("data.csv:2:3: error: the file is not UTF-8"));
+  EXPECT_THAT(problems_of("t,\xB5m\n1,2\n"), HasSubstr("data.csv:1:3: error: the file is not UTF-8"));
+  EXPECT_THAT(problems_of("\xFF\xFEt\n"), HasSubstr("UTF-16"));
+  EXPECT_THAT(problems_of("t,x\n" + std::string(2 << 20, '1') + "\n"),
+              HasSubstr("data.csv:2:1: error: this line is too"));
+}
+
+TEST(CsvProblems, TellColumnsWithoutAName) {
+  EXPECT_THAT(problems_of("t,x,t\n1,2,3\n"), HasSubstr("data.csv:1:5: error: two columns are named \"t\""));
+  EXPECT_THAT(problems_of("t,,x\n1,2,3\n"), HasSubstr("data.csv:1:3: error: column 2 has no name"));
+  EXPECT_THAT(problems_of("t,x,\n1,2,\n"), HasSubstr("a separator too many"));
+  EXPECT_THAT(problems_of("t,\"x\n1,2\n"), HasSubstr("not closed"));
+}
+
+TEST(CsvProblems, TellALastRowThatIsCutOff) {
+  EXPECT_THAT(problems_of("t,x\n0,1\n1"), HasSubstr("data.csv:3:1: error: the last row is cut off"));
+  EXPECT_THAT(problems_of("t,x\n0,1\n1\n"), Not(HasSubstr("cut off"))) << "the row was ended: it is ragged";
+}
+
+TEST(CsvProblems, TellASecondHeaderAndASecondTable) {
+  EXPECT_THAT(problems_of("t,x\n(s),(m)\n0,1\n"), HasSubstr("a second header line?"));
+  EXPECT_THAT(problems_of("t,x\n0,1\n\n0,1\n"), HasSubstr("data.csv:3:1: error: an empty line within"));
+}
+
+TEST(CsvProblems, KeepADamagedFirstRowFromPassingForAHeader) {
+  EXPECT_THAT(problems_of("0,1,2\x60\n1,2,3\n"), HasSubstr("data.csv:1:5: error: column \"c3\": text"));
+}
+
+TEST(CsvProblems, TellFilesThatCannotBeRead) {
+  const TemporaryFolder folder;
+  Problems problems;
+  read_csv(folder / "missing.csv", problems);
+  read_csv(folder / ".", problems);
+  read_csv("/dev/zero", problems);
+  EXPECT_THAT(problems.text(), HasSubstr("missing.csv:1:1: error: the file cannot be read: No such file"));
+  EXPECT_THAT(problems.text(), HasSubstr("it is a folder"));
+  EXPECT_THAT(problems.text(), HasSubstr("/dev/zero:1:1: error: the file cannot be read: it is neither"));
+}
+
+TEST(CsvRead, ReadsTheMeasuredEmpsRecording) {
+  const char* const folder = std::getenv("LOOPWRIGHT_DATA");
+  const std::string data = folder ? folder : std::string(LOOPWRIGHT_SOURCE) + "/../shared/data";
+  const std::string path = data + "/emps/emps_train.csv";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there; set LOOPWRIGHT_DATA";
+  Problems problems;
+  const auto start = std::chrono::steady_clock::now();
+  const Recording recording = read_csv(path, problems);
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  RecordProperty("milliseconds", std::to_string(1e3 * taken.count()));
+  EXPECT_EQ(problems.text(), "");
+  EXPECT_THAT(names(recording), ElementsAre("t_s", "q_ref_m", "q_meas_m", "u_V", "F_motor_N"));
+  ASSERT_EQ(recording.rows(), 24841u);
+  EXPECT_EQ(recording.find("q_ref_m")->values[1], 0.00012172102);
+  EXPECT_EQ(recording.find("t_s")->values.back(), 24.84);
+  expect_round_trip(recording);
+}
+
+TEST(Text, EscapesAreOneLineOfPlainUtf8AndComeBack) {
+  std::mt19937_64 random(4);
+  for (int i = 0; i < 5000; ++i) {
+    std::string text;
+    for (size_t length = random() % 12; length > 0; --length) text += static_cast<char>(random());
+    const std::string escaped = escape(text, ":");
+    EXPECT_EQ(find_not_text(escaped), std::string::npos);
+    EXPECT_EQ(escaped.find_first_of("\n\r\t:"), std::string::npos);
+    EXPECT_EQ(trim(escaped), escaped);
+    EXPECT_EQ(unescape(escaped), text);
+    EXPECT_EQ(from_utf16(to_utf16(text)), text);
+  }
+}
+
+TEST(Text, FindsWhatIsNoUtf8) {
+  EXPECT_EQ(find_not_text("Größe µ 力 🙂 and more"), std::string::npos);
+  EXPECT_EQ(find_not_text("12345678\xC0\x80"), 8u) << "overlong";
+  EXPECT_EQ(find_not_text("\xED\xA0\x80"), 0u) << "surrogate";
+  EXPECT_EQ(find_not_text("\xF4\x90\x80\x80"), 0u) << "beyond U+10FFFF";
+  EXPECT_EQ(find_not_text("1234\xE5\x8A"), 4u) << "cut off";
+  for (size_t place = 0; place < 40; ++place) {
+    std::string text(40, 'a');
+    text[place] = '\0';
+    EXPECT_EQ(find_not_text(text), place);
+  }
+}
+
+}  // namespace
+}  // namespace loopwright

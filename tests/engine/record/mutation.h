@@ -1,0 +1,55 @@
+/// Damage as files suffer it: flipped bits, lost ends, foreign bytes, parts twice or missing.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+
+#include "engine/diagram/problem.h"
+#include "engine/record/recording.h"
+
+namespace loopwright {
+
+/// Damages `bytes` in one to four places; the same random numbers give the same damage.
+inline std::string mutate(std::string bytes, std::mt19937_64& random) {
+  for (uint64_t count = 1 + random() % 4; count > 0; --count) {
+    const size_t at = bytes.empty() ? 0 : random() % bytes.size();
+    const size_t length = 1 + random() % 16;
+    switch (random() % 7) {
+      case 0:
+        if (!bytes.empty()) bytes[at] = static_cast<char>(bytes[at] ^ (1 << random() % 8));
+        break;
+      case 1:
+        bytes.resize(at);
+        break;
+      case 2:
+        bytes.insert(at, 1, static_cast<char>(random()));
+        break;
+      case 3:
+        bytes.insert(at, 1, ",;\t\n\r\"# []-+.e0"[random() % 15]);
+        break;
+      case 4:
+        bytes.insert(at, bytes.substr(at, length));
+        break;
+      case 5:
+        bytes.erase(at, length);
+        break;
+      case 6:
+        if (!bytes.empty()) bytes[at] = "\xFF\x00\x7F\x80\x01"[random() % 5];
+        break;
+    }
+  }
+  return bytes;
+}
+
+inline bool is_refused_or_well_formed(const Recording& recording, const Problems& problems,
+                                      const ReadOptions& options) {
+  if (problems.has_errors()) return recording.columns.empty();
+  check_recording(recording);  // throws
+  if (recording.rows() == 0) return false;
+  return options.allow_not_finite || std::ranges::all_of(recording.columns, [](const Column& column) {
+           return std::ranges::all_of(column.values, [](double value) { return std::isfinite(value); });
+         });
+}
+
+}  // namespace loopwright

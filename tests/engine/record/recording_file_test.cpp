@@ -1,0 +1,49 @@
+#include "engine/record/recording_file.h"
+
+#include <gmock/gmock.h>
+
+#include "support.h"
+
+namespace loopwright {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+TEST(RecordingFile, ChoosesByExtensionInEitherCase) {
+  const TemporaryFolder folder;
+  const Recording recording{{{"time", "s", {0, 0.1}}, {"x", "m", {1, 2}}}, {{"title", "both"}}};
+  for (const std::string name : {"a.csv", "a.mat", "A.CSV", "A.Mat", "two.dots.csv"}) {
+    EXPECT_TRUE(is_recording_path(name));
+    write_recording(folder / name, recording);
+    Problems problems;
+    expect_same(recording, read_recording(folder / name, problems));
+    EXPECT_EQ(problems.text(), "");
+  }
+  EXPECT_THAT(bytes_of(folder / "a.csv"), HasSubstr("time [s]"));
+  EXPECT_THAT(bytes_of(folder / "A.Mat"), HasSubstr("MATLAB 5.0"));
+}
+
+TEST(RecordingFile, RefusesUnknownExtensionsBeforeWriting) {
+  const TemporaryFolder folder;
+  const Recording recording{{{"time", "s", {0}}}, {}};
+  for (const std::string name : {"a.xlsx", "a", "folder.csv/a"}) {
+    EXPECT_FALSE(is_recording_path(name));
+    EXPECT_THAT([&] { write_recording(folder / name, recording); },
+                ThrowsMessage<std::runtime_error>(HasSubstr("expected .csv or .mat")));
+    Problems problems;
+    EXPECT_TRUE(read_recording(folder / name, problems).columns.empty());
+    EXPECT_THAT(problems.text(), HasSubstr(".mat"));
+  }
+  EXPECT_EQ(folder.count_files(), 0u);
+}
+
+TEST(Recording, FindsColumnsByName) {
+  const Recording recording{{{"a", "", {1}}, {"b", "m", {2}}}, {}};
+  ASSERT_NE(recording.find("b"), nullptr);
+  EXPECT_EQ(recording.find("b")->unit, "m");
+  EXPECT_EQ(recording.find("c"), nullptr);
+}
+
+}  // namespace
+}  // namespace loopwright

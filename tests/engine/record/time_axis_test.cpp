@@ -1,0 +1,112 @@
+#include "engine/record/time_axis.h"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "support.h"
+
+namespace loopwright {
+namespace {
+
+using testing::HasSubstr;
+
+Column grid(double start, double step, int count, double printed_to = 0) {
+  Column column{"time", "s", {}};
+  for (int i = 0; i < count; ++i) {
+    const double time = start + i * step;
+    column.values.push_back(printed_to > 0 ? std::round(time / printed_to) * printed_to : time);
+  }
+  return column;
+}
+
+TEST(TimeAxis, FindsTheSampleTimeExactly) {
+  for (const double step : {0.001, 1e-4, 0.004, 4.0, 1.0 / 3.0, 0.00025})
+    for (const double start : {0.0, 0.1, -2.0}) {
+      Problems problems;
+      const TimeAxis axis = check_time(grid(start, step, 25'000), problems);
+      EXPECT_TRUE(axis.regular);
+      EXPECT_EQ(axis.start, start);
+      EXPECT_NEAR(axis.sample_time, step, 1e-15 * step + 1e-12 * step * (step == 1.0 / 3.0 ? 0 : 1));
+      EXPECT_EQ(problems.text(), "");
+    }
+  Problems problems;
+  Column printed{"t", "s", {}};
+  for (int i = 0; i < 24'841; ++i) printed.values.push_back(std::stod(std::to_string(i) + "e-3"));
+  EXPECT_EQ(check_time(printed, problems).sample_time, 0.001) << "to the last bit";
+}
+
+TEST(TimeAxis, ToleratesRoundingAndNoMore) {
+  Problems problems;
+  EXPECT_TRUE(check_time(grid(0, 1.0 / 3000, 5000, 1e-6), problems).regular);
+  EXPECT_EQ(problems.text(), "");
+  Column jitter = grid(0, 0.001, 1000);
+  jitter.values[500] += 0.00002;  // 2 % of a sample time
+  EXPECT_FALSE(check_time(jitter, problems).regular);
+  EXPECT_THAT(problems.text(), HasSubstr("a time lies 0.02 sample times off the grid"));
+  Problems none;
+  EXPECT_TRUE(check_time(jitter, none, {.tolerance = 0.05}).regular);
+}
+
+TEST(TimeAxis, NamesGapsWithRowAndTime) {
+  Column column = grid(0, 0.001, 100);
+  column.values.erase(column.values.begin() + 50, column.values.begin() + 53);
+  Problems problems;
+  const TimeAxis axis = check_time(column, problems);
+  EXPECT_FALSE(axis.regular);
+  EXPECT_NEAR(axis.sample_time, 0.001, 1e-12);
+  EXPECT_FALSE(problems.has_errors());
+  EXPECT_THAT(problems.text(), HasSubstr("row 51: a gap of 0.004 s behind 0.049 s"));
+  EXPECT_THAT(problems.text(), HasSubstr("about 3 samples are missing"));
+  Problems strict;
+  check_time(column, strict, {.must_be_regular = true});
+  EXPECT_TRUE(strict.has_errors());
+}
+
+TEST(TimeAxis, RefusesTimesThatDoNotGrow) {
+  const Column column{"t", "s", {0, 1, 1, 0.5, std::nan(""), 2, INFINITY}};
+  Problems problems;
+  const TimeAxis axis = check_time(column, problems);
+  EXPECT_FALSE(axis.regular);
+  EXPECT_EQ(axis.sample_time, 0);
+  EXPECT_THAT(problems.text(), HasSubstr("row 3: the time 1 s of row 2 again"));
+  EXPECT_THAT(problems.text(), HasSubstr("row 4: the time goes back from 1 s to 0.5 s"));
+  EXPECT_THAT(problems.text(), HasSubstr("row 5: nan is no time"));
+  EXPECT_THAT(problems.text(), HasSubstr("row 7: inf is no time"));
+  EXPECT_THAT(problems.text(), HasSubstr("4 errors"));
+}
+
+TEST(TimeAxis, CapsItsProblems) {
+  const Column column{"t", "s", std::vector<double>(1000, 1.0)};
+  Problems problems;
+  check_time(column, problems);
+  EXPECT_EQ(problems.list().size(), 21u);
+  EXPECT_THAT(problems.text(), HasSubstr("979 more problems"));
+}
+
+TEST(TimeAxis, AcceptsOneRowAndRefusesNone) {
+  Problems problems;
+  EXPECT_TRUE(check_time({"t", "s", {3}}, problems).regular);
+  EXPECT_EQ(problems.text(), "");
+  check_time({"t", "s", {}}, problems);
+  EXPECT_THAT(problems.text(), HasSubstr("no rows"));
+}
+
+TEST(TimeAxis, SurvivesTheEndsOfTheNumberRange) {
+  const double largest = std::numeric_limits<double>::max(),
+               least = std::numeric_limits<double>::denorm_min();
+  Problems problems;
+  EXPECT_FALSE(check_time({"t", "s", {-largest, 0, largest}}, problems).regular);
+  EXPECT_TRUE(check_time({"t", "s", {0, least}}, problems).regular);
+}
+
+TEST(TimeAxis, CarriesThePlaceItWasGiven) {
+  const Place place{std::make_shared<SourceFile>(SourceFile{"axis.experiment.json", "{\n  \"time\": \"t\"}"}),
+                    4};
+  Problems problems;
+  check_time({"t", "s", {1, 1}}, problems, {}, place);
+  EXPECT_THAT(problems.text(), HasSubstr("axis.experiment.json:2:3: error"));
+}
+
+}  // namespace
+}  // namespace loopwright
