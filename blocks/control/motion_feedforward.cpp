@@ -1,0 +1,38 @@
+/// u = M a + B v + F sign(v)
+///
+/// F is the Coulomb friction to overcome; at rest it gives nothing, and its sign changes by a jump.
+#include "engine/block.h"
+
+namespace loopwright::blocks {
+
+template <class Real>
+struct MotionFeedforward {
+  Real mass, damping, coulomb = 0.0;
+  struct In { Real velocity, acceleration; };
+  struct Out { Real command; };
+  struct Mode { Real direction; };
+  struct Crossings { Real direction; };
+  static constexpr auto describe() {
+    using B = MotionFeedforward;
+    return block("The command that a nominal mass with friction needs for a motion.",
+      parameter(&B::mass, "mass", "$command*s/$velocity", "Nominal mass"),
+      parameter(&B::damping, "damping", "$command/$velocity", "Nominal viscous friction"),
+      parameter(&B::coulomb, "coulomb", "$command", "Nominal Coulomb friction").optional(),
+      input(&In::velocity, "velocity", "$velocity", "Wanted velocity"),
+      input(&In::acceleration, "acceleration", "$velocity/s", "Wanted acceleration"),
+      output(&Out::command, "command", "$command", "Command"),
+      crossing(&Crossings::direction, "direction"));
+  }
+  void decide(const In& in, Mode& mode) const { mode.direction = sign_of(in.velocity); }
+  void outputs(const In& in, const Mode& mode, Out& out) const {
+    out.command = mass * in.acceleration + damping * in.velocity + coulomb * mode.direction;
+  }
+  /// A motion that begins from rest leaves zero without a change of sign: there a small speed counts as motion.
+  void crossings(const In& in, const Mode& mode, Crossings& value) const {
+    const Real moves = select(mode.direction == 0.0, absolute(in.velocity) - 1e-9, in.velocity);
+    value.direction = select(coulomb == 0.0, Real(1.0), moves);
+  }
+};
+LOOPWRIGHT_BLOCK(MotionFeedforward)
+
+}  // namespace loopwright::blocks

@@ -1,0 +1,23 @@
+/// y(t) = u(t_k) for t_k ≤ t < t_{k+1}
+///
+/// Put it where a continuous signal enters a sampled controller, with the controller's sample time.
+#include "engine/block.h"
+
+namespace loopwright::blocks {
+
+template <class Real>
+struct ZeroOrderHold {
+  struct In { Real u; };
+  struct Out { Real y; };
+  struct Memory { Real held; };  // what has memory must be given a sample time: without one it would hold nothing
+  static constexpr auto describe() {
+    return block("Samples a signal and holds the sample until the next.",
+      input(&In::u, "u", "$u", "Signal"),
+      output(&Out::y, "y", "$u", "The signal at the last sample"));
+  }
+  void outputs(const In& in, Out& out) const { out.y = in.u; }
+  void update(const In& in, Memory& memory) const { memory.held = in.u; }
+};
+LOOPWRIGHT_BLOCK(ZeroOrderHold)
+
+}  // namespace loopwright::blocks
