@@ -1,7 +1,7 @@
 /// Results as one page: values that say what to show, and functions that write them as HTML or as plain text.
 ///
-/// An HTML page is complete in itself. It loads nothing from a network or from another file, suits light and dark
-/// screens and paper, and lets a reader zoom, pan and read values off every plot.
+/// An HTML page is complete in itself. It loads nothing from a network or from another file, suits light and
+/// dark screens and paper, and lets a reader zoom, pan and read values off every plot.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -25,8 +25,8 @@ struct Series {
 };
 
 struct Axis {
-  std::string label;         ///< "Tracking error"
-  std::string unit;          ///< "m", "N*s/m"; empty or "1": none. The page picks mm, µm … by what is in view
+  std::string label;  ///< "Tracking error"
+  std::string unit;   ///< "m", "N*s/m"; empty or "1": none. The page picks mm, µm … by what is in view
   bool logarithmic = false;  ///< base 10
 };
 
@@ -89,15 +89,18 @@ struct Section {
 
 struct Page {
   std::string title, subtitle;
-  std::vector<std::pair<std::string, std::string>> facts;  ///< where the results come from: ("Diagram", "stage.json")
+  std::vector<std::pair<std::string, std::string>>
+      facts;  ///< where the results come from: ("Diagram", "stage.json")
   std::vector<Section> sections;
 };
 
-/// The page as HTML. Long series are thinned so that the whole page holds at most 200 000 points; extremes stay.
-/// Throws std::invalid_argument, naming the plot or table, when x and y differ in length or a row is too long.
+/// The page as HTML. Long series are thinned so that the whole page holds at most 200 000 points; extremes
+/// stay. Throws std::invalid_argument, naming the plot or table, when x and y differ in length or a row is
+/// too long.
 std::string to_html(const Page& page);
 
-/// Writes to_html(page) under `path`, whole or not at all. Throws as to_html, and when the file cannot be written.
+/// Writes to_html(page) under `path`, whole or not at all. Throws as to_html, and when the file cannot be
+/// written.
 void write_html(const std::filesystem::path& path, const Page& page);
 
 /// The same story for a terminal: plots become the range, mean and outline of each series.

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <stdexcept>
 #include "tools/report/assets.h"
-#include "tools/report/check.h"
+#include "tools/report/layout.h"
 #include "tools/report/thin.h"
 #include "tools/report/typography.h"
 
@@ -22,8 +22,7 @@ class HtmlWriter {
   std::string write();
 
  private:
-  template <class... Arguments>
-  void put(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+  template <class... Arguments> void put(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
     fmt::format_to(std::back_inserter(out_), format, std::forward<Arguments>(arguments)...);
   }
   void put_head();
@@ -86,19 +85,24 @@ std::string numbers_json(std::span<const double> values, bool logarithmic) {
   std::string out = "[";
   for (const double value : values) {
     if (out.size() > 1) out += ',';
-    if (std::isfinite(value) && (!logarithmic || value > 0))
-      fmt::format_to(std::back_inserter(out), "{:.{}g}", value, digits);
-    else
+    if (!std::isfinite(value) || (logarithmic && value <= 0))
       out += "null";
+    else if (digits > 15)
+      fmt::format_to(std::back_inserter(out), "{}", value);  // the shortest that reads back the same
+    else
+      fmt::format_to(std::back_inserter(out), "{:.{}g}", value, digits);
   }
   return out + ']';
 }
 
 std::string_view to_string(Series::Shape shape) {
   switch (shape) {
-    case Series::Shape::line: return "line";
-    case Series::Shape::points: return "points";
-    case Series::Shape::steps: return "steps";
+    case Series::Shape::line:
+      return "line";
+    case Series::Shape::points:
+      return "points";
+    case Series::Shape::steps:
+      return "steps";
   }
   return "";
 }
@@ -114,11 +118,12 @@ void HtmlWriter::put_series(const Plot& plot, const Series& series) {
   put(R"(,"y":{}}})", numbers_json(y, plot.y.logarithmic));
 }
 
-void HtmlWriter::put_caption(std::string_view kind, int& count, std::string_view title, std::string_view caption,
-                             std::string_view remark) {
+void HtmlWriter::put_caption(std::string_view kind, int& count, std::string_view title,
+                             std::string_view caption, std::string_view remark) {
   put("<figcaption><b>{} {}.</b>", kind, ++count);
   for (const std::string_view text : {title, caption, remark})
-    if (!text.empty()) put(" {}{}", escape_html(text), text.find_last_of(".!?:") == text.size() - 1 ? "" : ".");
+    if (!text.empty())
+      put(" {}{}", escape_html(text), text.find_last_of(".!?:") == text.size() - 1 ? "" : ".");
   out_ += "</figcaption>\n";
 }
 
@@ -135,7 +140,8 @@ void HtmlWriter::put_item(const KeyNumbers& key) {
   out_ += "<dl class=\"key-numbers\">\n";
   for (const KeyNumbers::Number& number : key.numbers) {
     put("<div><dt>{}</dt><dd><b>{}</b>", escape_html(number.label), escape_html(number.value));
-    if (const std::string unit = readable_unit(number.unit); !unit.empty()) put(" <span>{}</span>", escape_html(unit));
+    if (const std::string unit = readable_unit(number.unit); !unit.empty())
+      put(" <span>{}</span>", escape_html(unit));
     if (!number.note.empty()) put("<small>{}</small>", escape_html(number.note));
     out_ += "</dd></div>\n";
   }
@@ -154,22 +160,10 @@ void HtmlWriter::put_item(const Plot& plot) {
   }
   out_ += "]}</script>\n";
   put_caption("Figure", figures_, plot.title, plot.caption,
-              thinned ? fmt::format("Drawn from up to {} samples a curve, thinned so that extremes stay", grouped(thinned))
+              thinned ? fmt::format("Drawn from up to {} samples a curve, thinned so that extremes stay",
+                                    grouped(thinned))
                       : std::string());
   out_ += "</figure>\n";
-}
-
-/// A column is numeric when it holds at least one number and nothing but numbers, blanks and dashes.
-bool is_numeric_column(const Table& table, std::size_t column) {
-  bool any = false;
-  for (const std::vector<std::string>& row : table.rows) {
-    if (column >= row.size()) continue;
-    const std::string& cell = row[column];
-    if (cell.empty() || cell == "-" || cell == "–" || cell == "—") continue;
-    if (!is_numeric(cell)) return false;
-    any = true;
-  }
-  return any;
 }
 
 void HtmlWriter::put_item(const Table& table) {
@@ -207,7 +201,8 @@ void HtmlWriter::put_item(const Notice& notice) {
   static constexpr std::string_view names[] = {"note", "good", "warning", "error"};
   static constexpr std::string_view words[] = {"Note", "Good", "Warning", "Error"};
   const auto severity = static_cast<std::size_t>(notice.severity);
-  put("<p class=\"notice {}\"><b>{}.</b> {}</p>\n", names[severity], words[severity], escape_html(notice.text));
+  put("<p class=\"notice {}\"><b>{}.</b> {}</p>\n", names[severity], words[severity],
+      escape_html(notice.text));
 }
 
 void HtmlWriter::put_head() {
@@ -254,14 +249,17 @@ std::string HtmlWriter::write() {
   put_head();
   put_title();
   put_contents();
-  out_ += "<main>\n<noscript><p class=\"notice warning\"><b>Warning.</b> The plots need JavaScript.</p></noscript>\n";
+  out_ +=
+      "<main>\n<noscript><p class=\"notice warning\"><b>Warning.</b> The plots need "
+      "JavaScript.</p></noscript>\n";
   for (std::size_t i = 0; i < page_.sections.size(); ++i) {
     put("<section id=\"section-{}\">\n<h2>{}</h2>\n", i + 1, escape_html(page_.sections[i].title));
-    for (const Item& item : page_.sections[i].items) std::visit([this](const auto& value) { put_item(value); }, item);
+    for (const Item& item : page_.sections[i].items)
+      std::visit([this](const auto& value) { put_item(value); }, item);
     out_ += "</section>\n";
   }
-  put("</main>\n<script>\n/*\nuPlot: {}*/\n{}\n{}</script>\n</body>\n</html>\n", assets::uplot_license, assets::uplot_js,
-      assets::page_js);
+  put("</main>\n<script>\n/*\nuPlot: {}*/\n{}\n{}</script>\n</body>\n</html>\n", assets::uplot_license,
+      assets::uplot_js, assets::page_js);
   return std::move(out_);
 }
 

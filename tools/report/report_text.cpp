@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 #include <iterator>
 #include <span>
-#include "tools/report/check.h"
+#include "tools/report/layout.h"
 #include "tools/report/typography.h"
 
 namespace loopwright::report {
 namespace {
 
-constexpr std::size_t page_width = 100;   ///< characters
+constexpr std::size_t page_width = 100;    ///< characters
 constexpr std::size_t outline_width = 40;  ///< characters of the small curve beside a series
 
 /// What a line of text can say about a curve.
@@ -39,17 +39,31 @@ Summary summarize(std::span<const double> values) {
   return summary;
 }
 
-/// The curve in eight heights, against the range of x; each column shows the value farthest from the middle of the range.
-std::string outline(const Series& series, const Summary& range) {
+/// Values as far along an axis as they are drawn; what cannot be drawn is NaN.
+std::vector<double> places(std::span<const double> values, bool logarithmic) {
+  std::vector<double> out;
+  out.reserve(values.size());
+  for (const double value : values)
+    out.push_back(!std::isfinite(value) || (logarithmic && value <= 0) ? NAN
+                  : logarithmic                                        ? std::log(value)
+                                                                       : value);
+  return out;
+}
+
+/// The curve in eight heights over the range of x. Each column shows the value farthest from the middle of
+/// the range.
+std::string outline(const Plot& plot, const Series& series) {
   static constexpr std::string_view heights[] = {"▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
-  const auto [first, last] = std::minmax_element(series.x.begin(), series.x.end());
+  const std::vector<double> x = places(series.x, plot.x.logarithmic),
+                            y = places(series.y, plot.y.logarithmic);
+  const Summary across = summarize(x), range = summarize(y);
   const double middle = 0.5 * (range.low + range.high);
   std::vector<double> column(outline_width, NAN);
-  for (std::size_t i = 0; i < series.x.size(); ++i) {
-    const double place = *last > *first ? (series.x[i] - *first) / (*last - *first) : 0;
-    if (!std::isfinite(series.y[i]) || !(place >= 0 && place <= 1)) continue;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (std::isnan(x[i]) || std::isnan(y[i])) continue;
+    const double place = across.high > across.low ? (x[i] - across.low) / (across.high - across.low) : 0;
     double& value = column[std::min(outline_width - 1, static_cast<std::size_t>(place * outline_width))];
-    if (!(std::abs(value - middle) >= std::abs(series.y[i] - middle))) value = series.y[i];
+    if (!(std::abs(value - middle) >= std::abs(y[i] - middle))) value = y[i];
   }
   std::string out;
   for (const double value : column) {
@@ -136,7 +150,6 @@ struct ItemText {
   std::string operator()(const Paragraph& paragraph) { return wrapped(paragraph.text, page_width, ""); }
 
   std::string operator()(const KeyNumbers& key) {
-    Table table{{"", "", "", ""}, {}, ""};
     std::size_t label_width = 0, value_width = 0;
     for (const auto& number : key.numbers) {
       label_width = std::max(label_width, text_width(number.label));
@@ -144,7 +157,8 @@ struct ItemText {
     }
     std::string out;
     for (const auto& number : key.numbers) {
-      out += fmt::format("  {}  {}", padded(number.label, label_width, false), padded(number.value, value_width, true));
+      out += fmt::format("  {}  {}", padded(number.label, label_width, false),
+                         padded(number.value, value_width, true));
       if (const std::string unit = readable_unit(number.unit); !unit.empty()) out += ' ' + unit;
       if (!number.note.empty()) out += fmt::format("  ({})", number.note);
       out += '\n';
@@ -154,16 +168,19 @@ struct ItemText {
 
   std::string operator()(const Plot& plot) {
     std::string out = wrapped(fmt::format("Figure {}. {}", ++figures, plot.title), page_width, "");
-    out += fmt::format("  {} against {}\n", with_unit(plot.y.label, plot.y.unit), with_unit(plot.x.label, plot.x.unit));
+    out += fmt::format("  {} against {}\n", with_unit(plot.y.label, plot.y.unit),
+                       with_unit(plot.x.label, plot.x.unit));
     Table table{{"Curve", "Samples", "Lowest", "Highest", "Mean", "RMS", "Outline"}, {}, ""};
     for (const Series& series : plot.series) {
       const Summary summary = summarize(series.y);
-      const auto number = [&](double value) { return summary.samples ? fmt::format("{:.4g}", value) : std::string("–"); };
+      const auto number = [&](double value) {
+        return summary.samples ? fmt::format("{:.4g}", value) : std::string("–");
+      };
       table.rows.push_back({series.name,
                             summary.gaps ? fmt::format("{} of {}", summary.samples, series.y.size())
                                          : std::to_string(summary.samples),
-                            number(summary.low), number(summary.high), number(summary.mean), number(summary.rms),
-                            summary.samples ? outline(series, summary) : ""});
+                            number(summary.low), number(summary.high), number(summary.mean),
+                            number(summary.rms), summary.samples ? outline(plot, series) : ""});
     }
     out += table_text(table);
     if (!plot.caption.empty()) out += wrapped(plot.caption, page_width - 2, "  ");
@@ -186,7 +203,8 @@ struct ItemText {
 
   std::string operator()(const Notice& notice) {
     static constexpr std::string_view words[] = {"Note", "Good", "Warning", "Error"};
-    return wrapped(fmt::format("{}: {}", words[static_cast<std::size_t>(notice.severity)], notice.text), page_width, "");
+    return wrapped(fmt::format("{}: {}", words[static_cast<std::size_t>(notice.severity)], notice.text),
+                   page_width, "");
   }
 };
 
@@ -205,7 +223,8 @@ std::string to_text(const Page& page) {
   if (!page.facts.empty()) out += '\n';
   std::size_t name_width = 0;
   for (const auto& fact : page.facts) name_width = std::max(name_width, text_width(fact.first));
-  for (const auto& [name, value] : page.facts) out += fmt::format("{}  {}\n", padded(name, name_width, false), value);
+  for (const auto& [name, value] : page.facts)
+    out += fmt::format("{}  {}\n", padded(name, name_width, false), value);
   ItemText item_text;
   for (const Section& section : page.sections) {
     out += "\n\n" + underlined(section.title, "─");

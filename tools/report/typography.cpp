@@ -19,8 +19,7 @@ bool skip(std::string_view& text, std::string_view prefix) {
 }
 
 /// Cuts the longest front part off `text` whose characters all satisfy `belongs`.
-template <class Predicate>
-std::string_view take_while(std::string_view& text, Predicate belongs) {
+template <class Predicate> std::string_view take_while(std::string_view& text, Predicate belongs) {
   const auto end = std::find_if_not(text.begin(), text.end(), belongs);
   const std::string_view front = text.substr(0, static_cast<std::size_t>(end - text.begin()));
   text.remove_prefix(front.size());
@@ -67,13 +66,26 @@ std::string escape_html(std::string_view text) {
   out.reserve(text.size());
   for (const char c : text) {
     switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      case '\'': out += "&#39;"; break;
-      case '\0': out += "\uFFFD"; break;
-      default: out += c;
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      case '\'':
+        out += "&#39;";
+        break;
+      case '\0':
+        out += "\uFFFD";
+        break;
+      default:
+        out += c;
     }
   }
   return out;
@@ -121,7 +133,10 @@ bool is_numeric(std::string_view cell) {
   if (!skip_number(cell)) return false;
   std::string_view tolerance = cell;
   skip(tolerance, " ");
-  if (tolerance.starts_with("±") && skip_number(tolerance)) cell = tolerance;
+  if (skip(tolerance, "±")) {
+    skip(tolerance, " ");
+    if (skip_number(tolerance)) cell = tolerance;
+  }
   // What may follow is one short word, the unit.
   return cell.empty() || cell == "%" || (skip(cell, " ") && cell.size() < 16 && cell.find(' ') == cell.npos);
 }
@@ -147,8 +162,8 @@ int significant_digits(std::span<const double> values) {
 }
 
 std::size_t text_width(std::string_view text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
 }  // namespace loopwright::report

@@ -24,7 +24,8 @@ bool is_numeric(std::string_view cell);
 /// 600000 → "600 000" (with narrow no-break spaces).
 std::string grouped(std::size_t number);
 
-/// Significant digits (7 … 17) that resolve a millionth of the span of `values`, also on top of a large offset.
+/// Significant digits (7 … 17) that resolve a millionth of the span of `values`, also on top of a large
+/// offset.
 int significant_digits(std::span<const double> values);
 
 /// Columns that `text` takes on a terminal: characters, not bytes.

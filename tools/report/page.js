@@ -1,0 +1,386 @@
+// Turns the data of every plot on the page into a scope: zoom, pan, cursor read-out, curves to switch off,
+// plots of one group linked along x. Drawing is uPlot's business.
+"use strict";
+(() => {
+  const PREFIXES = { "-15": "f", "-12": "p", "-9": "n", "-6": "µ", "-3": "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T" };
+  // A unit takes a prefix when it begins with one of these, standing to the first power.
+  const PREFIXABLE = /^(m|s|N|V|A|W|Hz|rad|J|Pa|F|H|Ω|T|C)(?=$|[\/·])/;
+  const SUPERSCRIPT = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+  const HEIGHT = 250, AXIS_WIDTH = 64, SERIES_COLOURS = 8;
+
+  // ---------- numbers ----------
+
+  /** The power of ten, a multiple of 3, in which values up to `largest` read well. */
+  function exponentFor(largest, unit) {
+    if (!(largest > 0) || !isFinite(largest)) return 0;
+    const exponent = 3 * Math.floor(Math.log10(largest * 1.0000001) / 3);
+    if (!PREFIXABLE.test(unit)) return largest < 1e-3 || largest >= 1e6 ? exponent : 0;
+    const highest = /^(s|rad)/.test(unit) ? 0 : 12;  // nobody reads kiloseconds
+    return Math.max(-15, Math.min(highest, exponent));
+  }
+
+  const superscript = (n) => String(n).replace("-", "⁻").replace(/\d/g, (d) => SUPERSCRIPT[d]);
+
+  /** Unit with its prefix, or behind a power of ten: "µm", "×10⁻⁶ V·s". */
+  function scaledUnit(exponent, unit) {
+    if (exponent === 0) return unit;
+    if (PREFIXABLE.test(unit)) return PREFIXES[exponent] + unit;
+    return `×10${superscript(exponent)}${unit ? " " + unit : ""}`;
+  }
+
+  const withMinus = (text) => text.replace("-", "−");
+
+  /** Decimals that tell multiples of `step` apart. */
+  function decimalsFor(step) {
+    for (let decimals = 0; decimals < 15; ++decimals) {
+      const scaled = step * 10 ** decimals;
+      if (Math.abs(scaled - Math.round(scaled)) < 1e-3 * scaled) return decimals;
+    }
+    return 15;
+  }
+
+  /** One value as read off the cursor, five significant digits. */
+  function readOut(value, unit) {
+    const exponent = exponentFor(Math.abs(value), unit);
+    const scaled = value / 10 ** exponent;
+    const text = scaled === 0 ? "0" : Math.abs(scaled) >= 1e5 ? scaled.toFixed(0) : String(+scaled.toPrecision(5));
+    const shown = scaledUnit(exponent, unit);
+    return withMinus(text) + (shown ? "\u202f" + shown : "");
+  }
+
+  // ---------- data ----------
+
+  /** x may be given as start, step and count. */
+  function expand(x) {
+    if (Array.isArray(x)) return x;
+    return Array.from({ length: x.count }, (_, i) => x.from + i * x.step);
+  }
+
+  const rises = (x) => x.every((value, i) => value !== null && (i === 0 || value >= x[i - 1]));
+
+  /** One table over a common rising x, as uPlot wants it. A series without a value at some x has undefined there. */
+  function align(series) {
+    const first = series[0].x;
+    if (series.every((s) => s.rises && s.x.length === first.length && s.x.every((x, i) => x === first[i])))
+      return [first, ...series.map((s) => s.y)];
+    const sorted = series.map((s) => {
+      const order = s.x.map((_, i) => i).filter((i) => s.x[i] !== null);
+      return s.rises ? order : order.sort((a, b) => s.x[a] - s.x[b]);
+    });
+    const next = series.map(() => 0);
+    const table = [[], ...series.map(() => [])];
+    for (;;) {
+      let x = Infinity;
+      series.forEach((s, k) => { if (next[k] < sorted[k].length) x = Math.min(x, s.x[sorted[k][next[k]]]); });
+      if (x === Infinity) return table;
+      table[0].push(x);
+      series.forEach((s, k) => {
+        const i = sorted[k][next[k]];
+        const here = next[k] < sorted[k].length && s.x[i] === x;
+        table[k + 1].push(here ? s.y[i] : undefined);
+        if (here) ++next[k];
+      });
+    }
+  }
+
+  // ---------- drawing ----------
+
+  /** A cloud of dots. Dense clouds get small, translucent dots. */
+  function drawPoints(series) {
+    return (u) => {
+      const path = new Path2D(), radius = series.dot * uPlot.pxRatio;
+      series.x.forEach((x, i) => {
+        if (x === null || series.y[i] === null) return;
+        const left = u.valToPos(x, "x", true), top = u.valToPos(series.y[i], "y", true);
+        path.moveTo(left + radius, top);
+        path.arc(left, top, radius, 0, 2 * Math.PI);
+      });
+      return { fill: path, flags: 0 };
+    };
+  }
+
+  /** A line in the order of its points; x may turn back. */
+  function drawTrace(series) {
+    return (u) => {
+      const path = new Path2D();
+      let pen = false;
+      series.x.forEach((x, i) => {
+        if (x === null || series.y[i] === null) { pen = false; return; }
+        const left = u.valToPos(x, "x", true), top = u.valToPos(series.y[i], "y", true);
+        if (pen) path.lineTo(left, top); else path.moveTo(left, top);
+        pen = true;
+      });
+      return { stroke: path, flags: 0 };
+    };
+  }
+
+  function drawer(series) {
+    if (series.shape === "points") return drawPoints(series);
+    if (!series.rises) return drawTrace(series);
+    return series.shape === "steps" ? uPlot.paths.stepped({ align: 1 }) : uPlot.paths.linear();
+  }
+
+  /** Colours come from the style sheet, so that they follow the scheme of the screen. */
+  const variable = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const font = (size) => `${size}px ${getComputedStyle(document.body).fontFamily}`;
+
+  function axis(key, description, plot) {
+    const exponent = (u) => exponentFor(Math.max(Math.abs(u.scales[key].min), Math.abs(u.scales[key].max)), description.unit);
+    const tick = (value, decimals) => withMinus(value.toFixed(decimals));
+    const linear = (u, splits, _axis, _space, step) => {
+      const power = 10 ** exponent(u);
+      const decimals = decimalsFor(step / power);
+      return splits.map((value) => tick(Math.abs(value) < step * 1e-6 ? 0 : value / power, decimals));
+    };
+    const logarithmic = (u, splits) => splits.map((value) => {
+      if (value === null) return "";
+      const power = Math.round(Math.log10(value));
+      return power >= -3 && power <= 4 ? String(+value.toPrecision(3)) : "10" + superscript(power);
+    });
+    const title = (u) => {
+      const unit = description.logarithmic ? description.unit : scaledUnit(exponent(u), description.unit);
+      return description.label && unit ? `${description.label} (${unit})` : description.label || unit;
+    };
+    const isX = key === "x";
+    const hidden = isX && plot.continues;  // the plot below carries the numbers
+    return {
+      scale: key,
+      stroke: () => variable("--soft"),
+      font: font(12), labelFont: font(12),
+      label: hidden ? null : title,
+      labelSize: isX ? 22 : 20, labelGap: isX ? 2 : 0,
+      size: isX ? (hidden ? 8 : 30)
+                : (u, values) => Math.max(AXIS_WIDTH - 20, 14 + 7 * Math.max(0, ...(values || []).map((v) => (v || "").length))),
+      gap: 5, space: isX ? 70 : 32,
+      values: hidden ? (u, splits) => splits.map(() => "") : description.logarithmic ? logarithmic : linear,
+      grid: { stroke: () => variable("--grid"), width: 1 },
+      ticks: { show: !hidden, stroke: () => variable("--rule"), width: 1, size: 5 },
+      border: { show: true, stroke: () => variable("--rule"), width: 1 },
+    };
+  }
+
+  /** The range that shows all data from `low` to `high`, with a margin of `padding` times its width. */
+  function wholeRange(description, padding, low, high) {
+    if (low === null || high === null) return [0.1, 1];
+    if (description.logarithmic) return low === high ? [low / 10, high * 10] : uPlot.rangeLog(low, high, 10, false);
+    return padding || low === high ? uPlot.rangeNum(low, high, padding || 0.1, true) : [low, high];
+  }
+
+  // uPlot asks for the range after every change. Only the whole range gets a margin: what a reader chose is kept.
+  function rangeX(plot) {
+    const first = plot.table[0][0], last = plot.table[0].at(-1);
+    plot.whole = wholeRange(plot.x, plot.cloud ? 0.04 : 0, first, last);
+    return (u, low, high) => low === first && high === last ? plot.whole : [low, high];
+  }
+
+  // ---------- interaction ----------
+
+  /** Among the points of a cloud near the cursor, the nearest one on the screen. */
+  function nearestPoint(u, index, column) {
+    const x = u.data[0], y = u.data[column], reach = 20;
+    let best = null, least = reach * reach;
+    const measure = (i) => {
+      const dx = u.valToPos(x[i], "x") - u.cursor.left;
+      if (Math.abs(dx) > reach) return false;
+      if (y[i] != null) {
+        const dy = u.valToPos(y[i], "y") - u.cursor.top;
+        if (dx * dx + dy * dy < least) { least = dx * dx + dy * dy; best = i; }
+      }
+      return true;
+    };
+    for (let i = index; i >= 0 && measure(i); --i);
+    for (let i = index + 1; i < x.length && measure(i); ++i);
+    return best;
+  }
+
+  function pan(u, start) {
+    const { min, max } = u.scales.x;
+    const log = u.scales.x.distr === 3;
+    const move = (event) => {
+      const shift = (start.clientX - event.clientX) / u.over.clientWidth;
+      const by = log ? (max / min) ** shift : shift * (max - min);
+      u.setScale("x", log ? { min: min * by, max: max * by } : { min: min + by, max: max + by });
+    };
+    const stop = () => { removeEventListener("mousemove", move); removeEventListener("mouseup", stop); };
+    addEventListener("mousemove", move);
+    addEventListener("mouseup", stop);
+    start.preventDefault();
+  }
+
+  function zoomByWheel(u, event) {
+    if (!event.ctrlKey && !event.metaKey) return;  // a plain wheel scrolls the page
+    event.preventDefault();
+    const { min, max } = u.scales.x;
+    const log = u.scales.x.distr === 3, to = log ? Math.log : Number, from = log ? Math.exp : Number;
+    const centre = to(u.posToVal(u.cursor.left, "x")), factor = Math.exp(0.002 * event.deltaY);
+    u.setScale("x", { min: from(centre + (to(min) - centre) * factor), max: from(centre + (to(max) - centre) * factor) });
+  }
+
+  const linked = new Map();  // group → its uPlot instances
+
+  function followX(u, group) {
+    const { min, max } = u.scales.x;
+    for (const other of linked.get(group) || [])
+      if (other !== u && other.status === 1 && (other.scales.x.min !== min || other.scales.x.max !== max)) other.setScale("x", { min, max });
+  }
+
+  // ---------- legend ----------
+
+  function buildLegend(plot) {
+    const element = document.createElement("div");
+    element.className = "legend";
+    plot.entries = plot.series.map((series, k) => {
+      const button = document.createElement("button"), mark = document.createElement("i"), value = document.createElement("output");
+      button.type = "button";
+      button.title = "Show or hide; with Alt: show only this one";
+      button.setAttribute("aria-pressed", "true");
+      mark.className = series.shape;
+      mark.style.color = `var(--series-${k % SERIES_COLOURS})`;
+      button.append(mark, series.name, value);
+      button.onclick = (event) => toggle(plot, k, event.altKey);
+      element.append(button);
+      return { button, value };
+    });
+    plot.time = element.appendChild(document.createElement("output"));
+    plot.time.className = "time";
+    plot.reset = element.appendChild(document.createElement("button"));
+    plot.reset.className = "reset";
+    plot.reset.type = "button";
+    plot.reset.textContent = "Whole range";
+    plot.reset.hidden = true;
+    plot.reset.onclick = () => showAll(plot.chart);
+    return element;
+  }
+
+  function toggle(plot, k, alone) {
+    plot.entries.forEach((entry, other) => {
+      const shown = plot.chart.series[other + 1].show;
+      const show = alone ? other === k : other === k ? !shown : shown;
+      if (show !== shown) plot.chart.setSeries(other + 1, { show });
+      entry.button.setAttribute("aria-pressed", String(show));
+    });
+  }
+
+  function readCursor(plot, u) {
+    const { left, idx, idxs } = u.cursor;
+    const inside = left >= 0 && idx != null;
+    plot.time.textContent = inside && !plot.cloud ? `at ${readOut(u.data[0][idx], plot.x.unit)}` : "";
+    plot.entries.forEach((entry, k) => {
+      const i = inside && idxs ? idxs[k + 1] : null;
+      const y = i == null || !u.series[k + 1].show ? null : u.data[k + 1][i];
+      if (y == null) entry.value.textContent = "";
+      else if (plot.cloud) entry.value.textContent = `${readOut(u.data[0][i], plot.x.unit)}, ${readOut(y, plot.y.unit)}`;
+      else entry.value.textContent = readOut(y, plot.y.unit);
+    });
+  }
+
+  /** The whole of x; y follows by itself. */
+  const showAll = (u) => u.setScale("x", { min: u.data[0][0], max: u.data[0].at(-1) });
+
+  // ---------- a plot ----------
+
+  function options(plot, width) {
+    const several = plot.series.length > 1;
+    return {
+      width, height: HEIGHT - (plot.continues ? 44 : 0),
+      legend: { show: false },
+      padding: [8, 14, 0, 0],
+      scales: {
+        x: { time: false, distr: plot.x.logarithmic ? 3 : 1, range: rangeX(plot) },
+        y: { distr: plot.y.logarithmic ? 3 : 1, range: (u, low, high) => wholeRange(plot.y, 0.08, low, high) },
+      },
+      axes: [axis("x", plot.x, plot), axis("y", plot.y, plot)],
+      series: [{}, ...plot.series.map((series, k) => {
+        const colour = () => variable(`--series-${k % SERIES_COLOURS}`);
+        const points = series.shape === "points";
+        return {
+          label: series.name, stroke: colour, width: points ? 0 : several ? 1.4 : 1.6,
+          fill: points ? () => colour() + (series.y.length > 400 ? "a8" : "e0") : undefined,
+          paths: drawer(series), points: { show: !points && series.y.length < 2, size: 6 },
+        };
+      })],
+      cursor: {
+        x: true, y: plot.cloud,
+        drag: { x: true, y: plot.cloud, uni: 20, dist: 4 },
+        points: { size: 7, fill: (u, k) => u.series[k].stroke(u, k), width: 0 },
+        // Only the position of the cursor is shared here; followX shares the range.
+        sync: plot.group ? { key: plot.group, setSeries: false, scales: ["x", null],
+                             filters: { pub: (type) => type === "mousemove" || type === "mouseleave" } } : undefined,
+        bind: { mousedown: (u, target, handler) => (event) => event.shiftKey ? pan(u, event) : handler(event),
+                dblclick: (u) => () => showAll(u) },
+        ...(plot.cloud ? { dataIdx: (u, k, index) => k === 0 ? index : nearestPoint(u, index, k) } : {}),
+      },
+      hooks: {
+        setCursor: [(u) => readCursor(plot, u)],
+        setScale: [(u, key) => {
+          if (key !== "x") return;
+          if (plot.group) followX(u, plot.group);
+          const [low, high] = plot.whole, slack = 1e-6 * (high - low);
+          plot.reset.hidden = Math.abs(u.scales.x.min - low) <= slack && Math.abs(u.scales.x.max - high) <= slack;
+        }],
+      },
+    };
+  }
+
+  function read(figure) {
+    const plot = JSON.parse(figure.querySelector("script").textContent);
+    plot.group = figure.dataset.group;
+    const next = figure.nextElementSibling;
+    plot.continues = plot.group !== "" && next !== null && next.matches(".plot") && next.dataset.group === plot.group;
+    for (const series of plot.series) {
+      series.x = expand(series.x);
+      series.rises = rises(series.x) && series.shape !== "points";
+      series.dot = series.x.length > 2000 ? 1.1 : series.x.length > 400 ? 1.6 : 2.4;
+    }
+    plot.cloud = plot.series.some((series) => !series.rises);
+    plot.table = plot.series.length > 0 ? align(plot.series) : [[]];
+    return plot;
+  }
+
+  function build(figure) {
+    const plot = read(figure), scope = figure.querySelector(".scope");
+    figure.classList.toggle("continues", plot.continues);
+    if (plot.table[0].length === 0) {
+      scope.textContent = "No data.";
+      return;
+    }
+    scope.append(buildLegend(plot));
+    const chart = plot.chart = new uPlot(options(plot, scope.clientWidth), plot.table, scope);
+    if (plot.group) linked.set(plot.group, [...(linked.get(plot.group) || []), chart]);
+    chart.over.addEventListener("wheel", (event) => zoomByWheel(chart, event), { passive: false });
+    charts.push({ chart, scope });
+    new ResizeObserver(() => fit(chart, scope.clientWidth)).observe(scope);
+  }
+
+  const charts = [];
+
+  function fit(chart, width) {
+    if (width > 0 && width !== chart.width) chart.setSize({ width, height: chart.height });
+  }
+
+  const redraw = () => charts.forEach(({ chart }) => chart.redraw(false, true));
+
+  // Paper is white and 17 cm wide, whatever the screen was.
+  addEventListener("beforeprint", () => {
+    document.documentElement.classList.add("print");
+    charts.forEach(({ chart }) => fit(chart, 660));
+    redraw();
+  });
+  addEventListener("afterprint", () => {
+    document.documentElement.classList.remove("print");
+    charts.forEach(({ chart, scope }) => fit(chart, scope.clientWidth));
+    redraw();
+  });
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
+
+  document.querySelectorAll("figure.plot").forEach(build);
+  if (charts.length > 0) {
+    const hint = document.createElement("p");
+    hint.className = "hint";
+    hint.textContent = "Plots: drag to zoom, Shift and drag to pan, Ctrl and wheel to zoom about the cursor, " +
+                       "double-click for the whole range, click a name to hide its curve.";
+    document.querySelector("main").append(hint);
+  }
+  // screenshot.sh asks for the height of the drawn page.
+  addEventListener("load", () => { document.documentElement.dataset.height = document.documentElement.scrollHeight; });
+})();

@@ -1,0 +1,49 @@
+#!/bin/bash
+# Makes this machine able to build Loopwright: installs the packages of tools/dependencies.txt that are missing, and
+# the plotting library of report pages. Safe to run again: what is there is left alone.
+set -euo pipefail
+export DEBIAN_FRONTEND=noninteractive
+
+tools=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
+as_root=()
+[ "$(id -u)" -eq 0 ] || as_root=(sudo --preserve-env=DEBIAN_FRONTEND)
+
+say() { echo "setup: $*"; }
+installed() { dpkg-query --show --showformat '${db:Status-Status}\n' "$1" 2>/dev/null | grep -qx installed; }
+
+# Node.js comes from many sources, some without a package npm: there the command counts, not the package.
+present() {
+  case $1 in
+    nodejs) command -v node >/dev/null || installed nodejs ;;
+    npm) command -v npm >/dev/null ;;
+    *) installed "$1" ;;
+  esac
+}
+
+install_packages() {
+  local package missing=()
+  while read -r package; do
+    present "$package" || missing+=("$package")
+  done < <(sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' "$tools/dependencies.txt")
+  [ ${#missing[@]} -gt 0 ] || return 0
+
+  say "installing ${missing[*]}"
+  local install=("${as_root[@]}" apt-get install -qq -y --no-install-recommends "${missing[@]}")
+  # Lists of packages may be old or absent: fetch them only when the first try fails.
+  if ! "${install[@]}" >/dev/null 2>&1; then
+    "${as_root[@]}" apt-get update -qq
+    "${install[@]}" >/dev/null
+  fi
+}
+
+# A copy of the lock file beside what it installed tells whether the lock file has changed since.
+install_plotting_library() {
+  local stamp=$tools/report/node_modules/.installed-lock
+  ! cmp -s "$tools/report/package-lock.json" "$stamp" || return 0
+  say "installing the plotting library into tools/report/node_modules"
+  (cd "$tools/report" && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error >/dev/null)
+  cp "$tools/report/package-lock.json" "$stamp"
+}
+
+install_packages
+install_plotting_library
