@@ -63,62 +63,62 @@ struct None {};
 
 /// A number, flag, text or table from the file. The default is the member's initialiser in the block.
 template <class Owner, class T>
-struct Parameter {
+struct ParameterEntry {
   using Type = T;
   T Owner::*member;
   std::string_view name, unit, sentence;
   double low = -infinity, high = infinity;
   bool low_is_open = false, has_default = false;
-  constexpr Parameter positive() const { auto p = *this; p.low = 0; p.low_is_open = true; return p; }
-  constexpr Parameter not_negative() const { return at_least(0); }
-  constexpr Parameter at_least(double a) const { auto p = *this; p.low = a; return p; }
-  constexpr Parameter between(double a, double b) const { auto p = *this; p.low = a; p.high = b; return p; }
-  constexpr Parameter optional() const { auto p = *this; p.has_default = true; return p; }
+  constexpr ParameterEntry positive() const { auto p = *this; p.low = 0; p.low_is_open = true; return p; }
+  constexpr ParameterEntry not_negative() const { return at_least(0); }
+  constexpr ParameterEntry at_least(double a) const { auto p = *this; p.low = a; return p; }
+  constexpr ParameterEntry between(double a, double b) const { auto p = *this; p.low = a; p.high = b; return p; }
+  constexpr ParameterEntry optional() const { auto p = *this; p.has_default = true; return p; }
 };
 
 /// What the block reads. An optional input that is not wired reads `otherwise`.
 template <class Owner, class T, class Length = None>
-struct Input {
+struct InputEntry {
   using Type = T;
   T Owner::*member;
   std::string_view name, unit, sentence;
   Length size{};
   bool is_optional = false, joins_vectors = false;
   double otherwise_value = 0;
-  constexpr Input otherwise(double value) const { auto p = *this; p.is_optional = true; p.otherwise_value = value; return p; }
+  constexpr InputEntry otherwise(double value) const { auto p = *this; p.is_optional = true; p.otherwise_value = value; return p; }
   /// Vector wires of a Many port are strung together instead of making one block an element.
-  constexpr Input joins() const { auto p = *this; p.joins_vectors = true; return p; }
+  constexpr InputEntry joins() const { auto p = *this; p.joins_vectors = true; return p; }
   template <class L>
   constexpr auto length(L l) const {
-    return Input<Owner, T, L>{member, name, unit, sentence, l, is_optional, joins_vectors, otherwise_value};
+    return InputEntry<Owner, T, L>{member, name, unit, sentence, l, is_optional, joins_vectors, otherwise_value};
   }
 };
 
 /// What the block offers. Fed by every input, unless `.from(…)` says by which.
 template <class Owner, class T, class From = void, class Length = None>
-struct Output {
+struct OutputEntry {
   using Type = T;
   T Owner::*member;
   std::string_view name, unit, sentence;
   From fed_by;
   Length size{};
   template <class L>
-  constexpr auto length(L l) const { return Output<Owner, T, From, L>{member, name, unit, sentence, fed_by, l}; }
+  constexpr auto length(L l) const { return OutputEntry<Owner, T, From, L>{member, name, unit, sentence, fed_by, l}; }
 };
 template <class Owner, class T, class Length>
-struct Output<Owner, T, void, Length> {
+struct OutputEntry<Owner, T, void, Length> {
   using Type = T;
   T Owner::*member;
   std::string_view name, unit, sentence;
   Length size{};
   template <class... I>
   constexpr auto from(I... inputs) const {
-    return Output<Owner, T, std::tuple<I...>, Length>{member, name, unit, sentence, std::tuple<I...>(inputs...), size};
+    return OutputEntry<Owner, T, std::tuple<I...>, Length>{member, name, unit, sentence, std::tuple<I...>(inputs...), size};
   }
   /// Fed by no input directly: read from state, memory or time.
   constexpr auto from_memory() const { return from(); }
   template <class L>
-  constexpr auto length(L l) const { return Output<Owner, T, void, L>{member, name, unit, sentence, l}; }
+  constexpr auto length(L l) const { return OutputEntry<Owner, T, void, L>{member, name, unit, sentence, l}; }
 };
 
 /// A sized part of Memory or State; the length is a member or a member function of the block.
@@ -142,15 +142,15 @@ struct CrossingEntry {
 };
 
 template <class O, class T>
-constexpr Parameter<O, T> parameter(T O::*m, std::string_view name, std::string_view unit, std::string_view sentence) {
+constexpr ParameterEntry<O, T> parameter(T O::*m, std::string_view name, std::string_view unit, std::string_view sentence) {
   return {m, name, unit, sentence};
 }
 template <class O, class T>
-constexpr Input<O, T> input(T O::*m, std::string_view name, std::string_view unit, std::string_view sentence) {
+constexpr InputEntry<O, T> input(T O::*m, std::string_view name, std::string_view unit, std::string_view sentence) {
   return {m, name, unit, sentence};
 }
 template <class O, class T>
-constexpr Output<O, T> output(T O::*m, std::string_view name, std::string_view unit, std::string_view sentence) {
+constexpr OutputEntry<O, T> output(T O::*m, std::string_view name, std::string_view unit, std::string_view sentence) {
   return {m, name, unit, sentence};
 }
 template <class O, class T, class L>
@@ -175,11 +175,11 @@ template <class... E>
 constexpr Description<E...> fields(E... entries) { return {"", std::tuple<E...>(entries...)}; }
 
 template <class> struct is_parameter : std::false_type {};
-template <class O, class T> struct is_parameter<Parameter<O, T>> : std::true_type {};
+template <class O, class T> struct is_parameter<ParameterEntry<O, T>> : std::true_type {};
 template <class> struct is_input : std::false_type {};
-template <class O, class T, class L> struct is_input<Input<O, T, L>> : std::true_type {};
+template <class O, class T, class L> struct is_input<InputEntry<O, T, L>> : std::true_type {};
 template <class> struct is_output : std::false_type {};
-template <class O, class T, class F, class L> struct is_output<Output<O, T, F, L>> : std::true_type {};
+template <class O, class T, class F, class L> struct is_output<OutputEntry<O, T, F, L>> : std::true_type {};
 template <class> struct is_buffer : std::false_type {};
 template <class O, class T, class L> struct is_buffer<Buffer<O, T, L>> : std::true_type {};
 template <class> struct is_state_vector : std::false_type {};

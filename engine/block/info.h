@@ -40,9 +40,9 @@ struct BlockInfo {
   double (*next_stop)(const void* block, double now);  ///< the next time at which it is not smooth; null: always smooth
 };
 
-template <class Port>
+template <class Entry>
 constexpr PortInfo::Shape shape_of() {
-  using T = typename Port::Type;
+  using T = typename Entry::Type;
   if constexpr (requires(T t) { t.wire; }) return PortInfo::Shape::many;
   else if constexpr (requires(T t) { t.data(); }) return PortInfo::Shape::vector;
   else return PortInfo::Shape::scalar;
@@ -61,14 +61,14 @@ BlockInfo info_of(std::string_view type) {
   info.sentence = B::describe().sentence;
   State<B> state;
   for_each<B, is_input>([&](auto, const auto& entry) {
-    using Port = std::remove_cvref_t<decltype(entry)>;
-    PortInfo port{entry.name, entry.unit, entry.sentence, shape_of<Port>()};
+    using Entry = std::remove_cvref_t<decltype(entry)>;
+    PortInfo port{entry.name, entry.unit, entry.sentence, shape_of<Entry>()};
     port.is_optional = entry.is_optional, port.joins_vectors = entry.joins_vectors, port.otherwise_value = entry.otherwise_value;
     info.inputs.push_back(port);
   });
   for_each<B, is_output>([&](auto o, const auto& entry) {
-    using Port = std::remove_cvref_t<decltype(entry)>;
-    PortInfo port{entry.name, entry.unit, entry.sentence, shape_of<Port>(), feedthrough<B>[o], group_of_output<B>[o]};
+    using Entry = std::remove_cvref_t<decltype(entry)>;
+    PortInfo port{entry.name, entry.unit, entry.sentence, shape_of<Entry>(), feedthrough<B>[o], group_of_output<B>[o]};
     if constexpr (group_of_output<B>[o] < 0)
       port.state = int((reinterpret_cast<char*>(&(state.*entry.member)) - reinterpret_cast<char*>(&state)) / ptrdiff_t(sizeof(double)));
     for_each<B, is_input>([&](auto i, const auto& in) {

@@ -8,7 +8,7 @@ namespace loopwright {
 
 /// Where a port's numbers are in the arena of the run.
 template <class Real>
-struct Wire {
+struct Port {
   union {
     Real* data;
     const Real* const* many;
@@ -28,10 +28,10 @@ template <class Real>
 struct Call {
   uint64_t (*step)(const Call&) = nullptr;  ///< lanes that faulted; for a jump: lanes whose state changed
   const void* block = nullptr;
-  const Wire<Real>*in = nullptr, *out = nullptr;
+  const Port<Real>*in = nullptr, *out = nullptr;
   Real *state = nullptr, *rate = nullptr, *crossing = nullptr;
   void *memory = nullptr, *mode = nullptr;
-  const Wire<Real>* buffers = nullptr;
+  const Port<Real>* buffers = nullptr;
   const Instant* now = nullptr;
   FaultReport* report = nullptr;
   int index = 0, registers = 1;
@@ -49,19 +49,19 @@ struct Kernels {
   void (*copy)(void* to, const void* scalar_block);  ///< parameters of the scalar block into every lane
   Real* (*tunable)(void* block, std::string_view path);
   void (*prepare)(void* block, const Setup& setup);
-  void (*start)(const void* block, Real* state, void* memory, const Wire<Real>* buffers, ptrdiff_t at, void* mode);
+  void (*start)(const void* block, Real* state, void* memory, const Port<Real>* buffers, ptrdiff_t at, void* mode);
   Step<Real> outputs[8];
   Step<Real> derivatives, update, accept, decide, jump, crossings;
 };
 
 template <class R>
-LW_INLINE void attach(R& to, const Wire<R>& w, ptrdiff_t at) { to = w.data[at]; }
+LW_INLINE void attach(R& to, const Port<R>& w, ptrdiff_t at) { to = w.data[at]; }
 template <class R>
-LW_INLINE void attach(Vector<const R>& to, const Wire<R>& w, ptrdiff_t at) { to = {w.data + at, size_t(w.length)}; }
+LW_INLINE void attach(Vector<const R>& to, const Port<R>& w, ptrdiff_t at) { to = {w.data + at, size_t(w.length)}; }
 template <class R>
-LW_INLINE void attach(Vector<R>& to, const Wire<R>& w, ptrdiff_t at) { to = {w.data + at, size_t(w.length)}; }
+LW_INLINE void attach(Vector<R>& to, const Port<R>& w, ptrdiff_t at) { to = {w.data + at, size_t(w.length)}; }
 template <class R>
-LW_INLINE void attach(Many<R>& to, const Wire<R>& w, ptrdiff_t at) { to = {w.many, w.length, at}; }
+LW_INLINE void attach(Many<R>& to, const Port<R>& w, ptrdiff_t at) { to = {w.many, w.length, at}; }
 
 /// The inputs in the mask; any other scalar reads NaN, so that an undeclared feedthrough shows at once.
 template <class B, class Real>
@@ -273,7 +273,7 @@ void prepare_block(B& block, const Setup& setup) {
 }
 
 template <class B, class Real>
-void start_block(const void* p, Real* state_data, void* memory_data, const Wire<Real>* buffers, ptrdiff_t at, void* mode_data) {
+void start_block(const void* p, Real* state_data, void* memory_data, const Port<Real>* buffers, ptrdiff_t at, void* mode_data) {
   const B& block = *static_cast<const B*>(p);
   if constexpr (!std::is_same_v<State<B>, None>) {
     if constexpr (count_of<B, is_state_vector> == 0) new (state_data) State<B>{};

@@ -14,6 +14,7 @@ struct Value {
   enum class Kind { null, boolean, number, text, list, object };
   struct Member;
   Kind kind = Kind::null;
+  bool is_broken = false;  ///< a null in place of what could not be worked out: the problem is reported already
   bool boolean = false;
   bool whole = false;   ///< the number was written without fraction or exponent
   double number = 0;

@@ -87,7 +87,10 @@ std::unique_ptr<Stepper> make_stepper(const SolverOptions& options, const OdeSys
 }  // namespace
 
 Solver::Solver(const SolverOptions& options, const OdeSystem& system)
-    : stepper_((throw_if_any_problem(options, system), make_stepper(options, system))),
+    : Solver((throw_if_any_problem(options, system), make_stepper(options, system)), options, system) {}
+
+Solver::Solver(std::unique_ptr<Stepper> method, const SolverOptions& options, const OdeSystem& system)
+    : stepper_(std::move(method)),
       events_(system, options.crossing_samples),
       x_between_(static_cast<size_t>(system.states)),
       x_(x_between_.data()),

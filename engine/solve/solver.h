@@ -94,6 +94,8 @@ class Solver {
  public:
   /// Throws std::invalid_argument with every problem of the options or of the system.
   Solver(const SolverOptions& options, const OdeSystem& system);
+  /// Runs a method of one's own instead of options.method.
+  Solver(std::unique_ptr<Stepper> method, const SolverOptions& options, const OdeSystem& system);
   Solver(Solver&&) noexcept;
   Solver& operator=(Solver&&) noexcept;
   ~Solver();

@@ -1,0 +1,178 @@
+#include <fmt/format.h>
+#include <algorithm>
+#include "engine/diagram/json.h"
+#include "engine/plan/order.h"
+#include "engine/plan/shapes.h"
+#include "engine/plan/times.h"
+#include "engine/plan/units.h"
+#include "engine/record/hash.h"
+
+namespace loopwright {
+namespace {
+
+/// What a diagram without "log" records: all outputs of the outermost blocks.
+void log_everything(FlatDiagram& flat) {
+  for (size_t b = 0; b < flat.blocks.size(); ++b) {
+    if (flat.blocks[b].path.find('.') != std::string::npos) continue;
+    for (size_t o = 0; o < flat.blocks[b].type->info.outputs.size(); ++o) {
+      FlatWire wire;
+      wire.block = int(b), wire.output = int(o);
+      flat.log.push_back({fmt::format("{}.{}", flat.blocks[b].path, flat.blocks[b].type->info.outputs[o].name), wire});
+    }
+  }
+}
+
+Rate rate_of_number(const Plan& plan, Number number, const std::vector<Rate>& rate_of_signal) {
+  return number < plan.signals ? rate_of_signal[size_t(number)] : Rate{Rate::Kind::continuous, 0, 0};
+}
+
+void add_log(const FlatDiagram& flat, const Layout& layout, const PortUnits& units, Plan& plan, Problems& problems) {
+  std::vector<std::string> names;
+  for (const FlatLog& log : flat.log) {
+    if (!log.wire.is_resolved()) continue;
+    const auto numbers = layout.numbers_of(log.wire);
+    const auto& unit = units[size_t(log.wire.block)][size_t(log.wire.output)];
+    for (size_t i = 0; i < numbers.size(); ++i) {
+      Plan::Logged logged;
+      logged.name = numbers.size() == 1 ? log.name : fmt::format("{}[{}]", log.name, i);
+      logged.unit = unit.value_or(Unit{});
+      logged.unit_is_known = unit.has_value();
+      logged.number = numbers[i];
+      names.push_back(logged.name);
+      plan.log.push_back(std::move(logged));
+    }
+  }
+  std::ranges::sort(names);
+  const auto twice = std::ranges::adjacent_find(names);
+  if (twice != names.end()) problems.error(flat.log.front().wire.place, "/log", "", fmt::format("\"{}\" is logged twice", *twice));
+}
+
+void add_rates_to_log(Plan& plan) {
+  std::vector<Rate> rate_of_signal(size_t(plan.signals));
+  const auto mark = [&](const Plan::Entry& entry, const Rate& rate) {
+    if (entry.kind != Plan::Entry::Kind::outputs) return;
+    const Plan::Block& block = plan.blocks[size_t(entry.block)];
+    for (size_t o = 0; o < block.outputs.size(); ++o)
+      if (block.type->info.outputs[o].group == entry.group)
+        for (int i = 0; i < block.output_lengths[o] && block.outputs[o] + i < plan.signals; ++i) rate_of_signal[size_t(block.outputs[o] + i)] = rate;
+  };
+  for (const Plan::Entry& entry : plan.order) {
+    if (entry.kind == Plan::Entry::Kind::ring) for (const Plan::Entry& inner : plan.rings[size_t(entry.block)].entries) mark(inner, entry.rate);
+    else mark(entry, entry.rate);
+  }
+  for (Plan::Logged& logged : plan.log) logged.rate = rate_of_number(plan, logged.number, rate_of_signal);
+}
+
+void add_ports(const FlatDiagram& flat, const Layout& layout, Plan& plan) {
+  for (const FlatName& name : flat.names)
+    if (name.wire.is_resolved()) plan.ports.emplace_back(name.name, layout.numbers_of(name.wire));
+  std::ranges::stable_sort(plan.ports, {}, [](const auto& p) { return std::string_view(p.first); });
+}
+
+void add_crossings(Plan& plan) {
+  std::vector<bool> is_continuous(plan.blocks.size(), false);
+  for (const Plan::Entry& entry : plan.order)
+    if (entry.kind != Plan::Entry::Kind::ring && entry.rate.kind == Rate::Kind::continuous) is_continuous[size_t(entry.block)] = true;
+  int next = 0;
+  for (size_t b = 0; b < plan.blocks.size(); ++b) {
+    Plan::Block& block = plan.blocks[b];
+    const bool watched = block.type->kernels.crossings && block.period == 0 && (is_continuous[b] || block.states > 0);
+    block.first_crossing = watched ? next : -1;
+    if (!watched) continue;
+    for (const CrossingInfo& crossing : block.type->info.crossings) plan.crossings.push_back({int(b), crossing.name, crossing.direction});
+    next += int(block.type->info.crossings.size());
+  }
+}
+
+/// Effective parameters: every setting as evaluated, and the defaults of what was left out.
+void add_parameters(const Diagram& diagram, const FlatDiagram& flat, Plan& plan) {
+  for (const Parameter& parameter : diagram.parameters)
+    plan.parameters.emplace_back(parameter.name, to_json(parameter.value) + (parameter.value.unit ? " " + to_string(*parameter.value.unit) : ""));
+  for (const FlatBlock& block : flat.blocks)
+    for (const ParameterInfo& info : block.type->info.parameters) {
+      const Value::Member* given = block.entry->settings.find(info.name);
+      std::string text = given ? to_json(given->value) : info.default_text;
+      if (!info.unit.empty() && info.unit.find('$') == info.unit.npos) text += fmt::format(" {}", info.unit);
+      plan.parameters.emplace_back(fmt::format("{}.{}", block.path, info.name), std::move(text));
+    }
+}
+
+std::string hash_of(const Plan& plan) {
+  ContentHash hash;
+  const auto add = [&](const auto& number) { hash.add({reinterpret_cast<const char*>(&number), sizeof number}); };
+  for (const Plan::Block& block : plan.blocks) {
+    hash.add(block.path).add("\n").add(block.type->info.type).add("\n");
+    for (const auto& port : block.inputs) for (Number n : port) add(n);
+    add(block.period), add(block.offset), add(block.first_state);
+  }
+  for (const auto& [name, value] : plan.parameters) hash.add(name).add("=").add(value).add("\n");
+  for (const Plan::Logged& logged : plan.log) hash.add(logged.name), add(logged.number);
+  for (int64_t n : {plan.clock.base.numerator, plan.clock.base.denominator, plan.start_tick, plan.stop_tick, plan.step_ticks, plan.record_ticks, int64_t(plan.method), int64_t(plan.seed)}) add(n);
+  for (double x : {plan.relative_tolerance, plan.absolute_tolerance, plan.maximum_step}) add(x);
+  return hash.text();
+}
+
+}  // namespace
+
+std::shared_ptr<const Plan> compile(const Diagram& diagram, Problems& problems) {
+  FlatDiagram flat = flatten(diagram, problems);
+  if (flat.log.empty() && diagram.log.empty()) log_everything(flat);
+  find_shapes(flat, problems);
+  const PortUnits units = check_units(flat, diagram, problems);
+  auto plan = std::make_shared<Plan>();
+  plan->title = diagram.title;
+  if (problems.has_errors()) {  // times are still worth checking
+    find_times(diagram, flat, {}, *plan, problems);
+    return nullptr;
+  }
+  const Layout layout(flat, *plan);
+  std::vector<int> flat_of_block;
+  for (size_t f = 0; f < flat.blocks.size(); ++f) flat_of_block.insert(flat_of_block.end(), size_t(flat.blocks[f].width), int(f));
+  flat_of_block.resize(plan->blocks.size(), -1);
+  find_times(diagram, flat, flat_of_block, *plan, problems);
+  add_log(flat, layout, units, *plan, problems);
+  add_ports(flat, layout, *plan);
+  for (size_t b = 0; b < plan->blocks.size(); ++b) plan->block_of_state.insert(plan->block_of_state.end(), size_t(plan->blocks[b].states), int(b));
+  find_order(*plan, diagram.solver.algebraic_loops.value == "solve", problems);
+  if (problems.has_errors()) return nullptr;
+  add_crossings(*plan);
+  add_rates_to_log(*plan);
+  add_parameters(diagram, flat, *plan);
+  plan->hash = hash_of(*plan);
+  for (const Problem& problem : problems.list()) plan->warnings.push_back(problem);
+  return plan;
+}
+
+std::shared_ptr<const Plan> load_plan(const std::string& path, const LoadOptions& options) {
+  Problems problems;
+  const auto diagram = load_diagram(path, options, problems);
+  std::shared_ptr<const Plan> plan;
+  if (diagram) plan = compile(*diagram, problems);
+  if (!plan || problems.has_errors()) throw InputError(std::move(problems));
+  return plan;
+}
+
+std::vector<Number> Plan::find(std::string_view port) const {
+  size_t bracket = port.find('[');
+  const std::string_view name = port.substr(0, bracket);
+  const auto found = std::ranges::lower_bound(ports, name, {}, [](const auto& p) { return std::string_view(p.first); });
+  if (found == ports.end() || found->first != name) return {};
+  if (bracket == port.npos) return found->second;
+  size_t index = 0;
+  for (++bracket; bracket + 1 < port.size(); ++bracket) index = index * 10 + size_t(port[bracket] - '0');
+  if (index >= found->second.size()) return {};
+  return {found->second[index]};
+}
+
+std::string Plan::name_of(Number number) const {
+  for (const Block& block : blocks)
+    for (size_t o = 0; o < block.outputs.size(); ++o) {
+      const PortInfo& port = block.type->info.outputs[o];
+      const int length = port.shape == PortInfo::Shape::vector ? block.output_lengths[o] : 1;
+      if (number < block.outputs[o] || number >= block.outputs[o] + length) continue;
+      return length == 1 ? fmt::format("{}.{}", block.path, port.name) : fmt::format("{}.{}[{}]", block.path, port.name, number - block.outputs[o]);
+    }
+  return number >= signals && number < signals + states ? fmt::format("a state of {}", blocks[size_t(block_of_state[size_t(number - signals)])].path) : "a constant";
+}
+
+}  // namespace loopwright

@@ -1,0 +1,303 @@
+#include "engine/plan/flatten.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <deque>
+#include <new>
+#include <optional>
+#include <unordered_map>
+#include <unordered_set>
+
+namespace loopwright {
+namespace {
+
+/// One diagram in the nest: where its names lead.
+struct Scope {
+  const Diagram* diagram;
+  std::string prefix;               // "" or "stage."
+  const BlockEntry* entry;          // in the parent; null at the top
+  Scope* parent;
+  std::unordered_map<std::string, int> blocks;      // ordinary blocks: index in the flat list
+  std::unordered_map<std::string, Scope*> inner;    // subdiagrams
+};
+
+class Flattener {
+ public:
+  explicit Flattener(Problems& problems) : problems_(problems) {}
+
+  FlatDiagram run(const Diagram& diagram) {
+    Scope& top = add_scope(diagram, "", nullptr, nullptr);
+    for (size_t i = 0; i < scopes_.size(); ++i) wire_blocks(scopes_[i]);  // the deque does not grow any more
+    for (size_t i = 0; i < scopes_.size(); ++i) check_subdiagram_wires(scopes_[i]);
+    add_log(top);
+    add_names();
+    return std::move(flat_);
+  }
+
+ private:
+  Scope& add_scope(const Diagram& diagram, std::string prefix, const BlockEntry* entry, Scope* parent) {
+    Scope& scope = scopes_.emplace_back(Scope{&diagram, std::move(prefix), entry, parent, {}, {}});
+    for (const BlockEntry& block : diagram.blocks) {
+      if (block.subdiagram) scope.inner[block.name] = &add_scope(*block.subdiagram, scope.prefix + block.name + ".", &block, &scope);
+      else if (!block.type.empty()) add_block(scope, block);
+    }
+    return scope;
+  }
+
+  void add_block(Scope& scope, const BlockEntry& entry) {
+    FlatBlock flat;
+    flat.path = scope.prefix + entry.name;
+    flat.entry = &entry;
+    flat.type = find_block(entry.type);
+    if (!flat.type) {
+      unknown_type(flat.path, entry);
+      broken_.push_back({&scope, entry.name});
+      return;
+    }
+    const Kernels<double>& kernels = flat.type->kernels;
+    void* memory = ::operator new(kernels.size, std::align_val_t(64));
+    kernels.construct(memory);
+    flat.value = {memory, [&kernels](void* p) {
+                    kernels.destroy(p);
+                    ::operator delete(p, std::align_val_t(64));
+                  }};
+    const size_t before = problems_.list().size();
+    flat.type->info.read(memory, entry.settings, flat.path, problems_);
+    if (problems_.list().size() == before) flat.type->info.check(memory, Checker(entry.settings, flat.path, problems_));
+    flat.inputs.resize(flat.type->info.inputs.size());
+    scope.blocks[entry.name] = int(flat_.blocks.size());
+    flat_.blocks.push_back(std::move(flat));
+    scope_of_block_.push_back(&scope);
+  }
+
+  void unknown_type(const std::string& path, const BlockEntry& entry) {
+    std::vector<std::string> types;
+    for (const auto& [name, type] : all_blocks()) types.push_back(name);
+    auto& p = problems_.error(entry.type_place, entry.pointer + "/type", path, fmt::format("there is no block type \"{}\"", entry.type));
+    const std::string near = nearest_name(entry.type, types);
+    p.hint = near.empty() ? "`loopwright blocks` lists all types" : fmt::format("did you mean \"{}\"?", near);
+  }
+
+  void wire_blocks(Scope& scope) {
+    for (const BlockEntry& entry : scope.diagram->blocks) {
+      const auto found = scope.blocks.find(entry.name);
+      if (found != scope.blocks.end()) wire_block(scope, flat_.blocks[size_t(found->second)]);
+    }
+  }
+
+  void wire_block(Scope& scope, FlatBlock& flat) {
+    const BlockInfo& info = flat.type->info;
+    for (const PortWires& wires : flat.entry->in) {
+      const auto port = std::ranges::find(info.inputs, wires.port, &PortInfo::name);
+      if (port == info.inputs.end()) {
+        unknown_input(flat, wires, info);
+        continue;
+      }
+      if (port->shape != PortInfo::Shape::many && wires.wires.size() != 1) {
+        auto& p = problems_.error(wires.place, wires.pointer, flat.path, fmt::format("the input \"{}\" takes one wire", wires.port));
+        p.expected = "one source, as in \"stage.position\"";
+        p.found = fmt::format("a list of {}", wires.wires.size());
+        continue;
+      }
+      auto& sources = flat.inputs[size_t(port - info.inputs.begin())];
+      for (const Wire& wire : wires.wires) sources.push_back(resolve(scope, wire.source, wire, flat.path, 0));
+    }
+    for (size_t i = 0; i < info.inputs.size(); ++i) {
+      const bool listed = std::ranges::any_of(flat.entry->in, [&](const PortWires& w) { return w.port == info.inputs[i].name; });
+      if (listed || info.inputs[i].is_optional) continue;
+      auto& p = problems_.error(flat.entry->place, flat.entry->pointer, flat.path, fmt::format("the input \"{}\" is not wired", info.inputs[i].name));
+      p.expected = fmt::format("\"in\": {{\"{}\": \"block.output\"}}", info.inputs[i].name);
+      p.hint = info.inputs[i].sentence;
+    }
+  }
+
+  void unknown_input(const FlatBlock& flat, const PortWires& wires, const BlockInfo& info) {
+    std::vector<std::string> names;
+    for (const PortInfo& port : info.inputs) names.emplace_back(port.name);
+    auto& p = problems_.error(wires.place, wires.pointer, flat.path, fmt::format("{} has no input \"{}\"", info.type, wires.port));
+    const std::string near = nearest_name(wires.port, names);
+    p.expected = names.empty() ? "no inputs" : fmt::format("{}", fmt::join(names, ", "));
+    if (!near.empty()) p.hint = fmt::format("did you mean \"{}\"?", near);
+  }
+
+  /// Follows a name to the block output behind it: through inputs of the diagram, outputs of subdiagrams, deep paths.
+  FlatWire resolve(Scope& scope, std::string_view text, const Wire& at, const std::string& reader, int depth) {
+    FlatWire wire;
+    wire.place = at.place, wire.pointer = at.pointer, wire.text = at.source;
+    if (depth > 200) return fail(at, reader, "the wire leads round in a circle of subdiagram outputs", {}, "");
+    const size_t dot = text.find('.');
+    const std::string head(text.substr(0, dot));
+    if (dot == text.npos) {
+      const auto bracket = head.find('[');
+      return resolve_input(scope, head.substr(0, bracket), bracket == head.npos ? "" : head.substr(bracket), at, reader, depth);
+    }
+    const std::string_view rest = text.substr(dot + 1);
+    if (const auto inner = scope.inner.find(head); inner != scope.inner.end())
+      return resolve_inside(*inner->second, rest, at, reader, depth);
+    if (const auto found = scope.blocks.find(head); found != scope.blocks.end())
+      return resolve_port(found->second, rest, at, reader, depth);
+    for (const auto& [broken_scope, name] : broken_) if (broken_scope == &scope && name == head) return wire;  // already told
+    std::vector<std::string> names;
+    for (const BlockEntry& entry : scope.diagram->blocks) names.push_back(entry.name);
+    return fail(at, reader, fmt::format("there is no block \"{}\"", scope.prefix + head), names, head);
+  }
+
+  FlatWire resolve_input(Scope& scope, const std::string& name, const std::string& element, const Wire& at, const std::string& reader, int depth) {
+    std::vector<std::string> names;
+    for (const DiagramInput& input : scope.diagram->inputs) {
+      if (input.name == name) {
+        if (!scope.parent) return fail(at, reader, fmt::format("the input \"{}\" of the diagram has no source: it is the top", name), {}, "");
+        for (const PortWires& wires : scope.entry->in)
+          if (wires.port == name && wires.wires.size() == 1) {
+            FlatWire wire = resolve(*scope.parent, wires.wires[0].source, wires.wires[0], scope.prefix + name, depth + 1);
+            return with_element(wire, element, at, reader);
+          }
+        return {};  // told by check_subdiagram_wires
+      }
+      names.push_back(input.name);
+    }
+    for (const BlockEntry& entry : scope.diagram->blocks) names.push_back(entry.name + ".…");
+    auto wire = fail(at, reader, fmt::format("\"{}\" is neither an input of this diagram nor of the form block.output", at.source), names, name);
+    return wire;
+  }
+
+  FlatWire resolve_inside(Scope& inner, std::string_view rest, const Wire& at, const std::string& reader, int depth) {
+    const size_t bracket = rest.find('[');
+    const std::string name(rest.substr(0, bracket)), element(bracket == rest.npos ? "" : rest.substr(bracket));
+    std::vector<std::string> names;
+    for (const DiagramOutput& output : inner.diagram->outputs) {
+      if (output.name == name) return with_element(resolve(inner, output.source.source, output.source, inner.prefix + name, depth + 1), element, at, reader);
+      names.push_back(output.name);
+    }
+    for (const DiagramInput& input : inner.diagram->inputs)
+      if (input.name == name) return resolve_input(inner, name, element, at, reader, depth + 1);
+    if (rest.find('.') != rest.npos) return resolve(inner, rest, at, reader, depth + 1);
+    return fail(at, reader, fmt::format("the subdiagram \"{}\" has no output \"{}\"", inner.prefix.substr(0, inner.prefix.size() - 1), name), names, name);
+  }
+
+  FlatWire resolve_port(int block, std::string_view rest, const Wire& at, const std::string& reader, int depth) {
+    FlatBlock& flat = flat_.blocks[size_t(block)];
+    const size_t bracket = rest.find('[');
+    const std::string name(rest.substr(0, bracket)), element(bracket == rest.npos ? "" : rest.substr(bracket));
+    const BlockInfo& info = flat.type->info;
+    std::vector<std::string> names;
+    for (size_t o = 0; o < info.outputs.size(); ++o) {
+      if (info.outputs[o].name == name) {
+        FlatWire wire;
+        wire.block = block, wire.output = int(o), wire.place = at.place, wire.pointer = at.pointer, wire.text = at.source;
+        return with_element(wire, element, at, reader);
+      }
+      names.emplace_back(info.outputs[o].name);
+    }
+    if (reader == "log")  // an input may be looked at: what feeds it
+      for (const PortWires& wires : flat.entry->in)
+        if (wires.port == name && wires.wires.size() == 1)
+          return with_element(resolve(*scope_of_block_[size_t(block)], wires.wires[0].source, at, reader, depth + 1), element, at, reader);
+    return fail(at, reader, fmt::format("{} \"{}\" has no output \"{}\"", info.type, flat.path, name), names, name);
+  }
+
+  FlatWire with_element(FlatWire wire, const std::string& element, const Wire& at, const std::string& reader) {
+    if (element.empty() || !wire.is_resolved()) return wire;
+    const bool is_index = element.size() >= 3 && element.size() <= 9 && element.back() == ']' &&
+                          element.find_first_not_of("0123456789", 1) == element.size() - 1;
+    if (!is_index) return fail(at, reader, fmt::format("\"{}\" is not an element", at.source), {}, "");
+    if (wire.element >= 0) return fail(at, reader, fmt::format("\"{}\" is already one element", at.source), {}, "");
+    wire.element = std::stoi(element.substr(1));
+    return wire;
+  }
+
+  FlatWire fail(const Wire& at, const std::string& reader, std::string message, std::vector<std::string> names, const std::string& wrong) {
+    if (!told_.insert(at.pointer + message).second) return {};  // one wire into a subdiagram may have many readers
+    auto& p = problems_.error(at.place, at.pointer, reader, std::move(message));
+    p.found = "\"" + at.source + "\"";
+    const std::string near = wrong.empty() ? "" : nearest_name(wrong, names);
+    if (!near.empty()) p.hint = fmt::format("did you mean \"{}\"?", near);
+    else if (!names.empty() && names.size() <= 12) p.expected = fmt::format("one of {}", fmt::join(names, ", "));
+    return {};
+  }
+
+  /// Wires into a subdiagram: every input has one, and no wire leads to an input that does not exist.
+  void check_subdiagram_wires(Scope& scope) {
+    if (!scope.entry) return;
+    const std::string path = scope.prefix.substr(0, scope.prefix.size() - 1);
+    std::vector<std::string> names;
+    for (const DiagramInput& input : scope.diagram->inputs) {
+      names.push_back(input.name);
+      if (std::ranges::any_of(scope.entry->in, [&](const PortWires& w) { return w.port == input.name; })) continue;
+      auto& p = problems_.error(scope.entry->place, scope.entry->pointer, path, fmt::format("the input \"{}\" is not wired", input.name));
+      p.expected = fmt::format("\"in\": {{\"{}\": \"block.output\"}}", input.name);
+    }
+    for (const PortWires& wires : scope.entry->in) {
+      if (std::ranges::find(names, wires.port) == names.end()) {
+        auto& p = problems_.error(wires.place, wires.pointer, path, fmt::format("the subdiagram has no input \"{}\"", wires.port));
+        const std::string near = nearest_name(wires.port, names);
+        p.expected = names.empty() ? "no inputs" : fmt::format("{}", fmt::join(names, ", "));
+        if (!near.empty()) p.hint = fmt::format("did you mean \"{}\"?", near);
+      } else if (wires.wires.size() != 1) {
+        problems_.error(wires.place, wires.pointer, path, fmt::format("the input \"{}\" takes one wire", wires.port)).found = fmt::format("a list of {}", wires.wires.size());
+      } else {
+        for (const Wire& wire : wires.wires) resolve(*scope.parent, wire.source, wire, path, 0);
+      }
+    }
+    for (const DiagramOutput& output : scope.diagram->outputs) resolve(scope, output.source.source, output.source, scope.prefix + output.name, 0);
+  }
+
+  void add_log(Scope& top) {
+    for (const Wire& wire : top.diagram->log) {
+      if (wire.source.ends_with(".*")) {
+        const std::string prefix = wire.source.substr(0, wire.source.size() - 1);
+        bool any = false;
+        for (size_t b = 0; b < flat_.blocks.size(); ++b) {
+          const FlatBlock& block = flat_.blocks[b];
+          if (!(block.path + ".").starts_with(prefix)) continue;
+          for (size_t o = 0; o < block.type->info.outputs.size(); ++o) {
+            any = true;
+            FlatWire source;
+            source.block = int(b), source.output = int(o), source.place = wire.place;
+            flat_.log.push_back({fmt::format("{}.{}", block.path, block.type->info.outputs[o].name), source});
+          }
+        }
+        if (!any) fail(wire, "log", fmt::format("nothing matches \"{}\"", wire.source), {}, "");
+      } else {
+        flat_.log.push_back({wire.source, resolve(top, wire.source, wire, "log", 0)});
+      }
+    }
+  }
+
+  /// Outputs and inputs of blocks and subdiagrams by full path.
+  void add_names() {
+    for (size_t b = 0; b < flat_.blocks.size(); ++b) {
+      const FlatBlock& block = flat_.blocks[b];
+      const BlockInfo& info = block.type->info;
+      for (size_t o = 0; o < info.outputs.size(); ++o) {
+        FlatWire wire;
+        wire.block = int(b), wire.output = int(o);
+        flat_.names.push_back({fmt::format("{}.{}", block.path, info.outputs[o].name), wire});
+      }
+      for (size_t i = 0; i < info.inputs.size(); ++i)
+        if (block.inputs[i].size() == 1) flat_.names.push_back({fmt::format("{}.{}", block.path, info.inputs[i].name), block.inputs[i][0]});
+    }
+    Problems unheard;  // told already
+    std::swap(unheard, problems_);
+    for (Scope& scope : scopes_) {
+      if (!scope.entry) continue;
+      for (const DiagramOutput& output : scope.diagram->outputs)
+        flat_.names.push_back({scope.prefix + output.name, resolve(scope, output.source.source, output.source, "", 0)});
+      for (const DiagramInput& input : scope.diagram->inputs)
+        flat_.names.push_back({scope.prefix + input.name, resolve_input(scope, input.name, "", Wire{input.name, {}, {}}, "", 0)});
+    }
+    std::swap(unheard, problems_);
+  }
+
+  Problems& problems_;
+  FlatDiagram flat_;
+  std::deque<Scope> scopes_;
+  std::vector<Scope*> scope_of_block_;
+  std::vector<std::pair<const Scope*, std::string>> broken_;
+  std::unordered_set<std::string> told_;
+};
+
+}  // namespace
+
+FlatDiagram flatten(const Diagram& diagram, Problems& problems) { return Flattener(problems).run(diagram); }
+
+}  // namespace loopwright

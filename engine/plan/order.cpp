@@ -1,0 +1,271 @@
+#include "engine/plan/order.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <boost/graph/adjacency_list.hpp>
+#include <boost/graph/strong_components.hpp>
+#include <numeric>
+
+namespace loopwright {
+namespace {
+
+using Graph = boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS>;
+using Kind = Plan::Entry::Kind;
+
+/// A vertex is what one call computes: a group of outputs of a block, or its decision. An edge means "needs".
+struct Vertex {
+  int block;
+  int group;  // -1: the decision
+};
+
+class Order {
+ public:
+  Order(Plan& plan, bool solve_rings, Problems& problems) : plan_(plan), solve_rings_(solve_rings), problems_(problems) {}
+
+  void run() {
+    add_vertices();
+    add_edges();
+    std::vector<int> component(vertices_.size());
+    const int components = boost::strong_components(graph_, component.data());
+    // Tarjan numbers a component only after all that it needs: the numbers are the order.
+    std::vector<std::vector<int>> members(static_cast<size_t>(components));
+    for (size_t v = 0; v < vertices_.size(); ++v) members[size_t(component[v])].push_back(int(v));
+    rate_of_.resize(vertices_.size());
+    for (const auto& group : members) {
+      if (group.size() == 1 && !needs_itself(group[0])) add_entry(group[0]);
+      else add_ring(group, component);
+    }
+    collect_rates();
+    mark_needed();
+  }
+
+ private:
+  const BlockInfo& info(int block) const { return plan_.blocks[size_t(block)].type->info; }
+  uint64_t mask(const Vertex& v) const {
+    if (v.group < 0) return ~uint64_t(0);
+    for (const PortInfo& output : info(v.block).outputs) if (output.group == v.group) return output.fed_by;
+    return 0;
+  }
+
+  void add_vertices() {
+    vertex_of_number_.assign(size_t(plan_.signals), -1);
+    first_vertex_.resize(plan_.blocks.size());
+    decision_.assign(plan_.blocks.size(), -1);
+    for (size_t b = 0; b < plan_.blocks.size(); ++b) {
+      const Plan::Block& block = plan_.blocks[b];
+      first_vertex_[b] = int(vertices_.size());
+      for (int g = 0; g < info(int(b)).groups; ++g) vertices_.push_back({int(b), g});
+      for (size_t o = 0; o < block.outputs.size(); ++o)
+        if (const int group = info(int(b)).outputs[o].group; group >= 0)
+          for (int i = 0; i < (info(int(b)).outputs[o].shape == PortInfo::Shape::vector ? block.output_lengths[o] : 1); ++i)
+            vertex_of_number_[size_t(block.outputs[o] + i)] = first_vertex_[b] + group;
+      if (block.type->kernels.decide) {
+        decision_[b] = int(vertices_.size());
+        vertices_.push_back({int(b), -1});
+      }
+    }
+    graph_ = Graph(vertices_.size());
+  }
+
+  template <class F>
+  void for_each_need(int v, F&& f) const {
+    const Vertex& vertex = vertices_[size_t(v)];
+    const auto& inputs = plan_.blocks[size_t(vertex.block)].inputs;
+    const uint64_t fed = mask(vertex);
+    for (size_t i = 0; i < inputs.size(); ++i)
+      if (fed >> i & 1)
+        for (Number n : inputs[i]) f(int(i), n);
+  }
+  void add_edges() {
+    for (size_t v = 0; v < vertices_.size(); ++v) {
+      for_each_need(int(v), [&](int, Number n) {
+        if (n < plan_.signals && vertex_of_number_[size_t(n)] >= 0) boost::add_edge(v, size_t(vertex_of_number_[size_t(n)]), graph_);
+      });
+      // What depends on the inputs reads the mode decided from them; what does not was settled before.
+      const Vertex& vertex = vertices_[v];
+      const int decision = decision_[size_t(vertex.block)];
+      if (vertex.group >= 0 && decision >= 0 && (mask(vertex) != 0 || info(vertex.block).inputs.empty())) boost::add_edge(v, size_t(decision), graph_);
+    }
+  }
+  bool needs_itself(int v) const {
+    const auto [begin, end] = boost::out_edges(size_t(v), graph_);
+    return std::any_of(begin, end, [&](auto e) { return int(boost::target(e, graph_)) == v; });
+  }
+
+  static Rate join(const Rate& a, const Rate& b) {
+    if (a.kind == Rate::Kind::constant) return b;
+    if (b.kind == Rate::Kind::constant) return a;
+    if (a.kind == Rate::Kind::continuous || b.kind == Rate::Kind::continuous) return {Rate::Kind::continuous, 0, 0};
+    const int64_t period = std::gcd(std::gcd(a.period, b.period), std::abs(a.offset - b.offset));
+    return {Rate::Kind::sampled, period, std::min(a.offset, b.offset) % period};
+  }
+  Rate own_rate(int v) const {
+    const Vertex& vertex = vertices_[size_t(v)];
+    const Plan::Block& block = plan_.blocks[size_t(vertex.block)];
+    if (block.period > 0) return {Rate::Kind::sampled, block.period, block.offset};
+    if (info(vertex.block).uses_time || info(vertex.block).is_continuous) return {Rate::Kind::continuous, 0, 0};
+    Rate rate;
+    for_each_need(v, [&](int, Number n) {
+      if (n >= plan_.signals) rate = join(rate, {Rate::Kind::continuous, 0, 0});
+      else if (vertex_of_number_[size_t(n)] >= 0) rate = join(rate, rate_of_[size_t(vertex_of_number_[size_t(n)])]);
+    });
+    return rate;
+  }
+  Plan::Entry entry_of(int v) {
+    const Vertex& vertex = vertices_[size_t(v)];
+    return {vertex.group < 0 ? Kind::decide : Kind::outputs, vertex.block, std::max(vertex.group, 0), rate_of_[size_t(v)]};
+  }
+  void add_entry(int v) {
+    rate_of_[size_t(v)] = own_rate(v);
+    entry_vertices_.push_back({v});
+    plan_.order.push_back(entry_of(v));
+  }
+
+  void add_ring(const std::vector<int>& members, const std::vector<int>& component) {
+    const std::string text = ring_text(members, component);
+    if (!solve_rings_) return tell_ring(members, text, "");
+    for (int v : members)
+      if (vertices_[size_t(v)].group < 0) return tell_ring(members, text, "It holds a block that switches; such a ring cannot be solved.");
+    Plan::Ring ring;
+    ring.text = text;
+    // Tears: outputs taken out one by one, most wanted first, until what is left has no ring.
+    std::vector<int> left = members;
+    std::vector<int> sorted;
+    std::vector<bool> torn(vertices_.size(), false);
+    while (!sort_acyclic(members, component, torn, sorted)) {
+      const int v = *std::ranges::max_element(left, {}, [&](int m) { return torn[size_t(m)] ? -1 : wanted_inside(m, component); });
+      torn[size_t(v)] = true;
+    }
+    Rate rate;
+    for (int pass = 0; pass < 2; ++pass)
+      for (int v : members) rate_of_[size_t(v)] = rate = join(rate, own_rate(v));
+    for (int v : members) rate_of_[size_t(v)] = rate;
+    for (int v : sorted) ring.entries.push_back(entry_of(v));
+    for (Number n = 0; n < plan_.signals; ++n)
+      if (const int v = vertex_of_number_[size_t(n)]; v >= 0 && torn[size_t(v)]) ring.tears.push_back(n);
+    entry_vertices_.push_back(members);
+    plan_.order.push_back({Kind::ring, int(plan_.rings.size()), 0, rate});
+    plan_.rings.push_back(std::move(ring));
+  }
+  int wanted_inside(int v, const std::vector<int>& component) const {
+    int n = 0;
+    for (auto [e, end] = boost::out_edges(size_t(v), graph_); e != end; ++e)
+      n += component[boost::target(*e, graph_)] == component[size_t(v)];
+    return n;
+  }
+  /// Members in order, edges to torn vertices ignored; false if a ring is left.
+  bool sort_acyclic(const std::vector<int>& members, const std::vector<int>& component, const std::vector<bool>& torn, std::vector<int>& sorted) const {
+    sorted.clear();
+    std::vector<int> open(members);
+    std::vector<bool> done(vertices_.size(), false);
+    while (!open.empty()) {
+      const size_t before = sorted.size();
+      std::erase_if(open, [&](int v) {
+        for (auto [e, end] = boost::out_edges(size_t(v), graph_); e != end; ++e) {
+          const size_t target = boost::target(*e, graph_);
+          if (component[target] == component[size_t(v)] && !torn[target] && !done[target]) return false;
+        }
+        done[size_t(v)] = true;
+        sorted.push_back(v);
+        return true;
+      });
+      if (sorted.size() == before) return false;
+    }
+    return true;
+  }
+
+  /// One closed walk through the component, port by port.
+  std::string ring_text(const std::vector<int>& members, const std::vector<int>& component) const {
+    std::vector<std::string> steps;
+    std::vector<int> seen_at(vertices_.size(), -1);
+    int at = members[0];
+    while (seen_at[size_t(at)] < 0) {
+      seen_at[size_t(at)] = int(steps.size());
+      int next = -1;
+      std::string step;
+      for_each_need(at, [&](int i, Number n) {
+        const int source = n < plan_.signals ? vertex_of_number_[size_t(n)] : -1;
+        if (next >= 0 || source < 0 || component[size_t(source)] != component[size_t(at)]) return;
+        next = source;
+        const Plan::Block& block = plan_.blocks[size_t(vertices_[size_t(at)].block)];
+        step = fmt::format("{} -> {}.{}", plan_.name_of(n), block.path, block.type->info.inputs[size_t(i)].name);
+      });
+      if (next < 0) {  // an output group that needs its block's decision
+        next = decision_[size_t(vertices_[size_t(at)].block)];
+        steps.emplace_back();
+      } else {
+        steps.push_back(std::move(step));
+      }
+      at = next;
+    }
+    std::string text;
+    for (size_t i = steps.size(); i-- > size_t(seen_at[size_t(at)]);) if (!steps[i].empty()) text += "\n    " + steps[i];
+    return text;
+  }
+
+  void tell_ring(const std::vector<int>& members, const std::string& text, std::string_view why) {
+    const Plan::Block& block = plan_.blocks[size_t(vertices_[size_t(members[0])].block)];
+    std::string breakers;
+    auto& p = problems_.error(block.place, "", block.path, fmt::format("a ring of direct feedthrough: each of these needs the next in the same instant{}", text));
+    p.expected = "a state or a delay somewhere in the ring";
+    p.hint = fmt::format("a UnitDelay (sampled) or a LowPass (continuous) at one of these wires breaks it; \"algebraic_loops\": \"solve\" in \"solver\" solves it by Newton's method. {}", why);
+    while (!p.hint.empty() && p.hint.back() == ' ') p.hint.pop_back();
+  }
+
+  void collect_rates() {
+    const auto add = [&](const Rate& rate) {
+      if (rate.kind == Rate::Kind::sampled && std::ranges::find(plan_.rates, rate) == plan_.rates.end()) plan_.rates.push_back(rate);
+    };
+    for (const Plan::Entry& entry : plan_.order) add(entry.rate);
+    for (const Plan::Block& block : plan_.blocks) if (block.period > 0) add({Rate::Kind::sampled, block.period, block.offset});
+    std::ranges::sort(plan_.rates, {}, [](const Rate& r) { return std::pair(r.period, r.offset); });
+    for (const Rate& rate : plan_.rates)
+      if (plan_.rates.size() > 60) {
+        problems_.error({}, "/solver", "", fmt::format("{} different sample rates; at most 60 can be handled, this one repeats every {} ticks", plan_.rates.size(), rate.period));
+        return;
+      }
+  }
+
+  /// Backwards from derivatives, and from crossings, decisions, jumps and accepted memory.
+  void mark_needed() {
+    std::vector<bool> for_stages(vertices_.size(), false), for_events(vertices_.size(), false);
+    for (size_t b = 0; b < plan_.blocks.size(); ++b) {
+      const Kernels<double>& k = plan_.blocks[b].type->kernels;
+      if (k.derivatives) need_inputs(int(b), for_stages);
+      if (plan_.blocks[b].period == 0 && (k.crossings || k.decide || k.jump || k.accept)) need_inputs(int(b), for_events);
+      if (decision_[b] >= 0 && plan_.blocks[b].period == 0) for_events[size_t(decision_[b])] = true;
+    }
+    for (size_t e = 0; e < plan_.order.size(); ++e) {
+      Plan::Entry& entry = plan_.order[e];
+      if (entry.rate.kind != Rate::Kind::continuous) continue;
+      for (int v : entry_vertices_[e]) entry.in_stages |= for_stages[size_t(v)], entry.for_events |= for_events[size_t(v)];
+    }
+  }
+  void need_inputs(int block, std::vector<bool>& needed) {
+    std::vector<int> todo;
+    const auto want = [&](Number n) {
+      const int v = n < plan_.signals ? vertex_of_number_[size_t(n)] : -1;
+      if (v >= 0 && !needed[size_t(v)]) needed[size_t(v)] = true, todo.push_back(v);
+    };
+    for (const auto& port : plan_.blocks[size_t(block)].inputs) for (Number n : port) want(n);
+    while (!todo.empty()) {
+      const int v = todo.back();
+      todo.pop_back();
+      for_each_need(v, [&](int, Number n) { want(n); });
+    }
+  }
+
+  Plan& plan_;
+  const bool solve_rings_;
+  Problems& problems_;
+  Graph graph_;
+  std::vector<Vertex> vertices_;
+  std::vector<int> first_vertex_, decision_, vertex_of_number_;
+  std::vector<Rate> rate_of_;
+  std::vector<std::vector<int>> entry_vertices_;
+};
+
+}  // namespace
+
+void find_order(Plan& plan, bool solve_rings, Problems& problems) { Order(plan, solve_rings, problems).run(); }
+
+}  // namespace loopwright

@@ -1,0 +1,114 @@
+/// A diagram made flat: which method of which block runs when, on which numbers. Immutable; shared by runs and threads.
+#pragma once
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+#include "engine/block/registry.h"
+#include "engine/diagram/diagram.h"
+#include "engine/plan/ticks.h"
+#include "engine/solve/method.h"
+
+namespace loopwright {
+
+/// The place of one number in the arena of a run: signals first, then continuous states.
+using Number = int32_t;
+
+/// How often something runs: constants once, continuous at every stage, else every `period` ticks from `offset` on.
+struct Rate {
+  enum class Kind : uint8_t { constant, sampled, continuous };
+  Kind kind = Kind::constant;
+  int64_t period = 0, offset = 0;
+  bool operator==(const Rate&) const = default;
+};
+
+struct Plan {
+  /// One block on scalars; a block wired with vectors of n elements stands n times.
+  struct Block {
+    std::string path;                          ///< "stage.friction", "gain[2]"
+    const BlockType* type = nullptr;
+    std::shared_ptr<const void> value;         ///< the scalar block with the parameters of the file
+    Place place;                               ///< of its name in the file
+    int64_t period = 0, offset = 0;            ///< ticks; period 0: not sampled
+    double sample_time = 0;                    ///< s; 0: not sampled
+    std::vector<std::vector<Number>> inputs;   ///< a port each
+    std::vector<Number> outputs;               ///< first number of each port
+    std::vector<int> output_lengths;
+    int first_state = 0, states = 0;
+    int first_crossing = 0;
+    int first_buffer = 0;                      ///< in numbers from the start of the buffers
+    std::vector<int> buffer_lengths;
+  };
+
+  /// One entry of the order: a group of outputs of a block, its decision, or a ring to be solved.
+  struct Entry {
+    enum class Kind : uint8_t { outputs, decide, ring };
+    Kind kind = Kind::outputs;
+    int block = -1;   ///< or the ring
+    int group = 0;
+    Rate rate;
+    bool in_stages = false;    ///< a derivative needs it
+    bool for_events = false;   ///< a crossing function needs it
+  };
+
+  /// A ring of direct feedthrough, solved by Newton's method on the tear numbers.
+  struct Ring {
+    std::vector<Entry> entries;  ///< in order, tears taken as known
+    std::vector<Number> tears;
+    std::string text;            ///< the ring port by port, for messages
+  };
+
+  struct Crossing {
+    int block;
+    std::string_view name;
+    loopwright::Crossing direction;
+  };
+
+  struct Logged {
+    std::string name;  ///< column name
+    Unit unit;
+    bool unit_is_known = false;
+    Number number;
+    Rate rate;
+  };
+
+  std::string title;
+  std::vector<Block> blocks;
+  std::vector<Entry> order;     ///< every output and decision, sorted once
+  std::vector<Ring> rings;
+  std::vector<Rate> rates;      ///< the distinct sampled rates
+  std::vector<Crossing> crossings;
+  std::vector<Logged> log;
+  std::vector<std::pair<std::string, std::string>> parameters;  ///< effective values: path → value with unit
+  std::vector<std::pair<Number, double>> unwired;  ///< optional inputs that nobody wired, and what they read
+
+  TickClock clock;
+  int64_t start_tick = 0, stop_tick = 0;
+  int64_t step_ticks = 0;       ///< of a fixed-step method
+  int64_t record_ticks = 0;     ///< a row of the recording every so often
+  Method method = Method::rk4;
+  double relative_tolerance = 1e-6, absolute_tolerance = 1e-9, maximum_step = infinity;
+  uint64_t seed = 1;
+
+  int signals = 0, states = 0, buffer_numbers = 0;
+  std::vector<int> block_of_state;
+  std::vector<Problem> warnings;
+  std::string hash;             ///< of structure and effective parameters, 16 hex digits
+
+  /// The numbers of a port, "stage.position" or "gain.y[2]", inputs too; empty if there is none.
+  std::vector<Number> find(std::string_view port) const;
+  /// Who computes a number, as "stage.position".
+  std::string name_of(Number number) const;
+  std::vector<std::pair<std::string, std::vector<Number>>> ports;  ///< every port by path, sorted by name
+};
+
+/// Compiles a loaded diagram. Null when there are errors (all of them are in `problems`).
+std::shared_ptr<const Plan> compile(const Diagram& diagram, Problems& problems);
+
+/// Loads and compiles; throws InputError with every problem found. Warnings end in Plan::warnings.
+std::shared_ptr<const Plan> load_plan(const std::string& path, const LoadOptions& options = {});
+
+/// Order, rates, states and rings as text for a person.
+std::string describe(const Plan& plan);
+
+}  // namespace loopwright

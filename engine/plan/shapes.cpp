@@ -1,0 +1,229 @@
+#include "engine/plan/shapes.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <numeric>
+
+namespace loopwright {
+
+int length_of(const FlatDiagram& flat, const FlatWire& wire) {
+  if (!wire.is_resolved() || wire.element >= 0) return 1;
+  const FlatBlock& block = flat.blocks[size_t(wire.block)];
+  const bool is_vector = block.type->info.outputs[size_t(wire.output)].shape == PortInfo::Shape::vector;
+  return is_vector ? block.output_lengths[size_t(wire.output)] : block.width;
+}
+
+static bool has_vector_ports(const BlockInfo& info) {
+  const auto is_vector = [](const PortInfo& p) { return p.shape == PortInfo::Shape::vector || p.joins_vectors; };
+  return std::ranges::any_of(info.inputs, is_vector) || std::ranges::any_of(info.outputs, is_vector);
+}
+
+static int total_length(const FlatDiagram& flat, const std::vector<FlatWire>& wires) {
+  int n = 0;
+  for (const FlatWire& wire : wires) n += length_of(flat, wire);
+  return n;
+}
+
+/// The block's width and output lengths from its inputs as they are now; true if anything grew.
+static bool update_shape(FlatDiagram& flat, FlatBlock& block) {
+  const BlockInfo& info = block.type->info;
+  const int old_width = block.width;
+  if (!has_vector_ports(info))
+    for (const auto& wires : block.inputs)
+      for (const FlatWire& wire : wires) block.width = std::max(block.width, length_of(flat, wire));
+  bool grew = block.width != old_width;
+  block.output_lengths.resize(info.outputs.size(), 1);
+  for (size_t o = 0; o < info.outputs.size(); ++o) {
+    int n = 1;
+    if (info.outputs[o].shape == PortInfo::Shape::vector) {
+      const int own = info.output_length(block.value.get(), int(o)), like = info.outputs[o].length_of_input;
+      n = own >= 0 ? own : like >= 0 ? total_length(flat, block.inputs[size_t(like)]) : 1;
+    }
+    grew |= n != block.output_lengths[o];
+    block.output_lengths[o] = n;
+  }
+  return grew;
+}
+
+static void check_port(const FlatDiagram& flat, const FlatBlock& block, size_t i, Problems& problems) {
+  const PortInfo& port = block.type->info.inputs[i];
+  const auto& wires = block.inputs[i];
+  if (wires.empty()) return;
+  const int wanted = block.type->info.input_length(block.value.get(), int(i));
+  const auto clash = [&](const FlatWire& wire, std::string expected, std::string found) {
+    auto& p = problems.error(wire.place, wire.pointer, block.path, fmt::format("the input \"{}\" has the wrong width", port.name));
+    p.expected = std::move(expected), p.found = std::move(found);
+  };
+  if (port.shape == PortInfo::Shape::many && !port.joins_vectors) {
+    if (wanted >= 0 && int(wires.size()) != wanted)
+      clash(wires[0], fmt::format("{} wires", wanted), fmt::format("{}", wires.size()));
+  } else if (port.shape != PortInfo::Shape::scalar) {
+    const int n = total_length(flat, wires);
+    if (wanted >= 0 && n != wanted) clash(wires[0], fmt::format("{} elements", wanted), fmt::format("{}", n));
+    return;
+  }
+  const int width = has_vector_ports(block.type->info) ? 1 : block.width;
+  for (const FlatWire& wire : wires) {
+    const int n = length_of(flat, wire);
+    if (n != 1 && n != width)
+      clash(wire, width == 1 ? "a scalar; an element is written \"block.port[0]\"" : fmt::format("a scalar or {} elements, as its other inputs have", width),
+            fmt::format("\"{}\" with {} elements", wire.text, n));
+  }
+}
+
+void find_shapes(FlatDiagram& flat, Problems& problems) {
+  std::vector<std::vector<int>> readers(flat.blocks.size());
+  for (size_t b = 0; b < flat.blocks.size(); ++b)
+    for (const auto& wires : flat.blocks[b].inputs)
+      for (const FlatWire& wire : wires)
+        if (wire.is_resolved()) readers[size_t(wire.block)].push_back(int(b));
+  std::vector<int> todo(flat.blocks.size());
+  std::iota(todo.rbegin(), todo.rend(), 0);
+  std::vector<int> visits(flat.blocks.size(), 0);
+  while (!todo.empty()) {
+    const int b = todo.back();
+    todo.pop_back();
+    FlatBlock& block = flat.blocks[size_t(b)];
+    if (!update_shape(flat, block)) continue;
+    if (++visits[size_t(b)] > 50 || block.width > 1'000'000) {
+      problems.error(block.entry->place, block.entry->pointer, block.path, "its vectors grow round a ring of wires without end");
+      return;
+    }
+    todo.insert(todo.end(), readers[size_t(b)].begin(), readers[size_t(b)].end());
+  }
+  for (const FlatBlock& block : flat.blocks) {
+    for (size_t i = 0; i < block.inputs.size(); ++i) check_port(flat, block, i, problems);
+    for (const auto& wires : block.inputs)
+      for (const FlatWire& wire : wires) {
+        if (!wire.is_resolved() || wire.element < 0) continue;
+        FlatWire whole = wire;
+        whole.element = -1;
+        if (const int n = length_of(flat, whole); wire.element >= n)
+          problems.error(wire.place, wire.pointer, block.path, fmt::format("\"{}\" has {} elements, counted from 0", wire.text.substr(0, wire.text.find('[')), n)).found = "\"" + wire.text + "\"";
+      }
+  }
+}
+
+Layout::Layout(const FlatDiagram& flat, Plan& plan) : flat_(flat), plan_(plan) {
+  add_blocks();
+  number_constants_and_states();
+  wire_inputs();
+}
+
+void Layout::add_blocks() {
+  for (const FlatBlock& flat : flat_.blocks) {
+    first_instance_.push_back(int(plan_.blocks.size()));
+    const BlockInfo& info = flat.type->info;
+    std::vector<Number> first_output(info.outputs.size(), -1);
+    for (size_t o = 0; o < info.outputs.size(); ++o) {
+      if (info.outputs[o].state >= 0) continue;
+      first_output[o] = plan_.signals;
+      plan_.signals += info.outputs[o].shape == PortInfo::Shape::vector ? flat.output_lengths[o] : flat.width;
+    }
+    for (int element = 0; element < flat.width; ++element) {
+      Plan::Block block;
+      block.path = flat.width == 1 ? flat.path : fmt::format("{}[{}]", flat.path, element);
+      block.type = flat.type, block.value = flat.value, block.place = flat.entry->place;
+      block.output_lengths = flat.output_lengths;
+      for (Number n : first_output) block.outputs.push_back(n < 0 ? n : n + element);
+      block.states = info.state_length(flat.value.get());
+      block.first_state = plan_.states;
+      plan_.states += block.states;
+      block.first_buffer = plan_.buffer_numbers;
+      for (int i = 0; i < info.buffers; ++i) {
+        block.buffer_lengths.push_back(info.buffer_length(flat.value.get(), i));
+        plan_.buffer_numbers += block.buffer_lengths.back();
+      }
+      plan_.blocks.push_back(std::move(block));
+    }
+  }
+}
+
+void Layout::number_constants_and_states() {
+  // Optional inputs without a wire read constants, one signal a distinct value.
+  for (const FlatBlock& flat : flat_.blocks)
+    for (size_t i = 0; i < flat.inputs.size(); ++i) {
+      if (!flat.inputs[i].empty()) continue;
+      const double value = flat.type->info.inputs[i].otherwise_value;
+      if (std::ranges::none_of(plan_.unwired, [&](const auto& u) { return u.second == value; }))
+        plan_.unwired.emplace_back(plan_.signals++, value);
+    }
+  for (Plan::Block& block : plan_.blocks)
+    for (size_t o = 0; o < block.outputs.size(); ++o)
+      if (const int state = block.type->info.outputs[o].state; state >= 0) block.outputs[o] = -1 - (block.first_state + state);
+}
+
+std::vector<Number> Layout::numbers_of(const FlatWire& wire) const {
+  std::vector<Number> numbers;
+  if (!wire.is_resolved()) return numbers;
+  const FlatBlock& flat = flat_.blocks[size_t(wire.block)];
+  const size_t first = size_t(first_instance_[size_t(wire.block)]), output = size_t(wire.output);
+  if (flat.type->info.outputs[output].shape == PortInfo::Shape::vector)
+    for (int i = 0; i < flat.output_lengths[output]; ++i) numbers.push_back(plan_.blocks[first].outputs[output] + i);
+  else
+    for (int i = 0; i < flat.width; ++i) numbers.push_back(plan_.blocks[first + size_t(i)].outputs[output]);
+  if (wire.element >= 0) numbers = {numbers[size_t(wire.element)]};
+  return numbers;
+}
+
+/// A copy of scattered numbers in a row, made by a Pack that nobody wrote.
+std::vector<Number> Layout::contiguous(std::vector<Number> numbers, const std::string& reader) {
+  bool in_a_row = true;
+  for (size_t i = 1; i < numbers.size(); ++i) in_a_row &= numbers[i] == numbers[i - 1] + 1 && numbers[i - 1] >= 0;
+  if (in_a_row && !numbers.empty() && numbers[0] >= 0) return numbers;
+  Plan::Block pack;
+  pack.path = reader;
+  pack.type = find_block("Pack");
+  const Kernels<double>& kernels = pack.type->kernels;
+  void* memory = ::operator new(kernels.size, std::align_val_t(64));
+  kernels.construct(memory);
+  pack.value = {memory, [&kernels](void* p) {
+                  kernels.destroy(p);
+                  ::operator delete(p, std::align_val_t(64));
+                }};
+  const int n = int(numbers.size());
+  pack.inputs = {std::move(numbers)};
+  pack.outputs = {plan_.signals};
+  pack.output_lengths = {n};
+  plan_.signals += n;
+  std::vector<Number> copies(static_cast<size_t>(n));
+  std::iota(copies.begin(), copies.end(), pack.outputs[0]);
+  plan_.blocks.push_back(std::move(pack));
+  return copies;
+}
+
+void Layout::wire_port(Plan::Block& block, const FlatBlock& flat, size_t port, int element) {
+  const PortInfo& info = flat.type->info.inputs[port];
+  std::vector<Number>& numbers = block.inputs[port];
+  if (flat.inputs[port].empty()) {
+    for (const auto& [number, value] : plan_.unwired) if (value == info.otherwise_value) numbers = {number};
+    return;
+  }
+  for (const FlatWire& wire : flat.inputs[port]) {
+    const std::vector<Number> all = numbers_of(wire);
+    if (info.shape == PortInfo::Shape::vector || info.joins_vectors) numbers.insert(numbers.end(), all.begin(), all.end());
+    else numbers.push_back(all[all.size() == 1 ? 0 : size_t(element)]);
+  }
+}
+
+void Layout::wire_inputs() {
+  const size_t written = plan_.blocks.size();
+  for (size_t b = 0, f = 0; f < flat_.blocks.size(); ++f)
+    for (int element = 0; element < flat_.blocks[f].width; ++element, ++b) {
+      plan_.blocks[b].inputs.resize(flat_.blocks[f].inputs.size());
+      for (size_t i = 0; i < flat_.blocks[f].inputs.size(); ++i) wire_port(plan_.blocks[b], flat_.blocks[f], i, element);
+    }
+  for (size_t b = 0; b < written; ++b)
+    for (size_t i = 0; i < plan_.blocks[b].inputs.size(); ++i) {
+      const PortInfo& port = plan_.blocks[b].type->info.inputs[i];
+      if (port.shape != PortInfo::Shape::vector) continue;
+      auto numbers = contiguous(plan_.blocks[b].inputs[i], plan_.blocks[b].path + "." + std::string(port.name));
+      plan_.blocks[b].inputs[i] = std::move(numbers);
+    }
+  // States come after the signals: -1-k becomes signals+k, now that the number of signals is known.
+  for (Plan::Block& block : plan_.blocks) {
+    for (auto& port : block.inputs) for (Number& n : port) if (n < 0) n = plan_.signals + (-1 - n);
+    for (Number& n : block.outputs) if (n < 0) n = plan_.signals + (-1 - n);
+  }
+}
+
+}  // namespace loopwright

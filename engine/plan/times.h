@@ -1,0 +1,12 @@
+/// The times of a diagram as ticks: base period, sample times, step, recording, start and stop.
+#pragma once
+#include "engine/plan/flatten.h"
+#include "engine/plan/plan.h"
+
+namespace loopwright {
+
+/// Fills clock, start, stop, step and record ticks, method and tolerances of the plan, and period and offset of its blocks.
+/// `flat_of_block[i]` is the flat block behind plan.blocks[i], or -1.
+void find_times(const Diagram& diagram, const FlatDiagram& flat, const std::vector<int>& flat_of_block, Plan& plan, Problems& problems);
+
+}  // namespace loopwright

@@ -1,0 +1,55 @@
+/// A block of the plan as one run holds it: its parameters for every lane, and its methods for the run's scalar.
+#pragma once
+#include <memory>
+#include "engine/plan/plan.h"
+#include "engine/record/hash.h"
+
+namespace loopwright {
+
+/// Key of a block's random streams.
+inline uint64_t hash_of_path(std::string_view path) { return ContentHash().add(path).value(); }
+
+template <class Real>
+class BlockInstance;
+
+/// One simulation: the block itself.
+template <>
+class BlockInstance<double> {
+ public:
+  BlockInstance(const Plan::Block& block, int) : kernels_(&block.type->kernels), value_(block.value.get()) {
+    memory_.reset(static_cast<char*>(::operator new(kernels_->size, std::align_val_t(64))));
+    kernels_->construct(memory_.get());
+    kernels_->copy(memory_.get(), value_);
+    memory_.get_deleter().destroy = kernels_->destroy;
+  }
+  void* block() { return memory_.get(); }
+  const void* first() const { return memory_.get(); }
+  size_t memory_bytes() const { return kernels_->memory_size; }
+  size_t mode_bytes() const { return kernels_->mode_size; }
+  double* tunable(std::string_view path, int) { return kernels_->tunable(memory_.get(), path); }
+  void start(const Call<double>& call, const Setup& setup) {
+    kernels_->prepare(memory_.get(), setup);
+    kernels_->start(memory_.get(), call.state, call.memory, call.buffers, 0, call.mode);
+  }
+  Step<double> outputs(int group) const { return kernels_->outputs[group]; }
+  Step<double> decide() const { return kernels_->decide; }
+  Step<double> derivatives() const { return kernels_->derivatives; }
+  Step<double> update() const { return kernels_->update; }
+  Step<double> accept() const { return kernels_->accept; }
+  Step<double> jump() const { return kernels_->jump; }
+  Step<double> crossings() const { return kernels_->crossings; }
+
+ private:
+  struct Destroy {
+    void (*destroy)(void*) = nullptr;
+    void operator()(char* p) const {
+      if (destroy) destroy(p);
+      ::operator delete(p, std::align_val_t(64));
+    }
+  };
+  const Kernels<double>* kernels_;
+  const void* value_;
+  std::unique_ptr<char, Destroy> memory_;
+};
+
+}  // namespace loopwright

@@ -1,0 +1,24 @@
+/// Rows of logged signals. Room for all rows is taken before the run; a row allocates nothing.
+#pragma once
+#include "engine/record/recording.h"
+#include "engine/run/run.h"
+
+namespace loopwright {
+
+class Recorder {
+ public:
+  /// Throws InputError when the rows would not fit into memory.
+  explicit Recorder(const Plan& plan);
+
+  void record(const Run<double>& run);
+  /// The first logged signal of the last row that is not a finite number; -1: all are.
+  int first_non_finite() const;
+  int64_t rows() const { return int64_t(recording_.columns[0].values.size()); }
+  Recording& recording() { return recording_; }
+
+ private:
+  const Plan& plan_;
+  Recording recording_;
+};
+
+}  // namespace loopwright
