@@ -78,8 +78,8 @@ template <class T>
 struct Setting {
   T value{};
   bool is_given = false;
-  Place place;
-  std::string pointer;
+  Place place{};
+  std::string pointer{};
 };
 
 struct SolverSettings {

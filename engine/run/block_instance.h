@@ -16,11 +16,11 @@ class BlockInstance;
 template <>
 class BlockInstance<double> {
  public:
-  BlockInstance(const Plan::Block& block, int) : kernels_(&block.type->kernels), value_(block.value.get()) {
-    memory_.reset(static_cast<char*>(::operator new(kernels_->size, std::align_val_t(64))));
+  BlockInstance(const Plan::Block& block, int)
+      : kernels_(&block.type->kernels),
+        memory_(static_cast<char*>(::operator new(kernels_->size, std::align_val_t(64))), Destroy{kernels_->destroy}) {
     kernels_->construct(memory_.get());
-    kernels_->copy(memory_.get(), value_);
-    memory_.get_deleter().destroy = kernels_->destroy;
+    kernels_->copy(memory_.get(), block.value.get());
   }
   void* block() { return memory_.get(); }
   const void* first() const { return memory_.get(); }
@@ -41,14 +41,13 @@ class BlockInstance<double> {
 
  private:
   struct Destroy {
-    void (*destroy)(void*) = nullptr;
+    void (*destroy)(void*);
     void operator()(char* p) const {
-      if (destroy) destroy(p);
+      destroy(p);
       ::operator delete(p, std::align_val_t(64));
     }
   };
   const Kernels<double>* kernels_;
-  const void* value_;
   std::unique_ptr<char, Destroy> memory_;
 };
 

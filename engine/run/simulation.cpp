@@ -61,7 +61,10 @@ class Simulation {
       if (plan_.states == 0) step_without_states(limit, records);
       else run_.step_fixed(limit, records, [&] { recorder_.record(run_); });
       ++result_.statistics.steps;
-      if (run_.failed()) return fail_by_fault();
+      if (run_.failed()) {
+        fail_by_fault();
+        return;
+      }
       if (records && !check_finite()) return;
       if (run_.now().tick == next_checkpoint) checkpoint(), next_checkpoint += checkpoint_ticks_;
       if (!go_on()) return;
