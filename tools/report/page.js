@@ -306,8 +306,12 @@
         // Only the position of the cursor is shared here; followX shares the range.
         sync: plot.group ? { key: plot.group, setSeries: false, scales: ["x", null],
                              filters: { pub: (type) => type === "mousemove" || type === "mouseleave" } } : undefined,
-        bind: { mousedown: (u, target, handler) => (event) => event.shiftKey ? pan(u, event) : handler(event),
-                dblclick: (u) => () => showAll(u) },
+        bind: {
+          mousedown: (u, target, handler) => (event) => {
+            if (event.button === 0) (event.shiftKey ? pan(u, event) : handler(event));
+          },
+          dblclick: (u) => () => showAll(u),
+        },
         ...(plot.cloud ? { dataIdx: (u, k, index) => k === 0 ? index : nearestPoint(u, index, k) } : {}),
       },
       hooks: {

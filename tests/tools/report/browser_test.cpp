@@ -1,0 +1,59 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include "tests/tools/report/sample_page.h"
+#include "tools/report/child_process.h"
+
+namespace loopwright::report {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::HasSubstr;
+
+std::string content(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream bytes;
+  bytes << file.rdbuf();
+  return bytes.str();
+}
+
+/// The page after chromium has run its scripts.
+ChildResult browse(const std::filesystem::path& page, const std::filesystem::path& profile) {
+  return run_program(
+      {"chromium", "--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking",
+       "--window-size=1200,900", "--user-data-dir=" + profile.string(), "--virtual-time-budget=2000",
+       "--dump-dom", "file://" + page.string()},
+      "", 60s);
+}
+
+TEST(ReportPage, ScopesZoomReadOutAndFollowEachOtherInABrowser) {
+  if (!run_program({"sh", "-c", "command -v chromium"}, "", 20s).succeeded) GTEST_SKIP() << "chromium is not installed";
+  const std::filesystem::path folder = std::filesystem::path(LOOPWRIGHT_BINARY) / "report_browser_test";
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  std::string html = to_html(sample_page());
+  html.insert(html.find("<style>"),
+              "<script>const errors = []; onerror = (text) => errors.push(text);</script>");
+  html.insert(html.rfind("</body>"),
+              "<script>" + content(LOOPWRIGHT_SOURCE "/tests/tools/report/probe.js") + "</script>");
+  std::ofstream(folder / "page.html") << html;
+
+  const ChildResult result = browse(folder / "page.html", folder / "profile");
+  ASSERT_TRUE(result.succeeded) << result.failure;
+  const size_t begin = result.output.find("<title>") + 7;
+  const std::string seen = result.output.substr(begin, result.output.find("</title>") - begin);
+  EXPECT_THAT(seen, HasSubstr(R"("errors":[])"));
+  EXPECT_THAT(seen, HasSubstr(R"("canvases":5,"drawn":5)"));
+  EXPECT_THAT(seen,
+              HasSubstr("\"read\":[\"100\u202Fmm|99.997\u202Fmm|at 1.29"));  // half way, at rest
+  EXPECT_THAT(seen, HasSubstr(R"("zoomed":"11100")"));                               // the group of three
+  EXPECT_THAT(seen, HasSubstr("\"left\":\"at 65"));  // a quarter of 2.6 s, shown in ms
+  EXPECT_THAT(seen, HasSubstr(R"("whole":"00000")"));
+  EXPECT_THAT(seen, HasSubstr(R"("pressed":"false")"));
+  if (!HasFailure()) std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace loopwright::report

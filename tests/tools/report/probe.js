@@ -1,0 +1,40 @@
+// Added to a page by browser_test.cpp: uses the scopes as a reader would and leaves what it saw in the title.
+addEventListener("load", async () => {
+  const settled = () => new Promise((done) => setTimeout(done, 50));
+  const figures = [...document.querySelectorAll("figure.plot")];
+  const mouse = (target, type, x, y) => {
+    const box = target.getBoundingClientRect();
+    target.dispatchEvent(new MouseEvent(type, { bubbles: true, button: 0, movementX: 1, clientX: box.left + x * box.width, clientY: box.top + y * box.height }));
+  };
+  const overlay = (k) => figures[k].querySelector(".u-over");
+  const zoomed = () => figures.map((figure) => +!figure.querySelector(".reset").hidden).join("");
+  const readings = (k) => [...figures[k].querySelectorAll("output")].map((output) => output.textContent).join("|");
+  const seen = { errors, canvases: document.querySelectorAll("canvas").length };
+  const drawn = (canvas) => canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data.some((byte) => byte > 0);
+  seen.drawn = [...document.querySelectorAll("canvas")].filter(drawn).length;
+
+  mouse(overlay(0), "mouseenter", 0.5, 0.5);
+  mouse(overlay(0), "mousemove", 0.5, 0.5);
+  await settled();
+  seen.read = [readings(0), readings(2)];
+
+  mouse(overlay(0), "mousedown", 0.25, 0.5);
+  mouse(overlay(0), "mousemove", 0.5, 0.5);
+  mouse(overlay(0), "mouseup", 0.5, 0.5);
+  await settled();
+  seen.zoomed = zoomed();
+  mouse(overlay(1), "mouseenter", 0, 0.5);
+  mouse(overlay(1), "mousemove", 0.002, 0.5);
+  await settled();
+  seen.left = readings(1).split("|").at(-1);
+
+  overlay(2).dispatchEvent(new MouseEvent("dblclick", { bubbles: true }));
+  await settled();
+  seen.whole = zoomed();
+
+  const button = figures[0].querySelector("button");
+  button.click();
+  await settled();
+  seen.pressed = button.getAttribute("aria-pressed");
+  document.title = JSON.stringify(seen);
+});
