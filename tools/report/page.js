@@ -193,6 +193,32 @@
     return best;
   }
 
+  /** The value that a held signal has at the cursor: its last point before. */
+  function lastPoint(u, index, column) {
+    const x = u.data[0], y = u.data[column], here = u.posToVal(u.cursor.left, "x");
+    let i = x[index] > here ? index - 1 : index;
+    while (i >= 0 && y[i] === undefined) --i;
+    return i >= 0 ? i : null;
+  }
+
+  /** The point of a curve nearest to the cursor along x; rows of other curves are passed over. */
+  function closestPoint(u, index, column) {
+    const x = u.data[0], y = u.data[column];
+    let before = index, after = index;
+    while (before >= 0 && y[before] === undefined) --before;
+    while (after < x.length && y[after] === undefined) ++after;
+    if (before < 0) return after < x.length ? after : null;
+    return after < x.length && x[after] - x[index] < x[index] - x[before] ? after : before;
+  }
+
+  function pointAtCursor(plot) {
+    return (u, column, index) => {
+      if (column === 0) return index;
+      if (plot.cloud) return nearestPoint(u, index, column);
+      return plot.series[column - 1].shape === "steps" ? lastPoint(u, index, column) : closestPoint(u, index, column);
+    };
+  }
+
   function pan(u, start) {
     const { min, max } = u.scales.x;
     const log = u.scales.x.distr === 3;
@@ -224,54 +250,75 @@
       if (other !== u && other.status === 1 && (other.scales.x.min !== min || other.scales.x.max !== max)) other.setScale("x", { min, max });
   }
 
-  // ---------- legend ----------
+  // ---------- legend and read-out ----------
+
+  function element(tag, className, ...children) {
+    const made = document.createElement(tag);
+    made.className = className;
+    made.append(...children);
+    return made;
+  }
+
+  function mark(series, k) {
+    const made = element("i", series.shape);
+    made.style.color = `var(--series-${k % SERIES_COLOURS})`;
+    return made;
+  }
 
   function buildLegend(plot) {
-    const element = document.createElement("div");
-    element.className = "legend";
-    plot.entries = plot.series.map((series, k) => {
-      const button = document.createElement("button"), mark = document.createElement("i"), value = document.createElement("output");
+    plot.buttons = plot.series.map((series, k) => {
+      const button = element("button", "", mark(series, k), series.name);
       button.type = "button";
       button.title = "Show or hide; with Alt: show only this one";
       button.setAttribute("aria-pressed", "true");
-      mark.className = series.shape;
-      mark.style.color = `var(--series-${k % SERIES_COLOURS})`;
-      button.append(mark, series.name, value);
       button.onclick = (event) => toggle(plot, k, event.altKey);
-      element.append(button);
-      return { button, value };
+      return button;
     });
-    plot.time = element.appendChild(document.createElement("output"));
-    plot.time.className = "time";
-    plot.reset = element.appendChild(document.createElement("button"));
-    plot.reset.className = "reset";
+    plot.reset = element("button", "reset", "Whole range");
     plot.reset.type = "button";
-    plot.reset.textContent = "Whole range";
     plot.reset.hidden = true;
     plot.reset.onclick = () => showAll(plot.chart);
-    return element;
+    return element("div", "legend", ...plot.buttons, plot.reset);
+  }
+
+  /** The box beside the cursor: x, then a row for each curve. */
+  function buildReadOut(plot) {
+    plot.abscissa = element("output", "abscissa");
+    plot.rows = plot.series.map((series, k) => {
+      const value = element("output", "");
+      return { row: element("div", "row", mark(series, k), element("span", "", series.name), value), value };
+    });
+    plot.readOut = element("div", "read-out", plot.abscissa, ...plot.rows.map(({ row }) => row));
+    plot.readOut.hidden = true;
+    return plot.readOut;
   }
 
   function toggle(plot, k, alone) {
-    plot.entries.forEach((entry, other) => {
+    plot.buttons.forEach((button, other) => {
       const shown = plot.chart.series[other + 1].show;
       const show = alone ? other === k : other === k ? !shown : shown;
       if (show !== shown) plot.chart.setSeries(other + 1, { show });
-      entry.button.setAttribute("aria-pressed", String(show));
+      button.setAttribute("aria-pressed", String(show));
     });
   }
 
   function readCursor(plot, u) {
     const { left, idx, idxs } = u.cursor;
     const inside = left >= 0 && idx != null;
-    plot.time.textContent = inside && !plot.cloud ? `at ${readOut(u.data[0][idx], plot.x.unit)}` : "";
-    plot.entries.forEach((entry, k) => {
-      const i = inside && idxs ? idxs[k + 1] : null;
+    let any = false;
+    plot.abscissa.textContent = inside && !plot.cloud ? `${plot.x.label} ${readOut(u.data[0][idx], plot.x.unit)}`.trim() : "";
+    plot.rows.forEach(({ row, value }, k) => {
+      const i = inside ? idxs[k + 1] : null;
       const y = i == null || !u.series[k + 1].show ? null : u.data[k + 1][i];
-      if (y == null) entry.value.textContent = "";
-      else if (plot.cloud) entry.value.textContent = `${readOut(u.data[0][i], plot.x.unit)}, ${readOut(y, plot.y.unit)}`;
-      else entry.value.textContent = readOut(y, plot.y.unit);
+      row.hidden = y == null;
+      if (y == null) return;
+      any = true;
+      value.textContent = (plot.cloud ? readOut(u.data[0][i], plot.x.unit) + ", " : "") + readOut(y, plot.y.unit);
     });
+    plot.readOut.hidden = !any;
+    const width = u.over.clientWidth, rightHalf = left > width / 2;
+    plot.readOut.style.left = rightHalf ? "auto" : `${left + 14}px`;
+    plot.readOut.style.right = rightHalf ? `${width - left + 14}px` : "auto";
   }
 
   /** The whole of x; y follows by itself. */
@@ -296,7 +343,7 @@
         return {
           label: series.name, stroke: colour, width: points ? 0 : several ? 1.4 : 1.6,
           fill: points ? () => colour() + (series.y.length > 400 ? "a8" : "e0") : undefined,
-          paths: drawer(series), points: { show: !points && series.y.length < 2, size: 6 },
+          paths: drawer(series), pxAlign: 0, points: { show: !points && series.y.length < 2, size: 6 },
         };
       })],
       cursor: {
@@ -312,10 +359,10 @@
           },
           dblclick: (u) => () => showAll(u),
         },
-        ...(plot.cloud ? { dataIdx: (u, k, index) => k === 0 ? index : nearestPoint(u, index, k) } : {}),
+        dataIdx: pointAtCursor(plot),
       },
       hooks: {
-        setCursor: [(u) => readCursor(plot, u)],
+        setCursor: [(u) => { if (plot.readOut) readCursor(plot, u); }],
         setScale: [(u, key) => {
           if (key !== "x") return;
           if (plot.group) followX(u, plot.group);
@@ -350,6 +397,7 @@
     }
     scope.append(buildLegend(plot));
     const chart = plot.chart = new uPlot(options(plot, scope.clientWidth), plot.table, scope);
+    chart.over.append(buildReadOut(plot));
     if (plot.group) linked.set(plot.group, [...(linked.get(plot.group) || []), chart]);
     chart.over.addEventListener("wheel", (event) => zoomByWheel(chart, event), { passive: false });
     charts.push({ chart, scope });

@@ -12,7 +12,7 @@
 namespace loopwright::report {
 namespace {
 
-/// With 20 bytes a point, a page stays below 5 MB.
+/// At about 20 bytes a point, a page stays below 5 MB.
 constexpr std::size_t points_per_page = 200'000;
 
 /// Writes one page from top to bottom; figures and tables are numbered through.

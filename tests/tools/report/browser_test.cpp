@@ -47,9 +47,9 @@ TEST(ReportPage, ScopesZoomReadOutAndFollowEachOtherInABrowser) {
   EXPECT_THAT(seen, HasSubstr(R"("errors":[])"));
   EXPECT_THAT(seen, HasSubstr(R"("canvases":5,"drawn":5)"));
   EXPECT_THAT(seen,
-              HasSubstr("\"read\":[\"100\u202Fmm|99.997\u202Fmm|at 1.29"));  // half way, at rest
+              HasSubstr("|100\u202Fmm|99.997\u202Fmm\",\"Time 1.29"));  // half way, at rest
   EXPECT_THAT(seen, HasSubstr(R"("zoomed":"11100")"));                               // the group of three
-  EXPECT_THAT(seen, HasSubstr("\"left\":\"at 65"));  // a quarter of 2.6 s, shown in ms
+  EXPECT_THAT(seen, HasSubstr("\"left\":\"Time 65"));  // a quarter of 2.6 s, shown in ms
   EXPECT_THAT(seen, HasSubstr(R"("whole":"00000")"));
   EXPECT_THAT(seen, HasSubstr(R"("pressed":"false")"));
   if (!HasFailure()) std::filesystem::remove_all(folder);

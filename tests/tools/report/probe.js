@@ -26,7 +26,7 @@ addEventListener("load", async () => {
   mouse(overlay(1), "mouseenter", 0, 0.5);
   mouse(overlay(1), "mousemove", 0.002, 0.5);
   await settled();
-  seen.left = readings(1).split("|").at(-1);
+  seen.left = readings(1).split("|")[0];
 
   overlay(2).dispatchEvent(new MouseEvent("dblclick", { bubbles: true }));
   await settled();
