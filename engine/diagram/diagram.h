@@ -1,8 +1,9 @@
-/// A diagram as its file says it, after parameters, variants, overrides and expressions are resolved; still nested.
+/// A diagram as its file says it, after parameters, variants, overrides and expressions are resolved; still
+/// nested.
 ///
-/// The file (docs/diagram_format.md) is JSON. `load_diagram` reads it and every subdiagram that it names, and collects
-/// all problems. What needs knowledge of particular blocks is left to the plan: whether a type exists, whether its
-/// settings fit, whether a wire's source exists and has the right unit.
+/// The file (docs/diagram_format.md) is JSON. `load_diagram` reads it and every subdiagram that it names, and
+/// collects all problems. What needs knowledge of particular blocks is left to the plan: whether a type
+/// exists, whether its settings fit, whether a wire's source exists and has the right unit.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -21,7 +22,8 @@ namespace loopwright {
 
 struct Diagram;
 
-/// One end of a wire as the reader names it: "feedback.command", "gain.y[2]", or the name of an input of the diagram.
+/// One end of a wire as the reader names it: "feedback.command", "gain.y[2]", or the name of an input of the
+/// diagram.
 struct Wire {
   std::string source;
   Place place;
@@ -74,8 +76,7 @@ struct Parameter {
 };
 
 /// One key of "solver", with its place for messages.
-template <class T>
-struct Setting {
+template <class T> struct Setting {
   T value{};
   bool is_given = false;
   Place place{};
@@ -83,17 +84,17 @@ struct Setting {
 };
 
 struct SolverSettings {
-  Setting<std::string> method{"rk4"};       ///< euler, heun, rk4, dopri5, cvode-bdf or cvode-adams
-  Setting<double> start{0.0};               ///< s
-  Setting<double> stop{0.0};                ///< s; not given: the caller must say when to stop
-  Setting<double> step{0.0};                ///< s; of a fixed-step method; not given: the plan decides
+  Setting<std::string> method{"rk4"};  ///< euler, heun, rk4, dopri5, cvode-bdf or cvode-adams
+  Setting<double> start{0.0};          ///< s
+  Setting<double> stop{0.0};           ///< s; not given: the caller must say when to stop
+  Setting<double> step{0.0};           ///< s; of a fixed-step method; not given: the plan decides
   Setting<double> maximum_step{std::numeric_limits<double>::infinity()};  ///< s; of a variable-step method
   Setting<double> relative_tolerance{1e-6};
   Setting<double> absolute_tolerance{1e-9};
-  Setting<double> record_step{0.0};         ///< s between rows of the recording; not given: the plan decides
+  Setting<double> record_step{0.0};  ///< s between rows of the recording; not given: the plan decides
   Setting<std::string> algebraic_loops{"error"};  ///< or "solve"
-  Setting<uint64_t> seed{1};                ///< of every random source
-  Place place;                              ///< of the object, or of the diagram where it has none
+  Setting<uint64_t> seed{1};                      ///< of every random source
+  Place place;                                    ///< of the object, or of the diagram where it has none
   std::string pointer;
 };
 
@@ -101,12 +102,14 @@ struct Diagram {
   std::string title, description;
   std::string path;  ///< of the file, as it was opened
   std::vector<Parameter> parameters;
-  SolverSettings solver;  ///< counts for the outermost diagram; that of a subdiagram serves when it is run alone
+  SolverSettings
+      solver;  ///< counts for the outermost diagram; that of a subdiagram serves when it is run alone
   std::vector<BlockEntry> blocks;
   std::vector<DiagramInput> inputs;
   std::vector<DiagramOutput> outputs;
-  std::vector<Wire> log;           ///< also ports of nested blocks, "stage.mass.velocity", and patterns, "stage.*"
-  std::vector<std::string> files;  ///< outermost diagram: every diagram file that was read, in order of reading
+  std::vector<Wire> log;  ///< also ports of nested blocks, "stage.mass.velocity", and patterns, "stage.*"
+  std::vector<std::string>
+      files;  ///< outermost diagram: every diagram file that was read, in order of reading
 };
 
 /// Replaces what feeds an input port by the output "value" of a new block of type RecordedColumn at the top.
@@ -118,16 +121,19 @@ struct Drive {
 };
 
 struct LoadOptions {
-  /// `--set path=value`: a parameter of the diagram ("observer_cutoff"), of a subdiagram ("stage.payload"), a setting
-  /// of a block ("cogging.harmonics.0.amplitude"), or a key of the solver ("solver.stop"). The value is JSON, an
-  /// expression ("=2*pi"), a number with a unit ("25 mm"), or else plain text.
+  /// `--set path=value`: a parameter of the diagram ("observer_cutoff"), of a subdiagram ("stage.payload"), a
+  /// setting of a block ("cogging.harmonics.0.amplitude"), or a key of the solver ("solver.stop"). The value
+  /// is JSON, an expression ("=2*pi"), a number with a unit ("25 mm"), or else plain text.
   std::vector<std::pair<std::string, std::string>> set;
-  std::map<std::string, std::string> variants;  ///< `--variant stage=quanser`: block path → name of the variant
+  std::map<std::string, std::string>
+      variants;  ///< `--variant stage=quanser`: block path → name of the variant
   std::vector<Drive> drives;
 };
 
-/// Reads a diagram and its subdiagrams. With errors the result is what could be read, or null when nothing could.
-std::shared_ptr<const Diagram> load_diagram(const std::string& path, const LoadOptions& options, Problems& problems);
+/// Reads a diagram and its subdiagrams. With errors the result is what could be read, or null when nothing
+/// could.
+std::shared_ptr<const Diagram> load_diagram(const std::string& path, const LoadOptions& options,
+                                            Problems& problems);
 
 /// A path that stands in a file, relative to the folder of that file.
 std::string resolve_relative(const Place& place, std::string_view path);

@@ -6,11 +6,14 @@
 namespace loopwright {
 namespace {
 
-bool is_expression(const Value& value) { return value.kind == Value::Kind::text && value.text.starts_with('='); }
+bool is_expression(const Value& value) {
+  return value.kind == Value::Kind::text && value.text.starts_with('=');
+}
 
 /// {"value": 25, "unit": "mm"}
 bool is_number_with_unit(const Value& value) {
-  return value.kind == Value::Kind::object && value.members.size() == 2 && value.find("value") && value.find("unit");
+  return value.kind == Value::Kind::object && value.members.size() == 2 && value.find("value") &&
+         value.find("unit");
 }
 
 Value broken(const Value& at) {
@@ -25,19 +28,26 @@ Unit in_base_units(const Unit& unit) { return {1.0, unit.exponents}; }
 
 std::string_view kind_name(Value::Kind kind) {
   switch (kind) {
-    case Value::Kind::null: return "null";
-    case Value::Kind::boolean: return "true or false";
-    case Value::Kind::number: return "a number";
-    case Value::Kind::text: return "a text";
-    case Value::Kind::list: return "a list";
-    case Value::Kind::object: return "an object";
+    case Value::Kind::null:
+      return "null";
+    case Value::Kind::boolean:
+      return "true or false";
+    case Value::Kind::number:
+      return "a number";
+    case Value::Kind::text:
+      return "a text";
+    case Value::Kind::list:
+      return "a list";
+    case Value::Kind::object:
+      return "an object";
   }
   return {};
 }
 
 }  // namespace
 
-// ---- Declaration -----------------------------------------------------------------------------------------------
+// ---- Declaration
+// -----------------------------------------------------------------------------------------------
 
 void ParameterScope::declare(const Value& parameters) {
   if (!reader_.expect(parameters, Value::Kind::object, "\"parameters\"", "an object of named values")) return;
@@ -48,10 +58,12 @@ void ParameterScope::declare(const Value& parameters) {
 void ParameterScope::declare_one(const Value::Member& member) {
   if (!reader_.check_name(member, "a parameter")) return;
   if (is_constant_name(member.name)) {
-    reader_.error(member, fmt::format("\"{}\" cannot be the name of a parameter: it is a constant", member.name));
+    reader_.error(member,
+                  fmt::format("\"{}\" cannot be the name of a parameter: it is a constant", member.name));
     return;
   }
-  if (!index_.try_emplace(member.name, entries_.size()).second) return;  // a duplicate, reported by parse_json
+  if (!index_.try_emplace(member.name, entries_.size()).second)
+    return;  // a duplicate, reported by parse_json
   Entry& entry = entries_.emplace_back();
   entry.parameter.name = member.name;
   entry.parameter.place = member.place;
@@ -70,8 +82,10 @@ void ParameterScope::declare_one(const Value::Member& member) {
     entry.parameter.unit = reader_.unit(unit->value);
     if (!entry.parameter.unit) return;
   }
-  if (const Value::Member* value = member.value.find("value")) entry.written = value->value;
-  else reader_.error(member, fmt::format("the parameter \"{}\" has no \"value\"", member.name));
+  if (const Value::Member* value = member.value.find("value"))
+    entry.written = value->value;
+  else
+    reader_.error(member, fmt::format("the parameter \"{}\" has no \"value\"", member.name));
 }
 
 void ParameterScope::override_with(Override replacement) {
@@ -79,8 +93,9 @@ void ParameterScope::override_with(Override replacement) {
     entries_[found->second].replacement = std::move(replacement);
     return;
   }
-  Problem& problem = reader_.problems.error(replacement.place, replacement.pointer, reader_.block,
-                                            fmt::format("the diagram has no parameter \"{}\"", replacement.name));
+  Problem& problem =
+      reader_.problems.error(replacement.place, replacement.pointer, reader_.block,
+                             fmt::format("the diagram has no parameter \"{}\"", replacement.name));
   known_.explain(problem, replacement.name);
 }
 
@@ -95,7 +110,8 @@ std::vector<Parameter> ParameterScope::take_parameters() {
   return parameters;
 }
 
-// ---- Resolution ------------------------------------------------------------------------------------------------
+// ---- Resolution
+// ------------------------------------------------------------------------------------------------
 
 void ParameterScope::resolve() {
   for (size_t i = 0; i < entries_.size(); ++i)
@@ -136,7 +152,8 @@ void ParameterScope::resolve_from(size_t first) {
 void ParameterScope::collect_needs(const Value& value, std::vector<size_t>& needs) const {
   if (is_expression(value)) {
     for (const NameUse& use : names_in(std::string_view(value.text).substr(1)))
-      if (const auto found = index_.find(std::string(use.name)); found != index_.end() && !use.is_function) needs.push_back(found->second);
+      if (const auto found = index_.find(std::string(use.name)); found != index_.end() && !use.is_function)
+        needs.push_back(found->second);
   }
   for (const Value& item : value.items) collect_needs(item, needs);
   for (const Value::Member& member : value.members) collect_needs(member.value, needs);
@@ -154,7 +171,8 @@ void ParameterScope::report_ring(const std::vector<size_t>& stack, size_t again)
     }
     ring += entries_[*member].parameter.name + " → ";
   }
-  Problem& problem = reader_.problems.error(first.place, first.pointer, reader_.block, "parameters depend on each other in a ring");
+  Problem& problem = reader_.problems.error(first.place, first.pointer, reader_.block,
+                                            "parameters depend on each other in a ring");
   problem.found = ring + first.name;
 }
 
@@ -163,18 +181,22 @@ void ParameterScope::work_out(Entry& entry) {
   Parameter& parameter = entry.parameter;
   parameter.value = evaluate(entry.written, reader_.block);
   if (!parameter.value.is_broken && fits(parameter.value, entry)) {
-    if (!parameter.unit && is_expression(entry.written)) parameter.unit = parameter.value.unit;
-    else convert(parameter.value, parameter.unit, parameter.name);
+    if (!parameter.unit && is_expression(entry.written))
+      parameter.unit = parameter.value.unit;
+    else
+      convert(parameter.value, parameter.unit, parameter.name);
   }
   if (entry.replacement) {
     Value replacement = evaluate(entry.replacement->value, reader_.block);
     const Value::Kind wanted = parameter.value.kind;
     const bool is_known = !parameter.value.is_broken && !replacement.is_broken;
-    if (is_known && reader_.expect(replacement, wanted, fmt::format("the parameter \"{}\"", parameter.name), kind_name(wanted)))
+    if (is_known && reader_.expect(replacement, wanted, fmt::format("the parameter \"{}\"", parameter.name),
+                                   kind_name(wanted)))
       convert(replacement, parameter.unit, parameter.name);
     parameter.value = std::move(replacement);
   }
-  if (parameter.value.kind == Value::Kind::number) entry.quantity = Quantity{parameter.value.number, parameter.value.unit};
+  if (parameter.value.kind == Value::Kind::number)
+    entry.quantity = Quantity{parameter.value.number, parameter.value.unit};
 }
 
 /// Numbers, flags, texts, and lists of them; an object is none, as nothing could refer to a part of it.
@@ -182,7 +204,8 @@ bool ParameterScope::fits(const Value& value, const Entry& entry) {
   using enum Value::Kind;
   if (value.is_broken) return false;
   if (value.kind == null || value.kind == object) {
-    Problem& problem = reader_.error(value, fmt::format("the parameter \"{}\" is of the wrong kind", entry.parameter.name));
+    Problem& problem =
+        reader_.error(value, fmt::format("the parameter \"{}\" is of the wrong kind", entry.parameter.name));
     problem.expected = "a number, a text, true, false, or a list of them";
     problem.found = shown(value);
     return false;
@@ -208,7 +231,8 @@ void ParameterScope::convert(Value& value, const std::optional<Unit>& unit, cons
   value.unit = in_base_units(*unit);
 }
 
-// ---- Evaluation ------------------------------------------------------------------------------------------------
+// ---- Evaluation
+// ------------------------------------------------------------------------------------------------
 
 Value ParameterScope::evaluate(const Value& value, const std::string& block) {
   if (is_expression(value)) return evaluate_text(value, block);
@@ -236,11 +260,13 @@ Value ParameterScope::evaluate_text(const Value& text, const std::string& block)
     const Entry* entry = find(use, place, text.pointer, block);
     if (!entry || entry->parameter.value.is_broken) return nullptr;
     if (entry->quantity) return &*entry->quantity;
-    Problem& problem = reader_.problems.error(place, text.pointer, block, fmt::format("the parameter \"{}\" is not a number", use.name));
+    Problem& problem = reader_.problems.error(place, text.pointer, block,
+                                              fmt::format("the parameter \"{}\" is not a number", use.name));
     problem.found = shown(entry->parameter.value);
     return nullptr;
   };
-  const auto quantity = loopwright::evaluate(expression, {text.place, text.pointer, block, lookup}, reader_.problems);
+  const auto quantity =
+      loopwright::evaluate(expression, {text.place, text.pointer, block, lookup}, reader_.problems);
   if (!quantity) return broken(text);
   Value value = text;  // its text stays: the expression
   value.kind = Value::Kind::number;
@@ -267,11 +293,15 @@ Value ParameterScope::number_with_unit(const Value& object, const std::string& b
   return number;
 }
 
-ParameterScope::Entry* ParameterScope::find(const NameUse& use, const Place& place, const std::string& pointer, const std::string& block) {
-  if (const auto found = index_.find(std::string(use.name)); found != index_.end()) return &entries_[found->second];
-  Problem& problem = reader_.problems.error(place, pointer, block, fmt::format("there is no parameter \"{}\"", use.name));
+ParameterScope::Entry* ParameterScope::find(const NameUse& use, const Place& place,
+                                            const std::string& pointer, const std::string& block) {
+  if (const auto found = index_.find(std::string(use.name)); found != index_.end())
+    return &entries_[found->second];
+  Problem& problem =
+      reader_.problems.error(place, pointer, block, fmt::format("there is no parameter \"{}\"", use.name));
   known_.explain(problem, use.name);
-  if (problem.hint.empty() && problem.expected.empty()) problem.hint = "an expression uses the \"parameters\" of its own diagram";
+  if (problem.hint.empty() && problem.expected.empty())
+    problem.hint = "an expression uses the \"parameters\" of its own diagram";
   return nullptr;
 }
 

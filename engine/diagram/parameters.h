@@ -32,7 +32,8 @@ class ParameterScope {
   /// Works out every parameter. Before this, `evaluate` knows no names.
   void resolve();
 
-  /// The value with every expression in it replaced by its result. {"value": 25, "unit": "mm"} is the number 0.025.
+  /// The value with every expression in it replaced by its result. {"value": 25, "unit": "mm"} is the number
+  /// 0.025.
   Value evaluate(const Value& value, const std::string& block);
   std::vector<Parameter> take_parameters();
   const std::vector<std::string>& names() const { return names_; }
@@ -41,12 +42,12 @@ class ParameterScope {
   enum class Progress { untouched, in_work, done };
   struct Entry {
     Parameter parameter;
-    Value written;                       // without its unit
+    Value written;  // without its unit
     std::optional<Override> replacement;
     Progress progress = Progress::untouched;
-    std::vector<size_t> needs;           // other parameters, in work
+    std::vector<size_t> needs;  // other parameters, in work
     size_t next_need = 0;
-    std::optional<Quantity> quantity;    // of a number, for expressions
+    std::optional<Quantity> quantity;  // of a number, for expressions
   };
 
   void declare_one(const Value::Member& member);

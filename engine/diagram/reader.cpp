@@ -8,12 +8,18 @@ namespace loopwright {
 std::string shown(const Value& value) {
   constexpr size_t longest = 60;
   switch (value.kind) {
-    case Value::Kind::null: return "null";
-    case Value::Kind::boolean: return value.boolean ? "true" : "false";
-    case Value::Kind::number: return fmt::format("the number {}", value.number);
-    case Value::Kind::list: return value.items.empty() ? "an empty list" : fmt::format("a list of {}", value.items.size());
-    case Value::Kind::object: return "an object";
-    case Value::Kind::text: break;
+    case Value::Kind::null:
+      return "null";
+    case Value::Kind::boolean:
+      return value.boolean ? "true" : "false";
+    case Value::Kind::number:
+      return fmt::format("the number {}", value.number);
+    case Value::Kind::list:
+      return value.items.empty() ? "an empty list" : fmt::format("a list of {}", value.items.size());
+    case Value::Kind::object:
+      return "an object";
+    case Value::Kind::text:
+      break;
   }
   if (value.text.size() <= longest) return fmt::format("the text \"{}\"", value.text);
   size_t end = longest;
@@ -24,7 +30,8 @@ std::string shown(const Value& value) {
 bool is_name(std::string_view text) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
   const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
-  return !text.empty() && is_letter(text[0]) && std::ranges::all_of(text, [&](char c) { return is_letter(c) || is_digit(c); });
+  return !text.empty() && is_letter(text[0]) &&
+         std::ranges::all_of(text, [&](char c) { return is_letter(c) || is_digit(c); });
 }
 
 std::string joined(std::string_view path, std::string_view name) {
@@ -35,8 +42,10 @@ void KnownNames::explain(Problem& problem, std::string_view wrong) {
   constexpr size_t most_listed = 12;
   if (searches_left_-- <= 0) return;
   const std::string near = nearest_name(wrong, names_);
-  if (!near.empty()) problem.hint = fmt::format("did you mean \"{}\"?", near);
-  else if (!names_.empty() && names_.size() <= most_listed) problem.expected = fmt::format("one of {}", fmt::join(names_, ", "));
+  if (!near.empty())
+    problem.hint = fmt::format("did you mean \"{}\"?", near);
+  else if (!names_.empty() && names_.size() <= most_listed)
+    problem.expected = fmt::format("one of {}", fmt::join(names_, ", "));
 }
 
 Problem& Reader::error(const Value& at, std::string message) const {
@@ -47,7 +56,8 @@ Problem& Reader::error(const Value::Member& at, std::string message) const {
   return problems.error(at.place, at.value.pointer, block, std::move(message));
 }
 
-bool Reader::expect(const Value& value, Value::Kind kind, std::string_view what, std::string_view expected) const {
+bool Reader::expect(const Value& value, Value::Kind kind, std::string_view what,
+                    std::string_view expected) const {
   if (value.kind == kind) return true;
   if (value.is_broken) return false;
   Problem& problem = error(value, fmt::format("{} is of the wrong kind", what));
@@ -58,11 +68,13 @@ bool Reader::expect(const Value& value, Value::Kind kind, std::string_view what,
 
 std::string Reader::text(const Value& object, std::string_view key) const {
   const Value::Member* member = object.find(key);
-  if (!member || !expect(member->value, Value::Kind::text, fmt::format("\"{}\"", key), "a text in quotes")) return {};
+  if (!member || !expect(member->value, Value::Kind::text, fmt::format("\"{}\"", key), "a text in quotes"))
+    return {};
   return member->value.text;
 }
 
-void Reader::reject_unknown(const Value& object, std::initializer_list<std::string_view> known, std::string_view owner) const {
+void Reader::reject_unknown(const Value& object, std::initializer_list<std::string_view> known,
+                            std::string_view owner) const {
   for (const Value::Member& member : object.members) {
     if (std::ranges::find(known, member.name) != known.end()) continue;
     Problem& problem = error(member, fmt::format("{} has no key \"{}\"", owner, member.name));

@@ -1,4 +1,5 @@
-/// Reads the members of JSON objects and words what is wrong with them; shared by the parts that load a diagram.
+/// Reads the members of JSON objects and words what is wrong with them; shared by the parts that load a
+/// diagram.
 #pragma once
 #include <initializer_list>
 #include <string>
@@ -44,7 +45,8 @@ struct Reader {
   /// The text of an optional member; empty when it is absent or no text.
   std::string text(const Value& object, std::string_view key) const;
   /// A problem for every member that is not among `known`.
-  void reject_unknown(const Value& object, std::initializer_list<std::string_view> known, std::string_view owner) const;
+  void reject_unknown(const Value& object, std::initializer_list<std::string_view> known,
+                      std::string_view owner) const;
   /// A problem unless the name of the member is_name().
   bool check_name(const Value::Member& member, std::string_view what) const;
   /// The unit that a text names; nothing after a problem.

@@ -63,6 +63,19 @@ void add_rates_to_log(Plan& plan) {
   for (Plan::Logged& logged : plan.log) logged.rate = rate_of_number(plan, logged.number, rate_of_signal);
 }
 
+/// Who computes each number, and in which unit.
+void add_sources(const PortUnits& units, const std::vector<int>& flat_of_block, Plan& plan) {
+  plan.sources.assign(size_t(plan.signals + plan.states), {-1, -1});
+  for (size_t b = 0; b < plan.blocks.size(); ++b) {
+    Plan::Block& block = plan.blocks[b];
+    for (size_t o = 0; o < block.outputs.size(); ++o) {
+      const int length = block.type->info.outputs[o].shape == PortInfo::Shape::vector ? block.output_lengths[o] : 1;
+      for (int i = 0; i < length; ++i) plan.sources[size_t(block.outputs[o] + i)] = {int(b), int(o)};
+      block.output_units.push_back(flat_of_block[b] < 0 ? std::nullopt : units[size_t(flat_of_block[b])][o]);
+    }
+  }
+}
+
 void add_ports(const FlatDiagram& flat, const Layout& layout, Plan& plan) {
   for (const FlatName& name : flat.names)
     if (name.wire.is_resolved()) plan.ports.emplace_back(name.name, layout.numbers_of(name.wire));
@@ -130,6 +143,7 @@ std::shared_ptr<const Plan> compile(const Diagram& diagram, Problems& problems) 
   for (size_t f = 0; f < flat.blocks.size(); ++f) flat_of_block.insert(flat_of_block.end(), size_t(flat.blocks[f].width), int(f));
   flat_of_block.resize(plan->blocks.size(), -1);
   find_times(diagram, flat, flat_of_block, *plan, problems);
+  add_sources(units, flat_of_block, *plan);
   add_log(flat, layout, units, *plan, problems);
   add_ports(flat, layout, *plan);
   for (size_t b = 0; b < plan->blocks.size(); ++b) plan->block_of_state.insert(plan->block_of_state.end(), size_t(plan->blocks[b].states), int(b));
@@ -164,15 +178,23 @@ std::vector<Number> Plan::find(std::string_view port) const {
   return {found->second[index]};
 }
 
+std::pair<int, int> Plan::source_of(Number number) const {
+  if (sources.empty()) return {-1, -1};
+  return sources[size_t(number)];
+}
+
+std::optional<Unit> Plan::unit_of(Number number) const {
+  const auto [block, output] = source_of(number);
+  return block < 0 ? std::nullopt : blocks[size_t(block)].output_units[size_t(output)];
+}
+
 std::string Plan::name_of(Number number) const {
-  for (const Block& block : blocks)
-    for (size_t o = 0; o < block.outputs.size(); ++o) {
-      const PortInfo& port = block.type->info.outputs[o];
-      const int length = port.shape == PortInfo::Shape::vector ? block.output_lengths[o] : 1;
-      if (number < block.outputs[o] || number >= block.outputs[o] + length) continue;
-      return length == 1 ? fmt::format("{}.{}", block.path, port.name) : fmt::format("{}.{}[{}]", block.path, port.name, number - block.outputs[o]);
-    }
-  return number >= signals && number < signals + states ? fmt::format("a state of {}", blocks[size_t(block_of_state[size_t(number - signals)])].path) : "a constant";
+  const auto [b, o] = source_of(number);
+  if (b < 0) return "a constant";
+  const Block& block = blocks[size_t(b)];
+  const PortInfo& port = block.type->info.outputs[size_t(o)];
+  if (port.shape != PortInfo::Shape::vector) return fmt::format("{}.{}", block.path, port.name);
+  return fmt::format("{}.{}[{}]", block.path, port.name, number - block.outputs[size_t(o)]);
 }
 
 }  // namespace loopwright

@@ -1,6 +1,7 @@
 /// A diagram made flat: which method of which block runs when, on which numbers. Immutable; shared by runs and threads.
 #pragma once
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,6 +35,7 @@ struct Plan {
     std::vector<std::vector<Number>> inputs;   ///< a port each
     std::vector<Number> outputs;               ///< first number of each port
     std::vector<int> output_lengths;
+    std::vector<std::optional<Unit>> output_units;  ///< nothing: could not be worked out
     int first_state = 0, states = 0;
     int first_crossing = 0;
     int first_buffer = 0;                      ///< in numbers from the start of the buffers
@@ -97,8 +99,13 @@ struct Plan {
 
   /// The numbers of a port, "stage.position" or "gain.y[2]", inputs too; empty if there is none.
   std::vector<Number> find(std::string_view port) const;
+  /// The unit of the port that computes a number; nothing: not known.
+  std::optional<Unit> unit_of(Number number) const;
   /// Who computes a number, as "stage.position".
   std::string name_of(Number number) const;
+  /// Which block and output computes a number; {-1, -1} for a constant.
+  std::pair<int, int> source_of(Number number) const;
+  std::vector<std::pair<int, int>> sources;  ///< block and output of every number
   std::vector<std::pair<std::string, std::vector<Number>>> ports;  ///< every port by path, sorted by name
 };
 

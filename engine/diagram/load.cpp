@@ -1,0 +1,609 @@
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fmt/format.h>
+#include <set>
+#include <unordered_map>
+#include "engine/diagram/diagram.h"
+#include "engine/diagram/drive.h"
+#include "engine/diagram/edit.h"
+#include "engine/diagram/json.h"
+#include "engine/diagram/parameters.h"
+#include "engine/diagram/reader.h"
+#include "engine/diagram/solver_settings.h"
+#include "engine/diagram/wires.h"
+
+namespace loopwright {
+namespace {
+
+constexpr size_t deepest_nesting = 32;   // subdiagrams in subdiagrams
+constexpr size_t most_blocks = 500'000;  // a few small files can name each other into billions
+
+constexpr int current_version = 1;
+/// migrations[i] turns what a file of version i + 1 says into version i + 2.
+using Migration = Value (*)(Value);
+constexpr std::array<Migration, current_version - 1> migrations = {};
+
+/// `--variant stage=quanser`, seen from one diagram in the nest.
+struct VariantChoice {
+  std::vector<std::string> path;
+  size_t depth = 0;
+  std::string variant;
+  Place place;
+};
+
+/// One use of a diagram file: what its surroundings ask of it.
+struct Instance {
+  std::string block;  // path of the subdiagram block; empty at the top
+  std::vector<Override> overrides;
+  std::vector<Edit> edits;
+  std::vector<VariantChoice> variants;
+};
+
+struct DiagramFile {
+  std::shared_ptr<const SourceFile> source;  // null: cannot be read
+  Value root;                                // no object: has errors, which are reported
+};
+
+/// Files that are read once, however many blocks name them.
+class Library {
+ public:
+  explicit Library(Problems& problems) : problems_(problems) {}
+
+  const DiagramFile& open(const std::string& path, const Place& reference) {
+    const auto [entry, is_new] = files_.try_emplace(identity(path));
+    DiagramFile& file = entry->second;
+    if (is_new) {
+      file.source = read_source(path, reference, problems_);
+      if (file.source) {
+        read_.push_back(path);
+        file.root = current(parse_json(file.source, problems_));
+      }
+    } else if (!file.source) {
+      read_source(path, reference, problems_);  // tell about every reference to what is not there
+    }
+    return file;
+  }
+
+  /// The same for every spelling of a path.
+  static std::string identity(const std::string& path) {
+    std::error_code error;
+    const auto canonical = std::filesystem::weakly_canonical(path, error);
+    return error ? path : canonical.string();
+  }
+
+  std::vector<std::string> take_names() { return std::move(read_); }
+
+ private:
+  /// The root in the current version of the format; null after a problem.
+  Value current(Value root) {
+    const Reader reader{problems_, {}};
+    if (root.kind == Value::Kind::null && problems_.has_errors()) return {};
+    if (!reader.expect(root, Value::Kind::object, "the diagram", "an object: { \"loopwright\": 1, … }"))
+      return {};
+    const Value::Member* version = root.find("loopwright");
+    if (!version) {
+      Problem& problem = reader.error(root, "the key \"loopwright\" is missing: the version of the format");
+      problem.expected = fmt::format("\"loopwright\": {}", current_version);
+      return root;
+    }
+    const Value& number = version->value;
+    if (!reader.expect(number, Value::Kind::number, "\"loopwright\"",
+                       fmt::format("the number {}", current_version)))
+      return root;
+    const bool is_known = number.whole && number.number >= 1 && number.number <= current_version;
+    if (!is_known) {
+      Problem& problem = reader.error(number, "the version of the format is not known");
+      problem.expected = fmt::format("\"loopwright\": {}", current_version);
+      problem.found = shown(number);
+      if (number.number > current_version) problem.hint = "a newer Loopwright wrote this file";
+      return {};
+    }
+    for (auto v = static_cast<size_t>(number.number); v < current_version; ++v)
+      root = migrations[v - 1](std::move(root));
+    return root;
+  }
+
+  Problems& problems_;
+  std::unordered_map<std::string, DiagramFile> files_;
+  std::vector<std::string> read_;
+};
+
+class DiagramReader;
+
+/// What all diagrams of one load share.
+struct Nest {
+  Problems& problems;
+  Library library{problems};
+  std::vector<std::string> opened{};      // the files being read, outermost first
+  std::vector<std::string> identities{};  // of the same
+  size_t blocks = 0;
+
+  std::shared_ptr<Diagram> load(const std::string& path, const Place& reference, const std::string& pointer,
+                                Instance instance);
+};
+
+/// Reads one use of a diagram file.
+class DiagramReader {
+ public:
+  DiagramReader(Nest& nest, Instance instance, std::string path)
+      : nest_(nest),
+        instance_(std::move(instance)),
+        path_(std::move(path)),
+        reader_{nest.problems, instance_.block},
+        scope_(instance_.block, nest.problems) {}
+
+  std::shared_ptr<Diagram> read(const Value& root) {
+    diagram_->path = path_;
+    diagram_->title = reader_.text(root, "title");
+    diagram_->description = reader_.text(root, "description");
+    reader_.reject_unknown(
+        root,
+        {"loopwright", "title", "description", "parameters", "solver", "blocks", "inputs", "outputs", "log"},
+        "a diagram");
+    read_parameters(root);
+    read_solver(root);
+    read_blocks(root);
+    read_inputs_and_outputs(root);
+    if (const auto* log = root.find("log")) diagram_->log = read_log(log->value, reader_);
+    report_unused_options();
+    diagram_->parameters = scope_.take_parameters();
+    return diagram_;
+  }
+
+ private:
+  // ---- Parameters and solver ----
+
+  void read_parameters(const Value& root) {
+    if (const auto* parameters = root.find("parameters")) scope_.declare(parameters->value);
+    for (Override& replacement : instance_.overrides) scope_.override_with(std::move(replacement));
+    const auto* blocks = root.find("blocks");
+    std::erase_if(instance_.edits, [&](const Edit& edit) {
+      const bool is_block = blocks && blocks->value.find(edit.head());
+      if (!scope_.declares(edit.head()) || (is_block && !edit.is_last())) return false;
+      scope_.override_with(
+          {edit.head(), edit.value.place, "", edited(scope_.written_value(edit.head()), edit.inside())});
+      return true;
+    });
+    scope_.resolve();
+  }
+
+  Value edited(Value value, const Edit& edit) const {
+    apply_edit(edit, value, reader_);
+    return value;
+  }
+
+  bool is_top() const { return instance_.block.empty(); }
+
+  void read_solver(const Value& root) {
+    const auto* written = root.find("solver");
+    Value solver = written ? written->value : Value{};
+    if (!written) {
+      solver.kind = Value::Kind::object;
+      solver.place = root.place;
+      solver.pointer = root.pointer;
+    }
+    if (is_top()) {
+      std::erase_if(instance_.edits, [&](const Edit& edit) {
+        if (edit.head() != "solver" || edit.is_last()) return false;
+        apply_edit(edit.inside(), solver, reader_);
+        return true;
+      });
+    }
+    diagram_->solver = read_solver_settings(solver, scope_, reader_);
+  }
+
+  // ---- Blocks ----
+
+  void read_blocks(const Value& root) {
+    const auto* blocks = root.find("blocks");
+    if (!blocks || !reader_.expect(blocks->value, Value::Kind::object, "\"blocks\"",
+                                   "an object: {\"name\": {\"type\": …}}"))
+      return;
+    diagram_->blocks.reserve(blocks->value.members.size());
+    for (const Value::Member& member : blocks->value.members) {
+      if (++nest_.blocks > most_blocks) {
+        if (nest_.blocks == most_blocks + 1)
+          reader_.error(member, fmt::format("the diagram has more than {} blocks", most_blocks));
+        return;
+      }
+      block_names_.add(member.name);
+      read_block(member);
+    }
+  }
+
+  void read_block(const Value::Member& member) {
+    if (!reader_.check_name(member, "a block")) return;
+    BlockEntry& entry = diagram_->blocks.emplace_back();
+    entry.name = member.name;
+    entry.place = member.place;
+    entry.pointer = member.value.pointer;
+    entry.settings.kind = Value::Kind::object;
+    entry.settings.place = member.value.place;
+    entry.settings.pointer = member.value.pointer;
+
+    const Reader reader{nest_.problems, joined(instance_.block, member.name)};
+    auto edits = take_options(instance_.edits, member.name);
+    auto variants = take_options(instance_.variants, member.name);
+    if (!reader.expect(member.value, Value::Kind::object, "a block", "an object: {\"type\": …, \"in\": {…}}"))
+      return;
+    if (const auto* in = member.value.find("in")) entry.in = read_inputs(in->value, reader);
+
+    const Value* body = &member.value;
+    const bool has_variants = member.value.find("variants") != nullptr;
+    if (has_variants)
+      body = active_variant(member.value, entry, variants, reader);
+    else
+      report_variants_of_plain_block(variants, member, reader);
+    if (!body) return;
+
+    Value copy;
+    const bool is_subdiagram = body->find("diagram") != nullptr;
+    if (!edits.empty() && !is_subdiagram) {
+      copy = *body;
+      for (const Edit& edit : edits) edit_settings(edit, copy, reader);
+      body = &copy;
+    }
+    if (is_subdiagram)
+      read_subdiagram(*body, entry, std::move(edits), std::move(variants), has_variants, reader);
+    else
+      read_ordinary(*body, entry, std::move(variants), has_variants, reader);
+  }
+
+  /// The options whose path leads through a block, as they look from inside it.
+  template <class Option>
+  static std::vector<Option> take_options(std::vector<Option>& options, const std::string& block) {
+    std::vector<Option> taken;
+    std::erase_if(options, [&](const Option& option) {
+      if (option.path[option.depth] != block) return false;
+      taken.push_back(option);
+      ++taken.back().depth;
+      return true;
+    });
+    return taken;
+  }
+
+  void edit_settings(const Edit& edit, Value& body, const Reader& reader) const {
+    constexpr std::array reserved = {"type",     "in",      "diagram",    "parameters",
+                                     "variants", "variant", "description"};
+    const bool names_setting = edit.depth < edit.path.size();
+    if (names_setting && std::ranges::find(reserved, edit.head()) == reserved.end())
+      return apply_edit(edit, body, reader);
+    Problem& problem = reader.error(edit.value, fmt::format("\"{}\" cannot be set", edit.text()));
+    problem.expected = "the path of a parameter, or of a setting of a block";
+    if (names_setting && edit.head() == "variant") problem.hint = "--variant chooses a variant";
+  }
+
+  void read_ordinary(const Value& body, BlockEntry& entry, std::vector<VariantChoice> deeper, bool is_variant,
+                     const Reader& reader) {
+    for (const VariantChoice& choice : deeper) unknown_variant_block(choice, reader);
+    constexpr std::array engine_keys = {"type", "in", "sample_time", "sample_offset", "description"};
+    for (const Value::Member& member : body.members) {
+      if (is_misplaced_key(member, is_variant, reader)) continue;
+      if (std::ranges::find(engine_keys, member.name) != engine_keys.end()) continue;
+      entry.settings.members.push_back(
+          {member.name, member.place, scope_.evaluate(member.value, reader.block)});
+    }
+    entry.settings.place = body.place;
+    entry.settings.pointer = body.pointer;
+    reader.text(body, "description");
+    if (const auto* time = body.find("sample_time"))
+      entry.sample_time = read_time(time->value, "sample_time", scope_, reader);
+    if (const auto* offset = body.find("sample_offset"))
+      entry.sample_offset = read_time(offset->value, "sample_offset", scope_, reader);
+    read_type(body, entry, reader);
+  }
+
+  /// Keys of the engine that are of no use where they stand.
+  bool is_misplaced_key(const Value::Member& member, bool is_variant, const Reader& reader) const {
+    if (member.name == "parameters") {
+      reader.error(member, "only a subdiagram has \"parameters\"").hint =
+          "settings of a block stand directly in its object";
+      return true;
+    }
+    if (member.name == "variants" || member.name == "variant") {
+      reader.error(member, is_variant ? "variants cannot stand inside a variant"
+                                      : "\"variant\" chooses among \"variants\", which are missing");
+      return true;
+    }
+    if (member.name == "in" && is_variant) {
+      reader.error(member, "a variant cannot have its own wires").hint =
+          "\"in\" stands beside \"variants\", for all of them";
+      return true;
+    }
+    return false;
+  }
+
+  void read_type(const Value& body, BlockEntry& entry, const Reader& reader) const {
+    const auto* type = body.find("type");
+    if (!type) {
+      reader.error(body, "the block has neither \"type\" nor \"diagram\"");
+      return;
+    }
+    if (!reader.expect(type->value, Value::Kind::text, "\"type\"", "the name of a block type in quotes"))
+      return;
+    entry.type_place = type->value.place;
+    if (type->value.text.empty()) reader.error(type->value, "the block type is empty");
+    entry.type = type->value.text;
+  }
+
+  void read_subdiagram(const Value& body, BlockEntry& entry, std::vector<Edit> edits,
+                       std::vector<VariantChoice> variants, bool is_variant, const Reader& reader) {
+    for (const Value::Member& member : body.members) {
+      constexpr std::array known = {"diagram", "parameters", "in", "description"};
+      const bool is_known = std::ranges::find(known, member.name) != known.end();
+      if (is_known && !(is_variant && member.name == "in")) continue;
+      if (member.name != "parameters" && is_misplaced_key(member, is_variant, reader)) continue;
+      Problem& problem = reader.error(member, fmt::format("a subdiagram has no key \"{}\"", member.name));
+      KnownNames({known.begin(), known.end()}).explain(problem, member.name);
+      if (member.name == "type") problem.hint = "an entry has either \"type\" or \"diagram\"";
+      if (member.name.starts_with("sample_")) problem.hint = "sample times belong to the blocks inside";
+    }
+    reader.text(body, "description");
+    const Value& path = body.find("diagram")->value;
+    const bool has_path =
+        reader.expect(path, Value::Kind::text, "\"diagram\"", "the path of a diagram file in quotes");
+
+    Instance inner{reader.block, {}, {}, std::move(variants)};
+    if (const auto* parameters = body.find("parameters"))
+      inner.overrides = overrides(parameters->value, reader);
+    for (Edit& edit : edits) {
+      if (edit.depth == edit.path.size()) {
+        edit_settings(edit, entry.settings, reader);
+      } else {
+        if (edit.is_last())
+          edit.value =
+              scope_.evaluate(edit.value, reader.block);  // over the names outside, as an override is
+        inner.edits.push_back(std::move(edit));
+      }
+    }
+    if (!has_path) return;
+    entry.type_place = path.place;
+    const std::string resolved = resolve_relative(path.place, path.text);
+    entry.subdiagram = nest_.load(resolved, path.place, path.pointer, std::move(inner));
+  }
+
+  std::vector<Override> overrides(const Value& parameters, const Reader& reader) {
+    std::vector<Override> list;
+    if (!reader.expect(parameters, Value::Kind::object, "\"parameters\"", "an object of named values"))
+      return list;
+    for (const Value::Member& member : parameters.members)
+      list.push_back(
+          {member.name, member.place, member.value.pointer, scope_.evaluate(member.value, reader.block)});
+    return list;
+  }
+
+  // ---- Variants ----
+
+  /// The body of the variant that the options, the file, or its place as the first one choose; null after a
+  /// problem.
+  const Value* active_variant(const Value& block, BlockEntry& entry, std::vector<VariantChoice>& choices,
+                              const Reader& reader) {
+    reader.reject_unknown(block, {"variants", "variant", "in", "description"}, "a block with variants");
+    reader.text(block, "description");
+    const Value& variants = block.find("variants")->value;
+    if (!reader.expect(variants, Value::Kind::object, "\"variants\"", "an object: {\"name\": {\"type\": …}}"))
+      return nullptr;
+    if (variants.members.empty()) {
+      reader.error(variants, "there is no variant to choose");
+      return nullptr;
+    }
+    for (const Value::Member& variant : variants.members) check_variant(variant, reader);
+
+    entry.variant = variants.members.front().name;
+    Value chosen;
+    chosen.kind = Value::Kind::text;
+    if (const auto* written = block.find("variant");
+        written &&
+        reader.expect(written->value, Value::Kind::text, "\"variant\"", "the name of a variant in quotes"))
+      choose(written->value, variants, entry, reader);
+    std::erase_if(choices, [&](const VariantChoice& choice) {
+      if (choice.depth != choice.path.size()) return false;
+      chosen.text = choice.variant;
+      chosen.place = choice.place;
+      choose(chosen, variants, entry, reader);
+      return true;
+    });
+    const Value& body = variants.find(entry.variant)->value;
+    return body.kind == Value::Kind::object ? &body : nullptr;
+  }
+
+  /// What must hold for variants that are not active, too; their files are not opened.
+  static void check_variant(const Value::Member& variant, const Reader& reader) {
+    reader.check_name(variant, "a variant");
+    if (!reader.expect(variant.value, Value::Kind::object, "a variant",
+                       "an object: {\"type\": …} or {\"diagram\": …}"))
+      return;
+    if (!variant.value.find("type") && !variant.value.find("diagram"))
+      reader.error(variant,
+                   fmt::format("the variant \"{}\" has neither \"type\" nor \"diagram\"", variant.name));
+  }
+
+  static void choose(const Value& chosen, const Value& variants, BlockEntry& entry, const Reader& reader) {
+    if (variants.find(chosen.text)) {
+      entry.variant = chosen.text;
+      return;
+    }
+    KnownNames names;
+    for (const Value::Member& variant : variants.members) names.add(variant.name);
+    names.explain(reader.error(chosen, fmt::format("the block has no variant \"{}\"", chosen.text)),
+                  chosen.text);
+  }
+
+  static void report_variants_of_plain_block(std::vector<VariantChoice>& choices, const Value::Member& block,
+                                             const Reader& reader) {
+    std::erase_if(choices, [&](const VariantChoice& choice) {
+      if (choice.depth != choice.path.size()) return false;
+      reader.problems.error(choice.place, {}, reader.block,
+                            fmt::format("the block \"{}\" has no variants", block.name));
+      return true;
+    });
+  }
+
+  static void unknown_variant_block(const VariantChoice& choice, const Reader& reader) {
+    reader.problems.error(choice.place, {}, reader.block,
+                          fmt::format("the block \"{}\" is not a subdiagram", reader.block));
+  }
+
+  // ---- Inputs and outputs ----
+
+  void read_inputs_and_outputs(const Value& root) {
+    const auto each = [&](std::string_view key, auto read) {
+      const auto* list = root.find(key);
+      if (!list || !reader_.expect(list->value, Value::Kind::object, fmt::format("\"{}\"", key),
+                                   "an object of named ports"))
+        return;
+      for (const Value::Member& member : list->value.members)
+        if (reader_.check_name(member, "a port")) read(member);
+    };
+    each("inputs", [&](const Value::Member& member) { read_input(member); });
+    each("outputs", [&](const Value::Member& member) { read_output(member); });
+  }
+
+  /// "force": "N"  or  "force": {"unit": "N", "description": "…"}
+  void read_input(const Value::Member& member) {
+    DiagramInput input{member.name, {}, {}, member.place, member.value.pointer};
+    if (member.value.kind == Value::Kind::text) {
+      if (reader_.unit(member.value)) input.unit = member.value.text;
+    } else if (reader_.expect(member.value, Value::Kind::object, "an input",
+                              "its unit in quotes, or {\"unit\": …, \"description\": …}")) {
+      reader_.reject_unknown(member.value, {"unit", "description"}, "an input");
+      input.unit = unit_text(member.value);
+      input.description = reader_.text(member.value, "description");
+    }
+    diagram_->inputs.push_back(std::move(input));
+  }
+
+  /// "position": "mass.position"  or  "position": {"source": "mass.position", "unit": "m", "description":
+  /// "…"}
+  void read_output(const Value::Member& member) {
+    DiagramOutput output{member.name, {}, {}, member.place, member.value.pointer, {}};
+    const std::string what = fmt::format("the source of the output \"{}\"", member.name);
+    if (member.value.kind != Value::Kind::object) {
+      output.source = read_wire(member.value, what, reader_);
+    } else {
+      reader_.reject_unknown(member.value, {"source", "unit", "description"}, "an output");
+      output.unit = unit_text(member.value);
+      output.description = reader_.text(member.value, "description");
+      if (const auto* source = member.value.find("source"))
+        output.source = read_wire(source->value, what, reader_);
+      else
+        reader_.error(member, fmt::format("the output \"{}\" has no \"source\"", member.name)).expected =
+            "\"source\": \"block.output\"";
+    }
+    if (!output.source.source.empty()) diagram_->outputs.push_back(std::move(output));
+  }
+
+  std::string unit_text(const Value& object) const {
+    const auto* unit = object.find("unit");
+    return unit && reader_.unit(unit->value) ? unit->value.text : std::string();
+  }
+
+  // ---- Options that nothing used ----
+
+  void report_unused_options() {
+    for (const Edit& edit : instance_.edits) {
+      const bool is_solver = is_top() && edit.head() == "solver";
+      Problem& problem = reader_.error(
+          edit.value, is_solver ? "\"solver\" cannot be set as a whole"
+                                : fmt::format("there is no parameter or block \"{}\"", edit.head()));
+      KnownNames names = block_names_;
+      for (const std::string& name : scope_.names()) names.add(name);
+      if (!is_solver) names.explain(problem, edit.head());
+    }
+    for (const VariantChoice& choice : instance_.variants) {
+      const std::string& name = choice.path[choice.depth];
+      Problem& problem = reader_.problems.error(choice.place, {}, reader_.block,
+                                                fmt::format("there is no block \"{}\"", name));
+      block_names_.explain(problem, name);
+    }
+  }
+
+  Nest& nest_;
+  Instance instance_;
+  std::string path_;
+  Reader reader_;
+  ParameterScope scope_;
+  KnownNames block_names_;
+  std::shared_ptr<Diagram> diagram_ = std::make_shared<Diagram>();
+};
+
+std::shared_ptr<Diagram> Nest::load(const std::string& path, const Place& reference,
+                                    const std::string& pointer, Instance instance) {
+  const auto fail = [&](std::string message) -> Problem& {
+    return problems.error(reference, pointer, instance.block, std::move(message));
+  };
+  if (opened.size() == deepest_nesting) {
+    fail(fmt::format("subdiagrams nest deeper than {} levels", deepest_nesting));
+    return nullptr;
+  }
+  const std::string identity = Library::identity(path);
+  if (const auto first = std::ranges::find(identities, identity); first != identities.end()) {
+    std::string chain;
+    for (auto i = static_cast<size_t>(first - identities.begin()); i < opened.size(); ++i)
+      chain += opened[i] + " → ";
+    fail("a diagram contains itself").found = chain + path;
+    return nullptr;
+  }
+  const DiagramFile& file = library.open(path, reference);
+  if (file.root.kind != Value::Kind::object) return nullptr;
+  opened.push_back(path);
+  identities.push_back(identity);
+  auto diagram = DiagramReader(*this, std::move(instance), path).read(file.root);
+  opened.pop_back();
+  identities.pop_back();
+  return diagram;
+}
+
+std::optional<VariantChoice> read_variant_choice(const std::string& path, const std::string& variant,
+                                                 Problems& problems) {
+  const auto source = std::make_shared<SourceFile>(SourceFile{fmt::format("--variant {}", path), variant});
+  VariantChoice choice{{}, 0, variant, {source, 0}};
+  for (size_t begin = 0; begin <= path.size();) {
+    const size_t dot = std::min(path.find('.', begin), path.size());
+    choice.path.push_back(path.substr(begin, dot - begin));
+    begin = dot + 1;
+    if (is_name(choice.path.back())) continue;
+    problems.error({source, 0}, {}, {}, fmt::format("\"{}\" is no path of a block", path)).expected =
+        "names with dots between them, as in axis.stage=quanser";
+    return {};
+  }
+  return choice;
+}
+
+/// A diagram that is used many times tells the same problem only once.
+void add_without_repetition(const Problems& found, Problems& problems) {
+  std::set<std::tuple<const SourceFile*, uint32_t, std::string_view>> told;
+  for (const Problem& problem : found.list())
+    if (told.insert({problem.place.file.get(), problem.place.offset, problem.message}).second)
+      problems.add(problem);
+}
+
+}  // namespace
+
+std::shared_ptr<const Diagram> load_diagram(const std::string& path, const LoadOptions& options,
+                                            Problems& problems) {
+  Problems found;
+  Instance top;
+  for (const auto& option : options.set)
+    if (auto edit = read_edit(option, found)) top.edits.push_back(std::move(*edit));
+  for (const auto& [block, variant] : options.variants)
+    if (auto choice = read_variant_choice(block, variant, found)) top.variants.push_back(std::move(*choice));
+
+  Nest nest{found};
+  auto diagram = nest.load(path, {}, {}, std::move(top));
+  if (diagram) {
+    apply_drives(*diagram, options.drives, found);
+    diagram->files = nest.library.take_names();
+  }
+  add_without_repetition(found, problems);
+  return diagram;
+}
+
+std::string resolve_relative(const Place& place, std::string_view path) {
+  const std::filesystem::path relative(path);
+  if (!place.file || relative.is_absolute()) return std::string(path);
+  return (std::filesystem::path(place.file->name).parent_path() / relative).lexically_normal().string();
+}
+
+}  // namespace loopwright

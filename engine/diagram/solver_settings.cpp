@@ -1,0 +1,132 @@
+#include "engine/diagram/solver_settings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace loopwright {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+const Unit second = {1.0, {0, 0, 1, 0, 0, 0, 0}};
+
+enum class Range { any, positive, not_negative };
+
+class SettingsReader {
+ public:
+  SettingsReader(const Value& object, ParameterScope& scope, const Reader& reader)
+      : object_(object), scope_(scope), reader_(reader) {}
+
+  void number(std::string_view key, const Unit& unit, Range range, Setting<double>& to) {
+    const Value value = evaluated(key, to);
+    if (!to.is_given || !is_number(value, key, unit)) return;
+    const bool inside =
+        range == Range::any || value.number > 0 || (range == Range::not_negative && value.number == 0);
+    if (!inside) {
+      Problem& problem = reader_.error(value, fmt::format("\"{}\" is out of range", key));
+      problem.expected = range == Range::positive ? "a number above 0" : "a number of at least 0";
+      problem.found = shown(value);
+      return;
+    }
+    to.value = value.number;
+  }
+
+  void whole(std::string_view key, Setting<uint64_t>& to) {
+    const Value value = evaluated(key, to);
+    if (!to.is_given || !is_number(value, key, Unit{})) return;
+    constexpr double largest = 9007199254740992.0;  // 2^53: every whole number up to here is a double
+    if (value.number < 0 || value.number > largest || value.number != std::floor(value.number)) {
+      Problem& problem = reader_.error(value, fmt::format("\"{}\" is out of range", key));
+      problem.expected = "a whole number from 0 to 2^53";
+      problem.found = shown(value);
+      return;
+    }
+    to.value = static_cast<uint64_t>(value.number);
+  }
+
+  void choice(std::string_view key, const std::vector<std::string>& choices, Setting<std::string>& to) {
+    const Value value = evaluated(key, to);
+    const std::string expected = fmt::format("one of {}", fmt::join(choices, ", "));
+    if (!to.is_given || !reader_.expect(value, Value::Kind::text, fmt::format("\"{}\"", key), expected))
+      return;
+    if (std::ranges::find(choices, value.text) != choices.end()) {
+      to.value = value.text;
+      return;
+    }
+    Problem& problem = reader_.error(
+        value,
+        fmt::format("there is no {} \"{}\"", key == "method" ? "solver method" : "choice", value.text));
+    problem.expected = expected;
+    if (const std::string near = nearest_name(value.text, choices); !near.empty())
+      problem.hint = fmt::format("did you mean \"{}\"?", near);
+  }
+
+  bool is_number(const Value& value, std::string_view key, const Unit& unit) {
+    const std::string expected = unit == Unit{} ? "a number" : fmt::format("a number in {}", to_string(unit));
+    if (!reader_.expect(value, Value::Kind::number, fmt::format("\"{}\"", key), expected)) return false;
+    if (!value.unit || value.unit->same_dimension(unit)) return true;
+    Problem& problem = reader_.error(value, fmt::format("the unit does not fit \"{}\"", key));
+    problem.expected = to_string(unit);
+    problem.found = to_string(*value.unit) + (value.text.empty() ? "" : fmt::format(" from {}", value.text));
+    return false;
+  }
+
+ private:
+  template <class T> Value evaluated(std::string_view key, Setting<T>& to) {
+    const Value::Member* member = object_.find(key);
+    if (!member) return {};
+    to.is_given = true;
+    to.place = member->value.place;
+    to.pointer = member->value.pointer;
+    return scope_.evaluate(member->value, reader_.block);
+  }
+
+  const Value& object_;
+  ParameterScope& scope_;
+  const Reader& reader_;
+};
+
+}  // namespace
+
+SolverSettings read_solver_settings(const Value& object, ParameterScope& scope, const Reader& reader) {
+  SolverSettings solver;
+  solver.place = object.place;
+  solver.pointer = object.pointer;
+  if (!reader.expect(object, Value::Kind::object, "\"solver\"", "an object")) return solver;
+  reader.reject_unknown(object,
+                        {"method", "start", "stop", "step", "maximum_step", "relative_tolerance",
+                         "absolute_tolerance", "record_step", "algebraic_loops", "seed"},
+                        "the solver");
+  SettingsReader read(object, scope, reader);
+  read.choice("method", {"euler", "heun", "rk4", "dopri5", "cvode-bdf", "cvode-adams"}, solver.method);
+  read.number("start", second, Range::any, solver.start);
+  read.number("stop", second, Range::any, solver.stop);
+  read.number("step", second, Range::positive, solver.step);
+  read.number("maximum_step", second, Range::positive, solver.maximum_step);
+  read.number("relative_tolerance", Unit{}, Range::positive, solver.relative_tolerance);
+  read.number("absolute_tolerance", Unit{}, Range::positive, solver.absolute_tolerance);
+  read.number("record_step", second, Range::positive, solver.record_step);
+  read.choice("algebraic_loops", {"error", "solve"}, solver.algebraic_loops);
+  read.whole("seed", solver.seed);
+  if (solver.stop.is_given && solver.stop.value < solver.start.value) {
+    Problem& problem = reader.problems.error(solver.stop.place, solver.stop.pointer, reader.block,
+                                             "the run stops before it starts");
+    problem.expected = fmt::format("at least {} s", solver.start.value);
+    problem.found = fmt::format("{} s", solver.stop.value);
+  }
+  return solver;
+}
+
+std::optional<Value> read_time(const Value& value, std::string_view what, ParameterScope& scope,
+                               const Reader& reader) {
+  Value time = scope.evaluate(value, reader.block);
+  if (!SettingsReader(value, scope, reader).is_number(time, what, second)) return {};
+  const bool is_offset = what == "sample_offset";
+  if (is_offset ? time.number >= 0 : time.number > 0) return time;
+  Problem& problem = reader.error(time, fmt::format("\"{}\" is out of range", what));
+  problem.expected = is_offset ? "a number of at least 0, in s" : "a number above 0, in s";
+  problem.found = shown(time);
+  return {};
+}
+
+}  // namespace loopwright

@@ -1,0 +1,15 @@
+/// The object "solver" of a diagram file.
+#pragma once
+#include "engine/diagram/diagram.h"
+#include "engine/diagram/parameters.h"
+
+namespace loopwright {
+
+/// Reads every key, checks its range and unit, and rejects what it does not know.
+SolverSettings read_solver_settings(const Value& object, ParameterScope& scope, const Reader& reader);
+
+/// A number in s: sample times, steps. Nothing after a problem.
+std::optional<Value> read_time(const Value& value, std::string_view what, ParameterScope& scope,
+                               const Reader& reader);
+
+}  // namespace loopwright

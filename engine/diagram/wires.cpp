@@ -1,0 +1,86 @@
+#include "engine/diagram/wires.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace loopwright {
+namespace {
+
+/// Takes "[12]" off the end of a port; false when brackets stand there that are none.
+bool drop_element(std::string_view& text) {
+  const size_t bracket = text.find('[');
+  if (bracket == text.npos) return true;
+  const std::string_view element = text.substr(bracket);
+  constexpr size_t most_digits = 6;
+  const bool is_index = element.size() > 2 && element.size() <= 2 + most_digits && element.back() == ']' &&
+                        element.find_first_not_of("0123456789", 1) == element.size() - 1;
+  text = text.substr(0, bracket);
+  return is_index;
+}
+
+bool is_pattern(std::string_view text) {
+  if (text == "*") return true;
+  return text.ends_with(".*") && is_port(text.substr(0, text.size() - 2)) && text.find('[') == text.npos;
+}
+
+Wire wire_at(const Value& value) { return {value.text, value.place, value.pointer}; }
+
+PortWires read_port(const Value::Member& member, const Reader& reader) {
+  PortWires port{member.name, member.place, member.value.pointer, false, {}};
+  const std::string what = fmt::format("the wire of the input \"{}\"", member.name);
+  if (member.value.kind != Value::Kind::list) {
+    if (Wire wire = read_wire(member.value, what, reader); !wire.source.empty())
+      port.wires.push_back(std::move(wire));
+    return port;
+  }
+  port.is_list = true;
+  for (const Value& item : member.value.items)
+    if (Wire wire = read_wire(item, what, reader); !wire.source.empty())
+      port.wires.push_back(std::move(wire));
+  return port;
+}
+
+}  // namespace
+
+bool is_port(std::string_view text) {
+  if (!drop_element(text)) return false;
+  while (true) {
+    const size_t dot = text.find('.');
+    if (!is_name(text.substr(0, dot))) return false;
+    if (dot == text.npos) return true;
+    text.remove_prefix(dot + 1);
+  }
+}
+
+Wire read_wire(const Value& value, std::string_view what, const Reader& reader) {
+  const std::string_view expected = "a port in quotes, as in \"stage.position\" or \"gain.y[2]\"";
+  if (!reader.expect(value, Value::Kind::text, what, expected)) return {};
+  if (is_port(value.text)) return wire_at(value);
+  Problem& problem = reader.error(value, fmt::format("{} does not name a port", what));
+  problem.expected = expected;
+  problem.found = shown(value);
+  return {};
+}
+
+std::vector<PortWires> read_inputs(const Value& in, const Reader& reader) {
+  std::vector<PortWires> ports;
+  if (!reader.expect(in, Value::Kind::object, "\"in\"", "an object: {\"input\": \"block.output\"}"))
+    return ports;
+  for (const Value::Member& member : in.members)
+    if (reader.check_name(member, "an input")) ports.push_back(read_port(member, reader));
+  return ports;
+}
+
+std::vector<Wire> read_log(const Value& log, const Reader& reader) {
+  std::vector<Wire> wires;
+  if (!reader.expect(log, Value::Kind::list, "\"log\"", "a list of ports")) return wires;
+  for (const Value& item : log.items) {
+    if (item.kind == Value::Kind::text && is_pattern(item.text))
+      wires.push_back(wire_at(item));
+    else if (Wire wire = read_wire(item, "an entry of \"log\"", reader); !wire.source.empty())
+      wires.push_back(std::move(wire));
+  }
+  return wires;
+}
+
+}  // namespace loopwright

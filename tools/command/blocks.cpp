@@ -1,0 +1,56 @@
+#include <fmt/format.h>
+#include "tools/command/command.h"
+#include "tools/reference/reference.h"
+
+namespace loopwright {
+
+static int show(const std::string& type) {
+  if (type.empty()) {
+    fmt::print("{}", block_list());
+    return done;
+  }
+  if (const BlockType* found = find_block(type)) {
+    fmt::print("{}", block_text(found->info));
+    return done;
+  }
+  std::vector<std::string> names;
+  for (const auto& [name, block] : all_blocks()) names.push_back(name);
+  Problems problems;
+  auto& p = problems.error({}, "", "", fmt::format("there is no block type \"{}\"", type));
+  const std::string near = nearest_name(type, names);
+  p.hint = near.empty() ? "`loopwright blocks` lists all types" : fmt::format("did you mean \"{}\"?", near);
+  throw InputError(std::move(problems));
+}
+
+void add_blocks(CLI::App& app, std::function<void(std::function<int()>)> choose) {
+  CLI::App* command = app.add_subcommand("blocks", "List the blocks, or describe one");
+  struct Arguments {
+    std::string type;
+    bool markdown = false;
+    DiagramArguments libraries;
+  };
+  auto a = std::make_shared<Arguments>();
+  command->add_option("type", a->type, "Block type");
+  command->add_flag("--markdown", a->markdown, "The whole reference as a page");
+  command->add_option("--blocks", a->libraries.libraries, "Shared library with more blocks")->type_name("FILE.so")->allow_extra_args(false);
+  command->callback([=] {
+    choose([=]() -> int {
+      a->libraries.options();
+      if (!a->markdown) return show(a->type);
+      fmt::print("{}", block_reference());
+      return done;
+    });
+  });
+}
+
+void add_schema(CLI::App& app, std::function<void(std::function<int()>)> choose) {
+  CLI::App* command = app.add_subcommand("schema", "Print the JSON Schema of diagram files, for editors");
+  command->callback([=] {
+    choose([]() -> int {
+      fmt::print("{}", diagram_schema());
+      return done;
+    });
+  });
+}
+
+}  // namespace loopwright

@@ -1,0 +1,54 @@
+/// What the subcommands of `loopwright` share: diagram arguments, exit codes, interruption, progress.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+#include "engine/diagram/diagram.h"
+
+namespace loopwright {
+
+enum ExitCode { done = 0, run_failed = 1, input_wrong = 2, interrupted = 130 };
+
+/// A diagram on the command line, with what changes it.
+struct DiagramArguments {
+  std::string path;
+  std::vector<std::string> set, variants, libraries;
+
+  void add_to(CLI::App& command);
+  /// Loads block libraries; malformed --set and --variant throw InputError.
+  LoadOptions options() const;
+};
+
+/// Adds a subcommand; `action` answers the exit code.
+void add_check(CLI::App& app, std::function<void(std::function<int()>)> choose);
+void add_run(CLI::App& app, std::function<void(std::function<int()>)> choose);
+void add_plan(CLI::App& app, std::function<void(std::function<int()>)> choose);
+void add_blocks(CLI::App& app, std::function<void(std::function<int()>)> choose);
+void add_schema(CLI::App& app, std::function<void(std::function<int()>)> choose);
+void add_compare(CLI::App& app, std::function<void(std::function<int()>)> choose);
+
+/// Set by SIGINT and SIGTERM once this was called; the second signal ends the program at once.
+const std::atomic<bool>& interruption();
+
+/// A bar on a terminal, a line every tenth elsewhere; on stderr.
+class Progress {
+ public:
+  explicit Progress(std::string what);
+  void show(double done, double total);
+  void finish();
+
+ private:
+  std::string what_;
+  bool on_terminal_;
+  int shown_tenths_ = 0;
+  bool drawn_ = false;
+  double started_, last_;
+};
+
+/// A path that can be written later: refused before hours of computing. Throws InputError.
+void require_writable(const std::string& path, std::string_view option);
+
+}  // namespace loopwright

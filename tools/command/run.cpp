@@ -1,0 +1,69 @@
+#include <fmt/format.h>
+#include <iostream>
+#include "engine/record/csv.h"
+#include "engine/record/recording_file.h"
+#include "tools/command/command.h"
+#include "tools/run/run_page.h"
+
+namespace loopwright {
+namespace {
+
+struct Arguments {
+  DiagramArguments diagram;
+  std::string output, report, checkpoint, resume;
+  double checkpoint_every = 0;
+  int64_t run = 0;
+  bool quiet = false;
+};
+
+void require_paths(const Arguments& a) {
+  require_writable(a.output, "-o");
+  require_writable(a.report, "--report");
+  require_writable(a.checkpoint, "--checkpoint");
+  Problems problems;
+  if (!a.output.empty() && a.output != "-" && !is_recording_path(a.output))
+    problems.error({}, "", "", fmt::format("-o {}: recordings are written as .csv or .mat", a.output));
+  if (a.checkpoint.empty() != (a.checkpoint_every == 0))
+    problems.error({}, "", "", "--checkpoint FILE and --checkpoint-every SECONDS go together");
+  if (problems.has_errors()) throw InputError(std::move(problems));
+}
+
+int run(const Arguments& a) {
+  require_paths(a);
+  const auto plan = load_plan(a.diagram.path, a.diagram.options());
+  for (const Problem& warning : plan->warnings) fmt::print(stderr, "{}\n", to_string(warning));
+  Progress progress("run");
+  RunOptions options;
+  options.run = a.run;
+  options.checkpoint_file = a.checkpoint, options.checkpoint_every = a.checkpoint_every, options.resume_file = a.resume;
+  options.interrupt = &interruption();
+  if (!a.quiet) options.progress = [&](double time, double stop) { progress.show(time, stop); };
+  const RunResult result = simulate(*plan, options);
+  progress.finish();
+  for (const std::string& warning : result.warnings) fmt::print(stderr, "{}: warning: {}\n", a.diagram.path, warning);
+  if (a.output == "-") write_csv(std::cout, result.recording);
+  else if (!a.output.empty()) write_recording(a.output, result.recording);
+  if (!a.report.empty()) report::write_html(a.report, run_page(*plan, result));
+  if (!a.quiet) fmt::print(stderr, "{}", run_summary(*plan, result));
+  if (result.status == RunStatus::finished) return done;
+  fmt::print(stderr, "{}: {}\n", a.diagram.path, result.message);
+  return result.status == RunStatus::interrupted ? interrupted : run_failed;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, std::function<void(std::function<int()>)> choose) {
+  CLI::App* command = app.add_subcommand("run", "Simulate a diagram");
+  auto a = std::make_shared<Arguments>();
+  a->diagram.add_to(*command);
+  command->add_option("-o,--output", a->output, "Write the recording: .csv, .mat, or - for CSV on stdout");
+  command->add_option("--report", a->report, "Write an HTML page with scopes and statistics");
+  command->add_option("--run", a->run, "Number of the run: another one has other noise")->check(CLI::NonNegativeNumber);
+  command->add_option("--checkpoint", a->checkpoint, "Set the run aside in this file while it goes on");
+  command->add_option("--checkpoint-every", a->checkpoint_every, "Simulated seconds between checkpoints")->check(CLI::PositiveNumber);
+  command->add_option("--resume", a->resume, "Go on from a checkpoint");
+  command->add_flag("-q,--quiet", a->quiet, "No progress and no summary");
+  command->callback([=] { choose([=] { return run(*a); }); });
+}
+
+}  // namespace loopwright
