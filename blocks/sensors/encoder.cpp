@@ -1,5 +1,5 @@
 /// y = q round((x + x₀ + Σ Aₙ sin(2πn x/L + φₙ)) / q)
-#include "engine/block.h"
+#include "blocks/math/sides.h"
 
 namespace loopwright::blocks {
 
@@ -55,7 +55,7 @@ struct Encoder {
   }
   void crossings(const In& in, const Mode& mode, Crossings& value) const {
     const Real from_centre = absolute(seen(in.position) * per_count - mode.count);
-    value.count = select(resolution > 0.0, 0.5 - from_centre, Real(1.0));
+    value.count = select(resolution > 0.0, not_below_zero(Real(0.5 - from_centre)), Real(1.0));
   }
 };
 LOOPWRIGHT_BLOCK(Encoder)
