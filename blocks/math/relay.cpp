@@ -1,5 +1,5 @@
 /// y switches to `on` when u rises above `switch_on`, back to `off` when it falls below `switch_off`
-#include "engine/block.h"
+#include "blocks/math/sides.h"
 
 namespace loopwright::blocks {
 
@@ -33,7 +33,7 @@ struct Relay {
   }
   void outputs(const Mode& mode, Out& out) const { out.y = select(mode.is_on > 0.5, on, off); }
   void crossings(const In& in, const Mode& mode, Crossings& value) const {
-    value.threshold = select(mode.is_on > 0.5, switch_off - in.u, in.u - switch_on);
+    value.threshold = above_zero(select(mode.is_on > 0.5, switch_off - in.u, in.u - switch_on));
   }
 };
 LOOPWRIGHT_BLOCK(Relay)

@@ -1,0 +1,69 @@
+/// y = formula(names[0], names[1], …)
+///
+/// The formula is muParser's: + - * / ^, comparisons, && || !, c ? a : b, sin, cos, tan, asin, acos, atan, atan2, sinh,
+/// cosh, tanh, exp, ln, log2, log10, sqrt, abs, sign, rint, min, max, sum, avg; `pi`, and `_e` for Euler's number. Units are not
+/// checked inside, and a variable-step solver is not told of its kinks and jumps: where that matters, blocks serve better.
+/// A result that is infinite or no number stops the run.
+#include <muParser.h>
+#include "engine/block.h"
+
+namespace loopwright::blocks {
+
+/// A compiled formula with places for its variables. A copy is empty: the compiled code points into its own variables.
+struct Formula {
+  mu::Parser parser;
+  std::vector<double> variables;
+  Formula() = default;
+  Formula(const Formula&) {}
+  Formula& operator=(const Formula&) { return *this; }
+
+  /// Throws mu::ParserError.
+  void compile(const std::string& text, const std::vector<std::string>& names) {
+    parser = mu::Parser();
+    parser.DefineConst("pi", pi);
+    variables.assign(names.size(), 1.0);
+    for (size_t i = 0; i < names.size(); ++i) parser.DefineVar(names[i], &variables[i]);
+    parser.SetExpr(text);
+    parser.Eval();  // compiles: later calls do not allocate
+  }
+};
+
+struct Expression {
+  std::string formula;
+  std::vector<std::string> names;
+  mutable Formula compiled;  // belongs to one run: muParser evaluates with a stack of its own
+  struct In { Many<double> arguments; };
+  struct Out { double y; };
+  static constexpr auto describe() {
+    return block("A formula over any number of signals.",
+      parameter(&Expression::formula, "formula", "", "The formula, as in \"k * sin(2*pi*x)\""),
+      parameter(&Expression::names, "names", "", "What the formula calls its arguments, in their order"),
+      input(&In::arguments, "arguments", "?", "A signal for each name").length(&Expression::arguments),
+      output(&Out::y, "y", "$y", "What the formula gives"));
+  }
+  int arguments() const { return int(names.size()); }
+  void check(const Checker& checker) const {
+    for (size_t i = 0; i < names.size(); ++i)
+      if (std::find(names.begin(), names.begin() + ptrdiff_t(i), names[i]) != names.begin() + ptrdiff_t(i))
+        checker.error("names", "two arguments have the same name").found = "\"" + names[i] + "\"";
+    if (checker.problems().has_errors()) return;
+    try {
+      Formula().compile(formula, names);
+    } catch (const mu::ParserError& error) {
+      const bool in_name = error.GetCode() == mu::ecINVALID_NAME || error.GetCode() == mu::ecNAME_CONFLICT;
+      auto& p = checker.error(in_name ? "names" : "formula", in_name ? "this cannot be the name of an argument" : "the formula cannot be read");
+      if (!in_name && error.GetPos() >= 0) p.place.offset += 1 + uint32_t(error.GetPos());  // after the quote
+      p.found = error.GetMsg();
+      for (const std::string& name : names) p.hint += (p.hint.empty() ? "its arguments are " : ", ") + name;
+    }
+  }
+  void prepare(double) { compiled.compile(formula, names); }
+  Fault outputs(const In& in, Out& out) const {
+    for (int i = 0; i < in.arguments.size(); ++i) compiled.variables[size_t(i)] = in.arguments[i];
+    out.y = compiled.parser.Eval();
+    return fault_if(!std::isfinite(out.y), "the formula gave no finite number");
+  }
+};
+LOOPWRIGHT_BLOCK(Expression)
+
+}  // namespace loopwright::blocks
