@@ -32,11 +32,16 @@ class CvodeStepper final : public Stepper {
 
  private:
   void forget_all() override { forget_history(); }
-  void forget_history() override { fresh_ = true; }
+  void forget_history() override {
+    fresh_ = true;
+    failed_at_ = std::numeric_limits<double>::infinity();
+  }
   void attach_newton();
   void attach_fixed_point();
+  void rehearse();
   SolverStatus nudge(double t_stop);
-  SolverStatus failure(int flag) const;
+  SolverStatus failure(int flag);
+  SolverStatus swallowed();
   void count();
   double unit(size_t i, double x) const {
     return absolute_tolerance_[i] + relative_tolerance_ * std::fabs(x);
@@ -50,9 +55,12 @@ class CvodeStepper final : public Stepper {
                       N_Vector, N_Vector);
 
   double t_stop_ = 0.0;
-  bool fresh_ = true;    ///< CVODE has not seen the present state yet
-  bool nudged_ = false;  ///< the last step was made without CVODE
+  bool rehearsing_ = false;  ///< the constructor makes a step, without the system
+  bool fresh_ = true;        ///< CVODE has not seen the present state yet
+  bool nudged_ = false;      ///< the last step was made without CVODE
   int non_finite_state_ = -1;
+  double failed_at_ = std::numeric_limits<double>::infinity();  ///< [s] where an evaluation failed last
+  SolverStatus failed_as_ = SolverStatus::non_finite;
   long error_test_failures_ = 0, convergence_failures_ = 0;  ///< as CVODE counted them last
   std::vector<double> trial_, nudge_rate_;
   mutable std::vector<double> errors_;
@@ -92,6 +100,7 @@ CvodeStepper::CvodeStepper(const SolverOptions& options, const OdeSystem& system
     require(CVodeSetMaxStep(cvode, options.maximum_step), "CVodeSetMaxStep");
   require(CVodeSetMaxHnilWarns(cvode, -1), "CVodeSetMaxHnilWarns");
   stiff ? attach_newton() : attach_fixed_point();
+  rehearse();
 }
 
 void CvodeStepper::attach_newton() {
@@ -106,6 +115,14 @@ void CvodeStepper::attach_newton() {
 void CvodeStepper::attach_fixed_point() {
   nonlinear_solver_ = own(SUNNonlinSol_FixedPoint(end_.get(), 0, context_.get()));
   require(CVodeSetNonlinearSolver(cvode_.get(), nonlinear_solver_.get()), "CVodeSetNonlinearSolver");
+}
+
+/// CVODE allocates some of its memory in its first step: makes one on x' = 0, so that no run has to.
+void CvodeStepper::rehearse() {
+  rehearsing_ = true;
+  double t = 0.0;
+  require(CVode(cvode_.get(), 1.0, end_.get(), &t, CV_ONE_STEP), "its first step");
+  rehearsing_ = false;
 }
 
 SolverStatus CvodeStepper::step(double t_stop) {
@@ -125,8 +142,7 @@ SolverStatus CvodeStepper::step(double t_stop) {
   const int flag = CVode(cvode, t_stop, end_.get(), &t, CV_ONE_STEP);
   count();
   if (flag < 0) return fail(failure(flag));
-  if (!(t > t_end_))
-    return fail(SolverStatus::step_too_small);  // "success" with a step that rounding swallowed
+  if (!(t > t_end_)) return fail(swallowed());  // success, says CVODE
   if (std::fabs(t - t_stop) <= 8.0 * rounding(t, t_stop)) {
     t = t_stop;
   } else if (flag == CV_TSTOP_RETURN) {
@@ -153,7 +169,7 @@ SolverStatus CvodeStepper::nudge(double t_stop) {
   return SolverStatus::stepped;
 }
 
-SolverStatus CvodeStepper::failure(int flag) const {
+SolverStatus CvodeStepper::failure(int flag) {
   switch (flag) {
     case CV_TOO_MUCH_ACC:
     case CV_ERR_FAILURE:
@@ -171,6 +187,13 @@ SolverStatus CvodeStepper::failure(int flag) const {
   }
 }
 
+/// The step has become too small for t: because evaluations just ahead fail, if they do, else for its error.
+SolverStatus CvodeStepper::swallowed() {
+  const bool just_ahead = std::fabs(failed_at_ - t_end_) < 1e4 * rounding(t_end_, t_stop_);
+  trouble_ = just_ahead ? failed_as_ : SolverStatus::step_too_small;
+  return trouble_;
+}
+
 void CvodeStepper::count() {
   long errors = 0, failures = 0;
   CVodeGetNumErrTestFails(cvode_.get(), &errors);
@@ -183,18 +206,21 @@ void CvodeStepper::count() {
 
 /// As evaluate(), and every rate is finite: CVODE itself would carry a NaN on.
 bool CvodeStepper::evaluate_finite(double t, const double* x, double* rate) {
-  if (!evaluate(t, x, rate)) return false;
-  for (size_t i = 0; i < states_; ++i) {
-    if (std::isfinite(rate[i])) continue;
+  if (evaluate(t, x, rate)) {
+    size_t i = 0;
+    while (i < states_ && std::isfinite(rate[i])) ++i;
+    if (i == states_) return true;
     trouble_ = SolverStatus::non_finite;
     non_finite_state_ = static_cast<int>(i);
-    return false;
   }
-  return true;
+  failed_at_ = t;
+  failed_as_ = trouble_;
+  return false;
 }
 
 int CvodeStepper::derivatives(double t, N_Vector x, N_Vector rate, void* self) {
   auto& stepper = *static_cast<CvodeStepper*>(self);
+  if (stepper.rehearsing_) return N_VConst(0.0, rate), 0;
   // CVODE's last step may end a rounding past the stop time, where the right-hand side may be another one.
   const double within = std::fmin(t, stepper.t_stop_);
   return stepper.evaluate_finite(within, N_VGetArrayPointer(x), N_VGetArrayPointer(rate)) ? 0 : 1;
@@ -203,6 +229,7 @@ int CvodeStepper::derivatives(double t, N_Vector x, N_Vector rate, void* self) {
 int CvodeStepper::jacobian(double t, N_Vector x, N_Vector rate, SUNMatrix jacobian, void* self, N_Vector work,
                            N_Vector, N_Vector) {
   auto& stepper = *static_cast<CvodeStepper*>(self);
+  if (stepper.rehearsing_) return SUNMatZero(jacobian);
   const double within = std::fmin(t, stepper.t_stop_);
   const bool good = stepper.difference_quotients(N_VGetArrayPointer(x), N_VGetArrayPointer(rate), jacobian,
                                                  within, N_VGetArrayPointer(work));

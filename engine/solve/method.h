@@ -34,7 +34,7 @@ inline constexpr std::array<MethodFacts, 6> all_methods{{
     {Method::euler, "euler", true, 1, 2.0, 0.0},
     {Method::heun, "heun", true, 2, 2.0, 0.0},
     {Method::rk4, "rk4", true, 4, 2.7852, 2.6155},
-    {Method::dopri5, "dopri5", false, 5, 3.3066, 0.0},
+    {Method::dopri5, "dopri5", false, 5, 3.3065, 0.0},
     {Method::cvode_bdf, "cvode-bdf", false, 5, 0.0, 0.0},
     {Method::cvode_adams, "cvode-adams", false, 12, 0.0, 0.0},
 }};

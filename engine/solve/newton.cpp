@@ -75,6 +75,7 @@ struct NewtonSolver::Work {
   double size(size_t i) const { return std::fmax(std::fabs(y[i]), negligible_part * typical[i]); }
   bool evaluate(const double* at, double* into);
   bool difference_quotients(double* at, const double* value, SUNMatrix into, double* trial);
+  double evaluate_beside(double* at, size_t j, double distance, double* trial);
   NewtonStatus status_of(int flag) const;
   static int residual_function(N_Vector y, N_Vector residual, void* self);
   static int jacobian_function(N_Vector y, N_Vector residual, SUNMatrix jacobian, void* self, N_Vector work,
@@ -123,7 +124,7 @@ NewtonSolver::Work::Work(const NewtonOptions& options, const AlgebraicSystem& sy
   require(KINSetFuncNormTol(memory, tolerance), "KINSetFuncNormTol");
   require(KINSetMaxSetupCalls(memory, 1),
           "KINSetMaxSetupCalls");  // loops are small: a fresh Jacobian each time
-  require(KINSetMaxNewtonStep(memory, 1e10), "KINSetMaxNewtonStep");  // else a guess of 0 may only move by 1
+  require(KINSetMaxNewtonStep(memory, 1e100), "KINSetMaxNewtonStep");  // else a guess of 0 may only move by 1
 }
 
 bool NewtonSolver::Work::evaluate(const double* at, double* into) {
@@ -146,25 +147,39 @@ int NewtonSolver::Work::jacobian_function(N_Vector y_vector, N_Vector residual, 
   return good ? 0 : 1;
 }
 
-/// ∂residual/∂y, forward differences, backward where a step forward leaves the domain.
+/// ∂residual/∂y, forward differences, backward where a step forward leaves the domain. Where no residual
+/// moves at all, the typical size was too small a guess for the size of the residual: longer steps are tried.
 bool NewtonSolver::Work::difference_quotients(double* at, const double* value, SUNMatrix into,
                                               double* trial) {
   const double relative = std::sqrt(std::numeric_limits<double>::epsilon());
   for (size_t j = 0; j < n; ++j) {
-    const double here = at[j], distance = relative * std::fmax(std::fabs(here), typical[j]);
-    at[j] = here + distance;
-    bool good = evaluate(at, trial);
-    if (!good) {
-      at[j] = here - distance;
-      good = evaluate(at, trial);
-    }
-    const double increment = at[j] - here;
-    at[j] = here;
-    if (!good) return false;
     double* column = SUNDenseMatrix_Column(into, static_cast<sunindextype>(j));
-    for (size_t i = 0; i < n; ++i) column[i] = (trial[i] - value[i]) / increment;
+    double distance = relative * std::fmax(std::fabs(at[j]), typical[j]);
+    bool moved = false;
+    for (int attempt = 0; attempt < 4 && !moved; ++attempt, distance *= 1e3) {
+      const double increment = evaluate_beside(at, j, distance, trial);
+      if (increment == 0.0 && attempt == 0) return false;
+      if (increment == 0.0) break;
+      for (size_t i = 0; i < n; ++i) {
+        column[i] = (trial[i] - value[i]) / increment;
+        moved = moved || column[i] != 0.0;
+      }
+    }
   }
   return true;
+}
+
+/// The residual with unknown j moved by a distance up or, if that fails, down. Returns by how much; 0: both
+/// fail.
+double NewtonSolver::Work::evaluate_beside(double* at, size_t j, double distance, double* trial) {
+  const double here = at[j];
+  for (const double there : {here + distance, here - distance}) {
+    at[j] = there;
+    const bool good = evaluate(at, trial);
+    at[j] = here;
+    if (good) return there - here;
+  }
+  return 0.0;
 }
 
 /// Notes the residual at y, if it is the smallest so far.
