@@ -1,4 +1,5 @@
-/// What is wrong with an input, said so that a person can mend it. Problems are collected, never thrown one by one.
+/// What is wrong with an input, said so that a person can mend it. Problems are collected, never thrown one
+/// by one.
 #pragma once
 #include <cstdint>
 #include <memory>

@@ -93,7 +93,8 @@ std::optional<Unit> read_by_udunits(const std::string& text) {
 // ---- Roots, which udunits2 does not know
 // ------------------------------------------------------------------------
 
-/// unit = factor { ("*" | "/") factor },  factor = ("sqrt" "(" unit ")" | "(" unit ")" | name) [ "^" exponent
+/// unit = [scale] factor { ("*" | "/") factor },  factor = ("sqrt" "(" unit ")" | "(" unit ")" | name) [ "^"
+/// exponent
 /// ], exponent = number | "(" integer ["/" integer] ")"
 class RootReader {
  public:
@@ -112,7 +113,9 @@ class RootReader {
   }
 
   std::optional<Unit> product() {
-    std::optional<Unit> result = factor();
+    const bool has_scale =
+        !rest_.empty() && rest_[0] >= '0' && rest_[0] <= '9';  // "0.7 m^(1/2)": the root is of m alone
+    std::optional<Unit> result = has_scale ? scaled_factor() : factor();
     while (result) {
       const bool times = take("*") || take("·");
       if (!times && !take("/")) break;
@@ -121,6 +124,18 @@ class RootReader {
       result = *result * (times ? *next : power(*next, -1));
     }
     return result;
+  }
+
+  std::optional<Unit> scaled_factor() {
+    double scale = 0;
+    const auto [end, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), scale);
+    if (error != std::errc() || !(scale > 0)) return {};
+    rest_.remove_prefix(static_cast<size_t>(end - rest_.data()));
+    const Unit number{scale, {}};
+    if (rest_.empty() || rest_[0] == '*' || rest_[0] == '/' || rest_[0] == ')') return number;
+    take(" ");
+    const auto unit = factor();
+    return unit ? std::optional(number * *unit) : std::nullopt;
   }
 
   std::optional<Unit> factor() {

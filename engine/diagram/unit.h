@@ -19,11 +19,12 @@ struct Unit {
 Unit operator*(const Unit& a, const Unit& b);
 Unit power(const Unit& a, double exponent);
 
-/// The unit written as "N*s/m", "mm", "V*s^2/m", "1" or "" (both dimensionless); nothing if it cannot be read.
-/// Units with an offset (degC) cannot be read: signals are in SI.
+/// The unit written as "N*s/m", "mm", "V*s^2/m", "1" or "" (both dimensionless); nothing if it cannot be
+/// read. Units with an offset (degC) cannot be read: signals are in SI.
 std::optional<Unit> parse_unit(std::string_view text);
 
-/// A readable spelling: a named unit (N, V, Hz …) where one fits, else a product of base units; "1" when dimensionless.
+/// A readable spelling: a named unit (N, V, Hz …) where one fits, else a product of base units; "1" when
+/// dimensionless.
 std::string to_string(const Unit& unit);
 
 }  // namespace loopwright

@@ -1,4 +1,5 @@
-/// A parameter value as it stands in a file, with its place and unit. Light: block files do not pay for a JSON parser.
+/// A parameter value as it stands in a file, with its place and unit. Light: block files do not pay for a
+/// JSON parser.
 #pragma once
 #include <optional>
 #include <string>
@@ -14,11 +15,12 @@ struct Value {
   enum class Kind { null, boolean, number, text, list, object };
   struct Member;
   Kind kind = Kind::null;
-  bool is_broken = false;  ///< a null in place of what could not be worked out: the problem is reported already
+  bool is_broken =
+      false;  ///< a null in place of what could not be worked out: the problem is reported already
   bool boolean = false;
-  bool whole = false;   ///< the number was written without fraction or exponent
+  bool whole = false;  ///< the number was written without fraction or exponent
   double number = 0;
-  std::string text;     ///< of a text; for numbers from an expression, the expression
+  std::string text;          ///< of a text; for numbers from an expression, the expression
   std::optional<Unit> unit;  ///< known for numbers that come from parameters with units
   std::vector<Value> items;
   std::vector<Member> members;
