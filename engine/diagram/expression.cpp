@@ -45,6 +45,22 @@ size_t find_assignment(std::string_view text) {
   return std::string_view::npos;
 }
 
+/// The first character that no expression has; npos: none.
+size_t find_foreign(std::string_view text) {
+  for (size_t at = 0; at < text.size();) {
+    const size_t end = is_digit(text[at]) || text[at] == '.' ? end_of_number(text, at) : at;
+    const bool is_lone_point = text[at] == '.' && end == at + 1;
+    if (end > at && !is_lone_point)
+      at = end;
+    else if (is_letter(text[at]) ||
+             std::string_view("+-*/^()<>=!&|?:, ").find(text[at]) != std::string_view::npos)
+      ++at;
+    else
+      return at;
+  }
+  return std::string_view::npos;
+}
+
 std::string plain_words(const mu::ParserError& error) {
   switch (error.GetCode()) {
     case mu::ecUNEXPECTED_EOF:
@@ -237,6 +253,12 @@ class Evaluator {
     }
     if (trimmed().empty()) {
       report("the expression is empty", 0).expected = "an expression after '=', as in \"=2*pi*40\"";
+      return false;
+    }
+    if (const size_t at = find_foreign(expression_); at != expression_.npos) {
+      Problem& problem = report("a character has no meaning in an expression", at);
+      if (expression_[at] == '.')
+        problem.hint = "an expression uses the \"parameters\" of its own diagram, which have no dots";
       return false;
     }
     if (const size_t at = find_assignment(expression_); at != expression_.npos) {

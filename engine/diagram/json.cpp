@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 constexpr size_t largest_file = 64u << 20;   // bytes
-constexpr size_t largest_memory = 1u << 30;  // bytes, of the values in one text
+constexpr size_t largest_memory = 512u << 20;  // bytes, of the values in one text
 constexpr size_t deepest_nesting = 64;
 constexpr int most_duplicates = 100;  // reported; each costs a walk through the text
 
@@ -110,8 +110,9 @@ class ValueBuilder {
   size_t end_of_token() const {
     const char c = cursor_ < text_.size() ? text_[cursor_] : '\0';
     if (c == '"') return std::min(end_of_quoted(text_, cursor_), text_.size());
-    if (std::string_view("{}[]").find(c) != std::string_view::npos) return cursor_ + 1;
-    return std::min(text_.find_first_not_of("+-.0123456789aeflnrstuE", cursor_), text_.size());
+    if (c == 't' || c == 'n') return cursor_ + 4;  // true, null
+    if (c == 'f') return cursor_ + 5;              // false
+    return end_of_number(text_, cursor_);
   }
 
   std::string pointer_in_hand() const {
@@ -160,7 +161,7 @@ class ValueBuilder {
   bool add(Value value, std::string name, Place name_place) {
     if (memory_ > largest_memory) {
       problems_.error(value.place, value.pointer, {},
-                      "the file holds too many values to fit into 1 GB of memory");
+                      "the file holds too many values to fit into 512 MB of memory");
       return false;
     }
     if (open_.empty()) {

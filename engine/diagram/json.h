@@ -14,7 +14,7 @@ std::shared_ptr<const SourceFile> read_source(const std::string& path, const Pla
 
 /// The value in a JSON text (RFC 8259, UTF-8, no comments); null after a problem. Rejected with their places
 /// are syntax errors, duplicate member names, bytes that are not UTF-8, numbers beyond the range of a double,
-/// nesting deeper than 64 levels, and texts whose values would fill more than 1 GB of memory.
+/// nesting deeper than 64 levels, and texts whose values would fill more than 512 MB of memory.
 Value parse_json(std::shared_ptr<const SourceFile> file, Problems& problems);
 
 /// The shortest JSON text of a value: members in their order, doubles that read back bit for bit. Units are

@@ -130,20 +130,14 @@ class Explainer {
   }
 
   Problem wrong_number(size_t at) const {
-    const std::string_view number = text_.substr(at, end_of_number(at) - at);
+    const size_t end = std::min(text_.find_first_not_of("+-0123456789.eE", at), text_.size());
     std::string shortened = shown(at);
-    if (shortened.size() < number.size()) shortened += "…";
-    const bool is_complete =
-        !number.empty() && is_digit(number.back()) && (is_digit(number[0]) || is_digit(number[1]));
-    if (is_complete && number[0] != '+') {
+    if (shortened.size() < end - at) shortened += "…";
+    if (end_of_number(text_, at) == end) {
       return say(at, "a number is too large", "at most 1.7976931348623157e308", shortened);
     }
     return say(at, "a number is not well formed", "digits before and after the point, as in -0.5 or 1e-3",
                shortened);
-  }
-
-  size_t end_of_number(size_t at) const {
-    return std::min(text_.find_first_not_of("+-0123456789.eE", at), text_.size());
   }
 
   Problem wrong_value(size_t at) const {
@@ -225,6 +219,21 @@ size_t end_of_quoted(std::string_view text, size_t at) {
       return at + 1;
   }
   return std::string_view::npos;
+}
+
+size_t end_of_number(std::string_view text, size_t at) {
+  const auto peek = [text](size_t i) { return i < text.size() ? text[i] : '\0'; };
+  const auto skip_digits = [&](size_t i) {
+    while (is_digit(peek(i))) ++i;
+    return i;
+  };
+  const size_t whole = at + (peek(at) == '-');
+  size_t end = peek(whole) == '0' ? whole + 1 : skip_digits(whole);
+  if (end == whole) return at;
+  if (peek(end) == '.' && is_digit(peek(end + 1))) end = skip_digits(end + 1);
+  if (peek(end) != 'e' && peek(end) != 'E') return end;
+  const size_t exponent = end + 1 + (peek(end + 1) == '+' || peek(end + 1) == '-');
+  return is_digit(peek(exponent)) ? skip_digits(exponent) : end;
 }
 
 size_t find_bad_byte(std::string_view text) {

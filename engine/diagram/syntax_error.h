@@ -25,6 +25,9 @@ size_t skip_space(std::string_view text, size_t at);
 /// The end of the JSON text token whose opening quote stands at `at`; npos when it is not closed in its line.
 size_t end_of_quoted(std::string_view text, size_t at);
 
+/// The end of the longest JSON number that starts at `at`; `at` itself when there is none.
+size_t end_of_number(std::string_view text, size_t at);
+
 /// The byte that is not part of a UTF-8 character, or no character of JSON at all (a control character);
 /// npos: none.
 size_t find_bad_byte(std::string_view text);
