@@ -193,7 +193,7 @@ std::string graph_text(const Graph& graph) {
 std::string graph_source(const Graph& graph) {
   // DejaVu Sans is wide: text measured with it fits its box in whatever font the page has.
   std::string out = R"(digraph {
-rankdir=LR; newrank=true; nodesep=0.3; ranksep=0.42; splines=true; bgcolor="transparent"; pad=0.1;
+rankdir=LR; newrank=true; nodesep=0.3; ranksep=0.42; splines=true; nslimit=4; mclimit=0.4; bgcolor="transparent"; pad=0.1;
 fontname="DejaVu Sans"; fontsize=11; style="rounded"; labeljust=l;
 node [shape=box, style="rounded,filled", fontname="DejaVu Sans", fontsize=11, margin="0.04,0.03"];
 edge [fontname="DejaVu Sans", fontsize=9, arrowsize=0.6];

@@ -1,5 +1,6 @@
 // Turns the data of every plot on the page into a scope: zoom, pan, cursor read-out, curves to switch off,
-// plots of one group linked along x. Drawing is uPlot's business.
+// plots of one group linked along x. Drawing is uPlot's business. One file, because a page carries it whole: numbers, data,
+// drawing, interaction, legend and read-out, then the plot itself.
 "use strict";
 (() => {
   const PREFIXES = { "-15": "f", "-12": "p", "-9": "n", "-6": "µ", "-3": "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T" };
