@@ -189,7 +189,7 @@ SolverStatus CvodeStepper::failure(int flag) {
 
 /// The step has become too small for t: because evaluations just ahead fail, if they do, else for its error.
 SolverStatus CvodeStepper::swallowed() {
-  const bool just_ahead = std::fabs(failed_at_ - t_end_) < 1e4 * rounding(t_end_, t_stop_);
+  const bool just_ahead = std::fabs(failed_at_ - t_end_) < 1e4 * rounding(t_end_, failed_at_);
   trouble_ = just_ahead ? failed_as_ : SolverStatus::step_too_small;
   return trouble_;
 }

@@ -104,7 +104,7 @@ SolverStatus DormandPrince::step(double t_stop) {
     } else if (remaining < 2.0 * h) {  // two halves rather than a whole and a crumb
       h = 0.5 * remaining, t_new = t_end_ + h;
     }
-    if (step_size_ < remaining && step_size_ < 4.0 * rounding(t_end_, t_stop)) return fail(reason);
+    if (step_size_ < remaining && step_size_ < 4.0 * rounding(t_end_, t_new)) return fail(reason);
 
     tried_step_ = h;
     trouble_ = SolverStatus::non_finite;

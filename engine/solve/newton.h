@@ -17,11 +17,9 @@ struct AlgebraicSystem {
 };
 
 struct NewtonOptions {
-  double tolerance =
-      1e-10;  ///< greatest |residual| of a solution, as part of |y| or, where y = 0, of its typical size
+  double tolerance = 1e-10;      ///< greatest |residual| of a solution, as part of |y| or of 0.001 typical
   int maximum_iterations = 100;  ///< a loop that needs more has no solution near the guess
-  std::vector<double>
-      typical;  ///< sizes that y usually has, one an unknown; sets difference quotients; empty: 1
+  std::vector<double> typical;   ///< usual sizes of y, one an unknown, for difference quotients; empty: 1
 };
 
 enum class NewtonStatus : uint8_t {

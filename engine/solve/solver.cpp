@@ -60,8 +60,8 @@ std::string_view to_text(SolverStatus status) {
       return "a block reported a fault";
     case SolverStatus::wrong_answer:
       return "the integrator claimed success, but its time or state cannot be right";
-    case SolverStatus::stop_in_past:
-      return "the stop time lies before the present time";
+    case SolverStatus::bad_stop:
+      return "the stop time lies in the past or is not finite";
   }
   return "unknown solver status";
 }
@@ -150,7 +150,7 @@ Advance Solver::advance(double t_stop, const Crossing* wanted) {
 
 Advance Solver::step(double t_stop, const Crossing* wanted) {
   events_.clear_fired();
-  if (!(t_stop >= t_)) return {SolverStatus::stop_in_past, t_};
+  if (!(t_stop >= t_ && std::isfinite(t_stop))) return {SolverStatus::bad_stop, t_};
   if (t_ == t_stop) return {SolverStatus::reached_stop, t_};
   if (!signs_known_) {
     const SolverStatus status = status_of(events_.begin(*stepper_, t_, x_));

@@ -31,16 +31,12 @@ inline constexpr double smallest_relative_tolerance = 1e-13;
 
 struct SolverOptions {
   Method method = Method::dopri5;
-  double relative_tolerance =
-      1e-6;  ///< error a step may make, as part of |x|. Smaller: more digits, more steps
-  double absolute_tolerance =
-      1e-9;  ///< added to it, in the state's unit: below this size a state is of no interest
-  std::vector<double>
-      absolute_tolerances;    ///< one a state, when their sizes differ widely; empty: the scalar for all
-  double initial_step = 0.0;  ///< [s] first trial; 0: chosen from the size of x, f and its change
+  double relative_tolerance = 1e-6;  ///< error of a step as part of |x|. Smaller: more digits, more steps
+  double absolute_tolerance = 1e-9;  ///< added to it, in the unit of the state: smaller states do not matter
+  std::vector<double> absolute_tolerances;  ///< one a state, if their sizes differ widely; empty: the above
+  double initial_step = 0.0;                ///< [s] first trial; 0: chosen from x, f and the change of f
   double maximum_step = std::numeric_limits<double>::infinity();  ///< [s] so as not to pass over short pulses
-  int64_t maximum_steps_between_stops =
-      1'000'000;             ///< trials, rejected ones too: a stuck run ends with a reason
+  int64_t maximum_steps_between_stops = 1'000'000;  ///< rejected ones too: a stuck run ends with a reason
   int crossing_samples = 4;  ///< looks at the crossings in each step; more find shorter double crossings
 
   /// What is wrong with these options for a system of so many states, one sentence an entry; empty: nothing.
@@ -57,7 +53,7 @@ enum class SolverStatus : uint8_t {
   non_finite,      ///< a derivative, crossing function or state is infinite or not a number
   block_fault,     ///< a block refused to be evaluated
   wrong_answer,    ///< the integrator claimed success, but its time or state cannot be right
-  stop_in_past     ///< t_stop lies before t(), or is not a number
+  bad_stop         ///< t_stop lies before t() or is not finite
 };
 /// "the step size fell below rounding"; fit to follow "solver stopped at t = …: ".
 std::string_view to_text(SolverStatus status);
@@ -66,10 +62,9 @@ constexpr bool succeeded(SolverStatus status) { return status <= SolverStatus::e
 
 /// Counts since start().
 struct SolverStatistics {
-  int64_t steps = 0;                ///< accepted
-  int64_t error_test_failures = 0;  ///< rejected for their error
-  int64_t convergence_failures =
-      0;  ///< rejected for no solution of their equations, a fault or a non-finite value
+  int64_t steps = 0;                   ///< accepted
+  int64_t error_test_failures = 0;     ///< rejected for their error
+  int64_t convergence_failures = 0;    ///< rejected for unsolved equations, a fault or a non-finite value
   int64_t derivative_evaluations = 0;  ///< all of them, those for Jacobians too
   int64_t jacobian_evaluations = 0;
   int64_t crossing_evaluations = 0;
@@ -78,8 +73,7 @@ struct SolverStatistics {
   int64_t stiff_steps = 0;  ///< dopri5: checked steps with h|λ| beyond its stability limit
   bool stiff = false;       ///< dopri5: so many in a row that stability, not accuracy, sets the step
   int stiffest_state = -1;  ///< the state with the largest error when that was seen first
-  double smallest_step =
-      std::numeric_limits<double>::infinity();  ///< [s] among the steps that no stop time cut short
+  double smallest_step = std::numeric_limits<double>::infinity();  ///< [s] of those that no stop cut short
   int64_t trials() const { return steps + error_test_failures + convergence_failures; }
 };
 

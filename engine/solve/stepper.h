@@ -72,7 +72,7 @@ class Stepper {
   virtual void interpolate_within(double t, double* x) const = 0;
 
   void copy(const double* from, double* to) const {
-    if (states_ > 0) std::memcpy(to, from, states_ * sizeof(double));
+    if (states_ > 0) std::memmove(to, from, states_ * sizeof(double));
   }
 
   /// The end of the last step becomes the begin of this one, `x` (exchanged, not copied) its end at t.

@@ -49,6 +49,7 @@ std::vector<double> bounce_times(const SolverOptions& options, int bounces, doub
     x[0] = std::isnan(place) ? solver.x()[0] : place;
     x[1] = -restitution * solver.x()[1];
     solver.restart(result.t, x);
+    solver.restart(result.t, x);  // a sample at the same instant
   }
   return times;
 }

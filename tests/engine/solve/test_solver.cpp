@@ -80,10 +80,22 @@ TEST_P(SolverContract, AStopTimeInThePastIsRefusedAndThePresentOneIsReached) {
   Solver solver(options(), system.ode());
   const double x0 = 1.0;
   solver.start(1.0, &x0);
-  EXPECT_EQ(solver.advance(0.5).status, SolverStatus::stop_in_past);
-  EXPECT_EQ(solver.advance(std::nan("")).status, SolverStatus::stop_in_past);
+  EXPECT_EQ(solver.advance(0.5).status, SolverStatus::bad_stop);
+  EXPECT_EQ(solver.advance(std::nan("")).status, SolverStatus::bad_stop);
+  EXPECT_EQ(solver.advance(std::numeric_limits<double>::infinity()).status, SolverStatus::bad_stop);
   EXPECT_EQ(solver.advance(1.0).status, SolverStatus::reached_stop);
   EXPECT_EQ(system.evaluations, 0);
+}
+
+TEST_P(SolverContract, AStopTimeFarAwayLeavesRoomForShortSteps) {
+  FunctionSystem system = exponential(-1e6);
+  Solver solver(options(), system.ode());
+  const double x0 = 1.0;
+  solver.start(0.0, &x0);
+  while (solver.t() < 1e-6) {
+    ASSERT_EQ(solver.step(1e11).status, SolverStatus::stepped);
+    EXPECT_NEAR(solver.x()[0], std::exp(-1e6 * solver.t()), 1e-4);
+  }
 }
 
 TEST_P(SolverContract, ANonFiniteDerivativeIsReportedWithTheStateBeforeIt) {
@@ -354,7 +366,7 @@ TEST(SolverOptions, EveryProblemIsNamedAtOnce) {
 }
 
 TEST(SolverStatus, EveryStatusHasAText) {
-  for (int status = 0; status <= static_cast<int>(SolverStatus::stop_in_past); ++status) {
+  for (int status = 0; status <= static_cast<int>(SolverStatus::bad_stop); ++status) {
     EXPECT_NE(to_text(static_cast<SolverStatus>(status)), "unknown solver status");
   }
 }
