@@ -29,7 +29,8 @@ ChildResult browse(const std::filesystem::path& page, const std::filesystem::pat
 }
 
 TEST(ReportPage, ScopesZoomReadOutAndFollowEachOtherInABrowser) {
-  if (!run_program({"sh", "-c", "command -v chromium"}, "", 20s).succeeded) GTEST_SKIP() << "chromium is not installed";
+  if (!run_program({"sh", "-c", "command -v chromium"}, "", 20s).succeeded)
+    GTEST_SKIP() << "chromium is not installed";
   const std::filesystem::path folder = std::filesystem::path(LOOPWRIGHT_BINARY) / "report_browser_test";
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
@@ -48,8 +49,8 @@ TEST(ReportPage, ScopesZoomReadOutAndFollowEachOtherInABrowser) {
   EXPECT_THAT(seen, HasSubstr(R"("canvases":5,"drawn":5)"));
   EXPECT_THAT(seen,
               HasSubstr("|100\u202Fmm|99.997\u202Fmm\",\"Time 1.29"));  // half way, at rest
-  EXPECT_THAT(seen, HasSubstr(R"("zoomed":"11100")"));                               // the group of three
-  EXPECT_THAT(seen, HasSubstr("\"left\":\"Time 65"));  // a quarter of 2.6 s, shown in ms
+  EXPECT_THAT(seen, HasSubstr(R"("zoomed":"11100")"));                  // the group of three
+  EXPECT_THAT(seen, HasSubstr("\"left\":\"Time 65"));                   // a quarter of 2.6 s, shown in ms
   EXPECT_THAT(seen, HasSubstr(R"("whole":"00000")"));
   EXPECT_THAT(seen, HasSubstr(R"("pressed":"false")"));
   if (!HasFailure()) std::filesystem::remove_all(folder);
