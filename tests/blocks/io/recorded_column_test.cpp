@@ -1,0 +1,96 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+#include <filesystem>
+#include <fstream>
+#include "tests/blocks/block_under_test.h"
+
+namespace loopwright {
+
+namespace {
+
+/// A block on a file with this text, in a folder of the test's own.
+class Recorded {
+ public:
+  Recorded(const std::string& csv, const std::string& settings)
+      : folder_(std::filesystem::temp_directory_path() / ("recorded_column_" + std::to_string(getpid()))) {
+    std::filesystem::create_directories(folder_);
+    std::ofstream(folder_ / "data.csv") << csv;
+    block = std::make_unique<BlockUnderTest>("RecordedColumn", R"({"file": ")" + (folder_ / "data.csv").string() + "\", " + settings + "}");
+  }
+  ~Recorded() { std::filesystem::remove_all(folder_); }
+  double at(double time) {
+    block->evaluate(time);
+    return block->output("value");
+  }
+  std::unique_ptr<BlockUnderTest> block;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+const char* const ramp = "time,x [mm],y\n0,0,5\n0.1,10,6\n0.2,30,7\n0.4,20,8\n";
+
+}  // namespace
+
+TEST(RecordedColumn, HoldsASampleUntilTheNext) {
+  Recorded column(ramp, R"("column": "y")");
+  const double time[] = {0, 0.05, 0.1, 0.19, 0.2, 0.39, 0.4, 9}, expected[] = {5, 5, 6, 6, 7, 7, 8, 8};
+  for (int i = 0; i < 8; ++i) EXPECT_EQ(column.at(time[i]), expected[i]) << time[i];
+}
+
+TEST(RecordedColumn, GivesSiUnitsWhateverTheFileHas) {
+  EXPECT_DOUBLE_EQ(Recorded(ramp, R"("column": "x")").at(0.1), 0.01);
+  EXPECT_DOUBLE_EQ(Recorded(ramp, R"("column": "y", "unit": "kV")").at(0.1), 6000);
+}
+
+TEST(RecordedColumn, JoinsSamplesByStraightLinesWhenToldTo) {
+  Recorded column(ramp, R"("column": "x", "interpolation": "linear")");
+  EXPECT_NEAR(column.at(0.05), 0.005, 1e-15);
+  EXPECT_NEAR(column.at(0.3), 0.025, 1e-15);
+  EXPECT_NEAR(column.at(0.4), 0.020, 1e-15);
+  EXPECT_NEAR(column.at(7), 0.020, 1e-15);
+}
+
+TEST(RecordedColumn, IsNotLateWhereTimeWasPrintedWithFewDigits) {
+  std::string csv = "t,y\n";
+  for (int k = 0; k < 3000; ++k) csv += std::to_string(k * 0.001) + "," + std::to_string(k) + "\n";
+  Recorded column(csv, R"("column": "y")");
+  for (int k = 0; k < 3000; ++k) ASSERT_EQ(column.at(k * 0.001), k);
+}
+
+TEST(RecordedColumn, EntersANewSampleAtEveryStopThatItAnnounces) {
+  Recorded column(ramp, R"("column": "y")");
+  double t = column.block->next_stop(0), expected = 6;
+  for (; t < infinity; t = column.block->next_stop(t)) EXPECT_EQ(column.at(t), expected++) << t;
+  EXPECT_EQ(expected, 9);
+}
+
+TEST(RecordedColumn, StopsTheRunBeyondItsEndWhenToldTo) {
+  for (const char* kind : {"hold", "linear"}) {
+    Recorded column(ramp, R"("column": "y", "beyond": "fault", "interpolation": ")" + std::string(kind) + "\"");
+    column.at(0), column.at(0.3), column.at(0.4);
+    EXPECT_EQ(column.block->fault(), "") << kind;
+    column.at(0.41);
+    EXPECT_EQ(column.block->fault(), "the recording does not reach this time") << kind;
+  }
+}
+
+TEST(RecordedColumn, TakesTheTimeColumnThatItIsTold) {
+  Recorded column("a,clock,y\n7,0,1\n7,1,2\n", R"("column": "y", "time": "clock")");
+  EXPECT_EQ(column.at(1.5), 2);
+}
+
+TEST(RecordedColumn, NamesWhatIsWrongWithFileColumnTimeAndUnit) {
+  const auto text = [](const std::string& csv, const char* settings) { return Recorded(csv, settings).block->problems().text(); };
+  EXPECT_NE(text(ramp, R"("column": "tme")").find("did you mean \"time\"?"), std::string::npos);
+  EXPECT_NE(text(ramp, R"("column": "x", "unit": "V")").find("another unit"), std::string::npos);
+  EXPECT_NE(text(ramp, R"("column": "y", "unit": "foo")").find("the unit cannot be read"), std::string::npos);
+  EXPECT_NE(text("t,y\n0,1\n1,2\n1,3\n", R"("column": "y")").find("at sample 3 of t"), std::string::npos);
+  const std::string broken = text("t,y\n0,1\n1,two\n", R"("column": "y")");
+  EXPECT_NE(broken.find("data.csv:3:3"), std::string::npos) << broken;
+  EXPECT_NE(broken.find("the recording cannot be used"), std::string::npos) << broken;
+  BlockUnderTest missing("RecordedColumn", R"({"file": "/no/such.csv", "column": "y"})");
+  EXPECT_NE(missing.problems().text().find("/no/such.csv"), std::string::npos) << missing.problems().text();
+}
+
+}  // namespace loopwright
