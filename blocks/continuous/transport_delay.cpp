@@ -1,7 +1,7 @@
-/// y(t) = u(t - delay),  y(t) = initial for t < delay
+/// y(t) = u(t - delay), until then initial
 ///
 /// The history is kept at accepted solver steps, thinned to points at most delay/points or one step apart, and read by
-/// straight lines: the error is at most gap²/8 · max|d²u/dt²|, and a jump of u is smeared over one gap. A solver step
+/// straight lines: the error is at most gap²/8 · max|d²u/dt²|; a jump of u may be smeared over one gap. A solver step
 /// is never longer than the delay. The output needs no present input: the block may stand in a loop.
 #include "engine/block.h"
 
@@ -14,9 +14,11 @@ struct TransportDelay {
   struct Out { double y; };
   struct Memory {
     Vector<double> time, value;  // rings
+    double begin;                // s
     int newest, count;
   };
-  struct Mode { double has_begun; };
+  struct Mode { double has_arrived; };
+  struct Crossings { double arrival; };
   static constexpr auto describe() {
     return block("Delays a continuous signal by a fixed time.",
       parameter(&TransportDelay::delay, "delay", "s", "How long the signal is under way").positive(),
@@ -24,27 +26,43 @@ struct TransportDelay {
       parameter(&TransportDelay::points, "points", "", "Points of history kept within the delay").between(2, 10000000).optional(),
       input(&In::u, "u", "$u", "Signal"),
       output(&Out::y, "y", "$u", "The signal, one delay ago").from_memory(),
-      buffer(&Memory::time, &TransportDelay::capacity), buffer(&Memory::value, &TransportDelay::capacity));
+      buffer(&Memory::time, &TransportDelay::capacity), buffer(&Memory::value, &TransportDelay::capacity),
+      crossing(&Crossings::arrival, "arrival", Crossing::rising));
   }
-  // Of any three points in a row the outer ones are at least delay/points apart; one lies beyond either end.
-  int capacity() const { return 2 * points + 4; }
-  void decide(const Instant& now, Mode& mode) const { mode.has_begun = now.time >= delay ? 1.0 : 0.0; }
+  // Of any three points in a row the outer ones are at least delay/points apart, jumps excepted.
+  int capacity() const { return 2 * points + 16; }
+  double until_arrival(const Instant& now, const Memory& memory) const {
+    return memory.count ? (memory.begin + delay) - now.time : delay;
+  }
+  void decide(const Instant& now, const Memory& memory, Mode& mode) const {
+    mode.has_arrived = until_arrival(now, memory) <= 1e-12 * delay ? 1.0 : 0.0;
+  }
+  void crossings(const Instant& now, const Memory& memory, const Mode& mode, Crossings& value) const {
+    value.arrival = mode.has_arrived > 0.5 ? 1.0 : -until_arrival(now, memory);
+  }
   double next_stop(double now) const { return now < delay ? delay : now + delay; }
 
   Fault outputs(const Instant& now, const Memory& memory, const Mode& mode, Out& out) const {
     out.y = initial;
-    if (mode.has_begun < 0.5) return {};
+    if (mode.has_arrived < 0.5) return {};
     const double wanted = now.time - delay;
     out.y = interpolate(memory, wanted);
-    return fault_if(memory.count == 0 || wanted > memory.time[size_t(memory.newest)] + 1e-6 * delay,
-                    "the solver's step is longer than the delay");
+    return fault_if(wanted > memory.time[size_t(memory.newest)] + 1e-6 * delay, "the solver's step is longer than the delay");
   }
-  void accept(const Instant& now, const In& in, Memory& memory) const {
-    if (memory.count == 0 && now.time > 0) push(memory, 0.0, in.u);  // the value at the start was not seen: the first one
+  Fault accept(const Instant& now, const In& in, Memory& memory) const {
+    if (memory.count == 0) {
+      memory.begin = now.time;
+      push(memory, now.time, in.u);
+      return {};
+    }
     const size_t last = slot(memory, 0), before = slot(memory, 1);
-    const bool last_is_spare = memory.count > 1 && now.time - memory.time[before] < delay / points;
-    if (last_is_spare) memory.time[last] = now.time, memory.value[last] = in.u;
-    else push(memory, now.time, in.u);
+    if (now.time == memory.time[last] && in.u == memory.value[last]) return {};
+    const bool is_jump = now.time == memory.time[last], follows_jump = memory.count > 1 && memory.time[last] == memory.time[before];
+    const bool last_is_spare = memory.count > 1 && !is_jump && !follows_jump && now.time - memory.time[before] < delay / points;
+    if (last_is_spare) memory.newest = int(before), --memory.count;
+    const bool is_full = memory.count == capacity() && memory.time[slot(memory, capacity() - 2)] > now.time - delay;
+    push(memory, now.time, in.u);
+    return fault_if(is_full, "the signal jumps more often than the history can hold: give the block more points");
   }
 
  private:

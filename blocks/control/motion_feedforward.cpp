@@ -1,7 +1,7 @@
 /// u = M a + B v + F sign(v)
 ///
 /// F is the Coulomb friction to overcome; at rest it gives nothing, and its sign changes by a jump.
-#include "engine/block.h"
+#include "blocks/math/sides.h"
 
 namespace loopwright::blocks {
 
@@ -11,7 +11,7 @@ struct MotionFeedforward {
   struct In { Real velocity, acceleration; };
   struct Out { Real command; };
   struct Mode { Real direction; };
-  struct Crossings { Real direction; };
+  struct Crossings { Real forwards, backwards; };
   static constexpr auto describe() {
     using B = MotionFeedforward;
     return block("The command that a nominal mass with friction needs for a motion.",
@@ -21,16 +21,16 @@ struct MotionFeedforward {
       input(&In::velocity, "velocity", "$velocity", "Wanted velocity"),
       input(&In::acceleration, "acceleration", "$velocity/s", "Wanted acceleration"),
       output(&Out::command, "command", "$command", "Command"),
-      crossing(&Crossings::direction, "direction"));
+      crossing(&Crossings::forwards, "forwards"),
+      crossing(&Crossings::backwards, "backwards"));
   }
   void decide(const In& in, Mode& mode) const { mode.direction = sign_of(in.velocity); }
   void outputs(const In& in, const Mode& mode, Out& out) const {
     out.command = mass * in.acceleration + damping * in.velocity + coulomb * mode.direction;
   }
-  /// A motion that begins from rest leaves zero without a change of sign: there a small speed counts as motion.
-  void crossings(const In& in, const Mode& mode, Crossings& value) const {
-    const Real moves = select(mode.direction == 0.0, absolute(in.velocity) - 1e-9, in.velocity);
-    value.direction = select(coulomb == 0.0, Real(1.0), moves);
+  void crossings(const In& in, Crossings& value) const {
+    value.forwards = select(coulomb == 0.0, Real(1.0), above_zero(in.velocity));
+    value.backwards = select(coulomb == 0.0, Real(1.0), not_below_zero(in.velocity));
   }
 };
 LOOPWRIGHT_BLOCK(MotionFeedforward)

@@ -1,0 +1,25 @@
+#include <gtest/gtest.h>
+#include "tests/blocks/frequency_response.h"
+
+namespace loopwright {
+namespace {
+
+TEST(LeadLag, IsTheTustinImageOfItsFormula) {
+  const double T = 0.001;
+  for (double zero : {20.0, 900.0}) {
+    BlockUnderTest block("LeadLag", R"({"gain": 3, "pole": 200, "zero": )" + std::to_string(zero) + "}", T);
+    for (double w : {0.0, 20.0, 200.0, 2500.0}) {
+      const Complex s = tustin(w, T);
+      EXPECT_COMPLEX_NEAR(sampled_response(block, "u", "y", w, T, 2000), 3.0 * (1.0 + s / zero) / (1.0 + s / 200.0), 1e-11);
+    }
+  }
+}
+
+TEST(LeadLag, ItsGainAtRestIsTheGain) {
+  BlockUnderTest block("LeadLag", R"({"gain": 3, "pole": 200, "zero": 20})", 0.001);
+  for (int k = 0; k < 500; ++k) block.sample("u", 2, "y");
+  EXPECT_NEAR(block.output("y"), 6, 1e-13);
+}
+
+}  // namespace
+}  // namespace loopwright
