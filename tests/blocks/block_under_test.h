@@ -87,7 +87,7 @@ class BlockUnderTest {
   void* block_ = nullptr;
   std::vector<std::vector<double>> inputs_, outputs_, buffers_;
   std::vector<std::vector<const double*>> many_;
-  std::vector<Wire<double>> in_, out_, buffer_wires_;
+  std::vector<Port<double>> in_, out_, buffer_wires_;
   std::vector<double> states_, rates_, crossings_;
   std::vector<std::max_align_t> memory_, mode_;
   Instant now_;
