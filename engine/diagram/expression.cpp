@@ -159,6 +159,9 @@ UnitFinding unit_at(Compiled& f, const std::vector<Quantity>& parameters, const 
   if (!std::isfinite(at_one)) return UnitFinding::no_result;
   if (at_one == 0) return UnitFinding::zero;
   for (size_t base = 0; base < unit.exponents.size(); ++base) {
+    const bool occurs = std::ranges::any_of(
+        parameters, [base](const Quantity& p) { return p.unit && p.unit->exponents[base] != 0; });
+    if (!occurs) continue;
     const auto grown = [&](double lambda) {
       std::vector<double> rescaled = numbers;
       for (size_t i = 0; i < parameters.size(); ++i)

@@ -14,7 +14,7 @@ namespace loopwright {
 namespace {
 
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-constexpr size_t largest_file = 64u << 20;   // bytes
+constexpr size_t largest_file = 64u << 20;     // bytes
 constexpr size_t largest_memory = 512u << 20;  // bytes, of the values in one text
 constexpr size_t deepest_nesting = 64;
 constexpr int most_duplicates = 100;  // reported; each costs a walk through the text

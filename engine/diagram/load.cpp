@@ -17,7 +17,7 @@ namespace loopwright {
 namespace {
 
 constexpr size_t deepest_nesting = 32;   // subdiagrams in subdiagrams
-constexpr size_t most_blocks = 500'000;  // a few small files can name each other into billions
+constexpr size_t most_blocks = 200'000;  // a few small files can name each other into billions
 
 constexpr int current_version = 1;
 /// migrations[i] turns what a file of version i + 1 says into version i + 2.
@@ -66,10 +66,14 @@ class Library {
   }
 
   /// The same for every spelling of a path.
-  static std::string identity(const std::string& path) {
-    std::error_code error;
-    const auto canonical = std::filesystem::weakly_canonical(path, error);
-    return error ? path : canonical.string();
+  const std::string& identity(const std::string& path) {
+    const auto [entry, is_new] = identities_.try_emplace(path);
+    if (is_new) {
+      std::error_code error;
+      const auto canonical = std::filesystem::weakly_canonical(path, error);
+      entry->second = error ? path : canonical.string();
+    }
+    return entry->second;
   }
 
   std::vector<std::string> take_names() { return std::move(read_); }
@@ -105,7 +109,8 @@ class Library {
   }
 
   Problems& problems_;
-  std::unordered_map<std::string, DiagramFile> files_;
+  std::unordered_map<std::string, DiagramFile> files_;       // by identity
+  std::unordered_map<std::string, std::string> identities_;  // by path: asking the file system takes time
   std::vector<std::string> read_;
 };
 
@@ -317,7 +322,11 @@ class DiagramReader {
   void read_type(const Value& body, BlockEntry& entry, const Reader& reader) const {
     const auto* type = body.find("type");
     if (!type) {
-      reader.error(body, "the block has neither \"type\" nor \"diagram\"");
+      Problem& problem = reader.error(body, "the block has neither \"type\" nor \"diagram\"");
+      for (const Value::Member& member : body.members)
+        if (const std::string near = nearest_name(member.name, {"type", "diagram", "variants"});
+            !near.empty())
+          problem.hint = fmt::format("did you mean \"{}\" for \"{}\"?", near, member.name);
       return;
     }
     if (!reader.expect(type->value, Value::Kind::text, "\"type\"", "the name of a block type in quotes"))
@@ -336,8 +345,12 @@ class DiagramReader {
       if (member.name != "parameters" && is_misplaced_key(member, is_variant, reader)) continue;
       Problem& problem = reader.error(member, fmt::format("a subdiagram has no key \"{}\"", member.name));
       KnownNames({known.begin(), known.end()}).explain(problem, member.name);
-      if (member.name == "type") problem.hint = "an entry has either \"type\" or \"diagram\"";
-      if (member.name.starts_with("sample_")) problem.hint = "sample times belong to the blocks inside";
+      if (member.name == "type")
+        problem.hint = "an entry has either \"type\" or \"diagram\"";
+      else if (member.name.starts_with("sample_"))
+        problem.hint = "sample times belong to the blocks inside";
+      else if (problem.hint.empty())
+        problem.hint = "parameters of the diagram stand in \"parameters\"";
     }
     reader.text(body, "description");
     const Value& path = body.find("diagram")->value;
@@ -358,6 +371,10 @@ class DiagramReader {
       }
     }
     if (!has_path) return;
+    if (path.text.empty()) {
+      reader.error(path, "the path of the diagram is empty");
+      return;
+    }
     entry.type_place = path.place;
     const std::string resolved = resolve_relative(path.place, path.text);
     entry.subdiagram = nest_.load(resolved, path.place, path.pointer, std::move(inner));
@@ -537,7 +554,7 @@ std::shared_ptr<Diagram> Nest::load(const std::string& path, const Place& refere
     fail(fmt::format("subdiagrams nest deeper than {} levels", deepest_nesting));
     return nullptr;
   }
-  const std::string identity = Library::identity(path);
+  const std::string identity = library.identity(path);
   if (const auto first = std::ranges::find(identities, identity); first != identities.end()) {
     std::string chain;
     for (auto i = static_cast<size_t>(first - identities.begin()); i < opened.size(); ++i)

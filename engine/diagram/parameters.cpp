@@ -221,7 +221,7 @@ void ParameterScope::convert(Value& value, const std::optional<Unit>& unit, cons
   if (!fits) {
     Problem& problem = reader_.error(value, fmt::format("the unit does not fit the parameter \"{}\"", name));
     problem.expected = unit ? to_string(*unit) : "a bare number, as the parameter has no unit";
-    problem.found = to_string(*value.unit) + (value.text.empty() ? "" : fmt::format(" from {}", value.text));
+    problem.found = shown_unit(value);
     value = broken(value);
     return;
   }
@@ -284,7 +284,7 @@ Value ParameterScope::number_with_unit(const Value& object, const std::string& b
   if (number.unit && !number.unit->same_dimension(*unit)) {
     Problem& problem = reader.error(number, "the unit of the expression is another one");
     problem.expected = to_string(*unit);
-    problem.found = to_string(*number.unit);
+    problem.found = shown_unit(number);
     return broken(object);
   }
   if (!number.unit) number.number *= unit->scale;

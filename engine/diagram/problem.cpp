@@ -148,7 +148,7 @@ std::string nearest_name(std::string_view wrong, const std::vector<std::string>&
   for (std::string_view candidate : candidates) {
     if (candidate.empty() || candidate.size() > longest_name) continue;
     // One mistake in three letters is still the same word; more is a guess.
-    const int allowed = edit_cost * static_cast<int>(std::max(wrong.size(), candidate.size()) + 2) / 3;
+    const int allowed = edit_cost * static_cast<int>(std::max(wrong.size(), candidate.size()) + 1) / 3;
     const int length_difference =
         std::abs(static_cast<int>(wrong.size()) - static_cast<int>(candidate.size()));
     if (length_difference * edit_cost > allowed) continue;

@@ -27,6 +27,11 @@ std::string shown(const Value& value) {
   return fmt::format("the text \"{}…\"", value.text.substr(0, end));
 }
 
+std::string shown_unit(const Value& number) {
+  const std::string unit = number.unit->same_dimension(Unit{}) ? "no dimension" : to_string(*number.unit);
+  return number.text.empty() ? unit : fmt::format("{} from {}", unit, number.text);
+}
+
 bool is_name(std::string_view text) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
   const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };

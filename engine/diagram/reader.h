@@ -13,6 +13,9 @@ namespace loopwright {
 /// "the text "abc"", "a list of 3", "the number 0.5" …
 std::string shown(const Value& value);
 
+/// The unit of a number that has one, and the expression it comes from: "kg from =2*mass".
+std::string shown_unit(const Value& number);
+
 /// Letters, digits and underscores, not starting with a digit: blocks, ports and parameters.
 bool is_name(std::string_view text);
 

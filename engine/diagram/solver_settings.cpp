@@ -67,7 +67,7 @@ class SettingsReader {
     if (!value.unit || value.unit->same_dimension(unit)) return true;
     Problem& problem = reader_.error(value, fmt::format("the unit does not fit \"{}\"", key));
     problem.expected = to_string(unit);
-    problem.found = to_string(*value.unit) + (value.text.empty() ? "" : fmt::format(" from {}", value.text));
+    problem.found = shown_unit(value);
     return false;
   }
 
