@@ -46,7 +46,7 @@ LW_INLINE Fault fault_if(bool failed, const char* reason) { return {failed ? 1u 
 template <int N, int R>
 LW_INLINE Fault fault_if(const Mask<N, R>& failed, const char* reason) {
   Fault fault{0, reason};
-  for (int i = 0; i < N * R; ++i) fault.lanes |= uint64_t(failed.r[i / N][i % N] != 0) << i;
+  for (int i = 0; i < N * R; ++i) fault.lanes |= uint64_t(lane(failed, i)) << i;
   return fault;
 }
 
@@ -60,6 +60,9 @@ struct Setup {
 
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 struct None {};
+
+/// The unit of an input that takes any, each wire its own: factors of a product, arguments of an expression.
+inline constexpr std::string_view any_unit = "?";
 
 /// A number, flag, text or table from the file. The default is the member's initialiser in the block.
 template <class Owner, class T>

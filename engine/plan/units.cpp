@@ -87,7 +87,7 @@ class Solver {
     const BlockInfo& info = block.type->info;
     for (size_t i = 0; i < info.inputs.size(); ++i)
       for (const FlatWire& wire : block.inputs[i]) {
-        if (!wire.is_resolved()) continue;
+        if (!wire.is_resolved() || info.inputs[i].unit == any_unit) continue;
         const FlatBlock& source = flat_.blocks[size_t(wire.block)];
         const PortInfo& output = source.type->info.outputs[size_t(wire.output)];
         add({{b, expression(info.inputs[i].unit), fmt::format("{}.{}", block.path, info.inputs[i].name)},

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <iostream>
 #include "engine/record/csv.h"
 #include "engine/record/recording_file.h"
 #include "tools/command/command.h"
@@ -41,7 +40,7 @@ int run(const Arguments& a) {
   const RunResult result = simulate(*plan, options);
   progress.finish();
   for (const std::string& warning : result.warnings) fmt::print(stderr, "{}: warning: {}\n", a.diagram.path, warning);
-  if (a.output == "-") write_csv(std::cout, result.recording);
+  if (a.output == "-") write_csv("/dev/stdout", result.recording);
   else if (!a.output.empty()) write_recording(a.output, result.recording);
   if (!a.report.empty()) report::write_html(a.report, run_page(*plan, result));
   if (!a.quiet) fmt::print(stderr, "{}", run_summary(*plan, result));

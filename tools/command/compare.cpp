@@ -1,0 +1,47 @@
+#include <fmt/format.h>
+#include <filesystem>
+#include "engine/record/atomic_file.h"
+#include "tools/command/command.h"
+#include "tools/compare/compare.h"
+
+namespace loopwright {
+namespace {
+
+struct Arguments {
+  DiagramArguments diagram;
+  std::string experiment, json, report;
+};
+
+int run(const Arguments& a) {
+  require_writable(a.json, "--json");
+  require_writable(a.report, "--report");
+  Progress progress("compare");
+  RunOptions options;
+  options.interrupt = &interruption();
+  options.progress = [&](double time, double stop) { progress.show(time, stop); };
+  const Comparison comparison = compare(a.diagram.path, a.experiment, a.diagram.options(), options);
+  progress.finish();
+  for (const std::string& warning : comparison.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  if (a.json == "-") fmt::print("{}", to_json(comparison));
+  else if (!a.json.empty()) write_file(a.json, to_json(comparison));
+  const std::string title = std::filesystem::path(a.experiment).filename().string();
+  if (!a.report.empty()) report::write_html(a.report, comparison_page(comparison, comparison.plan->title + " — " + title));
+  fmt::print(stderr, "{}", to_text(comparison));
+  if (comparison.run.status == RunStatus::finished) return done;
+  fmt::print(stderr, "{}: {}\n", a.diagram.path, comparison.run.message);
+  return comparison.run.status == RunStatus::interrupted ? interrupted : run_failed;
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app, std::function<void(std::function<int()>)> choose) {
+  CLI::App* command = app.add_subcommand("compare", "Hold a diagram against a recording");
+  auto a = std::make_shared<Arguments>();
+  a->diagram.add_to(*command);
+  command->add_option("experiment", a->experiment, "Experiment file (JSON)")->required();
+  command->add_option("--json", a->json, "Write the figures as JSON; - for stdout");
+  command->add_option("--report", a->report, "Write an HTML page with overlays and residuals");
+  command->callback([=] { choose([=] { return run(*a); }); });
+}
+
+}  // namespace loopwright

@@ -1,0 +1,161 @@
+#include "tools/compare/compare.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include "engine/diagram/reader.h"
+
+namespace loopwright {
+namespace {
+
+/// The port's number; a problem when the diagram has no such port, or one of another dimension.
+std::optional<Number> find_port(const Plan& plan, const std::string& port, const std::optional<std::string>& unit, const Place& place,
+                                const std::string& pointer, Problems& problems) {
+  const std::vector<Number> numbers = plan.find(port);
+  if (numbers.size() != 1) {
+    auto& p = problems.error(place, pointer, "", numbers.empty() ? fmt::format("the diagram has no port \"{}\"", port)
+                                                                 : fmt::format("\"{}\" has {} elements: name one, \"{}[0]\"", port, numbers.size(), port));
+    std::vector<std::string> names;
+    for (const auto& [name, list] : plan.ports) names.push_back(name);
+    if (numbers.empty()) KnownNames(names).explain(p, port);
+    return {};
+  }
+  const auto of_port = plan.unit_of(numbers[0]), of_data = unit ? parse_unit(*unit) : std::nullopt;
+  if (of_port && of_data && !of_port->same_dimension(*of_data)) {
+    auto& p = problems.error(place, pointer, "", fmt::format("\"{}\" is in another unit than its column", port));
+    p.expected = to_string(*of_port), p.found = *unit;
+  }
+  return numbers[0];
+}
+
+/// The plan with a log of what is compared and of the roles.
+Plan logging(const Plan& plan, const Experiment& experiment, Problems& problems) {
+  Plan changed = plan;
+  changed.log.clear();
+  const auto log = [&](const std::string& name, const std::optional<std::string>& unit, const Place& place, const std::string& pointer) {
+    const auto number = find_port(plan, name, unit, place, pointer, problems);
+    if (!number || std::ranges::any_of(changed.log, [&](const Plan::Logged& l) { return l.name == name; })) return;
+    Plan::Logged logged;
+    logged.name = name, logged.number = *number;
+    if (const auto known = plan.unit_of(*number)) logged.unit = *known, logged.unit_is_known = true;
+    changed.log.push_back(std::move(logged));
+  };
+  for (const RecordedSignal& signal : experiment.compared) log(signal.port, signal.unit, signal.place, signal.pointer);
+  for (const RecordedSignal& signal : experiment.drives) find_port(plan, signal.port, signal.unit, signal.place, signal.pointer, problems);
+  for (size_t i = 0; i < experiment.roles.ports.size(); ++i)
+    log(experiment.roles.ports[i].second, std::nullopt, experiment.roles.places[i], "/roles/" + experiment.roles.ports[i].first);
+  return changed;
+}
+
+/// Values of a simulated column at the recorded times: row by row where they coincide, else joined by straight lines.
+std::vector<double> at_times(const Recording& simulated, const Column& column, const std::vector<double>& times) {
+  const std::vector<double>& t = simulated.columns[0].values;
+  std::vector<double> values;
+  values.reserve(times.size());
+  size_t i = 0;
+  for (double time : times) {
+    while (i + 1 < t.size() && t[i + 1] <= time + 1e-9 * std::max(1.0, std::abs(time))) ++i;
+    if (t.empty() || t.back() < time - 1e-6 * std::max(1.0, std::abs(time))) break;  // the run ended before
+    const bool coincides = i + 1 == t.size() || std::abs(t[i] - time) <= 1e-6 * (t[i + 1] - t[i]);
+    const double s = coincides ? 0 : (time - t[i]) / (t[i + 1] - t[i]);
+    values.push_back(coincides ? column.values[i] : (1 - s) * column.values[i] + s * column.values[i + 1]);
+  }
+  return values;
+}
+
+double rms(std::span<const double> values) {
+  double sum = 0;
+  for (double v : values) sum += v * v;
+  return values.empty() ? 0 : std::sqrt(sum / double(values.size()));
+}
+
+void measure(ComparedSignal& signal, double hold_out_fraction) {
+  const size_t n = signal.simulated.size();
+  signal.measured.resize(n);
+  double mean = 0;
+  for (double y : signal.measured) mean += y / double(n);
+  std::vector<double> around_mean;
+  for (size_t i = 0; i < n; ++i) {
+    signal.error.push_back(signal.simulated[i] - signal.measured[i]);
+    signal.max_abs = std::max(signal.max_abs, std::abs(signal.error.back()));
+    signal.mean += signal.error.back() / double(n);
+    around_mean.push_back(signal.measured[i] - mean);
+  }
+  signal.rmse = rms(signal.error);
+  const double size = rms(signal.measured), spread = rms(around_mean);
+  signal.relative_percent = size > 0 ? 100 * signal.rmse / size : 0;
+  signal.fit_percent = spread > 0 ? 100 * (1 - signal.rmse / spread) : 0;
+  if (hold_out_fraction > 0) signal.held_out_rmse = rms(std::span(signal.error).last(size_t(double(n) * hold_out_fraction)));
+}
+
+void add_axes(Comparison& comparison, const Experiment& experiment) {
+  for (const auto& [role, port] : experiment.roles.ports) {
+    if (role != "position" && role != "velocity") continue;
+    std::vector<double> values;
+    std::string source = "simulated", unit;
+    for (const ComparedSignal& signal : comparison.signals)
+      if (signal.name == port) values = signal.measured, source = "measured", unit = signal.unit;
+    if (const Column* column = comparison.run.recording.find(port); column && values.empty())
+      values = at_times(comparison.run.recording, *column, comparison.time), unit = column->unit;
+    (role == "position" ? comparison.position : comparison.velocity) = values;
+    (role == "position" ? comparison.position_unit : comparison.velocity_unit) = unit;
+    (role == "position" ? comparison.position_source : comparison.velocity_source) = source;
+  }
+}
+
+}  // namespace
+
+Comparison compare(const std::string& diagram_path, const std::string& experiment_path, const LoadOptions& options, const RunOptions& run_options) {
+  Problems problems;
+  const auto experiment = load_experiment(experiment_path, problems);
+  if (!experiment) {
+    if (const auto diagram = load_diagram(diagram_path, options, problems)) compile(*diagram, problems);  // its problems too
+    throw InputError(std::move(problems));
+  }
+  const auto diagram = load_diagram(diagram_path, follow(*experiment, options), problems);
+  const auto plan = diagram ? compile(*diagram, problems) : nullptr;
+  if (!plan) throw InputError(std::move(problems));
+  Comparison comparison;
+  comparison.plan = std::make_shared<Plan>(logging(*plan, *experiment, problems));
+  if (problems.has_errors()) throw InputError(std::move(problems));
+  for (const Problem& problem : problems.list()) comparison.warnings.push_back(to_string(problem));
+  comparison.run = simulate(*comparison.plan, run_options);
+  for (const std::string& warning : comparison.run.warnings) comparison.warnings.push_back(warning);
+  comparison.time = experiment->data.columns.front().values;
+  for (const RecordedSignal& recorded : experiment->compared) {
+    const Column& measured = *experiment->data.find(recorded.port);
+    ComparedSignal signal;
+    signal.name = recorded.port, signal.unit = measured.unit, signal.measured = measured.values, signal.resolution = recorded.resolution;
+    signal.simulated = at_times(comparison.run.recording, *comparison.run.recording.find(recorded.port), comparison.time);
+    measure(signal, experiment->hold_out_fraction);
+    comparison.signals.push_back(std::move(signal));
+  }
+  comparison.time.resize(comparison.signals.front().simulated.size());
+  add_axes(comparison, *experiment);
+  return comparison;
+}
+
+std::string to_json(const Comparison& comparison) {
+  nlohmann::ordered_json json;
+  json["plan"] = comparison.plan->hash;
+  json["rows"] = comparison.time.size();
+  json["finished"] = comparison.run.status == RunStatus::finished;
+  if (!comparison.run.message.empty()) json["message"] = comparison.run.message;
+  for (const ComparedSignal& s : comparison.signals) {
+    auto& entry = json["signals"][s.name];
+    entry = {{"rmse", s.rmse}, {"max_abs", s.max_abs}, {"mean", s.mean}, {"relative_percent", s.relative_percent}, {"fit_percent", s.fit_percent}, {"unit", s.unit}};
+    if (s.held_out_rmse > 0) entry["held_out_rmse"] = s.held_out_rmse;
+  }
+  return json.dump(2) + "\n";
+}
+
+std::string to_text(const Comparison& comparison) {
+  size_t width = 6;
+  for (const ComparedSignal& s : comparison.signals) width = std::max(width, s.name.size());
+  std::string text = fmt::format("  {:<{}} {:>12} {:>12} {:>12} {:>10} {:>8}  unit\n", "signal", width, "rmse", "greatest", "mean", "relative", "fit");
+  for (const ComparedSignal& s : comparison.signals)
+    text += fmt::format("  {:<{}} {:>12.5g} {:>12.5g} {:>12.5g} {:>8.2f} % {:>6.2f} %  {}\n", s.name, width, s.rmse, s.max_abs, s.mean, s.relative_percent, s.fit_percent, s.unit);
+  return text;
+}
+
+}  // namespace loopwright
