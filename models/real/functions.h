@@ -47,7 +47,7 @@ inline constexpr double sine_series[] = {
     -0x1.5555555555555p-3,  0x1.11111111110c8p-7,  -0x1.a01a01a014d6fp-13, 0x1.71de3a52a0b17p-19,
     -0x1.ae6454d4747d8p-26, 0x1.6123cd07433e1p-33, -0x1.ae4384694746cp-41, 0x1.8832a5724f56cp-49};
 
-inline constexpr double sine_limit = 1e6;  // rad; beyond, π times the count of half turns is no longer exact
+inline constexpr double sine_limit = 1e6;  // rad; the reduction holds for k below 2²⁰
 
 /// sin(x - kπ) for integral or half-integral k, |x - kπ| ≤ π/2. π is in three parts whose products with k are
 /// exact but for the last.
@@ -57,13 +57,14 @@ template <class Real> LW_INLINE Real sine_of_remainder(const Real& x, const Real
   const Real y = r + r * z * polynomial<sine_series>(z);
   return select(y > 1.0, Real(1.0), select(y < -1.0, Real(-1.0), y));  // never rounded beyond ±1
 }
-template <class Real> [[gnu::noinline, gnu::cold]] Real sine_far(Real x, Real y) {
+// Static, as they are not inlined: see LW_INLINE.
+template <class Real> [[gnu::noinline, gnu::cold]] static Real sine_far(Real x, Real y) {
   for (int l = 0; l < lanes_of<Real>; ++l) {
     if (!(__builtin_fabs(lane(x, l)) <= sine_limit)) set_lane(y, l, __builtin_sin(lane(x, l)));
   }
   return y;
 }
-template <class Real> [[gnu::noinline, gnu::cold]] Real cosine_far(Real x, Real y) {
+template <class Real> [[gnu::noinline, gnu::cold]] static Real cosine_far(Real x, Real y) {
   for (int l = 0; l < lanes_of<Real>; ++l) {
     if (!(__builtin_fabs(lane(x, l)) <= sine_limit)) set_lane(y, l, __builtin_cos(lane(x, l)));
   }
@@ -82,8 +83,7 @@ template <Scalar Real> LW_INLINE Real sine(const Real& x) {
   return flip_sign(y, x);
 }
 
-/// cos x = sin(x + π/2), x in rad. Error ≤ 3 ulp for |x| ≤ 10⁶; libm, lane by lane, beyond. Even; cosine(0)
-/// = 1.
+/// cos x = sin(x + π/2), x in rad. Error ≤ 3 ulp for |x| ≤ 10⁶; libm, lane by lane, beyond. Even; at most 1.
 template <Scalar Real> LW_INLINE Real cosine(const Real& x) {
   const Real magnitude = absolute(x);
   const Real half_turns = detail::nearest_integer(magnitude * 0x1.45f306dc9c883p-2 + 0.5);
@@ -102,17 +102,10 @@ template <Scalar Real> LW_INLINE SineCosine<Real> sine_cosine(const Real& x) { r
 namespace detail {
 
 /// (eʳ - 1 - r)/r² on |r| ≤ ln 2 / 2.
-inline constexpr double exponential_series[] = {0x1p-1,
-                                                0x1.5555555555557p-3,
-                                                0x1.5555555555556p-5,
-                                                0x1.11111111100dfp-7,
-                                                0x1.6c16c16c162d6p-10,
-                                                0x1.a01a01abe65c3p-13,
-                                                0x1.a01a01a6d79b0p-16,
-                                                0x1.71de0236c3217p-19,
-                                                0x1.27e4db6760171p-22,
-                                                0x1.af4ddeb6edd5ap-26,
-                                                0x1.1f72fd22159cdp-29};
+inline constexpr double exponential_series[] = {
+    0x1.0000000000000p-1,  0x1.5555555555557p-3,  0x1.5555555555556p-5,  0x1.11111111100dfp-7,
+    0x1.6c16c16c162d6p-10, 0x1.a01a01abe65c3p-13, 0x1.a01a01a6d79b0p-16, 0x1.71de0236c3217p-19,
+    0x1.27e4db6760171p-22, 0x1.af4ddeb6edd5ap-26, 0x1.1f72fd22159cdp-29};
 
 inline constexpr double per_ln2 = 0x1.71547652b82fep0;
 inline constexpr double ln2_high = 0x1.62e42fefap-1, ln2_low = 0x1.cf79abc9e3b3ap-40;  // 38 bits and the rest
@@ -252,8 +245,8 @@ template <class Real> LW_INLINE Pair<Real> angle_in_quadrant(const Real& height,
   const Real top = select(steep, -x, select(diagonal, y - x, y));
   const Real bottom = select(steep, y, select(diagonal, y + x, x));
   const Real u = top / bottom, z = u * u;
-  const Real eighths = select(steep, Real(0.5), select(diagonal, Real(0.25), Real(0.0)));  // of π
-  return {eighths * pi_high, u + (u * (z * polynomial<arc_tangent_series>(z)) + eighths * pi_low)};
+  const Real part_of_pi = select(steep, Real(0.5), select(diagonal, Real(0.25), Real(0.0)));
+  return {part_of_pi * pi_high, u + (u * (z * polynomial<arc_tangent_series>(z)) + part_of_pi * pi_low)};
 }
 
 }  // namespace detail
