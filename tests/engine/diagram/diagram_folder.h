@@ -27,6 +27,7 @@ class DiagramFolder {
 
   DiagramFolder& with(const std::string& name, std::string_view text) {
     std::filesystem::create_directories((path_ / name).parent_path());
+    std::filesystem::remove(path_ / name);  // some file systems flush a file that is written over
     std::ofstream(path_ / name, std::ios::binary) << text;
     return *this;
   }

@@ -7,45 +7,25 @@
 namespace loopwright {
 namespace {
 
-constexpr std::string_view outer = R"({
+constexpr std::string_view outer = R"json({
   "loopwright": 1, "title": "Stage µ", "description": "of a test",
-  "parameters": {"mass": {"value": 0.25, "unit": "kg"}, "cutoff": {"value": "=2*pi*40", "unit": "rad/s"}, "n": 3, "list": [1, "=n"],
-                 "stiffness": "=mass*cutoff^2", "file": "a.csv", "half": "=n > 2 ? 0.5 : sqrt(2)"
-}
-, "solver" : {
-  "method" : "dopri5",
-  "step" : 1e-4,
-  "start" : 0,
-  "stop" : "=half*4",
-  "relative_tolerance" : 1e-8,
-  "algebraic_loops" : "solve",
-  "seed" : 3
-},
-             "inputs" : {"force" : "N", "load" : {"unit" : "V/sqrt(Hz)", "description" : "x"}},
-                        "blocks"
-    : {
-      "source" : {
-        "type" : "Motion",
-        "file" : "=file",
-        "table" : [ [ 1, 2 ], [ 3, "=list" ] ],
-        "sample_time" : 0.001,
-        "sample_offset" : {"value" : 1, "unit" : "ms"}
-      },
-      "sum" :
-          {"type" : "Sum", "signs" : "+-", "in" : {"terms" : [ "source.y[2]", "stage.position", "force" ]}},
-      "stage" : {
-        "variants" : {
-          "simulated" : {"diagram" : "inner.json", "parameters" : {"payload" : "=2*mass", "gain" : 2}},
-          "real" : {"type" : "HardwareIo", "device" : "no.json"}
-        },
-        "variant" : "simulated",
-        "in" : {"command" : "sum.sum"}
-      },
-      "again" : {"diagram" : "inner.json", "in" : {"command" : "source.y"}}
-    },
-      "outputs" : {"y" : "sum.sum", "z" : {"source" : "stage.position", "unit" : "m"}},
-                  "log" : [ "source.y", "stage.*", "stage.mass.velocity" ]
-})";
+  "parameters": {"mass": {"value": 0.25, "unit": "kg"}, "cutoff": {"value": "=2*pi*40", "unit": "rad/s"}, "n": 3,
+                 "list": [1, "=n"], "stiffness": "=mass*cutoff^2", "file": "a.csv", "half": "=n > 2 ? 0.5 : sqrt(2)"},
+  "solver": {"method": "dopri5", "step": 1e-4, "start": 0, "stop": "=half*4", "relative_tolerance": 1e-8,
+             "algebraic_loops": "solve", "seed": 3},
+  "inputs": {"force": "N", "load": {"unit": "V/sqrt(Hz)", "description": "x"}},
+  "blocks": {
+    "source": {"type": "Motion", "file": "=file", "table": [[1, 2], [3, "=list"]], "sample_time": 0.001,
+               "sample_offset": {"value": 1, "unit": "ms"}},
+    "sum": {"type": "Sum", "signs": "+-", "in": {"terms": ["source.y[2]", "stage.position", "force"]}},
+    "stage": {"variants": {"simulated": {"diagram": "inner.json", "parameters": {"payload": "=2*mass", "gain": 2}},
+                           "real": {"type": "HardwareIo", "device": "no.json"}},
+              "variant": "simulated", "in": {"command": "sum.sum"}},
+    "again": {"diagram": "inner.json", "in": {"command": "source.y"}}
+  },
+  "outputs": {"y": "sum.sum", "z": {"source": "stage.position", "unit": "m"}},
+  "log": ["source.y", "stage.*", "stage.mass.velocity"]
+})json";
 
 constexpr std::string_view inner = R"({
   "loopwright": 1,
