@@ -16,9 +16,9 @@ namespace loopwright {
 ///
 /// Errors: no MAT file, a damaged or shortened one; columns of unequal length; complex numbers, sparse
 /// matrices, cells, nested structures and arrays of them, arrays of more than two dimensions; NaN and
-/// infinity; no numbers at all. After any of them the recording is empty. matio 1.5.23 can crash, hang or ask
-/// for any amount of memory when a file is damaged; it therefore works in a process of its own with limits of
-/// time and memory.
+/// infinity; no numbers at all. After any of them the recording is empty. One flipped bit
+/// can make matio 1.5.23 compute for minutes and take gigabytes, and crashes were reported of it; it
+/// therefore works in a process of its own with limits of time and memory.
 Recording read_mat(const std::string& path, Problems& problems, const ReadOptions& options = {});
 
 /// Writes a MAT 5 file, compressed unless told otherwise: each column as an upright vector under its name

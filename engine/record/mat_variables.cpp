@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <cstdio>
@@ -263,28 +264,34 @@ size_t address_space() {
 }
 #endif
 
-void limit_this_process(const ReadOptions& options) {
+void limit_this_process(int time_limit, [[maybe_unused]] size_t memory_limit) {
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
 #if !defined(__SANITIZE_ADDRESS__)  // the sanitizer maps terabytes of address space for itself
-  const size_t most = address_space() + options.memory_limit;
+  const size_t most = address_space() + memory_limit;
   const rlimit memory{most, most};
   ::setrlimit(RLIMIT_AS, &memory);
 #endif
-  ::signal(SIGALRM, SIG_DFL);
-  sigset_t alarm_only;
-  sigemptyset(&alarm_only);
-  sigaddset(&alarm_only, SIGALRM);
-  ::sigprocmask(SIG_UNBLOCK, &alarm_only, nullptr);
-  ::alarm(static_cast<unsigned>(options.time_limit));
+  // An endless loop uses up its computing time however busy the machine is; the alarm is for a child that
+  // waits.
+  const auto seconds = static_cast<rlim_t>(time_limit);
+  const rlimit computing{seconds, seconds};
+  ::setrlimit(RLIMIT_CPU, &computing);
+  sigset_t deadlines;
+  sigemptyset(&deadlines);
+  for (const int deadline : {SIGXCPU, SIGALRM}) {
+    ::signal(deadline, SIG_DFL);
+    sigaddset(&deadlines, deadline);
+  }
+  ::sigprocmask(SIG_UNBLOCK, &deadlines, nullptr);
+  ::alarm(20 * static_cast<unsigned>(time_limit));
   // The death cries of the C library or of a sanitizer would only confuse: the parent tells what happened.
   const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
   if (nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
 }
 
 /// The work of the child; its result is the exit code: 0 when everything was handed over.
-int read_in_child(const std::string& path, int result, const ReadOptions& options) {
-  limit_this_process(options);
+int read_in_child(const std::string& path, int result) {
   mat_t* const file = Mat_Open(path.c_str(), MAT_ACC_RDONLY);
   if (!file) return 1;
   Packer packer(result);
@@ -301,11 +308,14 @@ int read_in_child(const std::string& path, int result, const ReadOptions& option
   return all ? 0 : 1;
 }
 
-std::string failure_of(int status, const ReadOptions& options) {
+std::string failure_of(int status, int time_limit) {
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
-  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM)
-    return fmt::format("reading did not come to an end within {} s: the file is damaged", options.time_limit);
-  return "the file is damaged";
+  // At the hard limit of computing time the kernel sends SIGKILL.
+  const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  if (signal == SIGXCPU || signal == SIGALRM || signal == SIGKILL)
+    return fmt::format("reading did not come to an end within {} s of computing: the file is damaged",
+                       time_limit);
+  return "the file is damaged, or needs more memory than it may take";
 }
 
 bool unpack(int file, Variables& variables) {
@@ -333,11 +343,13 @@ Variables read_variables(std::string_view file, const std::string& hdf5_path, co
             result = ::memfd_create("mat variables", MFD_CLOEXEC);
   const bool ready = input >= 0 && result >= 0 && Packer(input).put(file.data(), file.size());
   const std::string path = hdf5_path.empty() ? fmt::format("/proc/self/fd/{}", input) : hdf5_path;
+  const int time_limit = std::max(1, options.time_limit) + static_cast<int>(file.size() >> 22);
   const pid_t child = ready ? ::fork() : -1;
   if (child == 0) {
     int code = 1;
     try {
-      code = read_in_child(path, result, options);
+      limit_this_process(time_limit, options.memory_limit + 64 * file.size());
+      code = read_in_child(path, result);
     } catch (...) {  // out of memory: the exit code tells
     }
     ::_exit(code);
@@ -348,7 +360,7 @@ Variables read_variables(std::string_view file, const std::string& hdf5_path, co
     int status = 0;
     while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
-    variables.failure = failure_of(status, options);
+    variables.failure = failure_of(status, time_limit);
     if (variables.failure.empty() && !unpack(result, variables)) variables.failure = "the file is damaged";
   }
   if (input >= 0) ::close(input);

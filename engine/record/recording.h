@@ -31,12 +31,13 @@ void check_recording(const Recording& recording);
 
 /// How strictly a recording is read. Every default refuses what would mislead later.
 struct ReadOptions {
-  bool allow_not_finite = false;    ///< a NaN is a hole in a measurement: it spoils every sum it enters
-  int most_problems = 20;           ///< one screenful shows what is wrong; the rest is counted
-  size_t longest_line = 1 << 20;    ///< [bytes] CSV: some 50,000 columns; beyond that it is no table
-  bool leave_out_misfits = false;   ///< MAT: a variable that fits no column is an error, not lost unseen
-  int time_limit = 60;              ///< [s] MAT: damaged files can send the MAT library into an endless loop
-  size_t memory_limit = 8ul << 30;  ///< [bytes] MAT: a damaged size can ask for more than there is
+  bool allow_not_finite = false;   ///< a NaN is a hole in a measurement: it spoils every sum it enters
+  int most_problems = 20;          ///< one screenful shows what is wrong; the rest is counted
+  size_t longest_line = 1 << 20;   ///< [bytes] CSV: some 50,000 columns; beyond that it is no table
+  bool leave_out_misfits = false;  ///< MAT: a variable that fits no column is an error, not lost unseen
+  /// MAT: one flipped bit can make matio compute for minutes and take gigabytes for a file of a kilobyte.
+  int time_limit = 10;              ///< [s of computing] and 1 s more per 4 MB of file
+  size_t memory_limit = 2ul << 30;  ///< [bytes] and 64 more per byte of file, which may be compressed
 };
 
 }  // namespace loopwright

@@ -241,6 +241,17 @@ TEST(MatProblems, TellFilesThatAreNoneOrCutOff) {
   EXPECT_THAT(problems_of(folder / "a.mat"), HasSubstr("no numbers"));
 }
 
+#if !defined(__SANITIZE_ADDRESS__)  // where memory cannot be limited
+TEST(MatProblems, TellFilesThatNeedMoreMemoryThanTheyMayTake) {
+  const TemporaryFolder folder;
+  write_mat(folder / "a.mat",
+            {{{"x", "", std::vector<double>(8'000'000, 0.0)}}, {}});  // 64 MB in a file of 64 kB
+  EXPECT_NE(problems_of(folder / "a.mat", {.memory_limit = 1 << 20}), "");
+  Problems problems;
+  EXPECT_EQ(read_mat(folder / "a.mat", problems).rows(), 8'000'000u);
+}
+#endif
+
 /// The bytes of valid files of every kind that is read.
 std::vector<std::string> valid_files() {
   const TemporaryFolder folder;
@@ -274,16 +285,17 @@ TEST(MatMutation, ReadingEndsWithErrorsOrAWellFormedRecording) {
   const std::vector<std::string> files = valid_files();
   std::mt19937_64 random(6);
   int refused = 0, read = 0;
-  for (int i = 0; i < 1500; ++i) {
-    const std::string damaged = mutate(files[static_cast<size_t>(i) % files.size()], random);
+  for (int i = 0; i < 600; ++i) {
+    const std::string& whole = files[random() % files.size()];
+    const std::string damaged = i % 2 == 0 ? mutate(whole, random) : flip_bits(whole, 136, random);
     put_bytes(folder / "damaged.mat", damaged);
     Problems problems;
-    const ReadOptions options{.allow_not_finite = random() % 2 == 0, .time_limit = 20};
+    const ReadOptions options{.allow_not_finite = random() % 2 == 0, .time_limit = 1};
     const Recording recording = read_mat(folder / "damaged.mat", problems, options);
     ASSERT_TRUE(is_refused_or_well_formed(recording, problems, options)) << "case " << i;
     ++(problems.has_errors() ? refused : read);
   }
-  EXPECT_GT(refused, 300);
+  EXPECT_GT(refused, 150);
   EXPECT_GT(read, 50);
   EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "a child was left behind";
 }

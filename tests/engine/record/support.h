@@ -142,6 +142,4 @@ inline Recording awkward_recording() {
   return recording;
 }
 
-inline std::string all_text(const Problems& problems) { return problems.text(); }
-
 }  // namespace loopwright
