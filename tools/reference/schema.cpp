@@ -26,12 +26,12 @@ Json object_schema(const std::vector<ParameterInfo>& fields) {
   return schema;
 }
 
-/// A number, or an expression over parameters.
+/// A number, an expression over parameters, or a number with a unit.
 Json number_schema(const ParameterInfo& p, const char* type) {
   Json number = {{"type", type}};
   if (std::isfinite(p.low)) number[p.low_is_open ? "exclusiveMinimum" : "minimum"] = p.low;
   if (std::isfinite(p.high)) number["maximum"] = p.high;
-  return {{"anyOf", Json::array({number, {{"type", "string"}, {"pattern", "^="}}})}};
+  return {{"anyOf", Json::array({number, {{"$ref", "#/$defs/expression"}}, {{"$ref", "#/$defs/quantity"}}})}};
 }
 
 Json type_schema(const ParameterInfo& p) {
@@ -72,7 +72,7 @@ Json block_schema(const BlockInfo& info) {
   if (!info.is_continuous) {
     const ParameterInfo time{"sample_time", "s", "Time between samples", ParameterKind::number, 0, infinity, true};
     properties["sample_time"] = type_schema(time);
-    properties["sample_offset"] = {{"description", "Time of the first sample [s]"}, {"anyOf", Json::array({{{"type", "number"}, {"minimum", 0}}, {{"type", "string"}, {"pattern", "^="}}})}};
+    properties["sample_offset"] = {{"description", "Time of the first sample [s]"}, {"anyOf", Json::array({{{"type", "number"}, {"minimum", 0}}, {{"$ref", "#/$defs/expression"}}, {{"$ref", "#/$defs/quantity"}}})}};
   }
   for (auto& [name, parameter] : schema["properties"].items()) properties[name] = parameter;
   schema["properties"] = properties;
@@ -84,7 +84,7 @@ Json block_schema(const BlockInfo& info) {
 }
 
 Json solver_schema() {
-  const Json number = {{"anyOf", Json::array({{{"type", "number"}}, {{"type", "string"}, {"pattern", "^="}}})}};
+  const Json number = {{"anyOf", Json::array({{{"type", "number"}}, {{"$ref", "#/$defs/expression"}}, {{"$ref", "#/$defs/quantity"}}})}};
   Json properties = {{"method", {{"enum", {"euler", "heun", "rk4", "dopri5", "cvode-bdf", "cvode-adams"}}}},
                      {"algebraic_loops", {{"enum", {"error", "solve"}}}},
                      {"seed", {{"type", "integer"}, {"minimum", 0}}}};
@@ -97,6 +97,9 @@ Json solver_schema() {
 std::string diagram_schema() {
   Json definitions = {{"wire", {{"type", "string"}, {"description", "block.output, block.output[0], or an input of this diagram"}}},
                       {"wires", {{"anyOf", Json::array({{{"$ref", "#/$defs/wire"}}, {{"type", "array"}, {"items", {{"$ref", "#/$defs/wire"}}}}})}}},
+                      {"expression", {{"type", "string"}, {"pattern", "^="}, {"description", "An expression over parameters, \"=2*pi*40\""}}},
+                      {"quantity", {{"type", "object"}, {"required", {"value", "unit"}}, {"additionalProperties", false},
+                                    {"properties", {{"value", {{"anyOf", Json::array({{{"type", "number"}}, {{"$ref", "#/$defs/expression"}}})}}}, {"unit", {{"type", "string"}}}}}}},
                       {"solver", solver_schema()}};
   Json choices = Json::array();
   for (const auto& [name, type] : all_blocks()) {
@@ -113,7 +116,7 @@ std::string diagram_schema() {
   const Json parameter = {{"anyOf", Json::array({{{"type", {"number", "string", "boolean", "array"}}},
                                                  {{"type", "object"}, {"required", {"value"}}, {"additionalProperties", false},
                                                   {"properties", {{"value", Json::object()}, {"unit", {{"type", "string"}}}, {"description", {{"type", "string"}}}}}}})}};
-  const Json port = {{"type", "object"}, {"properties", {{"unit", {{"type", "string"}}}, {"description", {{"type", "string"}}}, {"from", {{"$ref", "#/$defs/wire"}}}}}};
+  const Json port = {{"type", "object"}, {"properties", {{"unit", {{"type", "string"}}}, {"description", {{"type", "string"}}}, {"source", {{"$ref", "#/$defs/wire"}}}}}};
   const Json schema = {
       {"$schema", "https://json-schema.org/draft/2020-12/schema"},
       {"title", "Loopwright diagram"},
@@ -123,8 +126,8 @@ std::string diagram_schema() {
        {{"loopwright", {{"const", 1}}}, {"title", {{"type", "string"}}}, {"description", {{"type", "string"}}},
         {"parameters", {{"type", "object"}, {"additionalProperties", parameter}}},
         {"solver", {{"$ref", "#/$defs/solver"}}},
-        {"inputs", {{"type", "object"}, {"additionalProperties", port}}},
-        {"outputs", {{"type", "object"}, {"additionalProperties", {{"anyOf", Json::array({{{"$ref", "#/$defs/wire"}}, port})}}}}},
+        {"inputs", {{"type", "object"}, {"additionalProperties", input}}},
+        {"outputs", {{"type", "object"}, {"additionalProperties", output}}},
         {"blocks", {{"type", "object"}, {"additionalProperties", {{"$ref", "#/$defs/block"}}}}},
         {"log", {{"type", "array"}, {"items", {{"type", "string"}}}}}}},
       {"additionalProperties", false},
