@@ -44,8 +44,7 @@ class Simulation {
   // ---- fixed step ----
   void run_fixed() {
     const int64_t stop = plan_.stop_tick;
-    int64_t next_record = next_multiple(plan_.record_ticks), next_checkpoint = next_multiple(checkpoint_ticks_);
-    if (options_.resume_file.empty()) next_record = run_.now().tick;  // the first row is that of the start
+    int64_t next_record = first_row(), next_checkpoint = next_multiple(checkpoint_ticks_);
     for (;;) {
       const int64_t tick = run_.now().tick;
       const bool records = tick == next_record || tick == stop;
@@ -54,7 +53,8 @@ class Simulation {
         run_.evaluate(run_.due(), true);
         run_.accept();
         recorder_.record(run_);
-        check_finite();
+        if (run_.failed()) fail_by_fault();
+        else check_finite();
         return;
       }
       const int64_t limit = std::min(next_record, next_checkpoint);
@@ -82,6 +82,11 @@ class Simulation {
     if (ticks <= 0) return INT64_MAX;
     return (run_.now().tick / ticks + 1) * ticks;
   }
+  /// The first tick, now or later, that has a row: rows are counted from the start. A checkpoint holds no row of its tick.
+  int64_t first_row() const {
+    const int64_t since_start = run_.now().tick - plan_.start_tick, every = plan_.record_ticks;
+    return plan_.start_tick + (since_start + every - 1) / every * every;
+  }
 
   // ---- variable step ----
   void run_variable() {
@@ -94,10 +99,15 @@ class Simulation {
                            [](void* self, double t, const double* x, double* value) { return static_cast<Run<double>*>(self)->crossings_at(t, x, value); }};
     Solver solver(options, system);
     int64_t next_checkpoint = next_multiple(checkpoint_ticks_);
-    next_row_ = options_.resume_file.empty() ? run_.now().tick : next_multiple(plan_.record_ticks);
+    next_row_ = first_row();
     bool fresh = true;
     for (;;) {
       const int64_t tick = run_.now().tick;
+      if (tick == next_checkpoint) {
+        checkpoint();
+        next_checkpoint += checkpoint_ticks_;
+        fresh = true;  // so that a run resumed here takes the very same steps
+      }
       const uint64_t due = run_.due();
       run_.evaluate(due, true);
       run_.accept();
@@ -109,24 +119,24 @@ class Simulation {
       if (run_.failed()) { fail_by_fault(); break; }
       if (tick == plan_.stop_tick) break;
       run_.update(due);
-      if (tick == next_checkpoint) {
-        checkpoint();
-        next_checkpoint += checkpoint_ticks_;
-        fresh = true;  // so that a run resumed here takes the very same steps
-      }
+      if (run_.failed()) { fail_by_fault(); break; }
       const int64_t next = std::min({plan_.stop_tick, next_checkpoint, plan_.rates.empty() ? INT64_MAX : run_.next_due()});
       copy_states();
-      if (fresh) solver.start(run_.now().time, x_.data());
+      if (fresh) count(solver.statistics()), solver.start(run_.now().time, x_.data());
       else solver.restart(run_.now().time, x_.data());
       fresh = false;
       if (!advance(solver, next) || !go_on()) break;
     }
-    const SolverStatistics& s = solver.statistics();
-    result_.statistics.steps = s.steps, result_.statistics.rejected_steps = s.error_test_failures + s.convergence_failures;
-    result_.statistics.derivative_evaluations = s.derivative_evaluations, result_.statistics.restarts = s.restarts;
-    if (s.stiff)
+    count(solver.statistics());
+    if (stiffest_state_ >= 0)
       result_.warnings.push_back(fmt::format("\"{}\" makes the diagram stiff: stability, not accuracy, sets the step of {}; \"cvode-bdf\" would take longer steps",
-                                             block_of_state(s.stiffest_state), to_name(plan_.method)));
+                                             block_of_state(stiffest_state_), to_name(plan_.method)));
+  }
+  /// Adds what a solver did since its start, which forgets it.
+  void count(const SolverStatistics& s) {
+    result_.statistics.steps += s.steps, result_.statistics.rejected_steps += s.error_test_failures + s.convergence_failures;
+    result_.statistics.derivative_evaluations += s.derivative_evaluations, result_.statistics.restarts += s.restarts;
+    if (s.stiff && stiffest_state_ < 0) stiffest_state_ = s.stiffest_state;
   }
 
   /// From the present tick to the next at which something is due, over events and known discontinuities.
@@ -137,8 +147,8 @@ class Simulation {
       const Advance step = solver.step(stop, directions_.empty() ? nullptr : directions_.data());
       if (!succeeded(step.status)) return fail_by_solver(solver, step);
       if (!record_between(solver, next)) return false;
+      if (!accept_at(solver)) return false;  // before a jump too: a delay keeps both sides of it
       if (step.status == SolverStatus::stepped) {
-        if (!accept_at(solver)) return false;
         if (!go_on()) return false;
         continue;
       }
@@ -261,6 +271,7 @@ class Simulation {
   std::vector<Crossing> directions_;
   std::vector<double> x_, between_;
   int64_t checkpoint_ticks_ = 0, next_row_ = 0;
+  int stiffest_state_ = -1;  // the first that made the solver stiff; -1: none
   uint32_t since_progress_ = 0;
 };
 

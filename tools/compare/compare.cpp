@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include "engine/diagram/reader.h"
+#include "tools/report/typography.h"
 
 namespace loopwright {
 namespace {
@@ -152,9 +153,13 @@ std::string to_json(const Comparison& comparison) {
 std::string to_text(const Comparison& comparison) {
   size_t width = 6;
   for (const ComparedSignal& s : comparison.signals) width = std::max(width, s.name.size());
-  std::string text = fmt::format("  {:<{}} {:>12} {:>12} {:>12} {:>10} {:>8}  unit\n", "signal", width, "rmse", "greatest", "mean", "relative", "fit");
+  const auto shown = [](double value, const std::string& unit) {
+    const report::Quantity q = report::engineering(value, unit);
+    return fmt::format("{} {}", q.value, q.unit);
+  };
+  std::string text = fmt::format("  {:<{}} {:>12} {:>12} {:>12} {:>10} {:>9}\n", "signal", width, "error, rms", "greatest", "mean", "relative", "fit");
   for (const ComparedSignal& s : comparison.signals)
-    text += fmt::format("  {:<{}} {:>12.5g} {:>12.5g} {:>12.5g} {:>8.2f} % {:>6.2f} %  {}\n", s.name, width, s.rmse, s.max_abs, s.mean, s.relative_percent, s.fit_percent, s.unit);
+    text += fmt::format("  {:<{}} {:>12} {:>12} {:>12} {:>8.2f} % {:>7.2f} %\n", s.name, width, shown(s.rmse, s.unit), shown(s.max_abs, s.unit), shown(s.mean, s.unit), s.relative_percent, s.fit_percent);
   return text;
 }
 

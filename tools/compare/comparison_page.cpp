@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include "tools/compare/compare.h"
+#include "tools/report/typography.h"
 #include "tools/run/run_page.h"
 
 namespace loopwright {
@@ -7,6 +8,10 @@ namespace {
 
 using report::Series;
 
+std::string shown(double value, const std::string& unit) {
+  const report::Quantity q = report::engineering(value, unit);
+  return q.unit.empty() ? q.value : q.value + " " + q.unit;
+}
 std::string shown_unit(const std::string& unit) { return unit == "1" ? "" : unit; }
 
 report::Plot scatter(const ComparedSignal& s, std::string title, std::string axis, const std::string& unit, const std::vector<double>& x) {
@@ -22,11 +27,15 @@ report::Plot scatter(const ComparedSignal& s, std::string title, std::string axi
 report::Section signal_section(const Comparison& c, const ComparedSignal& s) {
   report::Section section{s.name, {}};
   report::KeyNumbers numbers;
-  numbers.numbers = {{"Error, RMS", fmt::format("{:.4g}", s.rmse), s.unit, ""},
-                     {"Error, greatest", fmt::format("{:.4g}", s.max_abs), s.unit, ""},
+  const auto number = [&](std::string label, double value) {
+    const report::Quantity q = report::engineering(value, s.unit);
+    return report::KeyNumbers::Number{std::move(label), q.value, q.unit, ""};
+  };
+  numbers.numbers = {number("Error, RMS", s.rmse),
+                     number("Error, greatest", s.max_abs),
                      {"Relative to the signal", fmt::format("{:.2f}", s.relative_percent), "%", ""},
                      {"Fit", fmt::format("{:.2f}", s.fit_percent), "%", "100 (1 − ‖y − ŷ‖ / ‖y − mean y‖)"}};
-  if (s.held_out_rmse > 0) numbers.numbers.push_back({"Error, RMS, held out", fmt::format("{:.4g}", s.held_out_rmse), s.unit, ""});
+  if (s.held_out_rmse > 0) numbers.numbers.push_back(number("Error, RMS, held out", s.held_out_rmse));
   section.items.push_back(std::move(numbers));
   report::Plot overlay;
   overlay.x = {"Time", "s", false}, overlay.y = {s.name, shown_unit(s.unit), false}, overlay.group = "time";
@@ -34,7 +43,7 @@ report::Section signal_section(const Comparison& c, const ComparedSignal& s) {
   report::Plot error;
   error.x = {"Time", "s", false}, error.y = {"Error", shown_unit(s.unit), false}, error.group = "time";
   error.series = {{"simulated − measured", c.time, s.error, Series::Shape::line}};
-  if (s.resolution > 0) error.caption = fmt::format("The sensor resolves {:g} {}.", s.resolution, s.unit);
+  if (s.resolution > 0) error.caption = fmt::format("The sensor resolves {}.", shown(s.resolution, s.unit));
   section.items.push_back(std::move(overlay));
   section.items.push_back(std::move(error));
   if (!c.position.empty()) section.items.push_back(scatter(s, "Error against position", "Position, " + c.position_source, c.position_unit, c.position));
@@ -49,9 +58,9 @@ report::Page comparison_page(const Comparison& c, const std::string& title) {
   page.title = title;
   page.subtitle = "The model held against the measurement";
   page.facts = {{"Diagram", c.plan->title}, {"Plan", c.plan->hash}, {"Rows", fmt::format("{}", c.time.size())}};
-  report::Table table{{"Signal", "Unit", "Error, RMS", "Error, greatest", "Mean error", "Relative (%)", "Fit (%)"}, {}, ""};
+  report::Table table{{"Signal", "Error, RMS", "Error, greatest", "Mean error", "Relative (%)", "Fit (%)"}, {}, ""};
   for (const ComparedSignal& s : c.signals)
-    table.rows.push_back({s.name, shown_unit(s.unit), fmt::format("{:.5g}", s.rmse), fmt::format("{:.5g}", s.max_abs), fmt::format("{:.5g}", s.mean),
+    table.rows.push_back({s.name, shown(s.rmse, s.unit), shown(s.max_abs, s.unit), shown(s.mean, s.unit),
                           fmt::format("{:.2f}", s.relative_percent), fmt::format("{:.2f}", s.fit_percent)});
   report::Section summary{"Summary", {std::move(table)}};
   if (c.run.status != RunStatus::finished) summary.items.push_back(report::Notice{report::Notice::Severity::error, c.run.message});

@@ -116,7 +116,12 @@ std::string diagram_schema() {
   const Json parameter = {{"anyOf", Json::array({{{"type", {"number", "string", "boolean", "array"}}},
                                                  {{"type", "object"}, {"required", {"value"}}, {"additionalProperties", false},
                                                   {"properties", {{"value", Json::object()}, {"unit", {{"type", "string"}}}, {"description", {{"type", "string"}}}}}}})}};
-  const Json port = {{"type", "object"}, {"properties", {{"unit", {{"type", "string"}}}, {"description", {{"type", "string"}}}, {"source", {{"$ref", "#/$defs/wire"}}}}}};
+  const Json input_schema = {{"anyOf", Json::array({{{"type", "string"}, {"description", "Its unit"}},
+                                                    {{"type", "object"}, {"additionalProperties", false},
+                                                     {"properties", {{"unit", {{"type", "string"}}}, {"description", {{"type", "string"}}}}}}})}};
+  const Json output_schema = {{"anyOf", Json::array({{{"$ref", "#/$defs/wire"}},
+                                                     {{"type", "object"}, {"required", {"source"}}, {"additionalProperties", false},
+                                                      {"properties", {{"source", {{"$ref", "#/$defs/wire"}}}, {"unit", {{"type", "string"}}}, {"description", {{"type", "string"}}}}}}})}};
   const Json schema = {
       {"$schema", "https://json-schema.org/draft/2020-12/schema"},
       {"title", "Loopwright diagram"},
@@ -126,8 +131,8 @@ std::string diagram_schema() {
        {{"loopwright", {{"const", 1}}}, {"title", {{"type", "string"}}}, {"description", {{"type", "string"}}},
         {"parameters", {{"type", "object"}, {"additionalProperties", parameter}}},
         {"solver", {{"$ref", "#/$defs/solver"}}},
-        {"inputs", {{"type", "object"}, {"additionalProperties", input}}},
-        {"outputs", {{"type", "object"}, {"additionalProperties", output}}},
+        {"inputs", {{"type", "object"}, {"additionalProperties", input_schema}}},
+        {"outputs", {{"type", "object"}, {"additionalProperties", output_schema}}},
         {"blocks", {{"type", "object"}, {"additionalProperties", {{"$ref", "#/$defs/block"}}}}},
         {"log", {{"type", "array"}, {"items", {{"type", "string"}}}}}}},
       {"additionalProperties", false},

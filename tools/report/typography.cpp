@@ -1,4 +1,5 @@
 #include "tools/report/typography.h"
+#include <array>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -164,6 +165,17 @@ int significant_digits(std::span<const double> values) {
 std::size_t text_width(std::string_view text) {
   return static_cast<std::size_t>(std::count_if(
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+Quantity engineering(double value, std::string_view unit, int digits) {
+  constexpr std::array<std::string_view, 9> prefixes{"p", "n", "µ", "m", "", "k", "M", "G", "T"};
+  constexpr std::array<std::string_view, 10> takes_prefix{"m", "N", "V", "A", "s", "W", "Hz", "Pa", "J", "rad"};
+  const std::string_view head = unit.substr(0, unit.find_first_of("*/^"));
+  const bool is_power = head.size() < unit.size() && unit[head.size()] == '^';
+  const bool fits = !is_power && std::ranges::find(takes_prefix, head) != takes_prefix.end();
+  if (!fits || value == 0 || !std::isfinite(value)) return {fmt::format("{:.{}g}", value, digits), readable_unit(unit)};
+  const int step = std::clamp(int(std::floor(std::log10(std::abs(value)) / 3)), -4, head == "s" ? 0 : 4);
+  return {fmt::format("{:.{}g}", value / std::pow(1000.0, step), digits), std::string(prefixes[size_t(step + 4)]) + readable_unit(unit)};
 }
 
 }  // namespace loopwright::report

@@ -2,34 +2,53 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace loopwright {
 namespace {
 
 std::string unit_text(const Column& column) { return column.unit == "1" ? "" : column.unit; }
 
-/// Signals of one unit share a scope, so that what should agree can be seen to agree; many make several scopes.
+double peak_of(const Column& column) {
+  double peak = 0;
+  for (double v : column.values) peak = std::max(peak, std::abs(v));
+  return peak;
+}
+
+/// A scope that is being filled: signals of one unit and of like size, so that what should agree can be seen to agree and
+/// a small error does not drown beside a long way.
+struct Scope {
+  std::string unit;
+  double peak;
+  report::Plot plot;
+  bool takes(const Column& column, double size) const {
+    constexpr size_t most_signals = 6;
+    constexpr double like = 30;
+    return !unit.empty() && unit == column.unit && plot.series.size() < most_signals && size <= like * peak && peak <= like * size;
+  }
+};
+
 std::vector<report::Plot> scopes(const Plan& plan, const Recording& recording) {
-  constexpr size_t most_in_a_scope = 6;
-  std::vector<report::Plot> plots;
-  std::map<std::string, size_t> open;  // unit → plot
-  const std::vector<double>& time = recording.columns[0].values;
+  std::vector<Scope> scopes;
   for (size_t c = 1; c < recording.columns.size(); ++c) {
     const Column& column = recording.columns[c];
-    const auto found = open.find(column.unit);
-    if (column.unit.empty() || found == open.end() || plots[found->second].series.size() >= most_in_a_scope) {
-      report::Plot plot;
-      plot.x = {"Time", "s", false};
-      plot.y = {column.name, unit_text(column), false};
-      plot.group = "time";
-      open[column.unit] = plots.size();
-      plots.push_back(std::move(plot));
+    const double peak = peak_of(column);
+    auto scope = std::ranges::find_if(scopes, [&](const Scope& s) { return s.takes(column, peak); });
+    if (scope == scopes.end()) {
+      scopes.push_back({column.unit, peak, {}});
+      scope = scopes.end() - 1;
+      scope->plot.x = {"Time", "s", false};
+      scope->plot.y = {column.name, unit_text(column), false};
+      scope->plot.group = "time";
     }
-    report::Plot& plot = plots[column.unit.empty() ? plots.size() - 1 : open[column.unit]];
     const bool held = plan.log[c - 1].rate.kind == Rate::Kind::sampled;
-    plot.series.push_back({column.name, time, column.values, held ? report::Series::Shape::steps : report::Series::Shape::line});
-    if (plot.series.size() > 1) plot.y.label = column.unit.empty() || column.unit == "1" ? "Value" : "Signals";
+    scope->plot.series.push_back({column.name, recording.columns[0].values, column.values, held ? report::Series::Shape::steps : report::Series::Shape::line});
+    if (scope->plot.series.size() > 1) scope->plot.y.label = "Signals";
+  }
+  std::vector<report::Plot> plots;
+  for (Scope& scope : scopes) {
+    for (const report::Series& series : scope.plot.series) scope.plot.caption += (scope.plot.caption.empty() ? "" : ", ") + series.name;
+    scope.plot.caption += ".";
+    plots.push_back(std::move(scope.plot));
   }
   return plots;
 }
