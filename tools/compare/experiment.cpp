@@ -100,11 +100,14 @@ class Loader {
     result_->hold_out_fraction = number(hold_out->value, "fraction", 0, 0, 0.9);
   }
 
-  /// Beside the experiment; else below $LOOPWRIGHT_DATA, also in its folders.
+  /// Beside the experiment; else below $LOOPWRIGHT_DATA (../shared/data when that is not set), also in its folders.
   std::string find_data(const std::string& name, std::vector<std::string>& tried) {
     std::vector<fs::path> places{fs::path(result_->path).parent_path() / name};
-    if (const char* root = std::getenv("LOOPWRIGHT_DATA")) {
-      places.push_back(fs::path(root) / name);
+    const char* variable = std::getenv("LOOPWRIGHT_DATA");
+    const fs::path root = variable && *variable ? variable : "../shared/data";
+    std::error_code missing;
+    if (fs::is_directory(root, missing)) {
+      places.push_back(root / name);
       std::error_code code;
       std::vector<fs::path> folders;
       for (const auto& entry : fs::directory_iterator(root, code)) if (entry.is_directory(code)) folders.push_back(entry.path() / name);
