@@ -44,11 +44,17 @@ bool register_block(std::string_view type, std::string_view) {
 template <class B>
 bool register_block(std::string_view, std::string_view) { return true; }
 #else
+/// The folder of a source file; blocks from elsewhere stand in a room of their own.
+inline std::string room_of(std::string_view file) {
+  const size_t rooms = file.find("blocks/");
+  const size_t name = file.rfind('/');
+  return rooms == file.npos || name < rooms + 7 ? "further" : std::string(file.substr(rooms + 7, name - rooms - 7));
+}
+
 template <class B>
 bool register_scalar(std::string_view type, std::string_view file, bool lane_wise) {
   BlockInfo info = info_of<B>(type);
-  const size_t name = file.rfind('/'), room = file.rfind('/', name - 1);
-  info.room = file.substr(room + 1, name - room - 1);
+  info.room = room_of(file);
   info.source = file;
   info.lane_wise = lane_wise;
   add_block(std::move(info), kernels_of<B, double>());
