@@ -1,5 +1,6 @@
 #include "tools/reference/reference.h"
 #include <fmt/format.h>
+#include <cctype>
 #include <cmath>
 
 namespace loopwright {
@@ -53,6 +54,12 @@ std::string feedthrough_text(const BlockInfo& info, const PortInfo& output) {
   return names.empty() ? "from no input directly" : "directly from " + names;
 }
 
+/// From docs/ to the example of a block whose source is blocks/<room>/<name>.cpp.
+std::string example_of(const BlockInfo& info) {
+  const size_t name = info.source.rfind('/') + 1;
+  return "../diagrams/examples/" + info.source.substr(name, info.source.rfind('.') - name) + ".json";
+}
+
 void add_fields(std::string& text, const std::vector<ParameterInfo>& list, const std::string& indent, std::string_view bullet) {
   for (const ParameterInfo& p : list) {
     text += fmt::format("{}{}{} ({}): {}\n", indent, bullet, p.name, facts_text(p), p.sentence);
@@ -95,7 +102,9 @@ std::string block_reference() {
   for (const auto& [room, list] : rooms) {
     text += fmt::format("\n## {}\n", room);
     for (const BlockInfo* info : list) {
-      text += fmt::format("\n### {}\n{} {}.\n\n", info->type, info->sentence, timing_text(*info));
+      std::string timing = timing_text(*info);
+      timing[0] = char(std::toupper(timing[0]));
+      text += fmt::format("\n### {}\n{} {}. [Example]({}).\n\n", info->type, info->sentence, timing, example_of(*info));
       for (const PortInfo& port : info->inputs)
         text += fmt::format("- in `{}` [{}]{}: {}\n", port.name, port.unit, port.is_optional ? fmt::format(", {:g} when not wired", port.otherwise_value) : "", port.sentence);
       for (const PortInfo& port : info->outputs) text += fmt::format("- out `{}` [{}]: {} ({})\n", port.name, port.unit, port.sentence, feedthrough_text(*info, port));
