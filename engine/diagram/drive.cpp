@@ -10,16 +10,6 @@
 namespace loopwright {
 namespace {
 
-std::vector<std::string> split(std::string_view text) {
-  std::vector<std::string> parts;
-  while (true) {
-    const size_t dot = text.find('.');
-    parts.emplace_back(text.substr(0, dot));
-    if (dot == text.npos) return parts;
-    text.remove_prefix(dot + 1);
-  }
-}
-
 template <class Entry> std::string unused_name(std::string name, const std::vector<Entry>& entries) {
   const auto is_used = [&] { return std::ranges::find(entries, name, &Entry::name) != entries.end(); };
   while (is_used()) name += '_';
@@ -47,7 +37,7 @@ class Driver {
     column.settings = drive_.settings;
     const Wire wire = wire_from(column.name + ".value");
 
-    const std::vector<std::string> path = split(drive_.port);
+    const std::vector<std::string> path = split_path(drive_.port);
     const bool is_led =
         path.size() == 1 ? replace_input(top, path[0], wire) : lead(top, path, "", column.name, wire);
     if (is_led) top.blocks.push_back(std::move(column));

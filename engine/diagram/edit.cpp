@@ -60,16 +60,12 @@ std::string Edit::text() const { return fmt::format("{}", fmt::join(path, "."));
 std::optional<Edit> read_edit(const std::pair<std::string, std::string>& option, Problems& problems) {
   const auto& [path, text] = option;
   const auto source = std::make_shared<SourceFile>(SourceFile{fmt::format("--set {}", path), text});
-  Edit edit;
-  for (size_t begin = 0; begin <= path.size();) {
-    const size_t dot = std::min(path.find('.', begin), path.size());
-    edit.path.push_back(path.substr(begin, dot - begin));
-    begin = dot + 1;
-    if (!is_name(edit.path.back()) && !index_in(edit.path.back())) {
-      problems.error({source, 0}, {}, {}, fmt::format("\"{}\" is no path", path)).expected =
-          "names with dots between them, as in stage.payload=0.5";
-      return {};
-    }
+  Edit edit{split_path(path), 0, {}};
+  const auto is_step = [](const std::string& step) { return is_name(step) || index_in(step); };
+  if (!std::ranges::all_of(edit.path, is_step)) {
+    Problem& problem = problems.error({source, 0}, {}, {}, fmt::format("\"{}\" is no path", path));
+    problem.expected = "names with dots between them, as in stage.payload=0.5";
+    return {};
   }
   edit.value = read_value(source, problems);
   if (edit.value.is_broken) return {};

@@ -7,10 +7,11 @@
 #include "engine/diagram/diagram.h"
 #include "engine/diagram/drive.h"
 #include "engine/diagram/edit.h"
-#include "engine/diagram/json.h"
+#include "engine/diagram/library.h"
 #include "engine/diagram/parameters.h"
 #include "engine/diagram/reader.h"
 #include "engine/diagram/solver_settings.h"
+#include "engine/diagram/variants.h"
 #include "engine/diagram/wires.h"
 
 namespace loopwright {
@@ -18,19 +19,6 @@ namespace {
 
 constexpr size_t deepest_nesting = 32;   // subdiagrams in subdiagrams
 constexpr size_t most_blocks = 200'000;  // a few small files can name each other into billions
-
-constexpr int current_version = 1;
-/// migrations[i] turns what a file of version i + 1 says into version i + 2.
-using Migration = Value (*)(Value);
-constexpr std::array<Migration, current_version - 1> migrations = {};
-
-/// `--variant stage=quanser`, seen from one diagram in the nest.
-struct VariantChoice {
-  std::vector<std::string> path;
-  size_t depth = 0;
-  std::string variant;
-  Place place;
-};
 
 /// One use of a diagram file: what its surroundings ask of it.
 struct Instance {
@@ -40,86 +28,12 @@ struct Instance {
   std::vector<VariantChoice> variants;
 };
 
-struct DiagramFile {
-  std::shared_ptr<const SourceFile> source;  // null: cannot be read
-  Value root;                                // no object: has errors, which are reported
-};
-
-/// Files that are read once, however many blocks name them.
-class Library {
- public:
-  explicit Library(Problems& problems) : problems_(problems) {}
-
-  const DiagramFile& open(const std::string& path, const Place& reference) {
-    const auto [entry, is_new] = files_.try_emplace(identity(path));
-    DiagramFile& file = entry->second;
-    if (is_new) {
-      file.source = read_source(path, reference, problems_);
-      if (file.source) {
-        read_.push_back(path);
-        file.root = current(parse_json(file.source, problems_));
-      }
-    } else if (!file.source) {
-      read_source(path, reference, problems_);  // tell about every reference to what is not there
-    }
-    return file;
-  }
-
-  /// The same for every spelling of a path.
-  const std::string& identity(const std::string& path) {
-    const auto [entry, is_new] = identities_.try_emplace(path);
-    if (is_new) {
-      std::error_code error;
-      const auto canonical = std::filesystem::weakly_canonical(path, error);
-      entry->second = error ? path : canonical.string();
-    }
-    return entry->second;
-  }
-
-  std::vector<std::string> take_names() { return std::move(read_); }
-
- private:
-  /// The root in the current version of the format; null after a problem.
-  Value current(Value root) {
-    const Reader reader{problems_, {}};
-    if (root.kind == Value::Kind::null && problems_.has_errors()) return {};
-    if (!reader.expect(root, Value::Kind::object, "the diagram", "an object: { \"loopwright\": 1, … }"))
-      return {};
-    const Value::Member* version = root.find("loopwright");
-    if (!version) {
-      Problem& problem = reader.error(root, "the key \"loopwright\" is missing: the version of the format");
-      problem.expected = fmt::format("\"loopwright\": {}", current_version);
-      return root;
-    }
-    const Value& number = version->value;
-    if (!reader.expect(number, Value::Kind::number, "\"loopwright\"",
-                       fmt::format("the number {}", current_version)))
-      return root;
-    const bool is_known = number.whole && number.number >= 1 && number.number <= current_version;
-    if (!is_known) {
-      Problem& problem = reader.error(number, "the version of the format is not known");
-      problem.expected = fmt::format("\"loopwright\": {}", current_version);
-      problem.found = shown(number);
-      if (number.number > current_version) problem.hint = "a newer Loopwright wrote this file";
-      return {};
-    }
-    for (auto v = static_cast<size_t>(number.number); v < current_version; ++v)
-      root = migrations[v - 1](std::move(root));
-    return root;
-  }
-
-  Problems& problems_;
-  std::unordered_map<std::string, DiagramFile> files_;       // by identity
-  std::unordered_map<std::string, std::string> identities_;  // by path: asking the file system takes time
-  std::vector<std::string> read_;
-};
-
 class DiagramReader;
 
 /// What all diagrams of one load share.
 struct Nest {
   Problems& problems;
-  Library library{problems};
+  DiagramLibrary library{problems};
   std::vector<std::string> opened{};      // the files being read, outermost first
   std::vector<std::string> identities{};  // of the same
   size_t blocks = 0;
@@ -167,7 +81,7 @@ class DiagramReader {
       const bool is_block = blocks && blocks->value.find(edit.head());
       if (!scope_.declares(edit.head()) || (is_block && !edit.is_last())) return false;
       scope_.override_with(
-          {edit.head(), edit.value.place, "", edited(scope_.written_value(edit.head()), edit.inside())});
+          {edit.head(), edit.value.place, "", edited(scope_.given_value(edit.head()), edit.inside())});
       return true;
     });
     scope_.resolve();
@@ -239,7 +153,7 @@ class DiagramReader {
     if (has_variants)
       body = active_variant(member.value, entry, variants, reader);
     else
-      report_variants_of_plain_block(variants, member, reader);
+      reject_choices(variants, reader);
     if (!body) return;
 
     Value copy;
@@ -281,7 +195,10 @@ class DiagramReader {
 
   void read_ordinary(const Value& body, BlockEntry& entry, std::vector<VariantChoice> deeper, bool is_variant,
                      const Reader& reader) {
-    for (const VariantChoice& choice : deeper) unknown_variant_block(choice, reader);
+    for (const VariantChoice& choice : deeper) {
+      const std::string message = fmt::format("the block \"{}\" is not a subdiagram", reader.block);
+      reader.problems.error(choice.place, {}, reader.block, message);
+    }
     constexpr std::array engine_keys = {"type", "in", "sample_time", "sample_offset", "description"};
     for (const Value::Member& member : body.members) {
       if (is_misplaced_key(member, is_variant, reader)) continue;
@@ -390,76 +307,14 @@ class DiagramReader {
     return list;
   }
 
-  // ---- Variants ----
-
-  /// The body of the variant that the options, the file, or its place as the first one choose; null after a
-  /// problem.
-  const Value* active_variant(const Value& block, BlockEntry& entry, std::vector<VariantChoice>& choices,
-                              const Reader& reader) {
-    reader.reject_unknown(block, {"variants", "variant", "in", "description"}, "a block with variants");
-    reader.text(block, "description");
-    const Value& variants = block.find("variants")->value;
-    if (!reader.expect(variants, Value::Kind::object, "\"variants\"", "an object: {\"name\": {\"type\": …}}"))
-      return nullptr;
-    if (variants.members.empty()) {
-      reader.error(variants, "there is no variant to choose");
-      return nullptr;
-    }
-    for (const Value::Member& variant : variants.members) check_variant(variant, reader);
-
-    entry.variant = variants.members.front().name;
-    Value chosen;
-    chosen.kind = Value::Kind::text;
-    if (const auto* written = block.find("variant");
-        written &&
-        reader.expect(written->value, Value::Kind::text, "\"variant\"", "the name of a variant in quotes"))
-      choose(written->value, variants, entry, reader);
+  /// `--variant` for a block that has none.
+  static void reject_choices(std::vector<VariantChoice>& choices, const Reader& reader) {
     std::erase_if(choices, [&](const VariantChoice& choice) {
-      if (choice.depth != choice.path.size()) return false;
-      chosen.text = choice.variant;
-      chosen.place = choice.place;
-      choose(chosen, variants, entry, reader);
+      if (!choice.is_here()) return false;
+      const std::string message = fmt::format("the block \"{}\" has no variants", reader.block);
+      reader.problems.error(choice.place, {}, reader.block, message);
       return true;
     });
-    const Value& body = variants.find(entry.variant)->value;
-    return body.kind == Value::Kind::object ? &body : nullptr;
-  }
-
-  /// What must hold for variants that are not active, too; their files are not opened.
-  static void check_variant(const Value::Member& variant, const Reader& reader) {
-    reader.check_name(variant, "a variant");
-    if (!reader.expect(variant.value, Value::Kind::object, "a variant",
-                       "an object: {\"type\": …} or {\"diagram\": …}"))
-      return;
-    if (!variant.value.find("type") && !variant.value.find("diagram"))
-      reader.error(variant,
-                   fmt::format("the variant \"{}\" has neither \"type\" nor \"diagram\"", variant.name));
-  }
-
-  static void choose(const Value& chosen, const Value& variants, BlockEntry& entry, const Reader& reader) {
-    if (variants.find(chosen.text)) {
-      entry.variant = chosen.text;
-      return;
-    }
-    KnownNames names;
-    for (const Value::Member& variant : variants.members) names.add(variant.name);
-    names.explain(reader.error(chosen, fmt::format("the block has no variant \"{}\"", chosen.text)),
-                  chosen.text);
-  }
-
-  static void report_variants_of_plain_block(std::vector<VariantChoice>& choices, const Value::Member& block,
-                                             const Reader& reader) {
-    std::erase_if(choices, [&](const VariantChoice& choice) {
-      if (choice.depth != choice.path.size()) return false;
-      reader.problems.error(choice.place, {}, reader.block,
-                            fmt::format("the block \"{}\" has no variants", block.name));
-      return true;
-    });
-  }
-
-  static void unknown_variant_block(const VariantChoice& choice, const Reader& reader) {
-    reader.problems.error(choice.place, {}, reader.block,
-                          fmt::format("the block \"{}\" is not a subdiagram", reader.block));
   }
 
   // ---- Inputs and outputs ----
@@ -570,22 +425,6 @@ std::shared_ptr<Diagram> Nest::load(const std::string& path, const Place& refere
   opened.pop_back();
   identities.pop_back();
   return diagram;
-}
-
-std::optional<VariantChoice> read_variant_choice(const std::string& path, const std::string& variant,
-                                                 Problems& problems) {
-  const auto source = std::make_shared<SourceFile>(SourceFile{fmt::format("--variant {}", path), variant});
-  VariantChoice choice{{}, 0, variant, {source, 0}};
-  for (size_t begin = 0; begin <= path.size();) {
-    const size_t dot = std::min(path.find('.', begin), path.size());
-    choice.path.push_back(path.substr(begin, dot - begin));
-    begin = dot + 1;
-    if (is_name(choice.path.back())) continue;
-    problems.error({source, 0}, {}, {}, fmt::format("\"{}\" is no path of a block", path)).expected =
-        "names with dots between them, as in axis.stage=quanser";
-    return {};
-  }
-  return choice;
 }
 
 /// A diagram that is used many times tells the same problem only once.

@@ -99,8 +99,9 @@ void ParameterScope::override_with(Override replacement) {
   known_.explain(problem, replacement.name);
 }
 
-const Value& ParameterScope::written_value(std::string_view name) const {
-  return entries_[index_.at(std::string(name))].written;
+const Value& ParameterScope::given_value(std::string_view name) const {
+  const Entry& entry = entries_[index_.at(std::string(name))];
+  return entry.replacement ? entry.replacement->value : entry.written;
 }
 
 std::vector<Parameter> ParameterScope::take_parameters() {

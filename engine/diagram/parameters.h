@@ -27,8 +27,9 @@ class ParameterScope {
   /// Gives a declared parameter another value; expressions in it are over the names of this scope.
   void override_with(Override replacement);
   bool declares(std::string_view name) const { return index_.contains(std::string(name)); }
-  /// The value in the file of a declared parameter.
-  const Value& written_value(std::string_view name) const;
+  /// What a declared parameter is given so far, in the file or by an override; expressions are not worked
+  /// out.
+  const Value& given_value(std::string_view name) const;
   /// Works out every parameter. Before this, `evaluate` knows no names.
   void resolve();
 

@@ -39,6 +39,16 @@ bool is_name(std::string_view text) {
          std::ranges::all_of(text, [&](char c) { return is_letter(c) || is_digit(c); });
 }
 
+std::vector<std::string> split_path(std::string_view path) {
+  std::vector<std::string> names;
+  while (true) {
+    const size_t dot = path.find('.');
+    names.emplace_back(path.substr(0, dot));
+    if (dot == path.npos) return names;
+    path.remove_prefix(dot + 1);
+  }
+}
+
 std::string joined(std::string_view path, std::string_view name) {
   return path.empty() ? std::string(name) : fmt::format("{}.{}", path, name);
 }

@@ -19,6 +19,9 @@ std::string shown_unit(const Value& number);
 /// Letters, digits and underscores, not starting with a digit: blocks, ports and parameters.
 bool is_name(std::string_view text);
 
+/// "stage.mass" gives "stage" and "mass".
+std::vector<std::string> split_path(std::string_view path);
+
 /// "stage" and "mass" give "stage.mass".
 std::string joined(std::string_view path, std::string_view name);
 

@@ -190,16 +190,40 @@ TEST(Mutants, OfSubdiagramsEndInADiagramOrInErrors) {
 TEST(Mutants, OfOptionsEndInADiagramOrInErrors) {
   DiagramFolder folder;
   folder.with("top.json", outer).with("inner.json", inner);
-  static const std::string_view heads[] = {
-      "mass", "list", "0",           "1",   "stage", "solver", "stop", "source", "table", "payload", "again",
-      "",     "x",    "sample_time", "sum", "in",    "terms",  "[0]",  "[",      "force", "command"};
+  static const std::string_view heads[] = {"stage.payload",
+                                           "source.table.0.1",
+                                           "again.mass.mass",
+                                           "solver.stop",
+                                           "list.0",
+                                           "sum.in.terms",
+                                           "mass",
+                                           "list",
+                                           "0",
+                                           "1",
+                                           "stage",
+                                           "solver",
+                                           "stop",
+                                           "source",
+                                           "table",
+                                           "payload",
+                                           "again",
+                                           "",
+                                           "x",
+                                           "sample_time",
+                                           "sum",
+                                           "in",
+                                           "terms",
+                                           "[0]",
+                                           "[",
+                                           "force",
+                                           "command"};
   static const std::string_view values[] = {
       "1", "=n", "=1/0",  "{",    "[1, 2]",         "\"x\"", "3 mm", "nan",       "inf s",
       "",  "=",  "=mass", "true", "{\"value\": 1}", "\xff",  "null", "simulated", "real"};
   Random random;
   const auto path = [&] {
     std::string text(heads[random.below(std::size(heads))]);
-    for (size_t more = random.below(4); more > 0; --more)
+    for (size_t more = random.below(2); more > 0; --more)
       text += "." + std::string(heads[random.below(std::size(heads))]);
     return text;
   };

@@ -96,6 +96,11 @@ TEST_F(Overrides, SetAnElementOfAListParameter) {
   EXPECT_EQ(parameter_of(*diagram, "gains").value.items[2].number, 3);
 }
 
+TEST_F(Overrides, SetChangesWhatAnEarlierSetGave) {
+  const auto diagram = set({{"gains", "[7, 8]"}, {"gains.1", "9"}});
+  EXPECT_EQ(to_json(parameter_of(*diagram, "gains").value), "[7,9]");
+}
+
 TEST_F(Overrides, SetASettingDeepInABlock) {
   const auto diagram = set(
       {{"cogging.harmonics.0.amplitude", "7.5"}, {"cogging.sample_time", "0.02"}, {"cogging.extra", "word"}});

@@ -1,0 +1,75 @@
+#include "engine/diagram/library.h"
+
+#include <array>
+#include <filesystem>
+#include <fmt/format.h>
+#include "engine/diagram/json.h"
+#include "engine/diagram/reader.h"
+
+namespace loopwright {
+namespace {
+
+constexpr int current_version = 1;
+/// migrations[i] turns what a file of version i + 1 says into version i + 2.
+using Migration = Value (*)(Value);
+constexpr std::array<Migration, current_version - 1> migrations = {};
+
+}  // namespace
+
+const DiagramFile& DiagramLibrary::open(const std::string& path, const Place& reference) {
+  const auto [entry, is_new] = files_.try_emplace(identity(path));
+  DiagramFile& file = entry->second;
+  if (!is_new) {
+    if (!file.source)
+      read_source(path, reference, problems_);  // every reference to what is not there is told
+    return file;
+  }
+  file.source = read_source(path, reference, problems_);
+  if (!file.source) return file;
+  names_.push_back(path);
+  Problems syntax;
+  Value root = parse_json(file.source, syntax);
+  for (const Problem& problem : syntax.list()) problems_.add(problem);
+  if (!syntax.has_errors()) file.root = in_current_version(std::move(root));
+  return file;
+}
+
+const std::string& DiagramLibrary::identity(const std::string& path) {
+  const auto [entry, is_new] = identities_.try_emplace(path);
+  if (is_new) {
+    std::error_code error;
+    const auto canonical = std::filesystem::weakly_canonical(path, error);
+    entry->second = error ? path : canonical.string();
+  }
+  return entry->second;
+}
+
+/// Null after a problem that makes the rest meaningless.
+Value DiagramLibrary::in_current_version(Value root) {
+  const Reader reader{problems_, {}};
+  if (!reader.expect(root, Value::Kind::object, "the diagram", "an object: { \"loopwright\": 1, … }"))
+    return {};
+  const std::string expected = fmt::format("\"loopwright\": {}", current_version);
+  const Value::Member* version = root.find("loopwright");
+  if (!version) {
+    reader.error(root, "the key \"loopwright\" is missing: the version of the format").expected = expected;
+    return root;
+  }
+  const Value& number = version->value;
+  if (!reader.expect(number, Value::Kind::number, "\"loopwright\"",
+                     fmt::format("the number {}", current_version)))
+    return root;
+  const bool is_known = number.whole && number.number >= 1 && number.number <= current_version;
+  if (!is_known) {
+    Problem& problem = reader.error(number, "the version of the format is not known");
+    problem.expected = expected;
+    problem.found = shown(number);
+    if (number.number > current_version) problem.hint = "a newer Loopwright wrote this file";
+    return {};
+  }
+  for (auto v = static_cast<size_t>(number.number); v < current_version; ++v)
+    root = migrations[v - 1](std::move(root));
+  return root;
+}
+
+}  // namespace loopwright

@@ -1,0 +1,37 @@
+/// The diagram files of one load, each read once, however many blocks name it.
+#pragma once
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <vector>
+#include "engine/diagram/problem.h"
+#include "engine/diagram/value.h"
+
+namespace loopwright {
+
+struct DiagramFile {
+  std::shared_ptr<const SourceFile> source;  ///< null: cannot be read
+  Value root;                                ///< no object: has errors, which are reported
+};
+
+class DiagramLibrary {
+ public:
+  explicit DiagramLibrary(Problems& problems) : problems_(problems) {}
+
+  /// The file at a path that stands at `reference`, in the current version of the format.
+  const DiagramFile& open(const std::string& path, const Place& reference);
+  /// The same for every spelling of a path.
+  const std::string& identity(const std::string& path);
+  /// The files read, in order.
+  std::vector<std::string> take_names() { return std::move(names_); }
+
+ private:
+  Value in_current_version(Value root);
+
+  Problems& problems_;
+  std::unordered_map<std::string, DiagramFile> files_;       // by identity
+  std::unordered_map<std::string, std::string> identities_;  // by path: asking the file system takes time
+  std::vector<std::string> names_;
+};
+
+}  // namespace loopwright
