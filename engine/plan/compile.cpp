@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <algorithm>
+#include <charconv>
 #include "engine/diagram/json.h"
 #include "engine/plan/order.h"
 #include "engine/plan/shapes.h"
@@ -167,14 +168,15 @@ std::shared_ptr<const Plan> load_plan(const std::string& path, const LoadOptions
 }
 
 std::vector<Number> Plan::find(std::string_view port) const {
-  size_t bracket = port.find('[');
+  const size_t bracket = port.find('[');
   const std::string_view name = port.substr(0, bracket);
   const auto found = std::ranges::lower_bound(ports, name, {}, [](const auto& p) { return std::string_view(p.first); });
   if (found == ports.end() || found->first != name) return {};
   if (bracket == port.npos) return found->second;
+  const char *first = port.data() + bracket + 1, *last = port.data() + port.size() - 1;
   size_t index = 0;
-  for (++bracket; bracket + 1 < port.size(); ++bracket) index = index * 10 + size_t(port[bracket] - '0');
-  if (index >= found->second.size()) return {};
+  const auto [end, code] = std::from_chars(first, last, index);
+  if (code != std::errc() || end != last || *last != ']' || index >= found->second.size()) return {};
   return {found->second[index]};
 }
 

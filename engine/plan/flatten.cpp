@@ -39,6 +39,7 @@ class Flattener {
     for (const BlockEntry& block : diagram.blocks) {
       if (block.subdiagram) scope.inner[block.name] = &add_scope(*block.subdiagram, scope.prefix + block.name + ".", &block, &scope);
       else if (!block.type.empty()) add_block(scope, block);
+      else broken_.push_back({&scope, block.name});  // told when it was loaded
     }
     return scope;
   }

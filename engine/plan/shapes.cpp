@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <numeric>
+#include <set>
 
 namespace loopwright {
 
@@ -31,7 +32,6 @@ static bool update_shape(FlatDiagram& flat, FlatBlock& block) {
     for (const auto& wires : block.inputs)
       for (const FlatWire& wire : wires) block.width = std::max(block.width, length_of(flat, wire));
   bool grew = block.width != old_width;
-  block.output_lengths.resize(info.outputs.size(), 1);
   for (size_t o = 0; o < info.outputs.size(); ++o) {
     int n = 1;
     if (info.outputs[o].shape == PortInfo::Shape::vector) {
@@ -70,7 +70,18 @@ static void check_port(const FlatDiagram& flat, const FlatBlock& block, size_t i
   }
 }
 
+/// An element that a wire names must be there. A wire has many readers; it is told once.
+static void check_element(const FlatDiagram& flat, const FlatWire& wire, const std::string& reader, std::set<std::string>& told, Problems& problems) {
+  if (!wire.is_resolved() || wire.element < 0) return;
+  FlatWire whole = wire;
+  whole.element = -1;
+  const int n = length_of(flat, whole);
+  if (wire.element < n || !told.insert(fmt::format("{}@{}", wire.text, wire.place.offset)).second) return;
+  problems.error(wire.place, wire.pointer, reader, fmt::format("\"{}\" has {} elements, counted from 0", wire.text.substr(0, wire.text.find('[')), n)).found = "\"" + wire.text + "\"";
+}
+
 void find_shapes(FlatDiagram& flat, Problems& problems) {
+  for (FlatBlock& block : flat.blocks) block.output_lengths.assign(block.type->info.outputs.size(), 1);
   std::vector<std::vector<int>> readers(flat.blocks.size());
   for (size_t b = 0; b < flat.blocks.size(); ++b)
     for (const auto& wires : flat.blocks[b].inputs)
@@ -90,17 +101,14 @@ void find_shapes(FlatDiagram& flat, Problems& problems) {
     }
     todo.insert(todo.end(), readers[size_t(b)].begin(), readers[size_t(b)].end());
   }
+  std::set<std::string> told;
   for (const FlatBlock& block : flat.blocks) {
     for (size_t i = 0; i < block.inputs.size(); ++i) check_port(flat, block, i, problems);
     for (const auto& wires : block.inputs)
-      for (const FlatWire& wire : wires) {
-        if (!wire.is_resolved() || wire.element < 0) continue;
-        FlatWire whole = wire;
-        whole.element = -1;
-        if (const int n = length_of(flat, whole); wire.element >= n)
-          problems.error(wire.place, wire.pointer, block.path, fmt::format("\"{}\" has {} elements, counted from 0", wire.text.substr(0, wire.text.find('[')), n)).found = "\"" + wire.text + "\"";
-      }
+      for (const FlatWire& wire : wires) check_element(flat, wire, block.path, told, problems);
   }
+  for (const FlatLog& log : flat.log) check_element(flat, log.wire, "log", told, problems);
+  for (const FlatName& name : flat.names) check_element(flat, name.wire, name.name, told, problems);
 }
 
 Layout::Layout(const FlatDiagram& flat, Plan& plan) : flat_(flat), plan_(plan) {

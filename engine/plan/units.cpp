@@ -51,6 +51,7 @@ struct Equation {
   Place place;
   std::string pointer, block;
   std::string message;  // for parameters
+  bool is_wire() const { return left.block >= 0 && right.block >= 0; }
 };
 
 class Solver {
@@ -183,12 +184,15 @@ class Solver {
     return true;
   }
 
+  /// First what is written down at blocks and borders, then along the wires: a clash shows at the wire that joins its ends.
   void propagate() {
-    for (size_t i = equations_.size(); i-- > 0;) todo_.push_back(i);
-    while (!todo_.empty()) {
-      const size_t i = todo_.back();
-      todo_.pop_back();
-      solve(equations_[i]);
+    for (const bool with_wires : {false, true}) {
+      for (size_t i = equations_.size(); i-- > 0;) todo_.push_back(i);
+      while (!todo_.empty()) {
+        const size_t i = todo_.back();
+        todo_.pop_back();
+        if (with_wires || !equations_[i].is_wire()) solve(equations_[i]);
+      }
     }
   }
 

@@ -1,0 +1,90 @@
+// The hash of a plan: the same for what runs the same, another for anything that changes a number.
+#include <gtest/gtest.h>
+#include <set>
+#include "tests/engine/written_diagram.h"
+
+namespace loopwright {
+namespace {
+
+std::string servo(std::string_view gain, std::string_view solver = R"("stop": 1, "step": 0.01)",
+                  std::string_view more = "") {
+  return diagram(
+      fmt::format(
+          R"("x": {{"type": "Integrator", "initial": 1, "in": {{"u": "g.y"}}}}, "g": {{"type": "Gain", "gain": {}, "in": {{"u": "x.y"}}}})",
+          gain),
+      solver, more);
+}
+
+TEST(Identity, FormattingTitlesAndWaysToWriteANumberDoNotMatter) {
+  const std::string hash = plan_of(servo("-2"))->hash;
+  EXPECT_EQ(hash.size(), 16u);
+  EXPECT_EQ(plan_of(servo("-2.0"))->hash, hash);
+  EXPECT_EQ(plan_of(servo("\"=-1*2\""))->hash, hash);
+  EXPECT_EQ(plan_of(servo("  \n\t-2e0 "))->hash, hash);
+  EXPECT_EQ(
+      plan_of(servo("-2", R"("stop": 1, "step": 0.01)", R"(, "title": "A title", "description": "and why")"))
+          ->hash,
+      hash);
+}
+
+TEST(Identity, EveryParameterAndSettingMatters) {
+  std::set<std::string> hashes;
+  size_t variants = 0;
+  const auto add = [&](const std::string& text, const LoadOptions& options = {}) {
+    hashes.insert(plan_of(text, options)->hash), ++variants;
+  };
+  add(servo("-2"));
+  add(servo("-2.0000000000000004"));
+  add(servo("-2", R"("stop": 2, "step": 0.01)"));
+  add(servo("-2", R"("stop": 1, "step": 0.02)"));
+  add(servo("-2", R"("stop": 1, "step": 0.01, "record_step": 0.1)"));
+  add(servo("-2", R"("stop": 1, "step": 0.01, "method": "heun")"));
+  add(servo("-2", R"("stop": 1, "step": 0.01, "seed": 2)"));
+  add(servo("-2", R"("stop": 1, "method": "dopri5")"));
+  add(servo("-2", R"("stop": 1, "method": "dopri5", "relative_tolerance": 1e-7)"));
+  add(servo("-2", R"("stop": 1, "step": 0.01)", R"(, "log": ["x.y"])"));
+  add(servo("-2"), {.set = {{"x.initial", "2"}}, .variants = {}, .drives = {}});
+  EXPECT_EQ(hashes.size(), variants);
+}
+
+TEST(Identity, EffectiveParametersAreListedWithUnitsAndDefaults) {
+  const auto plan = plan_of(
+      diagram(R"("x": {"type": "LowPass", "cutoff": "=2*k", "in": {"u": "c.time"}}, "c": {"type": "Clock"})",
+              R"("stop": 1)", R"(, "parameters": {"k": {"value": 3, "unit": "rad/s"}})"));
+  const auto value = [&](std::string_view name) {
+    for (const auto& [n, v] : plan->parameters)
+      if (n == name) return v;
+    return std::string("none");
+  };
+  EXPECT_EQ(value("x.cutoff"), "6 rad/s");
+  EXPECT_EQ(value("x.order"), "2") << "a default";
+  EXPECT_TRUE(value("k").starts_with("3 ")) << value("k");
+}
+
+TEST(Identity, OverridesAreEchoedInTheRecording) {
+  const RunResult result =
+      simulate(*plan_of(servo("-2"), {.set = {{"g.gain", "-3"}}, .variants = {}, .drives = {}}));
+  bool found = false;
+  for (const auto& [name, value] : result.recording.facts)
+    found |= name == "parameter g.gain" && value == "-3";
+  EXPECT_TRUE(found);
+}
+
+TEST(Identity, DescribeShowsOrderRatesAndStates) {
+  const std::string text =
+      describe(*plan_of(diagram(R"("x": {"type": "Integrator", "in": {"u": "h.y"}},
+"h": {"type": "ZeroOrderHold", "sample_time": 0.1, "in": {"u": "g.y"}}, "g": {"type": "Gain", "gain": 1, "in": {"u": "s.y"}}, "s": {"type": "Sine", "frequency": 1},
+"c": {"type": "Constant", "value": 3})",
+                                R"("stop": 1, "step": 0.05)", R"(, "title": "A small one")")));
+  EXPECT_TRUE(text.starts_with("A small one\n")) << text;
+  for (const char* part :
+       {"5 blocks", "1 states", "1 rates", "tick 1/20 s", "rk4 at 0.05 s", "a row every 0.1 s",
+        "every 2 ticks from tick 0: 0.1 s", "once               c (Constant) y",
+        "0.1 s              h (ZeroOrderHold) y", "x (Integrator): 1 (y)"})
+    EXPECT_TRUE(has(text, part)) << part << "\n" << text;
+  EXPECT_LT(text.find("s (Sine) y"), text.find("g (Gain) y"));
+  EXPECT_LT(text.find("g (Gain) y"), text.find("h (ZeroOrderHold) y"));
+}
+
+}  // namespace
+}  // namespace loopwright
