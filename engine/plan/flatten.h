@@ -41,6 +41,7 @@ struct FlatDiagram {
   std::vector<FlatName> names;
 };
 
-FlatDiagram flatten(const Diagram& diagram, Problems& problems);
+/// `open`: inputs of the outermost diagram may lack a source, as those of a subdiagram looked at alone do.
+FlatDiagram flatten(const Diagram& diagram, Problems& problems, bool open = false);
 
 }  // namespace loopwright

@@ -112,6 +112,9 @@ struct Plan {
 /// Compiles a loaded diagram. Null when there are errors (all of them are in `problems`).
 std::shared_ptr<const Plan> compile(const Diagram& diagram, Problems& problems);
 
+/// Looks at a subdiagram on its own: everything that does not need the wires into it.
+void check_part(const Diagram& diagram, Problems& problems);
+
 /// Loads and compiles; throws InputError with every problem found. Warnings end in Plan::warnings.
 std::shared_ptr<const Plan> load_plan(const std::string& path, const LoadOptions& options = {});
 

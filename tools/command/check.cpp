@@ -10,10 +10,13 @@ static int check(const std::vector<std::string>& paths, const LoadOptions& optio
   for (const std::string& path : paths) {
     Problems problems;
     const auto diagram = load_diagram(path, options, problems);
+    const bool is_part = diagram && !diagram->inputs.empty();
     std::shared_ptr<const Plan> plan;
-    if (diagram) plan = compile(*diagram, problems);
+    if (is_part) check_part(*diagram, problems);
+    else if (diagram) plan = compile(*diagram, problems);
     if (!problems.list().empty()) fmt::print(stderr, "{}\n", problems.text());
-    if (problems.has_errors() || !plan) ++wrong;
+    if (problems.has_errors() || !diagram) ++wrong;
+    else if (is_part) fmt::print(stderr, "{}: fine, a subdiagram of {} blocks\n", path, diagram->blocks.size());
     else fmt::print(stderr, "{}: fine, {} blocks, {} states\n", path, plan->blocks.size(), plan->states);
   }
   return wrong ? input_wrong : done;
