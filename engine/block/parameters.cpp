@@ -50,6 +50,7 @@ static std::string range_text(const Range& r) {
 }
 static bool wrong_kind(const Value& v, std::string expected, const std::string& block, Problems& problems,
                        std::string_view sentence = {}) {
+  if (v.is_broken) return false;  // told when it was loaded
   auto& p = problems.error(v.place, v.pointer, block, "wrong kind of value");
   p.expected = std::move(expected);
   p.found = kind_of(v);
