@@ -1,4 +1,6 @@
 #include "tests/blocks/block_under_test.h"
+#include <algorithm>
+#include <cstring>
 #include <stdexcept>
 #include "engine/diagram/json.h"
 
@@ -154,6 +156,23 @@ double BlockUnderTest::sample(std::string_view name, double value, std::string_v
   update();
   ++now_.tick;
   return y;
+}
+
+static bool equal_bits(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
+}
+bool BlockUnderTest::Snapshot::operator==(const Snapshot& other) const {
+  return equal_bits(states, other.states) && memory == other.memory && mode == other.mode &&
+         std::equal(buffers.begin(), buffers.end(), other.buffers.begin(), other.buffers.end(), equal_bits);
+}
+BlockUnderTest::Snapshot BlockUnderTest::snapshot() const {
+  const auto *memory = reinterpret_cast<const std::byte*>(memory_.data()), *mode = reinterpret_cast<const std::byte*>(mode_.data());
+  return {states_, {memory, memory + type_.kernels.memory_size}, {mode, mode + type_.kernels.mode_size}, buffers_};
+}
+void BlockUnderTest::restore(const Snapshot& snapshot) {
+  states_ = snapshot.states, buffers_ = snapshot.buffers;
+  std::ranges::copy(snapshot.memory, reinterpret_cast<std::byte*>(memory_.data()));
+  std::ranges::copy(snapshot.mode, reinterpret_cast<std::byte*>(mode_.data()));
 }
 
 size_t BlockUnderTest::input_of(std::string_view name) const { return index_of(info().inputs, name, "input"); }

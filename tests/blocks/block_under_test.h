@@ -71,6 +71,16 @@ class BlockUnderTest {
 
   double time() const { return now_.time; }
 
+  /// Every mutable number, as a checkpoint of a run holds it.
+  struct Snapshot {
+    std::vector<double> states;
+    std::vector<std::byte> memory, mode;
+    std::vector<std::vector<double>> buffers;
+    bool operator==(const Snapshot&) const;  ///< bit for bit
+  };
+  Snapshot snapshot() const;
+  void restore(const Snapshot& snapshot);
+
  private:
   void build(std::string_view settings);
   void connect();
