@@ -10,6 +10,7 @@ struct CoggingForce {
   struct Harmonic {
     int order = 1;
     Real amplitude, phase = 0.0;
+    Real wave_number;
     static constexpr auto describe() {
       return fields(parameter(&Harmonic::order, "order", "", "How often the term repeats in a pole pitch").at_least(1).optional(),
                     parameter(&Harmonic::amplitude, "amplitude", "$force", "Peak force at rest"),
@@ -27,7 +28,7 @@ struct CoggingForce {
   Real pole_pitch, velocity_slope = 0.0;
   std::vector<Harmonic> harmonics;
   Modulation modulation;
-  Real wave_number, modulation_wave_number;
+  Real modulation_wave_number;
   struct In { Real position, velocity; };
   struct Out { Real force; };
   static constexpr auto describe() {
@@ -42,15 +43,15 @@ struct CoggingForce {
       output(&Out::force, "force", "$force", "Cogging force: to be subtracted"));
   }
   void prepare(double) {
-    wave_number = 2 * pi / pole_pitch;
+    for (Harmonic& h : harmonics) h.wave_number = double(h.order) * 2 * pi / pole_pitch;
     modulation_wave_number = 2 * pi / modulation.period;
   }
   void outputs(const In& in, Out& out) const {
-    const Real angle = wave_number * in.position;
-    Real sum = 0.0;
-    for (const Harmonic& h : harmonics) sum += h.amplitude * sine(double(h.order) * angle + h.phase);
     const Real by_speed = maximum(1.0 - velocity_slope * absolute(in.velocity), Real(0.0));
-    out.force = sum * by_speed * along_track(in.position);
+    const Real scale = by_speed * along_track(in.position);  // while the sines are on their way
+    Real sum = 0.0;
+    for (const Harmonic& h : harmonics) sum += h.amplitude * sine(h.wave_number * in.position + h.phase);
+    out.force = scale * sum;
   }
   Real along_track(const Real& position) const {
     if (!any(modulation.depth != 0.0)) return 1.0;

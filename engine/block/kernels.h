@@ -167,8 +167,9 @@ LW_INLINE uint64_t each_register(const Call<Real>& c, auto&& f) {
   }
 }
 
+/// Flattened: what the method calls is inlined too, else inputs and outputs go through memory on their way.
 template <class B, class Real, int group>
-uint64_t step_outputs(const Call<Real>& c) {
+[[gnu::flatten]] uint64_t step_outputs(const Call<Real>& c) {
   return each_register<B>(c, [&](const B& block, ptrdiff_t at) __attribute__((always_inline)) {
     const auto in = gather<B>(c, at, std::integral_constant<uint64_t, mask_of_group<B>(group)>{});
     const auto& state = view_state(block, c.state + at);
@@ -192,7 +193,7 @@ uint64_t step_outputs(const Call<Real>& c) {
   });
 }
 template <class B, class Real>
-uint64_t step_derivatives(const Call<Real>& c) {
+[[gnu::flatten]] uint64_t step_derivatives(const Call<Real>& c) {
   return each_register<B>(c, [&](const B& block, ptrdiff_t at) __attribute__((always_inline)) {
     const auto in = gather<B>(c, at, AllInputs{});
     const auto& state = view_state(block, c.state + at);
