@@ -19,6 +19,7 @@
 ///     void decide(…, Mode&) const;                          // which piece holds now: at samples, steps and events, never inside a step
 ///     void jump(…, State&) const;                           // resets states at an event, from frozen inputs
 ///     void crossings(…, Crossings&) const;
+///     bool may_cross() const;                               // false: with these parameters nothing ever crosses; default: true
 ///     double next_stop(double now) const;                   // the next time (s) at which it is not smooth
 ///   };
 ///   LOOPWRIGHT_BLOCK(MyBlock)

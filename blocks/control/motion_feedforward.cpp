@@ -28,9 +28,10 @@ struct MotionFeedforward {
   void outputs(const In& in, const Mode& mode, Out& out) const {
     out.command = mass * in.acceleration + damping * in.velocity + coulomb * mode.direction;
   }
+  bool may_cross() const { return any(coulomb != 0.0); }
   void crossings(const In& in, Crossings& value) const {
-    value.forwards = select(coulomb == 0.0, Real(1.0), above_zero(in.velocity));
-    value.backwards = select(coulomb == 0.0, Real(1.0), not_below_zero(in.velocity));
+    value.forwards = above_zero(in.velocity);
+    value.backwards = not_below_zero(in.velocity);
   }
 };
 LOOPWRIGHT_BLOCK(MotionFeedforward)

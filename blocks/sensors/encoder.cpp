@@ -53,9 +53,10 @@ struct Encoder {
   void outputs(const In& in, const Mode& mode, Out& out) const {
     out.position = select(resolution > 0.0, resolution * mode.count, seen(in.position));
   }
+  bool may_cross() const { return any(resolution > 0.0); }
   void crossings(const In& in, const Mode& mode, Crossings& value) const {
     const Real from_centre = absolute(seen(in.position) * per_count - mode.count);
-    value.count = select(resolution > 0.0, not_below_zero(Real(0.5 - from_centre)), Real(1.0));
+    value.count = not_below_zero(Real(0.5 - from_centre));
   }
 };
 LOOPWRIGHT_BLOCK(Encoder)

@@ -37,6 +37,7 @@ struct BlockInfo {
   int (*output_length)(const void* block, int output);  ///< -1: by length_of_input
   int (*buffer_length)(const void* block, int buffer);
   int (*state_length)(const void* block);  ///< all states, fixed and sized
+  bool (*may_cross)(const void* block);  ///< whether its crossings need to be watched; null: always
   double (*next_stop)(const void* block, double now);  ///< the next time at which it is not smooth; null: always smooth
 };
 
@@ -116,6 +117,8 @@ BlockInfo info_of(std::string_view type) {
     if (count_of<B, is_state_vector> == 0 && !std::is_same_v<State<B>, None>) n = int(sizeof(State<B>) / sizeof(double));
     return n;
   };
+  if constexpr (requires(const B b) { b.may_cross(); })
+    info.may_cross = [](const void* p) { return static_cast<const B*>(p)->may_cross(); };
   if constexpr (requires(const B b) { b.next_stop(0.0); })
     info.next_stop = [](const void* p, double now) { return static_cast<const B*>(p)->next_stop(now); };
   return info;

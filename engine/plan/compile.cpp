@@ -90,7 +90,8 @@ void add_crossings(Plan& plan) {
   int next = 0;
   for (size_t b = 0; b < plan.blocks.size(); ++b) {
     Plan::Block& block = plan.blocks[b];
-    const bool watched = block.type->kernels.crossings && block.period == 0 && (is_continuous[b] || block.states > 0);
+    const bool may_cross = block.type->kernels.crossings && (!block.type->info.may_cross || block.type->info.may_cross(block.value.get()));
+    const bool watched = may_cross && block.period == 0 && (is_continuous[b] || block.states > 0);
     block.first_crossing = watched ? next : -1;
     if (!watched) continue;
     for (const CrossingInfo& crossing : block.type->info.crossings) plan.crossings.push_back({int(b), crossing.name, crossing.direction});

@@ -70,8 +70,8 @@ class Run {
   bool crossings_at(double time, const double* x, double* value);
   /// States and time as given; signals are not yet computed.
   void look_at(double time, const double* x);
-  /// Continuous outputs with modes held, as inside a solver step; `everything`: also those that only a recording reads.
-  void evaluate_held(bool everything) { run(everything ? held_ : crossing_stage_); }
+  /// Continuous outputs with modes held, as inside a solver step: those that accepted memory reads, or `everything`.
+  void evaluate_held(bool everything) { run(everything ? held_ : for_events_); }
   bool has_accepted_memory() const { return !accepts_.empty(); }
   void set_time(double time) { now_.time = time; }
   /// The next discontinuity in time that a block declares, strictly after `time`.
@@ -142,7 +142,7 @@ class Run {
   std::vector<const Real*> many_;
   std::vector<Call<Real>> base_;  // a block each, without a step
   std::vector<std::unique_ptr<RingSolver<Real>>> rings_;
-  std::vector<Call<Real>> constants_, between_, stage_, crossing_stage_, held_, derivatives_, accepts_, jumps_, crossings_;
+  std::vector<Call<Real>> constants_, between_, stage_, for_events_, held_, derivatives_, accepts_, jumps_, crossings_;
   CallsByRate outputs_, updates_;
   std::vector<std::pair<const void*, double (*)(const void*, double)>> stops_;
   Instant now_;
@@ -274,7 +274,7 @@ void Run<Real>::schedule() {
     const bool decides = entry.kind == Kind::decide;
     if (entry.in_stages || entry.for_events) between_.push_back(call);
     if (entry.in_stages && !decides) stage_.push_back(call);
-    if ((entry.in_stages || entry.for_events) && !decides) crossing_stage_.push_back(call);
+    if (entry.for_events && !decides) for_events_.push_back(call);
   }
   for (size_t b = 0; b < plan_.blocks.size(); ++b) {
     const Plan::Block& block = plan_.blocks[b];
@@ -417,7 +417,7 @@ bool Run<Real>::crossings_at(double time, const double* x, double* value) {
   std::copy_n(x, plan_.states, reinterpret_cast<double*>(x_));
   now_.time = time;
   uint64_t bad = 0;
-  for (const Call<Real>& c : crossing_stage_) bad |= c.step(c);
+  for (const Call<Real>& c : for_events_) bad |= c.step(c);
   for (const Call<Real>& c : crossings_) bad |= c.step(c);
   std::copy_n(reinterpret_cast<const double*>(crossing_), plan_.crossings.size(), value);
   return bad == 0;

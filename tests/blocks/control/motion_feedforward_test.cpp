@@ -9,8 +9,6 @@ TEST(MotionFeedforward, IsWhatTheNominalMassNeeds) {
   block.input("velocity") = 0.5, block.input("acceleration") = -4;
   block.evaluate();
   EXPECT_EQ(block.output("command"), 2 * -4 + 3 * 0.5);
-  block.crossings();
-  EXPECT_EQ(block.crossing("forwards"), 1);  // without Coulomb friction nothing ever changes
 }
 
 TEST(MotionFeedforward, OvercomesCoulombFrictionInTheDirectionOfMotion) {
