@@ -19,7 +19,7 @@ struct Integrator {
       input(&In::reset, "reset", "$reset", "Rising through zero sets the value").otherwise(-1.0),
       input(&In::reset_value, "reset_value", "$y", "What reset sets the value to").otherwise(0.0),
       output(&State::y, "y", "$y", "The integral"),
-      crossing(&Crossings::reset, "reset", Crossing::rising),
+      crossing(&Crossings::reset, "reset"),  // its fall too: only then may it rise again
       crossing(&Crossings::low, "low", Crossing::falling),
       crossing(&Crossings::high, "high", Crossing::rising),
       crossing(&Crossings::release, "release"));

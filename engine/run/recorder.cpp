@@ -5,7 +5,7 @@
 namespace loopwright {
 
 Recorder::Recorder(const Plan& plan) : plan_(plan) {
-  const double rows = double(plan.stop_tick) / double(std::max<int64_t>(plan.record_ticks, 1)) + 2;
+  const double rows = double(plan.stop_tick - plan.start_tick) / double(std::max<int64_t>(plan.record_ticks, 1)) + 2;
   const double bytes = rows * double(plan.log.size() + 1) * sizeof(double);
   constexpr double most = 8e9;
   if (bytes > most) {

@@ -156,6 +156,7 @@ class Simulation {
       if (step.status == SolverStatus::event && !chattering_.count(step.t, solver.fired())) return fail_by_chattering(step.t);
       handle_event(solver);
       if (run_.failed()) return fail_by_fault();
+      if (!go_on()) return false;
     }
     run_.look_at(end, solver.x().data());
     run_.move_to(next);

@@ -24,7 +24,8 @@ EventFinder::EventFinder(const OdeSystem& system, int samples_per_step)
       samples_per_step_(samples_per_step),
       sign_(static_cast<size_t>(system.crossings)),
       fired_(sign_.size()),
-      zero_band_(sign_.size()) {
+      zero_band_(sign_.size()),
+      side_(sign_.size()) {
   for (Sample* sample : {&left_, &right_, &trial_}) {
     sample->x.resize(static_cast<size_t>(system.states));
     sample->value.resize(sign_.size());
@@ -64,6 +65,7 @@ EventFinder::Found EventFinder::begin(Stepper& stepper, double t, const double* 
     const double value = left_.value[i];
     if (zero_band_[i] > 0.0 && std::fabs(value) <= zero_band_[i]) {
       sign_[i] = 0;
+      side_[i] = sign_of(value);
       leaving_zero_ = true;
     } else if (value != 0.0) {
       sign_[i] = sign_of(value);
@@ -74,7 +76,8 @@ EventFinder::Found EventFinder::begin(Stepper& stepper, double t, const double* 
 
 bool EventFinder::changed(size_t i, const Sample& sample, const Crossing* wanted) const {
   const int8_t sign = sign_of(sample.value[i]);
-  if (sign * sign_[i] >= 0) return false;
+  const bool leaves_zero = sign_[i] == 0 && zero_band_[i] > 0.0 && std::fabs(sample.value[i]) > zero_band_[i];
+  if (sign * (leaves_zero ? side_[i] : sign_[i]) >= 0) return false;
   return wanted == nullptr || wanted[i] == Crossing::either || static_cast<int8_t>(wanted[i]) == sign;
 }
 
@@ -194,13 +197,13 @@ void EventFinder::report(const Crossing* wanted) {
   for (size_t i = 0; i < sign_.size(); ++i) {
     const bool fires = changed(i, right_, wanted);
     fired_[i] = fires ? sign_of(right_.value[i]) : int8_t{0};
-    if (fires) {
+    if (fires && sign_[i] != 0) {
       // What the value varies over the bracket is rounding and its slope; a few times that is as good as
       // zero.
       zero_band_[i] = zero_band_factor * std::fmax(std::fabs(left_.value[i]), std::fabs(right_.value[i]));
     } else if (sign_[i] != 0) {
       zero_band_[i] = 0.0;
-    }
+    }  // else it leaves zero, or is about to: a wider band would hide how it chatters
   }
   pass(right_);
   left_.t = right_.t;

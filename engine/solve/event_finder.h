@@ -12,7 +12,9 @@ class Stepper;
 
 /// Keeps for every crossing the sign it last had, so that a value of exactly zero is neither lost nor counted
 /// twice: an event is a change from one sign to the other, at the first time where the new sign is seen. A
-/// touch without a change of sign is no event.
+/// touch without a change of sign is no event. A crossing that has just fired stands within rounding of zero;
+/// if it leaves on the other side than the one it stood on at the restart, that is an event like any other: what
+/// was decided on that side holds no more.
 class EventFinder {
  public:
   EventFinder(const OdeSystem& system, int samples_per_step);
@@ -61,6 +63,7 @@ class EventFinder {
   std::vector<int8_t> sign_;       ///< the last sign that was not zero; 0: none yet
   std::vector<int8_t> fired_;      ///< at the last event: +1 rose, -1 fell
   std::vector<double> zero_band_;  ///< a crossing that just fired counts as zero up to this size
+  std::vector<int8_t> side_;       ///< of zero on which it stood, within that band, at the restart
   bool leaving_zero_ = false;      ///< some crossing has just fired and has no sign yet
   Sample left_, right_, trial_;    ///< left_: where the signs were taken last
 };

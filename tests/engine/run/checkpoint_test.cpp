@@ -1,0 +1,122 @@
+// A run that was set aside goes on as if it had never stopped; a file that is not its own is refused.
+#include <gtest/gtest.h>
+#include <fstream>
+#include <sstream>
+#include "tests/engine/written_diagram.h"
+
+namespace loopwright {
+namespace {
+
+/// Something of every kind of memory: random stream, delay lines, discrete sums, states, modes, events.
+std::string everything(std::string_view solver, std::string_view gain = "1") {
+  return diagram(fmt::format(R"("n": {{"type": "Noise", "sample_time": 0.01, "standard_deviation": 1}},
+    "sum": {{"type": "DiscreteIntegrator", "sample_time": 0.01, "in": {{"u": "n.y"}}}}, "d": {{"type": "Delay", "samples": 7, "sample_time": 0.01, "in": {{"u": "n.y"}}}},
+    "g": {{"type": "Gain", "gain": {}, "in": {{"u": "d.y"}}}}, "x": {{"type": "LowPass", "cutoff": 20, "in": {{"u": "g.y"}}}}, "late": {{"type": "TransportDelay", "delay": 0.05, "in": {{"u": "x.y"}}}},
+    "r": {{"type": "Relay", "switch_on": 0.05, "switch_off": -0.05, "in": {{"u": "late.y"}}}}, "y": {{"type": "Integrator", "in": {{"u": "r.y", "reset": "x.y"}}}})",
+                             gain),
+                 solver);
+}
+
+const char* const solvers[] = {R"("stop": 1, "step": 0.001, "record_step": 0.01)",
+                               R"("stop": 1, "method": "dopri5", "record_step": 0.01)",
+                               R"("stop": 1, "method": "cvode-bdf", "record_step": 0.01)",
+                               R"("start": 0.355, "stop": 1, "step": 0.001, "record_step": 0.02)",
+                               R"("start": 0.355, "stop": 1, "method": "dopri5", "record_step": 0.02)",
+                               R"("stop": 1, "method": "heun", "step": 0.001, "record_step": 0.003)",
+                               R"("stop": 1, "method": "dopri5", "record_step": 0.0003)"};
+
+RunOptions write_every(double seconds, const std::string& file) {
+  RunOptions options;
+  options.checkpoint_file = file, options.checkpoint_every = seconds;
+  return options;
+}
+RunOptions resume(const std::string& file) {
+  RunOptions options;
+  options.resume_file = file;
+  return options;
+}
+
+TEST(Checkpoint, AResumedRunHasTheSameBitsAsOneThatWasNotStopped) {
+  DiagramFolder folder;
+  const std::string file = folder.path("run.checkpoint");
+  for (const char* solver : solvers)
+    for (const double every : {0.6, 0.37}) {
+      const auto plan = plan_of(everything(solver));
+      RunOptions options = write_every(every, file);
+      const RunResult whole = simulate(*plan, options);
+      ASSERT_EQ(whole.status, RunStatus::finished) << whole.message;
+      options.resume_file = file;  // and sets itself aside again
+      const RunResult rest = simulate(*plan, options);
+      ASSERT_EQ(rest.recording.rows(), whole.recording.rows()) << solver;
+      for (size_t c = 0; c < whole.recording.columns.size(); ++c)
+        EXPECT_EQ(whole.recording.columns[c].values, rest.recording.columns[c].values)
+            << solver << " " << whole.recording.columns[c].name;
+    }
+}
+
+TEST(Checkpoint, WritingOneDoesNotChangeAFixedStepRun) {
+  DiagramFolder folder;
+  const auto plan = plan_of(everything(solvers[0]));
+  const RunResult with = simulate(*plan, write_every(0.3, folder.path("c"))), without = simulate(*plan);
+  for (size_t c = 0; c < with.recording.columns.size(); ++c)
+    EXPECT_EQ(with.recording.columns[c].values, without.recording.columns[c].values);
+}
+
+TEST(Checkpoint, StatisticsCountTheWholeRunHoweverOftenItWasSetAside) {
+  DiagramFolder folder;
+  const auto plan = plan_of(
+      diagram(R"("s": {"type": "Sine", "frequency": 1}, "x": {"type": "Integrator", "in": {"u": "s.y"}})",
+              R"("stop": 10, "method": "dopri5", "maximum_step": 0.1, "record_step": 1)"));
+  EXPECT_GE(simulate(*plan, write_every(1, folder.path("c"))).statistics.steps, 100);
+}
+
+std::string refusal(const Plan& plan, const std::string& file) {
+  try {
+    simulate(plan, resume(file));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Checkpoint, OfOtherParametersOrAnotherDiagramIsRefused) {
+  DiagramFolder folder;
+  const std::string file = folder.path("c");
+  simulate(*plan_of(everything(solvers[0])), write_every(0.6, file));
+  EXPECT_EQ(refusal(*plan_of(everything(solvers[0])), file), "");
+  EXPECT_TRUE(has(refusal(*plan_of(everything(solvers[0], "2")), file),
+                  "belongs to another diagram or other parameters"));
+  EXPECT_TRUE(has(refusal(*plan_of(everything(solvers[1])), file), "belongs to another diagram"));
+}
+
+TEST(Checkpoint, ThatIsDamagedShortOrMissingIsRefused) {
+  DiagramFolder folder;
+  const std::string file = folder.path("c");
+  const auto plan =
+      plan_of(diagram(R"("x": {"type": "Integrator", "in": {"u": "t.time"}}, "t": {"type": "Clock"})",
+                      R"("stop": 1, "step": 0.1)"));
+  simulate(*plan, write_every(0.5, file));
+  std::ifstream in(file, std::ios::binary);
+  std::stringstream stream;
+  stream << in.rdbuf();
+  const std::string good = stream.str();
+  ASSERT_GT(good.size(), 100u);
+  for (size_t i = 0; i < good.size(); i += 3) {
+    std::string bad = good;
+    bad[i] = char(bad[i] ^ 0x10);
+    folder.with("bad", bad);
+    EXPECT_NE(refusal(*plan, folder.path("bad")), "") << "byte " << i;
+  }
+  for (size_t length : {size_t(0), size_t(1), size_t(25), size_t(90), good.size() / 2, good.size() - 1})
+    EXPECT_NE(refusal(*plan, folder.with("bad", good.substr(0, length)).path("bad")), "") << length;
+  EXPECT_TRUE(has(refusal(*plan, folder.path("none")), "cannot be read"));
+  EXPECT_EQ(refusal(*plan, folder.with("bad", good).path("bad")), "") << "the whole one is taken";
+}
+
+TEST(Checkpoint, ThatCannotBeWrittenIsAnErrorNotASilence) {
+  const auto plan = plan_of(everything(solvers[0]));
+  EXPECT_ANY_THROW(simulate(*plan, write_every(0.3, "/nonexistent/folder/c")));
+}
+
+}  // namespace
+}  // namespace loopwright
