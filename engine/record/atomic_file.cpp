@@ -51,7 +51,8 @@ AtomicFile::AtomicFile(std::string path) : path_(std::move(path)), target_(follo
   constexpr int flags = O_WRONLY | O_CLOEXEC;
   const std::optional<struct stat> existing = status_of(target_);
   if (existing && S_ISDIR(existing->st_mode)) fail(EISDIR);
-  if (existing && !S_ISREG(existing->st_mode)) {
+  // Neither a pipe nor a file without a name (standard output that was deleted meanwhile) can be replaced.
+  if (existing && (!S_ISREG(existing->st_mode) || existing->st_nlink == 0)) {
     file_ = ::open(path_.c_str(), flags);
     if (file_ < 0) fail(errno);
     return;

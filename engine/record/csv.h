@@ -1,6 +1,7 @@
 /// Recordings as comma-separated values: ours, exact to the last bit, and those of other people's
 /// instruments.
 #pragma once
+#include <cstdio>
 #include <memory>
 #include <string>
 
@@ -38,5 +39,8 @@ Recording parse_csv(std::shared_ptr<const SourceFile> source, Problems& problems
 /// The file appears whole or not at all. Throws std::runtime_error when it cannot be written (see
 /// atomic_file.h), std::invalid_argument when the recording is not well formed (see check_recording).
 void write_csv(const std::string& path, const Recording& recording);
+
+/// The same text to an open stream, such as standard output. Throws std::runtime_error when it takes no more.
+void print_csv(std::FILE* stream, const Recording& recording);
 
 }  // namespace loopwright

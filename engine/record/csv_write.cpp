@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <stdexcept>
 
 #include "engine/record/atomic_file.h"
 #include "engine/record/csv.h"
@@ -46,11 +47,9 @@ std::string header(const Recording& recording) {
   return text += '\n';
 }
 
-}  // namespace
-
-void write_csv(const std::string& path, const Recording& recording) {
+/// Hands the text to `write(std::string_view)` in pieces.
+template <class Write> void put(const Recording& recording, Write&& write) {
   check_recording(recording);
-  AtomicFile file(path);
   constexpr size_t chunk = 1 << 20;  // bounds the memory; longer writes are not faster
   std::string text = header(recording);
   for (size_t row = 0; row < recording.rows(); ++row) {
@@ -60,12 +59,24 @@ void write_csv(const std::string& path, const Recording& recording) {
     }
     text.back() = '\n';
     if (text.size() >= chunk) {
-      file.write(text);
+      write(text);
       text.clear();
     }
   }
-  file.write(text);
+  write(text);
+}
+
+}  // namespace
+
+void write_csv(const std::string& path, const Recording& recording) {
+  AtomicFile file(path);
+  put(recording, [&](std::string_view text) { file.write(text); });
   file.commit();
+}
+
+void print_csv(std::FILE* stream, const Recording& recording) {
+  put(recording, [&](std::string_view text) { std::fwrite(text.data(), 1, text.size(), stream); });
+  if (std::fflush(stream) != 0 || std::ferror(stream)) throw std::runtime_error("the recording cannot be printed");
 }
 
 }  // namespace loopwright

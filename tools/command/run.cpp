@@ -40,7 +40,7 @@ int run(const Arguments& a) {
   const RunResult result = simulate(*plan, options);
   progress.finish();
   for (const std::string& warning : result.warnings) fmt::print(stderr, "{}: warning: {}\n", a.diagram.path, warning);
-  if (a.output == "-") write_csv("/dev/stdout", result.recording);
+  if (a.output == "-") print_csv(stdout, result.recording);
   else if (!a.output.empty()) write_recording(a.output, result.recording);
   if (!a.report.empty()) report::write_html(a.report, run_page(*plan, result));
   if (!a.quiet) fmt::print(stderr, "{}", run_summary(*plan, result));

@@ -216,7 +216,7 @@ LoadOptions follow(const Experiment& experiment, LoadOptions options) {
   const auto set = [&](std::string key, double value) { options.set.insert(options.set.begin(), {std::move(key), fmt::format("{}", value)}); };
   set("solver.start", time.front());
   set("solver.stop", time.back());
-  if (experiment.time.sample_time > 0) set("solver.record_step", experiment.time.sample_time);
+  if (experiment.time.regular) set("solver.record_step", experiment.time.sample_time);
   return options;
 }
 

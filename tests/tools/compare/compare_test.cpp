@@ -1,0 +1,127 @@
+// Comparisons whose figures are known beforehand.
+#include <gtest/gtest.h>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include "tests/tools/compare/experiment_folder.h"
+
+namespace loopwright {
+namespace {
+
+double four(double) { return 4; }
+double parabola(double t) { return t * t; }  // 4 N on 2 kg
+
+TEST(Compare, AMeasurementThatFollowsTheModelHasNoError) {
+  const Comparison c = ExperimentFolder().data(every(0.05, 41), four, parabola).compared();
+  ASSERT_EQ(c.signals.size(), 1u);
+  EXPECT_EQ(c.time.size(), 41u);
+  EXPECT_EQ(c.signals[0].unit, "m") << "millimetres in the file, metres here";
+  EXPECT_NEAR(c.signals[0].measured.back(), 4, 1e-12);
+  EXPECT_LT(c.signals[0].max_abs, 1e-12);
+  EXPECT_NEAR(c.signals[0].fit_percent, 100, 1e-9);
+}
+
+TEST(Compare, KnownErrorsGiveKnownFigures) {
+  // The measurement lies 1 mm above on one half of the rows and 3 mm above on the other.
+  const auto times = every(0.05, 40);
+  const Comparison c =
+      ExperimentFolder()
+          .data(times, four,
+                [](double t) { return t * t + (int(std::lround(t / 0.05)) % 2 ? 0.003 : 0.001); })
+          .compared();
+  const ComparedSignal& s = c.signals[0];
+  EXPECT_NEAR(s.mean, -0.002, 1e-12) << "simulated - measured";
+  EXPECT_NEAR(s.rmse, std::sqrt((1e-6 + 9e-6) / 2), 1e-12);
+  EXPECT_NEAR(s.max_abs, 0.003, 1e-12);
+  double mean = 0, square = 0, spread = 0;
+  for (double y : s.measured) mean += y / 40, square += y * y / 40;
+  for (double y : s.measured) spread += (y - mean) * (y - mean) / 40;
+  EXPECT_NEAR(s.relative_percent, 100 * s.rmse / std::sqrt(square), 1e-9);
+  EXPECT_NEAR(s.fit_percent, 100 * (1 - s.rmse / std::sqrt(spread)), 1e-9);
+}
+
+TEST(Compare, RowsHeldOutAreFiguredApart) {
+  const Comparison c =
+      ExperimentFolder()
+          .experiment(R"("stage.force": {"column": "F", "unit": "N"})",
+                      R"("stage.position": {"column": "x_mm", "unit": "mm"})",
+                      R"(, "hold_out": {"fraction": 0.25})")
+          .data(every(0.05, 40), four, [](double t) { return t * t + (t > 1.48 ? 0.005 : 0); })
+          .compared();
+  EXPECT_NEAR(c.signals[0].held_out_rmse, 0.005, 1e-12) << "the last ten rows";
+}
+
+/// A force that grows by 1 N a second; held from row to row, or joined by straight lines.
+double held_ramp(double t) {  // x after the samples before t, each held for 0.05 s
+  double x = 0, v = 0;
+  for (int k = 0; k < int(std::lround(t / 0.05)); ++k) {
+    const double a = 0.05 * k / 2;
+    x += v * 0.05 + a * 0.05 * 0.05 / 2, v += a * 0.05;
+  }
+  return x;
+}
+
+TEST(Compare, AHeldDriveAndALinearOneDifferAsTheyShould) {
+  const auto ramp = [](double t) { return t; };
+  ExperimentFolder folder;
+  folder.data(every(0.05, 41), ramp, held_ramp);
+  EXPECT_LT(folder.compared().signals[0].max_abs, 1e-12) << "hold is the default";
+  folder.experiment(R"("stage.force": {"column": "F", "unit": "N", "interpolation": "linear"})")
+      .data(every(0.05, 41), ramp, [](double t) { return t * t * t / 12; });
+  EXPECT_LT(folder.compared().signals[0].max_abs, 1e-12);
+  folder.experiment(R"("stage.force": {"column": "F", "unit": "N", "interpolation": "hold"})");
+  EXPECT_NEAR(folder.compared().signals[0].max_abs, std::abs(held_ramp(2) - 8.0 / 12), 1e-12);
+}
+
+TEST(Compare, IrregularTimesAreMetExactlyWhereTheRunHasARow) {
+  const Comparison c =
+      ExperimentFolder().data({0, 0.1, 0.25, 0.3, 0.7, 1.0, 1.05, 1.9}, four, parabola).compared();
+  EXPECT_EQ(c.time.size(), 8u);
+  EXPECT_LT(c.signals[0].max_abs, 1e-12);
+}
+
+TEST(Compare, ATimeThatBeginsLateStartsTheRunLate) {
+  std::vector<double> times = every(0.05, 21);
+  for (double& t : times) t += 3;
+  const Comparison c =
+      ExperimentFolder().data(times, four, [](double t) { return (t - 3) * (t - 3); }).compared();
+  EXPECT_EQ(c.time.front(), 3);
+  EXPECT_LT(c.signals[0].max_abs, 1e-9);
+}
+
+TEST(Compare, OverridesReachTheModel) {
+  ExperimentFolder folder;
+  folder.data(every(0.05, 21), four, [](double t) { return t * t / 2; });
+  LoadOptions heavier;
+  heavier.set = {{"stage.payload", "2 kg"}};
+  EXPECT_LT(compare(folder.path("stage.json"), folder.path("e.json"), heavier).signals[0].max_abs, 1e-12);
+}
+
+TEST(Compare, JsonHasItsStableKeys) {
+  const auto json = nlohmann::json::parse(to_json(
+      ExperimentFolder().data(every(0.05, 41), four, [](double t) { return t * t + 0.001; }).compared()));
+  const auto& signal = json.at("signals").at("stage.position");
+  EXPECT_NEAR(signal.at("rmse").get<double>(), 0.001, 1e-12);
+  EXPECT_NEAR(signal.at("max_abs").get<double>(), 0.001, 1e-12);
+  EXPECT_GT(signal.at("fit_percent").get<double>(), 99);
+  EXPECT_EQ(signal.at("unit"), "m");
+  EXPECT_EQ(json.at("finished"), true);
+  EXPECT_EQ(json.at("rows"), 41);
+}
+
+TEST(Compare, AFailedRunIsComparedAsFarAsItCameAndSaysSo) {
+  ExperimentFolder folder;
+  folder.with(
+      "stage.json",
+      diagram(R"("push": {"type": "Constant", "value": {"value": 0, "unit": "N"}}, "t": {"type": "Clock"},
+    "stage": {"type": "Mass", "mass": {"value": 2, "unit": "kg"}, "initial_position": {"value": 0, "unit": "m"}, "in": {"force": "push.y"}},
+    "bad": {"type": "Expression", "formula": "sqrt(1.02-t) + 0", "names": ["t"], "in": {"arguments": ["t.time"]}})",
+              R"("step": 0.05, "stop": 1)"));
+  const Comparison c = folder.data(every(0.05, 41), four, parabola).compared();
+  EXPECT_EQ(c.run.status, RunStatus::failed);
+  EXPECT_GE(c.time.size(), 20u);
+  EXPECT_LT(c.time.size(), 23u);
+  EXPECT_LT(c.signals[0].max_abs, 1e-12);
+}
+
+}  // namespace
+}  // namespace loopwright
