@@ -45,18 +45,18 @@ bool register_block(std::string_view type, std::string_view) {
 template <class B>
 bool register_block(std::string_view, std::string_view) { return true; }
 #else
-/// The folder of a source file; blocks from elsewhere stand in a room of their own.
-inline std::string room_of(std::string_view file) {
-  const size_t rooms = file.find("blocks/");
-  const size_t name = file.rfind('/');
-  return rooms == file.npos || name < rooms + 7 ? "further" : std::string(file.substr(rooms + 7, name - rooms - 7));
+/// "blocks/<room>/<file>" of a source in this tree; blocks from elsewhere stand in a room of their own.
+inline std::string source_of(std::string_view file) {
+  const size_t rooms = file.rfind("blocks/");
+  if (rooms != file.npos && file.find('/', rooms + 7) != file.npos) return std::string(file.substr(rooms));
+  return "blocks/further/" + std::string(file.substr(file.rfind('/') + 1));
 }
 
 template <class B>
 bool register_scalar(std::string_view type, std::string_view file, bool lane_wise) {
   BlockInfo info = info_of<B>(type);
-  info.room = room_of(file);
-  info.source = file;
+  info.source = source_of(file);
+  info.room = info.source.substr(7, info.source.find('/', 7) - 7);
   info.lane_wise = lane_wise;
   add_block(std::move(info), kernels_of<B, double>());
   return true;
