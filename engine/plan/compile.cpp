@@ -159,6 +159,12 @@ std::shared_ptr<const Plan> compile(const Diagram& diagram, Problems& problems) 
   return plan;
 }
 
+void check_part(const Diagram& diagram, Problems& problems) {
+  FlatDiagram flat = flatten(diagram, problems, true);
+  find_shapes(flat, problems);
+  check_units(flat, diagram, problems);
+}
+
 std::shared_ptr<const Plan> load_plan(const std::string& path, const LoadOptions& options) {
   Problems problems;
   const auto diagram = load_diagram(path, options, problems);

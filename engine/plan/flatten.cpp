@@ -22,7 +22,7 @@ struct Scope {
 
 class Flattener {
  public:
-  explicit Flattener(Problems& problems) : problems_(problems) {}
+  Flattener(Problems& problems, bool open) : problems_(problems), open_(open) {}
 
   FlatDiagram run(const Diagram& diagram) {
     Scope& top = add_scope(diagram, "", nullptr, nullptr);
@@ -146,6 +146,7 @@ class Flattener {
     std::vector<std::string> names;
     for (const DiagramInput& input : scope.diagram->inputs) {
       if (input.name == name) {
+        if (!scope.parent && open_) return {};
         if (!scope.parent) return fail(at, reader, fmt::format("the input \"{}\" of the diagram has no source: it is the top", name), {}, "");
         for (const PortWires& wires : scope.entry->in)
           if (wires.port == name && wires.wires.size() == 1) {
@@ -290,6 +291,7 @@ class Flattener {
   }
 
   Problems& problems_;
+  const bool open_;
   FlatDiagram flat_;
   std::deque<Scope> scopes_;
   std::vector<Scope*> scope_of_block_;
@@ -299,6 +301,6 @@ class Flattener {
 
 }  // namespace
 
-FlatDiagram flatten(const Diagram& diagram, Problems& problems) { return Flattener(problems).run(diagram); }
+FlatDiagram flatten(const Diagram& diagram, Problems& problems, bool open) { return Flattener(problems, open).run(diagram); }
 
 }  // namespace loopwright

@@ -47,10 +47,18 @@ static bool update_shape(FlatDiagram& flat, FlatBlock& block) {
 static void check_port(const FlatDiagram& flat, const FlatBlock& block, size_t i, Problems& problems) {
   const PortInfo& port = block.type->info.inputs[i];
   const auto& wires = block.inputs[i];
-  if (wires.empty()) return;
   const int wanted = block.type->info.input_length(block.value.get(), int(i));
+  if (wires.empty()) {
+    const auto listed = std::ranges::find(block.entry->in, port.name, &PortWires::port);  // an empty list
+    if (port.shape == PortInfo::Shape::many && listed != block.entry->in.end() && wanted != 0 && !port.is_optional)
+      problems.error(listed->place, listed->pointer, block.path, fmt::format("the input \"{}\" is not wired", port.name)).expected =
+          wanted > 0 ? fmt::format("{} wires", wanted) : "at least one wire";
+    return;
+  }
   const auto clash = [&](const FlatWire& wire, std::string expected, std::string found) {
-    auto& p = problems.error(wire.place, wire.pointer, block.path, fmt::format("the input \"{}\" has the wrong width", port.name));
+    const bool has_place = wire.place.file != nullptr;  // a wire that leads nowhere has none
+    auto& p = problems.error(has_place ? wire.place : block.entry->place, has_place ? wire.pointer : block.entry->pointer, block.path,
+                             fmt::format("the input \"{}\" has the wrong width", port.name));
     p.expected = std::move(expected), p.found = std::move(found);
   };
   if (port.shape == PortInfo::Shape::many && !port.joins_vectors) {

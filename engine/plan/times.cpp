@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include "engine/solve/solver.h"
 
 namespace loopwright {
 namespace {
@@ -54,6 +55,11 @@ class Times {
       refuse(solver.maximum_step, "maximum_step", "a fixed-step method takes \"step\"");
     } else {
       refuse(solver.step, "step", "a variable-step method chooses its steps: \"relative_tolerance\", \"absolute_tolerance\" and \"maximum_step\" guide it");
+    }
+    if (const auto& relative = solver.relative_tolerance; relative.is_given && !is_fixed_step(plan_.method) &&
+                                                          (relative.value < smallest_relative_tolerance || relative.value >= 1)) {
+      auto& p = problems_.error(relative.place, relative.pointer, "", "\"relative_tolerance\" is out of range");
+      p.expected = fmt::format("a number of at least {} and below 1", smallest_relative_tolerance), p.found = fmt::format("{}", relative.value);
     }
     plan_.relative_tolerance = solver.relative_tolerance.value;
     plan_.absolute_tolerance = solver.absolute_tolerance.value;

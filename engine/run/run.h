@@ -432,7 +432,8 @@ void Run<Real>::look_at(double time, const double* x) {
 template <class Real>
 double Run<Real>::next_stop(double time) const {
   double next = infinity;
-  for (const auto& [block, stop] : stops_) next = std::min(next, stop(block, time));
+  for (const auto& [block, stop] : stops_)
+    if (const double at = stop(block, time); at > time) next = std::min(next, at);  // stops closer than rounding are none
   return next;
 }
 
