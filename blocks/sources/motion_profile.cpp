@@ -119,7 +119,7 @@ void MotionProfile<Real>::prepare(double) {
   distance = returns ? Real(0.0) : position;
   if (returns)
     for (size_t i = segments.size(); i-- > 0;) {
-      const Piece& there = pieces[i];
+      const Piece there = pieces[i];  // a copy: the list grows under it
       const Real end = i + 1 < segments.size() ? pieces[i + 1].position : position;
       pieces.push_back({time, end, -(there.velocity + there.change), there.change, there.duration});
       time = time + there.duration;

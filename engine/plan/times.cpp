@@ -35,6 +35,13 @@ class Times {
     return fraction(setting.value, setting.place, setting.pointer, "", name, may_be_zero);
   }
 
+  void check_tolerance(const Setting<double>& tolerance, std::string_view name, double least, double below) {
+    if (!tolerance.is_given || (tolerance.value >= least && tolerance.value < below)) return;
+    auto& p = problems_.error(tolerance.place, tolerance.pointer, "", fmt::format("\"{}\" is out of range", name));
+    p.expected = fmt::format("a number of at least {}{}", least, below < infinity ? fmt::format(" and below {}", below) : "");
+    p.found = fmt::format("{}", tolerance.value);
+  }
+
   void read_solver() {
     const SolverSettings& solver = diagram_.solver;
     if (const auto method = method_from_name(solver.method.value)) plan_.method = *method;
@@ -56,10 +63,9 @@ class Times {
     } else {
       refuse(solver.step, "step", "a variable-step method chooses its steps: \"relative_tolerance\", \"absolute_tolerance\" and \"maximum_step\" guide it");
     }
-    if (const auto& relative = solver.relative_tolerance; relative.is_given && !is_fixed_step(plan_.method) &&
-                                                          (relative.value < smallest_relative_tolerance || relative.value >= 1)) {
-      auto& p = problems_.error(relative.place, relative.pointer, "", "\"relative_tolerance\" is out of range");
-      p.expected = fmt::format("a number of at least {} and below 1", smallest_relative_tolerance), p.found = fmt::format("{}", relative.value);
+    if (!is_fixed_step(plan_.method)) {
+      check_tolerance(solver.relative_tolerance, "relative_tolerance", smallest_relative_tolerance, 1);
+      check_tolerance(solver.absolute_tolerance, "absolute_tolerance", 1e-100, infinity);  // solvers square its inverse
     }
     plan_.relative_tolerance = solver.relative_tolerance.value;
     plan_.absolute_tolerance = solver.absolute_tolerance.value;
