@@ -154,6 +154,8 @@ class Simulation {
       }
       if (step.status == SolverStatus::reached_stop && step.t >= end) break;
       if (step.status == SolverStatus::event && !chattering_.count(step.t, solver.fired())) return fail_by_chattering(step.t);
+      if (step.status == SolverStatus::reached_stop && !chattering_.count(step.t, {}))
+        return fail(fmt::format("{} known discontinuities follow within {:.3g} s at t = {:g} s: is the period of a source far too short?", Chattering::most, chattering_.span(), step.t));
       handle_event(solver);
       if (run_.failed()) return fail_by_fault();
       if (!go_on()) return false;

@@ -1,4 +1,5 @@
 // What mutants found: each was a crash, an exception, a silent success or a message without a place.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include "engine/run/simulation.h"
 #include "tests/engine/diagram/diagram_folder.h"
@@ -63,11 +64,13 @@ TEST(Found, AnEmptyListOfWiresIsNotWired) {
             "");
 }
 
-TEST(Found, StopsCloserThanRoundingDoNotHoldTheRun) {
+TEST(Found, DiscontinuitiesWithoutEndEndTheRun) {
   DiagramFolder folder;
   folder.with("top.json", R"({"loopwright": 1, "solver": {"method": "dopri5", "stop": 1},
     "blocks": {"p": {"type": "PulseTrain", "period": 1e-300, "width": 0}, "x": {"type": "Integrator", "in": {"u": "p.y"}}}})");
-  EXPECT_EQ(simulate(*load_plan(folder.path("top.json"))).status, RunStatus::finished);
+  const RunResult result = simulate(*load_plan(folder.path("top.json")));
+  EXPECT_EQ(result.status, RunStatus::failed);
+  EXPECT_THAT(result.message, ::testing::HasSubstr("known discontinuities"));
 }
 
 }  // namespace
