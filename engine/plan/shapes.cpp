@@ -18,10 +18,13 @@ static bool has_vector_ports(const BlockInfo& info) {
   return std::ranges::any_of(info.inputs, is_vector) || std::ranges::any_of(info.outputs, is_vector);
 }
 
+constexpr int longest_vector = 1'000'000;      // elements
+constexpr int64_t most_numbers = 500'000'000;  // in the arena of a run: 4 GB
+
 static int total_length(const FlatDiagram& flat, const std::vector<FlatWire>& wires) {
-  int n = 0;
+  int64_t n = 0;
   for (const FlatWire& wire : wires) n += length_of(flat, wire);
-  return n;
+  return int(std::min<int64_t>(n, longest_vector + 1));
 }
 
 /// The block's width and output lengths from its inputs as they are now; true if anything grew.
@@ -88,6 +91,25 @@ static void check_element(const FlatDiagram& flat, const FlatWire& wire, const s
   problems.error(wire.place, wire.pointer, reader, fmt::format("\"{}\" has {} elements, counted from 0", wire.text.substr(0, wire.text.find('[')), n)).found = "\"" + wire.text + "\"";
 }
 
+/// All numbers of a run must fit into memory, and their places into a Number; told at the block that takes the most.
+static void check_size(const FlatDiagram& flat, Problems& problems) {
+  int64_t total = 0, greatest = -1;
+  const FlatBlock* greediest = nullptr;
+  for (const FlatBlock& block : flat.blocks) {
+    const BlockInfo& info = block.type->info;
+    int64_t numbers = 5 * int64_t(info.state_length(block.value.get()));  // with what a solver keeps of each state
+    for (int length : block.output_lengths) numbers += length;
+    for (int i = 0; i < info.buffers; ++i) numbers += info.buffer_length(block.value.get(), i);
+    numbers *= block.width;
+    total += numbers;
+    if (numbers > greatest) greatest = numbers, greediest = &block;
+  }
+  if (total <= most_numbers) return;
+  auto& p = problems.error(greediest->entry->place, greediest->entry->pointer, greediest->path,
+                           fmt::format("the diagram needs {:.3g} GB of memory, most of it here", 8e-9 * double(total)));
+  p.expected = fmt::format("at most {:.3g} GB", 8e-9 * double(most_numbers));
+}
+
 void find_shapes(FlatDiagram& flat, Problems& problems) {
   for (FlatBlock& block : flat.blocks) block.output_lengths.assign(block.type->info.outputs.size(), 1);
   std::vector<std::vector<int>> readers(flat.blocks.size());
@@ -103,7 +125,12 @@ void find_shapes(FlatDiagram& flat, Problems& problems) {
     todo.pop_back();
     FlatBlock& block = flat.blocks[size_t(b)];
     if (!update_shape(flat, block)) continue;
-    if (++visits[size_t(b)] > 50 || block.width > 1'000'000) {
+    if (block.width > longest_vector || std::ranges::any_of(block.output_lengths, [](int n) { return n > longest_vector; })) {
+      auto& p = problems.error(block.entry->place, block.entry->pointer, block.path, "its vectors are too long");
+      p.expected = fmt::format("at most {} elements", longest_vector), p.hint = "does a vector that grows feed itself?";
+      return;
+    }
+    if (++visits[size_t(b)] > 50) {
       problems.error(block.entry->place, block.entry->pointer, block.path, "its vectors grow round a ring of wires without end");
       return;
     }
@@ -117,6 +144,7 @@ void find_shapes(FlatDiagram& flat, Problems& problems) {
   }
   for (const FlatLog& log : flat.log) check_element(flat, log.wire, "log", told, problems);
   for (const FlatName& name : flat.names) check_element(flat, name.wire, name.name, told, problems);
+  check_size(flat, problems);
 }
 
 Layout::Layout(const FlatDiagram& flat, Plan& plan) : flat_(flat), plan_(plan) {

@@ -73,5 +73,25 @@ TEST(Found, DiscontinuitiesWithoutEndEndTheRun) {
   EXPECT_THAT(result.message, ::testing::HasSubstr("known discontinuities"));
 }
 
+TEST(Found, AVectorThatDoublesInARingIsTooLong) {
+  for (const char* more :
+       {R"("p.y")", R"("p.y", "p.y")", R"("p.y", "p.y", "p.y", "p.y", "p.y", "p.y", "p.y", "p.y")"}) {
+    const std::string text =
+        problems_of(R"("p": {"type": "Pack", "in": {"elements": ["p.y", )" + std::string(more) + "]}}");
+    expect_in("top.json:2:", text);
+    expect_in("its vectors", text);
+  }
+}
+
+TEST(Found, MoreMemoryThanAMachineHasIsAProblemOfTheDiagram) {
+  std::string wires;
+  for (int i = 0; i < 300; ++i) wires += i ? R"(, "c.y")" : R"("c.y")";
+  const std::string text = problems_of(
+      std::string(constant) + R"("p": {"type": "Pack", "in": {"elements": [)" + wires +
+      R"(]}}, "d": {"type": "Delay", "samples": 10000000, "sample_time": 0.1, "in": {"u": "p.y"}})");
+  expect_in("the diagram needs 24 GB of memory", text);
+  expect_in("block: d", text);
+}
+
 }  // namespace
 }  // namespace loopwright
