@@ -1,17 +1,19 @@
-/// Random numbers by counting: each number is a function of its place, so that runs, lanes and restarts need no state.
+/// Random numbers by counting: each number is a function of its place, so that runs, lanes and restarts need
+/// no state.
 #pragma once
 #include <array>
 #include <cstdint>
 
 namespace loopwright {
 
-/// Philox4x32 with 10 rounds (J. K. Salmon et al., Parallel random numbers: as easy as 1, 2, 3, SC 2011): a keyed
-/// bijection of 128-bit counters. It passes all tests of BigCrush; streams of different keys are independent in
-/// practice. Words are in the order of the publication, the least significant first.
+/// Philox4x32 with 10 rounds (J. K. Salmon et al., Parallel random numbers: as easy as 1, 2, 3, SC 2011): a
+/// keyed bijection of 128-bit counters. It passes all tests of BigCrush; streams of different keys are
+/// independent in practice. Words are in the order of the publication, the least significant first.
 constexpr std::array<uint32_t, 4> philox(std::array<uint32_t, 4> counter, std::array<uint32_t, 2> key) {
   for (int round = 0; round < 10; ++round) {
     const uint64_t a = uint64_t{0xD2511F53} * counter[0], b = uint64_t{0xCD9E8D57} * counter[2];
-    counter = {uint32_t(b >> 32) ^ counter[1] ^ key[0], uint32_t(b), uint32_t(a >> 32) ^ counter[3] ^ key[1], uint32_t(a)};
+    counter = {uint32_t(b >> 32) ^ counter[1] ^ key[0], uint32_t(b), uint32_t(a >> 32) ^ counter[3] ^ key[1],
+               uint32_t(a)};
     key[0] += 0x9E3779B9;
     key[1] += 0xBB67AE85;
   }

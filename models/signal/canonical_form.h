@@ -1,8 +1,9 @@
 /// The controllable canonical form of a transfer function, with its time scaled.
 ///
-/// With s = ω p the states z_i = p^i / (pⁿ + Σ â_i p^i) U are of the size of the input, whatever the unit of time:
-/// unscaled, the lowest state of 1/(s/1000 + 1)⁴ would be 10¹² times smaller than the input and drown in a solver's
-/// absolute tolerance. ω is a power of two near the geometric mean of the poles, so the scaling rounds nothing.
+/// With s = ω p the states z_i = p^i / (pⁿ + Σ â_i p^i) U are of the size of the input, whatever the unit of
+/// time: unscaled, the lowest state of 1/(s/1000 + 1)⁴ would be 10¹² times smaller than the input and drown
+/// in a solver's absolute tolerance. ω is a power of two near the geometric mean of the poles, so the scaling
+/// rounds nothing.
 #pragma once
 #include <span>
 #include <vector>
@@ -10,11 +11,10 @@
 
 namespace loopwright {
 
-template <class Real>
-struct CanonicalForm {
-  Real speed;                         ///< ω, 1/s
-  std::vector<Real> feedback, output; ///< â_i; weight of z_i in the output
-  Real direct;                        ///< limit of the transfer function for s → ∞
+template <class Real> struct CanonicalForm {
+  Real speed;                          ///< ω, 1/s
+  std::vector<Real> feedback, output;  ///< â_i; weight of z_i in the output
+  Real direct;                         ///< limit of the transfer function for s → ∞
 
   /// Coefficients of the highest power of s first; denominator[0] ≠ 0, at least two; numerator no longer.
   static CanonicalForm of(const std::vector<Real>& numerator, const std::vector<Real>& denominator) {
@@ -36,7 +36,8 @@ struct CanonicalForm {
     for (size_t i = n; i-- > 0;) {  // z_i belongs to the i-th power, which stands at n - i in the lists
       scale = scale / form.speed;
       form.feedback[i] = denominator[n - i] / denominator[0] * scale;
-      const Real weight = numerator.size() > i ? numerator[numerator.size() - 1 - i] / denominator[0] * scale : Real(0.0);
+      const Real weight =
+          numerator.size() > i ? numerator[numerator.size() - 1 - i] / denominator[0] * scale : Real(0.0);
       form.output[i] = weight - form.direct * form.feedback[i];
     }
     return form;

@@ -1,0 +1,63 @@
+/// Regression from statistics instead of samples: exact to rounding, at a cost that does not depend on N.
+///
+/// With features Φ (N×m) and a kernel K = Φ S Φᵀ, S = L Lᵀ, everything follows from G = ΦᵀΦ and b = Φᵀy by
+/// the matrix inversion and determinant lemmas (Rasmussen, Williams 2006, appendix A.3):
+///   B = I + LᵀGL/σ_n²,   log|K + σ_n² I| = N log σ_n² + log|B|,   Φᵀ(K + σ_n² I)⁻¹Φ = (G - GL
+///   B⁻¹LᵀG/σ_n²)/σ_n²
+#pragma once
+#include <memory>
+#include "models/gp/statistics.h"
+
+namespace loopwright::gp {
+
+/// Evaluates one set of statistics at many hyper-parameters.
+class StructuredEvidence {
+ public:
+  explicit StructuredEvidence(const Statistics& statistics);
+  ~StructuredEvidence();
+  /// As dense_evidence(). The kernel has the structure that the statistics were made for.
+  Evidence operator()(const Kernel& kernel);
+
+ private:
+  struct Workspace;
+  std::unique_ptr<Workspace> workspace_;
+};
+
+/// One term of a posterior: the mean is σ_t² Σ β_ab c_a(x) c_b(v) over the functions of its bases.
+struct TermFeatures {
+  double variance = 1;  ///< σ_t²
+  std::array<Shape, 2> along;
+  std::array<std::vector<double>, 2> nodes;    ///< of squared exponentials
+  std::array<std::vector<double>, 2> weights;  ///< of Fourier series
+  std::vector<double> coefficients;            ///< β: what the samples ask of each function
+  double norm = 0;                             ///< ‖f_t‖ σ_t, see derivative_bound()
+  size_t size(size_t input) const;
+};
+
+class StructuredPosterior {
+ public:
+  StructuredPosterior(const Kernel& kernel, const Statistics& statistics);
+  double mean(const Point& at) const;
+  /// Of the function, without the noise of an observation; never below 0.
+  double variance(const Point& at) const;
+  /// As in DensePosterior.
+  Jet term(size_t index, const Point& at) const;
+  double term_norm(size_t index) const { return terms_[index].norm; }
+  /// An upper bound, √N ‖w‖, with w = (y - mean)/σ_n² of the samples.
+  double weight_sum() const { return weight_sum_; }
+  /// Root mean square of y - mean over the samples.
+  double residual_rms() const { return residual_rms_; }
+
+ private:
+  std::vector<TermFeatures> terms_;
+  double prior_ = 0, weight_sum_ = 0, residual_rms_ = 0;
+  size_t functions_ = 0;
+  std::vector<double> precision_;  ///< Φᵀ(K + σ_n² I)⁻¹Φ, symmetric
+};
+
+/// Correlations of a point with the functions of a term's basis along one input: `term.size(input)` numbers.
+void correlations(const TermFeatures& term, size_t input, double value, double* out);
+/// Their derivatives by the value.
+void correlation_slopes(const TermFeatures& term, size_t input, double value, double* out);
+
+}  // namespace loopwright::gp
