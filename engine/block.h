@@ -1,5 +1,6 @@
 /// What a block file includes. A block is a value: its parameters and nothing mutable.
 ///
+// clang-format off
 ///   template <class Real> struct MyBlock {                  // a plain struct instead: scalar only, run lane by lane
 ///     Real gain;                                            // parameters: Real is tunable; int, bool, string, enum, lists structural
 ///     struct In  { Real u; };                               // ports: Real, Vector<const Real>, Many<Real>
@@ -21,8 +22,10 @@
 ///     void crossings(…, Crossings&) const;
 ///     bool may_cross() const;                               // false: with these parameters nothing ever crosses; default: true
 ///     double next_stop(double now) const;                   // the next time (s) at which it is not smooth
+///     static constexpr bool has_side_effects = true;        // acts on the world outside: never several runs at a time
 ///   };
 ///   LOOPWRIGHT_BLOCK(MyBlock)
+// clang-format on
 ///
 /// Where … is, a method takes any of `const Instant&, const In&, const State&, const Memory&, const Mode&`.
 /// Any method but prepare, start and check may return a Fault.
@@ -37,13 +40,12 @@ namespace loopwright {
 using std::numbers::pi;
 
 #ifdef LOOPWRIGHT_LANE_REAL  // compiled into a module for one instruction set: lane kernels only
-template <template <class> class B>
-bool register_block(std::string_view type, std::string_view) {
-  lane_kernels<LOOPWRIGHT_LANE_REAL>().emplace(type, kernels_of<B<LOOPWRIGHT_LANE_REAL>, LOOPWRIGHT_LANE_REAL>());
+template <template <class> class B> bool register_block(std::string_view type, std::string_view) {
+  lane_kernels<LOOPWRIGHT_LANE_REAL>().emplace(type,
+                                               kernels_of<B<LOOPWRIGHT_LANE_REAL>, LOOPWRIGHT_LANE_REAL>());
   return true;
 }
-template <class B>
-bool register_block(std::string_view, std::string_view) { return true; }
+template <class B> bool register_block(std::string_view, std::string_view) { return true; }
 #else
 /// "blocks/<room>/<file>" of a source in this tree; blocks from elsewhere stand in a room of their own.
 inline std::string source_of(std::string_view file) {
@@ -52,8 +54,7 @@ inline std::string source_of(std::string_view file) {
   return "blocks/further/" + std::string(file.substr(file.rfind('/') + 1));
 }
 
-template <class B>
-bool register_scalar(std::string_view type, std::string_view file, bool lane_wise) {
+template <class B> bool register_scalar(std::string_view type, std::string_view file, bool lane_wise) {
   BlockInfo info = info_of<B>(type);
   info.source = source_of(file);
   info.room = info.source.substr(7, info.source.find('/', 7) - 7);
@@ -61,10 +62,12 @@ bool register_scalar(std::string_view type, std::string_view file, bool lane_wis
   add_block(std::move(info), kernels_of<B, double>());
   return true;
 }
-template <template <class> class B>
-bool register_block(std::string_view type, std::string_view file) { return register_scalar<B<double>>(type, file, true); }
-template <class B>
-bool register_block(std::string_view type, std::string_view file) { return register_scalar<B>(type, file, false); }
+template <template <class> class B> bool register_block(std::string_view type, std::string_view file) {
+  return register_scalar<B<double> >(type, file, true);
+}
+template <class B> bool register_block(std::string_view type, std::string_view file) {
+  return register_scalar<B>(type, file, false);
+}
 #endif
 
 #define LOOPWRIGHT_BLOCK(Type) \

@@ -1,6 +1,7 @@
 /// The language in which a block describes itself: a constexpr list of entries that point at its members.
 ///
-/// From this one list come the JSON Schema, the reference page, error texts, unit checks, feedthrough, sweep axes.
+/// From this one list come the JSON Schema, the reference page, error texts, unit checks, feedthrough, sweep
+/// axes.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -17,19 +18,18 @@
 
 namespace loopwright {
 
-/// When a method is called. Time is tick · base period at a tick, and lies between ticks inside a solver step.
+/// When a method is called. Time is tick · base period at a tick, and lies between ticks inside a solver
+/// step.
 struct Instant {
   double time = 0;   ///< s
   int64_t tick = 0;  ///< base periods since the start
 };
 
 /// A vector-valued port, state or memory: contiguous in the arena of the run.
-template <class Real>
-using Vector = std::span<Real>;
+template <class Real> using Vector = std::span<Real>;
 
 /// An input port that takes any number of scalar wires, "terms": ["a.x", "b.y"].
-template <class Real>
-struct Many {
+template <class Real> struct Many {
   const Real* const* wire = nullptr;
   int count = 0;
   ptrdiff_t at = 0;
@@ -37,14 +37,14 @@ struct Many {
   LW_INLINE const Real& operator[](int i) const { return wire[i][at]; }
 };
 
-/// What a method may answer: `return fault_if(in.x <= 0.0, "the logarithm of …");` stops those lanes, others go on.
+/// What a method may answer: `return fault_if(in.x <= 0.0, "the logarithm of …");` stops those lanes, others
+/// go on.
 struct Fault {
   uint64_t lanes = 0;
   const char* reason = "";
 };
 LW_INLINE Fault fault_if(bool failed, const char* reason) { return {failed ? 1u : 0u, reason}; }
-template <int N, int R>
-LW_INLINE Fault fault_if(const Mask<N, R>& failed, const char* reason) {
+template <int N, int R> LW_INLINE Fault fault_if(const Mask<N, R>& failed, const char* reason) {
   Fault fault{0, reason};
   for (int i = 0; i < N * R; ++i) fault.lanes |= uint64_t(lane(failed, i)) << i;
   return fault;
@@ -65,117 +65,146 @@ struct None {};
 inline constexpr std::string_view any_unit = "?";
 
 /// A number, flag, text or table from the file. The default is the member's initialiser in the block.
-template <class Owner, class T>
-struct ParameterEntry {
+template <class Owner, class T> struct ParameterEntry {
   using Type = T;
   T Owner::*member;
   std::string_view name, unit, sentence;
   double low = -infinity, high = infinity;
   bool low_is_open = false, has_default = false;
-  constexpr ParameterEntry positive() const { auto p = *this; p.low = 0; p.low_is_open = true; return p; }
+  constexpr ParameterEntry positive() const {
+    auto p = *this;
+    p.low = 0;
+    p.low_is_open = true;
+    return p;
+  }
   constexpr ParameterEntry not_negative() const { return at_least(0); }
-  constexpr ParameterEntry at_least(double a) const { auto p = *this; p.low = a; return p; }
-  constexpr ParameterEntry between(double a, double b) const { auto p = *this; p.low = a; p.high = b; return p; }
-  constexpr ParameterEntry optional() const { auto p = *this; p.has_default = true; return p; }
+  constexpr ParameterEntry at_least(double a) const {
+    auto p = *this;
+    p.low = a;
+    return p;
+  }
+  constexpr ParameterEntry between(double a, double b) const {
+    auto p = *this;
+    p.low = a;
+    p.high = b;
+    return p;
+  }
+  constexpr ParameterEntry optional() const {
+    auto p = *this;
+    p.has_default = true;
+    return p;
+  }
 };
 
 /// What the block reads. An optional input that is not wired reads `otherwise`.
-template <class Owner, class T, class Length = None>
-struct InputEntry {
+template <class Owner, class T, class Length = None> struct InputEntry {
   using Type = T;
   T Owner::*member;
   std::string_view name, unit, sentence;
   Length size{};
   bool is_optional = false, joins_vectors = false;
   double otherwise_value = 0;
-  constexpr InputEntry otherwise(double value) const { auto p = *this; p.is_optional = true; p.otherwise_value = value; return p; }
+  constexpr InputEntry otherwise(double value) const {
+    auto p = *this;
+    p.is_optional = true;
+    p.otherwise_value = value;
+    return p;
+  }
   /// Vector wires of a Many port are strung together instead of making one block an element.
-  constexpr InputEntry joins() const { auto p = *this; p.joins_vectors = true; return p; }
-  template <class L>
-  constexpr auto length(L l) const {
-    return InputEntry<Owner, T, L>{member, name, unit, sentence, l, is_optional, joins_vectors, otherwise_value};
+  constexpr InputEntry joins() const {
+    auto p = *this;
+    p.joins_vectors = true;
+    return p;
+  }
+  template <class L> constexpr auto length(L l) const {
+    return InputEntry<Owner, T, L>{member, name,        unit,          sentence,
+                                   l,      is_optional, joins_vectors, otherwise_value};
   }
 };
 
 /// What the block offers. Fed by every input, unless `.from(…)` says by which.
-template <class Owner, class T, class From = void, class Length = None>
-struct OutputEntry {
+template <class Owner, class T, class From = void, class Length = None> struct OutputEntry {
   using Type = T;
   T Owner::*member;
   std::string_view name, unit, sentence;
   From fed_by;
   Length size{};
-  template <class L>
-  constexpr auto length(L l) const { return OutputEntry<Owner, T, From, L>{member, name, unit, sentence, fed_by, l}; }
+  template <class L> constexpr auto length(L l) const {
+    return OutputEntry<Owner, T, From, L>{member, name, unit, sentence, fed_by, l};
+  }
 };
-template <class Owner, class T, class Length>
-struct OutputEntry<Owner, T, void, Length> {
+template <class Owner, class T, class Length> struct OutputEntry<Owner, T, void, Length> {
   using Type = T;
   T Owner::*member;
   std::string_view name, unit, sentence;
   Length size{};
-  template <class... I>
-  constexpr auto from(I... inputs) const {
-    return OutputEntry<Owner, T, std::tuple<I...>, Length>{member, name, unit, sentence, std::tuple<I...>(inputs...), size};
+  template <class... I> constexpr auto from(I... inputs) const {
+    return OutputEntry<Owner, T, std::tuple<I...>, Length>{
+        member, name, unit, sentence, std::tuple<I...>(inputs...), size};
   }
   /// Fed by no input directly: read from state, memory or time.
   constexpr auto from_memory() const { return from(); }
-  template <class L>
-  constexpr auto length(L l) const { return OutputEntry<Owner, T, void, L>{member, name, unit, sentence, l}; }
+  template <class L> constexpr auto length(L l) const {
+    return OutputEntry<Owner, T, void, L>{member, name, unit, sentence, l};
+  }
 };
 
 /// A sized part of Memory or State; the length is a member or a member function of the block.
-template <class Owner, class T, class Length>
-struct Buffer {
+template <class Owner, class T, class Length> struct Buffer {
   T Owner::*member;
   Length length;
 };
-template <class Owner, class T, class Length>
-struct StateVector {
+template <class Owner, class T, class Length> struct StateVector {
   T Owner::*member;
   Length length;
 };
 
 /// A function whose passage through zero is an event.
-template <class Owner, class T>
-struct CrossingEntry {
+template <class Owner, class T> struct CrossingEntry {
   T Owner::*member;
   std::string_view name;
   Crossing direction;
 };
 
 template <class O, class T>
-constexpr ParameterEntry<O, T> parameter(T O::*m, std::string_view name, std::string_view unit, std::string_view sentence) {
+constexpr ParameterEntry<O, T> parameter(T O::*m, std::string_view name, std::string_view unit,
+                                         std::string_view sentence) {
   return {m, name, unit, sentence};
 }
 template <class O, class T>
-constexpr InputEntry<O, T> input(T O::*m, std::string_view name, std::string_view unit, std::string_view sentence) {
+constexpr InputEntry<O, T> input(T O::*m, std::string_view name, std::string_view unit,
+                                 std::string_view sentence) {
   return {m, name, unit, sentence};
 }
 template <class O, class T>
-constexpr OutputEntry<O, T> output(T O::*m, std::string_view name, std::string_view unit, std::string_view sentence) {
+constexpr OutputEntry<O, T> output(T O::*m, std::string_view name, std::string_view unit,
+                                   std::string_view sentence) {
   return {m, name, unit, sentence};
 }
-template <class O, class T, class L>
-constexpr Buffer<O, T, L> buffer(T O::*m, L length) { return {m, length}; }
-template <class O, class T, class L>
-constexpr StateVector<O, T, L> state_vector(T O::*m, L length) { return {m, length}; }
+template <class O, class T, class L> constexpr Buffer<O, T, L> buffer(T O::*m, L length) {
+  return {m, length};
+}
+template <class O, class T, class L> constexpr StateVector<O, T, L> state_vector(T O::*m, L length) {
+  return {m, length};
+}
 template <class O, class T>
-constexpr CrossingEntry<O, T> crossing(T O::*m, std::string_view name, Crossing direction = Crossing::either) {
+constexpr CrossingEntry<O, T> crossing(T O::*m, std::string_view name,
+                                       Crossing direction = Crossing::either) {
   return {m, name, direction};
 }
 
-template <class... E>
-struct Description {
+template <class... E> struct Description {
   std::string_view sentence;
   std::tuple<E...> entries;
 };
 /// `describe()` of a block returns this.
-template <class... E>
-constexpr Description<E...> block(std::string_view sentence, E... entries) { return {sentence, std::tuple<E...>(entries...)}; }
+template <class... E> constexpr Description<E...> block(std::string_view sentence, E... entries) {
+  return {sentence, std::tuple<E...>(entries...)};
+}
 /// `describe()` of a struct inside a parameter returns this.
-template <class... E>
-constexpr Description<E...> fields(E... entries) { return {"", std::tuple<E...>(entries...)}; }
+template <class... E> constexpr Description<E...> fields(E... entries) {
+  return {"", std::tuple<E...>(entries...)};
+}
 
 template <class> struct is_parameter : std::false_type {};
 template <class O, class T> struct is_parameter<ParameterEntry<O, T>> : std::true_type {};
@@ -190,12 +219,10 @@ template <class O, class T, class L> struct is_state_vector<StateVector<O, T, L>
 template <class> struct is_crossing : std::false_type {};
 template <class O, class T> struct is_crossing<CrossingEntry<O, T>> : std::true_type {};
 
-template <class B>
-inline constexpr auto description = B::describe();
+template <class B> inline constexpr auto description = B::describe();
 
 /// f(rank among its kind as an integral_constant, entry), for each entry of one kind.
-template <class B, template <class> class Is, class F>
-LW_INLINE constexpr void for_each(F&& f) {
+template <class B, template <class> class Is, class F> LW_INLINE constexpr void for_each(F&& f) {
   using Tuple = std::remove_cvref_t<decltype(description<B>.entries)>;
   [&]<size_t... I>(std::index_sequence<I...>) {
     constexpr auto rank = [](size_t i) {
@@ -209,7 +236,8 @@ LW_INLINE constexpr void for_each(F&& f) {
             f(std::integral_constant<size_t, rank(I)>{}, std::get<I>(description<B>.entries));
         }(),
         ...);
-  }(std::make_index_sequence<std::tuple_size_v<Tuple>>{});
+  }
+  (std::make_index_sequence<std::tuple_size_v<Tuple>>{});
 }
 template <class B, template <class> class Is>
 inline constexpr size_t count_of = [] {
@@ -220,17 +248,41 @@ inline constexpr size_t count_of = [] {
 
 // The nested structs of a block; None where it has none.
 template <class B> struct in_of { using type = None; };
-template <class B> requires requires { typename B::In; } struct in_of<B> { using type = typename B::In; };
+template <class B>
+requires requires { typename B::In; }
+struct in_of<B> {
+  using type = typename B::In;
+};
 template <class B> struct out_of { using type = None; };
-template <class B> requires requires { typename B::Out; } struct out_of<B> { using type = typename B::Out; };
+template <class B>
+requires requires { typename B::Out; }
+struct out_of<B> {
+  using type = typename B::Out;
+};
 template <class B> struct state_of { using type = None; };
-template <class B> requires requires { typename B::State; } struct state_of<B> { using type = typename B::State; };
+template <class B>
+requires requires { typename B::State; }
+struct state_of<B> {
+  using type = typename B::State;
+};
 template <class B> struct memory_of { using type = None; };
-template <class B> requires requires { typename B::Memory; } struct memory_of<B> { using type = typename B::Memory; };
+template <class B>
+requires requires { typename B::Memory; }
+struct memory_of<B> {
+  using type = typename B::Memory;
+};
 template <class B> struct mode_of { using type = None; };
-template <class B> requires requires { typename B::Mode; } struct mode_of<B> { using type = typename B::Mode; };
+template <class B>
+requires requires { typename B::Mode; }
+struct mode_of<B> {
+  using type = typename B::Mode;
+};
 template <class B> struct crossings_of { using type = None; };
-template <class B> requires requires { typename B::Crossings; } struct crossings_of<B> { using type = typename B::Crossings; };
+template <class B>
+requires requires { typename B::Crossings; }
+struct crossings_of<B> {
+  using type = typename B::Crossings;
+};
 template <class B> using In = typename in_of<B>::type;
 template <class B> using Out = typename out_of<B>::type;
 template <class B> using State = typename state_of<B>::type;
@@ -244,10 +296,11 @@ template <template <class> class B, class R> struct scalar<B<R>> { using type = 
 template <class B> using scalar_of = typename scalar<B>::type;
 
 // Feedthrough: a mask of inputs per output, and outputs grouped by equal masks: one call serves a group.
-template <class A, class B>
-constexpr bool same_member(A a, B b) {
-  if constexpr (std::is_same_v<A, B>) return a == b;
-  else return false;
+template <class A, class B> constexpr bool same_member(A a, B b) {
+  if constexpr (std::is_same_v<A, B>)
+    return a == b;
+  else
+    return false;
 }
 template <class B>
 inline constexpr auto feedthrough = [] {
@@ -255,11 +308,12 @@ inline constexpr auto feedthrough = [] {
   for_each<B, is_output>([&](auto o, const auto& out) {
     if constexpr (requires { out.fed_by; })
       for_each<B, is_input>([&](auto i, const auto& in) {
-        std::apply([&](auto... from) { ((same_member(from, in.member) ? mask[o] |= uint64_t(1) << i : 0), ...); },
-                   out.fed_by);
+        std::apply(
+            [&](auto... from) { ((same_member(from, in.member) ? mask[o] |= uint64_t(1) << i : 0), ...); },
+            out.fed_by);
       });
     else
-      mask[o] = (uint64_t(1) << count_of<B, is_input>) - 1;
+      mask[o] = (uint64_t(1) << count_of<B, is_input>)-1;
   });
   return mask;
 }();
@@ -285,11 +339,11 @@ inline constexpr auto group_of_output = [] {
 template <class B>
 inline constexpr int group_count = [] {
   int n = 0;
-  for (size_t o = 0; o < count_of<B, is_output>; ++o) n = group_of_output<B>[o] >= n ? group_of_output<B>[o] + 1 : n;
+  for (size_t o = 0; o < count_of<B, is_output>; ++o)
+    n = group_of_output<B>[o] >= n ? group_of_output<B>[o] + 1 : n;
   return n;
 }();
-template <class B>
-constexpr uint64_t mask_of_group(int group) {
+template <class B> constexpr uint64_t mask_of_group(int group) {
   for (size_t o = 0; o < count_of<B, is_output>; ++o)
     if (group_of_output<B>[o] == group) return feedthrough<B>[o];
   return 0;

@@ -1,6 +1,7 @@
 /// What the engine knows of a block type: the same for every scalar.
 #pragma once
 #include "engine/block/kernels.h"
+#include "engine/block/memory_layout.h"
 
 namespace loopwright {
 
@@ -27,36 +28,41 @@ struct BlockInfo {
   std::vector<ParameterInfo> parameters;
   std::vector<CrossingInfo> crossings;
   int buffers = 0, groups = 0, state_vectors = 0, fixed_states = 0;
-  bool uses_time = false;   ///< its outputs take the time
-  bool is_sampled = false;  ///< has discrete memory: must have a sample time
-  bool is_continuous = false;  ///< has states, or modes of its own: must not have one
-  bool lane_wise = true;    ///< a template on the scalar: runs on SIMD lanes
+  bool uses_time = false;           ///< its outputs take the time
+  bool is_sampled = false;          ///< has discrete memory: must have a sample time
+  bool is_continuous = false;       ///< has states, or modes of its own: must not have one
+  std::vector<int> memory_numbers;  ///< words of Memory, 8 bytes each, that are numbers; others are indices
+  bool lane_wise = true;            ///< a template on the scalar: runs on SIMD lanes
+  bool has_side_effects = false;    ///< acts on the world outside: never several runs at a time
   void (*read)(void* block, const Value& settings, const std::string& path, Problems&);
   void (*check)(void* block, const Checker&);
   int (*input_length)(const void* block, int input);    ///< -1: any
   int (*output_length)(const void* block, int output);  ///< -1: by length_of_input
   int (*buffer_length)(const void* block, int buffer);
   int (*state_length)(const void* block);  ///< all states, fixed and sized
-  bool (*may_cross)(const void* block);  ///< whether its crossings need to be watched; null: always
-  double (*next_stop)(const void* block, double now);  ///< the next time at which it is not smooth; null: always smooth
+  bool (*may_cross)(const void* block);    ///< whether its crossings need to be watched; null: always
+  double (*next_stop)(const void* block,
+                      double now);  ///< the next time at which it is not smooth; null: always smooth
 };
 
-template <class Entry>
-constexpr PortInfo::Shape shape_of() {
+template <class Entry> constexpr PortInfo::Shape shape_of() {
   using T = typename Entry::Type;
-  if constexpr (requires(T t) { t.wire; }) return PortInfo::Shape::many;
-  else if constexpr (requires(T t) { t.data(); }) return PortInfo::Shape::vector;
-  else return PortInfo::Shape::scalar;
+  if constexpr (requires(T t) { t.wire; })
+    return PortInfo::Shape::many;
+  else if constexpr (requires(T t) { t.data(); })
+    return PortInfo::Shape::vector;
+  else
+    return PortInfo::Shape::scalar;
 }
-template <class B, class L>
-int length_of(const B& block, const L& length) {
-  if constexpr (std::is_invocable_v<L, const B&>) return int(std::invoke(length, block));
-  else return -1;
+template <class B, class L> int length_of(const B& block, const L& length) {
+  if constexpr (std::is_invocable_v<L, const B&>)
+    return int(std::invoke(length, block));
+  else
+    return -1;
 }
 
 /// B is the scalar block: B<double> or a plain struct.
-template <class B>
-BlockInfo info_of(std::string_view type) {
+template <class B> BlockInfo info_of(std::string_view type) {
   BlockInfo info{};
   info.type = type;
   info.sentence = B::describe().sentence;
@@ -64,32 +70,43 @@ BlockInfo info_of(std::string_view type) {
   for_each<B, is_input>([&](auto, const auto& entry) {
     using Entry = std::remove_cvref_t<decltype(entry)>;
     PortInfo port{entry.name, entry.unit, entry.sentence, shape_of<Entry>()};
-    port.is_optional = entry.is_optional, port.joins_vectors = entry.joins_vectors, port.otherwise_value = entry.otherwise_value;
+    port.is_optional = entry.is_optional, port.joins_vectors = entry.joins_vectors,
+    port.otherwise_value = entry.otherwise_value;
     info.inputs.push_back(port);
   });
   for_each<B, is_output>([&](auto o, const auto& entry) {
     using Entry = std::remove_cvref_t<decltype(entry)>;
-    PortInfo port{entry.name, entry.unit, entry.sentence, shape_of<Entry>(), feedthrough<B>[o], group_of_output<B>[o]};
+    PortInfo port{entry.name,        entry.unit,        entry.sentence,
+                  shape_of<Entry>(), feedthrough<B>[o], group_of_output<B>[o]};
     if constexpr (group_of_output<B>[o] < 0)
-      port.state = int((reinterpret_cast<char*>(&(state.*entry.member)) - reinterpret_cast<char*>(&state)) / ptrdiff_t(sizeof(double)));
+      port.state = int((reinterpret_cast<char*>(&(state.*entry.member)) - reinterpret_cast<char*>(&state)) /
+                       ptrdiff_t(sizeof(double)));
     for_each<B, is_input>([&](auto i, const auto& in) {
       if (same_member(entry.size, in.member)) port.length_of_input = int(i());
     });
     info.outputs.push_back(port);
   });
-  for_each<B, is_crossing>([&](auto, const auto& entry) { info.crossings.push_back({entry.name, entry.direction}); });
+  for_each<B, is_crossing>([&](auto, const auto& entry) {
+    info.crossings.push_back({entry.name, entry.direction});
+  });
   info.parameters = parameters_of<B>();
   info.buffers = int(count_of<B, is_buffer>), info.groups = group_count<B>;
   info.state_vectors = int(count_of<B, is_state_vector>);
-  info.fixed_states = std::is_same_v<State<B>, None> || info.state_vectors ? 0 : int(sizeof(State<B>) / sizeof(double));
-  if constexpr (requires { &B::outputs; }) info.uses_time = []<class A, class... P>(A (B::*)(P...) const) {
+  info.fixed_states =
+      std::is_same_v<State<B>, None> || info.state_vectors ? 0 : int(sizeof(State<B>) / sizeof(double));
+  if constexpr (requires { &B::outputs; })
+    info.uses_time = []<class A, class... P>(A (B::*)(P...) const) {
       return (std::is_same_v<std::remove_cvref_t<P>, Instant> || ...);
     }(&B::outputs);
-  if constexpr (requires { &B::decide; }) info.uses_time |= []<class A, class... P>(A (B::*)(P...) const) {
+  if constexpr (requires { &B::decide; })
+    info.uses_time |= []<class A, class... P>(A (B::*)(P...) const) {
       return (std::is_same_v<std::remove_cvref_t<P>, Instant> || ...);
     }(&B::decide);
   info.is_sampled = requires { &B::update; };
-  info.is_continuous = requires { &B::derivatives; } || requires { &B::accept; };
+  if constexpr (!std::is_same_v<Memory<B>, None>) info.memory_numbers = number_words<Memory<B>>();
+  info.is_continuous = requires { &B::derivatives; }
+  || requires { &B::accept; };
+  if constexpr (requires { B::has_side_effects; }) info.has_side_effects = B::has_side_effects;
   info.read = [](void* p, const Value& settings, const std::string& path, Problems& problems) {
     read_fields(*static_cast<B*>(p), settings, path, problems);
   };
@@ -98,23 +115,31 @@ BlockInfo info_of(std::string_view type) {
   };
   info.input_length = [](const void* p, int index) {
     int n = -1;
-    for_each<B, is_input>([&](auto i, const auto& e) { if (int(i()) == index) n = length_of(*static_cast<const B*>(p), e.size); });
+    for_each<B, is_input>([&](auto i, const auto& e) {
+      if (int(i()) == index) n = length_of(*static_cast<const B*>(p), e.size);
+    });
     return n;
   };
   info.output_length = [](const void* p, int index) {
     int n = -1;
-    for_each<B, is_output>([&](auto o, const auto& e) { if (int(o()) == index) n = length_of(*static_cast<const B*>(p), e.size); });
+    for_each<B, is_output>([&](auto o, const auto& e) {
+      if (int(o()) == index) n = length_of(*static_cast<const B*>(p), e.size);
+    });
     return n;
   };
   info.buffer_length = [](const void* p, int index) {
     int n = 0;
-    for_each<B, is_buffer>([&](auto i, const auto& e) { if (int(i()) == index) n = int(std::invoke(e.length, *static_cast<const B*>(p))); });
+    for_each<B, is_buffer>([&](auto i, const auto& e) {
+      if (int(i()) == index) n = int(std::invoke(e.length, *static_cast<const B*>(p)));
+    });
     return n;
   };
   info.state_length = [](const void* p) {
     int n = 0;
-    for_each<B, is_state_vector>([&](auto, const auto& e) { n += int(std::invoke(e.length, *static_cast<const B*>(p))); });
-    if (count_of<B, is_state_vector> == 0 && !std::is_same_v<State<B>, None>) n = int(sizeof(State<B>) / sizeof(double));
+    for_each<B, is_state_vector>(
+        [&](auto, const auto& e) { n += int(std::invoke(e.length, *static_cast<const B*>(p))); });
+    if (count_of<B, is_state_vector> == 0 && !std::is_same_v<State<B>, None>)
+      n = int(sizeof(State<B>) / sizeof(double));
     return n;
   };
   if constexpr (requires(const B b) { b.may_cross(); })

@@ -7,8 +7,7 @@
 namespace loopwright {
 
 /// Where a port's numbers are in the arena of the run.
-template <class Real>
-struct Port {
+template <class Real> struct Port {
   union {
     Real* data;
     const Real* const* many;
@@ -16,16 +15,15 @@ struct Port {
   int length = 1;
 };
 
-/// First fault of a run: which block stopped it and why.
+/// First fault of a lane: which block stopped it and why.
 struct FaultReport {
   int block = -1;
   const char* reason = "";
-  uint64_t lanes = 0;
 };
 
-/// One call of one method of one block. A lane group is `registers` arenas, `stride` Reals apart; block[r] acts on the r-th.
-template <class Real>
-struct Call {
+/// One call of one method of one block. A lane group is `registers` arenas, `stride` Reals apart; block[r]
+/// acts on the r-th.
+template <class Real> struct Call {
   uint64_t (*step)(const Call&) = nullptr;  ///< lanes that faulted; for a jump: lanes whose state changed
   const void* block = nullptr;
   const Port<Real>*in = nullptr, *out = nullptr;
@@ -33,42 +31,43 @@ struct Call {
   void *memory = nullptr, *mode = nullptr;
   const Port<Real>* buffers = nullptr;
   const Instant* now = nullptr;
-  FaultReport* report = nullptr;
+  FaultReport* report = nullptr;  ///< of the first lane; the others follow
   int index = 0, registers = 1;
   ptrdiff_t stride = 0;
 };
-template <class Real>
-using Step = uint64_t (*)(const Call<Real>&);
+template <class Real> using Step = uint64_t (*)(const Call<Real>&);
 
 /// The methods of a block type for one scalar type; null where the block has no such method.
-template <class Real>
-struct Kernels {
+template <class Real> struct Kernels {
   size_t size, align, memory_size, memory_align, mode_size;
   void (*construct)(void* block);
   void (*destroy)(void* block);
   void (*copy)(void* to, const void* scalar_block);  ///< parameters of the scalar block into every lane
   Real* (*tunable)(void* block, std::string_view path);
   void (*prepare)(void* block, const Setup& setup);
-  void (*start)(const void* block, Real* state, void* memory, const Port<Real>* buffers, ptrdiff_t at, void* mode);
+  void (*start)(const void* block, Real* state, void* memory, const Port<Real>* buffers, ptrdiff_t at,
+                void* mode);
   Step<Real> outputs[8];
   Step<Real> derivatives, update, accept, decide, jump, crossings;
 };
 
-template <class R>
-LW_INLINE void attach(R& to, const Port<R>& w, ptrdiff_t at) { to = w.data[at]; }
-template <class R>
-LW_INLINE void attach(Vector<const R>& to, const Port<R>& w, ptrdiff_t at) { to = {w.data + at, size_t(w.length)}; }
-template <class R>
-LW_INLINE void attach(Vector<R>& to, const Port<R>& w, ptrdiff_t at) { to = {w.data + at, size_t(w.length)}; }
-template <class R>
-LW_INLINE void attach(Many<R>& to, const Port<R>& w, ptrdiff_t at) { to = {w.many, w.length, at}; }
+template <class R> LW_INLINE void attach(R& to, const Port<R>& w, ptrdiff_t at) { to = w.data[at]; }
+template <class R> LW_INLINE void attach(Vector<const R>& to, const Port<R>& w, ptrdiff_t at) {
+  to = {w.data + at, size_t(w.length)};
+}
+template <class R> LW_INLINE void attach(Vector<R>& to, const Port<R>& w, ptrdiff_t at) {
+  to = {w.data + at, size_t(w.length)};
+}
+template <class R> LW_INLINE void attach(Many<R>& to, const Port<R>& w, ptrdiff_t at) {
+  to = {w.many, w.length, at};
+}
 
 /// The inputs in the mask; any other scalar reads NaN, so that an undeclared feedthrough shows at once.
-template <class B, class Real>
-LW_INLINE In<B> gather(const Call<Real>& c, ptrdiff_t at, auto mask) {
+template <class B, class Real> LW_INLINE In<B> gather(const Call<Real>& c, ptrdiff_t at, auto mask) {
   In<B> in;
   for_each<B, is_input>([&](auto i, const auto& entry) {
-    if constexpr ((mask() >> i) & 1) attach(in.*entry.member, c.in[i], at);
+    if constexpr ((mask() >> i) & 1)
+      attach(in.*entry.member, c.in[i], at);
     else if constexpr (std::is_same_v<std::remove_cvref_t<decltype(in.*entry.member)>, Real>)
       in.*entry.member = Real(std::numeric_limits<double>::quiet_NaN());
   });
@@ -76,10 +75,10 @@ LW_INLINE In<B> gather(const Call<Real>& c, ptrdiff_t at, auto mask) {
 }
 using AllInputs = std::integral_constant<uint64_t, ~uint64_t(0)>;
 
-/// A view of the states at `data`: the struct itself where all members are Reals, spans into it where they are sized.
-template <class B, class Real>
-LW_INLINE decltype(auto) view_state(const B& block, Real* data) {
-  if constexpr (count_of<B, is_state_vector> > 0) {
+/// A view of the states at `data`: the struct itself where all members are Reals, spans into it where they
+/// are sized.
+template <class B, class Real> LW_INLINE decltype(auto) view_state(const B& block, Real* data) {
+  if constexpr (count_of < B, is_state_vector >> 0) {
     State<B> state;
     for_each<B, is_state_vector>([&](auto, const auto& entry) {
       const size_t n = size_t(std::invoke(entry.length, block));
@@ -93,12 +92,10 @@ LW_INLINE decltype(auto) view_state(const B& block, Real* data) {
     return *reinterpret_cast<State<B>*>(data);
   }
 }
-template <class B, class Real>
-LW_INLINE Memory<B>& stored_memory(const Call<Real>& c, ptrdiff_t at) {
+template <class B, class Real> LW_INLINE Memory<B>& stored_memory(const Call<Real>& c, ptrdiff_t at) {
   return *reinterpret_cast<Memory<B>*>(static_cast<Real*>(c.memory) + at);
 }
-template <class B, class Real>
-LW_INLINE Mode<B>& stored_mode(const Call<Real>& c, ptrdiff_t at) {
+template <class B, class Real> LW_INLINE Mode<B>& stored_mode(const Call<Real>& c, ptrdiff_t at) {
   return *reinterpret_cast<Mode<B>*>(static_cast<Real*>(c.mode) + at);
 }
 /// f(memory): in place, or on a copy with its buffers attached, so that the arena never holds a pointer.
@@ -108,7 +105,8 @@ LW_INLINE auto with_memory(const Call<Real>& c, ptrdiff_t at, bool writes, auto&
     return f(stored_memory<B>(c, at));
   } else {
     Memory<B> memory = stored_memory<B>(c, at);
-    for_each<B, is_buffer>([&](auto i, const auto& entry) { attach(memory.*entry.member, c.buffers[i], at); });
+    for_each<B, is_buffer>(
+        [&](auto i, const auto& entry) { attach(memory.*entry.member, c.buffers[i], at); });
     const uint64_t answer = f(memory);
     if (writes) {
       for_each<B, is_buffer>([&](auto, const auto& entry) { memory.*entry.member = {}; });
@@ -120,20 +118,30 @@ LW_INLINE auto with_memory(const Call<Real>& c, ptrdiff_t at, bool writes, auto&
 
 /// What a method asks for by type: `const State&` is the present state, `State&` the result to fill in.
 template <class Argument, class B, class Result>
-LW_INLINE decltype(auto) pick(const Instant& now, const In<B>& in, const State<B>& state, const Memory<B>& memory,
-                              const Mode<B>& mode, Result& result) {
+LW_INLINE decltype(auto) pick(const Instant& now, const In<B>& in, const State<B>& state,
+                              const Memory<B>& memory, const Mode<B>& mode, Result& result) {
   using T = std::remove_cvref_t<Argument>;
-  if constexpr (std::is_same_v<T, Result> && !std::is_const_v<std::remove_reference_t<Argument>>) return (result);
-  else if constexpr (std::is_same_v<T, Instant>) return (now);
-  else if constexpr (std::is_same_v<T, In<B>>) return (in);
-  else if constexpr (std::is_same_v<T, State<B>>) return (state);
-  else if constexpr (std::is_same_v<T, Memory<B>>) return (memory);
-  else if constexpr (std::is_same_v<T, Mode<B>>) return (mode);
-  else static_assert(sizeof(T) == 0, "a method takes Instant, In, State, Memory, Mode by const reference and its result by reference");
+  if constexpr (std::is_same_v<T, Result> && !std::is_const_v<std::remove_reference_t<Argument>>)
+    return (result);
+  else if constexpr (std::is_same_v<T, Instant>)
+    return (now);
+  else if constexpr (std::is_same_v<T, In<B>>)
+    return (in);
+  else if constexpr (std::is_same_v<T, State<B>>)
+    return (state);
+  else if constexpr (std::is_same_v<T, Memory<B>>)
+    return (memory);
+  else if constexpr (std::is_same_v<T, Mode<B>>)
+    return (mode);
+  else
+    static_assert(
+        sizeof(T) == 0,
+        "a method takes Instant, In, State, Memory, Mode by const reference and its result by reference");
 }
 template <class B, class Answer, class... Argument, class Result>
-LW_INLINE Fault invoke(Answer (B::*method)(Argument...) const, const B& block, const Instant& now, const In<B>& in,
-                       const State<B>& state, const Memory<B>& memory, const Mode<B>& mode, Result& result) {
+LW_INLINE Fault invoke(Answer (B::*method)(Argument...) const, const B& block, const Instant& now,
+                       const In<B>& in, const State<B>& state, const Memory<B>& memory, const Mode<B>& mode,
+                       Result& result) {
   if constexpr (std::is_void_v<Answer>) {
     (block.*method)(pick<Argument, B>(now, in, state, memory, mode, result)...);
     return {};
@@ -141,18 +149,21 @@ LW_INLINE Fault invoke(Answer (B::*method)(Argument...) const, const B& block, c
     return (block.*method)(pick<Argument, B>(now, in, state, memory, mode, result)...);
   }
 }
-[[gnu::cold, gnu::noinline]] inline uint64_t report_fault(FaultReport& report, int block, const Fault& fault) {
-  if (report.block < 0) report = {block, fault.reason, fault.lanes};
+[[gnu::cold, gnu::noinline]] inline uint64_t report_fault(FaultReport* reports, int block,
+                                                          const Fault& fault) {
+  for (uint64_t left = fault.lanes; left; left &= left - 1)
+    if (FaultReport& report = reports[__builtin_ctzll(left)]; report.block < 0)
+      report = {block, fault.reason};
   return fault.lanes;
 }
 
 /// f(block, offset of its arena) for each register of the group.
-template <class B, class Real>
-LW_INLINE uint64_t each_register(const Call<Real>& c, auto&& f) {
+template <class B, class Real> LW_INLINE uint64_t each_register(const Call<Real>& c, auto&& f) {
   const B* block = static_cast<const B*>(c.block);
   if constexpr (std::is_same_v<Real, double>) {
     const Fault fault = f(*block, ptrdiff_t(0));
-    if (fault.lanes) [[unlikely]] return report_fault(*c.report, c.index, fault);
+    if (fault.lanes) [[unlikely]]
+      return report_fault(c.report, c.index, fault);
     return 0;
   } else {
     uint64_t bad = 0;
@@ -160,7 +171,7 @@ LW_INLINE uint64_t each_register(const Call<Real>& c, auto&& f) {
       Fault fault = f(block[r], r * c.stride);
       if (fault.lanes) [[unlikely]] {
         fault.lanes <<= r * lanes_of<Real>;
-        bad |= report_fault(*c.report, c.index, fault);
+        bad |= report_fault(c.report, c.index, fault);
       }
     }
     return bad;
@@ -168,75 +179,90 @@ LW_INLINE uint64_t each_register(const Call<Real>& c, auto&& f) {
 }
 
 /// Flattened: what the method calls is inlined too, else inputs and outputs go through memory on their way.
-template <class B, class Real, int group>
-[[gnu::flatten]] uint64_t step_outputs(const Call<Real>& c) {
-  return each_register<B>(c, [&](const B& block, ptrdiff_t at) __attribute__((always_inline)) {
-    const auto in = gather<B>(c, at, std::integral_constant<uint64_t, mask_of_group<B>(group)>{});
-    const auto& state = view_state(block, c.state + at);
-    Fault fault;
-    Out<B> out;
-    for_each<B, is_output>([&](auto o, const auto& entry) {
-      if constexpr (group_of_output<B>[o] >= 0)
-        if constexpr (!std::is_same_v<std::remove_cvref_t<decltype(out.*entry.member)>, Real>)
-          attach(out.*entry.member, c.out[o], at);
-    });
-    with_memory<B>(c, at, false, [&](const Memory<B>& memory) __attribute__((always_inline)) {
-      fault = invoke(&B::outputs, block, *c.now, in, state, memory, stored_mode<B>(c, at), out);
-      return uint64_t(0);
-    });
-    for_each<B, is_output>([&](auto o, const auto& entry) {
-      if constexpr (group_of_output<B>[o] == group)
-        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(out.*entry.member)>, Real>)
-          c.out[o].data[at] = out.*entry.member;
-    });
-    return fault;
-  });
+template <class B, class Real, int group> [[gnu::flatten]] uint64_t step_outputs(const Call<Real>& c) {
+  return each_register<B>(
+      c, [&](const B& block, ptrdiff_t at) __attribute__((always_inline)) {
+        const auto in = gather<B>(c, at, std::integral_constant<uint64_t, mask_of_group<B>(group)>{});
+        const auto& state = view_state(block, c.state + at);
+        Fault fault;
+        Out<B> out;
+        for_each<B, is_output>([&](auto o, const auto& entry) {
+          if constexpr (group_of_output<B>[o] >= 0)
+            if constexpr (!std::is_same_v<std::remove_cvref_t<decltype(out.*entry.member)>, Real>)
+              attach(out.*entry.member, c.out[o], at);
+        });
+        with_memory<B>(
+            c, at, false, [&](const Memory<B>& memory) __attribute__((always_inline)) {
+              fault = invoke(&B::outputs, block, *c.now, in, state, memory, stored_mode<B>(c, at), out);
+              return uint64_t(0);
+            });
+        for_each<B, is_output>([&](auto o, const auto& entry) {
+          if constexpr (group_of_output<B>[o] == group)
+            if constexpr (std::is_same_v<std::remove_cvref_t<decltype(out.*entry.member)>, Real>)
+              c.out[o].data[at] = out.*entry.member;
+        });
+        return fault;
+      });
 }
-template <class B, class Real>
-[[gnu::flatten]] uint64_t step_derivatives(const Call<Real>& c) {
-  return each_register<B>(c, [&](const B& block, ptrdiff_t at) __attribute__((always_inline)) {
-    const auto in = gather<B>(c, at, AllInputs{});
-    const auto& state = view_state(block, c.state + at);
-    auto&& rate = view_state(block, c.rate + at);
-    Fault fault;
-    with_memory<B>(c, at, false, [&](const Memory<B>& memory) __attribute__((always_inline)) {
-      fault = invoke(&B::derivatives, block, *c.now, in, state, memory, stored_mode<B>(c, at), rate);
-      return uint64_t(0);
-    });
-    return fault;
-  });
+template <class B, class Real> [[gnu::flatten]] uint64_t step_derivatives(const Call<Real>& c) {
+  return each_register<B>(
+      c, [&](const B& block, ptrdiff_t at) __attribute__((always_inline)) {
+        const auto in = gather<B>(c, at, AllInputs{});
+        const auto& state = view_state(block, c.state + at);
+        auto&& rate = view_state(block, c.rate + at);
+        Fault fault;
+        with_memory<B>(
+            c, at, false, [&](const Memory<B>& memory) __attribute__((always_inline)) {
+              fault = invoke(&B::derivatives, block, *c.now, in, state, memory, stored_mode<B>(c, at), rate);
+              return uint64_t(0);
+            });
+        return fault;
+      });
 }
 /// update and accept: the next memory, from frozen inputs.
-template <class B, class Real, auto method>
-uint64_t step_memory(const Call<Real>& c) {
-  return each_register<B>(c, [&](const B& block, ptrdiff_t at) __attribute__((always_inline)) {
-    const auto in = gather<B>(c, at, AllInputs{});
-    const auto& state = view_state(block, c.state + at);
-    Fault fault;
-    with_memory<B>(c, at, true, [&](Memory<B>& memory) __attribute__((always_inline)) {
-      fault = invoke(method, block, *c.now, in, state, memory, stored_mode<B>(c, at), memory);
-      return uint64_t(0);
-    });
-    return fault;
-  });
+template <class B, class Real, auto method> uint64_t step_memory(const Call<Real>& c) {
+  return each_register<B>(
+      c, [&](const B& block, ptrdiff_t at) __attribute__((always_inline)) {
+        const auto in = gather<B>(c, at, AllInputs{});
+        const auto& state = view_state(block, c.state + at);
+        Fault fault;
+        with_memory<B>(
+            c, at, true, [&](Memory<B> & memory) __attribute__((always_inline)) {
+              fault = invoke(method, block, *c.now, in, state, memory, stored_mode<B>(c, at), memory);
+              return uint64_t(0);
+            });
+        return fault;
+      });
 }
-template <class B, class Real>
-uint64_t step_decide(const Call<Real>& c) {
-  return each_register<B>(c, [&](const B& block, ptrdiff_t at) __attribute__((always_inline)) {
-    const auto in = gather<B>(c, at, AllInputs{});
-    const auto& state = view_state(block, c.state + at);
-    Fault fault;
-    with_memory<B>(c, at, false, [&](const Memory<B>& memory) __attribute__((always_inline)) {
-      auto& mode = stored_mode<B>(c, at);
-      fault = invoke(&B::decide, block, *c.now, in, state, memory, mode, mode);
-      return uint64_t(0);
-    });
-    return fault;
-  });
+template <class B, class Real> uint64_t step_decide(const Call<Real>& c) {
+  return each_register<B>(
+      c, [&](const B& block, ptrdiff_t at) __attribute__((always_inline)) {
+        const auto in = gather<B>(c, at, AllInputs{});
+        const auto& state = view_state(block, c.state + at);
+        Fault fault;
+        with_memory<B>(
+            c, at, false, [&](const Memory<B>& memory) __attribute__((always_inline)) {
+              auto& mode = stored_mode<B>(c, at);
+              fault = invoke(&B::decide, block, *c.now, in, state, memory, mode, mode);
+              return uint64_t(0);
+            });
+        return fault;
+      });
 }
-/// The answer is not a fault but whether any state changed: the signals must then be computed again.
-template <class B, class Real>
-uint64_t step_jump(const Call<Real>& c) {
+/// The lanes in which two structs of Reals differ in any bit.
+template <class Real, class T> uint64_t differing_lanes(const T& a, const T& b) {
+  static_assert(sizeof(T) % sizeof(Real) == 0);
+  uint64_t lanes = 0;
+  for (size_t i = 0; i < sizeof(T) / sizeof(double); ++i) {
+    const size_t at = i * sizeof(double);
+    if (std::memcmp(reinterpret_cast<const char*>(&a) + at, reinterpret_cast<const char*>(&b) + at,
+                    sizeof(double)) != 0)
+      lanes |= uint64_t(1) << i % lanes_of<Real>;
+  }
+  return lanes;
+}
+/// The answer is not a fault but the lanes whose states changed: their signals must then be computed again.
+template <class B, class Real> uint64_t step_jump(const Call<Real>& c) {
   const B* block = static_cast<const B*>(c.block);
   uint64_t changed = 0;
   for (int r = 0; r < c.registers; ++r) {
@@ -248,33 +274,35 @@ uint64_t step_jump(const Call<Real>& c) {
       invoke(&B::jump, block[r], *c.now, in, before, memory, stored_mode<B>(c, at), state);
       return uint64_t(0);
     });
-    changed |= std::memcmp(&before, &state, sizeof state) != 0;
+    changed |= differing_lanes<Real>(before, state) << r * lanes_of<Real>;
   }
   return changed;
 }
-template <class B, class Real>
-uint64_t step_crossings(const Call<Real>& c) {
-  return each_register<B>(c, [&](const B& block, ptrdiff_t at) __attribute__((always_inline)) {
-    const auto in = gather<B>(c, at, AllInputs{});
-    const auto& state = view_state(block, c.state + at);
-    auto& crossings = *reinterpret_cast<Crossings<B>*>(c.crossing + at);
-    Fault fault;
-    with_memory<B>(c, at, false, [&](const Memory<B>& memory) {
-      fault = invoke(&B::crossings, block, *c.now, in, state, memory, stored_mode<B>(c, at), crossings);
-      return uint64_t(0);
-    });
-    return fault;
-  });
+template <class B, class Real> uint64_t step_crossings(const Call<Real>& c) {
+  return each_register<B>(
+      c, [&](const B& block, ptrdiff_t at) __attribute__((always_inline)) {
+        const auto in = gather<B>(c, at, AllInputs{});
+        const auto& state = view_state(block, c.state + at);
+        auto& crossings = *reinterpret_cast<Crossings<B>*>(c.crossing + at);
+        Fault fault;
+        with_memory<B>(c, at, false, [&](const Memory<B>& memory) {
+          fault = invoke(&B::crossings, block, *c.now, in, state, memory, stored_mode<B>(c, at), crossings);
+          return uint64_t(0);
+        });
+        return fault;
+      });
 }
 
-template <class B>
-void prepare_block(B& block, const Setup& setup) {
-  if constexpr (requires { block.prepare(setup); }) block.prepare(setup);
-  else if constexpr (requires { block.prepare(setup.sample_time); }) block.prepare(setup.sample_time);
+template <class B> void prepare_block(B& block, const Setup& setup) {
+  if constexpr (requires { block.prepare(setup); })
+    block.prepare(setup);
+  else if constexpr (requires { block.prepare(setup.sample_time); })
+    block.prepare(setup.sample_time);
 }
 
 template <class B, class Real>
-void start_block(const void* p, Real* state_data, void* memory_data, const Port<Real>* buffers, ptrdiff_t at, void* mode_data) {
+void start_block(const void* p, Real* state_data, void* memory_data, const Port<Real>* buffers, ptrdiff_t at,
+                 void* mode_data) {
   const B& block = *static_cast<const B*>(p);
   if constexpr (!std::is_same_v<State<B>, None>) {
     if constexpr (count_of<B, is_state_vector> == 0) new (state_data) State<B>{};
@@ -293,32 +321,37 @@ void start_block(const void* p, Real* state_data, void* memory_data, const Port<
   }
 }
 
-template <class B, class Real>
-Kernels<Real> kernels_of() {
+template <class B, class Real> Kernels<Real> kernels_of() {
   static_assert(group_count<B> <= 8, "at most eight groups of outputs with different feedthrough");
-  static_assert(!(requires { &B::update; } && requires { &B::derivatives; }), "a block is sampled or continuous, not both");
+  static_assert(!(
+                    requires { &B::update; } && requires { &B::derivatives; }),
+                "a block is sampled or continuous, not both");
   Kernels<Real> k{};
   k.size = sizeof(B), k.align = alignof(B);
-  k.memory_size = std::is_same_v<Memory<B>, None> ? 0 : sizeof(Memory<B>), k.memory_align = alignof(Memory<B>);
+  k.memory_size = std::is_same_v<Memory<B>, None> ? 0 : sizeof(Memory<B>),
+  k.memory_align = alignof(Memory<B>);
   k.mode_size = std::is_same_v<Mode<B>, None> ? 0 : sizeof(Mode<B>);
   k.construct = [](void* p) { new (p) B(); };
   k.destroy = [](void* p) { static_cast<B*>(p)->~B(); };
   k.copy = [](void* to, const void* from) {
-    if constexpr (std::is_same_v<B, scalar_of<B>>) *static_cast<B*>(to) = *static_cast<const B*>(from);
-    else spread(*static_cast<B*>(to), *static_cast<const scalar_of<B>*>(from));
+    if constexpr (std::is_same_v<B, scalar_of<B>>)
+      *static_cast<B*>(to) = *static_cast<const B*>(from);
+    else
+      spread(*static_cast<B*>(to), *static_cast<const scalar_of<B>*>(from));
   };
   k.tunable = [](void* p, std::string_view path) { return tunable<Real>(*static_cast<B*>(p), path); };
   k.prepare = [](void* p, const Setup& setup) { prepare_block(*static_cast<B*>(p), setup); };
   k.start = &start_block<B, Real>;
-  [&]<size_t... G>(std::index_sequence<G...>) {
-    ((k.outputs[G] = &step_outputs<B, Real, int(G)>), ...);
-  }(std::make_index_sequence<size_t(group_count<B>)>{});
+  [&]<size_t... G>(std::index_sequence<G...>) { ((k.outputs[G] = &step_outputs<B, Real, int(G)>), ...); }
+  (std::make_index_sequence<size_t(group_count<B>)>{});
   if constexpr (requires { &B::derivatives; }) k.derivatives = &step_derivatives<B, Real>;
   if constexpr (requires { &B::update; }) k.update = &step_memory<B, Real, &B::update>;
   if constexpr (requires { &B::accept; }) k.accept = &step_memory<B, Real, &B::accept>;
   if constexpr (requires { &B::decide; }) k.decide = &step_decide<B, Real>;
   if constexpr (requires { &B::jump; }) k.jump = &step_jump<B, Real>;
-  if constexpr (requires { &B::crossings; }) k.crossings = &step_crossings<B, Real>;
+  // Events are located by variable-step methods, which run scalar.
+  if constexpr (requires { &B::crossings; } && std::is_same_v<Real, double>)
+    k.crossings = &step_crossings<B, Real>;
   return k;
 }
 

@@ -30,12 +30,18 @@ std::string number_text(double x) { return fmt::format("{}", x); }
 
 static std::string kind_of(const Value& v) {
   switch (v.kind) {
-    case Value::Kind::null: return "null";
-    case Value::Kind::boolean: return v.boolean ? "true" : "false";
-    case Value::Kind::number: return number_text(v.number);
-    case Value::Kind::text: return "the text \"" + v.text.substr(0, 60) + "\"";
-    case Value::Kind::list: return fmt::format("a list of {}", v.items.size());
-    case Value::Kind::object: return "an object";
+    case Value::Kind::null:
+      return "null";
+    case Value::Kind::boolean:
+      return v.boolean ? "true" : "false";
+    case Value::Kind::number:
+      return number_text(v.number);
+    case Value::Kind::text:
+      return "the text \"" + v.text.substr(0, 60) + "\"";
+    case Value::Kind::list:
+      return fmt::format("a list of {}", v.items.size());
+    case Value::Kind::object:
+      return "an object";
   }
   return "";
 }
@@ -61,7 +67,8 @@ static bool wrong_kind(const Value& v, std::string expected, const std::string& 
 }
 
 bool number(double& to, const Value& v, const Range& range, const std::string& block, Problems& problems) {
-  if (v.kind != Value::Kind::number) return wrong_kind(v, with_unit("a number", range.unit), block, problems, range.sentence);
+  if (v.kind != Value::Kind::number)
+    return wrong_kind(v, with_unit("a number", range.unit), block, problems, range.sentence);
   const bool inside = std::isfinite(v.number) && v.number >= range.low && v.number <= range.high &&
                       !(range.low_is_open && v.number <= range.low);
   if (!inside) {
@@ -76,7 +83,8 @@ bool number(double& to, const Value& v, const Range& range, const std::string& b
 }
 bool whole(int64_t& to, const Value& v, const Range& range, const std::string& block, Problems& problems) {
   double x = 0;
-  if (v.kind == Value::Kind::number && v.number != std::floor(v.number)) return wrong_kind(v, "a whole number", block, problems, range.sentence);
+  if (v.kind == Value::Kind::number && v.number != std::floor(v.number))
+    return wrong_kind(v, "a whole number", block, problems, range.sentence);
   if (!number(x, v, range, block, problems)) return false;
   to = int64_t(x);
   return true;
@@ -91,7 +99,8 @@ bool text(std::string& to, const Value& v, const std::string& block, Problems& p
   to = v.text;
   return true;
 }
-int choice(const Value& v, const std::vector<std::string_view>& names, const std::string& block, Problems& problems) {
+int choice(const Value& v, const std::vector<std::string_view>& names, const std::string& block,
+           Problems& problems) {
   std::string all;
   for (size_t i = 0; i < names.size(); ++i) {
     if (v.kind == Value::Kind::text && v.text == names[i]) return int(i);
@@ -108,19 +117,24 @@ bool object(const Value& v, const std::string& block, Problems& problems) {
 }
 void missing(const Value& object, std::string_view name, std::string_view unit, std::string_view sentence,
              const std::string& block, Problems& problems) {
-  auto& p = problems.error(object.place, object.pointer, block, fmt::format("the parameter \"{}\" is missing", name));
+  auto& p = problems.error(object.place, object.pointer, block,
+                           fmt::format("the parameter \"{}\" is missing", name));
   p.expected = fmt::format("\"{}\": {}", name, with_unit("a value", unit));
   p.hint = sentence;
 }
-void unknown_keys(const Value& object, const std::vector<std::string>& names, const std::string& block, Problems& problems) {
+void unknown_keys(const Value& object, const std::vector<std::string>& names, const std::string& block,
+                  Problems& problems) {
   for (const Value::Member& member : object.members) {
     bool known = false;
     for (const std::string& name : names) known |= member.name == name;
     if (known) continue;
-    auto& p = problems.error(member.place, member.value.pointer, block, fmt::format("there is no parameter \"{}\"", member.name));
+    auto& p = problems.error(member.place, member.value.pointer, block,
+                             fmt::format("there is no parameter \"{}\"", member.name));
     const std::string near = nearest_name(member.name, names);
-    if (!near.empty()) p.hint = fmt::format("did you mean \"{}\"?", near);
-    else for (const std::string& name : names) p.expected += (p.expected.empty() ? "one of " : ", ") + name;
+    if (!near.empty())
+      p.hint = fmt::format("did you mean \"{}\"?", near);
+    else
+      for (const std::string& name : names) p.expected += (p.expected.empty() ? "one of " : ", ") + name;
   }
 }
 

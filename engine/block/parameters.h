@@ -1,4 +1,5 @@
-/// Parameters of a block: read from a file, spread over lanes, found by path ("harmonics.0.amplitude"), described.
+/// Parameters of a block: read from a file, spread over lanes, found by path ("harmonics.0.amplitude"),
+/// described.
 #pragma once
 #include <concepts>
 #include <string>
@@ -8,7 +9,8 @@
 
 namespace loopwright {
 
-/// Where messages about a block's parameters go; handed to `check(const Checker&)` after all parameters are read.
+/// Where messages about a block's parameters go; handed to `check(const Checker&)` after all parameters are
+/// read.
 class Checker {
  public:
   Checker(const Value& settings, std::string block, Problems& problems)
@@ -38,24 +40,32 @@ struct ParameterInfo {
   ParameterKind kind = ParameterKind::number;
   double low = -infinity, high = infinity;
   bool low_is_open = false, has_default = false;
-  bool tunable = false;                       ///< may differ between the runs of a sweep
-  std::string default_text;                   ///< as JSON; empty without default
-  std::vector<std::string_view> choices;      ///< of a choice
-  std::vector<ParameterInfo> fields;          ///< of an object, or of the objects in a list
-  std::vector<ParameterInfo> element;         ///< of a list: one entry that describes its items
+  bool tunable = false;                   ///< may differ between the runs of a sweep
+  std::string default_text;               ///< as JSON; empty without default
+  std::vector<std::string_view> choices;  ///< of a choice
+  std::vector<ParameterInfo> fields;      ///< of an object, or of the objects in a list
+  std::vector<ParameterInfo> element;     ///< of a list: one entry that describes its items
 };
 
-/// Names of an enumeration, in the order of its values: `constexpr auto names_of(Interpolation) { return std::array{…}; }`.
+/// Names of an enumeration, in the order of its values: `constexpr auto names_of(Interpolation) { return
+/// std::array{…}; }`.
 template <class T>
-concept Choice = std::is_enum_v<T> && requires(T t) { names_of(t).size(); };
+concept Choice = std::is_enum_v<T> && requires(T t) {
+  names_of(t).size();
+};
 template <class T>
-concept Described = requires { T::describe(); };
+concept Described = requires {
+  T::describe();
+};
 template <class T>
-concept List = requires(T t) { t.resize(1); t[0]; } && !std::same_as<T, std::string>;
+concept List = requires(T t) {
+  t.resize(1);
+  t[0];
+}
+&&!std::same_as<T, std::string>;
 
 /// Scalar block → block on any Real; derived constants are not copied, `prepare` makes them.
-template <class D, class S>
-void spread(D& to, const S& from) {
+template <class D, class S> void spread(D& to, const S& from) {
   if constexpr (Described<D>) {
     for_each<D, is_parameter>([&](auto i, const auto& d) {
       for_each<S, is_parameter>([&](auto j, const auto& s) {
@@ -70,14 +80,15 @@ void spread(D& to, const S& from) {
   }
 }
 
-/// The tunable number at a path, or null: no such, or structural (whole numbers, flags, texts, choices, tables).
-template <class Real, class T>
-Real* tunable(T& at, std::string_view path) {
+/// The tunable number at a path, or null: no such, or structural (whole numbers, flags, texts, choices,
+/// tables).
+template <class Real, class T> Real* tunable(T& at, std::string_view path) {
   if constexpr (std::is_same_v<T, Real>) {
     return path.empty() ? &at : nullptr;
   } else {
     const size_t dot = path.find('.');
-    const auto head = path.substr(0, dot), tail = dot == path.npos ? std::string_view{} : path.substr(dot + 1);
+    const auto head = path.substr(0, dot),
+               tail = dot == path.npos ? std::string_view{} : path.substr(dot + 1);
     if constexpr (Described<T>) {
       Real* found = nullptr;
       for_each<T, is_parameter>([&](auto, const auto& p) {
@@ -109,20 +120,22 @@ bool number(double& to, const Value&, const Range&, const std::string& block, Pr
 bool whole(int64_t& to, const Value&, const Range&, const std::string& block, Problems&);
 bool flag(bool& to, const Value&, const std::string& block, Problems&);
 bool text(std::string& to, const Value&, const std::string& block, Problems&);
-int choice(const Value&, const std::vector<std::string_view>& names, const std::string& block, Problems&);  ///< -1: none
+int choice(const Value&, const std::vector<std::string_view>& names, const std::string& block,
+           Problems&);  ///< -1: none
 bool list(const Value&, const std::string& block, std::string_view sentence, Problems&);
 bool object(const Value&, const std::string& block, Problems&);
 void missing(const Value& object, std::string_view name, std::string_view unit, std::string_view sentence,
              const std::string& block, Problems&);
-void unknown_keys(const Value& object, const std::vector<std::string>& names, const std::string& block, Problems&);
+void unknown_keys(const Value& object, const std::vector<std::string>& names, const std::string& block,
+                  Problems&);
 std::string number_text(double);
 }  // namespace reading
 
-template <class B>
-void read_fields(B& to, const Value& object, const std::string& block, Problems& problems);
+template <class B> void read_fields(B& to, const Value& object, const std::string& block, Problems& problems);
 
 template <class T>
-void read(T& to, const Value& value, const reading::Range& range, const std::string& block, Problems& problems) {
+void read(T& to, const Value& value, const reading::Range& range, const std::string& block,
+          Problems& problems) {
   if constexpr (Described<T>) {
     if (reading::object(value, block, problems)) read_fields(to, value, block, problems);
   } else if constexpr (std::is_same_v<T, std::string>) {
@@ -162,23 +175,26 @@ void read_fields(B& to, const Value& object, const std::string& block, Problems&
   reading::unknown_keys(object, names, block, problems);
 }
 
-template <class B>
-std::vector<ParameterInfo> parameters_of();
+template <class B> std::vector<ParameterInfo> parameters_of();
 
-template <class T, class Real>
-void describe_type(ParameterInfo& info) {
+template <class T, class Real> void describe_type(ParameterInfo& info) {
   info.tunable = std::is_same_v<T, Real>;
-  if constexpr (Described<T>) info.kind = ParameterKind::object, info.fields = parameters_of<T>();
-  else if constexpr (std::is_same_v<T, std::string>) info.kind = ParameterKind::text;
-  else if constexpr (std::is_same_v<T, bool>) info.kind = ParameterKind::flag;
+  if constexpr (Described<T>)
+    info.kind = ParameterKind::object, info.fields = parameters_of<T>();
+  else if constexpr (std::is_same_v<T, std::string>)
+    info.kind = ParameterKind::text;
+  else if constexpr (std::is_same_v<T, bool>)
+    info.kind = ParameterKind::flag;
   else if constexpr (Choice<T>) {
     info.kind = ParameterKind::choice;
     for (auto name : names_of(T{})) info.choices.push_back(name);
-  } else if constexpr (std::is_integral_v<T>) info.kind = ParameterKind::whole;
+  } else if constexpr (std::is_integral_v<T>)
+    info.kind = ParameterKind::whole;
   else if constexpr (List<T>) {
     info.kind = ParameterKind::list;
     ParameterInfo element;
-    element.unit = info.unit, element.low = info.low, element.high = info.high, element.low_is_open = info.low_is_open;
+    element.unit = info.unit, element.low = info.low, element.high = info.high,
+    element.low_is_open = info.low_is_open;
     describe_type<typename T::value_type, Real>(element);
     info.fields = element.fields;
     info.tunable = element.tunable;
@@ -186,22 +202,25 @@ void describe_type(ParameterInfo& info) {
   }
 }
 
-template <class T>
-std::string default_text(const T& value) {
-  if constexpr (std::is_same_v<T, std::string>) return "\"" + value + "\"";
-  else if constexpr (std::is_same_v<T, bool>) return value ? "true" : "false";
-  else if constexpr (Choice<T>) return "\"" + std::string(names_of(T{})[size_t(value)]) + "\"";
-  else if constexpr (std::is_arithmetic_v<T>) return reading::number_text(double(value));
+template <class T> std::string default_text(const T& value) {
+  if constexpr (std::is_same_v<T, std::string>)
+    return "\"" + value + "\"";
+  else if constexpr (std::is_same_v<T, bool>)
+    return value ? "true" : "false";
+  else if constexpr (Choice<T>)
+    return "\"" + std::string(names_of(T{})[size_t(value)]) + "\"";
+  else if constexpr (std::is_arithmetic_v<T>)
+    return reading::number_text(double(value));
   else if constexpr (List<T>) {
     std::string text = "[";
     for (size_t i = 0; i < value.size(); ++i) text += (i ? ", " : "") + default_text(value[i]);
     return text + "]";
-  } else return "{}";
+  } else
+    return "{}";
 }
 
 /// B is a scalar block or a struct inside one.
-template <class B>
-std::vector<ParameterInfo> parameters_of() {
+template <class B> std::vector<ParameterInfo> parameters_of() {
   std::vector<ParameterInfo> list;
   const B defaults{};
   for_each<B, is_parameter>([&](auto, const auto& p) {

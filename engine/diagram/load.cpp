@@ -7,8 +7,10 @@
 #include "engine/diagram/diagram.h"
 #include "engine/diagram/drive.h"
 #include "engine/diagram/edit.h"
+#include "engine/diagram/in_memory.h"
 #include "engine/diagram/library.h"
 #include "engine/diagram/parameters.h"
+#include "engine/diagram/ports.h"
 #include "engine/diagram/reader.h"
 #include "engine/diagram/solver_settings.h"
 #include "engine/diagram/variants.h"
@@ -40,6 +42,8 @@ struct Nest {
 
   std::shared_ptr<Diagram> load(const std::string& path, const Place& reference, const std::string& pointer,
                                 Instance instance);
+  /// A diagram that stands in the file at `path` where others name a file.
+  std::shared_ptr<Diagram> read(const Value& root, const std::string& path, Instance instance);
 };
 
 /// Reads one use of a diagram file.
@@ -63,7 +67,8 @@ class DiagramReader {
     read_parameters(root);
     read_solver(root);
     read_blocks(root);
-    read_inputs_and_outputs(root);
+    diagram_->inputs = read_inputs_of_diagram(root, reader_);
+    diagram_->outputs = read_outputs_of_diagram(root, reader_);
     if (const auto* log = root.find("log")) diagram_->log = read_log(log->value, reader_);
     report_unused_options();
     diagram_->parameters = scope_.take_parameters();
@@ -271,8 +276,10 @@ class DiagramReader {
     }
     reader.text(body, "description");
     const Value& path = body.find("diagram")->value;
+    const bool is_inline = path.kind == Value::Kind::object;
     const bool has_path =
-        reader.expect(path, Value::Kind::text, "\"diagram\"", "the path of a diagram file in quotes");
+        is_inline || reader.expect(path, Value::Kind::text, "\"diagram\"",
+                                   "the path of a diagram file in quotes, or a diagram in braces");
 
     Instance inner{reader.block, {}, {}, std::move(variants)};
     if (const auto* parameters = body.find("parameters"))
@@ -288,6 +295,11 @@ class DiagramReader {
       }
     }
     if (!has_path) return;
+    if (is_inline) {
+      entry.type_place = path.place;
+      entry.subdiagram = nest_.read(path, path_, std::move(inner));
+      return;
+    }
     if (path.text.empty()) {
       reader.error(path, "the path of the diagram is empty");
       return;
@@ -315,60 +327,6 @@ class DiagramReader {
       reader.problems.error(choice.place, {}, reader.block, message);
       return true;
     });
-  }
-
-  // ---- Inputs and outputs ----
-
-  void read_inputs_and_outputs(const Value& root) {
-    const auto each = [&](std::string_view key, auto read) {
-      const auto* list = root.find(key);
-      if (!list || !reader_.expect(list->value, Value::Kind::object, fmt::format("\"{}\"", key),
-                                   "an object of named ports"))
-        return;
-      for (const Value::Member& member : list->value.members)
-        if (reader_.check_name(member, "a port")) read(member);
-    };
-    each("inputs", [&](const Value::Member& member) { read_input(member); });
-    each("outputs", [&](const Value::Member& member) { read_output(member); });
-  }
-
-  /// "force": "N"  or  "force": {"unit": "N", "description": "…"}
-  void read_input(const Value::Member& member) {
-    DiagramInput input{member.name, {}, {}, member.place, member.value.pointer};
-    if (member.value.kind == Value::Kind::text) {
-      if (reader_.unit(member.value)) input.unit = member.value.text;
-    } else if (reader_.expect(member.value, Value::Kind::object, "an input",
-                              "its unit in quotes, or {\"unit\": …, \"description\": …}")) {
-      reader_.reject_unknown(member.value, {"unit", "description"}, "an input");
-      input.unit = unit_text(member.value);
-      input.description = reader_.text(member.value, "description");
-    }
-    diagram_->inputs.push_back(std::move(input));
-  }
-
-  /// "position": "mass.position"  or  "position": {"source": "mass.position", "unit": "m", "description":
-  /// "…"}
-  void read_output(const Value::Member& member) {
-    DiagramOutput output{member.name, {}, {}, member.place, member.value.pointer, {}};
-    const std::string what = fmt::format("the source of the output \"{}\"", member.name);
-    if (member.value.kind != Value::Kind::object) {
-      output.source = read_wire(member.value, what, reader_);
-    } else {
-      reader_.reject_unknown(member.value, {"source", "unit", "description"}, "an output");
-      output.unit = unit_text(member.value);
-      output.description = reader_.text(member.value, "description");
-      if (const auto* source = member.value.find("source"))
-        output.source = read_wire(source->value, what, reader_);
-      else
-        reader_.error(member, fmt::format("the output \"{}\" has no \"source\"", member.name)).expected =
-            "\"source\": \"block.output\"";
-    }
-    if (!output.source.source.empty()) diagram_->outputs.push_back(std::move(output));
-  }
-
-  std::string unit_text(const Value& object) const {
-    const auto* unit = object.find("unit");
-    return unit && reader_.unit(unit->value) ? unit->value.text : std::string();
   }
 
   // ---- Options that nothing used ----
@@ -421,10 +379,14 @@ std::shared_ptr<Diagram> Nest::load(const std::string& path, const Place& refere
   if (file.root.kind != Value::Kind::object) return nullptr;
   opened.push_back(path);
   identities.push_back(identity);
-  auto diagram = DiagramReader(*this, std::move(instance), path).read(file.root);
+  auto diagram = read(file.root, path, std::move(instance));
   opened.pop_back();
   identities.pop_back();
   return diagram;
+}
+
+std::shared_ptr<Diagram> Nest::read(const Value& root, const std::string& path, Instance instance) {
+  return DiagramReader(*this, std::move(instance), path).read(root);
 }
 
 /// A diagram that is used many times tells the same problem only once.
@@ -435,25 +397,44 @@ void add_without_repetition(const Problems& found, Problems& problems) {
       problems.add(problem);
 }
 
-}  // namespace
-
-std::shared_ptr<const Diagram> load_diagram(const std::string& path, const LoadOptions& options,
-                                            Problems& problems) {
-  Problems found;
+/// What the options ask of the outermost diagram.
+Instance top_instance(const LoadOptions& options, Problems& problems) {
   Instance top;
   for (const auto& option : options.set)
-    if (auto edit = read_edit(option, found)) top.edits.push_back(std::move(*edit));
+    if (auto edit = read_edit(option, problems)) top.edits.push_back(std::move(*edit));
   for (const auto& [block, variant] : options.variants)
-    if (auto choice = read_variant_choice(block, variant, found)) top.variants.push_back(std::move(*choice));
+    if (auto choice = read_variant_choice(block, variant, problems))
+      top.variants.push_back(std::move(*choice));
+  return top;
+}
 
+/// Reads the outermost diagram by `read` and does to it what the options ask.
+template <class Read>
+std::shared_ptr<const Diagram> with_options(const LoadOptions& options, Problems& problems, Read&& read) {
+  Problems found;
+  Instance top = top_instance(options, found);
   Nest nest{found};
-  auto diagram = nest.load(path, {}, {}, std::move(top));
+  const std::shared_ptr<Diagram> diagram = read(nest, std::move(top));
   if (diagram) {
     apply_drives(*diagram, options.drives, found);
     diagram->files = nest.library.take_names();
   }
   add_without_repetition(found, problems);
   return diagram;
+}
+
+}  // namespace
+
+std::shared_ptr<const Diagram> load_diagram(const std::string& path, const LoadOptions& options,
+                                            Problems& problems) {
+  return with_options(options, problems,
+                      [&](Nest& nest, Instance top) { return nest.load(path, {}, {}, std::move(top)); });
+}
+
+std::shared_ptr<const Diagram> read_diagram(const Value& root, const std::string& path,
+                                            const LoadOptions& options, Problems& problems) {
+  return with_options(options, problems,
+                      [&](Nest& nest, Instance top) { return nest.read(root, path, std::move(top)); });
 }
 
 std::string resolve_relative(const Place& place, std::string_view path) {

@@ -18,7 +18,8 @@ void log_everything(FlatDiagram& flat) {
     for (size_t o = 0; o < flat.blocks[b].type->info.outputs.size(); ++o) {
       FlatWire wire;
       wire.block = int(b), wire.output = int(o);
-      flat.log.push_back({fmt::format("{}.{}", flat.blocks[b].path, flat.blocks[b].type->info.outputs[o].name), wire});
+      flat.log.push_back(
+          {fmt::format("{}.{}", flat.blocks[b].path, flat.blocks[b].type->info.outputs[o].name), wire});
     }
   }
 }
@@ -27,7 +28,8 @@ Rate rate_of_number(const Plan& plan, Number number, const std::vector<Rate>& ra
   return number < plan.signals ? rate_of_signal[size_t(number)] : Rate{Rate::Kind::continuous, 0, 0};
 }
 
-void add_log(const FlatDiagram& flat, const Layout& layout, const PortUnits& units, Plan& plan, Problems& problems) {
+void add_log(const FlatDiagram& flat, const Layout& layout, const PortUnits& units, Plan& plan,
+             Problems& problems) {
   std::vector<std::string> names;
   for (const FlatLog& log : flat.log) {
     if (!log.wire.is_resolved()) continue;
@@ -45,7 +47,8 @@ void add_log(const FlatDiagram& flat, const Layout& layout, const PortUnits& uni
   }
   std::ranges::sort(names);
   const auto twice = std::ranges::adjacent_find(names);
-  if (twice != names.end()) problems.error(flat.log.front().wire.place, "/log", "", fmt::format("\"{}\" is logged twice", *twice));
+  if (twice != names.end())
+    problems.error(flat.log.front().wire.place, "/log", "", fmt::format("\"{}\" is logged twice", *twice));
 }
 
 void add_rates_to_log(Plan& plan) {
@@ -55,11 +58,14 @@ void add_rates_to_log(Plan& plan) {
     const Plan::Block& block = plan.blocks[size_t(entry.block)];
     for (size_t o = 0; o < block.outputs.size(); ++o)
       if (block.type->info.outputs[o].group == entry.group)
-        for (int i = 0; i < block.output_lengths[o] && block.outputs[o] + i < plan.signals; ++i) rate_of_signal[size_t(block.outputs[o] + i)] = rate;
+        for (int i = 0; i < block.output_lengths[o] && block.outputs[o] + i < plan.signals; ++i)
+          rate_of_signal[size_t(block.outputs[o] + i)] = rate;
   };
   for (const Plan::Entry& entry : plan.order) {
-    if (entry.kind == Plan::Entry::Kind::ring) for (const Plan::Entry& inner : plan.rings[size_t(entry.block)].entries) mark(inner, entry.rate);
-    else mark(entry, entry.rate);
+    if (entry.kind == Plan::Entry::Kind::ring)
+      for (const Plan::Entry& inner : plan.rings[size_t(entry.block)].entries) mark(inner, entry.rate);
+    else
+      mark(entry, entry.rate);
   }
   for (Plan::Logged& logged : plan.log) logged.rate = rate_of_number(plan, logged.number, rate_of_signal);
 }
@@ -70,7 +76,8 @@ void add_sources(const PortUnits& units, const std::vector<int>& flat_of_block, 
   for (size_t b = 0; b < plan.blocks.size(); ++b) {
     Plan::Block& block = plan.blocks[b];
     for (size_t o = 0; o < block.outputs.size(); ++o) {
-      const int length = block.type->info.outputs[o].shape == PortInfo::Shape::vector ? block.output_lengths[o] : 1;
+      const int length =
+          block.type->info.outputs[o].shape == PortInfo::Shape::vector ? block.output_lengths[o] : 1;
       for (int i = 0; i < length; ++i) plan.sources[size_t(block.outputs[o] + i)] = {int(b), int(o)};
       block.output_units.push_back(flat_of_block[b] < 0 ? std::nullopt : units[size_t(flat_of_block[b])][o]);
     }
@@ -86,15 +93,18 @@ void add_ports(const FlatDiagram& flat, const Layout& layout, Plan& plan) {
 void add_crossings(Plan& plan) {
   std::vector<bool> is_continuous(plan.blocks.size(), false);
   for (const Plan::Entry& entry : plan.order)
-    if (entry.kind != Plan::Entry::Kind::ring && entry.rate.kind == Rate::Kind::continuous) is_continuous[size_t(entry.block)] = true;
+    if (entry.kind != Plan::Entry::Kind::ring && entry.rate.kind == Rate::Kind::continuous)
+      is_continuous[size_t(entry.block)] = true;
   int next = 0;
   for (size_t b = 0; b < plan.blocks.size(); ++b) {
     Plan::Block& block = plan.blocks[b];
-    const bool may_cross = block.type->kernels.crossings && (!block.type->info.may_cross || block.type->info.may_cross(block.value.get()));
+    const bool may_cross = block.type->kernels.crossings &&
+                           (!block.type->info.may_cross || block.type->info.may_cross(block.value.get()));
     const bool watched = may_cross && block.period == 0 && (is_continuous[b] || block.states > 0);
     block.first_crossing = watched ? next : -1;
     if (!watched) continue;
-    for (const CrossingInfo& crossing : block.type->info.crossings) plan.crossings.push_back({int(b), crossing.name, crossing.direction});
+    for (const CrossingInfo& crossing : block.type->info.crossings)
+      plan.crossings.push_back({int(b), crossing.name, crossing.direction});
     next += int(block.type->info.crossings.size());
   }
 }
@@ -102,7 +112,9 @@ void add_crossings(Plan& plan) {
 /// Effective parameters: every setting as evaluated, and the defaults of what was left out.
 void add_parameters(const Diagram& diagram, const FlatDiagram& flat, Plan& plan) {
   for (const Parameter& parameter : diagram.parameters)
-    plan.parameters.emplace_back(parameter.name, to_json(parameter.value) + (parameter.value.unit ? " " + to_string(*parameter.value.unit) : ""));
+    plan.parameters.emplace_back(
+        parameter.name,
+        to_json(parameter.value) + (parameter.value.unit ? " " + to_string(*parameter.value.unit) : ""));
   for (const FlatBlock& block : flat.blocks)
     for (const ParameterInfo& info : block.type->info.parameters) {
       const Value::Member* given = block.entry->settings.find(info.name);
@@ -114,15 +126,20 @@ void add_parameters(const Diagram& diagram, const FlatDiagram& flat, Plan& plan)
 
 std::string hash_of(const Plan& plan) {
   ContentHash hash;
-  const auto add = [&](const auto& number) { hash.add({reinterpret_cast<const char*>(&number), sizeof number}); };
+  const auto add = [&](const auto& number) {
+    hash.add({reinterpret_cast<const char*>(&number), sizeof number});
+  };
   for (const Plan::Block& block : plan.blocks) {
     hash.add(block.path).add("\n").add(block.type->info.type).add("\n");
-    for (const auto& port : block.inputs) for (Number n : port) add(n);
+    for (const auto& port : block.inputs)
+      for (Number n : port) add(n);
     add(block.period), add(block.offset), add(block.first_state);
   }
   for (const auto& [name, value] : plan.parameters) hash.add(name).add("=").add(value).add("\n");
   for (const Plan::Logged& logged : plan.log) hash.add(logged.name), add(logged.number);
-  for (int64_t n : {plan.clock.base.numerator, plan.clock.base.denominator, plan.start_tick, plan.stop_tick, plan.step_ticks, plan.record_ticks, int64_t(plan.method), int64_t(plan.seed)}) add(n);
+  for (int64_t n : {plan.clock.base.numerator, plan.clock.base.denominator, plan.start_tick, plan.stop_tick,
+                    plan.step_ticks, plan.record_ticks, int64_t(plan.method), int64_t(plan.seed)})
+    add(n);
   for (double x : {plan.relative_tolerance, plan.absolute_tolerance, plan.maximum_step}) add(x);
   return hash.text();
 }
@@ -142,13 +159,15 @@ std::shared_ptr<const Plan> compile(const Diagram& diagram, Problems& problems) 
   }
   const Layout layout(flat, *plan);
   std::vector<int> flat_of_block;
-  for (size_t f = 0; f < flat.blocks.size(); ++f) flat_of_block.insert(flat_of_block.end(), size_t(flat.blocks[f].width), int(f));
+  for (size_t f = 0; f < flat.blocks.size(); ++f)
+    flat_of_block.insert(flat_of_block.end(), size_t(flat.blocks[f].width), int(f));
   flat_of_block.resize(plan->blocks.size(), -1);
   find_times(diagram, flat, flat_of_block, *plan, problems);
   add_sources(units, flat_of_block, *plan);
   add_log(flat, layout, units, *plan, problems);
   add_ports(flat, layout, *plan);
-  for (size_t b = 0; b < plan->blocks.size(); ++b) plan->block_of_state.insert(plan->block_of_state.end(), size_t(plan->blocks[b].states), int(b));
+  for (size_t b = 0; b < plan->blocks.size(); ++b)
+    plan->block_of_state.insert(plan->block_of_state.end(), size_t(plan->blocks[b].states), int(b));
   find_order(*plan, diagram.solver.algebraic_loops.value == "solve", problems);
   if (problems.has_errors()) return nullptr;
   add_crossings(*plan);
@@ -177,7 +196,8 @@ std::shared_ptr<const Plan> load_plan(const std::string& path, const LoadOptions
 std::vector<Number> Plan::find(std::string_view port) const {
   const size_t bracket = port.find('[');
   const std::string_view name = port.substr(0, bracket);
-  const auto found = std::ranges::lower_bound(ports, name, {}, [](const auto& p) { return std::string_view(p.first); });
+  const auto found =
+      std::ranges::lower_bound(ports, name, {}, [](const auto& p) { return std::string_view(p.first); });
   if (found == ports.end() || found->first != name) return {};
   if (bracket == port.npos) return found->second;
   const char *first = port.data() + bracket + 1, *last = port.data() + port.size() - 1;

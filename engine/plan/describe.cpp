@@ -6,9 +6,12 @@ namespace {
 
 std::string rate_text(const Plan& plan, const Plan::Entry& entry) {
   switch (entry.rate.kind) {
-    case Rate::Kind::constant: return "once";
-    case Rate::Kind::continuous: return entry.in_stages ? "continuous" : entry.for_events ? "every step" : "when read";
-    case Rate::Kind::sampled: break;
+    case Rate::Kind::constant:
+      return "once";
+    case Rate::Kind::continuous:
+      return entry.in_stages ? "continuous" : entry.for_events ? "every step" : "when read";
+    case Rate::Kind::sampled:
+      break;
   }
   const std::string period = fmt::format("{:g} s", plan.clock.time(entry.rate.period));
   return entry.rate.offset ? fmt::format("{} + {:g} s", period, plan.clock.time(entry.rate.offset)) : period;
@@ -17,7 +20,8 @@ std::string rate_text(const Plan& plan, const Plan::Entry& entry) {
 std::string entry_text(const Plan& plan, const Plan::Entry& entry) {
   if (entry.kind == Plan::Entry::Kind::ring) {
     const Plan::Ring& ring = plan.rings[size_t(entry.block)];
-    return fmt::format("ring of {} solved for {} numbers:{}", ring.entries.size(), ring.tears.size(), ring.text);
+    return fmt::format("ring of {} solved for {} numbers:{}", ring.entries.size(), ring.tears.size(),
+                       ring.text);
   }
   const Plan::Block& block = plan.blocks[size_t(entry.block)];
   if (entry.kind == Plan::Entry::Kind::decide) return fmt::format("{} decides", block.path);
@@ -32,24 +36,34 @@ std::string entry_text(const Plan& plan, const Plan::Entry& entry) {
 std::string describe(const Plan& plan) {
   const MethodFacts& method = facts(plan.method);
   std::string text = fmt::format("{}\n", plan.title.empty() ? "untitled" : plan.title);
-  text += fmt::format("  plan {}   {} blocks   {} signals   {} states   {} rates   {} crossings   {} rings\n", plan.hash, plan.blocks.size(),
-                      plan.signals, plan.states, plan.rates.size(), plan.crossings.size(), plan.rings.size());
-  text += fmt::format("  tick {}/{} s   from {:g} to {:g} s   {}", plan.clock.base.numerator, plan.clock.base.denominator,
-                      plan.clock.time(plan.start_tick), plan.clock.time(plan.stop_tick), method.name);
-  if (method.fixed_step) text += fmt::format(" at {:g} s", plan.clock.time(plan.step_ticks));
-  else text += fmt::format(", relative tolerance {:g}, absolute {:g}", plan.relative_tolerance, plan.absolute_tolerance);
+  text += fmt::format("  plan {}   {} blocks   {} signals   {} states   {} rates   {} crossings   {} rings\n",
+                      plan.hash, plan.blocks.size(), plan.signals, plan.states, plan.rates.size(),
+                      plan.crossings.size(), plan.rings.size());
+  text += fmt::format("  tick {}/{} s   from {:g} to {:g} s   {}", plan.clock.base.numerator,
+                      plan.clock.base.denominator, plan.clock.time(plan.start_tick),
+                      plan.clock.time(plan.stop_tick), method.name);
+  if (method.fixed_step)
+    text += fmt::format(" at {:g} s", plan.clock.time(plan.step_ticks));
+  else
+    text += fmt::format(", relative tolerance {:g}, absolute {:g}", plan.relative_tolerance,
+                        plan.absolute_tolerance);
   text += fmt::format("   a row every {:g} s\n\nrates\n", plan.clock.time(plan.record_ticks));
-  for (const Rate& rate : plan.rates) text += fmt::format("  every {} ticks from tick {}: {:g} s\n", rate.period, rate.offset, plan.clock.time(rate.period));
+  for (const Rate& rate : plan.rates)
+    text += fmt::format("  every {} ticks from tick {}: {:g} s\n", rate.period, rate.offset,
+                        plan.clock.time(rate.period));
   if (plan.rates.empty()) text += "  none: nothing is sampled\n";
   text += "\norder\n";
-  for (size_t i = 0; i < plan.order.size(); ++i) text += fmt::format("  {:4}  {:<18} {}\n", i + 1, rate_text(plan, plan.order[i]), entry_text(plan, plan.order[i]));
+  for (size_t i = 0; i < plan.order.size(); ++i)
+    text += fmt::format("  {:4}  {:<18} {}\n", i + 1, rate_text(plan, plan.order[i]),
+                        entry_text(plan, plan.order[i]));
   text += "\nstates\n";
   for (const Plan::Block& block : plan.blocks) {
     if (block.states == 0) continue;
     std::string names;
     for (const PortInfo& port : block.type->info.outputs)
       if (port.state >= 0) names += fmt::format("{}{}", names.empty() ? "" : ", ", port.name);
-    text += fmt::format("  {} ({}): {}{}\n", block.path, block.type->info.type, block.states, names.empty() ? "" : " (" + names + ")");
+    text += fmt::format("  {} ({}): {}{}\n", block.path, block.type->info.type, block.states,
+                        names.empty() ? "" : " (" + names + ")");
   }
   if (plan.states == 0) text += "  none: nothing is continuous\n";
   return text;

@@ -13,11 +13,11 @@ namespace {
 /// One diagram in the nest: where its names lead.
 struct Scope {
   const Diagram* diagram;
-  std::string prefix;               // "" or "stage."
-  const BlockEntry* entry;          // in the parent; null at the top
+  std::string prefix;       // "" or "stage."
+  const BlockEntry* entry;  // in the parent; null at the top
   Scope* parent;
-  std::unordered_map<std::string, int> blocks;      // ordinary blocks: index in the flat list
-  std::unordered_map<std::string, Scope*> inner;    // subdiagrams
+  std::unordered_map<std::string, int> blocks;    // ordinary blocks: index in the flat list
+  std::unordered_map<std::string, Scope*> inner;  // subdiagrams
 };
 
 class Flattener {
@@ -37,9 +37,13 @@ class Flattener {
   Scope& add_scope(const Diagram& diagram, std::string prefix, const BlockEntry* entry, Scope* parent) {
     Scope& scope = scopes_.emplace_back(Scope{&diagram, std::move(prefix), entry, parent, {}, {}});
     for (const BlockEntry& block : diagram.blocks) {
-      if (block.subdiagram) scope.inner[block.name] = &add_scope(*block.subdiagram, scope.prefix + block.name + ".", &block, &scope);
-      else if (!block.type.empty()) add_block(scope, block);
-      else broken_.push_back({&scope, block.name});  // told when it was loaded
+      if (block.subdiagram)
+        scope.inner[block.name] =
+            &add_scope(*block.subdiagram, scope.prefix + block.name + ".", &block, &scope);
+      else if (!block.type.empty())
+        add_block(scope, block);
+      else
+        broken_.push_back({&scope, block.name});  // told when it was loaded
     }
     return scope;
   }
@@ -63,7 +67,8 @@ class Flattener {
                   }};
     const size_t before = problems_.list().size();
     flat.type->info.read(memory, entry.settings, flat.path, problems_);
-    if (problems_.list().size() == before) flat.type->info.check(memory, Checker(entry.settings, flat.path, problems_));
+    if (problems_.list().size() == before)
+      flat.type->info.check(memory, Checker(entry.settings, flat.path, problems_));
     flat.inputs.resize(flat.type->info.inputs.size());
     scope.blocks[entry.name] = int(flat_.blocks.size());
     flat_.blocks.push_back(std::move(flat));
@@ -73,7 +78,8 @@ class Flattener {
   void unknown_type(const std::string& path, const BlockEntry& entry) {
     std::vector<std::string> types;
     for (const auto& [name, type] : all_blocks()) types.push_back(name);
-    auto& p = problems_.error(entry.type_place, entry.pointer + "/type", path, fmt::format("there is no block type \"{}\"", entry.type));
+    auto& p = problems_.error(entry.type_place, entry.pointer + "/type", path,
+                              fmt::format("there is no block type \"{}\"", entry.type));
     const std::string near = nearest_name(entry.type, types);
     p.hint = near.empty() ? "`loopwright blocks` lists all types" : fmt::format("did you mean \"{}\"?", near);
   }
@@ -94,7 +100,8 @@ class Flattener {
         continue;
       }
       if (port->shape != PortInfo::Shape::many && wires.wires.size() != 1) {
-        auto& p = problems_.error(wires.place, wires.pointer, flat.path, fmt::format("the input \"{}\" takes one wire", wires.port));
+        auto& p = problems_.error(wires.place, wires.pointer, flat.path,
+                                  fmt::format("the input \"{}\" takes one wire", wires.port));
         p.expected = "one source, as in \"stage.position\"";
         p.found = fmt::format("a list of {}", wires.wires.size());
         continue;
@@ -103,9 +110,11 @@ class Flattener {
       for (const Wire& wire : wires.wires) sources.push_back(resolve(scope, wire.source, wire, flat.path, 0));
     }
     for (size_t i = 0; i < info.inputs.size(); ++i) {
-      const bool listed = std::ranges::any_of(flat.entry->in, [&](const PortWires& w) { return w.port == info.inputs[i].name; });
+      const bool listed = std::ranges::any_of(
+          flat.entry->in, [&](const PortWires& w) { return w.port == info.inputs[i].name; });
       if (listed || info.inputs[i].is_optional) continue;
-      auto& p = problems_.error(flat.entry->place, flat.entry->pointer, flat.path, fmt::format("the input \"{}\" is not wired", info.inputs[i].name));
+      auto& p = problems_.error(flat.entry->place, flat.entry->pointer, flat.path,
+                                fmt::format("the input \"{}\" is not wired", info.inputs[i].name));
       p.expected = fmt::format("\"in\": {{\"{}\": \"block.output\"}}", info.inputs[i].name);
       p.hint = info.inputs[i].sentence;
     }
@@ -114,43 +123,54 @@ class Flattener {
   void unknown_input(const FlatBlock& flat, const PortWires& wires, const BlockInfo& info) {
     std::vector<std::string> names;
     for (const PortInfo& port : info.inputs) names.emplace_back(port.name);
-    auto& p = problems_.error(wires.place, wires.pointer, flat.path, fmt::format("{} has no input \"{}\"", info.type, wires.port));
+    auto& p = problems_.error(wires.place, wires.pointer, flat.path,
+                              fmt::format("{} has no input \"{}\"", info.type, wires.port));
     const std::string near = nearest_name(wires.port, names);
     p.expected = names.empty() ? "no inputs" : fmt::format("{}", fmt::join(names, ", "));
     if (!near.empty()) p.hint = fmt::format("did you mean \"{}\"?", near);
   }
 
-  /// Follows a name to the block output behind it: through inputs of the diagram, outputs of subdiagrams, deep paths.
-  FlatWire resolve(Scope& scope, std::string_view text, const Wire& at, const std::string& reader, int depth) {
+  /// Follows a name to the block output behind it: through inputs of the diagram, outputs of subdiagrams,
+  /// deep paths.
+  FlatWire resolve(Scope& scope, std::string_view text, const Wire& at, const std::string& reader,
+                   int depth) {
     FlatWire wire;
     wire.place = at.place, wire.pointer = at.pointer, wire.text = at.source;
-    if (depth > 200) return fail(at, reader, "the wire leads round in a circle of subdiagram outputs", {}, "");
+    if (depth > 200)
+      return fail(at, reader, "the wire leads round in a circle of subdiagram outputs", {}, "");
     const size_t dot = text.find('.');
     const std::string head(text.substr(0, dot));
     if (dot == text.npos) {
       const auto bracket = head.find('[');
-      return resolve_input(scope, head.substr(0, bracket), bracket == head.npos ? "" : head.substr(bracket), at, reader, depth);
+      return resolve_input(scope, head.substr(0, bracket), bracket == head.npos ? "" : head.substr(bracket),
+                           at, reader, depth);
     }
     const std::string_view rest = text.substr(dot + 1);
     if (const auto inner = scope.inner.find(head); inner != scope.inner.end())
       return resolve_inside(*inner->second, rest, at, reader, depth);
     if (const auto found = scope.blocks.find(head); found != scope.blocks.end())
       return resolve_port(found->second, rest, at, reader, depth);
-    for (const auto& [broken_scope, name] : broken_) if (broken_scope == &scope && name == head) return wire;  // already told
+    for (const auto& [broken_scope, name] : broken_)
+      if (broken_scope == &scope && name == head) return wire;  // already told
     std::vector<std::string> names;
     for (const BlockEntry& entry : scope.diagram->blocks) names.push_back(entry.name);
     return fail(at, reader, fmt::format("there is no block \"{}\"", scope.prefix + head), names, head);
   }
 
-  FlatWire resolve_input(Scope& scope, const std::string& name, const std::string& element, const Wire& at, const std::string& reader, int depth) {
+  FlatWire resolve_input(Scope& scope, const std::string& name, const std::string& element, const Wire& at,
+                         const std::string& reader, int depth) {
     std::vector<std::string> names;
     for (const DiagramInput& input : scope.diagram->inputs) {
       if (input.name == name) {
         if (!scope.parent && open_) return {};
-        if (!scope.parent) return fail(at, reader, fmt::format("the input \"{}\" of the diagram has no source: it is the top", name), {}, "");
+        if (!scope.parent)
+          return fail(at, reader,
+                      fmt::format("the input \"{}\" of the diagram has no source: it is the top", name), {},
+                      "");
         for (const PortWires& wires : scope.entry->in)
           if (wires.port == name && wires.wires.size() == 1) {
-            FlatWire wire = resolve(*scope.parent, wires.wires[0].source, wires.wires[0], scope.prefix + name, depth + 1);
+            FlatWire wire =
+                resolve(*scope.parent, wires.wires[0].source, wires.wires[0], scope.prefix + name, depth + 1);
             return with_element(wire, element, at, reader);
           }
         return {};  // told by check_subdiagram_wires
@@ -158,34 +178,48 @@ class Flattener {
       names.push_back(input.name);
     }
     for (const BlockEntry& entry : scope.diagram->blocks) names.push_back(entry.name + ".…");
-    auto wire = fail(at, reader, fmt::format("\"{}\" is neither an input of this diagram nor of the form block.output", at.source), names, name);
+    auto wire = fail(
+        at, reader,
+        fmt::format("\"{}\" is neither an input of this diagram nor of the form block.output", at.source),
+        names, name);
     return wire;
   }
 
-  FlatWire resolve_inside(Scope& inner, std::string_view rest, const Wire& at, const std::string& reader, int depth) {
+  FlatWire resolve_inside(Scope& inner, std::string_view rest, const Wire& at, const std::string& reader,
+                          int depth) {
     const size_t bracket = rest.find('[');
-    const std::string name(rest.substr(0, bracket)), element(bracket == rest.npos ? "" : rest.substr(bracket));
+    const std::string name(rest.substr(0, bracket)),
+        element(bracket == rest.npos ? "" : rest.substr(bracket));
     std::vector<std::string> names;
     for (const DiagramOutput& output : inner.diagram->outputs) {
-      if (output.name == name) return with_element(resolve(inner, output.source.source, output.source, inner.prefix + name, depth + 1), element, at, reader);
+      if (output.name == name)
+        return with_element(
+            resolve(inner, output.source.source, output.source, inner.prefix + name, depth + 1), element, at,
+            reader);
       names.push_back(output.name);
     }
     for (const DiagramInput& input : inner.diagram->inputs)
       if (input.name == name) return resolve_input(inner, name, element, at, reader, depth + 1);
     if (rest.find('.') != rest.npos) return resolve(inner, rest, at, reader, depth + 1);
-    return fail(at, reader, fmt::format("the subdiagram \"{}\" has no output \"{}\"", inner.prefix.substr(0, inner.prefix.size() - 1), name), names, name);
+    return fail(at, reader,
+                fmt::format("the subdiagram \"{}\" has no output \"{}\"",
+                            inner.prefix.substr(0, inner.prefix.size() - 1), name),
+                names, name);
   }
 
-  FlatWire resolve_port(int block, std::string_view rest, const Wire& at, const std::string& reader, int depth) {
+  FlatWire resolve_port(int block, std::string_view rest, const Wire& at, const std::string& reader,
+                        int depth) {
     FlatBlock& flat = flat_.blocks[size_t(block)];
     const size_t bracket = rest.find('[');
-    const std::string name(rest.substr(0, bracket)), element(bracket == rest.npos ? "" : rest.substr(bracket));
+    const std::string name(rest.substr(0, bracket)),
+        element(bracket == rest.npos ? "" : rest.substr(bracket));
     const BlockInfo& info = flat.type->info;
     std::vector<std::string> names;
     for (size_t o = 0; o < info.outputs.size(); ++o) {
       if (info.outputs[o].name == name) {
         FlatWire wire;
-        wire.block = block, wire.output = int(o), wire.place = at.place, wire.pointer = at.pointer, wire.text = at.source;
+        wire.block = block, wire.output = int(o), wire.place = at.place, wire.pointer = at.pointer,
+        wire.text = at.source;
         return with_element(wire, element, at, reader);
       }
       names.emplace_back(info.outputs[o].name);
@@ -193,27 +227,36 @@ class Flattener {
     if (reader == "log")  // an input may be looked at: what feeds it
       for (const PortWires& wires : flat.entry->in)
         if (wires.port == name && wires.wires.size() == 1)
-          return with_element(resolve(*scope_of_block_[size_t(block)], wires.wires[0].source, at, reader, depth + 1), element, at, reader);
-    return fail(at, reader, fmt::format("{} \"{}\" has no output \"{}\"", info.type, flat.path, name), names, name);
+          return with_element(
+              resolve(*scope_of_block_[size_t(block)], wires.wires[0].source, at, reader, depth + 1), element,
+              at, reader);
+    return fail(at, reader, fmt::format("{} \"{}\" has no output \"{}\"", info.type, flat.path, name), names,
+                name);
   }
 
-  FlatWire with_element(FlatWire wire, const std::string& element, const Wire& at, const std::string& reader) {
+  FlatWire with_element(FlatWire wire, const std::string& element, const Wire& at,
+                        const std::string& reader) {
     if (element.empty() || !wire.is_resolved()) return wire;
     const bool is_index = element.size() >= 3 && element.size() <= 9 && element.back() == ']' &&
                           element.find_first_not_of("0123456789", 1) == element.size() - 1;
     if (!is_index) return fail(at, reader, fmt::format("\"{}\" is not an element", at.source), {}, "");
-    if (wire.element >= 0) return fail(at, reader, fmt::format("\"{}\" is already one element", at.source), {}, "");
+    if (wire.element >= 0)
+      return fail(at, reader, fmt::format("\"{}\" is already one element", at.source), {}, "");
     wire.element = std::stoi(element.substr(1));
     return wire;
   }
 
-  FlatWire fail(const Wire& at, const std::string& reader, std::string message, std::vector<std::string> names, const std::string& wrong) {
-    if (!told_.insert(at.pointer + message).second) return {};  // one wire into a subdiagram may have many readers
+  FlatWire fail(const Wire& at, const std::string& reader, std::string message,
+                std::vector<std::string> names, const std::string& wrong) {
+    if (!told_.insert(at.pointer + message).second)
+      return {};  // one wire into a subdiagram may have many readers
     auto& p = problems_.error(at.place, at.pointer, reader, std::move(message));
     p.found = "\"" + at.source + "\"";
     const std::string near = wrong.empty() ? "" : nearest_name(wrong, names);
-    if (!near.empty()) p.hint = fmt::format("did you mean \"{}\"?", near);
-    else if (!names.empty() && names.size() <= 12) p.expected = fmt::format("one of {}", fmt::join(names, ", "));
+    if (!near.empty())
+      p.hint = fmt::format("did you mean \"{}\"?", near);
+    else if (!names.empty() && names.size() <= 12)
+      p.expected = fmt::format("one of {}", fmt::join(names, ", "));
     return {};
   }
 
@@ -224,23 +267,30 @@ class Flattener {
     std::vector<std::string> names;
     for (const DiagramInput& input : scope.diagram->inputs) {
       names.push_back(input.name);
-      if (std::ranges::any_of(scope.entry->in, [&](const PortWires& w) { return w.port == input.name; })) continue;
-      auto& p = problems_.error(scope.entry->place, scope.entry->pointer, path, fmt::format("the input \"{}\" is not wired", input.name));
+      if (std::ranges::any_of(scope.entry->in, [&](const PortWires& w) { return w.port == input.name; }))
+        continue;
+      auto& p = problems_.error(scope.entry->place, scope.entry->pointer, path,
+                                fmt::format("the input \"{}\" is not wired", input.name));
       p.expected = fmt::format("\"in\": {{\"{}\": \"block.output\"}}", input.name);
     }
     for (const PortWires& wires : scope.entry->in) {
       if (std::ranges::find(names, wires.port) == names.end()) {
-        auto& p = problems_.error(wires.place, wires.pointer, path, fmt::format("the subdiagram has no input \"{}\"", wires.port));
+        auto& p = problems_.error(wires.place, wires.pointer, path,
+                                  fmt::format("the subdiagram has no input \"{}\"", wires.port));
         const std::string near = nearest_name(wires.port, names);
         p.expected = names.empty() ? "no inputs" : fmt::format("{}", fmt::join(names, ", "));
         if (!near.empty()) p.hint = fmt::format("did you mean \"{}\"?", near);
       } else if (wires.wires.size() != 1) {
-        problems_.error(wires.place, wires.pointer, path, fmt::format("the input \"{}\" takes one wire", wires.port)).found = fmt::format("a list of {}", wires.wires.size());
+        problems_
+            .error(wires.place, wires.pointer, path,
+                   fmt::format("the input \"{}\" takes one wire", wires.port))
+            .found = fmt::format("a list of {}", wires.wires.size());
       } else {
         for (const Wire& wire : wires.wires) resolve(*scope.parent, wire.source, wire, path, 0);
       }
     }
-    for (const DiagramOutput& output : scope.diagram->outputs) resolve(scope, output.source.source, output.source, scope.prefix + output.name, 0);
+    for (const DiagramOutput& output : scope.diagram->outputs)
+      resolve(scope, output.source.source, output.source, scope.prefix + output.name, 0);
   }
 
   void add_log(Scope& top) {
@@ -276,16 +326,19 @@ class Flattener {
         flat_.names.push_back({fmt::format("{}.{}", block.path, info.outputs[o].name), wire});
       }
       for (size_t i = 0; i < info.inputs.size(); ++i)
-        if (block.inputs[i].size() == 1) flat_.names.push_back({fmt::format("{}.{}", block.path, info.inputs[i].name), block.inputs[i][0]});
+        if (block.inputs[i].size() == 1)
+          flat_.names.push_back({fmt::format("{}.{}", block.path, info.inputs[i].name), block.inputs[i][0]});
     }
     Problems unheard;  // told already
     std::swap(unheard, problems_);
     for (Scope& scope : scopes_) {
       if (!scope.entry) continue;
       for (const DiagramOutput& output : scope.diagram->outputs)
-        flat_.names.push_back({scope.prefix + output.name, resolve(scope, output.source.source, output.source, "", 0)});
+        flat_.names.push_back(
+            {scope.prefix + output.name, resolve(scope, output.source.source, output.source, "", 0)});
       for (const DiagramInput& input : scope.diagram->inputs)
-        flat_.names.push_back({scope.prefix + input.name, resolve_input(scope, input.name, "", Wire{input.name, {}, {}}, "", 0)});
+        flat_.names.push_back({scope.prefix + input.name,
+                               resolve_input(scope, input.name, "", Wire{input.name, {}, {}}, "", 0)});
     }
     std::swap(unheard, problems_);
   }
@@ -301,6 +354,8 @@ class Flattener {
 
 }  // namespace
 
-FlatDiagram flatten(const Diagram& diagram, Problems& problems, bool open) { return Flattener(problems, open).run(diagram); }
+FlatDiagram flatten(const Diagram& diagram, Problems& problems, bool open) {
+  return Flattener(problems, open).run(diagram);
+}
 
 }  // namespace loopwright

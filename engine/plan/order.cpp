@@ -19,7 +19,8 @@ struct Vertex {
 
 class Order {
  public:
-  Order(Plan& plan, bool solve_rings, Problems& problems) : plan_(plan), solve_rings_(solve_rings), problems_(problems) {}
+  Order(Plan& plan, bool solve_rings, Problems& problems)
+      : plan_(plan), solve_rings_(solve_rings), problems_(problems) {}
 
   void run() {
     add_vertices();
@@ -31,8 +32,10 @@ class Order {
     for (size_t v = 0; v < vertices_.size(); ++v) members[size_t(component[v])].push_back(int(v));
     rate_of_.resize(vertices_.size());
     for (const auto& group : members) {
-      if (group.size() == 1 && !needs_itself(group[0])) add_entry(group[0]);
-      else add_ring(group, component);
+      if (group.size() == 1 && !needs_itself(group[0]))
+        add_entry(group[0]);
+      else
+        add_ring(group, component);
     }
     collect_rates();
     mark_needed();
@@ -42,7 +45,8 @@ class Order {
   const BlockInfo& info(int block) const { return plan_.blocks[size_t(block)].type->info; }
   uint64_t mask(const Vertex& v) const {
     if (v.group < 0) return ~uint64_t(0);
-    for (const PortInfo& output : info(v.block).outputs) if (output.group == v.group) return output.fed_by;
+    for (const PortInfo& output : info(v.block).outputs)
+      if (output.group == v.group) return output.fed_by;
     return 0;
   }
 
@@ -56,7 +60,9 @@ class Order {
       for (int g = 0; g < info(int(b)).groups; ++g) vertices_.push_back({int(b), g});
       for (size_t o = 0; o < block.outputs.size(); ++o)
         if (const int group = info(int(b)).outputs[o].group; group >= 0)
-          for (int i = 0; i < (info(int(b)).outputs[o].shape == PortInfo::Shape::vector ? block.output_lengths[o] : 1); ++i)
+          for (int i = 0;
+               i < (info(int(b)).outputs[o].shape == PortInfo::Shape::vector ? block.output_lengths[o] : 1);
+               ++i)
             vertex_of_number_[size_t(block.outputs[o] + i)] = first_vertex_[b] + group;
       if (block.type->kernels.decide) {
         decision_[b] = int(vertices_.size());
@@ -66,8 +72,7 @@ class Order {
     graph_ = Graph(vertices_.size());
   }
 
-  template <class F>
-  void for_each_need(int v, F&& f) const {
+  template <class F> void for_each_need(int v, F&& f) const {
     const Vertex& vertex = vertices_[size_t(v)];
     const auto& inputs = plan_.blocks[size_t(vertex.block)].inputs;
     const uint64_t fed = mask(vertex);
@@ -78,12 +83,14 @@ class Order {
   void add_edges() {
     for (size_t v = 0; v < vertices_.size(); ++v) {
       for_each_need(int(v), [&](int, Number n) {
-        if (n < plan_.signals && vertex_of_number_[size_t(n)] >= 0) boost::add_edge(v, size_t(vertex_of_number_[size_t(n)]), graph_);
+        if (n < plan_.signals && vertex_of_number_[size_t(n)] >= 0)
+          boost::add_edge(v, size_t(vertex_of_number_[size_t(n)]), graph_);
       });
       // What depends on the inputs reads the mode decided from them; what does not was settled before.
       const Vertex& vertex = vertices_[v];
       const int decision = decision_[size_t(vertex.block)];
-      if (vertex.group >= 0 && decision >= 0 && (mask(vertex) != 0 || info(vertex.block).inputs.empty())) boost::add_edge(v, size_t(decision), graph_);
+      if (vertex.group >= 0 && decision >= 0 && (mask(vertex) != 0 || info(vertex.block).inputs.empty()))
+        boost::add_edge(v, size_t(decision), graph_);
     }
   }
   bool needs_itself(int v) const {
@@ -94,7 +101,8 @@ class Order {
   static Rate join(const Rate& a, const Rate& b) {
     if (a.kind == Rate::Kind::constant) return b;
     if (b.kind == Rate::Kind::constant) return a;
-    if (a.kind == Rate::Kind::continuous || b.kind == Rate::Kind::continuous) return {Rate::Kind::continuous, 0, 0};
+    if (a.kind == Rate::Kind::continuous || b.kind == Rate::Kind::continuous)
+      return {Rate::Kind::continuous, 0, 0};
     const int64_t period = std::gcd(std::gcd(a.period, b.period), std::abs(a.offset - b.offset));
     return {Rate::Kind::sampled, period, std::min(a.offset, b.offset) % period};
   }
@@ -102,17 +110,21 @@ class Order {
     const Vertex& vertex = vertices_[size_t(v)];
     const Plan::Block& block = plan_.blocks[size_t(vertex.block)];
     if (block.period > 0) return {Rate::Kind::sampled, block.period, block.offset};
-    if (info(vertex.block).uses_time || info(vertex.block).is_continuous) return {Rate::Kind::continuous, 0, 0};
+    if (info(vertex.block).uses_time || info(vertex.block).is_continuous)
+      return {Rate::Kind::continuous, 0, 0};
     Rate rate;
     for_each_need(v, [&](int, Number n) {
-      if (n >= plan_.signals) rate = join(rate, {Rate::Kind::continuous, 0, 0});
-      else if (vertex_of_number_[size_t(n)] >= 0) rate = join(rate, rate_of_[size_t(vertex_of_number_[size_t(n)])]);
+      if (n >= plan_.signals)
+        rate = join(rate, {Rate::Kind::continuous, 0, 0});
+      else if (vertex_of_number_[size_t(n)] >= 0)
+        rate = join(rate, rate_of_[size_t(vertex_of_number_[size_t(n)])]);
     });
     return rate;
   }
   Plan::Entry entry_of(int v) {
     const Vertex& vertex = vertices_[size_t(v)];
-    return {vertex.group < 0 ? Kind::decide : Kind::outputs, vertex.block, std::max(vertex.group, 0), rate_of_[size_t(v)]};
+    return {vertex.group < 0 ? Kind::decide : Kind::outputs, vertex.block, std::max(vertex.group, 0),
+            rate_of_[size_t(v)]};
   }
   void add_entry(int v) {
     rate_of_[size_t(v)] = own_rate(v);
@@ -124,7 +136,8 @@ class Order {
     const std::string text = ring_text(members, component);
     if (!solve_rings_) return tell_ring(members, text, "");
     for (int v : members)
-      if (vertices_[size_t(v)].group < 0) return tell_ring(members, text, "It holds a block that switches; such a ring cannot be solved.");
+      if (vertices_[size_t(v)].group < 0)
+        return tell_ring(members, text, "It holds a block that switches; such a ring cannot be solved.");
     Plan::Ring ring;
     ring.text = text;
     // Tears: outputs taken out one by one, most wanted first, until what is left has no ring.
@@ -132,7 +145,8 @@ class Order {
     std::vector<int> sorted;
     std::vector<bool> torn(vertices_.size(), false);
     while (!sort_acyclic(members, component, torn, sorted)) {
-      const int v = *std::ranges::max_element(left, {}, [&](int m) { return torn[size_t(m)] ? -1 : wanted_inside(m, component); });
+      const int v = *std::ranges::max_element(
+          left, {}, [&](int m) { return torn[size_t(m)] ? -1 : wanted_inside(m, component); });
       torn[size_t(v)] = true;
     }
     Rate rate;
@@ -153,7 +167,8 @@ class Order {
     return n;
   }
   /// Members in order, edges to torn vertices ignored; false if a ring is left.
-  bool sort_acyclic(const std::vector<int>& members, const std::vector<int>& component, const std::vector<bool>& torn, std::vector<int>& sorted) const {
+  bool sort_acyclic(const std::vector<int>& members, const std::vector<int>& component,
+                    const std::vector<bool>& torn, std::vector<int>& sorted) const {
     sorted.clear();
     std::vector<int> open(members);
     std::vector<bool> done(vertices_.size(), false);
@@ -187,7 +202,8 @@ class Order {
         if (next >= 0 || source < 0 || component[size_t(source)] != component[size_t(at)]) return;
         next = source;
         const Plan::Block& block = plan_.blocks[size_t(vertices_[size_t(at)].block)];
-        step = fmt::format("{} -> {}.{}", plan_.name_of(n), block.path, block.type->info.inputs[size_t(i)].name);
+        step =
+            fmt::format("{} -> {}.{}", plan_.name_of(n), block.path, block.type->info.inputs[size_t(i)].name);
       });
       if (next < 0) {  // an output group that needs its block's decision
         next = decision_[size_t(vertices_[size_t(at)].block)];
@@ -198,29 +214,42 @@ class Order {
       at = next;
     }
     std::string text;
-    for (size_t i = steps.size(); i-- > size_t(seen_at[size_t(at)]);) if (!steps[i].empty()) text += "\n    " + steps[i];
+    for (size_t i = steps.size(); i-- > size_t(seen_at[size_t(at)]);)
+      if (!steps[i].empty()) text += "\n    " + steps[i];
     return text;
   }
 
   void tell_ring(const std::vector<int>& members, const std::string& text, std::string_view why) {
     const Plan::Block& block = plan_.blocks[size_t(vertices_[size_t(members[0])].block)];
     std::string breakers;
-    auto& p = problems_.error(block.place, "", block.path, fmt::format("a ring of direct feedthrough: each of these needs the next in the same instant{}", text));
+    auto& p = problems_.error(
+        block.place, "", block.path,
+        fmt::format("a ring of direct feedthrough: each of these needs the next in the same instant{}",
+                    text));
     p.expected = "a state or a delay somewhere in the ring";
-    p.hint = fmt::format("a UnitDelay (sampled) or a LowPass (continuous) at one of these wires breaks it; \"algebraic_loops\": \"solve\" in \"solver\" solves it by Newton's method. {}", why);
+    p.hint = fmt::format(
+        "a UnitDelay (sampled) or a LowPass (continuous) at one of these wires breaks it; "
+        "\"algebraic_loops\": \"solve\" in \"solver\" solves it by Newton's method. {}",
+        why);
     while (!p.hint.empty() && p.hint.back() == ' ') p.hint.pop_back();
   }
 
   void collect_rates() {
     const auto add = [&](const Rate& rate) {
-      if (rate.kind == Rate::Kind::sampled && std::ranges::find(plan_.rates, rate) == plan_.rates.end()) plan_.rates.push_back(rate);
+      if (rate.kind == Rate::Kind::sampled && std::ranges::find(plan_.rates, rate) == plan_.rates.end())
+        plan_.rates.push_back(rate);
     };
     for (const Plan::Entry& entry : plan_.order) add(entry.rate);
-    for (const Plan::Block& block : plan_.blocks) if (block.period > 0) add({Rate::Kind::sampled, block.period, block.offset});
+    for (const Plan::Block& block : plan_.blocks)
+      if (block.period > 0) add({Rate::Kind::sampled, block.period, block.offset});
     std::ranges::sort(plan_.rates, {}, [](const Rate& r) { return std::pair(r.period, r.offset); });
     for (const Rate& rate : plan_.rates)
       if (plan_.rates.size() > 60) {
-        problems_.error({}, "/solver", "", fmt::format("{} different sample rates; at most 60 can be handled, this one repeats every {} ticks", plan_.rates.size(), rate.period));
+        problems_.error(
+            {}, "/solver", "",
+            fmt::format(
+                "{} different sample rates; at most 60 can be handled, this one repeats every {} ticks",
+                plan_.rates.size(), rate.period));
         return;
       }
   }
@@ -231,13 +260,15 @@ class Order {
     for (size_t b = 0; b < plan_.blocks.size(); ++b) {
       const Kernels<double>& k = plan_.blocks[b].type->kernels;
       if (k.derivatives) need_inputs(int(b), for_stages);
-      if (plan_.blocks[b].period == 0 && (k.crossings || k.decide || k.jump || k.accept)) need_inputs(int(b), for_events);
+      if (plan_.blocks[b].period == 0 && (k.crossings || k.decide || k.jump || k.accept))
+        need_inputs(int(b), for_events);
       if (decision_[b] >= 0 && plan_.blocks[b].period == 0) for_events[size_t(decision_[b])] = true;
     }
     for (size_t e = 0; e < plan_.order.size(); ++e) {
       Plan::Entry& entry = plan_.order[e];
       if (entry.rate.kind != Rate::Kind::continuous) continue;
-      for (int v : entry_vertices_[e]) entry.in_stages |= for_stages[size_t(v)], entry.for_events |= for_events[size_t(v)];
+      for (int v : entry_vertices_[e])
+        entry.in_stages |= for_stages[size_t(v)], entry.for_events |= for_events[size_t(v)];
     }
   }
   void need_inputs(int block, std::vector<bool>& needed) {
@@ -246,7 +277,8 @@ class Order {
       const int v = n < plan_.signals ? vertex_of_number_[size_t(n)] : -1;
       if (v >= 0 && !needed[size_t(v)]) needed[size_t(v)] = true, todo.push_back(v);
     };
-    for (const auto& port : plan_.blocks[size_t(block)].inputs) for (Number n : port) want(n);
+    for (const auto& port : plan_.blocks[size_t(block)].inputs)
+      for (Number n : port) want(n);
     while (!todo.empty()) {
       const int v = todo.back();
       todo.pop_back();
@@ -266,6 +298,8 @@ class Order {
 
 }  // namespace
 
-void find_order(Plan& plan, bool solve_rings, Problems& problems) { Order(plan, solve_rings, problems).run(); }
+void find_order(Plan& plan, bool solve_rings, Problems& problems) {
+  Order(plan, solve_rings, problems).run();
+}
 
 }  // namespace loopwright

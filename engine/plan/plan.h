@@ -1,4 +1,5 @@
-/// A diagram made flat: which method of which block runs when, on which numbers. Immutable; shared by runs and threads.
+/// A diagram made flat: which method of which block runs when, on which numbers. Immutable; shared by runs
+/// and threads.
 #pragma once
 #include <memory>
 #include <optional>
@@ -15,7 +16,8 @@ namespace loopwright {
 /// The place of one number in the arena of a run: signals first, then continuous states.
 using Number = int32_t;
 
-/// How often something runs: constants once, continuous at every stage, else every `period` ticks from `offset` on.
+/// How often something runs: constants once, continuous at every stage, else every `period` ticks from
+/// `offset` on.
 struct Rate {
   enum class Kind : uint8_t { constant, sampled, continuous };
   Kind kind = Kind::constant;
@@ -26,19 +28,19 @@ struct Rate {
 struct Plan {
   /// One block on scalars; a block wired with vectors of n elements stands n times.
   struct Block {
-    std::string path;                          ///< "stage.friction", "gain[2]"
+    std::string path;  ///< "stage.friction", "gain[2]"
     const BlockType* type = nullptr;
-    std::shared_ptr<const void> value;         ///< the scalar block with the parameters of the file
-    Place place;                               ///< of its name in the file
-    int64_t period = 0, offset = 0;            ///< ticks; period 0: not sampled
-    double sample_time = 0;                    ///< s; 0: not sampled
-    std::vector<std::vector<Number>> inputs;   ///< a port each
-    std::vector<Number> outputs;               ///< first number of each port
+    std::shared_ptr<const void> value;        ///< the scalar block with the parameters of the file
+    Place place;                              ///< of its name in the file
+    int64_t period = 0, offset = 0;           ///< ticks; period 0: not sampled
+    double sample_time = 0;                   ///< s; 0: not sampled
+    std::vector<std::vector<Number>> inputs;  ///< a port each
+    std::vector<Number> outputs;              ///< first number of each port
     std::vector<int> output_lengths;
     std::vector<std::optional<Unit>> output_units;  ///< nothing: could not be worked out
     int first_state = 0, states = 0;
     int first_crossing = 0;
-    int first_buffer = 0;                      ///< in numbers from the start of the buffers
+    int first_buffer = 0;  ///< in numbers from the start of the buffers
     std::vector<int> buffer_lengths;
   };
 
@@ -46,18 +48,18 @@ struct Plan {
   struct Entry {
     enum class Kind : uint8_t { outputs, decide, ring };
     Kind kind = Kind::outputs;
-    int block = -1;   ///< or the ring
+    int block = -1;  ///< or the ring
     int group = 0;
     Rate rate;
-    bool in_stages = false;    ///< a derivative needs it
-    bool for_events = false;   ///< a crossing function needs it
+    bool in_stages = false;   ///< a derivative needs it
+    bool for_events = false;  ///< a crossing function needs it
   };
 
   /// A ring of direct feedthrough, solved by Newton's method on the tear numbers.
   struct Ring {
     std::vector<Entry> entries;  ///< in order, tears taken as known
     std::vector<Number> tears;
-    std::string text;            ///< the ring port by port, for messages
+    std::string text;  ///< the ring port by port, for messages
   };
 
   struct Crossing {
@@ -76,9 +78,9 @@ struct Plan {
 
   std::string title;
   std::vector<Block> blocks;
-  std::vector<Entry> order;     ///< every output and decision, sorted once
+  std::vector<Entry> order;  ///< every output and decision, sorted once
   std::vector<Ring> rings;
-  std::vector<Rate> rates;      ///< the distinct sampled rates
+  std::vector<Rate> rates;  ///< the distinct sampled rates
   std::vector<Crossing> crossings;
   std::vector<Logged> log;
   std::vector<std::pair<std::string, std::string>> parameters;  ///< effective values: path → value with unit
@@ -86,8 +88,8 @@ struct Plan {
 
   TickClock clock;
   int64_t start_tick = 0, stop_tick = 0;
-  int64_t step_ticks = 0;       ///< of a fixed-step method
-  int64_t record_ticks = 0;     ///< a row of the recording every so often
+  int64_t step_ticks = 0;    ///< of a fixed-step method
+  int64_t record_ticks = 0;  ///< a row of the recording every so often
   Method method = Method::rk4;
   double relative_tolerance = 1e-6, absolute_tolerance = 1e-9, maximum_step = infinity;
   uint64_t seed = 1;
@@ -95,7 +97,7 @@ struct Plan {
   int signals = 0, states = 0, buffer_numbers = 0;
   std::vector<int> block_of_state;
   std::vector<Problem> warnings;
-  std::string hash;             ///< of structure and effective parameters, 16 hex digits
+  std::string hash;  ///< of structure and effective parameters, 16 hex digits
 
   /// The numbers of a port, "stage.position" or "gain.y[2]", inputs too; empty if there is none.
   std::vector<Number> find(std::string_view port) const;
@@ -105,7 +107,7 @@ struct Plan {
   std::string name_of(Number number) const;
   /// Which block and output computes a number; {-1, -1} for a constant.
   std::pair<int, int> source_of(Number number) const;
-  std::vector<std::pair<int, int>> sources;  ///< block and output of every number
+  std::vector<std::pair<int, int>> sources;                        ///< block and output of every number
   std::vector<std::pair<std::string, std::vector<Number>>> ports;  ///< every port by path, sorted by name
 };
 

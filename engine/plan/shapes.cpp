@@ -14,7 +14,9 @@ int length_of(const FlatDiagram& flat, const FlatWire& wire) {
 }
 
 static bool has_vector_ports(const BlockInfo& info) {
-  const auto is_vector = [](const PortInfo& p) { return p.shape == PortInfo::Shape::vector || p.joins_vectors; };
+  const auto is_vector = [](const PortInfo& p) {
+    return p.shape == PortInfo::Shape::vector || p.joins_vectors;
+  };
   return std::ranges::any_of(info.inputs, is_vector) || std::ranges::any_of(info.outputs, is_vector);
 }
 
@@ -53,14 +55,18 @@ static void check_port(const FlatDiagram& flat, const FlatBlock& block, size_t i
   const int wanted = block.type->info.input_length(block.value.get(), int(i));
   if (wires.empty()) {
     const auto listed = std::ranges::find(block.entry->in, port.name, &PortWires::port);  // an empty list
-    if (port.shape == PortInfo::Shape::many && listed != block.entry->in.end() && wanted != 0 && !port.is_optional)
-      problems.error(listed->place, listed->pointer, block.path, fmt::format("the input \"{}\" is not wired", port.name)).expected =
-          wanted > 0 ? fmt::format("{} wires", wanted) : "at least one wire";
+    if (port.shape == PortInfo::Shape::many && listed != block.entry->in.end() && wanted != 0 &&
+        !port.is_optional)
+      problems
+          .error(listed->place, listed->pointer, block.path,
+                 fmt::format("the input \"{}\" is not wired", port.name))
+          .expected = wanted > 0 ? fmt::format("{} wires", wanted) : "at least one wire";
     return;
   }
   const auto clash = [&](const FlatWire& wire, std::string expected, std::string found) {
     const bool has_place = wire.place.file != nullptr;  // a wire that leads nowhere has none
-    auto& p = problems.error(has_place ? wire.place : block.entry->place, has_place ? wire.pointer : block.entry->pointer, block.path,
+    auto& p = problems.error(has_place ? wire.place : block.entry->place,
+                             has_place ? wire.pointer : block.entry->pointer, block.path,
                              fmt::format("the input \"{}\" has the wrong width", port.name));
     p.expected = std::move(expected), p.found = std::move(found);
   };
@@ -76,28 +82,37 @@ static void check_port(const FlatDiagram& flat, const FlatBlock& block, size_t i
   for (const FlatWire& wire : wires) {
     const int n = length_of(flat, wire);
     if (n != 1 && n != width)
-      clash(wire, width == 1 ? "a scalar; an element is written \"block.port[0]\"" : fmt::format("a scalar or {} elements, as its other inputs have", width),
+      clash(wire,
+            width == 1 ? "a scalar; an element is written \"block.port[0]\""
+                       : fmt::format("a scalar or {} elements, as its other inputs have", width),
             fmt::format("\"{}\" with {} elements", wire.text, n));
   }
 }
 
 /// An element that a wire names must be there. A wire has many readers; it is told once.
-static void check_element(const FlatDiagram& flat, const FlatWire& wire, const std::string& reader, std::set<std::string>& told, Problems& problems) {
+static void check_element(const FlatDiagram& flat, const FlatWire& wire, const std::string& reader,
+                          std::set<std::string>& told, Problems& problems) {
   if (!wire.is_resolved() || wire.element < 0) return;
   FlatWire whole = wire;
   whole.element = -1;
   const int n = length_of(flat, whole);
   if (wire.element < n || !told.insert(fmt::format("{}@{}", wire.text, wire.place.offset)).second) return;
-  problems.error(wire.place, wire.pointer, reader, fmt::format("\"{}\" has {} elements, counted from 0", wire.text.substr(0, wire.text.find('[')), n)).found = "\"" + wire.text + "\"";
+  problems
+      .error(
+          wire.place, wire.pointer, reader,
+          fmt::format("\"{}\" has {} elements, counted from 0", wire.text.substr(0, wire.text.find('[')), n))
+      .found = "\"" + wire.text + "\"";
 }
 
-/// All numbers of a run must fit into memory, and their places into a Number; told at the block that takes the most.
+/// All numbers of a run must fit into memory, and their places into a Number; told at the block that takes
+/// the most.
 static void check_size(const FlatDiagram& flat, Problems& problems) {
   int64_t total = 0, greatest = -1;
   const FlatBlock* greediest = nullptr;
   for (const FlatBlock& block : flat.blocks) {
     const BlockInfo& info = block.type->info;
-    int64_t numbers = 5 * int64_t(info.state_length(block.value.get()));  // with what a solver keeps of each state
+    int64_t numbers =
+        5 * int64_t(info.state_length(block.value.get()));  // with what a solver keeps of each state
     for (int length : block.output_lengths) numbers += length;
     for (int i = 0; i < info.buffers; ++i) numbers += info.buffer_length(block.value.get(), i);
     numbers *= block.width;
@@ -105,8 +120,9 @@ static void check_size(const FlatDiagram& flat, Problems& problems) {
     if (numbers > greatest) greatest = numbers, greediest = &block;
   }
   if (total <= most_numbers) return;
-  auto& p = problems.error(greediest->entry->place, greediest->entry->pointer, greediest->path,
-                           fmt::format("the diagram needs {:.3g} GB of memory, most of it here", 8e-9 * double(total)));
+  auto& p = problems.error(
+      greediest->entry->place, greediest->entry->pointer, greediest->path,
+      fmt::format("the diagram needs {:.3g} GB of memory, most of it here", 8e-9 * double(total)));
   p.expected = fmt::format("at most {:.3g} GB", 8e-9 * double(most_numbers));
 }
 
@@ -125,13 +141,17 @@ void find_shapes(FlatDiagram& flat, Problems& problems) {
     todo.pop_back();
     FlatBlock& block = flat.blocks[size_t(b)];
     if (!update_shape(flat, block)) continue;
-    if (block.width > longest_vector || std::ranges::any_of(block.output_lengths, [](int n) { return n > longest_vector; })) {
-      auto& p = problems.error(block.entry->place, block.entry->pointer, block.path, "its vectors are too long");
-      p.expected = fmt::format("at most {} elements", longest_vector), p.hint = "does a vector that grows feed itself?";
+    if (block.width > longest_vector ||
+        std::ranges::any_of(block.output_lengths, [](int n) { return n > longest_vector; })) {
+      auto& p =
+          problems.error(block.entry->place, block.entry->pointer, block.path, "its vectors are too long");
+      p.expected = fmt::format("at most {} elements", longest_vector),
+      p.hint = "does a vector that grows feed itself?";
       return;
     }
     if (++visits[size_t(b)] > 50) {
-      problems.error(block.entry->place, block.entry->pointer, block.path, "its vectors grow round a ring of wires without end");
+      problems.error(block.entry->place, block.entry->pointer, block.path,
+                     "its vectors grow round a ring of wires without end");
       return;
     }
     todo.insert(todo.end(), readers[size_t(b)].begin(), readers[size_t(b)].end());
@@ -193,7 +213,8 @@ void Layout::number_constants_and_states() {
     }
   for (Plan::Block& block : plan_.blocks)
     for (size_t o = 0; o < block.outputs.size(); ++o)
-      if (const int state = block.type->info.outputs[o].state; state >= 0) block.outputs[o] = -1 - (block.first_state + state);
+      if (const int state = block.type->info.outputs[o].state; state >= 0)
+        block.outputs[o] = -1 - (block.first_state + state);
 }
 
 std::vector<Number> Layout::numbers_of(const FlatWire& wire) const {
@@ -202,7 +223,8 @@ std::vector<Number> Layout::numbers_of(const FlatWire& wire) const {
   const FlatBlock& flat = flat_.blocks[size_t(wire.block)];
   const size_t first = size_t(first_instance_[size_t(wire.block)]), output = size_t(wire.output);
   if (flat.type->info.outputs[output].shape == PortInfo::Shape::vector)
-    for (int i = 0; i < flat.output_lengths[output]; ++i) numbers.push_back(plan_.blocks[first].outputs[output] + i);
+    for (int i = 0; i < flat.output_lengths[output]; ++i)
+      numbers.push_back(plan_.blocks[first].outputs[output] + i);
   else
     for (int i = 0; i < flat.width; ++i) numbers.push_back(plan_.blocks[first + size_t(i)].outputs[output]);
   if (wire.element >= 0) numbers = {numbers[size_t(wire.element)]};
@@ -212,7 +234,8 @@ std::vector<Number> Layout::numbers_of(const FlatWire& wire) const {
 /// A copy of scattered numbers in a row, made by a Pack that nobody wrote.
 std::vector<Number> Layout::contiguous(std::vector<Number> numbers, const std::string& reader) {
   bool in_a_row = true;
-  for (size_t i = 1; i < numbers.size(); ++i) in_a_row &= numbers[i] == numbers[i - 1] + 1 && numbers[i - 1] >= 0;
+  for (size_t i = 1; i < numbers.size(); ++i)
+    in_a_row &= numbers[i] == numbers[i - 1] + 1 && numbers[i - 1] >= 0;
   if (in_a_row && !numbers.empty() && numbers[0] >= 0) return numbers;
   Plan::Block pack;
   pack.path = reader;
@@ -239,13 +262,16 @@ void Layout::wire_port(Plan::Block& block, const FlatBlock& flat, size_t port, i
   const PortInfo& info = flat.type->info.inputs[port];
   std::vector<Number>& numbers = block.inputs[port];
   if (flat.inputs[port].empty()) {
-    for (const auto& [number, value] : plan_.unwired) if (value == info.otherwise_value) numbers = {number};
+    for (const auto& [number, value] : plan_.unwired)
+      if (value == info.otherwise_value) numbers = {number};
     return;
   }
   for (const FlatWire& wire : flat.inputs[port]) {
     const std::vector<Number> all = numbers_of(wire);
-    if (info.shape == PortInfo::Shape::vector || info.joins_vectors) numbers.insert(numbers.end(), all.begin(), all.end());
-    else numbers.push_back(all[all.size() == 1 ? 0 : size_t(element)]);
+    if (info.shape == PortInfo::Shape::vector || info.joins_vectors)
+      numbers.insert(numbers.end(), all.begin(), all.end());
+    else
+      numbers.push_back(all[all.size() == 1 ? 0 : size_t(element)]);
   }
 }
 
@@ -254,19 +280,24 @@ void Layout::wire_inputs() {
   for (size_t b = 0, f = 0; f < flat_.blocks.size(); ++f)
     for (int element = 0; element < flat_.blocks[f].width; ++element, ++b) {
       plan_.blocks[b].inputs.resize(flat_.blocks[f].inputs.size());
-      for (size_t i = 0; i < flat_.blocks[f].inputs.size(); ++i) wire_port(plan_.blocks[b], flat_.blocks[f], i, element);
+      for (size_t i = 0; i < flat_.blocks[f].inputs.size(); ++i)
+        wire_port(plan_.blocks[b], flat_.blocks[f], i, element);
     }
   for (size_t b = 0; b < written; ++b)
     for (size_t i = 0; i < plan_.blocks[b].inputs.size(); ++i) {
       const PortInfo& port = plan_.blocks[b].type->info.inputs[i];
       if (port.shape != PortInfo::Shape::vector) continue;
-      auto numbers = contiguous(plan_.blocks[b].inputs[i], plan_.blocks[b].path + "." + std::string(port.name));
+      auto numbers =
+          contiguous(plan_.blocks[b].inputs[i], plan_.blocks[b].path + "." + std::string(port.name));
       plan_.blocks[b].inputs[i] = std::move(numbers);
     }
   // States come after the signals: -1-k becomes signals+k, now that the number of signals is known.
   for (Plan::Block& block : plan_.blocks) {
-    for (auto& port : block.inputs) for (Number& n : port) if (n < 0) n = plan_.signals + (-1 - n);
-    for (Number& n : block.outputs) if (n < 0) n = plan_.signals + (-1 - n);
+    for (auto& port : block.inputs)
+      for (Number& n : port)
+        if (n < 0) n = plan_.signals + (-1 - n);
+    for (Number& n : block.outputs)
+      if (n < 0) n = plan_.signals + (-1 - n);
   }
 }
 

@@ -29,7 +29,8 @@ std::optional<Fraction> common_divisor(Fraction a, Fraction b) {
   __extension__ using Wide = __int128;
   const int64_t shared = std::gcd(a.denominator, b.denominator);
   const Wide denominator = Wide(a.denominator) * (b.denominator / shared);
-  Wide x = Wide(a.numerator) * (denominator / a.denominator), y = Wide(b.numerator) * (denominator / b.denominator);
+  Wide x = Wide(a.numerator) * (denominator / a.denominator),
+       y = Wide(b.numerator) * (denominator / b.denominator);
   while (y != 0) {
     const Wide rest = x % y;
     x = y, y = rest;

@@ -1,4 +1,5 @@
-/// Time as whole numbers: every sample time is a multiple of one base period, which is an exact fraction of a second.
+/// Time as whole numbers: every sample time is a multiple of one base period, which is an exact fraction of a
+/// second.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -22,7 +23,8 @@ std::optional<Fraction> common_divisor(Fraction a, Fraction b);
 /// time / base when that is whole.
 std::optional<int64_t> whole_ratio(Fraction time, Fraction base);
 
-/// The base period of a plan; time is tick · base, formed by one multiplication and one division, never summed.
+/// The base period of a plan; time is tick · base, formed by one multiplication and one division, never
+/// summed.
 struct TickClock {
   Fraction base{1, 1000};
   double time(int64_t tick) const { return double(tick * base.numerator) / double(base.denominator); }

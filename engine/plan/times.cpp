@@ -7,7 +7,6 @@
 namespace loopwright {
 namespace {
 
-
 class Times {
  public:
   Times(const Diagram& diagram, const FlatDiagram& flat, Plan& plan, Problems& problems)
@@ -22,50 +21,70 @@ class Times {
   }
 
  private:
-  std::optional<Fraction> fraction(double value, const Place& place, const std::string& pointer, const std::string& block, std::string_view name, bool may_be_zero) {
+  std::optional<Fraction> fraction(double value, const Place& place, const std::string& pointer,
+                                   const std::string& block, std::string_view name, bool may_be_zero) {
     const auto time = to_fraction(value);
     if (time && (may_be_zero || time->numerator > 0)) return time;
-    auto& p = problems_.error(place, pointer, block, fmt::format("{} cannot be kept exactly as a whole number of ticks", name));
-    p.expected = fmt::format("a {} time in s that is a fraction of whole numbers below 2e9", may_be_zero ? "non-negative" : "positive");
+    auto& p = problems_.error(place, pointer, block,
+                              fmt::format("{} cannot be kept exactly as a whole number of ticks", name));
+    p.expected = fmt::format("a {} time in s that is a fraction of whole numbers below 2e9",
+                             may_be_zero ? "non-negative" : "positive");
     p.found = fmt::format("{}", value);
     return {};
   }
-  std::optional<Fraction> solver_time(const Setting<double>& setting, std::string_view name, bool may_be_zero = false) {
+  std::optional<Fraction> solver_time(const Setting<double>& setting, std::string_view name,
+                                      bool may_be_zero = false) {
     if (!setting.is_given) return {};
     return fraction(setting.value, setting.place, setting.pointer, "", name, may_be_zero);
   }
 
   void check_tolerance(const Setting<double>& tolerance, std::string_view name, double least, double below) {
     if (!tolerance.is_given || (tolerance.value >= least && tolerance.value < below)) return;
-    auto& p = problems_.error(tolerance.place, tolerance.pointer, "", fmt::format("\"{}\" is out of range", name));
-    p.expected = fmt::format("a number of at least {}{}", least, below < infinity ? fmt::format(" and below {}", below) : "");
+    auto& p =
+        problems_.error(tolerance.place, tolerance.pointer, "", fmt::format("\"{}\" is out of range", name));
+    p.expected = fmt::format("a number of at least {}{}", least,
+                             below < infinity ? fmt::format(" and below {}", below) : "");
     p.found = fmt::format("{}", tolerance.value);
   }
 
   void read_solver() {
     const SolverSettings& solver = diagram_.solver;
-    if (const auto method = method_from_name(solver.method.value)) plan_.method = *method;
+    if (const auto method = method_from_name(solver.method.value))
+      plan_.method = *method;
     else {
       std::vector<std::string> names;
       for (const MethodFacts& f : all_methods) names.emplace_back(f.name);
-      auto& p = problems_.error(solver.method.place, solver.method.pointer, "", "there is no such solver method");
+      auto& p =
+          problems_.error(solver.method.place, solver.method.pointer, "", "there is no such solver method");
       p.expected = fmt::format("one of {}", fmt::join(names, ", "));
       p.found = "\"" + solver.method.value + "\"";
-      if (const std::string near = nearest_name(solver.method.value, names); !near.empty()) p.hint = fmt::format("did you mean \"{}\"?", near);
+      if (const std::string near = nearest_name(solver.method.value, names); !near.empty())
+        p.hint = fmt::format("did you mean \"{}\"?", near);
     }
     const auto refuse = [&](const auto& setting, std::string_view name, std::string_view why) {
-      if (setting.is_given) problems_.error(setting.place, setting.pointer, "", fmt::format("\"{}\" has no meaning for the method \"{}\"", name, solver.method.value)).hint = why;
+      if (setting.is_given)
+        problems_
+            .error(setting.place, setting.pointer, "",
+                   fmt::format("\"{}\" has no meaning for the method \"{}\"", name, solver.method.value))
+            .hint = why;
     };
     if (is_fixed_step(plan_.method)) {
-      refuse(solver.relative_tolerance, "relative_tolerance", "a fixed-step method has no error control: choose \"step\", or a variable-step method such as \"dopri5\"");
-      refuse(solver.absolute_tolerance, "absolute_tolerance", "a fixed-step method has no error control: choose \"step\", or a variable-step method such as \"dopri5\"");
+      refuse(solver.relative_tolerance, "relative_tolerance",
+             "a fixed-step method has no error control: choose \"step\", or a variable-step method such as "
+             "\"dopri5\"");
+      refuse(solver.absolute_tolerance, "absolute_tolerance",
+             "a fixed-step method has no error control: choose \"step\", or a variable-step method such as "
+             "\"dopri5\"");
       refuse(solver.maximum_step, "maximum_step", "a fixed-step method takes \"step\"");
     } else {
-      refuse(solver.step, "step", "a variable-step method chooses its steps: \"relative_tolerance\", \"absolute_tolerance\" and \"maximum_step\" guide it");
+      refuse(solver.step, "step",
+             "a variable-step method chooses its steps: \"relative_tolerance\", \"absolute_tolerance\" and "
+             "\"maximum_step\" guide it");
     }
     if (!is_fixed_step(plan_.method)) {
       check_tolerance(solver.relative_tolerance, "relative_tolerance", smallest_relative_tolerance, 1);
-      check_tolerance(solver.absolute_tolerance, "absolute_tolerance", 1e-100, infinity);  // solvers square its inverse
+      check_tolerance(solver.absolute_tolerance, "absolute_tolerance", 1e-100,
+                      infinity);  // solvers square its inverse
     }
     plan_.relative_tolerance = solver.relative_tolerance.value;
     plan_.absolute_tolerance = solver.absolute_tolerance.value;
@@ -79,7 +98,8 @@ class Times {
       auto& p = problems_.error(solver.place, solver.pointer, "", "the solver does not say when to stop");
       p.expected = "\"solver\": {\"stop\": seconds}";
     } else if (stop_ && stop_->value() < start_.value()) {
-      problems_.error(solver.stop.place, solver.stop.pointer, "", "the stop time lies before the start").found = fmt::format("{}", stop_->value());
+      problems_.error(solver.stop.place, solver.stop.pointer, "", "the stop time lies before the start")
+          .found = fmt::format("{}", stop_->value());
     }
   }
 
@@ -91,26 +111,34 @@ class Times {
       const BlockEntry& entry = *block.entry;
       if (!entry.sample_time) {
         if (info.is_sampled) {
-          auto& p = problems_.error(entry.place, entry.pointer, block.path, fmt::format("{} remembers samples: it needs a sample time", info.type));
+          auto& p = problems_.error(entry.place, entry.pointer, block.path,
+                                    fmt::format("{} remembers samples: it needs a sample time", info.type));
           p.expected = "\"sample_time\": seconds";
         }
-        if (entry.sample_offset) problems_.error(entry.sample_offset->place, entry.sample_offset->pointer, block.path, "a sample offset without a sample time");
+        if (entry.sample_offset)
+          problems_.error(entry.sample_offset->place, entry.sample_offset->pointer, block.path,
+                          "a sample offset without a sample time");
         continue;
       }
       if (info.is_continuous) {
-        auto& p = problems_.error(entry.sample_time->place, entry.sample_time->pointer, block.path, fmt::format("{} is continuous: it takes no sample time", info.type));
+        auto& p = problems_.error(entry.sample_time->place, entry.sample_time->pointer, block.path,
+                                  fmt::format("{} is continuous: it takes no sample time", info.type));
         p.hint = "leave it out; to sample its output, wire it to a ZeroOrderHold or a sampled block";
         continue;
       }
-      const auto period = fraction(entry.sample_time->number, entry.sample_time->place, entry.sample_time->pointer, block.path, "the sample time", false);
+      const auto period = fraction(entry.sample_time->number, entry.sample_time->place,
+                                   entry.sample_time->pointer, block.path, "the sample time", false);
       if (!period) continue;
       Fraction offset{0, 1};
       if (entry.sample_offset) {
-        const auto given = fraction(entry.sample_offset->number, entry.sample_offset->place, entry.sample_offset->pointer, block.path, "the sample offset", true);
+        const auto given = fraction(entry.sample_offset->number, entry.sample_offset->place,
+                                    entry.sample_offset->pointer, block.path, "the sample offset", true);
         if (!given) continue;
         if (given->value() >= period->value()) {
-          auto& p = problems_.error(entry.sample_offset->place, entry.sample_offset->pointer, block.path, "the sample offset is not shorter than the sample time");
-          p.expected = fmt::format("less than {} s", period->value()), p.found = fmt::format("{}", given->value());
+          auto& p = problems_.error(entry.sample_offset->place, entry.sample_offset->pointer, block.path,
+                                    "the sample offset is not shorter than the sample time");
+          p.expected = fmt::format("less than {} s", period->value()),
+          p.found = fmt::format("{}", given->value());
         }
         offset = *given;
       }
@@ -127,19 +155,26 @@ class Times {
   }
   void choose_defaults() {
     const double duration = stop_ ? stop_->value() - start_.value() : 0;
-    if (!step_ && is_fixed_step(plan_.method)) step_ = fastest_ ? *fastest_ : round_time(duration > 0 ? duration / 1000 : 1e-3);
+    if (!step_ && is_fixed_step(plan_.method))
+      step_ = fastest_ ? *fastest_ : round_time(duration > 0 ? duration / 1000 : 1e-3);
     if (!record_) {
-      if (fastest_) record_ = *fastest_;
-      else if (step_) record_ = *step_;
-      else record_ = round_time(duration > 0 ? duration / 1000 : 1e-3);
+      if (fastest_)
+        record_ = *fastest_;
+      else if (step_)
+        record_ = *step_;
+      else
+        record_ = round_time(duration > 0 ? duration / 1000 : 1e-3);
     }
   }
 
   bool find_base() {
     Fraction base{0, 1};
     for (const auto& time : sample_times_)
-      if (time) for (const Fraction& f : {time->first, time->second}) if (!add(base, f)) return false;
-    for (const auto& f : {step_, record_, std::optional(start_)}) if (f && !add(base, *f)) return false;
+      if (time)
+        for (const Fraction& f : {time->first, time->second})
+          if (!add(base, f)) return false;
+    for (const auto& f : {step_, record_, std::optional(start_)})
+      if (f && !add(base, *f)) return false;
     if (base.numerator == 0) base = {1, 1000};
     plan_.clock.base = base;
     if (!stop_) return true;
@@ -150,17 +185,25 @@ class Times {
     }
     const double ticks = stop_->value() / base.value();
     if (ticks * double(base.numerator) < 9e15) return true;
-    auto& p = problems_.error(diagram_.solver.stop.place, diagram_.solver.stop.pointer, "", fmt::format("the run has {:.3g} ticks of {:.3g} s, more than can be counted exactly", ticks, base.value()));
+    auto& p =
+        problems_.error(diagram_.solver.stop.place, diagram_.solver.stop.pointer, "",
+                        fmt::format("the run has {:.3g} ticks of {:.3g} s, more than can be counted exactly",
+                                    ticks, base.value()));
     p.hint = "sample times, step and record_step with a larger common divisor make longer ticks";
     return false;
   }
   bool add(Fraction& base, const Fraction& time) {
     const auto both = common_divisor(base, time);
-    if (both && (base.numerator == 0 || both->value() > 1e-9 * std::min(base.value(), time.numerator ? time.value() : base.value()))) {
+    if (both &&
+        (base.numerator == 0 ||
+         both->value() > 1e-9 * std::min(base.value(), time.numerator ? time.value() : base.value()))) {
       base = *both;
       return true;
     }
-    auto& p = problems_.error(diagram_.solver.place, diagram_.solver.pointer, "", fmt::format("sample times, step and record_step have no common base period: {:.12g} s and {:.12g} s", base.value(), time.value()));
+    auto& p = problems_.error(
+        diagram_.solver.place, diagram_.solver.pointer, "",
+        fmt::format("sample times, step and record_step have no common base period: {:.12g} s and {:.12g} s",
+                    base.value(), time.value()));
     p.hint = "choose times with a simple ratio, such as 0.001 and 0.0025";
     return false;
   }
@@ -168,7 +211,9 @@ class Times {
   void assign(const std::vector<int>& flat_of_block) {
     const Fraction base = plan_.clock.base;
     plan_.start_tick = whole_ratio(start_, base).value_or(0);
-    if (stop_) plan_.stop_tick = whole_ratio(*stop_, base).value_or(int64_t(std::ceil(stop_->value() / base.value() - 1e-9)));
+    if (stop_)
+      plan_.stop_tick =
+          whole_ratio(*stop_, base).value_or(int64_t(std::ceil(stop_->value() / base.value() - 1e-9)));
     plan_.step_ticks = step_ ? whole_ratio(*step_, base).value_or(1) : 1;
     plan_.record_ticks = whole_ratio(*record_, base).value_or(1);
     for (size_t b = 0; b < plan_.blocks.size(); ++b) {
@@ -191,7 +236,8 @@ class Times {
 
 }  // namespace
 
-void find_times(const Diagram& diagram, const FlatDiagram& flat, const std::vector<int>& flat_of_block, Plan& plan, Problems& problems) {
+void find_times(const Diagram& diagram, const FlatDiagram& flat, const std::vector<int>& flat_of_block,
+                Plan& plan, Problems& problems) {
   Times(diagram, flat, plan, problems).run(flat_of_block);
 }
 

@@ -5,8 +5,9 @@
 
 namespace loopwright {
 
-/// Fills clock, start, stop, step and record ticks, method and tolerances of the plan, and period and offset of its blocks.
-/// `flat_of_block[i]` is the flat block behind plan.blocks[i], or -1.
-void find_times(const Diagram& diagram, const FlatDiagram& flat, const std::vector<int>& flat_of_block, Plan& plan, Problems& problems);
+/// Fills clock, start, stop, step and record ticks, method and tolerances of the plan, and period and offset
+/// of its blocks. `flat_of_block[i]` is the flat block behind plan.blocks[i], or -1.
+void find_times(const Diagram& diagram, const FlatDiagram& flat, const std::vector<int>& flat_of_block,
+                Plan& plan, Problems& problems);
 
 }  // namespace loopwright

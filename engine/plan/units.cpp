@@ -27,8 +27,10 @@ UnitExpression parse_expression(std::string_view text) {
     if (factor.starts_with('$')) {
       const size_t caret = factor.find('^');
       double exponent = 1;
-      if (caret != factor.npos) std::from_chars(factor.data() + caret + 1, factor.data() + factor.size(), exponent);
-      expression.variables.emplace_back(factor.substr(1, std::min(caret, factor.size()) - 1), before == '/' ? -exponent : exponent);
+      if (caret != factor.npos)
+        std::from_chars(factor.data() + caret + 1, factor.data() + factor.size(), exponent);
+      expression.variables.emplace_back(factor.substr(1, std::min(caret, factor.size()) - 1),
+                                        before == '/' ? -exponent : exponent);
     } else {
       plain += before;
       plain += factor;
@@ -40,23 +42,26 @@ UnitExpression parse_expression(std::string_view text) {
   return expression;
 }
 
-/// Unit expressions of one end of an equation: of a port of a block, or a plain unit.
+/// Unit expressions of one end of an equation: of a port or parameter of a block, or a plain unit.
 struct End {
   int block = -1;  // its variables are this block's
   const UnitExpression* expression = nullptr;
-  std::string name;
+  std::string_view name;  // of the port or parameter; a plain unit's is what the file says
 };
+/// Points into the diagram: texts are written for the equations that do not hold, and there are many that do.
 struct Equation {
   End left, right;
-  Place place;
-  std::string pointer, block;
-  std::string message;  // for parameters
+  const Place* place;
+  const std::string* pointer;
+  std::string declared;  // the path of a subdiagram's port, if that is its left end
   bool is_wire() const { return left.block >= 0 && right.block >= 0; }
+  bool is_parameter() const { return left.block >= 0 && right.block < 0; }
 };
 
 class Solver {
  public:
-  Solver(const FlatDiagram& flat, const Diagram& diagram, Problems& problems) : flat_(flat), problems_(problems) {
+  Solver(const FlatDiagram& flat, const Diagram& diagram, Problems& problems)
+      : flat_(flat), problems_(problems) {
     variables_.resize(flat.blocks.size());
     for (size_t b = 0; b < flat.blocks.size(); ++b) add_block(int(b));
     for (const FlatName& name : flat.names) declared_[name.name] = &name.wire;
@@ -68,7 +73,8 @@ class Solver {
     for (const Equation& equation : equations_) check(equation);
     PortUnits units(flat_.blocks.size());
     for (size_t b = 0; b < flat_.blocks.size(); ++b)
-      for (const PortInfo& port : flat_.blocks[b].type->info.outputs) units[b].push_back(value({int(b), expression(port.unit), {}}));
+      for (const PortInfo& port : flat_.blocks[b].type->info.outputs)
+        units[b].push_back(value({int(b), expression(port.unit), {}}));
     return units;
   }
 
@@ -91,26 +97,29 @@ class Solver {
         if (!wire.is_resolved() || info.inputs[i].unit == any_unit) continue;
         const FlatBlock& source = flat_.blocks[size_t(wire.block)];
         const PortInfo& output = source.type->info.outputs[size_t(wire.output)];
-        add({{b, expression(info.inputs[i].unit), fmt::format("{}.{}", block.path, info.inputs[i].name)},
-             {wire.block, expression(output.unit), fmt::format("{}.{}", source.path, output.name)},
-             wire.place, wire.pointer, block.path, {}});
+        add({{b, expression(info.inputs[i].unit), info.inputs[i].name},
+             {wire.block, expression(output.unit), output.name},
+             &wire.place,
+             &wire.pointer,
+             {}});
       }
     for (const ParameterInfo& parameter : info.parameters)
-      if (const Value::Member* member = block.entry->settings.find(parameter.name)) add_parameter(b, parameter, member->value);
+      if (const Value::Member* member = block.entry->settings.find(parameter.name))
+        add_parameter(b, parameter, member->value);
   }
 
   void add_parameter(int b, const ParameterInfo& info, const Value& value) {
-    if (value.kind == Value::Kind::number && value.unit) {
-      const FlatBlock& block = flat_.blocks[size_t(b)];
-      add({{b, expression(info.unit), fmt::format("{}.{}", block.path, info.name)}, {-1, constant(*value.unit), value.text},
-           value.place, value.pointer, block.path, fmt::format("the parameter \"{}\" has the wrong unit", info.name)});
-    }
-    for (const Value& item : value.items)
-      if (!info.element.empty()) {
-        ParameterInfo element = info.element[0];
-        element.name = info.name;
-        add_parameter(b, element, item);
-      }
+    add_parameter(b, info, info.name, value);
+  }
+  void add_parameter(int b, const ParameterInfo& info, std::string_view name, const Value& value) {
+    if (value.kind == Value::Kind::number && value.unit)
+      add({{b, expression(info.unit), name},
+           {-1, constant(*value.unit), value.text},
+           &value.place,
+           &value.pointer,
+           {}});
+    if (!info.element.empty())
+      for (const Value& item : value.items) add_parameter(b, info.element[0], name, item);
     for (const Value::Member& member : value.members)
       for (const ParameterInfo& field : info.fields)
         if (field.name == member.name) add_parameter(b, field, member.value);
@@ -118,19 +127,25 @@ class Solver {
 
   /// Inputs and outputs that subdiagrams declare with a unit.
   void add_declarations(const Diagram& diagram, const std::string& prefix) {
-    const auto declare = [&](const std::string& name, const std::string& unit_text, const Place& place, const std::string& pointer) {
+    const auto declare = [&](const std::string& name, const std::string& unit_text, const Place& place,
+                             const std::string& pointer) {
       if (unit_text.empty()) return;
       const auto unit = parse_unit(unit_text);
       const auto wire = declared_.find(prefix + name);
       if (!unit || wire == declared_.end() || !wire->second->is_resolved()) return;
       const FlatBlock& source = flat_.blocks[size_t(wire->second->block)];
       const PortInfo& output = source.type->info.outputs[size_t(wire->second->output)];
-      add({{-1, constant(*unit), prefix + name}, {wire->second->block, expression(output.unit), fmt::format("{}.{}", source.path, output.name)},
-           place, pointer, prefix + name, {}});
+      add({{-1, constant(*unit), {}},
+           {wire->second->block, expression(output.unit), output.name},
+           &place,
+           &pointer,
+           prefix + name});
     };
     if (!prefix.empty()) {
-      for (const DiagramInput& input : diagram.inputs) declare(input.name, input.unit, input.place, input.pointer);
-      for (const DiagramOutput& output : diagram.outputs) declare(output.name, output.unit, output.place, output.pointer);
+      for (const DiagramInput& input : diagram.inputs)
+        declare(input.name, input.unit, input.place, input.pointer);
+      for (const DiagramOutput& output : diagram.outputs)
+        declare(output.name, output.unit, output.place, output.pointer);
     }
     for (const BlockEntry& block : diagram.blocks)
       if (block.subdiagram) add_declarations(*block.subdiagram, prefix + block.name + ".");
@@ -140,12 +155,14 @@ class Solver {
     const size_t index = equations_.size();
     for (const End* end : {&equation.left, &equation.right})
       if (end->block >= 0)
-        for (const auto& [name, exponent] : end->expression->variables) readers_[{end->block, name}].push_back(index);
+        for (const auto& [name, exponent] : end->expression->variables)
+          readers_[{end->block, name}].push_back(index);
     equations_.push_back(std::move(equation));
   }
 
   std::optional<Unit> known(int block, const std::string& name) const {
-    for (const auto& [n, unit] : variables_[size_t(block)]) if (n == name) return unit;
+    for (const auto& [n, unit] : variables_[size_t(block)])
+      if (n == name) return unit;
     return {};
   }
   std::optional<Unit> value(const End& end) const {
@@ -184,7 +201,8 @@ class Solver {
     return true;
   }
 
-  /// First what is written down at blocks and borders, then along the wires: a clash shows at the wire that joins its ends.
+  /// First what is written down at blocks and borders, then along the wires: a clash shows at the wire that
+  /// joins its ends.
   void propagate() {
     for (const bool with_wires : {false, true}) {
       for (size_t i = equations_.size(); i-- > 0;) todo_.push_back(i);
@@ -196,19 +214,35 @@ class Solver {
     }
   }
 
+  std::string name_of(const Equation& equation, const End& end) const {
+    if (end.block >= 0) return fmt::format("{}.{}", flat_.blocks[size_t(end.block)].path, end.name);
+    return equation.declared.empty() ? std::string(end.name) : equation.declared;
+  }
+
   void check(const Equation& equation) {
     const auto left = value(equation.left), right = value(equation.right);
     if (!left || !right || left->same_dimension(*right)) return;
-    std::string message = equation.message;
-    if (message.empty())
-      message = fmt::format("{} [{}] is wired to {} [{}]", equation.left.name, to_string(*left), equation.right.name, to_string(*right));
-    auto& p = problems_.error(equation.place, equation.pointer, equation.block, std::move(message));
-    p.expected = fmt::format("a {} in {}", equation.message.empty() ? "signal" : "number", to_string(*left));
-    p.found = fmt::format("{}{}", equation.message.empty() || equation.right.name.empty() ? "" : equation.right.name + " in ", to_string(*right));
+    const std::string left_unit = to_string(*left), right_unit = to_string(*right);
+    const std::string& block =
+        equation.left.block >= 0 ? flat_.blocks[size_t(equation.left.block)].path : equation.declared;
+    const auto report = [&](std::string message, std::string_view what, std::string found) {
+      auto& p = problems_.error(*equation.place, *equation.pointer, block, std::move(message));
+      p.expected = fmt::format("a {} in {}", what, left_unit);
+      p.found = std::move(found);
+    };
+    if (equation.is_parameter())
+      return report(fmt::format("the parameter \"{}\" has the wrong unit", equation.left.name), "number",
+                    equation.right.name.empty() ? right_unit
+                                                : fmt::format("{} in {}", equation.right.name, right_unit));
+    report(fmt::format("{} [{}] is wired to {} [{}]", name_of(equation, equation.left), left_unit,
+                       name_of(equation, equation.right), right_unit),
+           "signal", right_unit);
   }
 
   struct KeyHash {
-    size_t operator()(const std::pair<int, std::string>& k) const { return std::hash<std::string>()(k.second) * 31 + size_t(k.first); }
+    size_t operator()(const std::pair<int, std::string>& k) const {
+      return std::hash<std::string>()(k.second) * 31 + size_t(k.first);
+    }
   };
   const FlatDiagram& flat_;
   Problems& problems_;

@@ -76,7 +76,8 @@ void write_csv(const std::string& path, const Recording& recording) {
 
 void print_csv(std::FILE* stream, const Recording& recording) {
   put(recording, [&](std::string_view text) { std::fwrite(text.data(), 1, text.size(), stream); });
-  if (std::fflush(stream) != 0 || std::ferror(stream)) throw std::runtime_error("the recording cannot be printed");
+  if (std::fflush(stream) != 0 || std::ferror(stream))
+    throw std::runtime_error("the recording cannot be printed");
 }
 
 }  // namespace loopwright

@@ -1,4 +1,5 @@
-/// A block of the plan as one run holds it: its parameters for every lane, and its methods for the run's scalar.
+/// A block of the plan as one run holds it: its parameters for every lane, and its methods for the run's
+/// scalar.
 #pragma once
 #include <memory>
 #include "engine/plan/plan.h"
@@ -9,21 +10,20 @@ namespace loopwright {
 /// Key of a block's random streams.
 inline uint64_t hash_of_path(std::string_view path) { return ContentHash().add(path).value(); }
 
-template <class Real>
-class BlockInstance;
+template <class Real> class BlockInstance;
 
 /// One simulation: the block itself.
-template <>
-class BlockInstance<double> {
+template <> class BlockInstance<double> {
  public:
   BlockInstance(const Plan::Block& block, int)
       : kernels_(&block.type->kernels),
-        memory_(static_cast<char*>(::operator new(kernels_->size, std::align_val_t(64))), Destroy{kernels_->destroy}) {
+        memory_(static_cast<char*>(::operator new(kernels_->size, std::align_val_t(64))),
+                Destroy{kernels_->destroy}) {
     kernels_->construct(memory_.get());
     kernels_->copy(memory_.get(), block.value.get());
   }
   void* block() { return memory_.get(); }
-  const void* first() const { return memory_.get(); }
+  bool is_lane_wise() const { return true; }
   size_t memory_bytes() const { return kernels_->memory_size; }
   size_t mode_bytes() const { return kernels_->mode_size; }
   double* tunable(std::string_view path, int) { return kernels_->tunable(memory_.get(), path); }

@@ -17,7 +17,9 @@ struct Header {
   uint64_t arena_bytes, columns, rows;
 };
 
-void append(std::string& to, const void* data, size_t bytes) { to.append(static_cast<const char*>(data), bytes); }
+void append(std::string& to, const void* data, size_t bytes) {
+  to.append(static_cast<const char*>(data), bytes);
+}
 
 [[noreturn]] void refuse(const std::string& path, std::string message, std::string hint) {
   Problems problems;
@@ -28,7 +30,8 @@ void append(std::string& to, const void* data, size_t bytes) { to.append(static_
 
 }  // namespace
 
-void write_checkpoint(const std::string& path, Run<double>& run, const RunIdentity& identity, Recorder& recorder) {
+void write_checkpoint(const std::string& path, Run<double>& run, const RunIdentity& identity,
+                      Recorder& recorder) {
   Header header{};
   std::memcpy(header.plan_hash, run.plan().hash.data(), 16);
   header.seed = identity.seed, header.run = identity.run, header.tick = run.now().tick;
@@ -37,7 +40,8 @@ void write_checkpoint(const std::string& path, Run<double>& run, const RunIdenti
   std::string bytes(magic);
   append(bytes, &header, sizeof header);
   append(bytes, run.arena().data(), run.arena().size());
-  for (const Column& column : recorder.recording().columns) append(bytes, column.values.data(), column.values.size() * sizeof(double));
+  for (const Column& column : recorder.recording().columns)
+    append(bytes, column.values.data(), column.values.size() * sizeof(double));
   bytes += content_hash(bytes);
   write_file(path, bytes);
 }
@@ -49,17 +53,21 @@ void read_checkpoint(const std::string& path, Run<double>& run, RunIdentity& ide
   stream << file.rdbuf();
   const std::string bytes = stream.str();
   Header header;
-  if (bytes.size() < magic.size() + sizeof header + 16 || !bytes.starts_with(magic)) refuse(path, "this is not a checkpoint of this version", "");
+  if (bytes.size() < magic.size() + sizeof header + 16 || !bytes.starts_with(magic))
+    refuse(path, "this is not a checkpoint of this version", "");
   if (content_hash(std::string_view(bytes).substr(0, bytes.size() - 16)) != bytes.substr(bytes.size() - 16))
     refuse(path, "the checkpoint is damaged", "start the run anew");
   std::memcpy(&header, bytes.data() + magic.size(), sizeof header);
   const Plan& plan = run.plan();
   if (std::string_view(header.plan_hash, 16) != plan.hash || header.arena_bytes != run.arena().size() ||
       header.columns != recorder.recording().columns.size())
-    refuse(path, fmt::format("the checkpoint belongs to another diagram or other parameters (plan {}, here {})", std::string_view(header.plan_hash, 16), plan.hash),
+    refuse(path,
+           fmt::format("the checkpoint belongs to another diagram or other parameters (plan {}, here {})",
+                       std::string_view(header.plan_hash, 16), plan.hash),
            "run the same diagram with the same --set and --variant as when it was written");
   const char* at = bytes.data() + magic.size() + sizeof header;
-  if (bytes.size() != size_t(at - bytes.data()) + header.arena_bytes + header.columns * header.rows * sizeof(double) + 16)
+  if (bytes.size() !=
+      size_t(at - bytes.data()) + header.arena_bytes + header.columns * header.rows * sizeof(double) + 16)
     refuse(path, "the checkpoint is damaged", "start the run anew");
   identity = {header.seed, header.run};
   run.reset(identity);

@@ -1,13 +1,16 @@
-/// A run set aside in a file: the arena, the tick and the rows so far. It belongs to one plan, told by its hash.
+/// A run set aside in a file: the arena, the tick and the rows so far. It belongs to one plan, told by its
+/// hash.
 #pragma once
 #include "engine/run/recorder.h"
 
 namespace loopwright {
 
 /// Written whole or not at all. Throws std::runtime_error when the file cannot be written.
-void write_checkpoint(const std::string& path, Run<double>& run, const RunIdentity& identity, Recorder& recorder);
+void write_checkpoint(const std::string& path, Run<double>& run, const RunIdentity& identity,
+                      Recorder& recorder);
 
-/// Puts run, identity and recorder where they were. Throws InputError when the file is damaged or of another plan.
+/// Puts run, identity and recorder where they were. Throws InputError when the file is damaged or of another
+/// plan.
 void read_checkpoint(const std::string& path, Run<double>& run, RunIdentity& identity, Recorder& recorder);
 
 }  // namespace loopwright

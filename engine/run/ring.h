@@ -1,35 +1,89 @@
-/// A ring of direct feedthrough at its place in the order: the tear numbers y that reproduce themselves, G(y) = y.
+/// A ring of direct feedthrough at its place in the order: the tear numbers y that reproduce themselves,
+/// G(y) = y.
 #pragma once
 #include <cmath>
-#include <stdexcept>
+#include <memory>
+#include <vector>
 #include "engine/block/kernels.h"
 #include "engine/plan/plan.h"
 #include "engine/solve/newton.h"
 
 namespace loopwright {
 
-template <class Real>
-class RingSolver {
+/// Newton's method on y - G(y), from the values of the last solution; lane after lane, as each takes steps of
+/// its own.
+template <class Real> class RingSolver {
  public:
-  void build(std::vector<Call<Real>>, Real*, const std::vector<Number>&) {
-    throw std::logic_error("rings are solved in scalar runs only");
+  void build(std::vector<Call<Real>> calls, Real* numbers, const std::vector<Number>& tears, int registers,
+             ptrdiff_t stride) {
+    calls_ = std::move(calls);
+    faults_.resize(size_t(registers * width));
+    for (Call<Real>& call : calls_) call.report = faults_.data();
+    for (Number n : tears) tears_.push_back(numbers + n);
+    stride_ = stride;
+    y_.resize(tears_.size() * faults_.size());
+    newton_ =
+        std::make_unique<NewtonSolver>(NewtonOptions{}, AlgebraicSystem{this, int(tears_.size()), &residual});
   }
-  static uint64_t step(const Call<Real>&) { return ~uint64_t(0); }
-};
 
-/// Newton's method on y - G(y), from the values of the last solution. One register.
-template <>
-class RingSolver<double> {
- public:
-  void build(std::vector<Call<double>> calls, double* numbers, const std::vector<Number>& tears);
-  static uint64_t step(const Call<double>& call);
+  static uint64_t step(const Call<Real>& call) {
+    auto& ring = *const_cast<RingSolver*>(static_cast<const RingSolver*>(call.block));
+    const uint64_t unsolved = ring.solve();
+    constexpr const char* reason =
+        "the ring of direct feedthrough that it stands in has no solution that Newton's method can find";
+    return unsolved ? report_fault(call.report, call.index, {unsolved, reason}) : 0;
+  }
 
  private:
-  static bool residual(void* self, const double* y, double* r);
-  std::vector<Call<double>> calls_;
-  std::vector<double*> tears_;
-  std::vector<double> y_;
+  static constexpr int width = lanes_of<Real>;
+
+  Real& tear(size_t i) { return tears_[i][lane_ / width * stride_]; }
+  std::span<double> guess() { return {&y_[size_t(lane_) * tears_.size()], tears_.size()}; }
+  template <class F> void each_lane(F&& f) {
+    for (lane_ = 0; lane_ < int(faults_.size()); ++lane_) f();
+  }
+
+  /// The lanes without a solution; in the others the tears and all that hangs on them hold it.
+  uint64_t solve() {
+    each_lane([&] {
+      for (size_t i = 0; i < tears_.size(); ++i) {
+        const double last = lane(tear(i), lane_ % width);
+        guess()[i] = std::isfinite(last) ? last : 0.0;
+      }
+    });
+    uint64_t unsolved = 0;
+    each_lane([&] {
+      if (newton_->solve(guess()).status != NewtonStatus::converged) unsolved |= uint64_t(1) << lane_;
+    });
+    each_lane([&] { take(guess().data()); });
+    evaluate();
+    return unsolved;
+  }
+  /// Lanes in which a block faulted. A step of the search may well lead to where one does.
+  uint64_t evaluate() {
+    std::fill(faults_.begin(), faults_.end(), FaultReport{});
+    uint64_t bad = 0;
+    for (const Call<Real>& c : calls_) bad |= c.step(c);
+    return bad;
+  }
+  void take(const double* y) {
+    for (size_t i = 0; i < tears_.size(); ++i) set_lane(tear(i), lane_ % width, y[i]);
+  }
+  static bool residual(void* self, const double* y, double* r) {
+    auto& ring = *static_cast<RingSolver*>(self);
+    ring.take(y);
+    const uint64_t bad = ring.evaluate();
+    for (size_t i = 0; i < ring.tears_.size(); ++i) r[i] = lane(ring.tear(i), ring.lane_ % width) - y[i];
+    return !(bad >> ring.lane_ & 1);
+  }
+
+  std::vector<Call<Real>> calls_;
+  std::vector<Real*> tears_;  // in the first register
+  ptrdiff_t stride_ = 0;      // from register to register
+  std::vector<FaultReport> faults_;
+  std::vector<double> y_;  // by lane
   std::unique_ptr<NewtonSolver> newton_;
+  int lane_ = 0;
 };
 
 }  // namespace loopwright

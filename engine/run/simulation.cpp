@@ -4,6 +4,7 @@
 #include <cmath>
 #include "engine/run/chattering.h"
 #include "engine/run/checkpoint.h"
+#include "engine/run/fixed_step.h"
 #include "engine/run/recorder.h"
 #include "engine/run/stability.h"
 #include "engine/solve/solver.h"
@@ -21,20 +22,26 @@ class Simulation {
     run_.reset(identity_);
     for (const Plan::Crossing& crossing : plan.crossings) directions_.push_back(crossing.direction);
     if (options.checkpoint_every > 0)
-      checkpoint_ticks_ = std::max<int64_t>(1, std::llround(options.checkpoint_every / plan.clock.base.value()));
+      checkpoint_ticks_ =
+          std::max<int64_t>(1, std::llround(options.checkpoint_every / plan.clock.base.value()));
     if (!options.resume_file.empty()) read_checkpoint(options.resume_file, run_, identity_, recorder_);
   }
 
   RunResult simulate() {
     const auto started = Clock::now();
-    if (run_.failed()) fail_by_fault();
-    else if (options_.resume_file.empty()) look_at_poles();
-    if (result_.status == RunStatus::finished) is_fixed_step(plan_.method) || plan_.states == 0 ? run_fixed() : run_variable();
+    if (run_.failed())
+      fail_by_fault();
+    else if (options_.resume_file.empty())
+      look_at_poles();
+    if (result_.status == RunStatus::finished)
+      is_fixed_step(plan_.method) || plan_.states == 0 ? run_fixed() : run_variable();
+    if (result_.status == RunStatus::finished && options_.at_stop) options_.at_stop(run_);
     result_.time = run_.now().time;
     result_.statistics.rows = recorder_.rows();
     result_.statistics.wall_seconds = std::chrono::duration<double>(Clock::now() - started).count();
     for (size_t i = 0; i < plan_.crossings.size(); ++i)
-      if (chattering_.events(i) > 0) result_.statistics.events.push_back({chattering_.name(i), chattering_.events(i)});
+      if (chattering_.events(i) > 0)
+        result_.statistics.events.push_back({chattering_.name(i), chattering_.events(i)});
     result_.recording = std::move(recorder_.recording());
     add_facts();
     return std::move(result_);
@@ -43,46 +50,24 @@ class Simulation {
  private:
   // ---- fixed step ----
   void run_fixed() {
-    const int64_t stop = plan_.stop_tick;
-    int64_t next_record = first_row(), next_checkpoint = next_multiple(checkpoint_ticks_);
-    for (;;) {
-      const int64_t tick = run_.now().tick;
-      const bool records = tick == next_record || tick == stop;
-      if (records) next_record = std::min(stop, tick + plan_.record_ticks);
-      if (tick == stop) {
-        run_.evaluate(run_.due(), true);
-        run_.accept();
-        recorder_.record(run_);
-        if (run_.failed()) fail_by_fault();
-        else check_finite();
-        return;
-      }
-      const int64_t limit = std::min(next_record, next_checkpoint);
-      if (plan_.states == 0) step_without_states(limit, records);
-      else run_.step_fixed(limit, records, [&] { recorder_.record(run_); });
-      ++result_.statistics.steps;
-      if (run_.failed()) {
-        fail_by_fault();
-        return;
-      }
-      if (records && !check_finite()) return;
-      if (run_.now().tick == next_checkpoint) checkpoint(), next_checkpoint += checkpoint_ticks_;
-      if (!go_on()) return;
-    }
-  }
-  void step_without_states(int64_t limit, bool records) {
-    const uint64_t due = run_.due();
-    run_.evaluate(due, true);
-    run_.accept();
-    if (records) recorder_.record(run_);
-    run_.update(due);
-    run_.move_to(std::min(limit, plan_.rates.empty() ? limit : run_.next_due()));
+    int64_t next_checkpoint = next_multiple(checkpoint_ticks_);
+    const bool reached_stop = run_fixed_steps(
+        run_, first_row(), [&] { return next_checkpoint; }, [&] { recorder_.record(run_); },
+        [&](bool was_row) {
+          ++result_.statistics.steps;
+          if (run_.failed()) return fail_by_fault();
+          if (was_row && !check_finite()) return false;
+          if (run_.now().tick == next_checkpoint) checkpoint(), next_checkpoint += checkpoint_ticks_;
+          return go_on();
+        });
+    if (reached_stop) run_.failed() ? fail_by_fault() : check_finite();
   }
   int64_t next_multiple(int64_t ticks) const {
     if (ticks <= 0) return INT64_MAX;
     return (run_.now().tick / ticks + 1) * ticks;
   }
-  /// The first tick, now or later, that has a row: rows are counted from the start. A checkpoint holds no row of its tick.
+  /// The first tick, now or later, that has a row: rows are counted from the start. A checkpoint holds no row
+  /// of its tick.
   int64_t first_row() const {
     const int64_t since_start = run_.now().tick - plan_.start_tick, every = plan_.record_ticks;
     return plan_.start_tick + (since_start + every - 1) / every * every;
@@ -92,11 +77,16 @@ class Simulation {
   void run_variable() {
     SolverOptions options;
     options.method = plan_.method;
-    options.relative_tolerance = plan_.relative_tolerance, options.absolute_tolerance = plan_.absolute_tolerance;
+    options.relative_tolerance = plan_.relative_tolerance,
+    options.absolute_tolerance = plan_.absolute_tolerance;
     options.maximum_step = plan_.maximum_step;
     const OdeSystem system{&run_, plan_.states, int(plan_.crossings.size()),
-                           [](void* self, double t, const double* x, double* rate) { return static_cast<Run<double>*>(self)->derivatives_at(t, x, rate); },
-                           [](void* self, double t, const double* x, double* value) { return static_cast<Run<double>*>(self)->crossings_at(t, x, value); }};
+                           [](void* self, double t, const double* x, double* rate) {
+                             return static_cast<Run<double>*>(self)->derivatives_at(t, x, rate);
+                           },
+                           [](void* self, double t, const double* x, double* value) {
+                             return static_cast<Run<double>*>(self)->crossings_at(t, x, value);
+                           }};
     Solver solver(options, system);
     int64_t next_checkpoint = next_multiple(checkpoint_ticks_);
     next_row_ = first_row();
@@ -116,26 +106,39 @@ class Simulation {
         next_row_ = tick + plan_.record_ticks;
         if (!check_finite()) break;
       }
-      if (run_.failed()) { fail_by_fault(); break; }
+      if (run_.failed()) {
+        fail_by_fault();
+        break;
+      }
       if (tick == plan_.stop_tick) break;
       run_.update(due);
-      if (run_.failed()) { fail_by_fault(); break; }
-      const int64_t next = std::min({plan_.stop_tick, next_checkpoint, plan_.rates.empty() ? INT64_MAX : run_.next_due()});
+      if (run_.failed()) {
+        fail_by_fault();
+        break;
+      }
+      const int64_t next =
+          std::min({plan_.stop_tick, next_checkpoint, plan_.rates.empty() ? INT64_MAX : run_.next_due()});
       copy_states();
-      if (fresh) count(solver.statistics()), solver.start(run_.now().time, x_.data());
-      else solver.restart(run_.now().time, x_.data());
+      if (fresh)
+        count(solver.statistics()), solver.start(run_.now().time, x_.data());
+      else
+        solver.restart(run_.now().time, x_.data());
       fresh = false;
       if (!advance(solver, next) || !go_on()) break;
     }
     count(solver.statistics());
     if (stiffest_state_ >= 0)
-      result_.warnings.push_back(fmt::format("\"{}\" makes the diagram stiff: stability, not accuracy, sets the step of {}; \"cvode-bdf\" would take longer steps",
-                                             block_of_state(stiffest_state_), to_name(plan_.method)));
+      result_.warnings.push_back(
+          fmt::format("\"{}\" makes the diagram stiff: stability, not accuracy, sets the step of {}; "
+                      "\"cvode-bdf\" would take longer steps",
+                      block_of_state(stiffest_state_), to_name(plan_.method)));
   }
   /// Adds what a solver did since its start, which forgets it.
   void count(const SolverStatistics& s) {
-    result_.statistics.steps += s.steps, result_.statistics.rejected_steps += s.error_test_failures + s.convergence_failures;
-    result_.statistics.derivative_evaluations += s.derivative_evaluations, result_.statistics.restarts += s.restarts;
+    result_.statistics.steps += s.steps,
+        result_.statistics.rejected_steps += s.error_test_failures + s.convergence_failures;
+    result_.statistics.derivative_evaluations += s.derivative_evaluations,
+        result_.statistics.restarts += s.restarts;
     if (s.stiff && stiffest_state_ < 0) stiffest_state_ = s.stiffest_state;
   }
 
@@ -153,9 +156,13 @@ class Simulation {
         continue;
       }
       if (step.status == SolverStatus::reached_stop && step.t >= end) break;
-      if (step.status == SolverStatus::event && !chattering_.count(step.t, solver.fired())) return fail_by_chattering(step.t);
+      if (step.status == SolverStatus::event && !chattering_.count(step.t, solver.fired()))
+        return fail_by_chattering(step.t);
       if (step.status == SolverStatus::reached_stop && !chattering_.count(step.t, {}))
-        return fail(fmt::format("{} known discontinuities follow within {:.3g} s at t = {:g} s: is the period of a source far too short?", Chattering::most, chattering_.span(), step.t));
+        return fail(
+            fmt::format("{} known discontinuities follow within {:.3g} s at t = {:g} s: is the period of a "
+                        "source far too short?",
+                        Chattering::most, chattering_.span(), step.t));
       handle_event(solver);
       if (run_.failed()) return fail_by_fault();
       if (!go_on()) return false;
@@ -198,14 +205,19 @@ class Simulation {
   // ---- common ----
   void look_at_poles() {
     run_.evaluate(run_.due(), true);
-    if (run_.failed()) { fail_by_fault(); return; }
+    if (run_.failed()) {
+      fail_by_fault();
+      return;
+    }
     const FastestPole pole = fastest_pole(run_);
     result_.statistics.largest_pole = pole.magnitude;
-    if (const std::string warning = step_warning(plan_, pole); !warning.empty()) result_.warnings.push_back(warning);
+    if (const std::string warning = step_warning(plan_, pole); !warning.empty())
+      result_.warnings.push_back(warning);
     run_.reset(identity_);
   }
   void checkpoint() {
-    if (!options_.checkpoint_file.empty()) write_checkpoint(options_.checkpoint_file, run_, identity_, recorder_);
+    if (!options_.checkpoint_file.empty())
+      write_checkpoint(options_.checkpoint_file, run_, identity_, recorder_);
   }
   bool go_on() {
     if (options_.interrupt && options_.interrupt->load(std::memory_order_relaxed)) {
@@ -213,7 +225,8 @@ class Simulation {
       result_.message = fmt::format("interrupted at t = {:g} s", run_.now().time);
       return false;
     }
-    if (options_.progress && (++since_progress_ & 1023) == 0) options_.progress(run_.now().time, plan_.clock.time(plan_.stop_tick));
+    if (options_.progress && (++since_progress_ & 1023) == 0)
+      options_.progress(run_.now().time, plan_.clock.time(plan_.stop_tick));
     return true;
   }
   std::string block_of_state(int state) const {
@@ -226,19 +239,26 @@ class Simulation {
   }
   bool fail_by_fault() {
     const FaultReport& fault = run_.fault();
-    return fail(fmt::format("\"{}\" stopped the run at t = {:g} s: {}", fault.block < 0 ? "?" : plan_.blocks[size_t(fault.block)].path, run_.now().time, fault.reason));
+    return fail(fmt::format("\"{}\" stopped the run at t = {:g} s: {}",
+                            fault.block < 0 ? "?" : plan_.blocks[size_t(fault.block)].path, run_.now().time,
+                            fault.reason));
   }
   bool fail_by_solver(const Solver& solver, const Advance& step) {
     if (step.status == SolverStatus::block_fault && run_.fault().block >= 0) return fail_by_fault();
     run_.set_time(step.t);
-    return fail(fmt::format("{} stopped at t = {:g} s: {}; the largest error stood in \"{}\"", to_name(plan_.method), step.t, to_text(step.status), block_of_state(solver.worst_state())));
+    return fail(fmt::format("{} stopped at t = {:g} s: {}; the largest error stood in \"{}\"",
+                            to_name(plan_.method), step.t, to_text(step.status),
+                            block_of_state(solver.worst_state())));
   }
   bool fail_by_chattering(double t) {
     run_.set_time(t);
-    return fail(fmt::format("chattering: \"{}\" went through zero {} times within {:.3g} s at t = {:g} s; give the block hysteresis, smooth the switch, or give it a sample_time",
-                            chattering_.name(chattering_.worst()), Chattering::most, chattering_.span(), t));
+    return fail(
+        fmt::format("chattering: \"{}\" went through zero {} times within {:.3g} s at t = {:g} s; give the "
+                    "block hysteresis, smooth the switch, or give it a sample_time",
+                    chattering_.name(chattering_.worst()), Chattering::most, chattering_.span(), t));
   }
-  /// Every logged signal and state must be a number; if not, the first block in order that is to blame is named.
+  /// Every logged signal and state must be a number; if not, the first block in order that is to blame is
+  /// named.
   bool check_finite() {
     bool finite = recorder_.first_non_finite() < 0;
     for (double x : run_.states()) finite &= std::isfinite(x);
@@ -248,11 +268,14 @@ class Simulation {
       if (entry.kind != Plan::Entry::Kind::outputs || !culprit.empty()) continue;
       const Plan::Block& block = plan_.blocks[size_t(entry.block)];
       for (size_t o = 0; o < block.outputs.size(); ++o)
-        if (!std::isfinite(run_.number(block.outputs[o]))) culprit = fmt::format("{}.{}", block.path, block.type->info.outputs[o].name);
+        if (!std::isfinite(run_.number(block.outputs[o])))
+          culprit = fmt::format("{}.{}", block.path, block.type->info.outputs[o].name);
     }
-    for (int i = 0; i < plan_.states && culprit.empty(); ++i) if (!std::isfinite(run_.states()[size_t(i)])) culprit = block_of_state(i);
+    for (int i = 0; i < plan_.states && culprit.empty(); ++i)
+      if (!std::isfinite(run_.states()[size_t(i)])) culprit = block_of_state(i);
     if (culprit.empty()) culprit = plan_.log[size_t(recorder_.first_non_finite())].name;
-    return fail(fmt::format("the run diverged: \"{}\" is no finite number any more at t = {:g} s", culprit, run_.now().time));
+    return fail(fmt::format("the run diverged: \"{}\" is no finite number any more at t = {:g} s", culprit,
+                            run_.now().time));
   }
   void add_facts() {
     auto& facts = result_.recording.facts;
@@ -280,6 +303,8 @@ class Simulation {
 
 }  // namespace
 
-RunResult simulate(const Plan& plan, const RunOptions& options) { return Simulation(plan, options).simulate(); }
+RunResult simulate(const Plan& plan, const RunOptions& options) {
+  return Simulation(plan, options).simulate();
+}
 
 }  // namespace loopwright

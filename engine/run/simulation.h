@@ -8,12 +8,13 @@
 namespace loopwright {
 
 struct RunOptions {
-  int64_t run = 0;                    ///< number of the run: another one has other noise
-  std::string checkpoint_file;        ///< written while running; empty: none
-  double checkpoint_every = 0;        ///< [s] of simulated time, so that a resumed run repeats the same bits
-  std::string resume_file;            ///< continue from this checkpoint
-  const std::atomic<bool>* interrupt = nullptr;         ///< set by a signal handler: stop after this step
+  int64_t run = 0;              ///< number of the run: another one has other noise
+  std::string checkpoint_file;  ///< written while running; empty: none
+  double checkpoint_every = 0;  ///< [s] of simulated time, so that a resumed run repeats the same bits
+  std::string resume_file;      ///< continue from this checkpoint
+  const std::atomic<bool>* interrupt = nullptr;            ///< set by a signal handler: stop after this step
   std::function<void(double time, double stop)> progress;  ///< called now and then between steps
+  std::function<void(Run<double>&)> at_stop;  ///< called with the run at its stop time, signals computed
 };
 
 enum class RunStatus { finished, failed, interrupted };
@@ -24,27 +25,27 @@ struct CrossingCount {
 };
 
 struct RunStatistics {
-  int64_t steps = 0;                   ///< of the solver
+  int64_t steps = 0;  ///< of the solver
   int64_t rejected_steps = 0;
   int64_t derivative_evaluations = 0;
-  int64_t restarts = 0;                ///< after samples, events and known discontinuities
+  int64_t restarts = 0;  ///< after samples, events and known discontinuities
   int64_t rows = 0;
   double wall_seconds = 0;
-  double largest_pole = 0;             ///< [rad/s] largest |λ| of the continuous part at the start; 0: not known
+  double largest_pole = 0;  ///< [rad/s] largest |λ| of the continuous part at the start; 0: not known
   std::vector<CrossingCount> events;
 };
 
 struct RunResult {
   RunStatus status = RunStatus::finished;
-  double time = 0;       ///< [s] how far it came
-  std::string message;   ///< why it did not finish: block, time, reason, what may help
-  Recording recording;   ///< what was computed, also when it failed
+  double time = 0;      ///< [s] how far it came
+  std::string message;  ///< why it did not finish: block, time, reason, what may help
+  Recording recording;  ///< what was computed, also when it failed
   RunStatistics statistics;
   std::vector<std::string> warnings;
 };
 
-/// Runs the plan from its start to its stop time. Numerical failures end in the result; a checkpoint file that cannot be
-/// read or does not belong to the plan throws InputError.
+/// Runs the plan from its start to its stop time. Numerical failures end in the result; a checkpoint file
+/// that cannot be read or does not belong to the plan throws InputError.
 RunResult simulate(const Plan& plan, const RunOptions& options = {});
 
 }  // namespace loopwright

@@ -1,6 +1,6 @@
 #include "engine/run/stability.h"
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
+#include "models/linear/decompositions.h"
 
 namespace loopwright {
 
@@ -22,13 +22,13 @@ FastestPole fastest_pole(Run<double>& run) {
   }
   run.derivatives_at(time, x.data(), above.data());  // signals as they were
   if (!jacobian.allFinite()) return {};
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(jacobian);
+  const auto [values, vectors] = eigensystem(jacobian);
   FastestPole fastest;
   for (int i = 0; i < n; ++i) {
-    const std::complex<double> pole = solver.eigenvalues()[i];
+    const std::complex<double> pole = values[i];
     if (std::abs(pole) <= fastest.magnitude) continue;
     Eigen::Index state = 0;
-    solver.eigenvectors().col(i).cwiseAbs().maxCoeff(&state);
+    vectors.col(i).cwiseAbs().maxCoeff(&state);
     fastest = {std::abs(pole), pole.real(), pole.imag(), int(state)};
   }
   return fastest;
@@ -39,12 +39,15 @@ std::string step_warning(const Plan& plan, const FastestPole& pole) {
   const double h = plan.clock.time(plan.step_ticks);
   const MethodFacts& method = facts(plan.method);
   const bool is_real = std::abs(pole.imaginary) < 1e-6 * pole.magnitude;
-  const double limit = is_real || method.any_stability_limit == 0 ? method.real_stability_limit : method.any_stability_limit;
+  const double limit =
+      is_real || method.any_stability_limit == 0 ? method.real_stability_limit : method.any_stability_limit;
   if (h * pole.magnitude <= 0.9 * limit) return {};
   const std::string& block = plan.blocks[size_t(plan.block_of_state[size_t(pole.state)])].path;
   return fmt::format(
-      "the step of {:g} s is {} for the fastest pole, {:.4g} rad/s in \"{}\": {} is stable up to {:.3g} s; take a shorter \"step\", or \"dopri5\" or \"cvode-bdf\"",
-      h, h * pole.magnitude > limit ? "too long" : "near the limit", pole.magnitude, block, method.name, limit / pole.magnitude);
+      "the step of {:g} s is {} for the fastest pole, {:.4g} rad/s in \"{}\": {} is stable up to {:.3g} s; "
+      "take a shorter \"step\", or \"dopri5\" or \"cvode-bdf\"",
+      h, h * pole.magnitude > limit ? "too long" : "near the limit", pole.magnitude, block, method.name,
+      limit / pole.magnitude);
 }
 
 }  // namespace loopwright

@@ -13,8 +13,8 @@ class Stepper;
 /// Keeps for every crossing the sign it last had, so that a value of exactly zero is neither lost nor counted
 /// twice: an event is a change from one sign to the other, at the first time where the new sign is seen. A
 /// touch without a change of sign is no event. A crossing that has just fired stands within rounding of zero;
-/// if it leaves on the other side than the one it stood on at the restart, that is an event like any other: what
-/// was decided on that side holds no more.
+/// if it leaves on the other side than the one it stood on at the restart, that is an event like any other:
+/// what was decided on that side holds no more.
 class EventFinder {
  public:
   EventFinder(const OdeSystem& system, int samples_per_step);

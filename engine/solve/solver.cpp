@@ -172,7 +172,7 @@ Advance Solver::step(double t_stop, const Crossing* wanted) {
 }
 
 /// One step of the integrator, whose word is not taken for it: the time must have moved, not too far, the
-/// state be finite. (CVODE has been seen to return success with a step of zero: SUNDIALS issue 82.)
+/// state be finite. (CVODE has been seen to return success with a step of zero.)
 SolverStatus Solver::take_step(double t_stop) {
   if (statistics().trials() - trials_at_stop_ >= maximum_trials_) return SolverStatus::too_many_steps;
   const SolverStatus status = stepper_->step(t_stop);

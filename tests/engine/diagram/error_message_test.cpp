@@ -239,7 +239,7 @@ TEST(DiagramErrors, Subdiagrams) {
             "  expected: one of diagram, parameters, in, description\n  hint: parameters of the diagram "
             "stand in \"parameters\"\n"
             "top.json:7:18: error: \"diagram\" is of the wrong kind\n  block: f\n  at: /blocks/f/diagram\n"
-            "  expected: the path of a diagram file in quotes\n  found: the number 5\n8 errors");
+            "  expected: the path of a diagram file in quotes, or a diagram in braces\n  found: the number 5\n8 errors");
 }
 
 TEST(DiagramErrors, Variants) {

@@ -7,6 +7,7 @@
 
 #include "engine/record/text.h"
 #include "support.h"
+#include "where.h"
 
 namespace loopwright {
 namespace {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 #include "tests/engine/written_diagram.h"
+#include "where.h"
 
 namespace loopwright {
 namespace {

@@ -82,7 +82,8 @@ TEST_P(Events, BouncesAreFoundToANanosecondWhereverTheDriverPutsTheBall) {
 TEST_P(Events, ACrossingThatComesStraightBackFiresAgain) {
   // dx/dt = -sign(x), the sign decided at events only: it cannot rest at zero, and every return must be told.
   double sign = 1.0;
-  FunctionSystem system = clock_with(1, [](double, const double* x, double* value) { return value[0] = x[0], true; });
+  FunctionSystem system =
+      clock_with(1, [](double, const double* x, double* value) { return value[0] = x[0], true; });
   system.derivatives = [&](double, const double*, double* rate) { return rate[0] = -sign, true; };
   Solver solver(options(), system.ode());
   double x = 1.0;

@@ -1,0 +1,17 @@
+/// What a diagram that is used as a block shows outside: its inputs and outputs.
+#pragma once
+#include <vector>
+#include "engine/diagram/diagram.h"
+#include "engine/diagram/reader.h"
+
+namespace loopwright {
+
+/// The key "inputs" of a diagram: `"force": "N"` or `"force": {"unit": "N", "description": "…"}`.
+std::vector<DiagramInput> read_inputs_of_diagram(const Value& root, const Reader& reader);
+
+/// The key "outputs": `"position": "mass.position"` or
+/// `"position": {"source": "mass.position", "unit": "m", "description": "…"}`. One without a source is left
+/// out.
+std::vector<DiagramOutput> read_outputs_of_diagram(const Value& root, const Reader& reader);
+
+}  // namespace loopwright

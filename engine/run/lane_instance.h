@@ -1,0 +1,219 @@
+/// A block in a run of many lanes: by its own lane kernels where the module has them, else lane by lane.
+#pragma once
+#include <array>
+#include <memory>
+#include <vector>
+#include "engine/run/block_instance.h"
+
+namespace loopwright {
+
+/// A block without lane kernels, a plain struct or one from a library of blocks: a scalar copy for every
+/// lane, called one after the other. Signals, states and modes are handed over through scalar ports; memory
+/// and buffers stay where they are, as each lane has a part of the group's room for its own.
+template <class Real> class LaneByLane {
+ public:
+  static constexpr int width = lanes_of<Real>;
+
+  LaneByLane(const Plan::Block& block, int registers)
+      : info_(block.type->info),
+        kernels_(block.type->kernels),
+        memory_stride_(whole(kernels_.memory_size, 64)),
+        state_(size_t(block.states)),
+        rate_(state_.size()),
+        mode_(whole(kernels_.mode_size, sizeof(double)) / sizeof(double)) {
+    mode_.reserve(1);  // a block without modes binds a reference to their place all the same
+    for (int l = 0; l < width * registers; ++l)
+      lanes_.push_back(std::make_unique<BlockInstance<double>>(block, 1));
+    for (const auto& wires : block.inputs) {
+      const auto& values = in_values_.emplace_back(std::make_unique<double[]>(wires.size()));
+      auto& places = in_places_.emplace_back();
+      for (size_t i = 0; i < wires.size(); ++i) places.push_back(values.get() + i);
+      Port<double> port{};
+      if (is_many(in_.size()))
+        port.many = places.data();
+      else
+        port.data = values.get();
+      port.length = int(wires.size());
+      in_.push_back(port);
+    }
+    for (const int length : block.output_lengths) {
+      Port<double> port{};
+      port.data = out_values_.emplace_back(std::make_unique<double[]>(size_t(length))).get();
+      port.length = length;
+      out_.push_back(port);
+    }
+    buffers_.resize(block.buffer_lengths.size());
+  }
+
+  size_t memory_bytes() const { return size_t(width) * memory_stride_; }
+  size_t mode_bytes() const { return mode_.size() * sizeof(Real); }
+  double* tunable(std::string_view path, int lane) { return lanes_[size_t(lane)]->tunable(path, 0); }
+
+  void start(const Call<Real>& call, const Setup& setup) {
+    for (int lane = 0; lane < width * call.registers; ++lane) {
+      Setup own = setup;
+      own.run += lane;
+      lanes_[size_t(lane)]->start(scalar_call(call, lane), own);
+      put(call, lane);
+    }
+  }
+
+  template <Step<double> Kernels<double>::*method> bool has() const { return kernels_.*method != nullptr; }
+  /// A method of the scalar block in every lane. The answer: faults, or states that jumped, a bit a lane.
+  template <Step<double> Kernels<double>::*method> static uint64_t step(const Call<Real>& call) {
+    return of(call).each_lane(call, of(call).kernels_.*method);
+  }
+  template <int group> static uint64_t step_outputs(const Call<Real>& call) {
+    return of(call).each_lane(call, of(call).kernels_.outputs[group]);
+  }
+
+ private:
+  static size_t whole(size_t bytes, size_t unit) { return (bytes + unit - 1) / unit * unit; }
+  static LaneByLane& of(const Call<Real>& call) {
+    return *const_cast<LaneByLane*>(static_cast<const LaneByLane*>(call.block));
+  }
+  bool is_many(size_t input) const { return info_.inputs[input].shape == PortInfo::Shape::many; }
+
+  uint64_t each_lane(const Call<Real>& call, Step<double> method) {
+    uint64_t answer = 0;
+    for (int lane = 0; lane < width * call.registers; ++lane) {
+      if (call.report[lane].block >= 0) continue;  // nothing counts any more in a lane that has failed
+      take(call, lane);
+      answer |= uint64_t(method(scalar_call(call, lane)) != 0) << lane;
+      put(call, lane);
+    }
+    return answer;
+  }
+  Call<double> scalar_call(const Call<Real>& call, int lane) {
+    const ptrdiff_t at = lane / width * call.stride, l = lane % width;
+    for (size_t b = 0; b < buffers_.size(); ++b) {
+      buffers_[b].length = call.buffers[b].length;
+      buffers_[b].data = reinterpret_cast<double*>(call.buffers[b].data + at) + l * buffers_[b].length;
+    }
+    Call<double> scalar;
+    scalar.block = lanes_[size_t(lane)]->block(), scalar.index = call.index, scalar.now = call.now;
+    scalar.report = call.report + lane;
+    scalar.in = in_.data(), scalar.out = out_.data(), scalar.buffers = buffers_.data();
+    scalar.state = state_.data(), scalar.rate = rate_.data(), scalar.mode = mode_.data();
+    scalar.memory =
+        reinterpret_cast<char*>(static_cast<Real*>(call.memory) + at) + l * ptrdiff_t(memory_stride_);
+    return scalar;
+  }
+
+  /// What the scalar block reads, from the lane.
+  void take(const Call<Real>& call, int number) {
+    const ptrdiff_t at = number / width * call.stride;
+    const int l = number % width;
+    for (size_t p = 0; p < in_.size(); ++p)
+      for (int i = 0; i < in_[p].length; ++i)
+        in_values_[p][size_t(i)] = lane(is_many(p) ? call.in[p].many[i][at] : call.in[p].data[at + i], l);
+    for (size_t i = 0; i < state_.size(); ++i) state_[i] = lane(call.state[ptrdiff_t(i) + at], l);
+    for (size_t i = 0; i < mode_.size(); ++i)
+      mode_[i] = lane(static_cast<const Real*>(call.mode)[ptrdiff_t(i) + at], l);
+    each_computed(call, at, [&](double& mine, Real& theirs) { mine = lane(theirs, l); });
+  }
+  /// What it may have written, to the lane.
+  void put(const Call<Real>& call, int number) {
+    const ptrdiff_t at = number / width * call.stride;
+    const int l = number % width;
+    for (size_t i = 0; i < state_.size(); ++i) set_lane(call.state[ptrdiff_t(i) + at], l, state_[i]);
+    for (size_t i = 0; i < mode_.size(); ++i)
+      set_lane(static_cast<Real*>(call.mode)[ptrdiff_t(i) + at], l, mode_[i]);
+    each_computed(call, at, [&](double& mine, Real& theirs) { set_lane(theirs, l, mine); });
+  }
+  /// Outputs that are not states, and rates: what one method writes the others must find again.
+  template <class F> void each_computed(const Call<Real>& call, ptrdiff_t at, F&& f) {
+    for (size_t p = 0; p < out_.size(); ++p)
+      for (int i = 0; i < out_[p].length && info_.outputs[p].group >= 0; ++i)
+        f(out_values_[p][size_t(i)], call.out[p].data[at + i]);
+    for (size_t i = 0; i < rate_.size(); ++i) f(rate_[i], call.rate[ptrdiff_t(i) + at]);
+  }
+
+  const BlockInfo& info_;
+  const Kernels<double>& kernels_;
+  const size_t memory_stride_;  // bytes
+  std::vector<std::unique_ptr<BlockInstance<double>>> lanes_;
+  std::vector<std::unique_ptr<double[]>> in_values_, out_values_;
+  std::vector<std::vector<const double*>> in_places_;
+  std::vector<Port<double>> in_, out_, buffers_;
+  std::vector<double> state_, rate_;
+  std::vector<double> mode_;  // its bytes travel as doubles; nothing is computed with them
+};
+
+/// A block of the plan for a group of lanes.
+template <class Real> class BlockInstance {
+ public:
+  static constexpr int width = lanes_of<Real>;
+
+  BlockInstance(const Plan::Block& block, int registers) {
+    const auto found = lane_kernels<Real>().find(block.type->info.type);
+    if (found == lane_kernels<Real>().end()) {
+      lane_by_lane_ = std::make_unique<LaneByLane<Real>>(block, registers);
+      return;
+    }
+    kernels_ = &found->second;
+    const size_t bytes = kernels_->size * size_t(registers);
+    blocks_ = {static_cast<char*>(::operator new(bytes, std::align_val_t(64))), Destroy{kernels_, registers}};
+    for (int r = 0; r < registers; ++r) {
+      kernels_->construct(at(r));
+      kernels_->copy(at(r), block.value.get());
+    }
+  }
+  void* block() { return kernels_ ? static_cast<void*>(blocks_.get()) : lane_by_lane_.get(); }
+  bool is_lane_wise() const { return kernels_ != nullptr; }
+  size_t memory_bytes() const { return kernels_ ? kernels_->memory_size : lane_by_lane_->memory_bytes(); }
+  size_t mode_bytes() const { return kernels_ ? kernels_->mode_size : lane_by_lane_->mode_bytes(); }
+  /// A tunable number of one lane; null: no such, or structural.
+  double* tunable(std::string_view path, int lane) {
+    if (!kernels_) return lane_by_lane_->tunable(path, lane);
+    Real* found = kernels_->tunable(at(lane / width), path);
+    return found ? reinterpret_cast<double*>(found) + lane % width : nullptr;
+  }
+  void start(const Call<Real>& call, const Setup& setup) {
+    if (!kernels_) return lane_by_lane_->start(call, setup);
+    for (int r = 0; r < call.registers; ++r) {
+      Setup own = setup;
+      own.run += r * width;
+      const ptrdiff_t offset = r * call.stride;
+      kernels_->prepare(at(r), own);
+      kernels_->start(at(r), call.state + offset, static_cast<Real*>(call.memory) + offset, call.buffers,
+                      offset, static_cast<Real*>(call.mode) + offset);
+    }
+  }
+  Step<Real> outputs(int group) const {
+    static constexpr auto by_group = []<int... g>(std::integer_sequence<int, g...>) {
+      return std::array<Step<Real>, sizeof...(g)>{&LaneByLane<Real>::template step_outputs<g>...};
+    }
+    (std::make_integer_sequence<int, 8>{});
+    return kernels_ ? kernels_->outputs[group] : by_group[size_t(group)];
+  }
+  Step<Real> decide() const { return step<&Kernels<Real>::decide, &Kernels<double>::decide>(); }
+  Step<Real> derivatives() const {
+    return step<&Kernels<Real>::derivatives, &Kernels<double>::derivatives>();
+  }
+  Step<Real> update() const { return step<&Kernels<Real>::update, &Kernels<double>::update>(); }
+  Step<Real> accept() const { return step<&Kernels<Real>::accept, &Kernels<double>::accept>(); }
+  Step<Real> jump() const { return step<&Kernels<Real>::jump, &Kernels<double>::jump>(); }
+  /// None: events are located by variable-step methods, which run scalar.
+  Step<Real> crossings() const { return nullptr; }
+
+ private:
+  void* at(int r) { return blocks_.get() + size_t(r) * kernels_->size; }
+  template <Step<Real> Kernels<Real>::*own, Step<double> Kernels<double>::*scalar> Step<Real> step() const {
+    if (kernels_) return kernels_->*own;
+    return lane_by_lane_->template has<scalar>() ? &LaneByLane<Real>::template step<scalar> : nullptr;
+  }
+  struct Destroy {
+    const Kernels<Real>* kernels = nullptr;
+    int registers = 0;
+    void operator()(char* p) const {
+      for (int r = 0; r < registers; ++r) kernels->destroy(p + size_t(r) * kernels->size);
+      ::operator delete(p, std::align_val_t(64));
+    }
+  };
+  const Kernels<Real>* kernels_ = nullptr;  // null: lane by lane
+  std::unique_ptr<char, Destroy> blocks_;   // one a register, side by side
+  std::unique_ptr<LaneByLane<Real>> lane_by_lane_;
+};
+
+}  // namespace loopwright

@@ -1,0 +1,175 @@
+/// How a run comes to be: its arena, the calls that its blocks answer to, and its start.
+#pragma once
+#include "engine/run/run.h"
+
+namespace loopwright {
+
+template <class Real>
+Run<Real>::Run(const Plan& plan, int registers)
+    : plan_(plan), registers_(registers), reports_(size_t(registers * width)) {
+  lay_out();
+  connect();
+  schedule();
+  reset({plan.seed, 0});
+}
+
+/// signals | x | modes | rate | start | sum | crossings | buffers | memories, in every register's arena.
+template <class Real> void Run<Real>::lay_out() {
+  const size_t align = std::max<size_t>(64, sizeof(Real));
+  const auto reals = [](size_t bytes) { return (bytes + sizeof(Real) - 1) / sizeof(Real); };
+  const size_t states = size_t(plan_.states);
+  size_t end = size_t(plan_.signals) + states;  // in Reals
+  for (const Plan::Block& block : plan_.blocks) {
+    instances_.emplace_back(block, registers_);
+    mode_at_.push_back(end * sizeof(Real));
+    end += reals(instances_.back().mode_bytes());
+  }
+  evaluated_ = end;
+  const size_t rate = end, crossings = rate + 3 * states, buffers = crossings + plan_.crossings.size();
+  end = buffers + size_t(plan_.buffer_numbers);
+  for (const BlockInstance<Real>& instance : instances_) {
+    memory_at_.push_back(end * sizeof(Real));
+    end += reals(instance.memory_bytes());
+  }
+  const size_t bytes = (end * sizeof(Real) + align - 1) / align * align;
+  stride_ = ptrdiff_t(bytes / sizeof(Real));
+  bytes_ = bytes * size_t(registers_);
+  arena_.reset(static_cast<char*>(::operator new(std::max(bytes_, align), std::align_val_t(64))));
+  std::memset(arena_.get(), 0, bytes_);
+  numbers_ = reinterpret_cast<Real*>(arena_.get());
+  x_ = numbers_ + plan_.signals;
+  rate_ = numbers_ + rate, start_ = rate_ + states, sum_ = start_ + states;
+  crossing_ = numbers_ + crossings, buffers_ = numbers_ + buffers;
+}
+
+template <class Real> void Run<Real>::connect() {
+  size_t wires = 0, many = 0;
+  for (const Plan::Block& block : plan_.blocks) {
+    wires += block.inputs.size() + block.outputs.size() + block.buffer_lengths.size();
+    for (const auto& port : block.inputs) many += port.size();
+  }
+  wires_.reserve(wires), many_.reserve(many);  // calls point into both
+  for (size_t b = 0; b < plan_.blocks.size(); ++b) {
+    const Plan::Block& block = plan_.blocks[b];
+    Call<Real> call;
+    call.block = instances_[b].block(), call.index = int(b), call.now = &now_, call.report = reports_.data();
+    call.registers = registers_, call.stride = stride_;
+    call.state = x_ + block.first_state, call.rate = rate_ + block.first_state,
+    call.crossing = crossing_ + block.first_crossing;
+    call.memory = arena_.get() + memory_at_[b], call.mode = arena_.get() + mode_at_[b];
+    call.in = wires_.data() + wires_.size();
+    for (size_t i = 0; i < block.inputs.size(); ++i) {
+      Port<Real> wire{};
+      wire.length = int(block.inputs[i].size());
+      if (block.type->info.inputs[i].shape == PortInfo::Shape::many) {
+        wire.many = many_.data() + many_.size();
+        for (Number n : block.inputs[i]) many_.push_back(numbers_ + n);
+      } else {
+        wire.data = block.inputs[i].empty() ? numbers_ : numbers_ + block.inputs[i][0];
+      }
+      wires_.push_back(wire);
+    }
+    call.out = wires_.data() + wires_.size();
+    for (size_t o = 0; o < block.outputs.size(); ++o) {
+      Port<Real> wire{};
+      wire.data = numbers_ + block.outputs[o];
+      wire.length = block.output_lengths[o];
+      wires_.push_back(wire);
+    }
+    call.buffers = wires_.data() + wires_.size();
+    Real* buffer = buffers_ + block.first_buffer;
+    for (int length : block.buffer_lengths) {
+      Port<Real> wire{};
+      wire.data = buffer, wire.length = length;
+      wires_.push_back(wire);
+      buffer += length;
+    }
+    base_.push_back(call);
+  }
+}
+
+template <class Real> uint64_t Run<Real>::mask_of(const Rate& rate) const {
+  if (rate.kind == Rate::Kind::continuous) return ~uint64_t(0);
+  uint64_t mask = 0;
+  for (size_t r = 0; r < plan_.rates.size(); ++r)
+    if (plan_.rates[r] == rate) mask |= uint64_t(1) << r;
+  return mask;
+}
+
+template <class Real> Call<Real> Run<Real>::call_of(const Plan::Entry& entry) {
+  if (entry.kind == Plan::Entry::Kind::ring) {
+    auto& ring = rings_.emplace_back(std::make_unique<RingSolver<Real>>());
+    const Plan::Ring& plan_ring = plan_.rings[size_t(entry.block)];
+    std::vector<Call<Real>> calls;
+    for (const Plan::Entry& inner : plan_ring.entries) calls.push_back(call_of(inner));
+    ring->build(std::move(calls), numbers_, plan_ring.tears, registers_, stride_);
+    Call<Real> call = base_[size_t(plan_ring.entries.front().block)];
+    call.block = ring.get();
+    call.step = &RingSolver<Real>::step;
+    return call;
+  }
+  Call<Real> call = base_[size_t(entry.block)];
+  const BlockInstance<Real>& instance = instances_[size_t(entry.block)];
+  call.step = entry.kind == Plan::Entry::Kind::decide ? instance.decide() : instance.outputs(entry.group);
+  return call;
+}
+
+template <class Real> void Run<Real>::schedule() {
+  using Kind = Plan::Entry::Kind;
+  for (const Plan::Entry& entry : plan_.order) {
+    const Call<Real> call = call_of(entry);
+    if (entry.rate.kind == Rate::Kind::constant) {
+      constants_.push_back(call);
+      continue;
+    }
+    outputs_.all.emplace_back(mask_of(entry.rate), call);
+    if (entry.rate.kind != Rate::Kind::continuous) continue;
+    if (entry.kind != Kind::decide) held_.push_back(call);
+    const bool decides = entry.kind == Kind::decide;
+    if (entry.in_stages || entry.for_events) between_.push_back(call);
+    if (entry.in_stages && !decides) stage_.push_back(call);
+    if (entry.for_events && !decides) for_events_.push_back(call);
+  }
+  for (size_t b = 0; b < plan_.blocks.size(); ++b) {
+    const Plan::Block& block = plan_.blocks[b];
+    const BlockInstance<Real>& instance = instances_[b];
+    Call<Real> call = base_[b];
+    if ((call.step = instance.derivatives())) derivatives_.push_back(call);
+    if ((call.step = instance.accept())) accepts_.push_back(call);
+    if ((call.step = instance.jump())) jumps_.push_back(call);
+    if ((call.step = instance.update()))
+      updates_.all.emplace_back(mask_of({Rate::Kind::sampled, block.period, block.offset}), call);
+    if ((call.step = instance.crossings()) && block.first_crossing >= 0) crossings_.push_back(call);
+    if constexpr (width == 1)
+      if (block.type->info.next_stop && block.period == 0)
+        stops_.emplace_back(call.block, block.type->info.next_stop);
+  }
+  if (width > 1 && !jumps_.empty()) kept_.resize(evaluated_ * width * size_t(registers_));
+  outputs_.make(plan_.rates.size());
+  updates_.make(plan_.rates.size());
+}
+
+template <class Real> double* Run<Real>::parameter(std::string_view path, int lane) {
+  for (size_t b = 0; b < plan_.blocks.size(); ++b) {
+    const std::string& block = plan_.blocks[b].path;
+    if (path.size() > block.size() && path.starts_with(block) && path[block.size()] == '.')
+      if (double* found = instances_[b].tunable(path.substr(block.size() + 1), lane)) return found;
+  }
+  return nullptr;
+}
+
+template <class Real> void Run<Real>::reset(const RunIdentity& identity) {
+  std::memset(arena_.get(), 0, bytes_);
+  move_to(plan_.start_tick);
+  forget_faults();
+  for (int r = 0; r < registers_; ++r)
+    for (const auto& [number, value] : plan_.unwired) numbers_[number + r * stride_] = value;
+  for (size_t b = 0; b < plan_.blocks.size(); ++b) {
+    const Setup setup{plan_.blocks[b].sample_time, identity.seed, identity.run,
+                      hash_of_path(plan_.blocks[b].path)};
+    instances_[b].start(base_[b], setup);
+  }
+  run(constants_);
+}
+
+}  // namespace loopwright

@@ -1,0 +1,156 @@
+/// What a run does in a step: signals in order, fixed-step methods, and what a variable-step solver asks for.
+#pragma once
+#include "engine/run/run.h"
+
+namespace loopwright {
+
+template <class Real> uint64_t Run<Real>::due() const {
+  uint64_t mask = 0;
+  for (size_t r = 0; r < plan_.rates.size(); ++r) {
+    const Rate& rate = plan_.rates[r];
+    mask |= uint64_t(now_.tick >= rate.offset && (now_.tick - rate.offset) % rate.period == 0) << r;
+  }
+  return mask;
+}
+
+template <class Real> int64_t Run<Real>::next_due() const {
+  int64_t next = INT64_MAX;
+  for (const Rate& rate : plan_.rates) {
+    const int64_t since = now_.tick - rate.offset;
+    next = std::min(next, since < 0 ? rate.offset : rate.offset + (since / rate.period + 1) * rate.period);
+  }
+  return next;
+}
+
+template <class Real> void Run<Real>::evaluate(uint64_t due_rates, bool everything) {
+  const auto& calls = everything ? outputs_.at(due_rates) : between_;
+  run(calls);
+  repeat_after_jumps(calls);
+}
+
+/// A jump changes states that others have read: all signals again, until no state jumps any more.
+template <class Real> void Run<Real>::repeat_after_jumps(const std::vector<Call<Real>>& calls) {
+  for (int i = 0; i < 10 && !jumps_.empty(); ++i) {
+    uint64_t changed = 0;
+    for (const Call<Real>& c : jumps_) changed |= c.step(c);
+    if (!changed) break;
+    if constexpr (width == 1)
+      run(calls);
+    else
+      evaluate_again(changed, calls);
+  }
+}
+
+template <class Real> void Run<Real>::evaluate_again(uint64_t jumped, const std::vector<Call<Real>>& calls) {
+  // A lane without a jump must not decide twice: its modes and signals are put back.
+  const size_t count = evaluated_ * width;
+  const auto numbers_of = [&](int r) { return reinterpret_cast<double*>(numbers_ + r * stride_); };
+  for (int r = 0; r < registers_; ++r)
+    std::memcpy(&kept_[size_t(r) * count], numbers_of(r), count * sizeof(double));
+  run(calls);
+  for (int r = 0; r < registers_; ++r)
+    for (size_t i = 0; i < count; ++i)
+      if (!(jumped >> (size_t(r) * width + i % width) & 1))
+        std::memcpy(numbers_of(r) + i, &kept_[size_t(r) * count + i], sizeof(double));
+}
+
+template <class Real> void Run<Real>::integrate(int64_t ticks) {
+  const int64_t next = now_.tick + ticks;
+  if (plan_.states > 0) {
+    const double h = plan_.clock.time(ticks);
+    switch (plan_.method) {
+      case Method::euler:
+        euler(h);
+        break;
+      case Method::heun:
+        heun(h);
+        break;
+      default:
+        rk4(h);
+        break;
+    }
+  }
+  move_to(next);
+}
+
+template <class Real> void Run<Real>::euler(double h) {
+  run(derivatives_);
+  each_state([&](auto i) { x_[i] = x_[i] + Real(h) * rate_[i]; });
+}
+
+template <class Real> void Run<Real>::heun(double h) {
+  run(derivatives_);
+  each_state([&](auto i) {
+    start_[i] = x_[i];
+    sum_[i] = rate_[i];
+    x_[i] = x_[i] + Real(h) * rate_[i];
+  });
+  now_.time += h;
+  run(stage_);
+  run(derivatives_);
+  each_state([&](auto i) { x_[i] = start_[i] + Real(0.5 * h) * (sum_[i] + rate_[i]); });
+}
+
+template <class Real> void Run<Real>::rk4(double h) {
+  const double half = 0.5 * h, sixth = h / 6, start = now_.time;
+  run(derivatives_);
+  each_state([&](auto i) {
+    start_[i] = x_[i];
+    sum_[i] = rate_[i];
+    x_[i] = start_[i] + Real(half) * rate_[i];
+  });
+  now_.time = start + half;
+  run(stage_);
+  run(derivatives_);
+  each_state([&](auto i) {
+    sum_[i] = sum_[i] + Real(2.0) * rate_[i];
+    x_[i] = start_[i] + Real(half) * rate_[i];
+  });
+  run(stage_);
+  run(derivatives_);
+  each_state([&](auto i) {
+    sum_[i] = sum_[i] + Real(2.0) * rate_[i];
+    x_[i] = start_[i] + Real(h) * rate_[i];
+  });
+  now_.time = start + h;
+  run(stage_);
+  run(derivatives_);
+  each_state([&](auto i) { x_[i] = start_[i] + Real(sixth) * (sum_[i] + rate_[i]); });
+}
+
+// Between discontinuities, for variable-step solvers.
+
+template <class Real> bool Run<Real>::derivatives_at(double time, const double* x, double* rate) {
+  std::copy_n(x, plan_.states, x_);
+  now_.time = time;
+  uint64_t bad = 0;
+  for (const Call<Real>& c : stage_) bad |= c.step(c);
+  for (const Call<Real>& c : derivatives_) bad |= c.step(c);
+  std::copy_n(rate_, plan_.states, rate);
+  return bad == 0;
+}
+
+template <class Real> bool Run<Real>::crossings_at(double time, const double* x, double* value) {
+  std::copy_n(x, plan_.states, x_);
+  now_.time = time;
+  uint64_t bad = 0;
+  for (const Call<Real>& c : for_events_) bad |= c.step(c);
+  for (const Call<Real>& c : crossings_) bad |= c.step(c);
+  std::copy_n(crossing_, plan_.crossings.size(), value);
+  return bad == 0;
+}
+
+template <class Real> void Run<Real>::look_at(double time, const double* x) {
+  std::copy_n(x, plan_.states, x_);
+  now_.time = time;
+}
+
+template <class Real> double Run<Real>::next_stop(double time) const {
+  double next = infinity;
+  for (const auto& [block, stop] : stops_)
+    if (const double at = stop(block, time); at > time)
+      next = std::min(next, at);  // stops closer than rounding are none
+  return next;
+}
+
+}  // namespace loopwright
