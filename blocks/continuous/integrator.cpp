@@ -3,26 +3,33 @@
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct Integrator {
+template <class Real> struct Integrator {
   Real initial = 0.0, low = -infinity, high = infinity;
-  struct In { Real u, reset, reset_value; };
-  struct State { Real y; };
-  struct Mode { Real trigger_is_high, fires, at_low, at_high; };
-  struct Crossings { Real reset, low, high, release; };
+  struct In {
+    Real u, reset, reset_value;
+  };
+  struct State {
+    Real y;
+  };
+  struct Mode {
+    Real trigger_is_high, fires, at_low, at_high;
+  };
+  struct Crossings {
+    Real reset, low, high, release;
+  };
   static constexpr auto describe() {
     return block("Integrates a signal over time, with limits and reset.",
-      parameter(&Integrator::initial, "initial", "$y", "Value at the start").optional(),
-      parameter(&Integrator::low, "low", "$y", "Lower limit").optional(),
-      parameter(&Integrator::high, "high", "$y", "Upper limit").optional(),
-      input(&In::u, "u", "$y/s", "Rate of change"),
-      input(&In::reset, "reset", "$reset", "Rising through zero sets the value").otherwise(-1.0),
-      input(&In::reset_value, "reset_value", "$y", "What reset sets the value to").otherwise(0.0),
-      output(&State::y, "y", "$y", "The integral"),
-      crossing(&Crossings::reset, "reset"),  // its fall too: only then may it rise again
-      crossing(&Crossings::low, "low", Crossing::falling),
-      crossing(&Crossings::high, "high", Crossing::rising),
-      crossing(&Crossings::release, "release"));
+                 parameter(&Integrator::initial, "initial", "$y", "Value at the start").optional(),
+                 parameter(&Integrator::low, "low", "$y", "Lower limit").optional(),
+                 parameter(&Integrator::high, "high", "$y", "Upper limit").optional(),
+                 input(&In::u, "u", "$y/s", "Rate of change"),
+                 input(&In::reset, "reset", "$reset", "Rising through zero sets the value").otherwise(-1.0),
+                 input(&In::reset_value, "reset_value", "$y", "What reset sets the value to").otherwise(0.0),
+                 output(&State::y, "y", "$y", "The integral"),
+                 crossing(&Crossings::reset, "reset"),  // its fall too: only then may it rise again
+                 crossing(&Crossings::low, "low", Crossing::falling),
+                 crossing(&Crossings::high, "high", Crossing::rising),
+                 crossing(&Crossings::release, "release"));
   }
   void check(const Checker& checker) const {
     if (low < high && initial >= low && initial <= high) return;
@@ -37,7 +44,9 @@ struct Integrator {
     mode.at_low = select((state.y <= low) & (in.u < 0.0), Real(1.0), Real(0.0));
     mode.at_high = select((state.y >= high) & (in.u > 0.0), Real(1.0), Real(0.0));
   }
-  void start(Mode& mode) const { mode.trigger_is_high = Real(1.0); }  // a trigger that is high at the start has not risen
+  void start(Mode& mode) const {
+    mode.trigger_is_high = Real(1.0);
+  }  // a trigger that is high at the start has not risen
   void jump(const In& in, const Mode& mode, State& state) const {
     const Real y = select(mode.fires > 0.5, in.reset_value, state.y);
     state.y = minimum(maximum(y, low), high);

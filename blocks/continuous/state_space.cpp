@@ -1,27 +1,34 @@
 /// dx/dt = A x + B u,  y = C x + D u
 ///
-/// Inputs act on the outputs at once through D. Where D is zero use StrictlyProperStateSpace, which may stand in a loop.
+/// Inputs act on the outputs at once through D. Where D is zero use StrictlyProperStateSpace, which may stand
+/// in a loop.
 #include "blocks/continuous/state_space_check.h"
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct StateSpace {
+template <class Real> struct StateSpace {
   MatrixRows<Real> A, B, C, D;
   std::vector<Real> initial;
-  struct In { Vector<const Real> u; };
-  struct State { Vector<Real> x; };
-  struct Out { Vector<Real> y; };
+  struct In {
+    Vector<const Real> u;
+  };
+  struct State {
+    Vector<Real> x;
+  };
+  struct Out {
+    Vector<Real> y;
+  };
   static constexpr auto describe() {
-    return block("A linear system given by four matrices, each a list of rows.",
-      parameter(&StateSpace::A, "A", "", "How the states act on their rates, states by states"),
-      parameter(&StateSpace::B, "B", "", "How the inputs act on the rates, states by inputs"),
-      parameter(&StateSpace::C, "C", "", "What of the states shows, outputs by states"),
-      parameter(&StateSpace::D, "D", "", "What of the inputs shows at once, outputs by inputs"),
-      parameter(&StateSpace::initial, "initial", "", "States at the start; zeros when left out").optional(),
-      input(&In::u, "u", "$u", "Inputs").length(&StateSpace::inputs),
-      output(&Out::y, "y", "$y", "Outputs").length(&StateSpace::results),
-      state_vector(&State::x, &StateSpace::states));
+    return block(
+        "A linear system given by four matrices, each a list of rows.",
+        parameter(&StateSpace::A, "A", "", "How the states act on their rates, states by states"),
+        parameter(&StateSpace::B, "B", "", "How the inputs act on the rates, states by inputs"),
+        parameter(&StateSpace::C, "C", "", "What of the states shows, outputs by states"),
+        parameter(&StateSpace::D, "D", "", "What of the inputs shows at once, outputs by inputs"),
+        parameter(&StateSpace::initial, "initial", "", "States at the start; zeros when left out").optional(),
+        input(&In::u, "u", "$u", "Inputs").length(&StateSpace::inputs),
+        output(&Out::y, "y", "$y", "Outputs").length(&StateSpace::results),
+        state_vector(&State::x, &StateSpace::states));
   }
   int states() const { return int(A.size()); }
   int inputs() const { return columns_of(B); }

@@ -19,12 +19,16 @@ inline void check_matrix(const Checker& checker, const char* name, const MatrixR
 }
 
 /// dx/dt = A x + B u, y = C x (+ D u), all from the file.
-inline void check_state_space(const Checker& checker, const MatrixRows<double>& A, const MatrixRows<double>& B,
-                              const MatrixRows<double>& C, const MatrixRows<double>* D, const std::vector<double>& initial) {
+inline void check_state_space(const Checker& checker, const MatrixRows<double>& A,
+                              const MatrixRows<double>& B, const MatrixRows<double>& C,
+                              const MatrixRows<double>* D, const std::vector<double>& initial) {
   const size_t states = A.size(), inputs = size_t(columns_of(B)), outputs = C.size();
   if (states == 0) checker.error("A", "a state space needs a state").hint = "without states use a Gain";
-  if (inputs == 0) checker.error("B", "a state space needs an input").expected = "a row of numbers for each state, one an input";
-  if (outputs == 0) checker.error("C", "a state space needs an output").expected = "a row of numbers for each output";
+  if (inputs == 0)
+    checker.error("B", "a state space needs an input").expected =
+        "a row of numbers for each state, one an input";
+  if (outputs == 0)
+    checker.error("C", "a state space needs an output").expected = "a row of numbers for each output";
   if (states == 0 || inputs == 0 || outputs == 0) return;
   check_matrix(checker, "A", A, states, states, "as many as states");
   check_matrix(checker, "B", B, states, inputs, "states by inputs");

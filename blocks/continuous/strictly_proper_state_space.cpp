@@ -5,23 +5,29 @@
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct StrictlyProperStateSpace {
+template <class Real> struct StrictlyProperStateSpace {
   MatrixRows<Real> A, B, C;
   std::vector<Real> initial;
-  struct In { Vector<const Real> u; };
-  struct State { Vector<Real> x; };
-  struct Out { Vector<Real> y; };
+  struct In {
+    Vector<const Real> u;
+  };
+  struct State {
+    Vector<Real> x;
+  };
+  struct Out {
+    Vector<Real> y;
+  };
   static constexpr auto describe() {
     using Block = StrictlyProperStateSpace;
-    return block("A linear system given by three matrices, each a list of rows; no input acts on an output at once.",
-      parameter(&Block::A, "A", "", "How the states act on their rates, states by states"),
-      parameter(&Block::B, "B", "", "How the inputs act on the rates, states by inputs"),
-      parameter(&Block::C, "C", "", "What of the states shows, outputs by states"),
-      parameter(&Block::initial, "initial", "", "States at the start; zeros when left out").optional(),
-      input(&In::u, "u", "$u", "Inputs").length(&Block::inputs),
-      output(&Out::y, "y", "$y", "Outputs").from_memory().length(&Block::results),
-      state_vector(&State::x, &Block::states));
+    return block(
+        "A linear system given by three matrices, each a list of rows; no input acts on an output at once.",
+        parameter(&Block::A, "A", "", "How the states act on their rates, states by states"),
+        parameter(&Block::B, "B", "", "How the inputs act on the rates, states by inputs"),
+        parameter(&Block::C, "C", "", "What of the states shows, outputs by states"),
+        parameter(&Block::initial, "initial", "", "States at the start; zeros when left out").optional(),
+        input(&In::u, "u", "$u", "Inputs").length(&Block::inputs),
+        output(&Out::y, "y", "$y", "Outputs").from_memory().length(&Block::results),
+        state_vector(&State::x, &Block::states));
   }
   int states() const { return int(A.size()); }
   int inputs() const { return columns_of(B); }

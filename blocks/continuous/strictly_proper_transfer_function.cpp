@@ -1,39 +1,46 @@
 /// Y(s)/U(s) = (b₁ sⁿ⁻¹ + … + bₙ) / (a₀ sⁿ + … + aₙ)
 ///
 /// The output depends on the states alone: the block may stand in a loop. It is a type of its own beside
-/// TransferFunction because what feeds through is a property of a type, known before any coefficient is. The states
-/// are a controllable canonical form; from about the sixth order on, split into factors of low order.
+/// TransferFunction because what feeds through is a property of a type, known before any coefficient is. The
+/// states are a controllable canonical form; from about the sixth order on, split into factors of low order.
 #include "engine/block.h"
 #include "models/signal/canonical_form.h"
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct StrictlyProperTransferFunction {
+template <class Real> struct StrictlyProperTransferFunction {
   std::vector<Real> numerator, denominator;
   CanonicalForm<Real> form;
-  struct In { Real u; };
-  struct State { Vector<Real> z; };
-  struct Out { Real y; };
+  struct In {
+    Real u;
+  };
+  struct State {
+    Vector<Real> z;
+  };
+  struct Out {
+    Real y;
+  };
   static constexpr auto describe() {
     using B = StrictlyProperTransferFunction;
-    return block("A linear system whose numerator has a lower degree than its denominator, at rest at the start.",
-      parameter(&B::numerator, "numerator", "", "Coefficients in s, highest power first"),
-      parameter(&B::denominator, "denominator", "", "Coefficients in s, highest power first"),
-      input(&In::u, "u", "$u", "Signal"),
-      output(&Out::y, "y", "$y", "The filtered signal").from_memory(),
-      state_vector(&State::z, &B::order));
+    return block(
+        "A linear system whose numerator has a lower degree than its denominator, at rest at the start.",
+        parameter(&B::numerator, "numerator", "", "Coefficients in s, highest power first"),
+        parameter(&B::denominator, "denominator", "", "Coefficients in s, highest power first"),
+        input(&In::u, "u", "$u", "Signal"), output(&Out::y, "y", "$y", "The filtered signal").from_memory(),
+        state_vector(&State::z, &B::order));
   }
   int order() const { return int(denominator.size()) - 1; }
   void check(const Checker& checker) const {
     if (denominator.size() < 2) {
-      checker.error("denominator", "a transfer function without a power of s has no state").hint = "use a Gain";
+      checker.error("denominator", "a transfer function without a power of s has no state").hint =
+          "use a Gain";
     } else if (!any(denominator[0] != 0.0)) {
       checker.error("denominator", "the highest power of s has the coefficient zero").hint = "leave it out";
     }
     if (numerator.empty() || numerator.size() >= denominator.size()) {
       auto& p = checker.error("numerator", "the transfer function is not strictly proper");
-      p.expected = "at least one coefficient and fewer than the denominator has, " + std::to_string(denominator.size());
+      p.expected = "at least one coefficient and fewer than the denominator has, " +
+                   std::to_string(denominator.size());
       p.found = std::to_string(numerator.size());
       p.hint = "with equal degrees use the block TransferFunction";
     }

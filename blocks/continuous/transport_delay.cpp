@@ -1,8 +1,9 @@
 /// y(t) = u(t - delay), until then initial
 ///
-/// The history is kept at accepted solver steps, thinned to points at most delay/points or one step apart, and read by
-/// straight lines: the error is at most gap²/8 · max|d²u/dt²|; a jump of u may be smeared over one gap. A solver step
-/// is never longer than the delay. The output needs no present input: the block may stand in a loop.
+/// The history is kept at accepted solver steps, thinned to points at most delay/points or one step apart,
+/// and read by straight lines: the error is at most gap²/8 · max|d²u/dt²|; a jump of u may be smeared over
+/// one gap. A solver step is never longer than the delay. The output needs no present input: the block may
+/// stand in a loop.
 #include "engine/block.h"
 
 namespace loopwright::blocks {
@@ -10,24 +11,36 @@ namespace loopwright::blocks {
 struct TransportDelay {
   double delay = 0, initial = 0;
   int points = 1000;
-  struct In { double u; };
-  struct Out { double y; };
+  struct In {
+    double u;
+  };
+  struct Out {
+    double y;
+  };
   struct Memory {
     Vector<double> time, value;  // rings
     double begin;                // s
     int newest, count;
   };
-  struct Mode { double has_arrived; };
-  struct Crossings { double arrival; };
+  struct Mode {
+    double has_arrived;
+  };
+  struct Crossings {
+    double arrival;
+  };
   static constexpr auto describe() {
-    return block("Delays a continuous signal by a fixed time.",
-      parameter(&TransportDelay::delay, "delay", "s", "How long the signal is under way").positive(),
-      parameter(&TransportDelay::initial, "initial", "$u", "Output until the first of the signal arrives").optional(),
-      parameter(&TransportDelay::points, "points", "", "Points of history kept within the delay").between(2, 10000000).optional(),
-      input(&In::u, "u", "$u", "Signal"),
-      output(&Out::y, "y", "$u", "The signal, one delay ago").from_memory(),
-      buffer(&Memory::time, &TransportDelay::capacity), buffer(&Memory::value, &TransportDelay::capacity),
-      crossing(&Crossings::arrival, "arrival", Crossing::rising));
+    return block(
+        "Delays a continuous signal by a fixed time.",
+        parameter(&TransportDelay::delay, "delay", "s", "How long the signal is under way").positive(),
+        parameter(&TransportDelay::initial, "initial", "$u", "Output until the first of the signal arrives")
+            .optional(),
+        parameter(&TransportDelay::points, "points", "", "Points of history kept within the delay")
+            .between(2, 10000000)
+            .optional(),
+        input(&In::u, "u", "$u", "Signal"),
+        output(&Out::y, "y", "$u", "The signal, one delay ago").from_memory(),
+        buffer(&Memory::time, &TransportDelay::capacity), buffer(&Memory::value, &TransportDelay::capacity),
+        crossing(&Crossings::arrival, "arrival", Crossing::rising));
   }
   // Of any three points in a row the outer ones are at least delay/points apart, jumps excepted.
   int capacity() const { return 2 * points + 16; }
@@ -47,7 +60,8 @@ struct TransportDelay {
     if (mode.has_arrived < 0.5) return {};
     const double wanted = now.time - delay;
     out.y = interpolate(memory, wanted);
-    return fault_if(wanted > memory.time[size_t(memory.newest)] + 1e-6 * delay, "the solver's step is longer than the delay");
+    return fault_if(wanted > memory.time[size_t(memory.newest)] + 1e-6 * delay,
+                    "the solver's step is longer than the delay");
   }
   Fault accept(const Instant& now, const In& in, Memory& memory) const {
     if (memory.count == 0) {
@@ -57,16 +71,22 @@ struct TransportDelay {
     }
     const size_t last = slot(memory, 0), before = slot(memory, 1);
     if (now.time == memory.time[last] && in.u == memory.value[last]) return {};
-    const bool is_jump = now.time == memory.time[last], follows_jump = memory.count > 1 && memory.time[last] == memory.time[before];
-    const bool last_is_spare = memory.count > 1 && !is_jump && !follows_jump && now.time - memory.time[before] < delay / points;
+    const bool is_jump = now.time == memory.time[last],
+               follows_jump = memory.count > 1 && memory.time[last] == memory.time[before];
+    const bool last_is_spare =
+        memory.count > 1 && !is_jump && !follows_jump && now.time - memory.time[before] < delay / points;
     if (last_is_spare) memory.newest = int(before), --memory.count;
-    const bool is_full = memory.count == capacity() && memory.time[slot(memory, capacity() - 2)] > now.time - delay;
+    const bool is_full =
+        memory.count == capacity() && memory.time[slot(memory, capacity() - 2)] > now.time - delay;
     push(memory, now.time, in.u);
-    return fault_if(is_full, "the signal jumps more often than the history can hold: give the block more points");
+    return fault_if(is_full,
+                    "the signal jumps more often than the history can hold: give the block more points");
   }
 
  private:
-  size_t slot(const Memory& memory, int back) const { return size_t((memory.newest - back + capacity()) % capacity()); }
+  size_t slot(const Memory& memory, int back) const {
+    return size_t((memory.newest - back + capacity()) % capacity());
+  }
   void push(Memory& memory, double time, double value) const {
     memory.newest = memory.count ? (memory.newest + 1) % capacity() : 0;
     memory.count = std::min(memory.count + 1, capacity());

@@ -1,27 +1,38 @@
-/// g[k] = a g[k-1] + (1-a) w[k-1] u[k-1],  a = e^(-ωT);  w rises from 0 to `weight` during `ramp_time` after `start_time`
+/// g[k] = a g[k-1] + (1-a) w[k-1] u[k-1],  a = e^(-ωT);  w rises from 0 to `weight` during `ramp_time` after
+/// `start_time`
 ///
-/// Brings the prediction of a learned disturbance into a loop: softly, late by 1/ω and one sample, without an algebraic
-/// loop. Give `command` of a DisturbanceObserver this output too.
+/// Brings the prediction of a learned disturbance into a loop: softly, late by 1/ω and one sample, without an
+/// algebraic loop. Give `command` of a DisturbanceObserver this output too.
 #include "engine/block.h"
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct CompensationFilter {
+template <class Real> struct CompensationFilter {
   Real cutoff, weight = 1.0, ramp_time = 0.0, start_time = 0.0;
   Real keep, per_ramp_time;
-  struct In { Real prediction; };
-  struct Out { Real compensation; };
-  struct Memory { Real compensation; };
+  struct In {
+    Real prediction;
+  };
+  struct Out {
+    Real compensation;
+  };
+  struct Memory {
+    Real compensation;
+  };
   static constexpr auto describe() {
     using B = CompensationFilter;
     return block("Brings a predicted disturbance into a control loop, filtered and step by step.",
-      parameter(&B::cutoff, "cutoff", "rad/s", "Bandwidth of the filter").positive(),
-      parameter(&B::weight, "weight", "", "Share of the prediction that is used in the end").not_negative().optional(),
-      parameter(&B::ramp_time, "ramp_time", "s", "Time from none to the full share").not_negative().optional(),
-      parameter(&B::start_time, "start_time", "s", "When it begins").optional(),
-      input(&In::prediction, "prediction", "$command", "Predicted disturbance"),
-      output(&Out::compensation, "compensation", "$command", "To be subtracted from the command").from_memory());
+                 parameter(&B::cutoff, "cutoff", "rad/s", "Bandwidth of the filter").positive(),
+                 parameter(&B::weight, "weight", "", "Share of the prediction that is used in the end")
+                     .not_negative()
+                     .optional(),
+                 parameter(&B::ramp_time, "ramp_time", "s", "Time from none to the full share")
+                     .not_negative()
+                     .optional(),
+                 parameter(&B::start_time, "start_time", "s", "When it begins").optional(),
+                 input(&In::prediction, "prediction", "$command", "Predicted disturbance"),
+                 output(&Out::compensation, "compensation", "$command", "To be subtracted from the command")
+                     .from_memory());
   }
   void prepare(double sample_time) {
     keep = exponential(-cutoff * sample_time);
@@ -29,7 +40,8 @@ struct CompensationFilter {
   }
   Real present_weight(const Instant& now) const {
     const Real elapsed = now.time - start_time;
-    const Real share = select(ramp_time > 0.0, elapsed * per_ramp_time, select(elapsed >= 0.0, Real(1.0), Real(0.0)));
+    const Real share =
+        select(ramp_time > 0.0, elapsed * per_ramp_time, select(elapsed >= 0.0, Real(1.0), Real(0.0)));
     return weight * minimum(maximum(share, Real(0.0)), Real(1.0));
   }
   void outputs(const Memory& memory, Out& out) const { out.compensation = memory.compensation; }

@@ -1,12 +1,13 @@
 /// d̂ = Q Pₙ⁻¹ y - Q u,  Q = (ω/(s+ω))ⁿ,  Pₙ = 1/(M s² + B s), by Tustin's rule
 ///
-/// Wiring. Subtract `disturbance` from the command. `command` reads what was sent to the plant after clipping, plus every
-/// compensation g that was subtracted elsewhere (learned, for example): u + g. So observer and compensation do not both
-/// cancel the same disturbance; with a perfect g the estimate goes to zero.
+/// Wiring. Subtract `disturbance` from the command. `command` reads what was sent to the plant after
+/// clipping, plus every compensation g that was subtracted elsewhere (learned, for example): u + g. So
+/// observer and compensation do not both cancel the same disturbance; with a perfect g the estimate goes to
+/// zero.
 ///
-/// `command_path`. "matched": Q u is Q(z) · 2/(z+1), which fits a plant behind a zero-order hold: its samples have the
-/// same factor (z+1)/2 over Tustin's rule. "delayed": Q(z)/z. Both use past commands alone: no algebraic loop.
-/// After K. Ohnishi, M. Shibata, T. Murakami, IEEE/ASME Trans. Mechatronics 1 (1996).
+/// `command_path`. "matched": Q u is Q(z) · 2/(z+1), which fits a plant behind a zero-order hold: its samples
+/// have the same factor (z+1)/2 over Tustin's rule. "delayed": Q(z)/z. Both use past commands alone: no
+/// algebraic loop. After K. Ohnishi, M. Shibata, T. Murakami, IEEE/ASME Trans. Mechatronics 1 (1996).
 #include "engine/block.h"
 #include "models/signal/first_order.h"
 
@@ -15,15 +16,18 @@ namespace loopwright::blocks {
 enum class CommandPath { matched, delayed };
 constexpr auto names_of(CommandPath) { return std::array<std::string_view, 2>{"matched", "delayed"}; }
 
-template <class Real>
-struct DisturbanceObserver {
+template <class Real> struct DisturbanceObserver {
   Real mass, damping, cutoff, initial = 0.0;
   int relative_degree = 2;
   CommandPath command_path = CommandPath::matched;
   TustinLag<Real> lag;
   TustinDerivative<Real> derivative;
-  struct In { Real measured, command; };
-  struct Out { Real disturbance; };
+  struct In {
+    Real measured, command;
+  };
+  struct Out {
+    Real disturbance;
+  };
   struct Memory {
     Real measured, velocity, slow_velocity, acceleration;  // of the last sample, filtered
     Real command, command_before, slow_command, slower_command;
@@ -31,16 +35,21 @@ struct DisturbanceObserver {
   };
   static constexpr auto describe() {
     using B = DisturbanceObserver;
-    return block("Estimates the disturbance at the input of a nominal mass with viscous friction, sampled.",
-      parameter(&B::mass, "mass", "$command*s^2/$position", "Nominal mass").positive(),
-      parameter(&B::damping, "damping", "$command*s/$position", "Nominal viscous friction").not_negative(),
-      parameter(&B::cutoff, "cutoff", "rad/s", "Bandwidth of the estimate").positive(),
-      parameter(&B::relative_degree, "relative_degree", "", "Order of Q").between(2, 3).optional(),
-      parameter(&B::command_path, "command_path", "", "How commands are brought in step with the measurement").optional(),
-      parameter(&B::initial, "initial", "$position", "Measured position before the start, at rest").optional(),
-      input(&In::measured, "measured", "$position", "Measured position"),
-      input(&In::command, "command", "$command", "Clipped command plus compensation subtracted elsewhere"),
-      output(&Out::disturbance, "disturbance", "$command", "Estimate, to be subtracted from the command").from(&In::measured));
+    return block(
+        "Estimates the disturbance at the input of a nominal mass with viscous friction, sampled.",
+        parameter(&B::mass, "mass", "$command*s^2/$position", "Nominal mass").positive(),
+        parameter(&B::damping, "damping", "$command*s/$position", "Nominal viscous friction").not_negative(),
+        parameter(&B::cutoff, "cutoff", "rad/s", "Bandwidth of the estimate").positive(),
+        parameter(&B::relative_degree, "relative_degree", "", "Order of Q").between(2, 3).optional(),
+        parameter(&B::command_path, "command_path", "",
+                  "How commands are brought in step with the measurement")
+            .optional(),
+        parameter(&B::initial, "initial", "$position", "Measured position before the start, at rest")
+            .optional(),
+        input(&In::measured, "measured", "$position", "Measured position"),
+        input(&In::command, "command", "$command", "Clipped command plus compensation subtracted elsewhere"),
+        output(&Out::disturbance, "disturbance", "$command", "Estimate, to be subtracted from the command")
+            .from(&In::measured));
   }
   void prepare(double sample_time) {
     lag = TustinLag<Real>::of(cutoff, sample_time);

@@ -5,20 +5,26 @@
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct LeadLag {
+template <class Real> struct LeadLag {
   Real gain = 1.0, zero, pole;
   Real present, past, keep;
-  struct In { Real u; };
-  struct Out { Real y; };
-  struct Memory { Real held; };
+  struct In {
+    Real u;
+  };
+  struct Out {
+    Real y;
+  };
+  struct Memory {
+    Real held;
+  };
   static constexpr auto describe() {
-    return block("Advances or retards the phase of a signal around a frequency, sampled.",
-      parameter(&LeadLag::gain, "gain", "$y/$u", "Gain at rest").optional(),
-      parameter(&LeadLag::zero, "zero", "rad/s", "Where the gain begins to change with frequency, upwards").positive(),
-      parameter(&LeadLag::pole, "pole", "rad/s", "Where the gain begins to change downwards").positive(),
-      input(&In::u, "u", "$u", "Signal"),
-      output(&Out::y, "y", "$y", "The filtered signal"));
+    return block(
+        "Advances or retards the phase of a signal around a frequency, sampled.",
+        parameter(&LeadLag::gain, "gain", "$y/$u", "Gain at rest").optional(),
+        parameter(&LeadLag::zero, "zero", "rad/s", "Where the gain begins to change with frequency, upwards")
+            .positive(),
+        parameter(&LeadLag::pole, "pole", "rad/s", "Where the gain begins to change downwards").positive(),
+        input(&In::u, "u", "$u", "Signal"), output(&Out::y, "y", "$y", "The filtered signal"));
   }
   void prepare(double sample_time) {
     const Real up = 2.0 / (sample_time * zero), down = 2.0 / (sample_time * pole), scale = 1.0 / (1.0 + down);

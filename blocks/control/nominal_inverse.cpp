@@ -1,30 +1,40 @@
 /// û = Q Pₙ⁻¹ y,  Q = (ω/(s+ω))ⁿ,  Pₙ = 1/(M s² + B s), by Tustin's rule
 ///
-/// The command that a nominal mass with viscous friction must have been given, disturbance included, to move as it was
-/// measured; late by n/ω. It starts at rest at `initial`.
+/// The command that a nominal mass with viscous friction must have been given, disturbance included, to move
+/// as it was measured; late by n/ω. It starts at rest at `initial`.
 #include "engine/block.h"
 #include "models/signal/first_order.h"
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct NominalInverse {
+template <class Real> struct NominalInverse {
   Real mass, damping, cutoff, initial = 0.0;
   int relative_degree = 2;
   TustinLag<Real> lag;
   TustinDerivative<Real> derivative;
-  struct In { Real measured; };
-  struct Out { Real command; };
-  struct Memory { Real measured, velocity, slow_velocity, acceleration, command, slow_command; };
+  struct In {
+    Real measured;
+  };
+  struct Out {
+    Real command;
+  };
+  struct Memory {
+    Real measured, velocity, slow_velocity, acceleration, command, slow_command;
+  };
   static constexpr auto describe() {
-    return block("What command would have made a nominal mass with viscous friction move as measured.",
-      parameter(&NominalInverse::mass, "mass", "$command*s^2/$position", "Nominal mass").positive(),
-      parameter(&NominalInverse::damping, "damping", "$command*s/$position", "Nominal viscous friction").not_negative(),
-      parameter(&NominalInverse::cutoff, "cutoff", "rad/s", "Bandwidth of Q").positive(),
-      parameter(&NominalInverse::relative_degree, "relative_degree", "", "Order of Q").between(2, 3).optional(),
-      parameter(&NominalInverse::initial, "initial", "$position", "Measured position before the start").optional(),
-      input(&In::measured, "measured", "$position", "Measured position"),
-      output(&Out::command, "command", "$command", "Command with disturbance"));
+    return block(
+        "What command would have made a nominal mass with viscous friction move as measured.",
+        parameter(&NominalInverse::mass, "mass", "$command*s^2/$position", "Nominal mass").positive(),
+        parameter(&NominalInverse::damping, "damping", "$command*s/$position", "Nominal viscous friction")
+            .not_negative(),
+        parameter(&NominalInverse::cutoff, "cutoff", "rad/s", "Bandwidth of Q").positive(),
+        parameter(&NominalInverse::relative_degree, "relative_degree", "", "Order of Q")
+            .between(2, 3)
+            .optional(),
+        parameter(&NominalInverse::initial, "initial", "$position", "Measured position before the start")
+            .optional(),
+        input(&In::measured, "measured", "$position", "Measured position"),
+        output(&Out::command, "command", "$command", "Command with disturbance"));
   }
   void prepare(double sample_time) {
     lag = TustinLag<Real>::of(cutoff, sample_time);

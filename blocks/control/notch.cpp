@@ -1,25 +1,32 @@
 /// Y/U = (s² + 2 ζ₀ ω s + ω²) / (s² + 2 ζ₁ ω s + ω²), by Tustin's rule with ω mapped exactly
 ///
-/// At ω the gain is ζ₀/ζ₁: `depth_damping` 0 removes it altogether; `width_damping` sets how wide the notch is. The gain at
-/// rest is 1. ω must lie below half the sampling frequency, π/T.
+/// At ω the gain is ζ₀/ζ₁: `depth_damping` 0 removes it altogether; `width_damping` sets how wide the notch
+/// is. The gain at rest is 1. ω must lie below half the sampling frequency, π/T.
 #include "engine/block.h"
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct Notch {
+template <class Real> struct Notch {
   Real frequency, depth_damping = 0.0, width_damping;
   Real b0, b1, b2, a2, half_turn;  // a1 = b1
-  struct In { Real u; };
-  struct Out { Real y; };
-  struct Memory { Real s1, s2; };  // transposed direct form II
+  struct In {
+    Real u;
+  };
+  struct Out {
+    Real y;
+  };
+  struct Memory {
+    Real s1, s2;
+  };  // transposed direct form II
   static constexpr auto describe() {
-    return block("Takes a narrow band of frequencies, such as a resonance, out of a signal; sampled.",
-      parameter(&Notch::frequency, "frequency", "rad/s", "Centre of the band").positive(),
-      parameter(&Notch::depth_damping, "depth_damping", "", "Damping of the numerator").not_negative().optional(),
-      parameter(&Notch::width_damping, "width_damping", "", "Damping of the denominator").positive(),
-      input(&In::u, "u", "$u", "Signal"),
-      output(&Out::y, "y", "$u", "The signal without the band"));
+    return block(
+        "Takes a narrow band of frequencies, such as a resonance, out of a signal; sampled.",
+        parameter(&Notch::frequency, "frequency", "rad/s", "Centre of the band").positive(),
+        parameter(&Notch::depth_damping, "depth_damping", "", "Damping of the numerator")
+            .not_negative()
+            .optional(),
+        parameter(&Notch::width_damping, "width_damping", "", "Damping of the denominator").positive(),
+        input(&In::u, "u", "$u", "Signal"), output(&Out::y, "y", "$u", "The signal without the band"));
   }
   void prepare(double sample_time) {
     half_turn = 0.5 * sample_time * frequency;

@@ -3,20 +3,25 @@
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct RateLimiter {
+template <class Real> struct RateLimiter {
   Real rising, falling, initial = 0.0;
   Real step_up, step_down;
-  struct In { Real u; };
-  struct Out { Real y; };
-  struct Memory { Real last; };
+  struct In {
+    Real u;
+  };
+  struct Out {
+    Real y;
+  };
+  struct Memory {
+    Real last;
+  };
   static constexpr auto describe() {
-    return block("Follows a signal no faster than its limits allow, sampled.",
-      parameter(&RateLimiter::rising, "rising", "$u/s", "Greatest speed upwards").not_negative(),
-      parameter(&RateLimiter::falling, "falling", "$u/s", "Greatest speed downwards").not_negative(),
-      parameter(&RateLimiter::initial, "initial", "$u", "Output before the start").optional(),
-      input(&In::u, "u", "$u", "Signal"),
-      output(&Out::y, "y", "$u", "The signal, limited in speed"));
+    return block(
+        "Follows a signal no faster than its limits allow, sampled.",
+        parameter(&RateLimiter::rising, "rising", "$u/s", "Greatest speed upwards").not_negative(),
+        parameter(&RateLimiter::falling, "falling", "$u/s", "Greatest speed downwards").not_negative(),
+        parameter(&RateLimiter::initial, "initial", "$u", "Output before the start").optional(),
+        input(&In::u, "u", "$u", "Signal"), output(&Out::y, "y", "$u", "The signal, limited in speed"));
   }
   void prepare(double sample_time) {
     step_up = rising * sample_time;

@@ -3,23 +3,30 @@
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct DiscreteStateSpace {
+template <class Real> struct DiscreteStateSpace {
   MatrixRows<Real> A, B, C, D;
   std::vector<Real> initial;
-  struct In { Vector<const Real> u; };
-  struct Memory { Vector<Real> x, next; };
-  struct Out { Vector<Real> y; };
+  struct In {
+    Vector<const Real> u;
+  };
+  struct Memory {
+    Vector<Real> x, next;
+  };
+  struct Out {
+    Vector<Real> y;
+  };
   static constexpr auto describe() {
-    return block("A sampled linear system given by four matrices, each a list of rows.",
-      parameter(&DiscreteStateSpace::A, "A", "", "How the states act on the next, states by states"),
-      parameter(&DiscreteStateSpace::B, "B", "", "How the inputs act on the next states, states by inputs"),
-      parameter(&DiscreteStateSpace::C, "C", "", "What of the states shows, outputs by states"),
-      parameter(&DiscreteStateSpace::D, "D", "", "What of the inputs shows at once, outputs by inputs"),
-      parameter(&DiscreteStateSpace::initial, "initial", "", "States at the start; zeros when left out").optional(),
-      input(&In::u, "u", "$u", "Inputs").length(&DiscreteStateSpace::inputs),
-      output(&Out::y, "y", "$y", "Outputs").length(&DiscreteStateSpace::results),
-      buffer(&Memory::x, &DiscreteStateSpace::states), buffer(&Memory::next, &DiscreteStateSpace::states));
+    return block(
+        "A sampled linear system given by four matrices, each a list of rows.",
+        parameter(&DiscreteStateSpace::A, "A", "", "How the states act on the next, states by states"),
+        parameter(&DiscreteStateSpace::B, "B", "", "How the inputs act on the next states, states by inputs"),
+        parameter(&DiscreteStateSpace::C, "C", "", "What of the states shows, outputs by states"),
+        parameter(&DiscreteStateSpace::D, "D", "", "What of the inputs shows at once, outputs by inputs"),
+        parameter(&DiscreteStateSpace::initial, "initial", "", "States at the start; zeros when left out")
+            .optional(),
+        input(&In::u, "u", "$u", "Inputs").length(&DiscreteStateSpace::inputs),
+        output(&Out::y, "y", "$y", "Outputs").length(&DiscreteStateSpace::results),
+        buffer(&Memory::x, &DiscreteStateSpace::states), buffer(&Memory::next, &DiscreteStateSpace::states));
   }
   int states() const { return int(A.size()); }
   int inputs() const { return columns_of(B); }

@@ -1,28 +1,35 @@
 /// Y(z)/U(z) = (b₀ + b₁ z⁻¹ + …) / (a₀ + a₁ z⁻¹ + …), in transposed direct form II
 ///
-/// The input acts at once, also where b₀ is zero. To stand in a loop, take out one z⁻¹ and put a UnitDelay in front.
+/// The input acts at once, also where b₀ is zero. To stand in a loop, take out one z⁻¹ and put a UnitDelay in
+/// front.
 #include "engine/block.h"
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct DiscreteTransferFunction {
+template <class Real> struct DiscreteTransferFunction {
   std::vector<Real> numerator, denominator, b, a;
-  struct In { Real u; };
-  struct Out { Real y; };
-  struct Memory { Vector<Real> s; };
+  struct In {
+    Real u;
+  };
+  struct Out {
+    Real y;
+  };
+  struct Memory {
+    Vector<Real> s;
+  };
   static constexpr auto describe() {
     using B = DiscreteTransferFunction;
     return block("A linear system given by its transfer function in z, at rest at the start.",
-      parameter(&B::numerator, "numerator", "", "Coefficients of 1, 1/z, 1/z² …"),
-      parameter(&B::denominator, "denominator", "", "Coefficients of 1, 1/z, 1/z² …; [1] for a finite impulse response"),
-      input(&In::u, "u", "$u", "Signal"),
-      output(&Out::y, "y", "$y", "The filtered signal"),
-      buffer(&Memory::s, &B::order));
+                 parameter(&B::numerator, "numerator", "", "Coefficients of 1, 1/z, 1/z² …"),
+                 parameter(&B::denominator, "denominator", "",
+                           "Coefficients of 1, 1/z, 1/z² …; [1] for a finite impulse response"),
+                 input(&In::u, "u", "$u", "Signal"), output(&Out::y, "y", "$y", "The filtered signal"),
+                 buffer(&Memory::s, &B::order));
   }
   int order() const { return std::max(1, int(std::max(numerator.size(), denominator.size())) - 1); }
   void check(const Checker& checker) const {
-    if (numerator.empty()) checker.error("numerator", "a transfer function needs a coefficient").expected = "a number or more";
+    if (numerator.empty())
+      checker.error("numerator", "a transfer function needs a coefficient").expected = "a number or more";
     if (denominator.empty() || !any(denominator[0] != 0.0)) {
       auto& p = checker.error("denominator", "the output itself has no coefficient");
       p.expected = "a first coefficient that is not zero";

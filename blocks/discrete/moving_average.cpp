@@ -1,31 +1,35 @@
 /// y[k] = (u[k] + u[k-1] + … + u[k-n+1]) / n
 ///
-/// Nothing is ever subtracted, so no rounding error builds up and an outlier is forgotten after n samples to the last
-/// bit. The samples are taken in rounds of n: the window is the first part of this round, a running sum, and the last
-/// part of the round before, one of its sums from the end (the van Herk and Gil-Werman scheme, 1992). One addition a
-/// sample, and n more when a round ends.
+/// Nothing is ever subtracted, so no rounding error builds up and an outlier is forgotten after n samples to
+/// the last bit. The samples are taken in rounds of n: the window is the first part of this round, a running
+/// sum, and the last part of the round before, one of its sums from the end (the van Herk and Gil-Werman
+/// scheme, 1992). One addition a sample, and n more when a round ends.
 #include "engine/block.h"
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct MovingAverage {
+template <class Real> struct MovingAverage {
   int samples = 1;
   Real initial = 0.0;
-  struct In { Real u; };
-  struct Out { Real y; };
+  struct In {
+    Real u;
+  };
+  struct Out {
+    Real y;
+  };
   struct Memory {
-    Vector<Real> line;  // up to `place` the samples of this round; from there on, sums from the end of the round before
+    Vector<Real> line;  // up to `place` the samples of this round; from there on, sums from the end of the
+                        // round before
     Real sum;           // of this round
     int place;
   };
   static constexpr auto describe() {
     return block("The mean of the last samples of a signal, the present one included.",
-      parameter(&MovingAverage::samples, "samples", "", "How many samples").between(1, 10000000),
-      parameter(&MovingAverage::initial, "initial", "$u", "Value of the signal before the start").optional(),
-      input(&In::u, "u", "$u", "Signal"),
-      output(&Out::y, "y", "$u", "Mean of the last samples"),
-      buffer(&Memory::line, &MovingAverage::samples));
+                 parameter(&MovingAverage::samples, "samples", "", "How many samples").between(1, 10000000),
+                 parameter(&MovingAverage::initial, "initial", "$u", "Value of the signal before the start")
+                     .optional(),
+                 input(&In::u, "u", "$u", "Signal"), output(&Out::y, "y", "$u", "Mean of the last samples"),
+                 buffer(&Memory::line, &MovingAverage::samples));
   }
   void start(Memory& memory) const {
     for (size_t i = 0; i < memory.line.size(); ++i) memory.line[i] = double(memory.line.size() - i) * initial;
@@ -39,7 +43,8 @@ struct MovingAverage {
     memory.line[size_t(memory.place)] = in.u;
     memory.sum = memory.sum + in.u;
     if (++memory.place < samples) return;
-    for (size_t i = memory.line.size() - 1; i > 0; --i) memory.line[i - 1] = memory.line[i - 1] + memory.line[i];
+    for (size_t i = memory.line.size() - 1; i > 0; --i)
+      memory.line[i - 1] = memory.line[i - 1] + memory.line[i];
     memory.sum = 0.0, memory.place = 0;
   }
 };

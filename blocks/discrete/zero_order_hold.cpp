@@ -5,15 +5,19 @@
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct ZeroOrderHold {
-  struct In { Real u; };
-  struct Out { Real y; };
-  struct Memory { Real held; };  // what has memory must be given a sample time: without one it would hold nothing
+template <class Real> struct ZeroOrderHold {
+  struct In {
+    Real u;
+  };
+  struct Out {
+    Real y;
+  };
+  struct Memory {
+    Real held;
+  };  // what has memory must be given a sample time: without one it would hold nothing
   static constexpr auto describe() {
-    return block("Samples a signal and holds the sample until the next.",
-      input(&In::u, "u", "$u", "Signal"),
-      output(&Out::y, "y", "$u", "The signal at the last sample"));
+    return block("Samples a signal and holds the sample until the next.", input(&In::u, "u", "$u", "Signal"),
+                 output(&Out::y, "y", "$u", "The signal at the last sample"));
   }
   void outputs(const In& in, Out& out) const { out.y = in.u; }
   void update(const In& in, Memory& memory) const { memory.held = in.u; }

@@ -1,7 +1,7 @@
 /// value = column(t) of a recording, held from sample to sample or joined by straight lines
 ///
-/// The file is read once, at check time. A sample counts as reached a millionth of its interval early: times that were
-/// printed with a few digits must not be late by a tick.
+/// The file is read once, at check time. A sample counts as reached a millionth of its interval early: times
+/// that were printed with a few digits must not be late by a tick.
 #include <algorithm>
 #include <memory>
 #include "engine/block.h"
@@ -22,21 +22,33 @@ struct RecordedColumn {
   Joined interpolation = Joined::hold;
   Beyond beyond = Beyond::hold;
   std::shared_ptr<const Table> table;
-  struct Out { double value; };
-  struct Mode { ptrdiff_t row; };  // -1: before the first sample
+  struct Out {
+    double value;
+  };
+  struct Mode {
+    ptrdiff_t row;
+  };  // -1: before the first sample
   static constexpr auto describe() {
     return block("Plays back a column of a recording.",
-      parameter(&RecordedColumn::file, "file", "", "CSV or MAT file, relative to the diagram"),
-      parameter(&RecordedColumn::column, "column", "", "Name of the column"),
-      parameter(&RecordedColumn::time_column, "time", "", "Name of the column with the time in s; the first or \"time\" when left out").optional(),
-      parameter(&RecordedColumn::unit, "unit", "", "Unit of the numbers in the file; as the file says when left out").optional(),
-      parameter(&RecordedColumn::interpolation, "interpolation", "", "What holds between samples").optional(),
-      parameter(&RecordedColumn::beyond, "beyond", "", "Before the first and after the last sample: hold it, or stop the run").optional(),
-      output(&Out::value, "value", "$value", "The column in SI units"));
+                 parameter(&RecordedColumn::file, "file", "", "CSV or MAT file, relative to the diagram"),
+                 parameter(&RecordedColumn::column, "column", "", "Name of the column"),
+                 parameter(&RecordedColumn::time_column, "time", "",
+                           "Name of the column with the time in s; the first or \"time\" when left out")
+                     .optional(),
+                 parameter(&RecordedColumn::unit, "unit", "",
+                           "Unit of the numbers in the file; as the file says when left out")
+                     .optional(),
+                 parameter(&RecordedColumn::interpolation, "interpolation", "", "What holds between samples")
+                     .optional(),
+                 parameter(&RecordedColumn::beyond, "beyond", "",
+                           "Before the first and after the last sample: hold it, or stop the run")
+                     .optional(),
+                 output(&Out::value, "value", "$value", "The column in SI units"));
   }
   void check(const Checker& checker);
   void decide(const Instant& now, Mode& mode) const {
-    mode.row = std::upper_bound(table->begin.begin(), table->begin.end(), now.time) - table->begin.begin() - 1;
+    mode.row =
+        std::upper_bound(table->begin.begin(), table->begin.end(), now.time) - table->begin.begin() - 1;
   }
   Fault outputs(const Instant& now, const Mode& mode, Out& out) const {
     const auto& [time, begin, value] = *table;
@@ -48,7 +60,8 @@ struct RecordedColumn {
       out.value = (1 - s) * value[row] + s * value[row + 1];
     }
     const bool is_last = row + 1 == time.size() && now.time <= 2 * time[row] - begin[row];
-    return fault_if(beyond == Beyond::fault && !is_inside && !(mode.row >= 0 && is_last), "the recording does not reach this time");
+    return fault_if(beyond == Beyond::fault && !is_inside && !(mode.row >= 0 && is_last),
+                    "the recording does not reach this time");
   }
   double next_stop(double now) const {
     const auto next = std::upper_bound(table->begin.begin(), table->begin.end(), now);
@@ -61,15 +74,18 @@ struct RecordedColumn {
 };
 
 /// The column of a name; a problem when there is none.
-const Column* RecordedColumn::find(const Checker& checker, const Recording& recording, const char* parameter, const std::string& name) const {
+const Column* RecordedColumn::find(const Checker& checker, const Recording& recording, const char* parameter,
+                                   const std::string& name) const {
   if (const Column* found = recording.find(name)) return found;
   std::vector<std::string> names;
   for (const Column& c : recording.columns) names.push_back(c.name);
   auto& p = checker.error(parameter, "the recording has no such column");
   p.found = "\"" + name + "\" in " + file;
   const std::string near = nearest_name(name, names);
-  if (!near.empty()) p.hint = "did you mean \"" + near + "\"?";
-  else for (const std::string& n : names) p.expected += (p.expected.empty() ? "one of " : ", ") + n;
+  if (!near.empty())
+    p.hint = "did you mean \"" + near + "\"?";
+  else
+    for (const std::string& n : names) p.expected += (p.expected.empty() ? "one of " : ", ") + n;
   return nullptr;
 }
 
@@ -105,8 +121,9 @@ void RecordedColumn::check(const Checker& checker) {
     return;
   }
   const Column* values = find(checker, recording, "column", column);
-  const Column* times = !time_column.empty() ? find(checker, recording, "time", time_column)
-                        : recording.find("time") ? recording.find("time") : &recording.columns[0];
+  const Column* times = !time_column.empty()     ? find(checker, recording, "time", time_column)
+                        : recording.find("time") ? recording.find("time")
+                                                 : &recording.columns[0];
   if (!values || !times) return;
   auto loaded = std::make_shared<Table>();
   const double scale = scale_of(checker, *values);
@@ -116,9 +133,11 @@ void RecordedColumn::check(const Checker& checker) {
     const double step = loaded->time[i] - loaded->time[i - 1];
     loaded->begin[i] -= 1e-6 * step;
     if (step > 0) continue;
-    auto& p = checker.error(time_column.empty() ? "file" : "time", "time does not rise from sample to sample");
-    p.found = reading::number_text(loaded->time[i - 1]) + " s, then " + reading::number_text(loaded->time[i]) + " s at sample " +
-              std::to_string(i + 1) + " of " + times->name;
+    auto& p =
+        checker.error(time_column.empty() ? "file" : "time", "time does not rise from sample to sample");
+    p.found = reading::number_text(loaded->time[i - 1]) + " s, then " +
+              reading::number_text(loaded->time[i]) + " s at sample " + std::to_string(i + 1) + " of " +
+              times->name;
     return;
   }
   if (loaded->time.size() > 1) loaded->begin[0] -= 1e-6 * (loaded->time[1] - loaded->time[0]);

@@ -3,20 +3,24 @@
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct DeadZone {
+template <class Real> struct DeadZone {
   Real low, high;
-  struct In { Real u; };
-  struct Out { Real y; };
-  struct Crossings { Real low, high; };
+  struct In {
+    Real u;
+  };
+  struct Out {
+    Real y;
+  };
+  struct Crossings {
+    Real low, high;
+  };
   static constexpr auto describe() {
     return block("Takes no notice of a signal within a zone.",
-      parameter(&DeadZone::low, "low", "$u", "Lower end of the zone"),
-      parameter(&DeadZone::high, "high", "$u", "Upper end of the zone"),
-      input(&In::u, "u", "$u", "Signal"),
-      output(&Out::y, "y", "$u", "How far the signal is outside of the zone"),
-      crossing(&Crossings::low, "low"),
-      crossing(&Crossings::high, "high"));
+                 parameter(&DeadZone::low, "low", "$u", "Lower end of the zone"),
+                 parameter(&DeadZone::high, "high", "$u", "Upper end of the zone"),
+                 input(&In::u, "u", "$u", "Signal"),
+                 output(&Out::y, "y", "$u", "How far the signal is outside of the zone"),
+                 crossing(&Crossings::low, "low"), crossing(&Crossings::high, "high"));
   }
   void check(const Checker& checker) const {
     if (low <= high) return;

@@ -1,15 +1,16 @@
 /// y = formula(names[0], names[1], …)
 ///
-/// The formula is muParser's: + - * / ^, comparisons, && || !, c ? a : b, sin, cos, tan, asin, acos, atan, atan2, sinh,
-/// cosh, tanh, exp, ln, log2, log10, sqrt, abs, sign, rint, min, max, sum, avg; `pi`, and `_e` for Euler's number. Units are not
-/// checked inside, and a variable-step solver is not told of its kinks and jumps: where that matters, blocks serve better.
-/// A result that is infinite or no number stops the run.
+/// The formula is muParser's: + - * / ^, comparisons, && || !, c ? a : b, sin, cos, tan, asin, acos, atan,
+/// atan2, sinh, cosh, tanh, exp, ln, log2, log10, sqrt, abs, sign, rint, min, max, sum, avg; `pi`, and `_e`
+/// for Euler's number. Units are not checked inside, and a variable-step solver is not told of its kinks and
+/// jumps: where that matters, blocks serve better. A result that is infinite or no number stops the run.
 #include <muParser.h>
 #include "engine/block.h"
 
 namespace loopwright::blocks {
 
-/// A compiled formula with places for its variables. A copy is empty: the compiled code points into its own variables.
+/// A compiled formula with places for its variables. A copy is empty: the compiled code points into its own
+/// variables.
 struct Formula {
   mu::Parser parser;
   std::vector<double> variables;
@@ -32,14 +33,19 @@ struct Expression {
   std::string formula;
   std::vector<std::string> names;
   mutable Formula compiled;  // belongs to one run: muParser evaluates with a stack of its own
-  struct In { Many<double> arguments; };
-  struct Out { double y; };
+  struct In {
+    Many<double> arguments;
+  };
+  struct Out {
+    double y;
+  };
   static constexpr auto describe() {
-    return block("A formula over any number of signals.",
-      parameter(&Expression::formula, "formula", "", "The formula, as in \"k * sin(2*pi*x)\""),
-      parameter(&Expression::names, "names", "", "What the formula calls its arguments, in their order"),
-      input(&In::arguments, "arguments", "?", "A signal for each name").length(&Expression::arguments),
-      output(&Out::y, "y", "$y", "What the formula gives"));
+    return block(
+        "A formula over any number of signals.",
+        parameter(&Expression::formula, "formula", "", "The formula, as in \"k * sin(2*pi*x)\""),
+        parameter(&Expression::names, "names", "", "What the formula calls its arguments, in their order"),
+        input(&In::arguments, "arguments", "?", "A signal for each name").length(&Expression::arguments),
+        output(&Out::y, "y", "$y", "What the formula gives"));
   }
   int arguments() const { return int(names.size()); }
   void check(const Checker& checker) const {
@@ -51,7 +57,9 @@ struct Expression {
       Formula().compile(formula, names);
     } catch (const mu::ParserError& error) {
       const bool in_name = error.GetCode() == mu::ecINVALID_NAME || error.GetCode() == mu::ecNAME_CONFLICT;
-      auto& p = checker.error(in_name ? "names" : "formula", in_name ? "this cannot be the name of an argument" : "the formula cannot be read");
+      auto& p =
+          checker.error(in_name ? "names" : "formula",
+                        in_name ? "this cannot be the name of an argument" : "the formula cannot be read");
       if (!in_name && error.GetPos() >= 0) p.place.offset += 1 + uint32_t(error.GetPos());  // after the quote
       p.found = error.GetMsg();
       for (const std::string& name : names) p.hint += (p.hint.empty() ? "its arguments are " : ", ") + name;

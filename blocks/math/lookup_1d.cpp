@@ -1,8 +1,9 @@
 /// y = table(u): straight lines or monotone cubic pieces through given points
 ///
-/// The cubic pieces are smooth (once differentiable) and do not overshoot the points: slopes by F. N. Fritsch and
-/// J. Butland, SIAM J. Sci. Stat. Comput. 5, 1984, ends by three-point differences limited as in C. Moler, Numerical
-/// Computing with MATLAB, 2004. Beyond the ends: the last value, the straight continuation, or a stop of the run.
+/// The cubic pieces are smooth (once differentiable) and do not overshoot the points: slopes by F. N. Fritsch
+/// and J. Butland, SIAM J. Sci. Stat. Comput. 5, 1984, ends by three-point differences limited as in C.
+/// Moler, Numerical Computing with MATLAB, 2004. Beyond the ends: the last value, the straight continuation,
+/// or a stop of the run.
 #include "blocks/math/table.h"
 
 namespace loopwright::blocks {
@@ -15,20 +16,28 @@ struct Lookup1D {
   Interpolation interpolation = Interpolation::linear;
   Outside outside = Outside::hold;
   std::vector<double> slopes;  // at the breakpoints
-  struct In { double u; };
-  struct Out { double y; };
-  struct Mode { int interval; };
-  struct Crossings { double lower, upper; };
+  struct In {
+    double u;
+  };
+  struct Out {
+    double y;
+  };
+  struct Mode {
+    int interval;
+  };
+  struct Crossings {
+    double lower, upper;
+  };
   static constexpr auto describe() {
-    return block("Reads a table with one input.",
-      parameter(&Lookup1D::breakpoints, "breakpoints", "$u", "Where values are given, rising"),
-      parameter(&Lookup1D::values, "values", "$y", "The value at each breakpoint"),
-      parameter(&Lookup1D::interpolation, "interpolation", "", "How values are joined").optional(),
-      parameter(&Lookup1D::outside, "outside", "", "What happens beyond the first and last breakpoint").optional(),
-      input(&In::u, "u", "$u", "Where to read"),
-      output(&Out::y, "y", "$y", "What the table says"),
-      crossing(&Crossings::lower, "lower"),
-      crossing(&Crossings::upper, "upper"));
+    return block(
+        "Reads a table with one input.",
+        parameter(&Lookup1D::breakpoints, "breakpoints", "$u", "Where values are given, rising"),
+        parameter(&Lookup1D::values, "values", "$y", "The value at each breakpoint"),
+        parameter(&Lookup1D::interpolation, "interpolation", "", "How values are joined").optional(),
+        parameter(&Lookup1D::outside, "outside", "", "What happens beyond the first and last breakpoint")
+            .optional(),
+        input(&In::u, "u", "$u", "Where to read"), output(&Out::y, "y", "$y", "What the table says"),
+        crossing(&Crossings::lower, "lower"), crossing(&Crossings::upper, "upper"));
   }
   void check(const Checker& checker) const {
     check_breakpoints(checker, "breakpoints", breakpoints);
@@ -56,9 +65,13 @@ struct Lookup1D {
     const double u = std::clamp(in.u, breakpoints.front(), breakpoints.back()), beyond = in.u - u;
     const size_t i = inner_interval(breakpoints, u), j = i + 1;
     const double width = breakpoints[j] - breakpoints[i], s = (u - breakpoints[i]) / width, r = 1 - s;
-    if (interpolation == Interpolation::linear) out.y = r * values[i] + s * values[j];
-    else out.y = r * r * ((1 + 2 * s) * values[i] + s * width * slopes[i]) + s * s * ((1 + 2 * r) * values[j] - r * width * slopes[j]);
-    if (outside == Outside::extrapolate && beyond != 0) out.y += beyond * (beyond < 0 ? slopes.front() : slopes.back());
+    if (interpolation == Interpolation::linear)
+      out.y = r * values[i] + s * values[j];
+    else
+      out.y = r * r * ((1 + 2 * s) * values[i] + s * width * slopes[i]) +
+              s * s * ((1 + 2 * r) * values[j] - r * width * slopes[j]);
+    if (outside == Outside::extrapolate && beyond != 0)
+      out.y += beyond * (beyond < 0 ? slopes.front() : slopes.back());
     return fault_if(outside == Outside::fault && beyond != 0, "the input lies outside of the table");
   }
   void crossings(const In& in, const Mode& mode, Crossings& value) const {

@@ -3,17 +3,24 @@
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct Maximum {
-  struct In { Many<Real> terms; };
-  struct Out { Real greatest; };
-  struct Mode { Real chosen; };
-  struct Crossings { Real change; };
+template <class Real> struct Maximum {
+  struct In {
+    Many<Real> terms;
+  };
+  struct Out {
+    Real greatest;
+  };
+  struct Mode {
+    Real chosen;
+  };
+  struct Crossings {
+    Real change;
+  };
   static constexpr auto describe() {
     return block("The greatest of any number of signals.",
-      input(&In::terms, "terms", "$greatest", "Signals of one unit"),
-      output(&Out::greatest, "greatest", "$greatest", "The greatest of them"),
-      crossing(&Crossings::change, "change"));
+                 input(&In::terms, "terms", "$greatest", "Signals of one unit"),
+                 output(&Out::greatest, "greatest", "$greatest", "The greatest of them"),
+                 crossing(&Crossings::change, "change"));
   }
   void outputs(const In& in, Out& out) const {
     out.greatest = -infinity;

@@ -3,17 +3,23 @@
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct Minimum {
-  struct In { Many<Real> terms; };
-  struct Out { Real least; };
-  struct Mode { Real chosen; };
-  struct Crossings { Real change; };
+template <class Real> struct Minimum {
+  struct In {
+    Many<Real> terms;
+  };
+  struct Out {
+    Real least;
+  };
+  struct Mode {
+    Real chosen;
+  };
+  struct Crossings {
+    Real change;
+  };
   static constexpr auto describe() {
-    return block("The least of any number of signals.",
-      input(&In::terms, "terms", "$least", "Signals of one unit"),
-      output(&Out::least, "least", "$least", "The least of them"),
-      crossing(&Crossings::change, "change"));
+    return block(
+        "The least of any number of signals.", input(&In::terms, "terms", "$least", "Signals of one unit"),
+        output(&Out::least, "least", "$least", "The least of them"), crossing(&Crossings::change, "change"));
   }
   void outputs(const In& in, Out& out) const {
     out.least = infinity;

@@ -1,20 +1,26 @@
 /// product = factor₁ ×/÷ factor₂ …
 ///
-/// Factors may have different units. Division by exactly zero stops the run; near zero the result is as IEEE 754 has it.
+/// Factors may have different units. Division by exactly zero stops the run; near zero the result is as IEEE
+/// 754 has it.
 #include "engine/block.h"
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct Product {
+template <class Real> struct Product {
   std::string operations;
-  struct In { Many<Real> factors; };
-  struct Out { Real product; };
+  struct In {
+    Many<Real> factors;
+  };
+  struct Out {
+    Real product;
+  };
   static constexpr auto describe() {
-    return block("Multiplies and divides any number of signals.",
-      parameter(&Product::operations, "operations", "", "One * or / for each factor; all * when left out").optional(),
-      input(&In::factors, "factors", "?", "What is multiplied").length(&Product::factors),
-      output(&Out::product, "product", "$product", "The product"));
+    return block(
+        "Multiplies and divides any number of signals.",
+        parameter(&Product::operations, "operations", "", "One * or / for each factor; all * when left out")
+            .optional(),
+        input(&In::factors, "factors", "?", "What is multiplied").length(&Product::factors),
+        output(&Out::product, "product", "$product", "The product"));
   }
   int factors() const { return operations.empty() ? -1 : int(operations.size()); }
   void check(const Checker& checker) const {
@@ -27,8 +33,10 @@ struct Product {
     Real product = 1.0, divisor = 1.0;
     MaskOf<Real> has_zero = false;
     for (int i = 0; i < in.factors.size(); ++i) {
-      if (operations.empty() || operations[size_t(i)] == '*') product = product * in.factors[i];
-      else divisor = divisor * in.factors[i], has_zero = has_zero | (in.factors[i] == 0.0);
+      if (operations.empty() || operations[size_t(i)] == '*')
+        product = product * in.factors[i];
+      else
+        divisor = divisor * in.factors[i], has_zero = has_zero | (in.factors[i] == 0.0);
     }
     out.product = product / divisor;
     return fault_if(has_zero, "division by zero");

@@ -1,26 +1,31 @@
 /// y = q · round(u / q), halves to even
 ///
-/// With a sample time it rounds at its samples. Without one it is continuous, and a variable-step solver stops at every
-/// step of the staircase that reaches a state: a sensor that a sampled controller reads is given the sample time of
-/// its reader.
+/// With a sample time it rounds at its samples. Without one it is continuous, and a variable-step solver
+/// stops at every step of the staircase that reaches a state: a sensor that a sampled controller reads is
+/// given the sample time of its reader.
 #include "blocks/math/sides.h"
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct Quantizer {
+template <class Real> struct Quantizer {
   Real resolution, per_resolution;
-  struct In { Real u; };
-  struct Out { Real y; };
-  struct Mode { Real count; };
-  struct Crossings { Real lower, upper; };
+  struct In {
+    Real u;
+  };
+  struct Out {
+    Real y;
+  };
+  struct Mode {
+    Real count;
+  };
+  struct Crossings {
+    Real lower, upper;
+  };
   static constexpr auto describe() {
     return block("Rounds a signal to multiples of a resolution.",
-      parameter(&Quantizer::resolution, "resolution", "$u", "Height of a step").positive(),
-      input(&In::u, "u", "$u", "Signal"),
-      output(&Out::y, "y", "$u", "The signal, rounded"),
-      crossing(&Crossings::lower, "lower"),
-      crossing(&Crossings::upper, "upper"));
+                 parameter(&Quantizer::resolution, "resolution", "$u", "Height of a step").positive(),
+                 input(&In::u, "u", "$u", "Signal"), output(&Out::y, "y", "$u", "The signal, rounded"),
+                 crossing(&Crossings::lower, "lower"), crossing(&Crossings::upper, "upper"));
   }
   void prepare(double) { per_resolution = 1.0 / resolution; }
   void decide(const In& in, Mode& mode) const { mode.count = round_even(Real(in.u * per_resolution)); }

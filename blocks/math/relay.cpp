@@ -3,24 +3,30 @@
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct Relay {
+template <class Real> struct Relay {
   Real switch_on, switch_off, on = 1.0, off = 0.0;
   bool starts_on = false;
-  struct In { Real u; };
-  struct Out { Real y; };
-  struct Mode { Real is_on; };
-  struct Crossings { Real threshold; };
+  struct In {
+    Real u;
+  };
+  struct Out {
+    Real y;
+  };
+  struct Mode {
+    Real is_on;
+  };
+  struct Crossings {
+    Real threshold;
+  };
   static constexpr auto describe() {
     return block("A switch with hysteresis.",
-      parameter(&Relay::switch_on, "switch_on", "$u", "Above this it switches on"),
-      parameter(&Relay::switch_off, "switch_off", "$u", "Below this it switches off"),
-      parameter(&Relay::on, "on", "$y", "Output when on").optional(),
-      parameter(&Relay::off, "off", "$y", "Output when off").optional(),
-      parameter(&Relay::starts_on, "starts_on", "", "Whether it is on at the start").optional(),
-      input(&In::u, "u", "$u", "Signal"),
-      output(&Out::y, "y", "$y", "The switched value"),
-      crossing(&Crossings::threshold, "threshold"));
+                 parameter(&Relay::switch_on, "switch_on", "$u", "Above this it switches on"),
+                 parameter(&Relay::switch_off, "switch_off", "$u", "Below this it switches off"),
+                 parameter(&Relay::on, "on", "$y", "Output when on").optional(),
+                 parameter(&Relay::off, "off", "$y", "Output when off").optional(),
+                 parameter(&Relay::starts_on, "starts_on", "", "Whether it is on at the start").optional(),
+                 input(&In::u, "u", "$u", "Signal"), output(&Out::y, "y", "$y", "The switched value"),
+                 crossing(&Crossings::threshold, "threshold"));
   }
   void check(const Checker& checker) const {
     if (switch_off <= switch_on) return;

@@ -3,20 +3,23 @@
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct Saturation {
+template <class Real> struct Saturation {
   Real low = -infinity, high = infinity;
-  struct In { Real u; };
-  struct Out { Real y; };
-  struct Crossings { Real low, high; };
+  struct In {
+    Real u;
+  };
+  struct Out {
+    Real y;
+  };
+  struct Crossings {
+    Real low, high;
+  };
   static constexpr auto describe() {
-    return block("Holds a signal within limits.",
-      parameter(&Saturation::low, "low", "$u", "Lower limit").optional(),
-      parameter(&Saturation::high, "high", "$u", "Upper limit").optional(),
-      input(&In::u, "u", "$u", "Signal"),
-      output(&Out::y, "y", "$u", "The signal within the limits"),
-      crossing(&Crossings::low, "low"),
-      crossing(&Crossings::high, "high"));
+    return block(
+        "Holds a signal within limits.", parameter(&Saturation::low, "low", "$u", "Lower limit").optional(),
+        parameter(&Saturation::high, "high", "$u", "Upper limit").optional(),
+        input(&In::u, "u", "$u", "Signal"), output(&Out::y, "y", "$u", "The signal within the limits"),
+        crossing(&Crossings::low, "low"), crossing(&Crossings::high, "high"));
   }
   void check(const Checker& checker) const {
     if (low <= high) return;

@@ -1,23 +1,28 @@
 /// y = 1 for u > 0, -1 for u < 0, 0 for u = 0
 ///
-/// In a loop that pushes u back to zero (dry friction) it chatters: a friction block with a smooth or a sticking law
-/// serves there.
+/// In a loop that pushes u back to zero (dry friction) it chatters: a friction block with a smooth or a
+/// sticking law serves there.
 #include "blocks/math/sides.h"
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct Sign {
-  struct In { Real u; };
-  struct Out { Real y; };
-  struct Mode { Real sign; };
-  struct Crossings { Real above, below; };
+template <class Real> struct Sign {
+  struct In {
+    Real u;
+  };
+  struct Out {
+    Real y;
+  };
+  struct Mode {
+    Real sign;
+  };
+  struct Crossings {
+    Real above, below;
+  };
   static constexpr auto describe() {
-    return block("The sign of a signal.",
-      input(&In::u, "u", "$u", "Signal"),
-      output(&Out::y, "y", "", "1, -1 or 0"),
-      crossing(&Crossings::above, "above"),
-      crossing(&Crossings::below, "below"));
+    return block("The sign of a signal.", input(&In::u, "u", "$u", "Signal"),
+                 output(&Out::y, "y", "", "1, -1 or 0"), crossing(&Crossings::above, "above"),
+                 crossing(&Crossings::below, "below"));
   }
   void decide(const In& in, Mode& mode) const {
     mode.sign = select(in.u > 0.0, Real(1.0), select(in.u < 0.0, Real(-1.0), Real(0.0)));

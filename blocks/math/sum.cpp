@@ -3,17 +3,21 @@
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct Sum {
+template <class Real> struct Sum {
   std::string signs;
   std::vector<double> factors;
-  struct In { Many<Real> terms; };
-  struct Out { Real sum; };
+  struct In {
+    Many<Real> terms;
+  };
+  struct Out {
+    Real sum;
+  };
   static constexpr auto describe() {
-    return block("Adds and subtracts any number of signals of one unit.",
-      parameter(&Sum::signs, "signs", "", "One + or - for each term; all + when left out").optional(),
-      input(&In::terms, "terms", "$sum", "What is added").length(&Sum::terms),
-      output(&Out::sum, "sum", "$sum", "The signed sum"));
+    return block(
+        "Adds and subtracts any number of signals of one unit.",
+        parameter(&Sum::signs, "signs", "", "One + or - for each term; all + when left out").optional(),
+        input(&In::terms, "terms", "$sum", "What is added").length(&Sum::terms),
+        output(&Out::sum, "sum", "$sum", "The signed sum"));
   }
   int terms() const { return signs.empty() ? -1 : int(signs.size()); }
   void check(const Checker& checker) const {
@@ -24,12 +28,15 @@ struct Sum {
   }
   void prepare(double) {
     factors.assign(signs.size(), 1.0);
-    for (size_t i = 0; i < signs.size(); ++i) if (signs[i] == '-') factors[i] = -1.0;
+    for (size_t i = 0; i < signs.size(); ++i)
+      if (signs[i] == '-') factors[i] = -1.0;
   }
   void outputs(const In& in, Out& out) const {
     Real sum = 0.0;
-    if (factors.empty()) for (int i = 0; i < in.terms.size(); ++i) sum = sum + in.terms[i];
-    else for (int i = 0; i < in.terms.size(); ++i) sum = sum + factors[size_t(i)] * in.terms[i];
+    if (factors.empty())
+      for (int i = 0; i < in.terms.size(); ++i) sum = sum + in.terms[i];
+    else
+      for (int i = 0; i < in.terms.size(); ++i) sum = sum + factors[size_t(i)] * in.terms[i];
     out.sum = sum;
   }
 };

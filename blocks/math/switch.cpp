@@ -3,21 +3,28 @@
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct Switch {
+template <class Real> struct Switch {
   Real threshold = 0.5;
-  struct In { Real control, first, second; };
-  struct Out { Real y; };
-  struct Mode { Real is_first; };
-  struct Crossings { Real control; };
+  struct In {
+    Real control, first, second;
+  };
+  struct Out {
+    Real y;
+  };
+  struct Mode {
+    Real is_first;
+  };
+  struct Crossings {
+    Real control;
+  };
   static constexpr auto describe() {
-    return block("Chooses one of two signals by a third.",
-      parameter(&Switch::threshold, "threshold", "$control", "Above this the first is chosen").optional(),
-      input(&In::control, "control", "$control", "What decides"),
-      input(&In::first, "first", "$y", "Signal while the control is above the threshold"),
-      input(&In::second, "second", "$y", "Signal otherwise"),
-      output(&Out::y, "y", "$y", "The chosen signal"),
-      crossing(&Crossings::control, "control"));
+    return block(
+        "Chooses one of two signals by a third.",
+        parameter(&Switch::threshold, "threshold", "$control", "Above this the first is chosen").optional(),
+        input(&In::control, "control", "$control", "What decides"),
+        input(&In::first, "first", "$y", "Signal while the control is above the threshold"),
+        input(&In::second, "second", "$y", "Signal otherwise"),
+        output(&Out::y, "y", "$y", "The chosen signal"), crossing(&Crossings::control, "control"));
   }
   void decide(const In& in, Mode& mode) const {
     mode.is_first = select(in.control > threshold, Real(1.0), Real(0.0));
@@ -25,7 +32,9 @@ struct Switch {
   void outputs(const In& in, const Mode& mode, Out& out) const {
     out.y = select(mode.is_first > 0.5, in.first, in.second);
   }
-  void crossings(const In& in, Crossings& value) const { value.control = above_zero(Real(in.control - threshold)); }
+  void crossings(const In& in, Crossings& value) const {
+    value.control = above_zero(Real(in.control - threshold));
+  }
 };
 LOOPWRIGHT_BLOCK(Switch)
 

@@ -9,7 +9,8 @@ namespace loopwright::blocks {
 enum class Outside { hold, extrapolate, fault };
 constexpr auto names_of(Outside) { return std::array<std::string_view, 3>{"hold", "extrapolate", "fault"}; }
 
-/// The interval of u: i for breakpoints[i] ≤ u < breakpoints[i+1], -1 below all, size - 1 from the last one on.
+/// The interval of u: i for breakpoints[i] ≤ u < breakpoints[i+1], -1 below all, size - 1 from the last one
+/// on.
 inline int interval_of(const std::vector<double>& breakpoints, double u) {
   return int(std::upper_bound(breakpoints.begin(), breakpoints.end(), u) - breakpoints.begin()) - 1;
 }
@@ -26,7 +27,8 @@ inline double below_border(const std::vector<double>& breakpoints, int interval,
   return next < breakpoints.size() ? not_below_zero(u - breakpoints[next]) : -1.0;
 }
 
-inline void check_breakpoints(const Checker& checker, std::string_view name, const std::vector<double>& breakpoints) {
+inline void check_breakpoints(const Checker& checker, std::string_view name,
+                              const std::vector<double>& breakpoints) {
   if (breakpoints.size() < 2) {
     auto& p = checker.error(name, "a table needs at least two breakpoints");
     p.found = std::to_string(breakpoints.size());
@@ -34,7 +36,8 @@ inline void check_breakpoints(const Checker& checker, std::string_view name, con
   for (size_t i = 1; i < breakpoints.size(); ++i) {
     if (breakpoints[i] > breakpoints[i - 1]) continue;
     auto& p = checker.error(name, "breakpoints must rise strictly");
-    p.found = reading::number_text(breakpoints[i - 1]) + ", " + reading::number_text(breakpoints[i]) + " at index " + std::to_string(i);
+    p.found = reading::number_text(breakpoints[i - 1]) + ", " + reading::number_text(breakpoints[i]) +
+              " at index " + std::to_string(i);
     return;
   }
 }

@@ -3,16 +3,18 @@
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct Unpack {
+template <class Real> struct Unpack {
   int index;
-  struct In { Vector<const Real> u; };
-  struct Out { Real y; };
+  struct In {
+    Vector<const Real> u;
+  };
+  struct Out {
+    Real y;
+  };
   static constexpr auto describe() {
     return block("Takes one element out of a vector.",
-      parameter(&Unpack::index, "index", "", "Which element, counted from 0").not_negative(),
-      input(&In::u, "u", "$u", "Vector"),
-      output(&Out::y, "y", "$u", "The element"));
+                 parameter(&Unpack::index, "index", "", "Which element, counted from 0").not_negative(),
+                 input(&In::u, "u", "$u", "Vector"), output(&Out::y, "y", "$u", "The element"));
   }
   Fault outputs(const In& in, Out& out) const {
     const bool is_inside = size_t(index) < in.u.size();

@@ -3,25 +3,30 @@
 
 namespace loopwright::blocks {
 
-/// What a loose gear does to a slow position: the output waits until the input has crossed the gap. Rate independent and
-/// without inertia; BacklashCoupling is the physical one.
-/// The last output y₋ is renewed at samples, fixed steps and events, and is exact there as long as the input does not
-/// turn round in between. A variable-step solver that meets neither samples nor events within a reversal would not see
-/// it: give the block a sample_time there, or use BacklashCoupling.
-template <class Real>
-struct Backlash {
+/// What a loose gear does to a slow position: the output waits until the input has crossed the gap. Rate
+/// independent and without inertia; BacklashCoupling is the physical one. The last output y₋ is renewed at
+/// samples, fixed steps and events, and is exact there as long as the input does not turn round in between. A
+/// variable-step solver that meets neither samples nor events within a reversal would not see it: give the
+/// block a sample_time there, or use BacklashCoupling.
+template <class Real> struct Backlash {
   Real gap, initial = 0.0;
   Real half;
-  struct In { Real u; };
-  struct Out { Real y; };
-  struct Mode { Real y; };
+  struct In {
+    Real u;
+  };
+  struct Out {
+    Real y;
+  };
+  struct Mode {
+    Real y;
+  };
   static constexpr auto describe() {
     return block("Lets the output follow the input with play.",
-      parameter(&Backlash::gap, "gap", "$u", "Width of the play").not_negative(),
-      parameter(&Backlash::initial, "initial", "$u", "Output before the start, moved only if the input is beyond the gap")
-          .optional(),
-      input(&In::u, "u", "$u", "Driving position"),
-      output(&Out::y, "y", "$u", "Driven position"));
+                 parameter(&Backlash::gap, "gap", "$u", "Width of the play").not_negative(),
+                 parameter(&Backlash::initial, "initial", "$u",
+                           "Output before the start, moved only if the input is beyond the gap")
+                     .optional(),
+                 input(&In::u, "u", "$u", "Driving position"), output(&Out::y, "y", "$u", "Driven position"));
   }
   void prepare(double) { half = 0.5 * gap; }
   void start(Mode& mode) const { mode.y = initial; }

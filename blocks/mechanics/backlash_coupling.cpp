@@ -4,29 +4,40 @@
 
 namespace loopwright::blocks {
 
-/// The physical backlash: two masses, each a block of its own, that touch after a gap. Subtract the force at the motor,
-/// add it at the load. Touching and parting are events for variable-step solvers.
-template <class Real>
-struct BacklashCoupling {
+/// The physical backlash: two masses, each a block of its own, that touch after a gap. Subtract the force at
+/// the motor, add it at the load. Touching and parting are events for variable-step solvers.
+template <class Real> struct BacklashCoupling {
   Real gap, stiffness, damping = 0.0;
   GapContact<Real> contact;
-  struct In { Real motor_position, motor_velocity, load_position, load_velocity; };
-  struct Out { Real force; };
-  struct Mode { Real side; };
-  struct Crossings { Real backward, forward; };
+  struct In {
+    Real motor_position, motor_velocity, load_position, load_velocity;
+  };
+  struct Out {
+    Real force;
+  };
+  struct Mode {
+    Real side;
+  };
+  struct Crossings {
+    Real backward, forward;
+  };
   static constexpr auto describe() {
-    return block("Couples a motor and a load through a gap with elastic contact.",
-      parameter(&BacklashCoupling::gap, "gap", "$position", "Free travel between the two contacts").not_negative(),
-      parameter(&BacklashCoupling::stiffness, "stiffness", "$force/$position", "Force per indentation").positive(),
-      parameter(&BacklashCoupling::damping, "damping", "$force*s/$position", "Force per speed while in contact")
-          .not_negative().optional(),
-      input(&In::motor_position, "motor_position", "$position", "Position of the driving part"),
-      input(&In::motor_velocity, "motor_velocity", "$position/s", "Its velocity"),
-      input(&In::load_position, "load_position", "$position", "Position of the driven part"),
-      input(&In::load_velocity, "load_velocity", "$position/s", "Its velocity"),
-      output(&Out::force, "force", "$force", "Force that drives the load; subtract it at the motor"),
-      crossing(&Crossings::backward, "backward contact"),
-      crossing(&Crossings::forward, "forward contact"));
+    return block(
+        "Couples a motor and a load through a gap with elastic contact.",
+        parameter(&BacklashCoupling::gap, "gap", "$position", "Free travel between the two contacts")
+            .not_negative(),
+        parameter(&BacklashCoupling::stiffness, "stiffness", "$force/$position", "Force per indentation")
+            .positive(),
+        parameter(&BacklashCoupling::damping, "damping", "$force*s/$position",
+                  "Force per speed while in contact")
+            .not_negative()
+            .optional(),
+        input(&In::motor_position, "motor_position", "$position", "Position of the driving part"),
+        input(&In::motor_velocity, "motor_velocity", "$position/s", "Its velocity"),
+        input(&In::load_position, "load_position", "$position", "Position of the driven part"),
+        input(&In::load_velocity, "load_velocity", "$position/s", "Its velocity"),
+        output(&Out::force, "force", "$force", "Force that drives the load; subtract it at the motor"),
+        crossing(&Crossings::backward, "backward contact"), crossing(&Crossings::forward, "forward contact"));
   }
   void prepare(double) { contact = {-0.5 * gap, 0.5 * gap, stiffness, damping, 1.0 / stiffness}; }
   void decide(const In& in, Mode& mode) const { mode.side = contact.side(deflection(in), approach(in)); }

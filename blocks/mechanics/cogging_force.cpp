@@ -3,16 +3,18 @@
 
 namespace loopwright::blocks {
 
-/// The attraction between magnets and teeth of an iron-core motor. Slope and modulation are optional: the slope lets
-/// the amplitude change with speed, the modulation lets it vary slowly along the track, from magnet to magnet.
-template <class Real>
-struct CoggingForce {
+/// The attraction between magnets and teeth of an iron-core motor. Slope and modulation are optional: the
+/// slope lets the amplitude change with speed, the modulation lets it vary slowly along the track, from
+/// magnet to magnet.
+template <class Real> struct CoggingForce {
   struct Harmonic {
     int order = 1;
     Real amplitude, phase = 0.0;
     Real wave_number;
     static constexpr auto describe() {
-      return fields(parameter(&Harmonic::order, "order", "", "How often the term repeats in a pole pitch").at_least(1).optional(),
+      return fields(parameter(&Harmonic::order, "order", "", "How often the term repeats in a pole pitch")
+                        .at_least(1)
+                        .optional(),
                     parameter(&Harmonic::amplitude, "amplitude", "$force", "Peak force at rest"),
                     parameter(&Harmonic::phase, "phase", "rad", "Phase at position zero").optional());
     }
@@ -20,27 +22,39 @@ struct CoggingForce {
   struct Modulation {
     Real depth = 0.0, period = 1.0, phase = 0.0;
     static constexpr auto describe() {
-      return fields(parameter(&Modulation::depth, "depth", "", "Fraction by which the amplitude varies"),
-                    parameter(&Modulation::period, "period", "$position", "Distance after which it repeats").positive(),
-                    parameter(&Modulation::phase, "phase", "rad", "Phase at position zero").optional());
+      return fields(
+          parameter(&Modulation::depth, "depth", "", "Fraction by which the amplitude varies"),
+          parameter(&Modulation::period, "period", "$position", "Distance after which it repeats").positive(),
+          parameter(&Modulation::phase, "phase", "rad", "Phase at position zero").optional());
     }
   };
   Real pole_pitch, velocity_slope = 0.0;
   std::vector<Harmonic> harmonics;
   Modulation modulation;
   Real modulation_wave_number;
-  struct In { Real position, velocity; };
-  struct Out { Real force; };
+  struct In {
+    Real position, velocity;
+  };
+  struct Out {
+    Real force;
+  };
   static constexpr auto describe() {
-    return block("Attraction between magnets and teeth, periodic in position; subtract it in the sum of forces.",
-      parameter(&CoggingForce::pole_pitch, "pole_pitch", "$position", "Distance after which the force repeats").positive(),
-      parameter(&CoggingForce::harmonics, "harmonics", "", "Terms of the Fourier series"),
-      parameter(&CoggingForce::velocity_slope, "velocity_slope", "s/$position",
-                "Fraction of the amplitude lost per speed; the amplitude stays at 0 from there on").optional(),
-      parameter(&CoggingForce::modulation, "modulation", "", "Slow variation of the amplitude along the track").optional(),
-      input(&In::position, "position", "$position", "Position of the moving part"),
-      input(&In::velocity, "velocity", "$position/s", "Its velocity; needed for a velocity slope").otherwise(0.0),
-      output(&Out::force, "force", "$force", "Cogging force: to be subtracted"));
+    return block(
+        "Attraction between magnets and teeth, periodic in position; subtract it in the sum of forces.",
+        parameter(&CoggingForce::pole_pitch, "pole_pitch", "$position",
+                  "Distance after which the force repeats")
+            .positive(),
+        parameter(&CoggingForce::harmonics, "harmonics", "", "Terms of the Fourier series"),
+        parameter(&CoggingForce::velocity_slope, "velocity_slope", "s/$position",
+                  "Fraction of the amplitude lost per speed; the amplitude stays at 0 from there on")
+            .optional(),
+        parameter(&CoggingForce::modulation, "modulation", "",
+                  "Slow variation of the amplitude along the track")
+            .optional(),
+        input(&In::position, "position", "$position", "Position of the moving part"),
+        input(&In::velocity, "velocity", "$position/s", "Its velocity; needed for a velocity slope")
+            .otherwise(0.0),
+        output(&Out::force, "force", "$force", "Cogging force: to be subtracted"));
   }
   void prepare(double) {
     for (Harmonic& h : harmonics) h.wave_number = double(h.order) * 2 * pi / pole_pitch;

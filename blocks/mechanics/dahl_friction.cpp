@@ -3,25 +3,33 @@
 
 namespace loopwright::blocks {
 
-/// Hysteresis in position: after a reversal, friction goes over to its other value along exp(-|Δx| / x_c), whatever the
-/// speed. P. R. Dahl, "A Solid Friction Model", Aerospace Corporation, 1968. Holds a resting mass like a spring of
-/// stiffness Fc/x_c does; that spring on the moving mass must not be too stiff for a fixed step (Fc/x_c h² ≪ m), nor
-/// |v|/x_c (|v| h < 2 x_c with rk4).
-template <class Real>
-struct DahlFriction {
+/// Hysteresis in position: after a reversal, friction goes over to its other value along exp(-|Δx| / x_c),
+/// whatever the speed. P. R. Dahl, "A Solid Friction Model", Aerospace Corporation, 1968. Holds a resting
+/// mass like a spring of stiffness Fc/x_c does; that spring on the moving mass must not be too stiff for a
+/// fixed step (Fc/x_c h² ≪ m), nor |v|/x_c (|v| h < 2 x_c with rk4).
+template <class Real> struct DahlFriction {
   Real level, transition_distance;
   Real per_distance;
-  struct In { Real velocity; };
-  struct State { Real fraction; };
-  struct Out { Real force; };
+  struct In {
+    Real velocity;
+  };
+  struct State {
+    Real fraction;
+  };
+  struct Out {
+    Real force;
+  };
   static constexpr auto describe() {
-    return block("Dry friction with hysteresis in position (Dahl); subtract it in the sum of forces.",
-      parameter(&DahlFriction::level, "level", "$force", "Friction while sliding").not_negative(),
-      parameter(&DahlFriction::transition_distance, "transition_distance", "$position",
-                "x_c: distance after a reversal over which all but 37 % of the change has happened").positive(),
-      input(&In::velocity, "velocity", "$position/s", "Velocity of the moving part"),
-      output(&Out::force, "force", "$force", "Friction, positive when moving forward: to be subtracted").from_memory(),
-      output(&State::fraction, "fraction", "", "Friction as a fraction of its level, from -1 to 1"));
+    return block(
+        "Dry friction with hysteresis in position (Dahl); subtract it in the sum of forces.",
+        parameter(&DahlFriction::level, "level", "$force", "Friction while sliding").not_negative(),
+        parameter(&DahlFriction::transition_distance, "transition_distance", "$position",
+                  "x_c: distance after a reversal over which all but 37 % of the change has happened")
+            .positive(),
+        input(&In::velocity, "velocity", "$position/s", "Velocity of the moving part"),
+        output(&Out::force, "force", "$force", "Friction, positive when moving forward: to be subtracted")
+            .from_memory(),
+        output(&State::fraction, "fraction", "", "Friction as a fraction of its level, from -1 to 1"));
   }
   void prepare(double) { per_distance = 1.0 / transition_distance; }
   void derivatives(const In& in, const State& state, State& rate) const {

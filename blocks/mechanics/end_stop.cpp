@@ -4,27 +4,36 @@
 
 namespace loopwright::blocks {
 
-/// One stop or two: a limit that is left out is not there. The stop pushes and never pulls. Reaching and leaving it are
-/// events for variable-step solvers; a fixed step h should be well below √(m/k).
-template <class Real>
-struct EndStop {
+/// One stop or two: a limit that is left out is not there. The stop pushes and never pulls. Reaching and
+/// leaving it are events for variable-step solvers; a fixed step h should be well below √(m/k).
+template <class Real> struct EndStop {
   Real low = -infinity, high = infinity, stiffness, damping = 0.0;
   GapContact<Real> contact;
-  struct In { Real position, velocity; };
-  struct Out { Real force; };
-  struct Mode { Real side; };
-  struct Crossings { Real low, high; };
+  struct In {
+    Real position, velocity;
+  };
+  struct Out {
+    Real force;
+  };
+  struct Mode {
+    Real side;
+  };
+  struct Crossings {
+    Real low, high;
+  };
   static constexpr auto describe() {
-    return block("Elastic stops at the ends of the travel; subtract their force in the sum of forces.",
-      parameter(&EndStop::low, "low", "$position", "Where the low stop is; none if left out").optional(),
-      parameter(&EndStop::high, "high", "$position", "Where the high stop is; none if left out").optional(),
-      parameter(&EndStop::stiffness, "stiffness", "$force/$position", "Force per indentation").positive(),
-      parameter(&EndStop::damping, "damping", "$force*s/$position", "Force per speed while in contact").not_negative().optional(),
-      input(&In::position, "position", "$position", "Position of the moving part"),
-      input(&In::velocity, "velocity", "$position/s", "Its velocity"),
-      output(&Out::force, "force", "$force", "Contact force, positive at the high stop: to be subtracted"),
-      crossing(&Crossings::low, "low stop"),
-      crossing(&Crossings::high, "high stop"));
+    return block(
+        "Elastic stops at the ends of the travel; subtract their force in the sum of forces.",
+        parameter(&EndStop::low, "low", "$position", "Where the low stop is; none if left out").optional(),
+        parameter(&EndStop::high, "high", "$position", "Where the high stop is; none if left out").optional(),
+        parameter(&EndStop::stiffness, "stiffness", "$force/$position", "Force per indentation").positive(),
+        parameter(&EndStop::damping, "damping", "$force*s/$position", "Force per speed while in contact")
+            .not_negative()
+            .optional(),
+        input(&In::position, "position", "$position", "Position of the moving part"),
+        input(&In::velocity, "velocity", "$position/s", "Its velocity"),
+        output(&Out::force, "force", "$force", "Contact force, positive at the high stop: to be subtracted"),
+        crossing(&Crossings::low, "low stop"), crossing(&Crossings::high, "high stop"));
   }
   void check(const Checker& checker) const {
     if (low < high) return;

@@ -3,13 +3,14 @@
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct ForceRipple {
+template <class Real> struct ForceRipple {
   struct Harmonic {
     int order = 1;
     Real depth, phase = 0.0;
     static constexpr auto describe() {
-      return fields(parameter(&Harmonic::order, "order", "", "How often the term repeats in a pole pitch").at_least(1).optional(),
+      return fields(parameter(&Harmonic::order, "order", "", "How often the term repeats in a pole pitch")
+                        .at_least(1)
+                        .optional(),
                     parameter(&Harmonic::depth, "depth", "", "Peak deviation as a fraction of the command"),
                     parameter(&Harmonic::phase, "phase", "rad", "Phase at position zero").optional());
     }
@@ -17,15 +18,21 @@ struct ForceRipple {
   Real pole_pitch;
   std::vector<Harmonic> harmonics;
   Real wave_number;
-  struct In { Real command, position; };
-  struct Out { Real force; };
+  struct In {
+    Real command, position;
+  };
+  struct Out {
+    Real force;
+  };
   static constexpr auto describe() {
     return block("A motor whose force constant varies with position.",
-      parameter(&ForceRipple::pole_pitch, "pole_pitch", "$position", "Distance after which the ripple repeats").positive(),
-      parameter(&ForceRipple::harmonics, "harmonics", "", "Terms of the Fourier series"),
-      input(&In::command, "command", "$force", "Force that is asked for"),
-      input(&In::position, "position", "$position", "Position of the moving part"),
-      output(&Out::force, "force", "$force", "Force that the motor gives"));
+                 parameter(&ForceRipple::pole_pitch, "pole_pitch", "$position",
+                           "Distance after which the ripple repeats")
+                     .positive(),
+                 parameter(&ForceRipple::harmonics, "harmonics", "", "Terms of the Fourier series"),
+                 input(&In::command, "command", "$force", "Force that is asked for"),
+                 input(&In::position, "position", "$position", "Position of the moving part"),
+                 output(&Out::force, "force", "$force", "Force that the motor gives"));
   }
   void prepare(double) { wave_number = 2 * pi / pole_pitch; }
   void outputs(const In& in, Out& out) const {

@@ -1,25 +1,32 @@
-/// y = u (1 + d (1 - exp(-t/T)))
+/// y = u (g + d (1 - exp(-t/T)))
 #include "engine/block.h"
 
 namespace loopwright::blocks {
 
 /// A gain that changes while the machine warms up: the force constant of a magnet, the viscosity of grease.
-template <class Real>
-struct ThermalDrift {
-  Real drift, time_constant;
+template <class Real> struct ThermalDrift {
+  Real drift, time_constant, cold = 1.0;
   Real rate_constant;
-  struct In { Real u; };
-  struct Out { Real y; };
+  struct In {
+    Real u;
+  };
+  struct Out {
+    Real y;
+  };
   static constexpr auto describe() {
-    return block("Multiplies a signal by a gain that drifts from 1 to its warm value.",
-      parameter(&ThermalDrift::drift, "drift", "", "Change of the gain when warm, as a fraction"),
-      parameter(&ThermalDrift::time_constant, "time_constant", "s", "Time for 63 % of the drift").positive(),
-      input(&In::u, "u", "$u", "Signal"),
-      output(&Out::y, "y", "$u", "The signal with its gain drifted"));
+    return block("Multiplies a signal by a gain that drifts from its cold to its warm value.",
+                 parameter(&ThermalDrift::drift, "drift", "", "Change of the gain when warm, as a fraction"),
+                 parameter(&ThermalDrift::time_constant, "time_constant", "s", "Time for 63 % of the drift")
+                     .positive(),
+                 parameter(&ThermalDrift::cold, "cold", "",
+                           "g: gain at the start; 0 leaves only what comes with the warmth")
+                     .optional(),
+                 input(&In::u, "u", "$u", "Signal"),
+                 output(&Out::y, "y", "$u", "The signal with its gain drifted"));
   }
   void prepare(double) { rate_constant = 1.0 / time_constant; }
   void outputs(const Instant& now, const In& in, Out& out) const {
-    out.y = in.u * (1.0 + drift * (1.0 - exponential(-now.time * rate_constant)));
+    out.y = in.u * (cold + drift * (1.0 - exponential(-now.time * rate_constant)));
   }
 };
 LOOPWRIGHT_BLOCK(ThermalDrift)

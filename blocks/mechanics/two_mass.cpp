@@ -3,28 +3,46 @@
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct TwoMass {
+template <class Real> struct TwoMass {
   Real motor_mass, load_mass, stiffness, damping = 0.0, initial_position = 0.0, initial_velocity = 0.0;
   Real per_motor_mass, per_load_mass;
-  struct In { Real force, load_force; };
-  struct State { Real motor_position, motor_velocity, load_position, load_velocity; };
-  struct Out { Real coupling_force; };
+  struct In {
+    Real force, load_force;
+  };
+  struct State {
+    Real motor_position, motor_velocity, load_position, load_velocity;
+  };
+  struct Out {
+    Real coupling_force;
+  };
   static constexpr auto describe() {
-    return block("A motor and a load joined by an elastic coupling.",
-      parameter(&TwoMass::motor_mass, "motor_mass", "$force*s^2/$position", "Mass on the driven side").positive(),
-      parameter(&TwoMass::load_mass, "load_mass", "$force*s^2/$position", "Mass beyond the coupling").positive(),
-      parameter(&TwoMass::stiffness, "stiffness", "$force/$position", "Stiffness of the coupling").not_negative(),
-      parameter(&TwoMass::damping, "damping", "$force*s/$position", "Damping of the coupling").not_negative().optional(),
-      parameter(&TwoMass::initial_position, "initial_position", "$position", "Position of both at the start").optional(),
-      parameter(&TwoMass::initial_velocity, "initial_velocity", "$position/s", "Velocity of both at the start").optional(),
-      input(&In::force, "force", "$force", "Sum of the forces on the motor"),
-      input(&In::load_force, "load_force", "$force", "Sum of the forces that hold the load back").otherwise(0.0),
-      output(&State::motor_position, "motor_position", "$position", "Where the motor is"),
-      output(&State::motor_velocity, "motor_velocity", "$position/s", "How fast the motor moves"),
-      output(&State::load_position, "load_position", "$position", "Where the load is"),
-      output(&State::load_velocity, "load_velocity", "$position/s", "How fast the load moves"),
-      output(&Out::coupling_force, "coupling_force", "$force", "Force through the coupling, driving the load").from_memory());
+    return block(
+        "A motor and a load joined by an elastic coupling.",
+        parameter(&TwoMass::motor_mass, "motor_mass", "$force*s^2/$position", "Mass on the driven side")
+            .positive(),
+        parameter(&TwoMass::load_mass, "load_mass", "$force*s^2/$position", "Mass beyond the coupling")
+            .positive(),
+        parameter(&TwoMass::stiffness, "stiffness", "$force/$position", "Stiffness of the coupling")
+            .not_negative(),
+        parameter(&TwoMass::damping, "damping", "$force*s/$position", "Damping of the coupling")
+            .not_negative()
+            .optional(),
+        parameter(&TwoMass::initial_position, "initial_position", "$position",
+                  "Position of both at the start")
+            .optional(),
+        parameter(&TwoMass::initial_velocity, "initial_velocity", "$position/s",
+                  "Velocity of both at the start")
+            .optional(),
+        input(&In::force, "force", "$force", "Sum of the forces on the motor"),
+        input(&In::load_force, "load_force", "$force", "Sum of the forces that hold the load back")
+            .otherwise(0.0),
+        output(&State::motor_position, "motor_position", "$position", "Where the motor is"),
+        output(&State::motor_velocity, "motor_velocity", "$position/s", "How fast the motor moves"),
+        output(&State::load_position, "load_position", "$position", "Where the load is"),
+        output(&State::load_velocity, "load_velocity", "$position/s", "How fast the load moves"),
+        output(&Out::coupling_force, "coupling_force", "$force",
+               "Force through the coupling, driving the load")
+            .from_memory());
   }
   void prepare(double) {
     per_motor_mass = 1.0 / motor_mass;

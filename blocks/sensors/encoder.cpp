@@ -3,17 +3,18 @@
 
 namespace loopwright::blocks {
 
-/// A position encoder: counts of width q (half to even), an offset, and an error that repeats with the grating. A sensor
-/// without counting has resolution 0. Noise is a block of its own.
-/// It is read at samples: give it the sample_time of the controller. Without one, every count is an event for a
-/// variable-step solver, and the count is held within a fixed step.
-template <class Real>
-struct Encoder {
+/// A position encoder: counts of width q (half to even), an offset, and an error that repeats with the
+/// grating. A sensor without counting has resolution 0. Noise is a block of its own. It is read at samples:
+/// give it the sample_time of the controller. Without one, every count is an event for a variable-step
+/// solver, and the count is held within a fixed step.
+template <class Real> struct Encoder {
   struct Harmonic {
     int order = 1;
     Real amplitude, phase = 0.0;
     static constexpr auto describe() {
-      return fields(parameter(&Harmonic::order, "order", "", "How often the error repeats in a pitch").at_least(1).optional(),
+      return fields(parameter(&Harmonic::order, "order", "", "How often the error repeats in a pitch")
+                        .at_least(1)
+                        .optional(),
                     parameter(&Harmonic::amplitude, "amplitude", "$position", "Peak error"),
                     parameter(&Harmonic::phase, "phase", "rad", "Phase at position zero").optional());
     }
@@ -21,23 +22,37 @@ struct Encoder {
   Real resolution, offset = 0.0, pitch = 0.0;
   std::vector<Harmonic> periodic_error;
   Real per_count, wave_number;
-  struct In { Real position; };
-  struct Out { Real position; };
-  struct Mode { Real count; };
-  struct Crossings { Real count; };
+  struct In {
+    Real position;
+  };
+  struct Out {
+    Real position;
+  };
+  struct Mode {
+    Real count;
+  };
+  struct Crossings {
+    Real count;
+  };
   static constexpr auto describe() {
-    return block("Measures a position in counts, with offset and periodic error.",
-      parameter(&Encoder::resolution, "resolution", "$position", "Width of a count; 0: continuous").not_negative(),
-      parameter(&Encoder::offset, "offset", "$position", "Error of the zero").optional(),
-      parameter(&Encoder::pitch, "pitch", "$position", "Distance after which the periodic error repeats").not_negative().optional(),
-      parameter(&Encoder::periodic_error, "periodic_error", "", "Terms of the Fourier series of the error").optional(),
-      input(&In::position, "position", "$position", "True position"),
-      output(&Out::position, "position", "$position", "Measured position"),
-      crossing(&Crossings::count, "count"));
+    return block(
+        "Measures a position in counts, with offset and periodic error.",
+        parameter(&Encoder::resolution, "resolution", "$position", "Width of a count; 0: continuous")
+            .not_negative(),
+        parameter(&Encoder::offset, "offset", "$position", "Error of the zero").optional(),
+        parameter(&Encoder::pitch, "pitch", "$position", "Distance after which the periodic error repeats")
+            .not_negative()
+            .optional(),
+        parameter(&Encoder::periodic_error, "periodic_error", "", "Terms of the Fourier series of the error")
+            .optional(),
+        input(&In::position, "position", "$position", "True position"),
+        output(&Out::position, "position", "$position", "Measured position"),
+        crossing(&Crossings::count, "count"));
   }
   void check(const Checker& checker) const {
     if (periodic_error.empty() || pitch > 0) return;
-    checker.error("pitch", "a periodic error needs the pitch after which it repeats").expected = "a pitch above 0";
+    checker.error("pitch", "a periodic error needs the pitch after which it repeats").expected =
+        "a pitch above 0";
   }
   void prepare(double) {
     per_count = select(resolution > 0.0, 1.0 / resolution, Real(0.0));

@@ -1,7 +1,7 @@
 /// y = bias + amplitude · sin(2π ∫ f dt + phase),  f = f₀ + (f₁ - f₀) t/T  or  f₀ (f₁/f₀)^(t/T)
 ///
-/// The phase is the closed integral of the frequency, not a sum over steps. A logarithmic sweep spends equal time on
-/// every octave. After its duration T the signal rests at the bias, or starts anew.
+/// The phase is the closed integral of the frequency, not a sum over steps. A logarithmic sweep spends equal
+/// time on every octave. After its duration T the signal rests at the bias, or starts anew.
 #include "blocks/sources/turns.h"
 
 namespace loopwright::blocks {
@@ -9,34 +9,42 @@ namespace loopwright::blocks {
 enum class Sweep { linear, logarithmic };
 constexpr auto names_of(Sweep) { return std::array<std::string_view, 2>{"linear", "logarithmic"}; }
 
-template <class Real>
-struct Chirp {
+template <class Real> struct Chirp {
   Real amplitude = 1.0, first_frequency, last_frequency, duration, start_time = 0.0, phase = 0.0, bias = 0.0;
   Sweep sweep = Sweep::linear;
   bool repeats = false;
   Real ratio;  // ln(f₁/f₀)
-  struct Out { Real y, frequency; };
-  struct Mode { Real begin, is_on; };  // begin: of this sweep, s
+  struct Out {
+    Real y, frequency;
+  };
+  struct Mode {
+    Real begin, is_on;
+  };  // begin: of this sweep, s
   static constexpr auto describe() {
-    return block("A sine wave whose frequency sweeps from one value to another.",
-      parameter(&Chirp::amplitude, "amplitude", "$y", "Half of the distance from trough to crest").optional(),
-      parameter(&Chirp::first_frequency, "from", "Hz", "Frequency at the start").not_negative(),
-      parameter(&Chirp::last_frequency, "to", "Hz", "Frequency at the end").not_negative(),
-      parameter(&Chirp::duration, "duration", "s", "How long one sweep takes").positive(),
-      parameter(&Chirp::sweep, "sweep", "", "How the frequency changes: as much per second, or per octave").optional(),
-      parameter(&Chirp::start_time, "start", "s", "When it begins").optional(),
-      parameter(&Chirp::repeats, "repeats", "", "Whether it starts anew at its end").optional(),
-      parameter(&Chirp::phase, "phase", "rad", "Phase at the start").optional(),
-      parameter(&Chirp::bias, "bias", "$y", "Mean value").optional(),
-      output(&Out::y, "y", "$y", "The sweep"),
-      output(&Out::frequency, "frequency", "Hz", "Frequency at this moment; 0 at rest"));
+    return block(
+        "A sine wave whose frequency sweeps from one value to another.",
+        parameter(&Chirp::amplitude, "amplitude", "$y", "Half of the distance from trough to crest")
+            .optional(),
+        parameter(&Chirp::first_frequency, "from", "Hz", "Frequency at the start").not_negative(),
+        parameter(&Chirp::last_frequency, "to", "Hz", "Frequency at the end").not_negative(),
+        parameter(&Chirp::duration, "duration", "s", "How long one sweep takes").positive(),
+        parameter(&Chirp::sweep, "sweep", "", "How the frequency changes: as much per second, or per octave")
+            .optional(),
+        parameter(&Chirp::start_time, "start", "s", "When it begins").optional(),
+        parameter(&Chirp::repeats, "repeats", "", "Whether it starts anew at its end").optional(),
+        parameter(&Chirp::phase, "phase", "rad", "Phase at the start").optional(),
+        parameter(&Chirp::bias, "bias", "$y", "Mean value").optional(),
+        output(&Out::y, "y", "$y", "The sweep"),
+        output(&Out::frequency, "frequency", "Hz", "Frequency at this moment; 0 at rest"));
   }
   void check(const Checker& checker) const {
     if (sweep == Sweep::linear || (first_frequency > 0.0 && last_frequency > 0.0)) return;
-    checker.error(first_frequency > 0.0 ? "to" : "from", "a logarithmic sweep cannot reach 0 Hz").expected = "a number above 0 in Hz";
+    checker.error(first_frequency > 0.0 ? "to" : "from", "a logarithmic sweep cannot reach 0 Hz").expected =
+        "a number above 0 in Hz";
   }
   void prepare(double) {
-    ratio = sweep == Sweep::linear ? Real(0.0) : Real(natural_logarithm(Real(last_frequency / first_frequency)));
+    ratio =
+        sweep == Sweep::linear ? Real(0.0) : Real(natural_logarithm(Real(last_frequency / first_frequency)));
   }
   void decide(const Instant& now, Mode& mode) const {
     const Real cycle = whole_periods(Real(now.time), start_time, duration);

@@ -3,9 +3,10 @@
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct Clock {
-  struct Out { Real time; };
+template <class Real> struct Clock {
+  struct Out {
+    Real time;
+  };
   static constexpr auto describe() {
     return block("The time of the simulation.", output(&Out::time, "time", "s", "Time since the start"));
   }

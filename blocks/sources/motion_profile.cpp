@@ -1,29 +1,32 @@
-/// Velocity through given values, joined by ramps; position and acceleration are its closed integral and derivative.
+/// Velocity through given values, joined by ramps; position and acceleration are its closed integral and
+/// derivative.
 ///
 /// With s = t/T running from 0 to 1 over a segment, the velocity is v₀ + (v₁ - v₀) w(s):
 ///   raised_cosine  w = (1 - cos πs)/2       continuous acceleration
 ///   cubic          w = 3s² - 2s³            continuous acceleration, 5 % less peak
 ///   linear         w = s                    least peak acceleration, jumps at the borders
-/// A pass ends at the velocity of its last segment. With `returns` the same path is run back in mirrored time; passes
-/// follow each other `passes` times, after that the last velocity is kept.
+/// A pass ends at the velocity of its last segment. With `returns` the same path is run back in mirrored
+/// time; passes follow each other `passes` times, after that the last velocity is kept.
 #include "blocks/sources/turns.h"
 
 namespace loopwright::blocks {
 
 enum class RampShape { raised_cosine, cubic, linear };
-constexpr auto names_of(RampShape) { return std::array<std::string_view, 3>{"raised_cosine", "cubic", "linear"}; }
+constexpr auto names_of(RampShape) {
+  return std::array<std::string_view, 3>{"raised_cosine", "cubic", "linear"};
+}
 
-template <class Real>
-struct MotionProfile {
+template <class Real> struct MotionProfile {
   struct Segment {
     Real duration, velocity;
     static constexpr auto describe() {
-      return fields(
-        parameter(&Segment::duration, "duration", "s", "How long the segment lasts").positive(),
-        parameter(&Segment::velocity, "velocity", "$position/s", "Velocity at its end"));
+      return fields(parameter(&Segment::duration, "duration", "s", "How long the segment lasts").positive(),
+                    parameter(&Segment::velocity, "velocity", "$position/s", "Velocity at its end"));
     }
   };
-  struct Piece { Real begin, position, velocity, change, duration; };  // begin and position count from the start of a pass
+  struct Piece {
+    Real begin, position, velocity, change, duration;
+  };  // begin and position count from the start of a pass
   std::vector<Segment> segments;
   RampShape shape = RampShape::raised_cosine;
   Real start_position = 0.0, start_velocity = 0.0, start_time = 0.0;
@@ -31,20 +34,31 @@ struct MotionProfile {
   int passes = 1;
   std::vector<Piece> pieces;
   Real distance, period;  // of a pass
-  struct Out { Real position, velocity, acceleration; };
-  struct Mode { Real pass, piece; };  // piece -1: not started yet
+  struct Out {
+    Real position, velocity, acceleration;
+  };
+  struct Mode {
+    Real pass, piece;
+  };  // piece -1: not started yet
   static constexpr auto describe() {
-    return block("A smooth motion through given velocities.",
-      parameter(&MotionProfile::segments, "segments", "", "Durations and the velocities at their ends; equal velocities hold"),
-      parameter(&MotionProfile::shape, "shape", "", "How velocity changes inside a segment").optional(),
-      parameter(&MotionProfile::start_position, "start_position", "$position", "Position at the start").optional(),
-      parameter(&MotionProfile::start_velocity, "start_velocity", "$position/s", "Velocity at the start").optional(),
-      parameter(&MotionProfile::start_time, "start", "s", "When it begins").optional(),
-      parameter(&MotionProfile::returns, "returns", "", "Whether each pass runs back to where it began").optional(),
-      parameter(&MotionProfile::passes, "passes", "", "How many passes; 0: without end").not_negative().optional(),
-      output(&Out::position, "position", "$position", "Wanted position"),
-      output(&Out::velocity, "velocity", "$position/s", "Wanted velocity"),
-      output(&Out::acceleration, "acceleration", "$position/s^2", "Wanted acceleration"));
+    return block(
+        "A smooth motion through given velocities.",
+        parameter(&MotionProfile::segments, "segments", "",
+                  "Durations and the velocities at their ends; equal velocities hold"),
+        parameter(&MotionProfile::shape, "shape", "", "How velocity changes inside a segment").optional(),
+        parameter(&MotionProfile::start_position, "start_position", "$position", "Position at the start")
+            .optional(),
+        parameter(&MotionProfile::start_velocity, "start_velocity", "$position/s", "Velocity at the start")
+            .optional(),
+        parameter(&MotionProfile::start_time, "start", "s", "When it begins").optional(),
+        parameter(&MotionProfile::returns, "returns", "", "Whether each pass runs back to where it began")
+            .optional(),
+        parameter(&MotionProfile::passes, "passes", "", "How many passes; 0: without end")
+            .not_negative()
+            .optional(),
+        output(&Out::position, "position", "$position", "Wanted position"),
+        output(&Out::velocity, "velocity", "$position/s", "Wanted velocity"),
+        output(&Out::acceleration, "acceleration", "$position/s^2", "Wanted acceleration"));
   }
   void check(const Checker& checker) const;
   void prepare(double);
@@ -53,7 +67,8 @@ struct MotionProfile {
     mode.pass = passes > 0 ? minimum(pass, Real(passes - 1.0)) : pass;
     mode.piece = Real(-1.0);
     for (size_t i = 0; i < pieces.size(); ++i)
-      mode.piece = select((pass >= 0.0) & (begin_of(mode.pass, pieces[i]) <= time), Real(double(i)), mode.piece);
+      mode.piece =
+          select((pass >= 0.0) & (begin_of(mode.pass, pieces[i]) <= time), Real(double(i)), mode.piece);
   }
   void outputs(const Instant& now, const Mode& mode, Out& out) const {
     const Piece p = piece_at(mode.piece);
@@ -62,7 +77,8 @@ struct MotionProfile {
     Real share, integral, slope;  // w, ∫w ds, dw/ds
     if (shape == RampShape::raised_cosine) {
       const auto wave = sine_cosine(Real(pi * s));
-      share = 0.5 * (1.0 - wave.cosine), integral = 0.5 * (s - wave.sine * (1.0 / pi)), slope = 0.5 * pi * wave.sine;
+      share = 0.5 * (1.0 - wave.cosine), integral = 0.5 * (s - wave.sine * (1.0 / pi)),
+      slope = 0.5 * pi * wave.sine;
     } else if (shape == RampShape::cubic) {
       share = s * s * (3.0 - 2.0 * s), integral = s * s * s * (1.0 - 0.5 * s), slope = 6.0 * s * (1.0 - s);
     } else {
@@ -81,17 +97,18 @@ struct MotionProfile {
     Piece here;
     for (int l = 0; l < lanes_of<Real>; ++l) {
       const Piece& p = pieces[size_t(std::max(0.0, lane(index, l)))];
-      for (Real Piece::*m : {&Piece::begin, &Piece::position, &Piece::velocity, &Piece::change, &Piece::duration})
+      for (Real Piece::*m :
+           {&Piece::begin, &Piece::position, &Piece::velocity, &Piece::change, &Piece::duration})
         set_lane(here.*m, l, lane(p.*m, l));
     }
     return here;
   }
 };
 
-template <class Real>
-void MotionProfile<Real>::check(const Checker& checker) const {
+template <class Real> void MotionProfile<Real>::check(const Checker& checker) const {
   if (segments.empty()) {
-    checker.error("segments", "a motion needs at least one segment").expected = "[{\"duration\": …, \"velocity\": …}, …]";
+    checker.error("segments", "a motion needs at least one segment").expected =
+        "[{\"duration\": …, \"velocity\": …}, …]";
     return;
   }
   const auto jump = [&](const char* parameter, const char* message, const std::string& expected) {
@@ -102,13 +119,14 @@ void MotionProfile<Real>::check(const Checker& checker) const {
   if (returns && segments.back().velocity != 0.0)
     jump("segments", "velocity would jump where the motion turns back", "0 as the last velocity");
   if (passes != 1 && !returns && segments.back().velocity != start_velocity)
-    jump("segments", "velocity would jump where a pass follows the other", "the last velocity equal to start_velocity");
+    jump("segments", "velocity would jump where a pass follows the other",
+         "the last velocity equal to start_velocity");
   if (returns && start_velocity != 0.0 && passes != 1)
-    checker.error("start_velocity", "velocity would jump where a pass follows the other").expected = "0 with \"returns\"";
+    checker.error("start_velocity", "velocity would jump where a pass follows the other").expected =
+        "0 with \"returns\"";
 }
 
-template <class Real>
-void MotionProfile<Real>::prepare(double) {
+template <class Real> void MotionProfile<Real>::prepare(double) {
   pieces.clear();
   Real time = 0.0, position = 0.0, velocity = start_velocity;
   for (const Segment& s : segments) {
@@ -129,8 +147,7 @@ void MotionProfile<Real>::prepare(double) {
   pieces.push_back({time, distance, last, Real(0.0), Real(1.0)});
 }
 
-template <class Real>
-double MotionProfile<Real>::next_stop(double now) const {
+template <class Real> double MotionProfile<Real>::next_stop(double now) const {
   const double start = lane(start_time, 0);
   if (now < start) return start;
   double pass = whole_periods(now, start, lane(period, 0));

@@ -1,49 +1,51 @@
 /// y = bias + Σ Aᵢ sin(2π fᵢ t + φᵢ)
 ///
-/// Components stand one by one, or as a band of equal amplitudes at equal spacing, or both. A band takes Schroeder's
-/// phases φₖ = -π k (k - 1) / n, k = 1 … n, which keep the peaks low (M. R. Schroeder, IEEE Trans. Inf. Theory 16, 1970). The
-/// signal has a period where all frequencies are multiples of one.
+/// Components stand one by one, or as a band of equal amplitudes at equal spacing, or both. A band takes
+/// Schroeder's phases φₖ = -π k (k - 1) / n, k = 1 … n, which keep the peaks low (M. R. Schroeder, IEEE
+/// Trans. Inf. Theory 16, 1970). The signal has a period where all frequencies are multiples of one.
 #include "blocks/sources/turns.h"
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct Multisine {
+template <class Real> struct Multisine {
   struct Component {
     Real amplitude, frequency, phase = 0.0;
     static constexpr auto describe() {
       return fields(
-        parameter(&Component::amplitude, "amplitude", "$y", "Half of the distance from trough to crest"),
-        parameter(&Component::frequency, "frequency", "Hz", "Periods per second").not_negative(),
-        parameter(&Component::phase, "phase", "rad", "Phase at time 0").optional());
+          parameter(&Component::amplitude, "amplitude", "$y", "Half of the distance from trough to crest"),
+          parameter(&Component::frequency, "frequency", "Hz", "Periods per second").not_negative(),
+          parameter(&Component::phase, "phase", "rad", "Phase at time 0").optional());
     }
   };
   struct Band {
     Real lowest = 0.0, highest = 0.0, amplitude = 0.0;
     int count = 0;
     static constexpr auto describe() {
-      return fields(
-        parameter(&Band::lowest, "from", "Hz", "Lowest frequency").not_negative(),
-        parameter(&Band::highest, "to", "Hz", "Highest frequency").not_negative(),
-        parameter(&Band::count, "count", "", "Number of components").between(1, 10000),
-        parameter(&Band::amplitude, "amplitude", "$y", "Amplitude of each component"));
+      return fields(parameter(&Band::lowest, "from", "Hz", "Lowest frequency").not_negative(),
+                    parameter(&Band::highest, "to", "Hz", "Highest frequency").not_negative(),
+                    parameter(&Band::count, "count", "", "Number of components").between(1, 10000),
+                    parameter(&Band::amplitude, "amplitude", "$y", "Amplitude of each component"));
     }
   };
   std::vector<Component> components;
   Band band;
   Real bias = 0.0;
   std::vector<Component> tones;  // components and band
-  struct Out { Real y; };
+  struct Out {
+    Real y;
+  };
   static constexpr auto describe() {
     return block("A sum of sine waves.",
-      parameter(&Multisine::components, "components", "", "Sine waves, one by one").optional(),
-      parameter(&Multisine::band, "band", "", "Sine waves at equal spacing with Schroeder phases").optional(),
-      parameter(&Multisine::bias, "bias", "$y", "Mean value").optional(),
-      output(&Out::y, "y", "$y", "The sum"));
+                 parameter(&Multisine::components, "components", "", "Sine waves, one by one").optional(),
+                 parameter(&Multisine::band, "band", "", "Sine waves at equal spacing with Schroeder phases")
+                     .optional(),
+                 parameter(&Multisine::bias, "bias", "$y", "Mean value").optional(),
+                 output(&Out::y, "y", "$y", "The sum"));
   }
   void check(const Checker& checker) const {
     if (components.empty() && band.count == 0)
-      checker.error("components", "there is nothing to add up").hint = "give \"components\", \"band\" or both";
+      checker.error("components", "there is nothing to add up").hint =
+          "give \"components\", \"band\" or both";
     if (band.count > 1 && !(band.lowest < band.highest))
       checker.error("band", "the band is empty").expected = "from < to";
   }
@@ -52,12 +54,14 @@ struct Multisine {
     for (int k = 1; k <= band.count; ++k) {
       const double share = band.count == 1 ? 0.0 : double(k - 1) / double(band.count - 1);
       const double half_turns = std::fmod(double(k) * double(k - 1) / band.count, 2.0);
-      tones.push_back({band.amplitude, band.lowest + (band.highest - band.lowest) * share, Real(-pi * half_turns)});
+      tones.push_back(
+          {band.amplitude, band.lowest + (band.highest - band.lowest) * share, Real(-pi * half_turns)});
     }
   }
   void outputs(const Instant& now, Out& out) const {
     Real sum = bias;
-    for (const Component& tone : tones) sum = sum + tone.amplitude * sine_of_turns(Real(tone.frequency * now.time), tone.phase);
+    for (const Component& tone : tones)
+      sum = sum + tone.amplitude * sine_of_turns(Real(tone.frequency * now.time), tone.phase);
     out.y = sum;
   }
 };

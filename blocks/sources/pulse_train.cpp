@@ -3,19 +3,22 @@
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct PulseTrain {
+template <class Real> struct PulseTrain {
   Real period, width, start_time = 0.0, low = 0.0, high = 1.0;
-  struct Out { Real y; };
-  struct Mode { Real is_high; };
+  struct Out {
+    Real y;
+  };
+  struct Mode {
+    Real is_high;
+  };
   static constexpr auto describe() {
     return block("A rectangular wave.",
-      parameter(&PulseTrain::period, "period", "s", "Time from rise to rise").positive(),
-      parameter(&PulseTrain::width, "width", "s", "How long it stays high").not_negative(),
-      parameter(&PulseTrain::start_time, "start", "s", "When it first rises").optional(),
-      parameter(&PulseTrain::low, "low", "$y", "Value between pulses").optional(),
-      parameter(&PulseTrain::high, "high", "$y", "Value in a pulse").optional(),
-      output(&Out::y, "y", "$y", "The wave"));
+                 parameter(&PulseTrain::period, "period", "s", "Time from rise to rise").positive(),
+                 parameter(&PulseTrain::width, "width", "s", "How long it stays high").not_negative(),
+                 parameter(&PulseTrain::start_time, "start", "s", "When it first rises").optional(),
+                 parameter(&PulseTrain::low, "low", "$y", "Value between pulses").optional(),
+                 parameter(&PulseTrain::high, "high", "$y", "Value in a pulse").optional(),
+                 output(&Out::y, "y", "$y", "The wave"));
   }
   void check(const Checker& checker) const {
     if (width <= period) return;

@@ -3,18 +3,22 @@
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct Ramp {
+template <class Real> struct Ramp {
   Real slope, start_time = 0.0, stop_time = infinity, initial = 0.0;
-  struct Out { Real y; };
-  struct Mode { Real has_started, has_stopped; };
+  struct Out {
+    Real y;
+  };
+  struct Mode {
+    Real has_started, has_stopped;
+  };
   static constexpr auto describe() {
-    return block("Rises or falls steadily between two times.",
-      parameter(&Ramp::slope, "slope", "$y/s", "Rise per second"),
-      parameter(&Ramp::start_time, "start", "s", "When it begins to rise").optional(),
-      parameter(&Ramp::stop_time, "stop", "s", "When it stops rising; never when left out").optional(),
-      parameter(&Ramp::initial, "initial", "$y", "Value before").optional(),
-      output(&Out::y, "y", "$y", "The ramp"));
+    return block(
+        "Rises or falls steadily between two times.",
+        parameter(&Ramp::slope, "slope", "$y/s", "Rise per second"),
+        parameter(&Ramp::start_time, "start", "s", "When it begins to rise").optional(),
+        parameter(&Ramp::stop_time, "stop", "s", "When it stops rising; never when left out").optional(),
+        parameter(&Ramp::initial, "initial", "$y", "Value before").optional(),
+        output(&Out::y, "y", "$y", "The ramp"));
   }
   void check(const Checker& checker) const {
     if (start_time <= stop_time) return;
@@ -29,7 +33,8 @@ struct Ramp {
     out.y = initial + select(mode.has_started > 0.5, slope * (until - start_time), Real(0.0));
   }
   double next_stop(double now) const {
-    for (double time : {lane(start_time, 0), lane(stop_time, 0)}) if (time > now) return time;
+    for (double time : {lane(start_time, 0), lane(stop_time, 0)})
+      if (time > now) return time;
     return infinity;
   }
 };

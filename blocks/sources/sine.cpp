@@ -3,17 +3,19 @@
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct Sine {
+template <class Real> struct Sine {
   Real amplitude = 1.0, frequency, phase = 0.0, bias = 0.0;
-  struct Out { Real y; };
+  struct Out {
+    Real y;
+  };
   static constexpr auto describe() {
     return block("A sine wave.",
-      parameter(&Sine::amplitude, "amplitude", "$y", "Half of the distance from trough to crest").optional(),
-      parameter(&Sine::frequency, "frequency", "Hz", "Periods per second").not_negative(),
-      parameter(&Sine::phase, "phase", "rad", "Phase at time 0").optional(),
-      parameter(&Sine::bias, "bias", "$y", "Mean value").optional(),
-      output(&Out::y, "y", "$y", "The wave"));
+                 parameter(&Sine::amplitude, "amplitude", "$y", "Half of the distance from trough to crest")
+                     .optional(),
+                 parameter(&Sine::frequency, "frequency", "Hz", "Periods per second").not_negative(),
+                 parameter(&Sine::phase, "phase", "rad", "Phase at time 0").optional(),
+                 parameter(&Sine::bias, "bias", "$y", "Mean value").optional(),
+                 output(&Out::y, "y", "$y", "The wave"));
   }
   void outputs(const Instant& now, Out& out) const {
     out.y = bias + amplitude * sine_of_turns(Real(frequency * now.time), phase);

@@ -3,17 +3,20 @@
 
 namespace loopwright::blocks {
 
-template <class Real>
-struct Step {
+template <class Real> struct Step {
   Real time = 0.0, before = 0.0, after = 1.0;
-  struct Out { Real y; };
-  struct Mode { Real has_stepped; };
+  struct Out {
+    Real y;
+  };
+  struct Mode {
+    Real has_stepped;
+  };
   static constexpr auto describe() {
     return block("Jumps from one value to another.",
-      parameter(&Step::time, "time", "s", "When it jumps").optional(),
-      parameter(&Step::before, "before", "$y", "Value before").optional(),
-      parameter(&Step::after, "after", "$y", "Value from then on").optional(),
-      output(&Out::y, "y", "$y", "The step"));
+                 parameter(&Step::time, "time", "s", "When it jumps").optional(),
+                 parameter(&Step::before, "before", "$y", "Value before").optional(),
+                 parameter(&Step::after, "after", "$y", "Value from then on").optional(),
+                 output(&Out::y, "y", "$y", "The step"));
   }
   void decide(const Instant& now, Mode& mode) const {
     mode.has_stepped = select(Real(now.time) >= time, Real(1.0), Real(0.0));

@@ -32,7 +32,8 @@ void BlockUnderTest::build(std::string_view settings) {
   std::align(kernels.align, kernels.size, block_, space);
   kernels.construct(block_);
 
-  const Value value = parse_json(std::make_shared<SourceFile>(SourceFile{"settings.json", std::string(settings)}), problems_);
+  const Value value =
+      parse_json(std::make_shared<SourceFile>(SourceFile{"settings.json", std::string(settings)}), problems_);
   if (problems_.has_errors()) return;
   info().read(block_, value, "block", problems_);
   if (problems_.has_errors()) return;
@@ -42,7 +43,8 @@ void BlockUnderTest::build(std::string_view settings) {
   for (size_t i = 0; i < info().inputs.size(); ++i) {
     const PortInfo& port = info().inputs[i];
     const bool one = port.shape == PortInfo::Shape::scalar;
-    inputs_.emplace_back(one ? 1 : size_t(std::max(0, info().input_length(block_, int(i)))), port.otherwise_value);
+    inputs_.emplace_back(one ? 1 : size_t(std::max(0, info().input_length(block_, int(i)))),
+                         port.otherwise_value);
   }
   restart();
 }
@@ -55,7 +57,8 @@ void BlockUnderTest::restart() {
   memory_.assign(type_.kernels.memory_size / sizeof(std::max_align_t) + 1, {});
   mode_.assign(type_.kernels.mode_size / sizeof(std::max_align_t) + 1, {});
   buffers_.clear();
-  for (int i = 0; i < info().buffers; ++i) buffers_.emplace_back(size_t(info().buffer_length(block_, i)), 0.0);
+  for (int i = 0; i < info().buffers; ++i)
+    buffers_.emplace_back(size_t(info().buffer_length(block_, i)), 0.0);
   outputs_.assign(info().outputs.size(), {});
   now_ = {};
   fault_ = {};
@@ -100,7 +103,8 @@ void BlockUnderTest::connect() {
 }
 
 void BlockUnderTest::call(Step<double> method) {
-  if (!block_ || problems_.has_errors()) throw std::logic_error("the settings have errors:\n" + problems_.text());
+  if (!block_ || problems_.has_errors())
+    throw std::logic_error("the settings have errors:\n" + problems_.text());
   connect();
   if (method) method(call_);
 }
@@ -113,7 +117,9 @@ bool BlockUnderTest::jump() {
   connect();
   return type_.kernels.jump && type_.kernels.jump(call_) != 0;
 }
-double BlockUnderTest::next_stop(double now) const { return info().next_stop ? info().next_stop(block_, now) : infinity; }
+double BlockUnderTest::next_stop(double now) const {
+  return info().next_stop ? info().next_stop(block_, now) : infinity;
+}
 
 void BlockUnderTest::compute_outputs() {
   for (int g = 0; g < info().groups; ++g) call(type_.kernels.outputs[g]);
@@ -159,15 +165,20 @@ double BlockUnderTest::sample(std::string_view name, double value, std::string_v
 }
 
 static bool equal_bits(const std::vector<double>& a, const std::vector<double>& b) {
-  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
+  return a.size() == b.size() &&
+         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
 }
 bool BlockUnderTest::Snapshot::operator==(const Snapshot& other) const {
   return equal_bits(states, other.states) && memory == other.memory && mode == other.mode &&
          std::equal(buffers.begin(), buffers.end(), other.buffers.begin(), other.buffers.end(), equal_bits);
 }
 BlockUnderTest::Snapshot BlockUnderTest::snapshot() const {
-  const auto *memory = reinterpret_cast<const std::byte*>(memory_.data()), *mode = reinterpret_cast<const std::byte*>(mode_.data());
-  return {states_, {memory, memory + type_.kernels.memory_size}, {mode, mode + type_.kernels.mode_size}, buffers_};
+  const auto *memory = reinterpret_cast<const std::byte*>(memory_.data()),
+             *mode = reinterpret_cast<const std::byte*>(mode_.data());
+  return {states_,
+          {memory, memory + type_.kernels.memory_size},
+          {mode, mode + type_.kernels.mode_size},
+          buffers_};
 }
 void BlockUnderTest::restore(const Snapshot& snapshot) {
   states_ = snapshot.states, buffers_ = snapshot.buffers;
@@ -175,8 +186,12 @@ void BlockUnderTest::restore(const Snapshot& snapshot) {
   std::ranges::copy(snapshot.mode, reinterpret_cast<std::byte*>(mode_.data()));
 }
 
-size_t BlockUnderTest::input_of(std::string_view name) const { return index_of(info().inputs, name, "input"); }
-size_t BlockUnderTest::output_of(std::string_view name) const { return index_of(info().outputs, name, "output"); }
+size_t BlockUnderTest::input_of(std::string_view name) const {
+  return index_of(info().inputs, name, "input");
+}
+size_t BlockUnderTest::output_of(std::string_view name) const {
+  return index_of(info().outputs, name, "output");
+}
 size_t BlockUnderTest::state_of(std::string_view name) const {
   const int state = info().outputs[output_of(name)].state;
   if (state < 0) throw std::invalid_argument("the output " + std::string(name) + " is no state");
@@ -186,7 +201,9 @@ std::vector<double>& BlockUnderTest::inputs(std::string_view name) {
   if (problems_.has_errors()) throw std::logic_error("the settings have errors:\n" + problems_.text());
   return inputs_[input_of(name)];
 }
-const std::vector<double>& BlockUnderTest::outputs(std::string_view name) const { return outputs_.at(output_of(name)); }
+const std::vector<double>& BlockUnderTest::outputs(std::string_view name) const {
+  return outputs_.at(output_of(name));
+}
 double BlockUnderTest::crossing(std::string_view name) const {
   return crossings_.at(index_of(info().crossings, name, "crossing"));
 }

@@ -15,8 +15,8 @@ namespace loopwright {
 
 class BlockUnderTest {
  public:
-  /// Reads, checks, prepares and starts the block. Throws std::invalid_argument for a type that is not registered.
-  /// With errors in the settings nothing is prepared: look at `problems()`.
+  /// Reads, checks, prepares and starts the block. Throws std::invalid_argument for a type that is not
+  /// registered. With errors in the settings nothing is prepared: look at `problems()`.
   explicit BlockUnderTest(std::string_view type, std::string_view settings = "{}", double sample_time = 0);
   /// The same with a seed, run number and block key; `setup.sample_time` in s.
   BlockUnderTest(std::string_view type, std::string_view settings, const Setup& setup);
@@ -59,7 +59,8 @@ class BlockUnderTest {
 
   /// Anew from the start, with the present parameters.
   void restart();
-  /// Sets a tunable number, "harmonics.0.amplitude", and starts anew. Throws std::invalid_argument if there is none.
+  /// Sets a tunable number, "harmonics.0.amplitude", and starts anew. Throws std::invalid_argument if there
+  /// is none.
   void tune(std::string_view path, double value);
 
   /// One step of the classical Runge-Kutta method, inputs and modes held, then the step is accepted.

@@ -1,4 +1,5 @@
-/// How a linear block answers a sine, found from its step alone: no knowledge of what the block should be enters.
+/// How a linear block answers a sine, found from its step alone: no knowledge of what the block should be
+/// enters.
 #pragma once
 #include <complex>
 #include "tests/blocks/block_under_test.h"
@@ -8,7 +9,8 @@ namespace loopwright {
 using Complex = std::complex<double>;
 
 /// Y(jw)/U(jw) of a continuous block, w in rad/s: x' = A x + B u is read off unit vectors and solved at jw.
-inline Complex continuous_response(BlockUnderTest& block, std::string_view input, std::string_view output, double w) {
+inline Complex continuous_response(BlockUnderTest& block, std::string_view input, std::string_view output,
+                                   double w) {
   const size_t n = block.states().size();
   const auto probe = [&](size_t unit) {  // n: the input
     for (double& x : block.states()) x = 0;
@@ -27,7 +29,8 @@ inline Complex continuous_response(BlockUnderTest& block, std::string_view input
   for (size_t i = 0; i < n; ++i) rows[i][i] += Complex(0, w);
   for (size_t k = 0; k < n; ++k) {  // Gauss-Jordan with pivots
     size_t best = k;
-    for (size_t i = k; i < n; ++i) if (std::abs(rows[i][k]) > std::abs(rows[best][k])) best = i;
+    for (size_t i = k; i < n; ++i)
+      if (std::abs(rows[i][k]) > std::abs(rows[best][k])) best = i;
     std::swap(rows[k], rows[best]);
     for (size_t i = 0; i < n; ++i) {
       if (i == k) continue;
@@ -40,9 +43,10 @@ inline Complex continuous_response(BlockUnderTest& block, std::string_view input
   return y;
 }
 
-/// Y/U at z = e^(jwT) of a sampled block that starts at zero: the sum over its impulse response, `samples` long.
-inline Complex sampled_response(BlockUnderTest& block, std::string_view input, std::string_view output, double w, double sample_time,
-                                int samples = 20000) {
+/// Y/U at z = e^(jwT) of a sampled block that starts at zero: the sum over its impulse response, `samples`
+/// long.
+inline Complex sampled_response(BlockUnderTest& block, std::string_view input, std::string_view output,
+                                double w, double sample_time, int samples = 20000) {
   block.restart();
   Complex sum = 0;
   for (int k = 0; k < samples; ++k)
@@ -51,9 +55,11 @@ inline Complex sampled_response(BlockUnderTest& block, std::string_view input, s
 }
 
 /// What Tustin's rule puts in the place of s at z = e^(jwT).
-inline Complex tustin(double w, double sample_time) { return {0.0, 2 / sample_time * std::tan(w * sample_time / 2)}; }
+inline Complex tustin(double w, double sample_time) {
+  return {0.0, 2 / sample_time * std::tan(w * sample_time / 2)};
+}
 
-#define EXPECT_COMPLEX_NEAR(found, expected, tolerance)                      \
+#define EXPECT_COMPLEX_NEAR(found, expected, tolerance)                                               \
   EXPECT_NEAR(std::abs(::loopwright::Complex(found) - ::loopwright::Complex(expected)), 0, tolerance) \
       << "found " << ::loopwright::Complex(found) << ", expected " << ::loopwright::Complex(expected)
 

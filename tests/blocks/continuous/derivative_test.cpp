@@ -7,7 +7,8 @@ namespace {
 TEST(Derivative, AnswersEveryFrequencyAsItsFormulaSays) {
   BlockUnderTest block("Derivative", R"({"cutoff": 50})");
   for (double w : {0.0, 3.0, 50.0, 4000.0})
-    EXPECT_COMPLEX_NEAR(continuous_response(block, "u", "y", w), 50.0 * Complex(0, w) / Complex(50, w), 1e-11);
+    EXPECT_COMPLEX_NEAR(continuous_response(block, "u", "y", w), 50.0 * Complex(0, w) / Complex(50, w),
+                        1e-11);
 }
 
 TEST(Derivative, OfAJumpIsAPeakThatDecays) {

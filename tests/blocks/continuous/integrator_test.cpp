@@ -79,8 +79,10 @@ TEST(Integrator, ATriggerThatIsHighAtTheStartHasNotRisen) {
 }
 
 TEST(Integrator, RefusesAnInitialValueOutsideItsLimits) {
-  EXPECT_THAT(BlockUnderTest("Integrator", R"({"initial": 3, "high": 2})").problems().text(), testing::HasSubstr("/initial"));
-  EXPECT_THAT(BlockUnderTest("Integrator", R"({"low": 3, "high": 2})").problems().text(), testing::HasSubstr("/low"));
+  EXPECT_THAT(BlockUnderTest("Integrator", R"({"initial": 3, "high": 2})").problems().text(),
+              testing::HasSubstr("/initial"));
+  EXPECT_THAT(BlockUnderTest("Integrator", R"({"low": 3, "high": 2})").problems().text(),
+              testing::HasSubstr("/low"));
 }
 
 }  // namespace

@@ -22,7 +22,8 @@ TEST(LowPass, ButterworthOfThirdOrderHasTheTextbookPolynomial) {
   BlockUnderTest block("LowPass", settings(3, "butterworth"));
   for (double w : {1.0, 20.0, 60.0}) {
     const Complex p(0, w / 20);
-    EXPECT_COMPLEX_NEAR(continuous_response(block, "u", "y", w), 1.0 / (p * p * p + 2.0 * p * p + 2.0 * p + 1.0), 1e-13);
+    EXPECT_COMPLEX_NEAR(continuous_response(block, "u", "y", w),
+                        1.0 / (p * p * p + 2.0 * p * p + 2.0 * p + 1.0), 1e-13);
   }
 }
 
@@ -30,7 +31,8 @@ TEST(LowPass, CriticallyDampedIsAChainOfEqualLags) {
   for (int order : {1, 2, 3, 6}) {
     BlockUnderTest block("LowPass", settings(order, "critically_damped"));
     for (double w : {0.0, 10.0, 70.0})
-      EXPECT_COMPLEX_NEAR(continuous_response(block, "u", "y", w), std::pow(20.0 / Complex(20, w), order), 1e-13);
+      EXPECT_COMPLEX_NEAR(continuous_response(block, "u", "y", w), std::pow(20.0 / Complex(20, w), order),
+                          1e-13);
   }
 }
 
@@ -50,7 +52,8 @@ TEST(LowPass, CriticallyDampedStepHasTheClosedFormAndNeverOvershoots) {
 
 TEST(LowPass, StaysAtRestAtItsInitialValue) {
   for (int order : {1, 2, 5}) {
-    BlockUnderTest block("LowPass", R"({"cutoff": 20, "initial": 0.7, "order": )" + std::to_string(order) + "}");
+    BlockUnderTest block("LowPass",
+                         R"({"cutoff": 20, "initial": 0.7, "order": )" + std::to_string(order) + "}");
     block.input("u") = 0.7;
     block.advance(1, 100);
     block.evaluate();
@@ -59,7 +62,8 @@ TEST(LowPass, StaysAtRestAtItsInitialValue) {
 }
 
 TEST(LowPass, RefusesOrderZero) {
-  EXPECT_THAT(BlockUnderTest("LowPass", R"({"cutoff": 20, "order": 0})").problems().text(), testing::HasSubstr("at least 1"));
+  EXPECT_THAT(BlockUnderTest("LowPass", R"({"cutoff": 20, "order": 0})").problems().text(),
+              testing::HasSubstr("at least 1"));
   EXPECT_THAT(BlockUnderTest("LowPass", R"({"cutoff": 0})").problems().text(), testing::HasSubstr("above 0"));
 }
 

@@ -14,8 +14,9 @@ TEST(StateSpace, FollowsTheClosedFormOfAnOscillator) {
   block.evaluate();
   const double drive = 4, c = std::cos(2.6), s = std::sin(2.6);  // x'' + 4 x = 3 + 2 · 0.5
   const double x = drive / 4 + (0.5 - drive / 4) * c - 0.5 * s, v = -2 * (0.5 - drive / 4) * s - c;
-  EXPECT_THAT(block.outputs("y"), testing::ElementsAre(testing::DoubleNear(x, 1e-11), testing::DoubleNear(v, 1e-11),
-                                                       testing::DoubleNear(x + v + 40, 1e-11)));
+  EXPECT_THAT(block.outputs("y"),
+              testing::ElementsAre(testing::DoubleNear(x, 1e-11), testing::DoubleNear(v, 1e-11),
+                                   testing::DoubleNear(x + v + 40, 1e-11)));
 }
 
 TEST(StateSpace, TheStrictlyProperOneGivesTheSameWithoutD) {
@@ -25,7 +26,8 @@ TEST(StateSpace, TheStrictlyProperOneGivesTheSameWithoutD) {
   block.advance(0.4, 1000);
   block.evaluate();
   const double x = 3 * (1 - std::exp(-0.8));
-  EXPECT_THAT(block.outputs("y"), testing::ElementsAre(testing::DoubleNear(5 * x, 1e-12), testing::DoubleNear(7 * x, 1e-12)));
+  EXPECT_THAT(block.outputs("y"),
+              testing::ElementsAre(testing::DoubleNear(5 * x, 1e-12), testing::DoubleNear(7 * x, 1e-12)));
 }
 
 TEST(StateSpace, EveryElementIsTunable) {
@@ -37,14 +39,19 @@ TEST(StateSpace, EveryElementIsTunable) {
 }
 
 TEST(StateSpace, SaysWhichMatrixDoesNotFit) {
-  const auto text = [](const char* settings) { return BlockUnderTest("StateSpace", settings).problems().text(); };
+  const auto text = [](const char* settings) {
+    return BlockUnderTest("StateSpace", settings).problems().text();
+  };
   EXPECT_THAT(text(R"({"A": [[1, 2], [3]], "B": [[1], [1]], "C": [[1, 0]], "D": [[0]]})"),
-              testing::AllOf(testing::HasSubstr("/A"), testing::HasSubstr("2 rows of 2 numbers"), testing::HasSubstr("row 1 of 1")));
+              testing::AllOf(testing::HasSubstr("/A"), testing::HasSubstr("2 rows of 2 numbers"),
+                             testing::HasSubstr("row 1 of 1")));
   EXPECT_THAT(text(R"({"A": [[1]], "B": [[1], [2]], "C": [[1]], "D": [[0]]})"), testing::HasSubstr("/B"));
   EXPECT_THAT(text(R"({"A": [[1]], "B": [[1]], "C": [[1, 2]], "D": [[0]]})"), testing::HasSubstr("/C"));
   EXPECT_THAT(text(R"({"A": [[1]], "B": [[1]], "C": [[1]], "D": [[0, 0]]})"), testing::HasSubstr("/D"));
-  EXPECT_THAT(text(R"({"A": [[1]], "B": [[1]], "C": [[1]], "D": [[0]], "initial": [1, 2]})"), testing::HasSubstr("/initial"));
-  EXPECT_THAT(BlockUnderTest("StateSpace", R"({"A": [], "B": [[]], "C": [], "D": []})").problems().list(), testing::SizeIs(3));
+  EXPECT_THAT(text(R"({"A": [[1]], "B": [[1]], "C": [[1]], "D": [[0]], "initial": [1, 2]})"),
+              testing::HasSubstr("/initial"));
+  EXPECT_THAT(BlockUnderTest("StateSpace", R"({"A": [], "B": [[]], "C": [], "D": []})").problems().list(),
+              testing::SizeIs(3));
 }
 
 }  // namespace

@@ -14,7 +14,8 @@ Complex ratio(std::vector<double> numerator, std::vector<double> denominator, Co
 TEST(TransferFunction, AnswersEveryFrequencyAsItsPolynomialsSay) {
   BlockUnderTest block("TransferFunction", R"({"numerator": [2, 30, 400], "denominator": [0.5, 8, 90]})");
   for (double w : {0.0, 1.0, 13.0, 40.0, 1e4})
-    EXPECT_COMPLEX_NEAR(continuous_response(block, "u", "y", w), ratio({2, 30, 400}, {0.5, 8, 90}, {0, w}), 1e-12);
+    EXPECT_COMPLEX_NEAR(continuous_response(block, "u", "y", w), ratio({2, 30, 400}, {0.5, 8, 90}, {0, w}),
+                        1e-12);
 }
 
 TEST(TransferFunction, TakesANumeratorOfLowerDegree) {
@@ -34,7 +35,8 @@ TEST(TransferFunction, FollowsTheClosedFormOfALeadsStep) {
 }
 
 TEST(TransferFunction, KeepsItsStatesAsLargeAsTheInputWhateverTheSpeed) {
-  BlockUnderTest block("StrictlyProperTransferFunction", R"({"numerator": [1e16], "denominator": [1, 4e4, 6e8, 4e12, 1e16]})");
+  BlockUnderTest block("StrictlyProperTransferFunction",
+                       R"({"numerator": [1e16], "denominator": [1, 4e4, 6e8, 4e12, 1e16]})");
   block.input("u") = 1;
   block.advance(0.01, 4000);  // a hundred times the time constant
   block.evaluate();
@@ -59,7 +61,8 @@ TEST(TransferFunction, CoefficientsAreTunable) {
 
 TEST(TransferFunction, TheStrictlyProperOneNeedsNoPresentInput) {
   BlockUnderTest proper("TransferFunction", R"({"numerator": [1], "denominator": [1, 1]})");
-  BlockUnderTest strict("StrictlyProperTransferFunction", R"({"numerator": [3, 1], "denominator": [1, 2, 5]})");
+  BlockUnderTest strict("StrictlyProperTransferFunction",
+                        R"({"numerator": [3, 1], "denominator": [1, 2, 5]})");
   EXPECT_EQ(proper.info().outputs[0].fed_by, 1u);
   EXPECT_EQ(strict.info().outputs[0].fed_by, 0u);
   for (double w : {0.0, 2.0, 50.0})
@@ -67,14 +70,20 @@ TEST(TransferFunction, TheStrictlyProperOneNeedsNoPresentInput) {
 }
 
 TEST(TransferFunction, RefusesWhatIsNotProper) {
-  EXPECT_THAT(BlockUnderTest("TransferFunction", R"({"numerator": [1, 0, 0], "denominator": [1, 1]})").problems().text(),
+  EXPECT_THAT(BlockUnderTest("TransferFunction", R"({"numerator": [1, 0, 0], "denominator": [1, 1]})")
+                  .problems()
+                  .text(),
               testing::HasSubstr("not proper"));
-  EXPECT_THAT(BlockUnderTest("StrictlyProperTransferFunction", R"({"numerator": [1, 0], "denominator": [1, 1]})").problems().text(),
-              testing::HasSubstr("TransferFunction"));
+  EXPECT_THAT(
+      BlockUnderTest("StrictlyProperTransferFunction", R"({"numerator": [1, 0], "denominator": [1, 1]})")
+          .problems()
+          .text(),
+      testing::HasSubstr("TransferFunction"));
   for (const char* type : {"TransferFunction", "StrictlyProperTransferFunction"}) {
     EXPECT_THAT(BlockUnderTest(type, R"({"numerator": [1], "denominator": [0, 1, 2]})").problems().text(),
                 testing::HasSubstr("coefficient zero"));
-    EXPECT_THAT(BlockUnderTest(type, R"({"numerator": [], "denominator": []})").problems().list(), testing::SizeIs(2));
+    EXPECT_THAT(BlockUnderTest(type, R"({"numerator": [], "denominator": []})").problems().list(),
+                testing::SizeIs(2));
   }
 }
 

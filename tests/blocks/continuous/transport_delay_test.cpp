@@ -5,8 +5,7 @@ namespace loopwright {
 namespace {
 
 /// Runs over given steps as a solver would: outputs at the step's end, then its acceptance.
-template <class Signal>
-void run_to(BlockUnderTest& block, double time, Signal signal) {
+template <class Signal> void run_to(BlockUnderTest& block, double time, Signal signal) {
   block.input("u") = signal(time);
   block.evaluate(time);
   block.accept();
@@ -124,7 +123,8 @@ TEST(TransportDelay, FaultsBeforeItForgetsWhatItStillNeeds) {
 TEST(TransportDelay, NeedsNoPresentInput) {
   BlockUnderTest block("TransportDelay", R"({"delay": 0.1})");
   EXPECT_EQ(block.info().outputs[0].fed_by, 0u);
-  EXPECT_THAT(BlockUnderTest("TransportDelay", R"({"delay": 0})").problems().text(), testing::HasSubstr("above 0"));
+  EXPECT_THAT(BlockUnderTest("TransportDelay", R"({"delay": 0})").problems().text(),
+              testing::HasSubstr("above 0"));
 }
 
 }  // namespace

@@ -11,12 +11,14 @@ TEST(CompensationFilter, IsALagThatStartsOneSampleLate) {
   const double a = std::exp(-0.6);
   for (double w : {0.0, 100.0, 2000.0}) {
     const Complex back = std::polar(1.0, -w * T);
-    EXPECT_COMPLEX_NEAR(sampled_response(block, "prediction", "compensation", w, T, 200), 0.95 * (1 - a) * back / (1.0 - a * back), 1e-13);
+    EXPECT_COMPLEX_NEAR(sampled_response(block, "prediction", "compensation", w, T, 200),
+                        0.95 * (1 - a) * back / (1.0 - a * back), 1e-13);
   }
 }
 
 TEST(CompensationFilter, BringsItsWeightInAlongARamp) {
-  BlockUnderTest block("CompensationFilter", R"({"cutoff": 600, "weight": 0.8, "start_time": 0.02, "ramp_time": 0.1})", T);
+  BlockUnderTest block("CompensationFilter",
+                       R"({"cutoff": 600, "weight": 0.8, "start_time": 0.02, "ramp_time": 0.1})", T);
   const double a = std::exp(-0.6);
   double expected = 0;
   for (int k = 0; k < 200; ++k) {

@@ -8,8 +8,8 @@ namespace {
 constexpr double T = 0.001, mass = 0.2621;
 
 std::string settings(double damping, int degree, const char* path) {
-  return R"({"mass": 0.2621, "cutoff": 250, "damping": )" + std::to_string(damping) + R"(, "relative_degree": )" +
-         std::to_string(degree) + R"(, "command_path": ")" + path + R"("})";
+  return R"({"mass": 0.2621, "cutoff": 250, "damping": )" + std::to_string(damping) +
+         R"(, "relative_degree": )" + std::to_string(degree) + R"(, "command_path": ")" + path + R"("})";
 }
 Complex q(Complex s, int degree) { return std::pow(250.0 / (s + 250.0), degree); }
 
@@ -29,8 +29,9 @@ struct Plant {
 
 /// Holds the mass with a PD; the observer and a compensation act as the observer's reference page says.
 /// Answers the estimate at the end.
-double estimate_after(const std::string& observer_settings, double damping, int samples, std::function<double(int)> disturbance,
-                      std::function<double(int)> compensation, double limit = infinity) {
+double estimate_after(const std::string& observer_settings, double damping, int samples,
+                      std::function<double(int)> disturbance, std::function<double(int)> compensation,
+                      double limit = infinity) {
   BlockUnderTest observer("DisturbanceObserver", observer_settings, T);
   BlockUnderTest feedback("PdController", R"({"Kp": 400, "Kd": 20, "derivative_pole": 1000})", T);
   Plant plant{damping};  // moves at the start, the observer takes it as at rest: it must find its way
@@ -54,18 +55,22 @@ TEST(DisturbanceObserver, TheMeasurementPassesQOverThePlant) {
     BlockUnderTest block("DisturbanceObserver", settings(3, n, "matched"), T);
     for (double w : {0.0, 20.0, 300.0, 2000.0}) {
       const Complex s = tustin(w, T);
-      EXPECT_COMPLEX_NEAR(sampled_response(block, "measured", "disturbance", w, T, 2000), q(s, n) * (mass * s * s + 3.0 * s), 1e-7);
+      EXPECT_COMPLEX_NEAR(sampled_response(block, "measured", "disturbance", w, T, 2000),
+                          q(s, n) * (mass * s * s + 3.0 * s), 1e-7);
     }
   }
 }
 
 TEST(DisturbanceObserver, TheCommandPassesQInStepWithAZeroOrderHoldOrOneSampleLate) {
   for (int n : {2, 3}) {
-    BlockUnderTest matched("DisturbanceObserver", settings(3, n, "matched"), T), delayed("DisturbanceObserver", settings(3, n, "delayed"), T);
+    BlockUnderTest matched("DisturbanceObserver", settings(3, n, "matched"), T),
+        delayed("DisturbanceObserver", settings(3, n, "delayed"), T);
     for (double w : {0.0, 20.0, 300.0, 2000.0}) {
       const Complex s = tustin(w, T), z = std::polar(1.0, w * T);
-      EXPECT_COMPLEX_NEAR(sampled_response(matched, "command", "disturbance", w, T, 2000), -q(s, n) * 2.0 / (z + 1.0), 1e-12);
-      EXPECT_COMPLEX_NEAR(sampled_response(delayed, "command", "disturbance", w, T, 2000), -q(s, n) / z, 1e-12);
+      EXPECT_COMPLEX_NEAR(sampled_response(matched, "command", "disturbance", w, T, 2000),
+                          -q(s, n) * 2.0 / (z + 1.0), 1e-12);
+      EXPECT_COMPLEX_NEAR(sampled_response(delayed, "command", "disturbance", w, T, 2000), -q(s, n) / z,
+                          1e-12);
     }
   }
 }
@@ -105,7 +110,10 @@ TEST(DisturbanceObserver, MatchedSeesNoDisturbanceInAMassThatHasNone) {
 TEST(DisturbanceObserver, FindsAConstantDisturbanceExactly) {
   for (int n : {2, 3})
     for (const char* path : {"matched", "delayed"})
-      EXPECT_NEAR(estimate_after(settings(3, n, path), 3, 6000, [](int) { return 0.7; }, none), 0.7, 1e-9) << path << n;
+      EXPECT_NEAR(estimate_after(
+                      settings(3, n, path), 3, 6000, [](int) { return 0.7; }, none),
+                  0.7, 1e-9)
+          << path << n;
 }
 
 TEST(DisturbanceObserver, LeavesAPerfectCompensationItsWork) {
@@ -132,18 +140,21 @@ TEST(DisturbanceObserver, IsFedByTheMeasurementAlone) {
 }
 
 TEST(DisturbanceObserver, AtRestAtItsInitialPositionGivesNothing) {
-  BlockUnderTest block("DisturbanceObserver", R"({"mass": 1, "damping": 3, "cutoff": 250, "initial": 0.3})", T);
+  BlockUnderTest block("DisturbanceObserver", R"({"mass": 1, "damping": 3, "cutoff": 250, "initial": 0.3})",
+                       T);
   for (int k = 0; k < 10; ++k) EXPECT_EQ(block.sample("measured", 0.3, "disturbance"), 0);
 }
 
 TEST(ContinuousDisturbanceObserver, AnswersEveryFrequencyAsItsFormulaSays) {
   for (int n : {2, 3}) {
-    BlockUnderTest block("ContinuousDisturbanceObserver",
-                         R"({"mass": 0.2621, "damping": 3, "cutoff": 250, "relative_degree": )" + std::to_string(n) + "}");
+    BlockUnderTest block(
+        "ContinuousDisturbanceObserver",
+        R"({"mass": 0.2621, "damping": 3, "cutoff": 250, "relative_degree": )" + std::to_string(n) + "}");
     for (double w : {0.0, 20.0, 300.0, 1e4}) {
       const Complex s(0, w);
       block.input("command") = 0;
-      EXPECT_COMPLEX_NEAR(continuous_response(block, "measured", "disturbance", w), q(s, n) * (mass * s * s + 3.0 * s), 1e-8);
+      EXPECT_COMPLEX_NEAR(continuous_response(block, "measured", "disturbance", w),
+                          q(s, n) * (mass * s * s + 3.0 * s), 1e-8);
       block.input("measured") = 0;
       EXPECT_COMPLEX_NEAR(continuous_response(block, "command", "disturbance", w), -q(s, n), 1e-12);
     }

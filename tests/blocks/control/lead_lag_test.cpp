@@ -10,7 +10,8 @@ TEST(LeadLag, IsTheTustinImageOfItsFormula) {
     BlockUnderTest block("LeadLag", R"({"gain": 3, "pole": 200, "zero": )" + std::to_string(zero) + "}", T);
     for (double w : {0.0, 20.0, 200.0, 2500.0}) {
       const Complex s = tustin(w, T);
-      EXPECT_COMPLEX_NEAR(sampled_response(block, "u", "y", w, T, 2000), 3.0 * (1.0 + s / zero) / (1.0 + s / 200.0), 1e-11);
+      EXPECT_COMPLEX_NEAR(sampled_response(block, "u", "y", w, T, 2000),
+                          3.0 * (1.0 + s / zero) / (1.0 + s / 200.0), 1e-11);
     }
   }
 }

@@ -6,14 +6,16 @@ namespace {
 
 constexpr double T = 0.001;
 std::string settings(int degree) {
-  return R"({"mass": 0.2621, "damping": 3, "cutoff": 250, "relative_degree": )" + std::to_string(degree) + "}";
+  return R"({"mass": 0.2621, "damping": 3, "cutoff": 250, "relative_degree": )" + std::to_string(degree) +
+         "}";
 }
 
 TEST(NominalInverse, IsTheTustinImageOfItsFormula) {
   for (int n : {2, 3}) {
     BlockUnderTest block("NominalInverse", settings(n), T);
     for (double w : {0.0, 20.0, 300.0, 2000.0}) {
-      const Complex s = tustin(w, T), expected = std::pow(250.0 / (s + 250.0), n) * (0.2621 * s * s + 3.0 * s);
+      const Complex s = tustin(w, T),
+                    expected = std::pow(250.0 / (s + 250.0), n) * (0.2621 * s * s + 3.0 * s);
       EXPECT_COMPLEX_NEAR(sampled_response(block, "measured", "command", w, T, 2000), expected, 1e-7);
     }
   }

@@ -11,7 +11,8 @@ TEST(Notch, HasTheContinuousFormulaAtWarpedFrequencies) {
   BlockUnderTest block("Notch", R"({"frequency": 600, "depth_damping": 0.05, "width_damping": 0.4})", T);
   for (double w : {0.0, 100.0, 550.0, 600.0, 700.0, 3000.0}) {
     const Complex p(0, std::tan(w * T / 2) / std::tan(center * T / 2));
-    EXPECT_COMPLEX_NEAR(sampled_response(block, "u", "y", w, T, 3000), (p * p + 0.1 * p + 1.0) / (p * p + 0.8 * p + 1.0), 1e-11);
+    EXPECT_COMPLEX_NEAR(sampled_response(block, "u", "y", w, T, 3000),
+                        (p * p + 0.1 * p + 1.0) / (p * p + 0.8 * p + 1.0), 1e-11);
   }
 }
 

@@ -11,8 +11,10 @@ Complex formula(Complex s) { return 2000.0 + 30.0 * 1000.0 * s / (s + 1000.0); }
 TEST(PdController, IsTheTustinImageOfItsFormula) {
   BlockUnderTest block("PdController", settings, T);
   for (double w : {0.0, 10.0, 500.0, 2500.0}) {
-    EXPECT_COMPLEX_NEAR(sampled_response(block, "reference", "command", w, T, 500), formula(tustin(w, T)), 1e-8);
-    EXPECT_COMPLEX_NEAR(sampled_response(block, "measured", "command", w, T, 500), -formula(tustin(w, T)), 1e-8);
+    EXPECT_COMPLEX_NEAR(sampled_response(block, "reference", "command", w, T, 500), formula(tustin(w, T)),
+                        1e-8);
+    EXPECT_COMPLEX_NEAR(sampled_response(block, "measured", "command", w, T, 500), -formula(tustin(w, T)),
+                        1e-8);
   }
 }
 
@@ -30,19 +32,22 @@ TEST(PdController, FollowsTheRecursionOfTheCommonJob) {
 }
 
 TEST(PdController, OnTheMeasurementIgnoresJumpsOfTheReferenceInTheDerivative) {
-  BlockUnderTest block("PdController", R"({"Kp": 2, "Kd": 30, "derivative_pole": 1000, "derivative_of": "measurement"})", T);
+  BlockUnderTest block("PdController",
+                       R"({"Kp": 2, "Kd": 30, "derivative_pole": 1000, "derivative_of": "measurement"})", T);
   EXPECT_EQ(block.sample("reference", 5, "command"), 10);
   EXPECT_EQ(block.sample("reference", -5, "command"), -10);
   block.restart();
   block.input("reference") = 0;
   for (double w : {0.0, 700.0}) {
     const Complex s = tustin(w, T);
-    EXPECT_COMPLEX_NEAR(sampled_response(block, "measured", "command", w, T, 500), -2.0 - 30.0 * 1000.0 * s / (s + 1000.0), 1e-8);
+    EXPECT_COMPLEX_NEAR(sampled_response(block, "measured", "command", w, T, 500),
+                        -2.0 - 30.0 * 1000.0 * s / (s + 1000.0), 1e-8);
   }
 }
 
 TEST(PdController, AtRestGivesTheProportionalPartExactly) {
-  BlockUnderTest block("PdController", R"({"Kp": 2000, "Kd": 30, "derivative_pole": 1000, "initial": 0.25})", T);
+  BlockUnderTest block("PdController", R"({"Kp": 2000, "Kd": 30, "derivative_pole": 1000, "initial": 0.25})",
+                       T);
   for (int k = 0; k < 10; ++k) EXPECT_EQ(block.sample("reference", 0.25, "command"), 500);
 }
 

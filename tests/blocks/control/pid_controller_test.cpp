@@ -7,16 +7,19 @@ namespace {
 constexpr double T = 0.01;
 
 TEST(PidController, IsTheTustinImageOfItsFormula) {
-  BlockUnderTest block("PidController", R"({"Kp": 3, "Ki": 0, "Kd": 0.4, "derivative_pole": 60, "b": 0.5, "c": 0.2})", T);
+  BlockUnderTest block("PidController",
+                       R"({"Kp": 3, "Ki": 0, "Kd": 0.4, "derivative_pole": 60, "b": 0.5, "c": 0.2})", T);
   for (double w : {0.0, 5.0, 100.0}) {
     const Complex s = tustin(w, T), slope = 60.0 * s / (s + 60.0);
-    EXPECT_COMPLEX_NEAR(sampled_response(block, "reference", "command", w, T), 1.5 + 0.4 * 0.2 * slope, 1e-11);
+    EXPECT_COMPLEX_NEAR(sampled_response(block, "reference", "command", w, T), 1.5 + 0.4 * 0.2 * slope,
+                        1e-11);
     EXPECT_COMPLEX_NEAR(sampled_response(block, "measured", "command", w, T), -3.0 - 0.4 * slope, 1e-11);
   }
 }
 
 TEST(PidController, IntegratesTheErrorByTrapezoids) {
-  BlockUnderTest block("PidController", R"({"Kp": 0, "Ki": 7, "Kd": 0, "derivative_pole": 60, "initial": 1.5})", T);
+  BlockUnderTest block("PidController",
+                       R"({"Kp": 0, "Ki": 7, "Kd": 0, "derivative_pole": 60, "initial": 1.5})", T);
   double integral = 1.5, last = 0;
   for (int k = 0; k < 100; ++k) {
     const double error = std::cos(0.3 * k);
@@ -25,9 +28,12 @@ TEST(PidController, IntegratesTheErrorByTrapezoids) {
   }
 }
 
-/// Steps an error of 1 for two seconds, then of -1; answers how long the command stays at its limit after the turn.
+/// Steps an error of 1 for two seconds, then of -1; answers how long the command stays at its limit after the
+/// turn.
 int samples_to_leave_the_limit(const std::string& anti_windup) {
-  BlockUnderTest block("PidController", R"({"Kp": 1, "Ki": 5, "Kd": 0, "derivative_pole": 60, "low": -2, "high": 2, )" + anti_windup + "}", T);
+  BlockUnderTest block(
+      "PidController",
+      R"({"Kp": 1, "Ki": 5, "Kd": 0, "derivative_pole": 60, "low": -2, "high": 2, )" + anti_windup + "}", T);
   for (int k = 0; k < 200; ++k) EXPECT_LE(block.sample("reference", 1, "command"), 2);
   EXPECT_EQ(block.output("command"), 2);
   for (int k = 0; k < 1000; ++k)
@@ -44,16 +50,19 @@ TEST(PidController, WindsUpWithoutAProtectionAndNotWithOne) {
 
 TEST(PidController, BackCalculationSettlesWhereTrackingBalancesTheError) {
   BlockUnderTest block("PidController", R"({"Kp": 1, "Ki": 5, "Kd": 0, "derivative_pole": 60, "high": 2,
-                                            "anti_windup": "back_calculation", "tracking_gain": 20})", T);
+                                            "anti_windup": "back_calculation", "tracking_gain": 20})",
+                       T);
   for (int k = 0; k < 500; ++k) block.sample("reference", 1, "command");
-  // In the steady state a sample adds Ki T to the integral and tracking takes (1 - e^(-20 T)) · excess off, so both are
-  // equal. The integral is then limit + excess - Kp · 1, and without the error the command shows it.
+  // In the steady state a sample adds Ki T to the integral and tracking takes (1 - e^(-20 T)) · excess off,
+  // so both are equal. The integral is then limit + excess - Kp · 1, and without the error the command shows
+  // it.
   const double excess = 5 * T / (1 - std::exp(-20 * T)), integral_after = 2 + excess - 1 - 5 * T;
   EXPECT_NEAR(block.sample("reference", 0, "command"), integral_after + 5 * T / 2, 1e-12);
 }
 
 TEST(PidController, ClampingStillLetsTheIntegralComeBack) {
-  BlockUnderTest block("PidController", R"({"Kp": 0, "Ki": 5, "Kd": 0, "derivative_pole": 60, "high": 2, "initial": 3})", T);
+  BlockUnderTest block("PidController",
+                       R"({"Kp": 0, "Ki": 5, "Kd": 0, "derivative_pole": 60, "high": 2, "initial": 3})", T);
   EXPECT_EQ(block.sample("reference", -1, "command"), 2);
   for (int k = 0; k < 30; ++k) block.sample("reference", -1, "command");
   EXPECT_LT(block.output("command"), 2);
@@ -61,7 +70,11 @@ TEST(PidController, ClampingStillLetsTheIntegralComeBack) {
 
 TEST(PidController, RefusesWhatCannotWork) {
   const auto text = [](const char* rest) {
-    return BlockUnderTest("PidController", R"({"Kp": 1, "Ki": 1, "Kd": 1, "derivative_pole": 9, )" + std::string(rest) + "}", T).problems().text();
+    return BlockUnderTest("PidController",
+                          R"({"Kp": 1, "Ki": 1, "Kd": 1, "derivative_pole": 9, )" + std::string(rest) + "}",
+                          T)
+        .problems()
+        .text();
   };
   EXPECT_THAT(text(R"("low": 1, "high": 1)"), testing::HasSubstr("low < high"));
   EXPECT_THAT(text(R"("anti_windup": "back_calculation")"), testing::HasSubstr("Ki/Kp"));

@@ -6,7 +6,8 @@ namespace {
 
 constexpr double T = 0.001, cutoff = 2 * pi * 40;
 std::string settings(int degree) {
-  return R"({"cutoff": )" + std::to_string(cutoff) + R"(, "relative_degree": )" + std::to_string(degree) + "}";
+  return R"({"cutoff": )" + std::to_string(cutoff) + R"(, "relative_degree": )" + std::to_string(degree) +
+         "}";
 }
 
 TEST(QFilter, IsTheTustinImageOfEqualLags) {
@@ -14,13 +15,15 @@ TEST(QFilter, IsTheTustinImageOfEqualLags) {
   for (int n = 1; n <= 4; ++n) {
     BlockUnderTest block("QFilter", settings(n), T);
     for (double w : {0.0, 100.0, 1500.0})
-      EXPECT_COMPLEX_NEAR(sampled_response(block, "u", "y", w, T, 2000), std::pow(w0 / (tustin(w, T) + w0), n), 1e-12);
+      EXPECT_COMPLEX_NEAR(sampled_response(block, "u", "y", w, T, 2000),
+                          std::pow(w0 / (tustin(w, T) + w0), n), 1e-12);
   }
 }
 
 TEST(QFilter, PassesAConstantWithoutChangingABit) {
   for (int n = 1; n <= 4; ++n) {
-    BlockUnderTest block("QFilter", R"({"cutoff": 217.3, "initial": 0.1, "relative_degree": )" + std::to_string(n) + "}", T);
+    BlockUnderTest block(
+        "QFilter", R"({"cutoff": 217.3, "initial": 0.1, "relative_degree": )" + std::to_string(n) + "}", T);
     for (int k = 0; k < 1000; ++k) ASSERT_EQ(block.sample("u", 0.1, "y"), 0.1);
   }
 }

@@ -12,11 +12,13 @@ TEST(RateLimiter, MovesNoFasterThanItsLimits) {
 
 TEST(RateLimiter, PassesSlowSignalsUnchanged) {
   BlockUnderTest block("RateLimiter", R"({"rising": 1, "falling": 1})", 0.01);
-  for (int k = 0; k < 100; ++k) EXPECT_EQ(block.sample("u", 0.9 * std::sin(0.01 * k), "y"), 0.9 * std::sin(0.01 * k));
+  for (int k = 0; k < 100; ++k)
+    EXPECT_EQ(block.sample("u", 0.9 * std::sin(0.01 * k), "y"), 0.9 * std::sin(0.01 * k));
 }
 
 TEST(RateLimiter, RefusesNegativeSpeeds) {
-  EXPECT_THAT(BlockUnderTest("RateLimiter", R"({"rising": 1, "falling": -1})", 0.01).problems().text(), testing::HasSubstr("/falling"));
+  EXPECT_THAT(BlockUnderTest("RateLimiter", R"({"rising": 1, "falling": -1})", 0.01).problems().text(),
+              testing::HasSubstr("/falling"));
 }
 
 }  // namespace

@@ -10,13 +10,15 @@ TEST(VelocityEstimator, FilteredIsTheTustinImageOfItsFormula) {
   BlockUnderTest block("VelocityEstimator", R"({"cutoff": 314})", T);
   for (double w : {0.0, 50.0, 314.0, 2500.0}) {
     const Complex s = tustin(w, T);
-    EXPECT_COMPLEX_NEAR(sampled_response(block, "position", "velocity", w, T, 1000), 314.0 * s / (s + 314.0), 1e-10);
+    EXPECT_COMPLEX_NEAR(sampled_response(block, "position", "velocity", w, T, 1000), 314.0 * s / (s + 314.0),
+                        1e-10);
   }
 }
 
 TEST(VelocityEstimator, BackwardDifferenceIsTheMeanVelocityOfItsWindow) {
   for (int n : {1, 4}) {
-    BlockUnderTest block("VelocityEstimator", R"({"method": "backward_difference", "samples": )" + std::to_string(n) + "}", T);
+    BlockUnderTest block("VelocityEstimator",
+                         R"({"method": "backward_difference", "samples": )" + std::to_string(n) + "}", T);
     for (int k = 0; k < 30; ++k) {
       const double x = 1e-4 * k * k, before = k < n ? 0 : 1e-4 * (k - n) * (k - n);
       EXPECT_NEAR(block.sample("position", x, "velocity"), (x - before) / (n * T), 1e-11);
@@ -34,8 +36,10 @@ TEST(VelocityEstimator, BothFindASteadyVelocityAndStartAtRest) {
 }
 
 TEST(VelocityEstimator, RefusesWhatItsMethodDoesNotUse) {
-  EXPECT_THAT(BlockUnderTest("VelocityEstimator", "{}", T).problems().text(), testing::HasSubstr("needs a bandwidth"));
-  EXPECT_THAT(BlockUnderTest("VelocityEstimator", R"({"cutoff": 9, "samples": 2})", T).problems().text(), testing::HasSubstr("/samples"));
+  EXPECT_THAT(BlockUnderTest("VelocityEstimator", "{}", T).problems().text(),
+              testing::HasSubstr("needs a bandwidth"));
+  EXPECT_THAT(BlockUnderTest("VelocityEstimator", R"({"cutoff": 9, "samples": 2})", T).problems().text(),
+              testing::HasSubstr("/samples"));
 }
 
 }  // namespace

@@ -16,7 +16,8 @@ TEST(Delay, NeedsNoPresentInput) {
 }
 
 TEST(Delay, RefusesNoSamples) {
-  EXPECT_THAT(BlockUnderTest("Delay", R"({"samples": 0})", 0.01).problems().text(), testing::HasSubstr("at least 1"));
+  EXPECT_THAT(BlockUnderTest("Delay", R"({"samples": 0})", 0.01).problems().text(),
+              testing::HasSubstr("at least 1"));
 }
 
 }  // namespace

@@ -15,7 +15,8 @@ constexpr Case cases[] = {{"forward", 0.1, 0}, {"backward", 0, 0.1}, {"trapezoid
 
 TEST(DiscreteIntegrator, FollowsItsRule) {
   for (const Case& c : cases) {
-    BlockUnderTest block("DiscreteIntegrator", R"({"initial": 2, "method": ")" + std::string(c.method) + "\"}", sample_time);
+    BlockUnderTest block("DiscreteIntegrator",
+                         R"({"initial": 2, "method": ")" + std::string(c.method) + "\"}", sample_time);
     double y = 2;
     for (int k = 0; k < 50; ++k) {
       y += c.past * u_at(k - 1) + c.present * u_at(k);
@@ -27,7 +28,9 @@ TEST(DiscreteIntegrator, FollowsItsRule) {
 
 TEST(DiscreteIntegrator, IsHeldInsideItsLimitsSampleBySample) {
   for (const Case& c : cases) {
-    BlockUnderTest block("DiscreteIntegrator", R"({"low": -0.1, "high": 0.15, "method": ")" + std::string(c.method) + "\"}", sample_time);
+    BlockUnderTest block("DiscreteIntegrator",
+                         R"({"low": -0.1, "high": 0.15, "method": ")" + std::string(c.method) + "\"}",
+                         sample_time);
     double y = 0;
     int limited = 0;
     for (int k = 0; k < 80; ++k) {
@@ -43,7 +46,8 @@ TEST(DiscreteIntegrator, IsHeldInsideItsLimitsSampleBySample) {
 
 TEST(DiscreteIntegrator, IsResetWhenTheTriggerRises) {
   for (const Case& c : cases) {
-    BlockUnderTest block("DiscreteIntegrator", R"({"method": ")" + std::string(c.method) + "\"}", sample_time);
+    BlockUnderTest block("DiscreteIntegrator", R"({"method": ")" + std::string(c.method) + "\"}",
+                         sample_time);
     const bool late = c.present == 0;
     block.input("reset_value") = 7;
     std::vector<double> y;
@@ -68,7 +72,8 @@ TEST(DiscreteIntegrator, BeforeNeedsNoPresentInput) {
 TEST(DiscreteIntegrator, RefusesAnInitialValueOutsideItsLimits) {
   EXPECT_THAT(BlockUnderTest("DiscreteIntegrator", R"({"initial": 3, "high": 2})", 0.1).problems().text(),
               testing::HasSubstr("/initial"));
-  EXPECT_THAT(BlockUnderTest("DiscreteIntegrator", R"({"method": "euler"})", 0.1).problems().text(), testing::HasSubstr("forward"));
+  EXPECT_THAT(BlockUnderTest("DiscreteIntegrator", R"({"method": "euler"})", 0.1).problems().text(),
+              testing::HasSubstr("forward"));
 }
 
 }  // namespace

@@ -5,8 +5,10 @@ namespace loopwright {
 namespace {
 
 TEST(DiscreteStateSpace, UpdatesAllStatesFromTheOldOnes) {
-  BlockUnderTest block("DiscreteStateSpace", R"({"A": [[0, 1], [1, 0]], "B": [[0], [0]], "C": [[1, 0], [0, 1]], "D": [[0], [0]],
-                                                 "initial": [3, 5]})", 0.1);
+  BlockUnderTest block("DiscreteStateSpace",
+                       R"({"A": [[0, 1], [1, 0]], "B": [[0], [0]], "C": [[1, 0], [0, 1]], "D": [[0], [0]],
+                                                 "initial": [3, 5]})",
+                       0.1);
   for (int k = 0; k < 4; ++k) {  // the states change places, which an update in place would spoil
     block.evaluate();
     EXPECT_THAT(block.outputs("y"), k % 2 ? testing::ElementsAre(5, 3) : testing::ElementsAre(3, 5));
@@ -15,8 +17,10 @@ TEST(DiscreteStateSpace, UpdatesAllStatesFromTheOldOnes) {
 }
 
 TEST(DiscreteStateSpace, FollowsItsRecursion) {
-  BlockUnderTest block("DiscreteStateSpace", R"({"A": [[0.9, 0.2], [-0.3, 0.7]], "B": [[1, 0], [0.5, 2]], "C": [[1, -1]],
-                                                 "D": [[0.1, 0]]})", 0.1);
+  BlockUnderTest block("DiscreteStateSpace",
+                       R"({"A": [[0.9, 0.2], [-0.3, 0.7]], "B": [[1, 0], [0.5, 2]], "C": [[1, -1]],
+                                                 "D": [[0.1, 0]]})",
+                       0.1);
   double x = 0, v = 0;
   for (int k = 0; k < 60; ++k) {
     const double a = std::sin(k), b = std::cos(3.0 * k);
@@ -30,8 +34,11 @@ TEST(DiscreteStateSpace, FollowsItsRecursion) {
 }
 
 TEST(DiscreteStateSpace, SaysWhichMatrixDoesNotFit) {
-  EXPECT_THAT(BlockUnderTest("DiscreteStateSpace", R"({"A": [[1]], "B": [[1]], "C": [[1]], "D": [[0], [1]]})", 0.1).problems().text(),
-              testing::HasSubstr("1 rows of 1 numbers"));
+  EXPECT_THAT(
+      BlockUnderTest("DiscreteStateSpace", R"({"A": [[1]], "B": [[1]], "C": [[1]], "D": [[0], [1]]})", 0.1)
+          .problems()
+          .text(),
+      testing::HasSubstr("1 rows of 1 numbers"));
 }
 
 }  // namespace

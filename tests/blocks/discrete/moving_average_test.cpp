@@ -18,7 +18,8 @@ TEST(MovingAverage, IsTheMeanOfTheLastSamples) {
 }
 
 TEST(MovingAverage, ForgetsAnOutlierToTheLastBit) {
-  for (double outlier : {1e300, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+  for (double outlier :
+       {1e300, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
     BlockUnderTest block("MovingAverage", R"({"samples": 5})", 0.01);
     block.sample("u", outlier, "y");
     for (int k = 1; k < 12; ++k) {

@@ -9,7 +9,9 @@ TEST(ZeroOrderHold, TakesThePresentSample) {
   for (double u : {1.0, -2.0, 7.5}) EXPECT_EQ(block.sample("u", u, "y"), u);
 }
 
-TEST(ZeroOrderHold, MustBeGivenASampleTime) { EXPECT_TRUE(BlockUnderTest("ZeroOrderHold", "{}", 0.01).info().is_sampled); }
+TEST(ZeroOrderHold, MustBeGivenASampleTime) {
+  EXPECT_TRUE(BlockUnderTest("ZeroOrderHold", "{}", 0.01).info().is_sampled);
+}
 
 }  // namespace
 }  // namespace loopwright

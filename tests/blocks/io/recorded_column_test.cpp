@@ -15,7 +15,8 @@ class Recorded {
       : folder_(std::filesystem::temp_directory_path() / ("recorded_column_" + std::to_string(getpid()))) {
     std::filesystem::create_directories(folder_);
     std::ofstream(folder_ / "data.csv") << csv;
-    block = std::make_unique<BlockUnderTest>("RecordedColumn", R"({"file": ")" + (folder_ / "data.csv").string() + "\", " + settings + "}");
+    block = std::make_unique<BlockUnderTest>(
+        "RecordedColumn", R"({"file": ")" + (folder_ / "data.csv").string() + "\", " + settings + "}");
   }
   ~Recorded() { std::filesystem::remove_all(folder_); }
   double at(double time) {
@@ -67,7 +68,8 @@ TEST(RecordedColumn, EntersANewSampleAtEveryStopThatItAnnounces) {
 
 TEST(RecordedColumn, StopsTheRunBeyondItsEndWhenToldTo) {
   for (const char* kind : {"hold", "linear"}) {
-    Recorded column(ramp, R"("column": "y", "beyond": "fault", "interpolation": ")" + std::string(kind) + "\"");
+    Recorded column(ramp,
+                    R"("column": "y", "beyond": "fault", "interpolation": ")" + std::string(kind) + "\"");
     column.at(0), column.at(0.3), column.at(0.4);
     EXPECT_EQ(column.block->fault(), "") << kind;
     column.at(0.41);
@@ -81,7 +83,9 @@ TEST(RecordedColumn, TakesTheTimeColumnThatItIsTold) {
 }
 
 TEST(RecordedColumn, NamesWhatIsWrongWithFileColumnTimeAndUnit) {
-  const auto text = [](const std::string& csv, const char* settings) { return Recorded(csv, settings).block->problems().text(); };
+  const auto text = [](const std::string& csv, const char* settings) {
+    return Recorded(csv, settings).block->problems().text();
+  };
   EXPECT_NE(text(ramp, R"("column": "tme")").find("did you mean \"time\"?"), std::string::npos);
   EXPECT_NE(text(ramp, R"("column": "x", "unit": "V")").find("another unit"), std::string::npos);
   EXPECT_NE(text(ramp, R"("column": "y", "unit": "foo")").find("the unit cannot be read"), std::string::npos);

@@ -9,7 +9,8 @@ TEST(Comparison, AsksWhatItsOperatorSays) {
   for (int i = 0; i < 6; ++i) {
     BlockUnderTest comparison("Comparison", R"({"operator": ")" + std::string(operators[i]) + "\"}");
     comparison.input("b") = 2;
-    for (auto [a, expected] : {std::pair(1.0, less[i]), std::pair(2.0, equal[i]), std::pair(3.0, greater[i])}) {
+    for (auto [a, expected] :
+         {std::pair(1.0, less[i]), std::pair(2.0, equal[i]), std::pair(3.0, greater[i])}) {
       comparison.input("a") = a;
       comparison.evaluate();
       EXPECT_EQ(comparison.output("y"), expected) << a << operators[i] << 2;
@@ -38,7 +39,8 @@ TEST(Comparison, EveryChangeOfItsAnswerChangesTheSignOfACrossing) {
 
 TEST(Comparison, NamesItsOperatorsWhenOneIsUnknown) {
   BlockUnderTest comparison("Comparison", R"({"operator": "="})");
-  EXPECT_NE(comparison.problems().text().find("\"==\" or \"!=\""), std::string::npos) << comparison.problems().text();
+  EXPECT_NE(comparison.problems().text().find("\"==\" or \"!=\""), std::string::npos)
+      << comparison.problems().text();
 }
 
 }  // namespace loopwright

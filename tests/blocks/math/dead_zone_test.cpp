@@ -23,7 +23,8 @@ TEST(DeadZone, TheEndsOfTheZoneAreCrossings) {
 
 TEST(DeadZone, RefusesAZoneThatEndsBeforeItBegins) {
   BlockUnderTest zone("DeadZone", R"({"low": 3, "high": 2})");
-  EXPECT_NE(zone.problems().text().find("lies above the upper one"), std::string::npos) << zone.problems().text();
+  EXPECT_NE(zone.problems().text().find("lies above the upper one"), std::string::npos)
+      << zone.problems().text();
 }
 
 }  // namespace loopwright

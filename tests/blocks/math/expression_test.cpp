@@ -4,7 +4,8 @@
 namespace loopwright {
 
 TEST(Expression, EvaluatesItsFormula) {
-  BlockUnderTest formula("Expression", R"({"formula": "(c > 1 ? 100 : 0) + a * sin(pi*b) ", "names": ["a", "b", "c"]})");
+  BlockUnderTest formula("Expression",
+                         R"({"formula": "(c > 1 ? 100 : 0) + a * sin(pi*b) ", "names": ["a", "b", "c"]})");
   formula.inputs("arguments") = {3, 0.5, 2};
   formula.evaluate();
   EXPECT_DOUBLE_EQ(formula.output("y"), 103);
@@ -14,7 +15,9 @@ TEST(Expression, EvaluatesItsFormula) {
 }
 
 TEST(Expression, TakesASignalForEachName) {
-  EXPECT_EQ(BlockUnderTest("Expression", R"({"formula": "x+y", "names": ["x", "y"]})").inputs("arguments").size(), 2u);
+  EXPECT_EQ(
+      BlockUnderTest("Expression", R"({"formula": "x+y", "names": ["x", "y"]})").inputs("arguments").size(),
+      2u);
 }
 
 TEST(Expression, StopsTheRunWhenTheResultIsNoNumber) {
@@ -42,12 +45,14 @@ TEST(Expression, RefusesFormulasThatAreIncomplete) {
 TEST(Expression, RefusesNamesThatAreNone) {
   for (const char* names : {R"(["2x"])", R"(["a b"])", R"([""])", R"(["x", "x"])", R"(["pi"])"}) {
     BlockUnderTest formula("Expression", R"({"formula": "1", "names": )" + std::string(names) + "}");
-    EXPECT_NE(formula.problems().text().find("/names"), std::string::npos) << names << "\n" << formula.problems().text();
+    EXPECT_NE(formula.problems().text().find("/names"), std::string::npos) << names << "\n"
+                                                                           << formula.problems().text();
   }
 }
 
 TEST(Expression, TwoBlocksDoNotShareTheirVariables) {
-  BlockUnderTest first("Expression", R"({"formula": "x", "names": ["x"]})"), second("Expression", R"({"formula": "-x", "names": ["x"]})");
+  BlockUnderTest first("Expression", R"({"formula": "x", "names": ["x"]})"),
+      second("Expression", R"({"formula": "-x", "names": ["x"]})");
   first.input("arguments") = 1;
   second.input("arguments") = 2;
   first.evaluate();

@@ -35,7 +35,8 @@ TEST(Lookup2D, IsExactForABilinearFunction) {
   }
   BlockUnderTest table("Lookup2D", text + "]}");
   for (double u : {-3.0, -0.3, 0.7, 3.9, 6.0})
-    for (double v : {-1.0, 0.1, 2.9, 4.4, 9.0}) EXPECT_NEAR(read(table, u, v), f(u, v), 1e-12) << u << " " << v;
+    for (double v : {-1.0, 0.1, 2.9, 4.4, 9.0})
+      EXPECT_NEAR(read(table, u, v), f(u, v), 1e-12) << u << " " << v;
 }
 
 TEST(Lookup2D, HoldsTheEdgeBeyondItsEnds) {

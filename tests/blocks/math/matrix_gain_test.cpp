@@ -21,8 +21,10 @@ TEST(MatrixGain, EveryNumberIsTunable) {
 }
 
 TEST(MatrixGain, RefusesEmptyAndRaggedMatrices) {
-  EXPECT_NE(BlockUnderTest("MatrixGain", R"({"matrix": []})").problems().text().find("the matrix is empty"), std::string::npos);
-  EXPECT_NE(BlockUnderTest("MatrixGain", R"({"matrix": [[]]})").problems().text().find("the matrix is empty"), std::string::npos);
+  EXPECT_NE(BlockUnderTest("MatrixGain", R"({"matrix": []})").problems().text().find("the matrix is empty"),
+            std::string::npos);
+  EXPECT_NE(BlockUnderTest("MatrixGain", R"({"matrix": [[]]})").problems().text().find("the matrix is empty"),
+            std::string::npos);
   BlockUnderTest ragged("MatrixGain", R"({"matrix": [[1, 2], [3]]})");
   EXPECT_NE(ragged.problems().text().find("1 in row 2"), std::string::npos) << ragged.problems().text();
 }

@@ -30,7 +30,8 @@ TEST(Product, StopsTheRunWhenItDividesByZero) {
 
 TEST(Product, RefusesOtherOperations) {
   BlockUnderTest product("Product", R"({"operations": "*+"})");
-  EXPECT_NE(product.problems().text().find("operations may only hold * and /"), std::string::npos) << product.problems().text();
+  EXPECT_NE(product.problems().text().find("operations may only hold * and /"), std::string::npos)
+      << product.problems().text();
 }
 
 }  // namespace loopwright

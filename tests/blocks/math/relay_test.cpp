@@ -37,7 +37,8 @@ TEST(Relay, HoldsInsideASolverStepUntilItsThresholdIsCrossed) {
 
 TEST(Relay, RefusesThresholdsInTheWrongOrder) {
   BlockUnderTest relay("Relay", R"({"switch_on": -1, "switch_off": 1})");
-  EXPECT_NE(relay.problems().text().find("switch_off <= switch_on"), std::string::npos) << relay.problems().text();
+  EXPECT_NE(relay.problems().text().find("switch_off <= switch_on"), std::string::npos)
+      << relay.problems().text();
 }
 
 }  // namespace loopwright

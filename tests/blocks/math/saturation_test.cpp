@@ -42,7 +42,8 @@ TEST(Saturation, ItsLimitsAreCrossings) {
 
 TEST(Saturation, RefusesLimitsInTheWrongOrder) {
   BlockUnderTest limit("Saturation", R"({"low": 3, "high": 2})");
-  EXPECT_NE(limit.problems().text().find("lies above the upper one"), std::string::npos) << limit.problems().text();
+  EXPECT_NE(limit.problems().text().find("lies above the upper one"), std::string::npos)
+      << limit.problems().text();
 }
 
 }  // namespace loopwright

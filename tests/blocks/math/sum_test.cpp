@@ -24,7 +24,8 @@ TEST(Sum, TakesAsManyTermsAsItHasSigns) {
 
 TEST(Sum, RefusesOtherSigns) {
   BlockUnderTest sum("Sum", R"({"signs": "+*"})");
-  EXPECT_NE(sum.problems().text().find("signs may only hold + and -"), std::string::npos) << sum.problems().text();
+  EXPECT_NE(sum.problems().text().find("signs may only hold + and -"), std::string::npos)
+      << sum.problems().text();
 }
 
 }  // namespace loopwright

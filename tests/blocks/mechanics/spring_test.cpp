@@ -4,6 +4,13 @@
 
 using namespace loopwright;
 
+TEST(Spring, PullsWithItsPreloadAtRest) {
+  BlockUnderTest block("Spring", R"({"stiffness": 40, "rest_position": 0.5, "preload": -3})");
+  block.input("position") = 0.5;
+  block.evaluate();
+  EXPECT_EQ(block.output("force"), -3);
+}
+
 TEST(Spring, PullsBackToItsRestPosition) {
   BlockUnderTest block("Spring", R"({"stiffness": 40, "rest_position": 0.5})");
   for (auto [position, force] : {std::pair{0.5, 0.0}, {1.0, 20.0}, {0.0, -20.0}}) {

@@ -17,7 +17,8 @@ double integrated_phase(auto frequency, double t) {
 }  // namespace
 
 TEST(Chirp, LinearSweepHasTheIntegratedFrequencyAsPhase) {
-  BlockUnderTest chirp("Chirp", R"({"amplitude": 3, "from": 2, "to": 30, "duration": 4, "phase": 0.4, "bias": 1})");
+  BlockUnderTest chirp("Chirp",
+                       R"({"amplitude": 3, "from": 2, "to": 30, "duration": 4, "phase": 0.4, "bias": 1})");
   const auto f = [](double t) { return 2 + 28 * t / 4; };
   for (double t : {0.0, 0.3, 1.7, 3.99}) {
     chirp.evaluate(t);
@@ -38,7 +39,8 @@ TEST(Chirp, LogarithmicSweepHasTheIntegratedFrequencyAsPhase) {
 
 TEST(Chirp, LogarithmicSweepBetweenNearlyEqualFrequenciesLosesNoDigits) {
   for (const char* last : {"7", "7.0000000001"}) {
-    BlockUnderTest chirp("Chirp", R"({"from": 7, "duration": 100, "sweep": "logarithmic", "to": )" + std::string(last) + "}");
+    BlockUnderTest chirp(
+        "Chirp", R"({"from": 7, "duration": 100, "sweep": "logarithmic", "to": )" + std::string(last) + "}");
     chirp.evaluate(93.21);
     const double growth = std::stod(last) / 7 - 1;
     EXPECT_NEAR(chirp.output("y"), std::sin(2 * pi * 7 * 93.21 * (1 + 0.5 * growth * 0.9321)), 1e-10) << last;

@@ -9,7 +9,8 @@ namespace {
 std::string common_job(const std::string& more = "") {
   return R"({"segments": [{"duration": 0.05, "velocity": 0}, {"duration": 0.2, "velocity": 0.15},
       {"duration": 0.7375, "velocity": 0.15}, {"duration": 0.2, "velocity": 0.35}, {"duration": 1.0625, "velocity": 0.35},
-      {"duration": 0.3, "velocity": 0}, {"duration": 0.05, "velocity": 0}])" + more + "}";
+      {"duration": 0.3, "velocity": 0}, {"duration": 0.05, "velocity": 0}])" +
+         more + "}";
 }
 
 }  // namespace
@@ -38,7 +39,9 @@ TEST(MotionProfile, RaisedCosineRampsFollowTheirFormula) {
 /// Position against a fine Simpson sum of velocity, velocity against differences of position.
 TEST(MotionProfile, PositionVelocityAndAccelerationBelongTogetherForEveryShape) {
   for (const char* shape : {"raised_cosine", "cubic", "linear"}) {
-    BlockUnderTest motion("MotionProfile", common_job(R"(, "start_position": 1, "returns": true, "shape": ")" + std::string(shape) + "\""));
+    BlockUnderTest motion(
+        "MotionProfile",
+        common_job(R"(, "start_position": 1, "returns": true, "shape": ")" + std::string(shape) + "\""));
     const double h = 1e-4;
     double sum = 1, last_velocity = 0, last_acceleration = 0, jump = 0;
     for (int i = 0; i < 52000; ++i) {
@@ -53,8 +56,10 @@ TEST(MotionProfile, PositionVelocityAndAccelerationBelongTogetherForEveryShape) 
       last_velocity = velocity, last_acceleration = acceleration;
     }
     EXPECT_NEAR(sum, 1, 1e-9) << shape;
-    if (std::string_view(shape) == "linear") EXPECT_GT(jump, 0.7) << shape;
-    else EXPECT_LT(jump, 0.01) << shape;
+    if (std::string_view(shape) == "linear")
+      EXPECT_GT(jump, 0.7) << shape;
+    else
+      EXPECT_LT(jump, 0.01) << shape;
   }
 }
 
@@ -62,7 +67,8 @@ TEST(MotionProfile, ReturnsAsTheMirrorImageInTime) {
   BlockUnderTest motion("MotionProfile", common_job(R"(, "returns": true, "passes": 3)"));
   for (double t : {0.1, 0.2, 1.0, 1.1, 2.0, 2.5}) {
     motion.evaluate(t);
-    const double position = motion.output("position"), velocity = motion.output("velocity"), acceleration = motion.output("acceleration");
+    const double position = motion.output("position"), velocity = motion.output("velocity"),
+                 acceleration = motion.output("acceleration");
     for (double mirror : {5.2 - t, 10.4 - t, 15.6 - t}) {
       motion.evaluate(mirror);
       EXPECT_NEAR(motion.output("position"), position, 1e-13) << mirror;
@@ -121,10 +127,14 @@ TEST(MotionProfile, ItsVelocitiesAreTunable) {
 }
 
 TEST(MotionProfile, RefusesMotionsThatJump) {
-  const auto text = [](const char* settings) { return BlockUnderTest("MotionProfile", settings).problems().text(); };
+  const auto text = [](const char* settings) {
+    return BlockUnderTest("MotionProfile", settings).problems().text();
+  };
   EXPECT_NE(text(R"({"segments": []})").find("at least one segment"), std::string::npos);
-  EXPECT_NE(text(R"({"segments": [{"duration": 1, "velocity": 1}], "returns": true})").find("turns back"), std::string::npos);
-  EXPECT_NE(text(R"({"segments": [{"duration": 1, "velocity": 1}], "passes": 2})").find("follows the other"), std::string::npos);
+  EXPECT_NE(text(R"({"segments": [{"duration": 1, "velocity": 1}], "returns": true})").find("turns back"),
+            std::string::npos);
+  EXPECT_NE(text(R"({"segments": [{"duration": 1, "velocity": 1}], "passes": 2})").find("follows the other"),
+            std::string::npos);
   EXPECT_NE(text(R"({"segments": [{"duration": 0, "velocity": 1}]})").find("above 0"), std::string::npos);
 }
 

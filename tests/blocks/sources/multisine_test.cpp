@@ -8,7 +8,9 @@ TEST(Multisine, AddsItsComponents) {
       {"amplitude": 1, "frequency": 2}, {"amplitude": 0.25, "frequency": 7, "phase": 1.5}]})");
   for (double t = 0; t < 2; t += 0.013) {
     sum.evaluate(t);
-    EXPECT_NEAR(sum.output("y"), 0.5 + std::sin(2 * pi * 2 * t) + 0.25 * std::sin(2 * pi * 7 * t + 1.5), 1e-13) << t;
+    EXPECT_NEAR(sum.output("y"), 0.5 + std::sin(2 * pi * 2 * t) + 0.25 * std::sin(2 * pi * 7 * t + 1.5),
+                1e-13)
+        << t;
   }
 }
 
@@ -23,8 +25,10 @@ TEST(Multisine, SchroederPhasesKeepThePeakOfABandLow) {
     square += band.output("y") * band.output("y");
   }
   const double rms = std::sqrt(square / samples);
-  EXPECT_NEAR(rms, std::sqrt(n / 2.0), 1e-9);  // Parseval: each component carries half of its amplitude squared
-  EXPECT_NEAR(peak / rms, 1.90539, 1e-5);      // the same sum worked out outside of this program; with equal phases 8.26
+  EXPECT_NEAR(rms, std::sqrt(n / 2.0),
+              1e-9);  // Parseval: each component carries half of its amplitude squared
+  EXPECT_NEAR(peak / rms, 1.90539,
+              1e-5);  // the same sum worked out outside of this program; with equal phases 8.26
 }
 
 TEST(Multisine, RepeatsAfterTheCommonPeriod) {

@@ -43,7 +43,8 @@ TEST(Noise, NormalNumbersHaveTheMomentsOfTheNormalDistribution) {
 }
 
 TEST(Noise, UniformNumbersHaveTheAskedDeviationAndNeverLeaveTheirRange) {
-  const auto y = numbers(R"({"standard_deviation": 2, "mean": 1, "distribution": "uniform"})", {0, 1, 0, 99}, 200000);
+  const auto y =
+      numbers(R"({"standard_deviation": 2, "mean": 1, "distribution": "uniform"})", {0, 1, 0, 99}, 200000);
   EXPECT_NEAR(mean_of(y, [](double x) { return x; }), 1, 5 * 2 * std::sqrt(1 / 2e5));
   EXPECT_NEAR(mean_of(y, [](double x) { return (x - 1) * (x - 1); }), 4, 5 * 4 * std::sqrt(0.8 / 2e5));
   for (double x : y) ASSERT_LT(std::abs(x - 1), 2 * std::numbers::sqrt3);
@@ -52,16 +53,20 @@ TEST(Noise, UniformNumbersHaveTheAskedDeviationAndNeverLeaveTheirRange) {
 TEST(Noise, IsWhiteAndIndependentBetweenRunsBlocksSeedsAndStreams) {
   const char* settings = R"({"standard_deviation": 1})";
   const auto y = numbers(settings, {0, 1, 0, 99}, 100000);
-  for (size_t shift : {1u, 2u, 3u, 17u}) EXPECT_LT(std::abs(correlation(y, y, shift)), 5 / std::sqrt(1e5)) << shift;
-  for (const auto& other : {numbers(settings, {0, 1, 1, 99}, 100000), numbers(settings, {0, 1, 0, 100}, 100000),
-                            numbers(settings, {0, 2, 0, 99}, 100000),
-                            numbers(R"({"standard_deviation": 1, "stream": 1})", {0, 1, 0, 99}, 100000)})
-    for (size_t shift : {0u, 1u}) EXPECT_LT(std::abs(correlation(y, other, shift)), 5 / std::sqrt(1e5)) << shift;
+  for (size_t shift : {1u, 2u, 3u, 17u})
+    EXPECT_LT(std::abs(correlation(y, y, shift)), 5 / std::sqrt(1e5)) << shift;
+  for (const auto& other :
+       {numbers(settings, {0, 1, 1, 99}, 100000), numbers(settings, {0, 1, 0, 100}, 100000),
+        numbers(settings, {0, 2, 0, 99}, 100000),
+        numbers(R"({"standard_deviation": 1, "stream": 1})", {0, 1, 0, 99}, 100000)})
+    for (size_t shift : {0u, 1u})
+      EXPECT_LT(std::abs(correlation(y, other, shift)), 5 / std::sqrt(1e5)) << shift;
 }
 
 TEST(Noise, IsTheSameAgainForTheSameSeed) {
   const loopwright::Setup setup{0, 7, 3, 12345};
-  EXPECT_EQ(numbers(R"({"standard_deviation": 1})", setup, 100), numbers(R"({"standard_deviation": 1})", setup, 100));
+  EXPECT_EQ(numbers(R"({"standard_deviation": 1})", setup, 100),
+            numbers(R"({"standard_deviation": 1})", setup, 100));
 }
 
 TEST(Noise, HoldsItsNumberBetweenSamples) {

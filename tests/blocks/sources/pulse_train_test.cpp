@@ -15,7 +15,8 @@ TEST(PulseTrain, IsHighForTheWidthOfEachPeriod) {
 
 /// Whoever steps from stop to stop must see each edge, whatever the rounding of period and start.
 TEST(PulseTrain, ChangesAtEveryStopThatItAnnounces) {
-  for (const char* settings : {R"({"period": 0.1, "width": 0.03, "start": 0.7})", R"({"period": 0.007, "width": 0.001})"}) {
+  for (const char* settings :
+       {R"({"period": 0.1, "width": 0.03, "start": 0.7})", R"({"period": 0.007, "width": 0.001})"}) {
     BlockUnderTest wave("PulseTrain", settings);
     double t = wave.next_stop(-1);
     for (int edge = 0; edge < 20000; ++edge) {
@@ -29,7 +30,8 @@ TEST(PulseTrain, ChangesAtEveryStopThatItAnnounces) {
 
 TEST(PulseTrain, RefusesPulsesLongerThanThePeriod) {
   BlockUnderTest wave("PulseTrain", R"({"period": 1, "width": 2})");
-  EXPECT_NE(wave.problems().text().find("longer than the period"), std::string::npos) << wave.problems().text();
+  EXPECT_NE(wave.problems().text().find("longer than the period"), std::string::npos)
+      << wave.problems().text();
 }
 
 }  // namespace loopwright

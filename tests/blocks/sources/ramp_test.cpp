@@ -35,7 +35,8 @@ TEST(Ramp, TellsTheSolverItsKinks) {
 
 TEST(Ramp, RefusesToStopBeforeItStarts) {
   BlockUnderTest ramp("Ramp", R"({"slope": 1, "start": 2, "stop": 1})");
-  EXPECT_NE(ramp.problems().text().find("stops before it starts"), std::string::npos) << ramp.problems().text();
+  EXPECT_NE(ramp.problems().text().find("stops before it starts"), std::string::npos)
+      << ramp.problems().text();
 }
 
 }  // namespace loopwright

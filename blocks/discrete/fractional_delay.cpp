@@ -1,0 +1,63 @@
+/// y[k] = (1 - f) u[k-n] + f u[k-n-1],  delay = (n + f) T
+#include "engine/block.h"
+
+namespace loopwright::blocks {
+
+/// Between samples y holds the mean of what the late staircase would have been: what an integrating plant
+/// feels of a held command that comes late by any time, at every sample. TransportDelay delays a continuous
+/// signal.
+struct FractionalDelay {
+  double delay = 0, initial = 0;
+  int samples = 100;
+  double period = 0;  // s
+  struct In {
+    double u;
+  };
+  struct Out {
+    double y;
+  };
+  struct Memory {
+    Vector<double> line;  // a ring
+    int newest;
+  };
+  static constexpr auto describe() {
+    return block(
+        "Delays a sampled signal by any time, not only whole samples.",
+        parameter(&FractionalDelay::delay, "delay", "s", "How long the signal is under way").not_negative(),
+        parameter(&FractionalDelay::initial, "initial", "$u", "Output until the first of the signal arrives")
+            .optional(),
+        parameter(&FractionalDelay::samples, "samples", "",
+                  "Longest delay that there is room for, in samples")
+            .between(1, 10000000)
+            .optional(),
+        input(&In::u, "u", "$u", "Signal"), output(&Out::y, "y", "$u", "The signal, one delay ago"),
+        buffer(&Memory::line, &FractionalDelay::capacity));
+  }
+  int capacity() const { return samples + 1; }
+  void prepare(double sample_time) { period = sample_time; }
+  void start(Memory& memory) const {
+    for (double& value : memory.line) value = initial;
+    memory.newest = 0;
+  }
+  Fault outputs(const In& in, const Memory& memory, Out& out) const {
+    const double late = delay / period;
+    const int whole = int(std::min(late, double(samples)));
+    const double f = std::min(late - whole, 1.0);
+    out.y = (1 - f) * ago(in.u, memory, whole) + (f > 0 ? f * ago(in.u, memory, whole + 1) : 0.0);
+    return fault_if(late > samples,
+                    "the delay is longer than there is room for: give the block more samples");
+  }
+  void update(const In& in, Memory& memory) const {
+    memory.newest = (memory.newest + 1) % capacity();
+    memory.line[size_t(memory.newest)] = in.u;
+  }
+
+ private:
+  double ago(double now, const Memory& memory, int count) const {
+    if (count == 0) return now;
+    return memory.line[size_t((memory.newest - (count - 1) + capacity()) % capacity())];
+  }
+};
+LOOPWRIGHT_BLOCK(FractionalDelay)
+
+}  // namespace loopwright::blocks

@@ -1,0 +1,35 @@
+/// Learned disturbances as files: JSON, versioned, with a checksum over all that follows from training.
+#pragma once
+#include <string>
+#include <vector>
+#include "engine/diagram/problem.h"
+#include "models/gp/fit.h"
+#include "models/gp/model.h"
+
+namespace loopwright {
+
+/// A model with what a reader wants to know about it.
+struct LearnedModel {
+  gp::Model model;
+  std::string title;
+  std::string position_unit = "m", velocity_unit = "m/s", label_unit;  ///< SI
+  std::vector<std::string> files;                                      ///< recordings it was trained on
+  std::string data_hash;  ///< of the samples, as content_hash() gives it
+  size_t sample_count = 0;
+  std::vector<gp::Prior> priors;      ///< in the order of gp::parameters_of()
+  double log_evidence = 0;            ///< log marginal likelihood at the hyper-parameters
+  double residual_rms = 0;            ///< label unit, over the samples
+  std::vector<std::string> warnings;  ///< that training gave
+  gp::Samples shown;                  ///< some of the samples, for pictures
+};
+
+inline constexpr int model_file_version = 1;
+
+/// Problems are placed in the model file, or at `reference` when it cannot be read at all. The result is of
+/// use only when no error was added.
+LearnedModel read_model(const std::string& path, const Place& reference, Problems& problems);
+
+/// Whole or not at all; throws std::runtime_error as write_file().
+void write_model(const std::string& path, const LearnedModel& model);
+
+}  // namespace loopwright

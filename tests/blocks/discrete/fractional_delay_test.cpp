@@ -1,0 +1,30 @@
+#include <gtest/gtest.h>
+#include "tests/blocks/block_under_test.h"
+
+using namespace loopwright;
+
+TEST(FractionalDelay, HoldsTheMeanOfTheLateStaircase) {
+  BlockUnderTest late("FractionalDelay", R"({"delay": 0.0225, "initial": -1})", 0.01);
+  const double given[] = {1, 2, 4, 8, 16},
+               expected[] = {-1, -1, 0.75 * 1 - 0.25 * 1, 0.75 * 2 + 0.25 * 1, 0.75 * 4 + 0.25 * 2};
+  for (size_t k = 0; k < std::size(given); ++k)
+    EXPECT_NEAR(late.sample("u", given[k], "y"), expected[k], 1e-12) << k;
+}
+
+TEST(FractionalDelay, WithoutDelayItIsAWire) {
+  BlockUnderTest late("FractionalDelay", R"({"delay": 0})", 0.01);
+  for (double u : {3.0, -1.0, 2.0}) EXPECT_EQ(late.sample("u", u, "y"), u);
+}
+
+TEST(FractionalDelay, WholeSamplesAreThoseOfADelay) {
+  BlockUnderTest late("FractionalDelay", R"({"delay": 0.03, "samples": 3})", 0.01),
+      whole("Delay", R"({"samples": 3})", 0.01);
+  for (int k = 0; k < 12; ++k) EXPECT_EQ(late.sample("u", k * k, "y"), whole.sample("u", k * k, "y")) << k;
+  EXPECT_EQ(late.fault(), "");
+}
+
+TEST(FractionalDelay, RefusesADelayThatItHasNoRoomFor) {
+  BlockUnderTest late("FractionalDelay", R"({"delay": 0.05, "samples": 3})", 0.01);
+  late.sample("u", 1, "y");
+  EXPECT_NE(late.fault(), "");
+}
