@@ -1,0 +1,45 @@
+/// position, velocity = device(command)
+#include "hw/blocks/io/hardware_io.h"
+#include <fmt/format.h>
+#include "engine/diagram/reader.h"
+#include "hw/drivers.h"
+
+namespace loopwright::blocks {
+namespace {
+
+/// The channel of a name; of no name, the first that `serves`. A problem when there is none.
+template <class Channel, class Serves>
+int choose(const Checker& checker, const char* parameter, const std::string& name,
+           const std::vector<Channel>& channels, Serves&& serves) {
+  KnownNames known;
+  for (size_t i = 0; i < channels.size(); ++i) {
+    if (name.empty() ? serves(channels[i]) : channels[i].name == name) return int(i);
+    known.add(channels[i].name);
+  }
+  auto& p = checker.error(name.empty() ? "device" : parameter,
+                          name.empty() ? fmt::format("the device offers nothing for \"{}\"", parameter)
+                                       : fmt::format("the device has no channel \"{}\"", name));
+  known.explain(p, name);
+  return -1;
+}
+
+}  // namespace
+
+void HardwareIo::check(const Checker& checker) {
+  device = hw::load_device(checker.resolve_file("device", device_file), checker.place("device"),
+                           checker.problems());
+  if (!device) {
+    checker.error("device", "the device file cannot be used").found = device_file;
+    return;
+  }
+  const auto is_encoder = [](const hw::InputChannel& c) { return c.kind == hw::InputKind::encoder; };
+  position_channel = choose(checker, "position_input", position_input, device->inputs, is_encoder);
+  command_channel =
+      choose(checker, "command_output", command_output, device->outputs, [](auto&) { return true; });
+  if (!velocity_input.empty())
+    velocity_channel =
+        choose(checker, "velocity_input", velocity_input, device->inputs, [](auto&) { return false; });
+}
+LOOPWRIGHT_BLOCK(HardwareIo)
+
+}  // namespace loopwright::blocks

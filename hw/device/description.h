@@ -1,0 +1,163 @@
+/// What a device file says: channels with their physical meaning, limits, clock, watchdog, policies.
+///
+/// Every channel obeys one equation: value = scale · raw + offset. Raw numbers are counts (encoder), counts/s
+/// (encoder velocity) or volts (analog). See docs/hardware.md for the format.
+#pragma once
+#include <array>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+#include "engine/block/parameters.h"
+#include "engine/diagram/problem.h"
+#include "engine/diagram/value.h"
+
+namespace loopwright::hw {
+
+enum class InputKind { encoder, encoder_velocity, analog };
+constexpr auto names_of(InputKind) {
+  return std::array<std::string_view, 3>{"encoder", "encoder_velocity", "analog"};
+}
+enum class ClockSource { device, host };
+constexpr auto names_of(ClockSource) { return std::array<std::string_view, 2>{"device", "host"}; }
+enum class Overflow { error, overwrite };
+constexpr auto names_of(Overflow) { return std::array<std::string_view, 2>{"error", "overwrite"}; }
+enum class Time { real, simulated };
+constexpr auto names_of(Time) { return std::array<std::string_view, 2>{"real", "simulated"}; }
+enum class OnOverrun { fault, count };
+constexpr auto names_of(OnOverrun) { return std::array<std::string_view, 2>{"fault", "count"}; }
+
+struct InputChannel {
+  std::string name;
+  InputKind kind = InputKind::encoder;
+  int channel = 0;
+  std::string unit;             ///< of the value, SI
+  double scale = 1;             ///< unit per raw
+  double offset = 0;            ///< unit; of an encoder: the place where it counts zero (homing)
+  int quadrature = 4;           ///< edges counted a period
+  int counter_bits = 24;        ///< a wrap at this width is undone; fewer than the card has do no harm
+  int preset = 0;               ///< counts at the start
+  double filter = 0;            ///< Hz; 0: as the card has it
+  double maximum_rate = 0;      ///< unit/s; a faster change is a glitch; 0: not looked at
+  double low = -10, high = 10;  ///< V, of an analog input
+  static constexpr auto describe() {
+    return fields(
+        parameter(&InputChannel::kind, "kind", "", "What the channel measures"),
+        parameter(&InputChannel::channel, "channel", "", "Number on the device").not_negative(),
+        parameter(&InputChannel::unit, "unit", "", "SI unit of the value"),
+        parameter(&InputChannel::scale, "scale", "", "Value per count (after quadrature), count/s or volt"),
+        parameter(&InputChannel::offset, "offset", "", "Value at raw zero").optional(),
+        parameter(&InputChannel::quadrature, "quadrature", "", "Edges counted a period: 0, 1, 2 or 4")
+            .between(0, 4)
+            .optional(),
+        parameter(&InputChannel::counter_bits, "counter_bits", "", "Width of the counter")
+            .between(8, 32)
+            .optional(),
+        parameter(&InputChannel::preset, "preset", "", "Counts that the encoder is set to at the start")
+            .optional(),
+        parameter(&InputChannel::filter, "filter", "Hz", "Cut-off of the encoder's digital filter")
+            .not_negative()
+            .optional(),
+        parameter(&InputChannel::maximum_rate, "maximum_rate", "",
+                  "Change of the value per second beyond which a sample is a glitch; 0: none")
+            .not_negative()
+            .optional(),
+        parameter(&InputChannel::low, "low", "V", "Lower end of the range").optional(),
+        parameter(&InputChannel::high, "high", "V", "Upper end of the range").optional());
+  }
+};
+
+struct OutputChannel {
+  std::string name;
+  int channel = 0;
+  std::string unit;
+  double scale = 1, offset = 0;                    ///< value = scale · volts + offset
+  double low = -10, high = 10;                     ///< V, range of the card
+  double minimum = -infinity, maximum = infinity;  ///< unit; further limits of the value
+  double maximum_rate = 0;                         ///< unit/s; 0: not limited
+  double initial = 0, safe = 0;                    ///< unit
+  static constexpr auto describe() {
+    return fields(
+        parameter(&OutputChannel::channel, "channel", "", "Number on the device").not_negative(),
+        parameter(&OutputChannel::unit, "unit", "", "SI unit of the value"),
+        parameter(&OutputChannel::scale, "scale", "", "Value per volt"),
+        parameter(&OutputChannel::offset, "offset", "", "Value at 0 V").optional(),
+        parameter(&OutputChannel::low, "low", "V", "Lower end of the range").optional(),
+        parameter(&OutputChannel::high, "high", "V", "Upper end of the range").optional(),
+        parameter(&OutputChannel::minimum, "minimum", "", "Least value that is ever sent").optional(),
+        parameter(&OutputChannel::maximum, "maximum", "", "Greatest value that is ever sent").optional(),
+        parameter(&OutputChannel::maximum_rate, "maximum_rate", "",
+                  "Greatest change per second; 0: not limited")
+            .not_negative()
+            .optional(),
+        parameter(&OutputChannel::initial, "initial", "", "Value before the first step").optional(),
+        parameter(&OutputChannel::safe, "safe", "", "Value at which nothing can move, sent at every stop"));
+  }
+  double volts(double value) const { return (value - offset) / scale; }
+  double least() const { return std::max(minimum, std::min(scale * low, scale * high) + offset); }
+  double greatest() const { return std::min(maximum, std::max(scale * low, scale * high) + offset); }
+};
+
+struct ClockSettings {
+  ClockSource source = ClockSource::device;
+  int buffer = 2;
+  Overflow overflow = Overflow::error;
+  Time time = Time::real;
+  static constexpr auto describe() {
+    return fields(
+        parameter(&ClockSettings::source, "source", "", "Who owns time: the device's clock or the computer's")
+            .optional(),
+        parameter(&ClockSettings::buffer, "buffer", "", "Samples that the device keeps for a late reader")
+            .between(1, 1000)
+            .optional(),
+        parameter(&ClockSettings::overflow, "overflow", "",
+                  "A full buffer is an error, or drops its oldest sample")
+            .optional(),
+        parameter(&ClockSettings::time, "time", "", "Simulated: a card in a computer, whose time is not ours")
+            .optional());
+  }
+};
+
+struct WatchdogSettings {
+  double timeout = 0;  ///< s; 0: no watchdog
+  static constexpr auto describe() {
+    return fields(
+        parameter(&WatchdogSettings::timeout, "timeout", "s",
+                  "Without a sign of life for so long, the device goes to its safe values itself; 0: none")
+            .not_negative());
+  }
+};
+
+struct Policy {
+  OnOverrun on_overrun = OnOverrun::fault;
+  int most_overruns = 3;
+  static constexpr auto describe() {
+    return fields(parameter(&Policy::on_overrun, "on_overrun", "", "Whether overruns end the run").optional(),
+                  parameter(&Policy::most_overruns, "most_overruns", "", "So many in a row are a fault")
+                      .at_least(1)
+                      .optional());
+  }
+};
+
+struct DeviceDescription {
+  std::string path, title;
+  std::string driver;     ///< "quanser", "udp"
+  Value driver_settings;  ///< the object of that name in the file; an empty object where there is none
+  std::vector<InputChannel> inputs;
+  std::vector<OutputChannel> outputs;
+  ClockSettings clock;
+  WatchdogSettings watchdog;
+  Policy policy;
+
+  /// Place among inputs or outputs; -1: there is none of the name.
+  int find_input(std::string_view name) const;
+  int find_output(std::string_view name) const;
+};
+
+/// Reads a device file; `reference` is where it was named, `drivers` are the names that "driver" may have.
+/// Null when there are errors. Opens no device.
+std::shared_ptr<const DeviceDescription> read_device(const std::string& path, const Place& reference,
+                                                     std::span<const std::string> drivers,
+                                                     Problems& problems);
+
+}  // namespace loopwright::hw

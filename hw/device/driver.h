@@ -1,0 +1,64 @@
+/// What a kind of hardware has to offer: raw numbers in and out. Implement this to add one
+/// (docs/hardware.md).
+///
+/// A driver knows the description, speaks counts and volts, and reports; units, limits, wraps, latching and
+/// the order of a safe stop are the business of IoDevice, which is the same for all.
+#pragma once
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+#include "hw/device/description.h"
+#include "hw/device/status.h"
+
+namespace loopwright::hw {
+
+struct Capabilities {
+  bool is_clock = false;      ///< read() waits for the device's next sample
+  bool has_watchdog = false;  ///< of its own, beyond this program
+  bool detects_lost = false;  ///< tells when a sample was dropped
+  bool reads_back = false;    ///< a write is answered, so that safe outputs can be confirmed
+};
+
+/// Facts that come with a sample.
+struct RawSample {
+  int64_t sequence = 0;  ///< counted by the device, from 0
+  int32_t lost = 0;      ///< samples dropped since the last one
+};
+
+class Driver {
+ public:
+  virtual ~Driver() = default;
+  virtual Capabilities capabilities() const = 0;
+
+  // Set-up: may allocate and take time.
+  virtual Status open() = 0;
+  /// Ranges, encoder counts, initial outputs, watchdog states. `initial`, `safe`: raw, an output each.
+  virtual Status configure(std::span<const double> initial, std::span<const double> safe) = 0;
+  virtual Status start(double period_s) = 0;
+  /// What went wrong with a status, in words; not in the loop.
+  virtual std::string describe(Status status) const = 0;
+  /// Lines for the report at the start: library, version, board.
+  virtual std::vector<std::string> facts() const { return {}; }
+
+  // The loop: bounded, no allocation, no lock.
+  virtual Status read(RawSample& sample, std::span<double> raw) noexcept = 0;
+  virtual Status write(std::span<const double> raw) noexcept = 0;
+  /// A sign of life for the watchdog; the first one arms it.
+  virtual Status kick() noexcept = 0;
+  /// Ends a blocked read. Called from another thread; async-signal-safe.
+  virtual void request_stop() noexcept = 0;
+
+  // The end: every step is attempted, whatever failed before; may be called in any state, and again.
+  /// Ends sampling; the outputs stay as they are.
+  virtual void stop_sampling() noexcept = 0;
+  /// After safe values were confirmed: further values on termination, and the watchdog off.
+  virtual void disarm() noexcept = 0;
+  /// Whether the watchdog has put out its own values; waits for it, at most its timeout.
+  virtual bool watchdog_took_over() noexcept = 0;
+  virtual void close() noexcept = 0;
+  /// Leaves the protected mode after a fault.
+  virtual Status rearm() = 0;
+};
+
+}  // namespace loopwright::hw

@@ -1,0 +1,90 @@
+/// The port between a control loop and hardware: physical units, limits, latched faults, a stop that is safe.
+///
+///   open → preset → start → {read, write, kick}* → stop → close
+///
+/// 1. Setting up may allocate; read, write and kick are noexcept, bounded and allocate nothing.
+/// 2. A latched fault makes every later write send the safe values and nothing else, until rearm().
+/// 3. A write is all or nothing. A value that is not finite is refused and latches.
+/// 4. stop() and close() may be called in any state, and again.
+/// 5. Whether the outputs are safe is confirmed or unknown, never assumed.
+#pragma once
+#include <atomic>
+#include "hw/device/driver.h"
+
+namespace loopwright::hw {
+
+/// When a sample was taken, as far as the device tells.
+struct Sample {
+  int64_t sequence = 0;
+  int32_t lost = 0;      ///< since the sample before
+  int32_t glitches = 0;  ///< inputs that were held because they jumped beyond their maximum rate
+};
+
+class IoDevice {
+ public:
+  IoDevice(std::shared_ptr<const DeviceDescription> description, std::unique_ptr<Driver> driver);
+  ~IoDevice() { close(); }
+  IoDevice(const IoDevice&) = delete;
+  IoDevice& operator=(const IoDevice&) = delete;
+
+  const DeviceDescription& description() const { return *description_; }
+  Capabilities capabilities() const { return driver_->capabilities(); }
+  std::vector<std::string> facts() const { return driver_->facts(); }
+  std::string describe(Status status) const;
+
+  Status open();
+  /// Encoder counts, ranges, initial outputs, watchdog values.
+  Status preset();
+  Status start(double period_s);
+
+  /// Values of all inputs, in the order of the description. On a fault the values are those of the last
+  /// sample.
+  Status read(Sample& sample, std::span<double> values) noexcept;
+  /// Values of all outputs; clamped, and moved towards no faster than their maximum rate.
+  Status write(std::span<const double> values) noexcept;
+  Status kick() noexcept;
+  /// From any thread or signal handler: the next read answers `stopped`.
+  void request_stop() noexcept { driver_->request_stop(); }
+
+  /// Sends the safe values now; the device goes on sampling.
+  Status safe_outputs() noexcept;
+  /// Safe values, end of sampling, safe values again; the watchdog stays armed unless they were confirmed.
+  OutputsSafe stop() noexcept;
+  void close() noexcept;
+  /// Clears a latched fault. Only between runs.
+  Status rearm();
+
+  Status fault() const { return fault_; }
+  OutputsSafe outputs_safe() const { return outputs_safe_; }
+  /// What was last sent, in physical units.
+  std::span<const double> applied() const { return applied_; }
+  int64_t clamped() const { return clamped_; }
+  int64_t rate_limited() const { return rate_limited_; }
+  int64_t glitches() const { return glitches_; }
+
+ private:
+  enum class Stage { closed, open, ready, running };
+  struct InputState {
+    int32_t last_counts = 0;
+    int64_t counts = 0;  // unwrapped
+    double value = 0;
+    int glitches_in_row = 0;
+    bool is_known = false;
+  };
+  Status latch(Status status) noexcept;
+  bool take_input(size_t i) noexcept;
+  bool send_safe() noexcept;
+
+  std::shared_ptr<const DeviceDescription> description_;
+  std::unique_ptr<Driver> driver_;
+  Stage stage_ = Stage::closed;
+  Status fault_;
+  OutputsSafe outputs_safe_ = OutputsSafe::confirmed;  // nothing was sent yet
+  bool has_written_ = false, is_stopped_ = false;
+  double period_s_ = 0;
+  std::vector<InputState> inputs_;
+  std::vector<double> raw_in_, raw_out_, raw_safe_, applied_;
+  int64_t clamped_ = 0, rate_limited_ = 0, glitches_ = 0;
+};
+
+}  // namespace loopwright::hw

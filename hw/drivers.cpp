@@ -1,0 +1,39 @@
+#include "hw/drivers.h"
+#include <algorithm>
+#include "hw/quanser/quanser.h"
+#include "hw/udp/udp.h"
+
+namespace loopwright::hw {
+namespace {
+
+// To add hardware: a folder with a Driver, and a line here.
+const DriverType types[] = {
+    {"quanser", "Cards behind Quanser's HIL library",
+     [](const DeviceDescription& device, Problems& problems) { quanser::read_settings(device, problems); },
+     &quanser::make_driver},
+    {"udp", "Devices that speak UDP",
+     [](const DeviceDescription& device, Problems& problems) { udp::read_settings(device, problems); },
+     &udp::make_driver},
+};
+
+}  // namespace
+
+std::span<const DriverType> driver_types() { return types; }
+
+const DriverType* find_driver(std::string_view name) {
+  const auto found = std::ranges::find(types, name, &DriverType::name);
+  return found == std::end(types) ? nullptr : found;
+}
+
+std::shared_ptr<const DeviceDescription> load_device(const std::string& path, const Place& reference,
+                                                     Problems& problems) {
+  Problems own;
+  std::vector<std::string> names;
+  for (const DriverType& type : types) names.emplace_back(type.name);
+  const auto device = read_device(path, reference, names, own);
+  if (device) find_driver(device->driver)->check(*device, own);
+  for (const Problem& problem : own.list()) problems.add(problem);
+  return own.has_errors() ? nullptr : device;
+}
+
+}  // namespace loopwright::hw

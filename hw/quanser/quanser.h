@@ -1,0 +1,37 @@
+/// Cards behind the vendor's HIL library (QPIDe, Q8-USB, …).
+#pragma once
+#include "hw/device/driver.h"
+
+namespace loopwright::hw::quanser {
+
+/// "quanser" in a device file.
+struct Settings {
+  std::string board = "qpid_e";
+  std::string identifier = "0";
+  std::string library;     ///< empty: the usual places
+  int clock = 0;           ///< hardware clock that takes the samples
+  int analog_outputs = 8;  ///< of the card: all of them get a watchdog state
+  std::string options;     ///< in the vendor's form, "enc0_filter=1;…"
+  static constexpr auto describe() {
+    return fields(
+        parameter(&Settings::board, "board", "", "The vendor's name of the card").optional(),
+        parameter(&Settings::identifier, "identifier", "", "Which card: \"0\" is the first").optional(),
+        parameter(&Settings::library, "library", "", "The vendor's library; the usual places when left out")
+            .optional(),
+        parameter(&Settings::clock, "clock", "", "Hardware clock of the samples").between(0, 16).optional(),
+        parameter(&Settings::analog_outputs, "analog_outputs", "", "How many the card has")
+            .between(0, 8)
+            .optional(),
+        parameter(&Settings::options, "options", "",
+                  "Options of the card: name=value, separated by semicolons")
+            .optional());
+  }
+};
+
+/// Reads and checks the driver's part of a device file, with the rules of the card; loads nothing.
+Settings read_settings(const DeviceDescription& device, Problems& problems);
+
+/// Loads the library; null after a problem. Opens no card.
+std::unique_ptr<Driver> make_driver(std::shared_ptr<const DeviceDescription> device, Problems& problems);
+
+}  // namespace loopwright::hw::quanser

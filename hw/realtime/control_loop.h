@@ -1,0 +1,78 @@
+/// The loop itself: what runs in the real-time thread, cycle for cycle, and keeps accounts.
+#pragma once
+#include "hw/realtime/deploy.h"
+#include "hw/realtime/log_columns.h"
+#include "hw/realtime/log_ring.h"
+#include "hw/realtime/period.h"
+
+namespace loopwright::hw {
+
+/// How the loop came to its end.
+struct LoopEnd {
+  enum class Why : uint8_t { running, finished, asked, status, step_failed, overruns };
+  Why why = Why::running;
+  Status status;
+};
+
+class ControlLoop {
+ public:
+  ControlLoop(const Plan& plan, const Hardware& hardware, IoDevice& device, Clock& clock, LogRing& log,
+              std::span<const LogColumn> columns);
+
+  /// Two steps at rest that nobody sees, so that nothing is new at the first real one.
+  void warm_up();
+  /// Cycles until the plan's stop, a fault, or request_stop(). The outputs stay as they are.
+  void run() noexcept;
+  /// From any thread.
+  void request_stop() noexcept {
+    is_asked_to_stop_.store(true, std::memory_order_relaxed);
+    device_.request_stop();
+  }
+  /// How long the present read has been waiting; 0: no read is waiting.
+  int64_t waiting_ns() const noexcept {
+    const int64_t since = reading_since_.load(std::memory_order_relaxed);
+    return since ? wall_ns() - since : 0;
+  }
+  LiveValues live() const noexcept;
+
+  const LoopEnd& end() const { return end_; }
+  const PeriodStepper& stepper() const { return stepper_; }
+  LoopStatistics statistics() const;
+
+ private:
+  struct BlockSum {
+    int64_t total_ns = 0, longest_ns = 0;
+  };
+  bool cycle() noexcept;
+  Status read(Sample& sample) noexcept;
+  int64_t lateness_of(const Sample& sample) noexcept;
+  bool step() noexcept;
+  Status write() noexcept;
+  bool account_for(int64_t lateness_ns, const Sample& sample, int64_t step_ns) noexcept;
+  bool end_with(LoopEnd::Why why, Status status = {}) noexcept {
+    end_ = {why, status};
+    return false;
+  }
+
+  const Hardware& hardware_;
+  IoDevice& device_;
+  Clock& clock_;
+  LogRing& log_;
+  std::span<const LogColumn> columns_;
+  PeriodStepper stepper_;
+  const bool device_is_clock_;
+  const int64_t period_ns_;
+  std::vector<double> inputs_, outputs_, row_;
+  std::vector<BlockSum> block_sums_;
+  Number error_ = -1;  // of the live view
+
+  LoopEnd end_;
+  LoopStatistics statistics_;
+  int64_t origin_ns_ = 0, due_ns_ = 0, kicked_ns_ = 0, longest_unkicked_ns_ = 0;
+  int64_t overruns_in_row_ = 0;
+  std::atomic<bool> is_asked_to_stop_ = false;
+  std::atomic<int64_t> reading_since_ = 0;
+  std::atomic<double> live_time_ = 0, live_error_ = 0, live_command_ = 0, live_lateness_ = 0;
+};
+
+}  // namespace loopwright::hw

@@ -1,0 +1,43 @@
+/// Rows of numbers from the loop to whoever writes them down: one producer, one consumer, no lock. The
+/// producer never waits: a row for which there is no room is dropped and counted.
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+namespace loopwright::hw {
+
+class LogRing {
+ public:
+  LogRing(size_t columns, size_t rows) : columns_(columns), rows_(rows), numbers_(columns * rows) {}
+
+  void push(std::span<const double> row) noexcept {
+    const size_t end = end_.load(std::memory_order_relaxed);
+    if (end - begin_.load(std::memory_order_acquire) == rows_) {
+      drops_.store(drops_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+      return;
+    }
+    std::memcpy(&numbers_[end % rows_ * columns_], row.data(), columns_ * sizeof(double));
+    end_.store(end + 1, std::memory_order_release);
+  }
+  /// take(row) for every row there is.
+  template <class Take> void drain(Take&& take) {
+    size_t begin = begin_.load(std::memory_order_relaxed);
+    for (const size_t end = end_.load(std::memory_order_acquire); begin != end; ++begin) {
+      take(std::span<const double>(&numbers_[begin % rows_ * columns_], columns_));
+      begin_.store(begin + 1, std::memory_order_release);
+    }
+  }
+  int64_t drops() const { return drops_.load(std::memory_order_relaxed); }
+
+ private:
+  const size_t columns_, rows_;
+  std::vector<double> numbers_;
+  alignas(64) std::atomic<size_t> begin_ = 0;
+  alignas(64) std::atomic<size_t> end_ = 0;
+  std::atomic<int64_t> drops_ = 0;
+};
+
+}  // namespace loopwright::hw

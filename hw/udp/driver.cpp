@@ -1,0 +1,192 @@
+#include <arpa/inet.h>
+#include <fmt/format.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+#include <bit>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include "hw/udp/protocol.h"
+#include "hw/udp/udp.h"
+
+namespace loopwright::hw::udp {
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+
+class UdpDriver final : public Driver {
+ public:
+  UdpDriver(std::shared_ptr<const DeviceDescription> device, Settings settings)
+      : device_(std::move(device)), settings_(std::move(settings)) {}
+  ~UdpDriver() override { close(); }
+
+  Capabilities capabilities() const override { return {true, device_->watchdog.timeout > 0, true, true}; }
+
+  Status open() override {
+    socket_ = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    stop_event_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    sockaddr_in peer{};
+    peer.sin_family = AF_INET;
+    peer.sin_port = htons(uint16_t(settings_.port));
+    inet_pton(AF_INET, settings_.address.c_str(), &peer.sin_addr);
+    if (socket_ < 0 || stop_event_ < 0 ||
+        connect(socket_, reinterpret_cast<sockaddr*>(&peer), sizeof peer) != 0) {
+      const int error = errno;
+      close();
+      return {Code::no_driver, error};
+    }
+    return {};
+  }
+
+  Status configure(std::span<const double> initial, std::span<const double> safe) override {
+    is_sampling_ = false;
+    if (const Status status = exchange(Request::configure, safe); !status.ok()) return status;
+    return exchange(Request::command, initial);
+  }
+
+  Status start(double period_s) override {
+    sequence_ = 0, period_s_ = period_s, is_sampling_ = true;
+    return send(Request::start, {});
+  }
+
+  std::string describe(Status status) const override {
+    const std::string where = fmt::format("{}:{}", settings_.address, settings_.port);
+    if (status.code == Code::disconnected && status.native == 0) return where + " does not answer";
+    if (status.code == Code::watchdog) return where + " reports that its watchdog has expired";
+    if (status.code == Code::device_fault && status.native == 0) return where + " reports a fault";
+    return fmt::format("{}: {}", where, std::strerror(status.native));
+  }
+  std::vector<std::string> facts() const override {
+    return {fmt::format("UDP {}:{}", settings_.address, settings_.port)};
+  }
+
+  /// The newest sample; those that it overtook are lost.
+  Status read(RawSample& sample, std::span<double> raw) noexcept override {
+    FromDevice packet;
+    for (;;) {
+      if (const Status status = receive(packet); !status.ok()) return status;
+      if (int32_t(packet.sequence - sequence_) > 0) break;  // else an old one, or an answer
+    }
+    for (FromDevice newer; take(newer);)
+      if (int32_t(newer.sequence - packet.sequence) > 0) packet = newer;
+    sample = {int64_t(packet.sequence) - 1, int32_t(packet.sequence - sequence_ - 1)};
+    sequence_ = packet.sequence;
+    std::copy_n(packet.raw, std::min<size_t>(packet.channels, raw.size()), raw.begin());
+    return status_of(packet);
+  }
+
+  /// While the device samples, the next sample is the answer. Before and after, the answer is waited for.
+  Status write(std::span<const double> raw) noexcept override {
+    return is_sampling_ ? send(Request::command, raw) : exchange(Request::command, raw);
+  }
+  Status kick() noexcept override { return {}; }  // every command is a sign of life
+  void request_stop() noexcept override {
+    const uint64_t one = 1;
+    [[maybe_unused]] const ssize_t written = ::write(stop_event_, &one, sizeof one);
+  }
+
+  void stop_sampling() noexcept override {
+    is_sampling_ = false;
+    uint64_t ignored;
+    [[maybe_unused]] const ssize_t drained = ::read(stop_event_, &ignored, sizeof ignored);
+    exchange(Request::stop, {});
+  }
+  void disarm() noexcept override {}  // the device's watchdog stays: its values are the safe ones that it has
+  bool watchdog_took_over() noexcept override { return exchange(Request::stop, {}).code == Code::watchdog; }
+  void close() noexcept override {
+    if (socket_ >= 0) ::close(socket_);
+    if (stop_event_ >= 0) ::close(stop_event_);
+    socket_ = stop_event_ = -1;
+  }
+  Status rearm() override { return exchange(Request::clear, {}); }
+
+ private:
+  static Status status_of(const FromDevice& packet) noexcept {
+    if (packet.state == DeviceState::watchdog_expired) return {Code::watchdog};
+    return packet.state == DeviceState::fault ? Status{Code::device_fault} : Status{};
+  }
+
+  Status send(Request request, std::span<const double> raw) noexcept {
+    ToDevice packet;
+    packet.number = ++number_, packet.request = request;
+    packet.period_s = period_s_, packet.timeout_s = device_->watchdog.timeout;
+    packet.channels = uint32_t(raw.size());
+    std::copy(raw.begin(), raw.end(), packet.raw);
+    if (::send(socket_, &packet, sizeof packet, MSG_NOSIGNAL) == sizeof packet) return {};
+    return {errno == EAGAIN ? Code::busy : Code::disconnected, errno};
+  }
+
+  /// A packet, if one is there.
+  bool take(FromDevice& packet) noexcept {
+    while (recv(socket_, &packet, sizeof packet, 0) == sizeof packet)
+      if (packet.magic == from_device && packet.channels <= most_channels) return true;
+    return false;
+  }
+
+  Status receive(FromDevice& packet) noexcept {
+    pollfd events[] = {{socket_, POLLIN, 0}, {stop_event_, POLLIN, 0}};
+    for (;;) {
+      if (take(packet)) return is_silent_ = false, Status{};
+      const int answer = poll(events, is_sampling_ ? 2 : 1, int(std::ceil(1e3 * settings_.patience)));
+      if (answer == 0) return is_silent_ = true, Status{Code::disconnected};
+      if (answer < 0 && errno != EINTR) return {Code::device_fault, errno};
+      if (is_sampling_ && (events[1].revents & POLLIN)) return {Code::stopped};
+      if (events[0].revents & POLLERR) return {Code::disconnected, ECONNREFUSED};
+    }
+  }
+
+  /// Sends until it is answered: three times at most, once where the device fell silent before.
+  Status exchange(Request request, std::span<const double> raw) noexcept {
+    Status status;
+    const int attempts = is_silent_ ? 1 : 3;
+    for (int attempt = 0; attempt < attempts; ++attempt) {
+      status = send(request, raw);
+      FromDevice packet;
+      while (status.ok()) {
+        status = receive(packet);
+        if (status.ok() && int32_t(packet.answered - number_) >= 0) return status_of(packet);
+      }
+    }
+    return status;
+  }
+
+  std::shared_ptr<const DeviceDescription> device_;
+  Settings settings_;
+  int socket_ = -1, stop_event_ = -1;
+  uint32_t number_ = 0, sequence_ = 0;
+  double period_s_ = 0;
+  bool is_sampling_ = false, is_silent_ = false;
+};
+
+}  // namespace
+
+Settings read_settings(const DeviceDescription& device, Problems& problems) {
+  Settings settings;
+  const Value& section = device.driver_settings;
+  read_fields(settings, section, device.driver, problems);
+  in_addr ignored{};
+  if (inet_pton(AF_INET, settings.address.c_str(), &ignored) != 1) {
+    auto& p = problems.error(section.place, section.pointer, "", "the address cannot be read");
+    p.found = "\"" + settings.address + "\"";
+    p.expected = "four numbers with dots, as in \"192.168.1.20\"";
+  }
+  if (device.inputs.size() > most_channels || device.outputs.size() > most_channels)
+    problems.error(section.place, section.pointer, "", "a packet has no room for so many channels").expected =
+        fmt::format("at most {} inputs and outputs", most_channels);
+  if (device.clock.source == ClockSource::host)
+    problems.error(section.place, section.pointer, "", "a device that speaks UDP takes its own samples")
+        .expected = "\"clock\": {\"source\": \"device\"}";
+  return settings;
+}
+
+std::unique_ptr<Driver> make_driver(std::shared_ptr<const DeviceDescription> device, Problems& problems) {
+  const size_t before = problems.list().size();
+  Settings settings = read_settings(*device, problems);
+  if (problems.list().size() != before) return nullptr;
+  return std::make_unique<UdpDriver>(std::move(device), std::move(settings));
+}
+
+}  // namespace loopwright::hw::udp
