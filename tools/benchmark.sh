@@ -6,6 +6,7 @@ set -euo pipefail
 
 root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root"
+tools/setup.sh
 [ -f build/release/build.ninja ] || cmake --preset release
 cmake --build build/release --target benchmarks
 exec build/release/bin/benchmarks build/benchmarks.json "$@"

@@ -32,7 +32,9 @@ void add_blocks(CLI::App& app, std::function<void(std::function<int()>)> choose)
   auto a = std::make_shared<Arguments>();
   command->add_option("type", a->type, "Block type");
   command->add_flag("--markdown", a->markdown, "The whole reference as a page");
-  command->add_option("--blocks", a->libraries.libraries, "Shared library with more blocks")->type_name("FILE.so")->allow_extra_args(false);
+  command->add_option("--blocks", a->libraries.libraries, "Shared library with more blocks")
+      ->type_name("FILE.so")
+      ->allow_extra_args(false);
   command->callback([=] {
     choose([=]() -> int {
       a->libraries.options();

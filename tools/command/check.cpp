@@ -12,12 +12,17 @@ static int check(const std::vector<std::string>& paths, const LoadOptions& optio
     const auto diagram = load_diagram(path, options, problems);
     const bool is_part = diagram && !diagram->inputs.empty();
     std::shared_ptr<const Plan> plan;
-    if (is_part) check_part(*diagram, problems);
-    else if (diagram) plan = compile(*diagram, problems);
+    if (is_part)
+      check_part(*diagram, problems);
+    else if (diagram)
+      plan = compile(*diagram, problems);
     if (!problems.list().empty()) fmt::print(stderr, "{}\n", problems.text());
-    if (problems.has_errors() || !diagram) ++wrong;
-    else if (is_part) fmt::print(stderr, "{}: fine, a subdiagram of {} blocks\n", path, diagram->blocks.size());
-    else fmt::print(stderr, "{}: fine, {} blocks, {} states\n", path, plan->blocks.size(), plan->states);
+    if (problems.has_errors() || !diagram)
+      ++wrong;
+    else if (is_part)
+      fmt::print(stderr, "{}: fine, a subdiagram of {} blocks\n", path, diagram->blocks.size());
+    else
+      fmt::print(stderr, "{}: fine, {} blocks, {} states\n", path, plan->blocks.size(), plan->states);
   }
   return wrong ? input_wrong : done;
 }
@@ -30,9 +35,15 @@ void add_check(CLI::App& app, std::function<void(std::function<int()>)> choose) 
   };
   auto arguments = std::make_shared<Arguments>();
   command->add_option("diagrams", arguments->paths, "Diagram files (JSON)")->required();
-  command->add_option("--set", arguments->diagram.set, "Change a parameter or setting")->type_name("PATH=VALUE")->allow_extra_args(false);
-  command->add_option("--variant", arguments->diagram.variants, "Choose a block's variant")->type_name("BLOCK=NAME")->allow_extra_args(false);
-  command->add_option("--blocks", arguments->diagram.libraries, "Shared library with more blocks")->type_name("FILE.so")->allow_extra_args(false);
+  command->add_option("--set", arguments->diagram.set, "Change a parameter or setting")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+  command->add_option("--variant", arguments->diagram.variants, "Choose a block's variant")
+      ->type_name("BLOCK=NAME")
+      ->allow_extra_args(false);
+  command->add_option("--blocks", arguments->diagram.libraries, "Shared library with more blocks")
+      ->type_name("FILE.so")
+      ->allow_extra_args(false);
   command->callback([=] { choose([=] { return check(arguments->paths, arguments->diagram.options()); }); });
 }
 

@@ -10,12 +10,21 @@ namespace loopwright {
 
 void DiagramArguments::add_to(CLI::App& command) {
   command.add_option("diagram", path, "Diagram file (JSON)")->required();
-  command.add_option("--set", set, "Change a parameter or setting, as in --set stage.payload=2.1 or --set solver.stop=5")->type_name("PATH=VALUE")->allow_extra_args(false);
-  command.add_option("--variant", variants, "Choose a block's variant, as in --variant stage=quanser")->type_name("BLOCK=NAME")->allow_extra_args(false);
-  command.add_option("--blocks", libraries, "Shared library with more blocks")->type_name("FILE.so")->allow_extra_args(false);
+  command
+      .add_option("--set", set,
+                  "Change a parameter or setting, as in --set stage.payload=2.1 or --set solver.stop=5")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+  command.add_option("--variant", variants, "Choose a block's variant, as in --variant stage=quanser")
+      ->type_name("BLOCK=NAME")
+      ->allow_extra_args(false);
+  command.add_option("--blocks", libraries, "Shared library with more blocks")
+      ->type_name("FILE.so")
+      ->allow_extra_args(false);
 }
 
-static std::pair<std::string, std::string> split(const std::string& text, std::string_view option, Problems& problems) {
+static std::pair<std::string, std::string> split(const std::string& text, std::string_view option,
+                                                 Problems& problems) {
   const size_t equals = text.find('=');
   if (equals != text.npos && equals > 0) return {text.substr(0, equals), text.substr(equals + 1)};
   auto& p = problems.error({}, "", "", fmt::format("{} {}", option, text));
@@ -51,9 +60,12 @@ const std::atomic<bool>& interruption() {
   return flag;
 }
 
-static double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+static double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
-Progress::Progress(std::string what) : what_(std::move(what)), on_terminal_(isatty(STDERR_FILENO)), started_(now_s()), last_(started_) {}
+Progress::Progress(std::string what)
+    : what_(std::move(what)), on_terminal_(isatty(STDERR_FILENO)), started_(now_s()), last_(started_) {}
 
 void Progress::show(double done, double total) {
   const double now = now_s();
@@ -63,7 +75,8 @@ void Progress::show(double done, double total) {
   const double left = share > 0 ? (now - started_) * (1 - share) / share : 0;
   if (on_terminal_) {
     const int filled = int(share * 30);
-    fmt::print(stderr, "\r{} [{:█>{}}{:░>{}}] {:3.0f} %  {:.0f} s left ", what_, "", filled, "", 30 - filled, 100 * share, left);
+    fmt::print(stderr, "\r{} [{:█>{}}{:░>{}}] {:3.0f} %  {:.0f} s left ", what_, "", filled, "", 30 - filled,
+               100 * share, left);
     std::fflush(stderr);
     drawn_ = true;
   } else if (int(share * 10) > shown_tenths_) {
@@ -81,11 +94,14 @@ void require_writable(const std::string& path, std::string_view option) {
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   std::error_code code;
   const std::filesystem::path where = folder.empty() ? "." : folder;
-  if (std::filesystem::is_directory(where, code) && access(where.c_str(), W_OK) == 0 && !std::filesystem::is_directory(path, code)) return;
+  if (std::filesystem::is_directory(where, code) && access(where.c_str(), W_OK) == 0 &&
+      !std::filesystem::is_directory(path, code))
+    return;
   Problems problems;
   auto& p = problems.error({}, "", "", fmt::format("{} {}: nothing can be written there", option, path));
   p.expected = "a file in a folder that exists and may be written to";
-  p.found = std::filesystem::is_directory(path, code) ? "a folder" : fmt::format("the folder \"{}\"", where.string());
+  p.found = std::filesystem::is_directory(path, code) ? "a folder"
+                                                      : fmt::format("the folder \"{}\"", where.string());
   throw InputError(std::move(problems));
 }
 

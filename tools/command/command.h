@@ -28,7 +28,15 @@ void add_run(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_plan(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_blocks(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_schema(CLI::App& app, std::function<void(std::function<int()>)> choose);
+void add_sweep(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_compare(CLI::App& app, std::function<void(std::function<int()>)> choose);
+void add_fit(CLI::App& app, std::function<void(std::function<int()>)> choose);
+void add_gp(CLI::App& app, std::function<void(std::function<int()>)> choose);
+void add_diagnose(CLI::App& app, std::function<void(std::function<int()>)> choose);
+void add_deploy(CLI::App& app, std::function<void(std::function<int()>)> choose);
+void add_probe(CLI::App& app, std::function<void(std::function<int()>)> choose);
+void add_linearize(CLI::App& app, std::function<void(std::function<int()>)> choose);
+void add_stability(CLI::App& app, std::function<void(std::function<int()>)> choose);
 
 /// Set by SIGINT and SIGTERM once this was called; the second signal ends the program at once.
 const std::atomic<bool>& interruption();

@@ -17,6 +17,14 @@ int main(int count, char** arguments) {
   add_blocks(app, choose);
   add_schema(app, choose);
   add_compare(app, choose);
+  add_fit(app, choose);
+  add_gp(app, choose);
+  add_diagnose(app, choose);
+  add_sweep(app, choose);
+  add_deploy(app, choose);
+  add_probe(app, choose);
+  add_linearize(app, choose);
+  add_stability(app, choose);
   try {
     app.parse(count, arguments);
     return action();

@@ -2,6 +2,7 @@
 #include "engine/record/csv.h"
 #include "engine/record/recording_file.h"
 #include "tools/command/command.h"
+#include "tools/deploy/replay.h"
 #include "tools/run/run_page.h"
 
 namespace loopwright {
@@ -9,7 +10,7 @@ namespace {
 
 struct Arguments {
   DiagramArguments diagram;
-  std::string output, report, checkpoint, resume;
+  std::string output, report, checkpoint, resume, replay;
   double checkpoint_every = 0;
   int64_t run = 0;
   bool quiet = false;
@@ -27,21 +28,52 @@ void require_paths(const Arguments& a) {
   if (problems.has_errors()) throw InputError(std::move(problems));
 }
 
+/// Holds the plan against the log of a deployment.
+int replay_log(const Arguments& a, const Plan& plan) {
+  Problems problems;
+  const hw::Hardware hardware = hw::find_hardware(plan, problems);
+  if (hardware.axes.empty())
+    problems.error({}, "", "", fmt::format("{} has no hardware to replay", a.diagram.path)).hint =
+        "choose the variant that was deployed, as in --variant stage=quanser";
+  const Recording log = read_recording(a.replay, problems, {.allow_not_finite = true});
+  if (problems.has_errors()) throw InputError(std::move(problems));
+  const Replay result = replay(plan, hardware, log, problems);
+  if (problems.has_errors()) throw InputError(std::move(problems));
+  fmt::print(stderr, "{}", to_text(result));
+  return result.explains() ? done : run_failed;
+}
+
+/// A simulation opens no device: that is said, because a loop whose axis stands still looks like a broken
+/// one.
+void warn_of_hardware(const Plan& plan) {
+  for (const Plan::Block& block : plan.blocks)
+    if (block.type->info.type == "HardwareIo")
+      fmt::print(stderr,
+                 "warning: \"{}\" is hardware and stands still in a simulation; loopwright deploy moves it\n",
+                 block.path);
+}
+
 int run(const Arguments& a) {
   require_paths(a);
   const auto plan = load_plan(a.diagram.path, a.diagram.options());
   for (const Problem& warning : plan->warnings) fmt::print(stderr, "{}\n", to_string(warning));
+  if (!a.replay.empty()) return replay_log(a, *plan);
+  warn_of_hardware(*plan);
   Progress progress("run");
   RunOptions options;
   options.run = a.run;
-  options.checkpoint_file = a.checkpoint, options.checkpoint_every = a.checkpoint_every, options.resume_file = a.resume;
+  options.checkpoint_file = a.checkpoint, options.checkpoint_every = a.checkpoint_every,
+  options.resume_file = a.resume;
   options.interrupt = &interruption();
   if (!a.quiet) options.progress = [&](double time, double stop) { progress.show(time, stop); };
   const RunResult result = simulate(*plan, options);
   progress.finish();
-  for (const std::string& warning : result.warnings) fmt::print(stderr, "{}: warning: {}\n", a.diagram.path, warning);
-  if (a.output == "-") print_csv(stdout, result.recording);
-  else if (!a.output.empty()) write_recording(a.output, result.recording);
+  for (const std::string& warning : result.warnings)
+    fmt::print(stderr, "{}: warning: {}\n", a.diagram.path, warning);
+  if (a.output == "-")
+    print_csv(stdout, result.recording);
+  else if (!a.output.empty())
+    write_recording(a.output, result.recording);
   if (!a.report.empty()) report::write_html(a.report, run_page(*plan, result));
   if (!a.quiet) fmt::print(stderr, "{}", run_summary(*plan, result));
   if (result.status == RunStatus::finished) return done;
@@ -57,10 +89,17 @@ void add_run(CLI::App& app, std::function<void(std::function<int()>)> choose) {
   a->diagram.add_to(*command);
   command->add_option("-o,--output", a->output, "Write the recording: .csv, .mat, or - for CSV on stdout");
   command->add_option("--report", a->report, "Write an HTML page with scopes and statistics");
-  command->add_option("--run", a->run, "Number of the run: another one has other noise")->check(CLI::NonNegativeNumber);
+  command->add_option("--run", a->run, "Number of the run: another one has other noise")
+      ->check(CLI::NonNegativeNumber);
   command->add_option("--checkpoint", a->checkpoint, "Set the run aside in this file while it goes on");
-  command->add_option("--checkpoint-every", a->checkpoint_every, "Simulated seconds between checkpoints")->check(CLI::PositiveNumber);
+  command->add_option("--checkpoint-every", a->checkpoint_every, "Simulated seconds between checkpoints")
+      ->check(CLI::PositiveNumber);
   command->add_option("--resume", a->resume, "Go on from a checkpoint");
+  command
+      ->add_option("--replay", a->replay,
+                   "Step the diagram through the log of a deployment: every output must be the logged one, "
+                   "bit for bit")
+      ->excludes("--output", "--report", "--run", "--checkpoint", "--resume");
   command->add_flag("-q,--quiet", a->quiet, "No progress and no summary");
   command->callback([=] { choose([=] { return run(*a); }); });
 }

@@ -2,20 +2,21 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include "engine/diagram/reader.h"
-#include "tools/report/typography.h"
 
 namespace loopwright {
 namespace {
 
 /// The port's number; a problem when the diagram has no such port, or one of another dimension.
-std::optional<Number> find_port(const Plan& plan, const std::string& port, const std::optional<std::string>& unit, const Place& place,
+std::optional<Number> find_port(const Plan& plan, const std::string& port,
+                                const std::optional<std::string>& unit, const Place& place,
                                 const std::string& pointer, Problems& problems) {
   const std::vector<Number> numbers = plan.find(port);
   if (numbers.size() != 1) {
-    auto& p = problems.error(place, pointer, "", numbers.empty() ? fmt::format("the diagram has no port \"{}\"", port)
-                                                                 : fmt::format("\"{}\" has {} elements: name one, \"{}[0]\"", port, numbers.size(), port));
+    auto& p = problems.error(place, pointer, "",
+                             numbers.empty() ? fmt::format("the diagram has no port \"{}\"", port)
+                                             : fmt::format("\"{}\" has {} elements: name one, \"{}[0]\"",
+                                                           port, numbers.size(), port));
     std::vector<std::string> names;
     for (const auto& [name, list] : plan.ports) names.push_back(name);
     if (numbers.empty()) KnownNames(names).explain(p, port);
@@ -23,7 +24,8 @@ std::optional<Number> find_port(const Plan& plan, const std::string& port, const
   }
   const auto of_port = plan.unit_of(numbers[0]), of_data = unit ? parse_unit(*unit) : std::nullopt;
   if (of_port && of_data && !of_port->same_dimension(*of_data)) {
-    auto& p = problems.error(place, pointer, "", fmt::format("\"{}\" is in another unit than its column", port));
+    auto& p =
+        problems.error(place, pointer, "", fmt::format("\"{}\" is in another unit than its column", port));
     p.expected = to_string(*of_port), p.found = *unit;
   }
   return numbers[0];
@@ -33,23 +35,30 @@ std::optional<Number> find_port(const Plan& plan, const std::string& port, const
 Plan logging(const Plan& plan, const Experiment& experiment, Problems& problems) {
   Plan changed = plan;
   changed.log.clear();
-  const auto log = [&](const std::string& name, const std::optional<std::string>& unit, const Place& place, const std::string& pointer) {
+  const auto log = [&](const std::string& name, const std::optional<std::string>& unit, const Place& place,
+                       const std::string& pointer) {
     const auto number = find_port(plan, name, unit, place, pointer, problems);
-    if (!number || std::ranges::any_of(changed.log, [&](const Plan::Logged& l) { return l.name == name; })) return;
+    if (!number || std::ranges::any_of(changed.log, [&](const Plan::Logged& l) { return l.name == name; }))
+      return;
     Plan::Logged logged;
     logged.name = name, logged.number = *number;
     if (const auto known = plan.unit_of(*number)) logged.unit = *known, logged.unit_is_known = true;
     changed.log.push_back(std::move(logged));
   };
-  for (const RecordedSignal& signal : experiment.compared) log(signal.port, signal.unit, signal.place, signal.pointer);
-  for (const RecordedSignal& signal : experiment.drives) find_port(plan, signal.port, signal.unit, signal.place, signal.pointer, problems);
+  for (const RecordedSignal& signal : experiment.compared)
+    log(signal.port, signal.unit, signal.place, signal.pointer);
+  for (const RecordedSignal& signal : experiment.drives)
+    find_port(plan, signal.port, signal.unit, signal.place, signal.pointer, problems);
   for (size_t i = 0; i < experiment.roles.ports.size(); ++i)
-    log(experiment.roles.ports[i].second, std::nullopt, experiment.roles.places[i], "/roles/" + experiment.roles.ports[i].first);
+    log(experiment.roles.ports[i].second, std::nullopt, experiment.roles.places[i],
+        "/roles/" + experiment.roles.ports[i].first);
   return changed;
 }
 
-/// Values of a simulated column at the recorded times: row by row where they coincide, else joined by straight lines.
-std::vector<double> at_times(const Recording& simulated, const Column& column, const std::vector<double>& times) {
+/// Values of a simulated column at the recorded times: row by row where they coincide, else joined by
+/// straight lines.
+std::vector<double> at_times(const Recording& simulated, const Column& column,
+                             const std::vector<double>& times) {
   const std::vector<double>& t = simulated.columns[0].values;
   std::vector<double> values;
   values.reserve(times.size());
@@ -86,7 +95,8 @@ void measure(ComparedSignal& signal, double hold_out_fraction) {
   const double size = rms(signal.measured), spread = rms(around_mean);
   signal.relative_percent = size > 0 ? 100 * signal.rmse / size : 0;
   signal.fit_percent = spread > 0 ? 100 * (1 - signal.rmse / spread) : 0;
-  if (hold_out_fraction > 0) signal.held_out_rmse = rms(std::span(signal.error).last(size_t(double(n) * hold_out_fraction)));
+  if (hold_out_fraction > 0)
+    signal.held_out_rmse = rms(std::span(signal.error).last(size_t(double(n) * hold_out_fraction)));
 }
 
 void add_axes(Comparison& comparison, const Experiment& experiment) {
@@ -104,63 +114,115 @@ void add_axes(Comparison& comparison, const Experiment& experiment) {
   }
 }
 
+double rms_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  std::vector<double> difference;
+  for (size_t i = 0; i < std::min(a.size(), b.size()); ++i) difference.push_back(a[i] - b[i]);
+  return rms(difference);
+}
+
+OpenLoopErrors open_loop_errors(const Machine& machine) {
+  OpenLoopErrors errors;
+  errors.whole_record = rms_difference(simulate_position(machine, 0), machine.motion.position);
+  for (double horizon : {0.05, 0.1, 0.2}) {
+    const auto samples = size_t(std::llround(horizon / machine.motion.sample_time));
+    if (samples >= 2)
+      errors.restarted.emplace_back(
+          horizon, rms_difference(simulate_position(machine, samples), machine.motion.position));
+  }
+  return errors;
+}
+
+/// What the nominal damping is, by how the model's acceleration falls with speed.
+double damping_of(const Machine& machine, const std::vector<double>& acceleration) {
+  const MeasuredMotion& m = machine.motion;
+  double fv = 0, vv = 0;
+  for (size_t k = 0; k < m.rows(); ++k) {
+    if (!m.counts[k]) continue;
+    fv += (m.input[k] - machine.mass * acceleration[k]) * m.velocity[k], vv += m.velocity[k] * m.velocity[k];
+  }
+  return vv > 0 ? std::max(fv / vv, 0.0) : 0;
+}
+
+void analyse_force(Comparison& comparison, const std::string& diagram, const Experiment& experiment,
+                   const LoadOptions& options) {
+  comparison.is_closed_loop = std::ranges::none_of(experiment.drives, [&](const RecordedSignal& drive) {
+    return std::ranges::any_of(experiment.roles.ports, [&](const auto& role) {
+      return role.first == "input" && role.second == drive.port;
+    });
+  });
+  auto machine = find_machine(diagram, experiment, options, comparison.why_no_force);
+  if (!machine) return;
+  const std::vector<double> acceleration = model_acceleration(*machine);
+  if (machine->mass <= 0) {
+    comparison.why_no_force = "the role \"force\" is not what accelerates the machine in the model";
+    return;
+  }
+  ForceAnalysis analysis;
+  analysis.mass = machine->mass;
+  analysis.residual = force_residual(*machine, acceleration);
+  analysis.where = where_it_lies(*machine, analysis.residual);
+  analysis.dependence = dependences(*machine, analysis.residual);
+  analysis.open_loop = open_loop_errors(*machine);
+  double resolution = 0;
+  for (const RecordedSignal& signal : experiment.compared) {
+    const bool is_position = std::ranges::any_of(experiment.roles.ports, [&](const auto& role) {
+      return role.first == "position" && role.second == signal.port;
+    });
+    if (is_position) resolution = signal.resolution;
+  }
+  analysis.content = content_of(*machine, analysis.residual, resolution);
+  analysis.content.sizes.machine_damping = damping_of(*machine, acceleration);
+  Problems problems;
+  analysis.identifiable = identifiable(analysis.content, load_catalogue({catalogue_folder()}, problems));
+  for (const Problem& problem : problems.list()) comparison.warnings.push_back(to_string(problem));
+  analysis.faults =
+      faults_of(*machine, analysis.residual, analysis.content, experiment.data.columns.front().values);
+  analysis.motion = std::move(machine->motion);
+  comparison.force = std::move(analysis);
+}
+
 }  // namespace
 
-Comparison compare(const std::string& diagram_path, const std::string& experiment_path, const LoadOptions& options, const RunOptions& run_options) {
+Comparison compare_signals(const std::string& diagram_path, const Experiment& experiment,
+                           const LoadOptions& options, const RunOptions& run_options) {
   Problems problems;
-  const auto experiment = load_experiment(experiment_path, problems);
-  if (!experiment) {
-    if (const auto diagram = load_diagram(diagram_path, options, problems)) compile(*diagram, problems);  // its problems too
-    throw InputError(std::move(problems));
-  }
-  const auto diagram = load_diagram(diagram_path, follow(*experiment, options), problems);
+  const auto diagram = load_diagram(diagram_path, follow(experiment, options), problems);
   const auto plan = diagram ? compile(*diagram, problems) : nullptr;
   if (!plan) throw InputError(std::move(problems));
   Comparison comparison;
-  comparison.plan = std::make_shared<Plan>(logging(*plan, *experiment, problems));
+  comparison.plan = std::make_shared<Plan>(logging(*plan, experiment, problems));
   if (problems.has_errors()) throw InputError(std::move(problems));
   for (const Problem& problem : problems.list()) comparison.warnings.push_back(to_string(problem));
   comparison.run = simulate(*comparison.plan, run_options);
   for (const std::string& warning : comparison.run.warnings) comparison.warnings.push_back(warning);
-  comparison.time = experiment->data.columns.front().values;
-  for (const RecordedSignal& recorded : experiment->compared) {
-    const Column& measured = *experiment->data.find(recorded.port);
+  comparison.time = experiment.data.columns.front().values;
+  for (const RecordedSignal& recorded : experiment.compared) {
+    const Column& measured = *experiment.data.find(recorded.port);
     ComparedSignal signal;
-    signal.name = recorded.port, signal.unit = measured.unit, signal.measured = measured.values, signal.resolution = recorded.resolution;
-    signal.simulated = at_times(comparison.run.recording, *comparison.run.recording.find(recorded.port), comparison.time);
-    measure(signal, experiment->hold_out_fraction);
+    signal.name = recorded.port, signal.unit = measured.unit, signal.measured = measured.values,
+    signal.resolution = recorded.resolution;
+    signal.simulated =
+        at_times(comparison.run.recording, *comparison.run.recording.find(recorded.port), comparison.time);
+    measure(signal, experiment.hold_out_fraction);
     comparison.signals.push_back(std::move(signal));
   }
   comparison.time.resize(comparison.signals.front().simulated.size());
-  add_axes(comparison, *experiment);
+  add_axes(comparison, experiment);
   return comparison;
 }
 
-std::string to_json(const Comparison& comparison) {
-  nlohmann::ordered_json json;
-  json["plan"] = comparison.plan->hash;
-  json["rows"] = comparison.time.size();
-  json["finished"] = comparison.run.status == RunStatus::finished;
-  if (!comparison.run.message.empty()) json["message"] = comparison.run.message;
-  for (const ComparedSignal& s : comparison.signals) {
-    auto& entry = json["signals"][s.name];
-    entry = {{"rmse", s.rmse}, {"max_abs", s.max_abs}, {"mean", s.mean}, {"relative_percent", s.relative_percent}, {"fit_percent", s.fit_percent}, {"unit", s.unit}};
-    if (s.held_out_rmse > 0) entry["held_out_rmse"] = s.held_out_rmse;
+Comparison compare(const std::string& diagram_path, const std::string& experiment_path,
+                   const LoadOptions& options, const RunOptions& run_options) {
+  Problems problems;
+  const auto experiment = load_experiment(experiment_path, problems);
+  if (!experiment) {
+    if (const auto diagram = load_diagram(diagram_path, options, problems))
+      compile(*diagram, problems);  // its problems too
+    throw InputError(std::move(problems));
   }
-  return json.dump(2) + "\n";
-}
-
-std::string to_text(const Comparison& comparison) {
-  size_t width = 6;
-  for (const ComparedSignal& s : comparison.signals) width = std::max(width, s.name.size());
-  const auto shown = [](double value, const std::string& unit) {
-    const report::Quantity q = report::engineering(value, unit);
-    return fmt::format("{} {}", q.value, q.unit);
-  };
-  std::string text = fmt::format("  {:<{}} {:>12} {:>12} {:>12} {:>10} {:>9}\n", "signal", width, "error, rms", "greatest", "mean", "relative", "fit");
-  for (const ComparedSignal& s : comparison.signals)
-    text += fmt::format("  {:<{}} {:>12} {:>12} {:>12} {:>8.2f} % {:>7.2f} %\n", s.name, width, shown(s.rmse, s.unit), shown(s.max_abs, s.unit), shown(s.mean, s.unit), s.relative_percent, s.fit_percent);
-  return text;
+  Comparison comparison = compare_signals(diagram_path, *experiment, options, run_options);
+  analyse_force(comparison, diagram_path, *experiment, options);
+  return comparison;
 }
 
 }  // namespace loopwright

@@ -1,14 +1,16 @@
 /// A model held against a recording: how far off is it, and where.
 #pragma once
 #include "engine/run/simulation.h"
+#include "tools/compare/excitation.h"
 #include "tools/compare/experiment.h"
+#include "tools/compare/force_residual.h"
 #include "tools/report/report.h"
 
 namespace loopwright {
 
 /// One compared signal: measured, simulated, and the difference simulated - measured, at the recorded times.
 struct ComparedSignal {
-  std::string name, unit;   ///< SI
+  std::string name, unit;  ///< SI
   std::vector<double> measured, simulated, error;
   double rmse = 0, max_abs = 0, mean = 0;
   double relative_percent = 0;  ///< 100 · rms(error) / rms(measured)
@@ -17,13 +19,35 @@ struct ComparedSignal {
   double resolution = 0;
 };
 
+/// Root of the mean squared error of the position when the model is driven by the recorded input.
+struct OpenLoopErrors {
+  double whole_record = 0;                           ///< [position] begun once: the errors add up
+  std::vector<std::pair<double, double>> restarted;  ///< horizon [s] → error [position] over all of its rows
+};
+
+/// What the machine's record says beyond its signals.
+struct ForceAnalysis {
+  MeasuredMotion motion;
+  double mass = 0;  ///< [force s²/position] of the model
+  ForceResidual residual;
+  std::vector<ResidualShare> where;
+  std::vector<Dependence> dependence;
+  OpenLoopErrors open_loop;
+  RecordContent content;
+  std::vector<Identifiability> identifiable;
+  std::vector<RecordFault> faults;
+};
+
 struct Comparison {
-  std::vector<double> time;     ///< s
+  std::vector<double> time;  ///< s
   std::vector<ComparedSignal> signals;
   std::vector<double> position, velocity;  ///< measured or simulated, by the roles; empty: not known
   std::string position_unit, velocity_unit, position_source, velocity_source;
   RunResult run;
   std::shared_ptr<const Plan> plan;
+  std::optional<ForceAnalysis> force;
+  std::string why_no_force;     ///< what the experiment lacks for it
+  bool is_closed_loop = false;  ///< the signals above are of the whole loop: its input was not driven
   std::vector<std::string> warnings;
 };
 
@@ -31,9 +55,17 @@ struct Comparison {
 Comparison compare(const std::string& diagram, const std::string& experiment, const LoadOptions& options = {},
                    const RunOptions& run_options = {});
 
-/// Stable keys: signals.<name>.{rmse,max_abs,mean,relative_percent,fit_percent,unit}.
+/// The same without the analysis of forces: the signals alone.
+Comparison compare_signals(const std::string& diagram, const Experiment& experiment,
+                           const LoadOptions& options = {}, const RunOptions& run_options = {});
+
+/// Stable keys: signals.<name>.{rmse,max_abs,mean,relative_percent,fit_percent,unit},
+/// force_residual.{rmse,relative_percent,noise_floor,unit}, where[].{axis,from,to,share},
+/// dependence.<variable>, simulation, excitation and faults.
 std::string to_json(const Comparison& comparison);
 std::string to_text(const Comparison& comparison);
+/// The part of the page that tells of forces; nothing without an analysis.
+std::vector<report::Section> force_sections(const Comparison& comparison);
 report::Page comparison_page(const Comparison& comparison, const std::string& title);
 
 }  // namespace loopwright

@@ -14,12 +14,16 @@ std::string shown(double value, const std::string& unit) {
 }
 std::string shown_unit(const std::string& unit) { return unit == "1" ? "" : unit; }
 
-report::Plot scatter(const ComparedSignal& s, std::string title, std::string axis, const std::string& unit, const std::vector<double>& x) {
+report::Plot scatter(const ComparedSignal& s, std::string title, std::string axis, const std::string& unit,
+                     const std::vector<double>& x) {
   report::Plot plot;
   plot.title = std::move(title);
   plot.x = {std::move(axis), shown_unit(unit), false};
   plot.y = {"Error of " + s.name, shown_unit(s.unit), false};
-  plot.series.push_back({"simulated − measured", {x.begin(), x.begin() + std::ptrdiff_t(std::min(x.size(), s.error.size()))}, s.error, Series::Shape::points});
+  plot.series.push_back({"simulated − measured",
+                         {x.begin(), x.begin() + std::ptrdiff_t(std::min(x.size(), s.error.size()))},
+                         s.error,
+                         Series::Shape::points});
   plot.series[0].y.resize(plot.series[0].x.size());
   return plot;
 }
@@ -39,15 +43,20 @@ report::Section signal_section(const Comparison& c, const ComparedSignal& s) {
   section.items.push_back(std::move(numbers));
   report::Plot overlay;
   overlay.x = {"Time", "s", false}, overlay.y = {s.name, shown_unit(s.unit), false}, overlay.group = "time";
-  overlay.series = {{"measured", c.time, s.measured, Series::Shape::line}, {"simulated", c.time, s.simulated, Series::Shape::line}};
+  overlay.series = {{"measured", c.time, s.measured, Series::Shape::line},
+                    {"simulated", c.time, s.simulated, Series::Shape::line}};
   report::Plot error;
   error.x = {"Time", "s", false}, error.y = {"Error", shown_unit(s.unit), false}, error.group = "time";
   error.series = {{"simulated − measured", c.time, s.error, Series::Shape::line}};
   if (s.resolution > 0) error.caption = fmt::format("The sensor resolves {}.", shown(s.resolution, s.unit));
   section.items.push_back(std::move(overlay));
   section.items.push_back(std::move(error));
-  if (!c.position.empty()) section.items.push_back(scatter(s, "Error against position", "Position, " + c.position_source, c.position_unit, c.position));
-  if (!c.velocity.empty()) section.items.push_back(scatter(s, "Error against velocity", "Velocity, " + c.velocity_source, c.velocity_unit, c.velocity));
+  if (!c.position.empty())
+    section.items.push_back(
+        scatter(s, "Error against position", "Position, " + c.position_source, c.position_unit, c.position));
+  if (!c.velocity.empty())
+    section.items.push_back(
+        scatter(s, "Error against velocity", "Velocity, " + c.velocity_source, c.velocity_unit, c.velocity));
   return section;
 }
 
@@ -57,18 +66,24 @@ report::Page comparison_page(const Comparison& c, const std::string& title) {
   report::Page page;
   page.title = title;
   page.subtitle = "The model held against the measurement";
-  page.facts = {{"Diagram", c.plan->title}, {"Plan", c.plan->hash}, {"Rows", fmt::format("{}", c.time.size())}};
-  report::Table table{{"Signal", "Error, RMS", "Error, greatest", "Mean error", "Relative (%)", "Fit (%)"}, {}, ""};
+  page.facts = {
+      {"Diagram", c.plan->title}, {"Plan", c.plan->hash}, {"Rows", fmt::format("{}", c.time.size())}};
+  report::Table table{
+      {"Signal", "Error, RMS", "Error, greatest", "Mean error", "Relative (%)", "Fit (%)"}, {}, ""};
   for (const ComparedSignal& s : c.signals)
     table.rows.push_back({s.name, shown(s.rmse, s.unit), shown(s.max_abs, s.unit), shown(s.mean, s.unit),
                           fmt::format("{:.2f}", s.relative_percent), fmt::format("{:.2f}", s.fit_percent)});
   report::Section summary{"Summary", {std::move(table)}};
-  if (c.run.status != RunStatus::finished) summary.items.push_back(report::Notice{report::Notice::Severity::error, c.run.message});
-  for (const std::string& warning : c.warnings) summary.items.push_back(report::Notice{report::Notice::Severity::warning, warning});
+  if (c.run.status != RunStatus::finished)
+    summary.items.push_back(report::Notice{report::Notice::Severity::error, c.run.message});
+  for (const std::string& warning : c.warnings)
+    summary.items.push_back(report::Notice{report::Notice::Severity::warning, warning});
   page.sections.push_back(std::move(summary));
+  for (report::Section& section : force_sections(c)) page.sections.push_back(std::move(section));
   for (const ComparedSignal& s : c.signals) page.sections.push_back(signal_section(c, s));
   report::Section diagram{"Diagram", {}};
-  for (report::Item& item : report::graph_picture(graph_of(*c.plan))) diagram.items.push_back(std::move(item));
+  for (report::Item& item : report::graph_picture(graph_of(*c.plan)))
+    diagram.items.push_back(std::move(item));
   page.sections.push_back(std::move(diagram));
   return page;
 }

@@ -1,27 +1,30 @@
 #include "tools/compare/experiment.h"
 #include <fmt/format.h>
 #include <algorithm>
-#include <cstdlib>
-#include <filesystem>
 #include "engine/diagram/json.h"
 #include "engine/diagram/reader.h"
 #include "engine/record/recording_file.h"
+#include "tools/compare/data_file.h"
 
 namespace loopwright {
 namespace {
 
-namespace fs = std::filesystem;
-
 class Loader {
  public:
-  Loader(std::string path, Problems& problems) : reader_{problems, ""}, problems_(problems) { result_->path = std::move(path); }
+  Loader(std::string path, Problems& problems) : reader_{problems, ""}, problems_(problems) {
+    result_->path = std::move(path);
+  }
 
   std::shared_ptr<const Experiment> run() {
     const auto source = read_source(result_->path, {}, problems_);
     if (!source) return nullptr;
     const Value file = parse_json(source, problems_);
-    if (problems_.has_errors() || !reader_.expect(file, Value::Kind::object, "an experiment", "an object in braces")) return nullptr;
-    reader_.reject_unknown(file, {"loopwright", "title", "description", "data", "time", "drive", "compare", "roles", "hold_out"}, "an experiment");
+    if (problems_.has_errors() ||
+        !reader_.expect(file, Value::Kind::object, "an experiment", "an object in braces"))
+      return nullptr;
+    reader_.reject_unknown(
+        file, {"loopwright", "title", "description", "data", "time", "drive", "compare", "roles", "hold_out"},
+        "an experiment");
     check_version(file);
     result_->title = reader_.text(file, "title");
     read_signals(file, "drive", result_->drives);
@@ -37,14 +40,17 @@ class Loader {
   void check_version(const Value& file) {
     const Value::Member* version = file.find("loopwright");
     if (version && version->value.kind == Value::Kind::number && version->value.number == 1) return;
-    auto& p = version ? reader_.error(*version, "this version of the format is not known") : reader_.error(file, "the version of the format is missing");
+    auto& p = version ? reader_.error(*version, "this version of the format is not known")
+                      : reader_.error(file, "the version of the format is missing");
     p.expected = "\"loopwright\": 1";
   }
 
   double number(const Value& object, std::string_view key, double otherwise, double low, double high) {
     const Value::Member* member = object.find(key);
     if (!member) return otherwise;
-    if (member->value.kind == Value::Kind::number && member->value.number >= low && member->value.number <= high) return member->value.number;
+    if (member->value.kind == Value::Kind::number && member->value.number >= low &&
+        member->value.number <= high)
+      return member->value.number;
     auto& p = reader_.error(*member, fmt::format("\"{}\" is out of range", key));
     p.expected = fmt::format("a number from {:g} to {:g}", low, high);
     p.found = shown(member->value);
@@ -54,25 +60,37 @@ class Loader {
   void read_signals(const Value& file, std::string_view key, std::vector<RecordedSignal>& to) {
     const Value::Member* list = file.find(key);
     if (!list) {
-      if (key == "compare") reader_.error(file, "the experiment compares nothing").expected = "\"compare\": {\"axis.position\": {\"column\": …, \"unit\": …}}";
+      if (key == "compare")
+        reader_.error(file, "the experiment compares nothing").expected =
+            "\"compare\": {\"axis.position\": {\"column\": …, \"unit\": …}}";
       return;
     }
-    if (!reader_.expect(list->value, Value::Kind::object, fmt::format("\"{}\"", key), "an object: port → column and unit")) return;
+    if (!reader_.expect(list->value, Value::Kind::object, fmt::format("\"{}\"", key),
+                        "an object: port → column and unit"))
+      return;
     for (const Value::Member& entry : list->value.members) {
-      if (!reader_.expect(entry.value, Value::Kind::object, entry.name, "{\"column\": …, \"unit\": …}")) continue;
+      if (!reader_.expect(entry.value, Value::Kind::object, entry.name, "{\"column\": …, \"unit\": …}"))
+        continue;
       const bool drives = key == "drive";
-      if (drives) reader_.reject_unknown(entry.value, {"column", "unit", "interpolation"}, "a driven port");
-      else reader_.reject_unknown(entry.value, {"column", "unit", "resolution"}, "a compared port");
+      if (drives)
+        reader_.reject_unknown(entry.value, {"column", "unit", "interpolation"}, "a driven port");
+      else
+        reader_.reject_unknown(entry.value, {"column", "unit", "resolution"}, "a compared port");
       RecordedSignal signal;
       signal.port = entry.name, signal.place = entry.place, signal.pointer = entry.value.pointer;
       signal.column = reader_.text(entry.value, "column");
       signal.unit = reader_.text(entry.value, "unit");
-      if (signal.column.empty()) reader_.error(entry, fmt::format("\"{}\" names no column", entry.name)).expected = "\"column\": name of a column in the data";
-      if (drives) result_->drive_is_linear.push_back(interpolation(entry.value));
-      else signal.resolution = number(entry.value, "resolution", 0, 0, 1e30);
+      if (signal.column.empty())
+        reader_.error(entry, fmt::format("\"{}\" names no column", entry.name)).expected =
+            "\"column\": name of a column in the data";
+      if (drives)
+        result_->drive_is_linear.push_back(interpolation(entry.value));
+      else
+        signal.resolution = number(entry.value, "resolution", 0, 0, 1e30);
       to.push_back(std::move(signal));
     }
-    if (list->value.members.empty() && key == "compare") reader_.error(*list, "the experiment compares nothing");
+    if (list->value.members.empty() && key == "compare")
+      reader_.error(*list, "the experiment compares nothing");
   }
   bool interpolation(const Value& entry) {
     const Value::Member* member = entry.find("interpolation");
@@ -86,8 +104,10 @@ class Loader {
 
   void read_roles(const Value& file) {
     const Value::Member* roles = file.find("roles");
-    if (!roles || !reader_.expect(roles->value, Value::Kind::object, "\"roles\"", "an object: role → port")) return;
-    reader_.reject_unknown(roles->value, {"position", "velocity", "acceleration", "force", "input"}, "the roles");
+    if (!roles || !reader_.expect(roles->value, Value::Kind::object, "\"roles\"", "an object: role → port"))
+      return;
+    reader_.reject_unknown(roles->value, {"position", "velocity", "acceleration", "force", "input"},
+                           "the roles");
     for (const Value::Member& role : roles->value.members) {
       result_->roles.ports.emplace_back(role.name, reader_.text(roles->value, role.name));
       result_->roles.places.push_back(role.place);
@@ -95,31 +115,11 @@ class Loader {
   }
   void read_hold_out(const Value& file) {
     const Value::Member* hold_out = file.find("hold_out");
-    if (!hold_out || !reader_.expect(hold_out->value, Value::Kind::object, "\"hold_out\"", "{\"fraction\": 0.3}")) return;
+    if (!hold_out ||
+        !reader_.expect(hold_out->value, Value::Kind::object, "\"hold_out\"", "{\"fraction\": 0.3}"))
+      return;
     reader_.reject_unknown(hold_out->value, {"fraction"}, "\"hold_out\"");
     result_->hold_out_fraction = number(hold_out->value, "fraction", 0, 0, 0.9);
-  }
-
-  /// Beside the experiment; else below $LOOPWRIGHT_DATA (../shared/data when that is not set), also in its folders.
-  std::string find_data(const std::string& name, std::vector<std::string>& tried) {
-    std::vector<fs::path> places{fs::path(result_->path).parent_path() / name};
-    const char* variable = std::getenv("LOOPWRIGHT_DATA");
-    const fs::path root = variable && *variable ? variable : "../shared/data";
-    std::error_code missing;
-    if (fs::is_directory(root, missing)) {
-      places.push_back(root / name);
-      std::error_code code;
-      std::vector<fs::path> folders;
-      for (const auto& entry : fs::directory_iterator(root, code)) if (entry.is_directory(code)) folders.push_back(entry.path() / name);
-      std::ranges::sort(folders);
-      places.insert(places.end(), folders.begin(), folders.end());
-    }
-    for (const fs::path& place : places) {
-      std::error_code code;
-      if (fs::is_regular_file(place, code)) return place.string();
-      tried.push_back(place.string());
-    }
-    return {};
   }
 
   void read_data(const Value& file) {
@@ -130,17 +130,20 @@ class Loader {
       return;
     }
     std::vector<std::string> tried;
-    result_->data_path = find_data(name, tried);
+    result_->data_path = find_data_file(result_->path, name, tried);
     if (result_->data_path.empty()) {
       auto& p = reader_.error(*member, fmt::format("the data file \"{}\" is not there", name));
       p.expected = tried.front() + (tried.size() > 1 ? ", or below $LOOPWRIGHT_DATA" : "");
-      p.hint = tried.size() > 1 ? "" : "the environment variable LOOPWRIGHT_DATA may name a folder of measurements";
+      p.hint = tried.size() > 1
+                   ? ""
+                   : "the environment variable LOOPWRIGHT_DATA may name a folder of measurements";
       return;
     }
     const Recording data = read_recording(result_->data_path, problems_);
     if (problems_.has_errors()) return;
     result_->time_column = file.find("time") ? reader_.text(file, "time") : data.columns.front().name;
-    const Column* time = column(data, result_->time_column, file.find("time") ? file.find("time")->place : member->place, "/time");
+    const Column* time = column(data, result_->time_column,
+                                file.find("time") ? file.find("time")->place : member->place, "/time");
     if (time) {
       result_->time = check_time(*time, problems_, {}, member->place);
       check_start(*time, *member);
@@ -155,7 +158,8 @@ class Loader {
     p.found = fmt::format("{} s", time.values.front());
     p.hint = "shift the time column so that it begins at zero";
   }
-  const Column* column(const Recording& data, const std::string& name, const Place& place, const std::string& pointer) {
+  const Column* column(const Recording& data, const std::string& name, const Place& place,
+                       const std::string& pointer) {
     if (const Column* found = data.find(name)) return found;
     auto& p = problems_.error(place, pointer, "", fmt::format("the data have no column \"{}\"", name));
     std::vector<std::string> names;
@@ -169,7 +173,8 @@ class Loader {
     const std::string text = signal.unit.empty() ? found->unit : signal.unit;
     const auto unit = parse_unit(text);
     if (!unit) {
-      problems_.error(signal.place, signal.pointer, "", fmt::format("the unit \"{}\" cannot be read", text)).expected = "a unit such as N, m/s or V*s^2/m";
+      problems_.error(signal.place, signal.pointer, "", fmt::format("the unit \"{}\" cannot be read", text))
+          .expected = "a unit such as N, m/s or V*s^2/m";
       return;
     }
     signal.unit = text;
@@ -196,14 +201,18 @@ Value text_value(std::string text) {
 
 }  // namespace
 
-std::shared_ptr<const Experiment> load_experiment(const std::string& path, Problems& problems) { return Loader(path, problems).run(); }
+std::shared_ptr<const Experiment> load_experiment(const std::string& path, Problems& problems) {
+  return Loader(path, problems).run();
+}
 
 LoadOptions follow(const Experiment& experiment, LoadOptions options) {
   for (size_t i = 0; i < experiment.drives.size(); ++i) {
     const RecordedSignal& signal = experiment.drives[i];
     Drive drive{signal.port, {}};
     drive.settings.kind = Value::Kind::object;
-    const auto add = [&](std::string name, std::string text) { drive.settings.members.push_back({std::move(name), signal.place, text_value(std::move(text))}); };
+    const auto add = [&](std::string name, std::string text) {
+      drive.settings.members.push_back({std::move(name), signal.place, text_value(std::move(text))});
+    };
     add("file", experiment.data_path);
     add("column", signal.column);
     add("time", experiment.time_column);
@@ -213,7 +222,9 @@ LoadOptions follow(const Experiment& experiment, LoadOptions options) {
     options.drives.push_back(std::move(drive));
   }
   const std::vector<double>& time = experiment.data.columns.front().values;
-  const auto set = [&](std::string key, double value) { options.set.insert(options.set.begin(), {std::move(key), fmt::format("{}", value)}); };
+  const auto set = [&](std::string key, double value) {
+    options.set.insert(options.set.begin(), {std::move(key), fmt::format("{}", value)});
+  };
   set("solver.start", time.front());
   set("solver.stop", time.back());
   if (experiment.time.regular) set("solver.record_step", experiment.time.sample_time);

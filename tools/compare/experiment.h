@@ -10,7 +10,7 @@ namespace loopwright {
 
 /// A recorded column with its unit, in SI once read.
 struct RecordedSignal {
-  std::string port;       ///< of the diagram, "axis.position"
+  std::string port;  ///< of the diagram, "axis.position"
   std::string column;
   std::string unit;       ///< as the experiment says it; numbers below are in SI
   double resolution = 0;  ///< SI; 0: not stated
@@ -26,18 +26,18 @@ struct Roles {
 
 struct Experiment {
   std::string title, path;
-  std::string data_path;   ///< the file that was found
+  std::string data_path;  ///< the file that was found
   std::string time_column;
-  Recording data;          ///< driving and compared columns in SI, "time" first
+  Recording data;  ///< driving and compared columns in SI, "time" first
   TimeAxis time;
   std::vector<RecordedSignal> drives, compared;
   std::vector<bool> drive_is_linear;  ///< joined by straight lines; else held
   Roles roles;
-  double hold_out_fraction = 0;       ///< of the rows, at the end, kept out of any fit
+  double hold_out_fraction = 0;  ///< of the rows, at the end, kept out of any fit
 };
 
-/// Reads the experiment and its data. Data files are looked for beside the experiment, then below $LOOPWRIGHT_DATA.
-/// Null when there are errors.
+/// Reads the experiment and its data. Data files are looked for beside the experiment, then below
+/// $LOOPWRIGHT_DATA. Null when there are errors.
 std::shared_ptr<const Experiment> load_experiment(const std::string& path, Problems& problems);
 
 /// Load options that make a diagram follow the experiment: its drives, and the run's stop and rows.

@@ -7,7 +7,8 @@ namespace loopwright {
 namespace {
 
 std::string range_text(const ParameterInfo& p) {
-  if (p.kind != ParameterKind::number && p.kind != ParameterKind::whole && p.kind != ParameterKind::list) return "";
+  if (p.kind != ParameterKind::number && p.kind != ParameterKind::whole && p.kind != ParameterKind::list)
+    return "";
   const bool low = std::isfinite(p.low), high = std::isfinite(p.high);
   if (low && high) return fmt::format("{} {:g} to {:g}", p.low_is_open ? "above" : "from", p.low, p.high);
   if (low) return fmt::format("{} {:g}", p.low_is_open ? "above" : "at least", p.low);
@@ -17,17 +18,24 @@ std::string range_text(const ParameterInfo& p) {
 
 std::string kind_text(const ParameterInfo& p) {
   switch (p.kind) {
-    case ParameterKind::number: return "number";
-    case ParameterKind::whole: return "whole number";
-    case ParameterKind::flag: return "true or false";
-    case ParameterKind::text: return "text";
+    case ParameterKind::number:
+      return "number";
+    case ParameterKind::whole:
+      return "whole number";
+    case ParameterKind::flag:
+      return "true or false";
+    case ParameterKind::text:
+      return "text";
     case ParameterKind::choice: {
       std::string all;
       for (std::string_view c : p.choices) all += fmt::format("{}\"{}\"", all.empty() ? "" : ", ", c);
       return all;
     }
-    case ParameterKind::list: return "list of " + kind_text(p.element.front()) + (p.element.front().kind == ParameterKind::object ? "s" : "");
-    case ParameterKind::object: return "object";
+    case ParameterKind::list:
+      return "list of " + kind_text(p.element.front()) +
+             (p.element.front().kind == ParameterKind::object ? "s" : "");
+    case ParameterKind::object:
+      return "object";
   }
   return "";
 }
@@ -60,7 +68,8 @@ std::string example_of(const BlockInfo& info) {
   return "../diagrams/examples/" + info.source.substr(name, info.source.rfind('.') - name) + ".json";
 }
 
-void add_fields(std::string& text, const std::vector<ParameterInfo>& list, const std::string& indent, std::string_view bullet) {
+void add_fields(std::string& text, const std::vector<ParameterInfo>& list, const std::string& indent,
+                std::string_view bullet) {
   for (const ParameterInfo& p : list) {
     text += fmt::format("{}{}{} ({}): {}\n", indent, bullet, p.name, facts_text(p), p.sentence);
     add_fields(text, p.fields, indent + "  ", bullet);
@@ -70,14 +79,21 @@ void add_fields(std::string& text, const std::vector<ParameterInfo>& list, const
 }  // namespace
 
 std::string block_text(const BlockInfo& info) {
-  std::string text = fmt::format("{}  ({})\n  {}\n  {}\n", info.type, info.room, info.sentence, timing_text(info));
+  std::string text =
+      fmt::format("{}  ({})\n  {}\n  {}\n", info.type, info.room, info.sentence, timing_text(info));
   if (!info.inputs.empty()) text += "inputs\n";
   for (const PortInfo& port : info.inputs)
-    text += fmt::format("  {} [{}]{}{}: {}\n", port.name, port.unit, port.shape == PortInfo::Shape::many ? ", any number of wires" : port.shape == PortInfo::Shape::vector ? ", a vector" : "",
-                        port.is_optional ? fmt::format(", {:g} when not wired", port.otherwise_value) : "", port.sentence);
+    text += fmt::format("  {} [{}]{}{}: {}\n", port.name, port.unit,
+                        port.shape == PortInfo::Shape::many     ? ", any number of wires"
+                        : port.shape == PortInfo::Shape::vector ? ", a vector"
+                                                                : "",
+                        port.is_optional ? fmt::format(", {:g} when not wired", port.otherwise_value) : "",
+                        port.sentence);
   if (!info.outputs.empty()) text += "outputs\n";
   for (const PortInfo& port : info.outputs)
-    text += fmt::format("  {} [{}]{}: {} ({})\n", port.name, port.unit, port.shape == PortInfo::Shape::vector ? ", a vector" : "", port.sentence, feedthrough_text(info, port));
+    text += fmt::format("  {} [{}]{}: {} ({})\n", port.name, port.unit,
+                        port.shape == PortInfo::Shape::vector ? ", a vector" : "", port.sentence,
+                        feedthrough_text(info, port));
   if (!info.parameters.empty()) text += "parameters\n";
   add_fields(text, info.parameters, "  ", "");
   if (!info.crossings.empty()) text += "events\n";
@@ -87,7 +103,8 @@ std::string block_text(const BlockInfo& info) {
 
 std::string block_list() {
   std::map<std::string, std::string> rooms;
-  for (const auto& [name, type] : all_blocks()) rooms[type.info.room] += fmt::format("  {:<34} {}\n", name, type.info.sentence);
+  for (const auto& [name, type] : all_blocks())
+    rooms[type.info.room] += fmt::format("  {:<34} {}\n", name, type.info.sentence);
   std::string text;
   for (const auto& [room, lines] : rooms) text += room + "\n" + lines;
   return text;
@@ -95,8 +112,10 @@ std::string block_list() {
 
 std::string block_reference() {
   std::string text =
-      "# Blocks\n\nGenerated by `loopwright blocks --markdown` from the blocks' own descriptions; a test holds this page to them.\n"
-      "`$name` in a unit stands for the unit of that port, whatever it is; ports with the same `$name` must agree.\n";
+      "# Blocks\n\nGenerated by `loopwright blocks --markdown` from the blocks' own descriptions; a test "
+      "holds this page to them.\n"
+      "`$name` in a unit stands for the unit of that port, whatever it is; ports with the same `$name` must "
+      "agree.\n";
   std::map<std::string, std::vector<const BlockInfo*>> rooms;
   for (const auto& [name, type] : all_blocks()) rooms[type.info.room].push_back(&type.info);
   for (const auto& [room, list] : rooms) {
@@ -104,12 +123,19 @@ std::string block_reference() {
     for (const BlockInfo* info : list) {
       std::string timing = timing_text(*info);
       timing[0] = char(std::toupper(timing[0]));
-      text += fmt::format("\n### {}\n{} {}. [Example]({}).\n\n", info->type, info->sentence, timing, example_of(*info));
+      text += fmt::format("\n### {}\n{} {}. [Example]({}).\n\n", info->type, info->sentence, timing,
+                          example_of(*info));
       for (const PortInfo& port : info->inputs)
-        text += fmt::format("- in `{}` [{}]{}: {}\n", port.name, port.unit, port.is_optional ? fmt::format(", {:g} when not wired", port.otherwise_value) : "", port.sentence);
-      for (const PortInfo& port : info->outputs) text += fmt::format("- out `{}` [{}]: {} ({})\n", port.name, port.unit, port.sentence, feedthrough_text(*info, port));
+        text +=
+            fmt::format("- in `{}` [{}]{}: {}\n", port.name, port.unit,
+                        port.is_optional ? fmt::format(", {:g} when not wired", port.otherwise_value) : "",
+                        port.sentence);
+      for (const PortInfo& port : info->outputs)
+        text += fmt::format("- out `{}` [{}]: {} ({})\n", port.name, port.unit, port.sentence,
+                            feedthrough_text(*info, port));
       add_fields(text, info->parameters, "", "- ");
-      for (const CrossingInfo& crossing : info->crossings) text += fmt::format("- event `{}`\n", crossing.name);
+      for (const CrossingInfo& crossing : info->crossings)
+        text += fmt::format("- event `{}`\n", crossing.name);
     }
   }
   return text;

@@ -37,13 +37,27 @@ Json number_schema(const ParameterInfo& p, const char* type) {
 Json type_schema(const ParameterInfo& p) {
   Json schema;
   switch (p.kind) {
-    case ParameterKind::number: schema = number_schema(p, "number"); break;
-    case ParameterKind::whole: schema = number_schema(p, "integer"); break;
-    case ParameterKind::flag: schema = {{"type", "boolean"}}; break;
-    case ParameterKind::text: schema = {{"type", "string"}}; break;
-    case ParameterKind::choice: schema = {{"enum", p.choices}}; break;
-    case ParameterKind::list: schema = {{"type", "array"}, {"items", type_schema(p.element.front())}}; break;
-    case ParameterKind::object: schema = object_schema(p.fields); break;
+    case ParameterKind::number:
+      schema = number_schema(p, "number");
+      break;
+    case ParameterKind::whole:
+      schema = number_schema(p, "integer");
+      break;
+    case ParameterKind::flag:
+      schema = {{"type", "boolean"}};
+      break;
+    case ParameterKind::text:
+      schema = {{"type", "string"}};
+      break;
+    case ParameterKind::choice:
+      schema = {{"enum", p.choices}};
+      break;
+    case ParameterKind::list:
+      schema = {{"type", "array"}, {"items", type_schema(p.element.front())}};
+      break;
+    case ParameterKind::object:
+      schema = object_schema(p.fields);
+      break;
   }
   if (!p.sentence.empty()) schema["description"] = described(p);
   if (!p.default_text.empty()) {
@@ -58,7 +72,8 @@ Json wires_schema(const BlockInfo& info) {
   Json required = Json::array();
   for (const PortInfo& port : info.inputs) {
     Json wire = {{"$ref", port.shape == PortInfo::Shape::many ? "#/$defs/wires" : "#/$defs/wire"}};
-    wire["description"] = std::string(port.sentence) + (port.unit.empty() ? "" : " [" + std::string(port.unit) + "]");
+    wire["description"] =
+        std::string(port.sentence) + (port.unit.empty() ? "" : " [" + std::string(port.unit) + "]");
     in["properties"][std::string(port.name)] = wire;
     if (!port.is_optional) required.push_back(port.name);
   }
@@ -68,75 +83,123 @@ Json wires_schema(const BlockInfo& info) {
 
 Json block_schema(const BlockInfo& info) {
   Json schema = object_schema(info.parameters);
-  Json properties = {{"type", {{"const", info.type}, {"description", info.sentence}}}, {"in", wires_schema(info)}, {"description", {{"type", "string"}}}};
+  Json properties = {{"type", {{"const", info.type}, {"description", info.sentence}}},
+                     {"in", wires_schema(info)},
+                     {"description", {{"type", "string"}}}};
   if (!info.is_continuous) {
-    const ParameterInfo time{"sample_time", "s", "Time between samples", ParameterKind::number, 0, infinity, true};
+    const ParameterInfo time{"sample_time", "s", "Time between samples", ParameterKind::number, 0,
+                             infinity,      true};
     properties["sample_time"] = type_schema(time);
-    properties["sample_offset"] = {{"description", "Time of the first sample [s]"}, {"anyOf", Json::array({{{"type", "number"}, {"minimum", 0}}, {{"$ref", "#/$defs/expression"}}, {{"$ref", "#/$defs/quantity"}}})}};
+    properties["sample_offset"] = {{"description", "Time of the first sample [s]"},
+                                   {"anyOf", Json::array({{{"type", "number"}, {"minimum", 0}},
+                                                          {{"$ref", "#/$defs/expression"}},
+                                                          {{"$ref", "#/$defs/quantity"}}})}};
   }
   for (auto& [name, parameter] : schema["properties"].items()) properties[name] = parameter;
   schema["properties"] = properties;
   Json required = Json::array({"type"});
   if (info.is_sampled) required.push_back("sample_time");
-  if (schema.contains("required")) for (auto& name : schema["required"]) required.push_back(name);
+  if (schema.contains("required"))
+    for (auto& name : schema["required"]) required.push_back(name);
   schema["required"] = required;
   return schema;
 }
 
 Json solver_schema() {
-  const Json number = {{"anyOf", Json::array({{{"type", "number"}}, {{"$ref", "#/$defs/expression"}}, {{"$ref", "#/$defs/quantity"}}})}};
+  const Json number = {{"anyOf", Json::array({{{"type", "number"}},
+                                              {{"$ref", "#/$defs/expression"}},
+                                              {{"$ref", "#/$defs/quantity"}}})}};
   Json properties = {{"method", {{"enum", {"euler", "heun", "rk4", "dopri5", "cvode-bdf", "cvode-adams"}}}},
                      {"algebraic_loops", {{"enum", {"error", "solve"}}}},
                      {"seed", {{"type", "integer"}, {"minimum", 0}}}};
-  for (const char* name : {"start", "stop", "step", "maximum_step", "relative_tolerance", "absolute_tolerance", "record_step"}) properties[name] = number;
+  for (const char* name :
+       {"start", "stop", "step", "maximum_step", "relative_tolerance", "absolute_tolerance", "record_step"})
+    properties[name] = number;
   return {{"type", "object"}, {"additionalProperties", false}, {"properties", properties}};
 }
 
 }  // namespace
 
 std::string diagram_schema() {
-  Json definitions = {{"wire", {{"type", "string"}, {"description", "block.output, block.output[0], or an input of this diagram"}}},
-                      {"wires", {{"anyOf", Json::array({{{"$ref", "#/$defs/wire"}}, {{"type", "array"}, {"items", {{"$ref", "#/$defs/wire"}}}}})}}},
-                      {"expression", {{"type", "string"}, {"pattern", "^="}, {"description", "An expression over parameters, \"=2*pi*40\""}}},
-                      {"quantity", {{"type", "object"}, {"required", {"value", "unit"}}, {"additionalProperties", false},
-                                    {"properties", {{"value", {{"anyOf", Json::array({{{"type", "number"}}, {{"$ref", "#/$defs/expression"}}})}}}, {"unit", {{"type", "string"}}}}}}},
-                      {"solver", solver_schema()}};
+  Json definitions = {
+      {"wire",
+       {{"type", "string"}, {"description", "block.output, block.output[0], or an input of this diagram"}}},
+      {"wires",
+       {{"anyOf", Json::array({{{"$ref", "#/$defs/wire"}},
+                               {{"type", "array"}, {"items", {{"$ref", "#/$defs/wire"}}}}})}}},
+      {"expression",
+       {{"type", "string"},
+        {"pattern", "^="},
+        {"description", "An expression over parameters, \"=2*pi*40\""}}},
+      {"quantity",
+       {{"type", "object"},
+        {"required", {"value", "unit"}},
+        {"additionalProperties", false},
+        {"properties",
+         {{"value", {{"anyOf", Json::array({{{"type", "number"}}, {{"$ref", "#/$defs/expression"}}})}}},
+          {"unit", {{"type", "string"}}}}}}},
+      {"solver", solver_schema()}};
   Json choices = Json::array();
   for (const auto& [name, type] : all_blocks()) {
     definitions[name] = block_schema(type.info);
-    choices.push_back({{"if", {{"properties", {{"type", {{"const", name}}}}}, {"required", {"type"}}}}, {"then", {{"$ref", "#/$defs/" + name}}}});
+    choices.push_back({{"if", {{"properties", {{"type", {{"const", name}}}}}, {"required", {"type"}}}},
+                       {"then", {{"$ref", "#/$defs/" + name}}}});
   }
   Json types = Json::array();
   for (const auto& [name, type] : all_blocks()) types.push_back(name);
-  definitions["block"] = {{"type", "object"},
-                          {"properties", {{"type", {{"enum", types}}}, {"diagram", {{"type", "string"}, {"description", "A subdiagram's file, relative to this one"}}},
-                                          {"variants", {{"type", "object"}, {"additionalProperties", {{"$ref", "#/$defs/block"}}}}}, {"variant", {{"type", "string"}}}}},
-                          {"anyOf", Json::array({{{"required", {"type"}}}, {{"required", {"diagram"}}}, {{"required", {"variants"}}}})},
-                          {"allOf", choices}};
-  const Json parameter = {{"anyOf", Json::array({{{"type", {"number", "string", "boolean", "array"}}},
-                                                 {{"type", "object"}, {"required", {"value"}}, {"additionalProperties", false},
-                                                  {"properties", {{"value", Json::object()}, {"unit", {{"type", "string"}}}, {"description", {{"type", "string"}}}}}}})}};
-  const Json input_schema = {{"anyOf", Json::array({{{"type", "string"}, {"description", "Its unit"}},
-                                                    {{"type", "object"}, {"additionalProperties", false},
-                                                     {"properties", {{"unit", {{"type", "string"}}}, {"description", {{"type", "string"}}}}}}})}};
-  const Json output_schema = {{"anyOf", Json::array({{{"$ref", "#/$defs/wire"}},
-                                                     {{"type", "object"}, {"required", {"source"}}, {"additionalProperties", false},
-                                                      {"properties", {{"source", {{"$ref", "#/$defs/wire"}}}, {"unit", {{"type", "string"}}}, {"description", {{"type", "string"}}}}}}})}};
-  const Json schema = {
-      {"$schema", "https://json-schema.org/draft/2020-12/schema"},
-      {"title", "Loopwright diagram"},
+  definitions["block"] = {
       {"type", "object"},
-      {"required", {"loopwright", "blocks"}},
       {"properties",
-       {{"loopwright", {{"const", 1}}}, {"title", {{"type", "string"}}}, {"description", {{"type", "string"}}},
+       {{"type", {{"enum", types}}},
+        {"diagram",
+         {{"anyOf", Json::array({{{"type", "string"}}, {{"$ref", "#/$defs/diagram"}}})},
+          {"description", "A subdiagram: its file, relative to this one, or the diagram itself"}}},
+        {"variants", {{"type", "object"}, {"additionalProperties", {{"$ref", "#/$defs/block"}}}}},
+        {"variant", {{"type", "string"}}}}},
+      {"anyOf",
+       Json::array({{{"required", {"type"}}}, {{"required", {"diagram"}}}, {{"required", {"variants"}}}})},
+      {"allOf", choices}};
+  const Json parameter = {{"anyOf", Json::array({{{"type", {"number", "string", "boolean", "array"}}},
+                                                 {{"type", "object"},
+                                                  {"required", {"value"}},
+                                                  {"additionalProperties", false},
+                                                  {"properties",
+                                                   {{"value", Json::object()},
+                                                    {"unit", {{"type", "string"}}},
+                                                    {"description", {{"type", "string"}}}}}}})}};
+  const Json input_schema = {
+      {"anyOf", Json::array({{{"type", "string"}, {"description", "Its unit"}},
+                             {{"type", "object"},
+                              {"additionalProperties", false},
+                              {"properties",
+                               {{"unit", {{"type", "string"}}}, {"description", {{"type", "string"}}}}}}})}};
+  const Json output_schema = {{"anyOf", Json::array({{{"$ref", "#/$defs/wire"}},
+                                                     {{"type", "object"},
+                                                      {"required", {"source"}},
+                                                      {"additionalProperties", false},
+                                                      {"properties",
+                                                       {{"source", {{"$ref", "#/$defs/wire"}}},
+                                                        {"unit", {{"type", "string"}}},
+                                                        {"description", {{"type", "string"}}}}}}})}};
+  definitions["diagram"] = {
+      {"type", "object"},
+      {"required", {"blocks"}},
+      {"properties",
+       {{"loopwright", {{"const", 1}}},
+        {"title", {{"type", "string"}}},
+        {"description", {{"type", "string"}}},
         {"parameters", {{"type", "object"}, {"additionalProperties", parameter}}},
         {"solver", {{"$ref", "#/$defs/solver"}}},
         {"inputs", {{"type", "object"}, {"additionalProperties", input_schema}}},
         {"outputs", {{"type", "object"}, {"additionalProperties", output_schema}}},
         {"blocks", {{"type", "object"}, {"additionalProperties", {{"$ref", "#/$defs/block"}}}}},
         {"log", {{"type", "array"}, {"items", {{"type", "string"}}}}}}},
-      {"additionalProperties", false},
-      {"$defs", definitions}};
+      {"additionalProperties", false}};
+  Json schema = definitions["diagram"];
+  schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";
+  schema["title"] = "Loopwright diagram";
+  schema["required"] = {"loopwright", "blocks"};
+  schema["$defs"] = definitions;
   return schema.dump(2) + "\n";
 }
 

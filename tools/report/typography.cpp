@@ -169,13 +169,16 @@ std::size_t text_width(std::string_view text) {
 
 Quantity engineering(double value, std::string_view unit, int digits) {
   constexpr std::array<std::string_view, 9> prefixes{"p", "n", "µ", "m", "", "k", "M", "G", "T"};
-  constexpr std::array<std::string_view, 10> takes_prefix{"m", "N", "V", "A", "s", "W", "Hz", "Pa", "J", "rad"};
+  constexpr std::array<std::string_view, 10> takes_prefix{"m", "N",  "V",  "A", "s",
+                                                          "W", "Hz", "Pa", "J", "rad"};
   const std::string_view head = unit.substr(0, unit.find_first_of("*/^"));
   const bool is_power = head.size() < unit.size() && unit[head.size()] == '^';
   const bool fits = !is_power && std::ranges::find(takes_prefix, head) != takes_prefix.end();
-  if (!fits || value == 0 || !std::isfinite(value)) return {fmt::format("{:.{}g}", value, digits), readable_unit(unit)};
+  if (!fits || value == 0 || !std::isfinite(value))
+    return {fmt::format("{:.{}g}", value, digits), readable_unit(unit)};
   const int step = std::clamp(int(std::floor(std::log10(std::abs(value)) / 3)), -4, head == "s" ? 0 : 4);
-  return {fmt::format("{:.{}g}", value / std::pow(1000.0, step), digits), std::string(prefixes[size_t(step + 4)]) + readable_unit(unit)};
+  return {fmt::format("{:.{}g}", value / std::pow(1000.0, step), digits),
+          std::string(prefixes[size_t(step + 4)]) + readable_unit(unit)};
 }
 
 }  // namespace loopwright::report

@@ -31,8 +31,8 @@ int significant_digits(std::span<const double> values);
 /// Columns that `text` takes on a terminal: characters, not bytes.
 std::size_t text_width(std::string_view text);
 
-/// A number as an engineer writes it: 1.789e-6 m → {"1.789", "µm"}. Prefixes go before units that begin with a plain name
-/// (m, N, m/s, N*m …); others, and kg, keep the number as it is.
+/// A number as an engineer writes it: 1.789e-6 m → {"1.789", "µm"}. Prefixes go before units that begin with
+/// a plain name (m, N, m/s, N*m …); others, and kg, keep the number as it is.
 struct Quantity {
   std::string value, unit;
 };

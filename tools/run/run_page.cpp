@@ -14,8 +14,8 @@ double peak_of(const Column& column) {
   return peak;
 }
 
-/// A scope that is being filled: signals of one unit and of like size, so that what should agree can be seen to agree and
-/// a small error does not drown beside a long way.
+/// A scope that is being filled: signals of one unit and of like size, so that what should agree can be seen
+/// to agree and a small error does not drown beside a long way.
 struct Scope {
   std::string unit;
   double peak;
@@ -23,7 +23,8 @@ struct Scope {
   bool takes(const Column& column, double size) const {
     constexpr size_t most_signals = 6;
     constexpr double like = 30;
-    return !unit.empty() && unit == column.unit && plot.series.size() < most_signals && size <= like * peak && peak <= like * size;
+    return !unit.empty() && unit == column.unit && plot.series.size() < most_signals && size <= like * peak &&
+           peak <= like * size;
   }
 };
 
@@ -41,12 +42,14 @@ std::vector<report::Plot> scopes(const Plan& plan, const Recording& recording) {
       scope->plot.group = "time";
     }
     const bool held = plan.log[c - 1].rate.kind == Rate::Kind::sampled;
-    scope->plot.series.push_back({column.name, recording.columns[0].values, column.values, held ? report::Series::Shape::steps : report::Series::Shape::line});
+    scope->plot.series.push_back({column.name, recording.columns[0].values, column.values,
+                                  held ? report::Series::Shape::steps : report::Series::Shape::line});
     if (scope->plot.series.size() > 1) scope->plot.y.label = "Signals";
   }
   std::vector<report::Plot> plots;
   for (Scope& scope : scopes) {
-    for (const report::Series& series : scope.plot.series) scope.plot.caption += (scope.plot.caption.empty() ? "" : ", ") + series.name;
+    for (const report::Series& series : scope.plot.series)
+      scope.plot.caption += (scope.plot.caption.empty() ? "" : ", ") + series.name;
     scope.plot.caption += ".";
     plots.push_back(std::move(scope.plot));
   }
@@ -57,7 +60,9 @@ report::Table statistics(const Plan& plan, const RunResult& result) {
   const RunStatistics& s = result.statistics;
   report::Table table;
   table.head = {"Quantity", "Value"};
-  const auto row = [&](std::string name, std::string value) { table.rows.push_back({std::move(name), std::move(value)}); };
+  const auto row = [&](std::string name, std::string value) {
+    table.rows.push_back({std::move(name), std::move(value)});
+  };
   row("Method", std::string(to_name(plan.method)));
   row("Simulated time (s)", fmt::format("{:g}", result.time - plan.clock.time(plan.start_tick)));
   row("Computing time (s)", fmt::format("{:.3g}", s.wall_seconds));
@@ -69,7 +74,8 @@ report::Table statistics(const Plan& plan, const RunResult& result) {
   }
   row("Rows recorded", fmt::format("{}", s.rows));
   if (s.largest_pole > 0) row("Fastest pole at the start (rad/s)", fmt::format("{:.4g}", s.largest_pole));
-  for (const CrossingCount& crossing : s.events) row("Events of " + crossing.name, fmt::format("{}", crossing.events));
+  for (const CrossingCount& crossing : s.events)
+    row("Events of " + crossing.name, fmt::format("{}", crossing.events));
   return table;
 }
 
@@ -82,8 +88,10 @@ report::Table signal_table(const Recording& recording) {
     const auto [low, high] = std::ranges::minmax(column.values);
     double square = 0;
     for (double v : column.values) square += v * v;
-    table.rows.push_back({column.name, unit_text(column), fmt::format("{:.6g}", low), fmt::format("{:.6g}", high),
-                          fmt::format("{:.6g}", std::sqrt(square / double(column.values.size()))), fmt::format("{:.6g}", column.values.back())});
+    table.rows.push_back({column.name, unit_text(column), fmt::format("{:.6g}", low),
+                          fmt::format("{:.6g}", high),
+                          fmt::format("{:.6g}", std::sqrt(square / double(column.values.size()))),
+                          fmt::format("{:.6g}", column.values.back())});
   }
   return table;
 }
@@ -91,9 +99,14 @@ report::Table signal_table(const Recording& recording) {
 report::Notice ending(const Plan& plan, const RunResult& result) {
   using Severity = report::Notice::Severity;
   switch (result.status) {
-    case RunStatus::finished: return {Severity::good, fmt::format("The run reached its stop time, {:g} s.", plan.clock.time(plan.stop_tick))};
-    case RunStatus::interrupted: return {Severity::warning, "The run was " + result.message + "; what was computed until then is shown."};
-    case RunStatus::failed: break;
+    case RunStatus::finished:
+      return {Severity::good,
+              fmt::format("The run reached its stop time, {:g} s.", plan.clock.time(plan.stop_tick))};
+    case RunStatus::interrupted:
+      return {Severity::warning,
+              "The run was " + result.message + "; what was computed until then is shown."};
+    case RunStatus::failed:
+      break;
   }
   return {Severity::error, "The run failed: " + result.message + ". What was computed until then is shown."};
 }
@@ -117,8 +130,9 @@ report::Graph graph_of(const Plan& plan) {
         last = source;
         const Plan::Block& from = plan.blocks[size_t(source.first)];
         const auto& unit = from.output_units[size_t(source.second)];
-        graph.edges.push_back({from.path, std::string(from.type->info.outputs[size_t(source.second)].name), block.path,
-                               std::string(block.type->info.inputs[i].name), "", unit ? to_string(*unit) : ""});
+        graph.edges.push_back({from.path, std::string(from.type->info.outputs[size_t(source.second)].name),
+                               block.path, std::string(block.type->info.inputs[i].name), "",
+                               unit ? to_string(*unit) : ""});
       }
     }
   return graph;
@@ -130,8 +144,10 @@ report::Page run_page(const Plan& plan, const RunResult& result) {
   page.subtitle = "Simulation";
   page.facts = {{"Plan", plan.hash}, {"Seed", fmt::format("{}", plan.seed)}};
   report::Section outcome{"Outcome", {ending(plan, result)}};
-  for (const Problem& warning : plan.warnings) outcome.items.push_back(report::Notice{report::Notice::Severity::warning, to_string(warning)});
-  for (const std::string& warning : result.warnings) outcome.items.push_back(report::Notice{report::Notice::Severity::warning, warning});
+  for (const Problem& warning : plan.warnings)
+    outcome.items.push_back(report::Notice{report::Notice::Severity::warning, to_string(warning)});
+  for (const std::string& warning : result.warnings)
+    outcome.items.push_back(report::Notice{report::Notice::Severity::warning, warning});
   report::Section signals{"Signals", {}};
   for (report::Plot& plot : scopes(plan, result.recording)) signals.items.push_back(std::move(plot));
   signals.items.push_back(signal_table(result.recording));
@@ -139,15 +155,22 @@ report::Page run_page(const Plan& plan, const RunResult& result) {
   for (report::Item& item : report::graph_picture(graph_of(plan))) diagram.items.push_back(std::move(item));
   report::Table parameters{{"Parameter", "Value"}, {}, "Effective values, defaults included."};
   for (const auto& [name, value] : plan.parameters) parameters.rows.push_back({name, value});
-  page.sections = {std::move(outcome), std::move(signals), std::move(diagram), {"Solver", {statistics(plan, result)}}, {"Parameters", {std::move(parameters)}}};
+  page.sections = {std::move(outcome),
+                   std::move(signals),
+                   std::move(diagram),
+                   {"Solver", {statistics(plan, result)}},
+                   {"Parameters", {std::move(parameters)}}};
   return page;
 }
 
 std::string run_summary(const Plan& plan, const RunResult& result) {
   std::string text = fmt::format("{}: {} of {:g} s in {:.3g} s, {} steps of {}, {} rows\n",
-                                 result.status == RunStatus::finished ? "done" : result.status == RunStatus::failed ? "failed" : "interrupted",
-                                 fmt::format("{:g}", result.time), plan.clock.time(plan.stop_tick), result.statistics.wall_seconds,
-                                 result.statistics.steps, to_name(plan.method), result.statistics.rows);
+                                 result.status == RunStatus::finished ? "done"
+                                 : result.status == RunStatus::failed ? "failed"
+                                                                      : "interrupted",
+                                 fmt::format("{:g}", result.time), plan.clock.time(plan.stop_tick),
+                                 result.statistics.wall_seconds, result.statistics.steps,
+                                 to_name(plan.method), result.statistics.rows);
   size_t width = 6;
   for (const Column& column : result.recording.columns) width = std::max(width, column.name.size());
   text += fmt::format("  {:<{}}  {:>13} {:>13} {:>13}  unit\n", "signal", width, "least", "greatest", "last");
@@ -155,9 +178,11 @@ std::string run_summary(const Plan& plan, const RunResult& result) {
     const Column& column = result.recording.columns[c];
     if (column.values.empty()) continue;
     const auto [low, high] = std::ranges::minmax(column.values);
-    text += fmt::format("  {:<{}}  {:>13.6g} {:>13.6g} {:>13.6g}  {}\n", column.name, width, low, high, column.values.back(), column.unit);
+    text += fmt::format("  {:<{}}  {:>13.6g} {:>13.6g} {:>13.6g}  {}\n", column.name, width, low, high,
+                        column.values.back(), column.unit);
   }
-  if (result.recording.columns.size() > 41) text += fmt::format("  … and {} more\n", result.recording.columns.size() - 41);
+  if (result.recording.columns.size() > 41)
+    text += fmt::format("  … and {} more\n", result.recording.columns.size() - 41);
   return text;
 }
 

@@ -1,4 +1,5 @@
-/// What a run looks like: the diagram's picture, scopes of its signals, parameters, solver statistics, warnings.
+/// What a run looks like: the diagram's picture, scopes of its signals, parameters, solver statistics,
+/// warnings.
 #pragma once
 #include "engine/run/simulation.h"
 #include "tools/report/graph_picture.h"

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 #include "tests/engine/diagram/diagram_folder.h"
+#include "where.h"
 
 namespace loopwright {
 

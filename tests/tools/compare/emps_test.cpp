@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include "tests/tools/compare/experiment_folder.h"
+#include "where.h"
 
 namespace loopwright {
 namespace {

@@ -9,6 +9,7 @@
 #include "engine/block/registry.h"
 #include "engine/diagram/unit.h"
 #include "tools/reference/reference.h"
+#include "where.h"
 
 namespace loopwright {
 namespace {
@@ -54,10 +55,11 @@ std::string file_name(const std::string& type) {
 
 TEST(Reference, EverySourceFileInBlocksRegistersOneBlockOfItsName) {
   std::set<std::string> sources, registered;
-  for (const auto& entry : fs::recursive_directory_iterator(root / "blocks"))
-    if (entry.path().extension() == ".cpp" &&
-        text_of(entry.path()).find("\nLOOPWRIGHT_BLOCK(") != std::string::npos)
-      sources.insert(fs::relative(entry.path(), root).string());
+  for (const fs::path& folder : {root, root / "hw"})
+    for (const auto& entry : fs::recursive_directory_iterator(folder / "blocks"))
+      if (entry.path().extension() == ".cpp" &&
+          text_of(entry.path()).find("\nLOOPWRIGHT_BLOCK(") != std::string::npos)
+        sources.insert(fs::relative(entry.path(), folder).string());
   for (const auto& [name, type] : all_blocks()) {
     const size_t from = type.info.source.rfind("blocks/");
     ASSERT_NE(from, type.info.source.npos) << type.info.source;

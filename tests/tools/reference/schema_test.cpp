@@ -6,6 +6,7 @@
 #include <regex>
 #include "engine/block/registry.h"
 #include "tools/reference/reference.h"
+#include "where.h"
 
 namespace loopwright {
 namespace {

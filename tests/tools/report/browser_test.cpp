@@ -5,6 +5,7 @@
 #include <sstream>
 #include "tests/tools/report/sample_page.h"
 #include "tools/report/child_process.h"
+#include "where.h"
 
 namespace loopwright::report {
 namespace {

@@ -9,6 +9,7 @@
 #include "tests/tools/report/sample_page.h"
 #include "tests/tools/report/well_formed.h"
 #include "tools/report/assets.h"
+#include "where.h"
 
 namespace loopwright::report {
 namespace {

@@ -1,0 +1,187 @@
+// The program as a person uses it, on the emulated card: signals, a killed controller, exit codes, what is
+// written.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <thread>
+#include "tests/hw/device_file.h"
+#include "tests/hw/emulated_card.h"
+#include "tests/tools/command/program.h"
+#include "where.h"
+
+namespace loopwright {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using namespace std::chrono_literals;
+
+const std::string conventional = LOOPWRIGHT_SOURCE "/diagrams/linear_motor/conventional.json";
+
+class DeployProgram : public testing::Test {
+ protected:
+  void SetUp() override {
+    setenv("HIL_LIBRARY", hw::emulator_library().c_str(), 1);
+    unsetenv("HIL_EMU"), unsetenv("HIL_EMU_SHARED");
+  }
+  void TearDown() override { unsetenv("HIL_EMU"), unsetenv("HIL_EMU_SHARED"); }
+  /// A device file, and the settings of the emulated card.
+  void files(const std::string& device_patch, const std::string& card) {
+    folder_.with("device.json", hw::device_text(device_patch)).with("card.json", card);
+    setenv("HIL_EMU", folder_.path("card.json").c_str(), 1);
+  }
+  std::vector<std::string> arguments(std::vector<std::string> more = {}) {
+    std::vector<std::string> all{"deploy",        conventional, "--variant",
+                                 "stage=quanser", "--set",      "stage.device=" + folder_.path("device.json"),
+                                 "--priority",    "0"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  nlohmann::json figures() { return nlohmann::json::parse(text_of(folder_.path("figures.json"))); }
+  static bool wait_for(const std::function<bool()>& what) {
+    for (int i = 0; i < 1000; ++i) {
+      if (what()) return true;
+      std::this_thread::sleep_for(10ms);
+    }
+    return false;
+  }
+  DiagramFolder folder_;
+};
+
+const std::string in_virtual_time = R"({"clock": {"time": "simulated"}})";
+/// A computer that does other things meanwhile: what comes late is only counted, the watchdog has time.
+const std::string patient =
+    R"({"clock": {"buffer": 1, "overflow": "overwrite"}, "policy": {"on_overrun": "count"}, "watchdog": {"timeout": 0.4}})";
+
+TEST_F(DeployProgram, MovesTheStageAndWritesLogPageAndFigures) {
+  files(in_virtual_time, "{}");
+  const Outcome outcome =
+      loopwright_program(arguments({"-o", folder_.path("log.csv"), "--report", folder_.path("page.html"),
+                                    "--json", folder_.path("figures.json")}));
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(figures().at("outputs_safe"), "confirmed");
+  EXPECT_EQ(figures().at("cycles"), 3101);
+  EXPECT_THAT(text_of(folder_.path("page.html")),
+              AllOf(HasSubstr("Outputs safe"), HasSubstr("From sample to command")));
+  const Outcome replayed = loopwright_program({"run", conventional, "--variant", "stage=quanser", "--set",
+                                               "stage.device=" + folder_.path("device.json"), "--replay",
+                                               folder_.path("log.csv")});
+  EXPECT_EQ(replayed.code, 0) << replayed.err;
+  EXPECT_THAT(replayed.err, HasSubstr("explain each other"));
+}
+
+TEST_F(DeployProgram, ASignalEndsItWithTheOutputsSafe) {
+  files(patient, R"({"real_time": 1})");
+  for (const int signal : {SIGINT, SIGTERM}) {
+    Program program(arguments(
+        {"--set", "solver.stop=30", "--json", folder_.path("figures.json"), "-o", folder_.path("log.csv")}));
+    ASSERT_TRUE(wait_for([&] { return contains(program.err(), "deploy "); })) << "it shows how it goes";
+    program.send(signal);
+    const Outcome outcome = program.wait();
+    EXPECT_EQ(outcome.code, 130) << outcome.err;
+    EXPECT_EQ(figures().at("outputs_safe"), "confirmed");
+    EXPECT_EQ(figures().at("status"), "interrupted");
+    EXPECT_GT(text_of(folder_.path("log.csv")).size(), 1000u) << "what was recorded is kept";
+  }
+}
+
+TEST_F(DeployProgram, AnUnpluggedCardIsExitCodeOneAndUnknown) {
+  files(in_virtual_time, R"({"unplug.at": 1500})");
+  const Outcome outcome = loopwright_program(arguments({"--json", "-"}));
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.out, HasSubstr("\"outputs_safe\": \"unknown\""));
+  EXPECT_THAT(outcome.err, HasSubstr("-1160, DEVICE_DISCONNECTED"));
+}
+
+/// The emulated card in a process of its own.
+class Daemon {
+ public:
+  Daemon(const std::string& world, const std::string& settings) {
+    int to[2], from[2];
+    if (pipe(to) != 0 || pipe(from) != 0) throw std::runtime_error("no pipe");
+    process_ = fork();
+    if (process_ == 0) {
+      dup2(to[0], STDIN_FILENO), dup2(from[1], STDOUT_FILENO);
+      close(to[1]), close(from[0]);
+      execl(LOOPWRIGHT_BINARY "/bin/hil_emulator_daemon", "hil_emulator_daemon", world.c_str(),
+            settings.c_str(), nullptr);
+      _exit(98);
+    }
+    close(to[0]), close(from[1]);
+    in_ = fdopen(to[1], "w"), out_ = fdopen(from[0], "r");
+    if (line() != "ready\n") throw std::runtime_error("the daemon does not begin");
+  }
+  ~Daemon() {
+    fclose(in_), fclose(out_);
+    waitpid(process_, nullptr, 0);
+  }
+  double get(const std::string& name) {
+    fprintf(in_, "get %s\n", name.c_str());
+    fflush(in_);
+    return std::stod(line());
+  }
+
+ private:
+  std::string line() {
+    char text[128] = "";
+    return fgets(text, sizeof text, out_) ? text : "";
+  }
+  pid_t process_;
+  FILE *in_, *out_;
+};
+
+TEST_F(DeployProgram, AKilledControllerLeavesTheOutputsToTheWatchdog) {
+  files(patient, R"({"plant.cogging": 0, "plant.tilt": 0.2})");
+  unsetenv("HIL_EMU");
+  Daemon card(folder_.path("world"), folder_.path("card.json"));
+  setenv("HIL_EMU_SHARED", folder_.path("world").c_str(), 1);
+  Program program(arguments());
+  ASSERT_TRUE(wait_for([&] { return card.get("watchdog.armed") == 1 && card.get("dac.0") != 0; }))
+      << "the motor is held against its weight";
+  program.send(SIGKILL);
+  EXPECT_EQ(program.wait().code, 128 + SIGKILL);
+  const double killed = card.get("time");
+  ASSERT_TRUE(wait_for([&] { return card.get("watchdog.expired") == 1; }));
+  EXPECT_EQ(card.get("dac.0"), 0);
+  EXPECT_LE(card.get("watchdog.expired_at"), killed + 0.4);
+  unsetenv("HIL_EMU_SHARED");
+}
+
+TEST_F(DeployProgram, WrongInputIsExitCodeTwoBeforeAnythingMoves) {
+  files(R"({"outputs": {"drive": {"safe": null}}})", "{}");
+  Outcome outcome = loopwright_program(arguments());
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("device.json:"), HasSubstr("\"safe\" is missing")));
+  outcome = loopwright_program({"deploy", conventional});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--variant stage=quanser"));
+  files("{}", "{}");
+  setenv("HIL_LIBRARY", "/nowhere/libhil.so", 1);
+  outcome = loopwright_program(arguments());
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("/nowhere/libhil.so"));
+}
+
+TEST_F(DeployProgram, ASimulationOpensNoDeviceAndSaysSo) {
+  setenv("HIL_LIBRARY", "/nowhere/libhil.so", 1);
+  for (const char* what : {"check", "plan", "run"}) {
+    const Outcome outcome = loopwright_program({what, conventional, "--variant", "stage=quanser"});
+    EXPECT_EQ(outcome.code, 0) << what << outcome.err;
+    EXPECT_EQ(contains(outcome.err, "stands still"), std::string(what) == "run");
+  }
+}
+
+TEST_F(DeployProgram, TheProbeAnswersWhatOnlyTheMachineKnows) {
+  files("{}", R"({"real_time": 1, "watchdog.zero_only": 1, "plant.cogging": 0, "plant.cogging_2": 0})");
+  const Outcome outcome = loopwright_program({"probe", folder_.path("device.json"), "--touch"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out,
+              AllOf(HasSubstr("SCHED_FIFO"), HasSubstr("driver of the qpid_e: there is one"),
+                    HasSubstr("preset of 8388608: -8388608"), HasSubstr("watchdog of 1 s: -151"),
+                    HasSubstr("expiry value of 1 V: -601"), HasSubstr("a write after expiry: -1202")));
+  setenv("HIL_LIBRARY", "/nowhere/libhil.so", 1);
+  EXPECT_EQ(loopwright_program({"probe"}).code, 1);
+}
+
+}  // namespace
+}  // namespace loopwright

@@ -1,0 +1,134 @@
+// The same plan simulated, deployed and replayed: close, as two motors of the same parameters are, and equal
+// in every bit where the same blocks ran on the same numbers.
+#include "tools/deploy/replay.h"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <algorithm>
+#include <cmath>
+#include "engine/record/recording_file.h"
+#include "tests/hw/deployment.h"
+#include "where.h"
+
+namespace loopwright {
+namespace {
+
+using hw::column;
+using hw::Deployed;
+using hw::EmulatedCard;
+using testing::HasSubstr;
+
+const std::string conventional = LOOPWRIGHT_SOURCE "/diagrams/linear_motor/conventional.json";
+
+RunResult simulated_without_noise() {
+  LoadOptions options;
+  options.set = {{"stage.command_noise", "0"}, {"stage.encoder_noise", "0"}, {"solver.record_step", "0.001"}};
+  return simulate(*load_plan(conventional, options));
+}
+
+double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double largest = 0;
+  for (size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    largest = std::max(largest, std::abs(a[i] - b[i]));
+  return largest;
+}
+double largest(const std::vector<double>& values) {
+  return largest_difference(values, std::vector<double>(values.size()));
+}
+
+struct Agreement {
+  double position = 0, command = 0, error = 0;  ///< largest differences; m, V, m
+};
+/// The emulated motor has the parameters of the simulated stage from the start, but for its current loop.
+Agreement agreement() {
+  EmulatedCard card;
+  card.set("plant.current_lag", 0);
+  const hw::DeployResult deployed = Deployed(hw::in_virtual_time).run();
+  EXPECT_EQ(deployed.status, RunStatus::finished) << deployed.message;
+  const RunResult simulated = simulated_without_noise();
+  const auto difference = [&](const char* name) {
+    EXPECT_EQ(column(deployed.recording, name).size(), column(simulated.recording, name).size());
+    return largest_difference(column(deployed.recording, name), column(simulated.recording, name));
+  };
+  return {difference("stage.position"), difference("controller.command"), difference("error.sum")};
+}
+
+TEST(SimulatedAndDeployed, AgreeWithinSomeCountsOfTheEncoder) {
+  const Agreement same = agreement();
+  EXPECT_LT(same.position, 5e-6) << "25 counts; the error itself reaches ten times as much";
+  EXPECT_LT(same.command, 0.25);
+}
+
+Replay replayed(const Deployed& deployed, const Recording& log) {
+  Problems problems;
+  Replay result = replay(*deployed.plan, deployed.hardware, log, problems);
+  EXPECT_EQ(problems.text(), "");
+  return result;
+}
+
+TEST(Replay, EveryOutputIsEqualInEveryBitAlsoAfterTheFile) {
+  EmulatedCard card;
+  card.set("plant.payload", 0.2);
+  Deployed deployed(hw::in_virtual_time);
+  const hw::DeployResult result = deployed.run();
+  EXPECT_GT(largest(column(result.recording, "controller.disturbance")), 0.1)
+      << "there is something to replay";
+  for (const char* name : {"log.csv", "log.mat"}) {
+    DiagramFolder folder;
+    write_recording(folder.path(name), result.recording);
+    Problems problems;
+    const Replay again = replayed(deployed, read_recording(folder.path(name), problems));
+    EXPECT_EQ(problems.text(), "");
+    EXPECT_TRUE(again.explains()) << to_text(again);
+    EXPECT_EQ(again.rows, 3101);
+    EXPECT_TRUE(again.same_plan);
+    EXPECT_GE(again.columns.size(), 6u);
+  }
+}
+
+TEST(Replay, AChangedLogDoesNotExplainThePlan) {
+  EmulatedCard card;
+  Deployed deployed(hw::in_virtual_time);
+  hw::DeployResult result = deployed.run();
+  for (Column& c : result.recording.columns)
+    if (c.name == "stage.position") c.values[1500] += 2e-7;
+  const Replay changed = replayed(deployed, result.recording);
+  EXPECT_FALSE(changed.explains());
+  for (const ReplayedColumn& c : changed.columns)
+    if (c.name == "controller.command") {
+      EXPECT_EQ(c.first_row, 1500);
+      EXPECT_GT(c.differing, 1);
+    }
+}
+
+TEST(Replay, AChangedPlanDoesNotExplainTheLog) {
+  EmulatedCard card;
+  const hw::DeployResult result = Deployed(hw::in_virtual_time).run();
+  LoadOptions options;
+  options.set = {{"controller.observer_cutoff", "200"}};
+  const Deployed other(hw::in_virtual_time, options);
+  const Replay wrong = replayed(other, result.recording);
+  EXPECT_FALSE(wrong.same_plan);
+  EXPECT_FALSE(wrong.explains());
+  EXPECT_THAT(to_text(wrong), HasSubstr("do not explain"));
+}
+
+TEST(Replay, AHoleInTheLogIsFound) {
+  EmulatedCard card;
+  Deployed deployed(hw::in_virtual_time);
+  hw::DeployResult result = deployed.run();
+  for (Column& c : result.recording.columns) c.values.erase(c.values.begin() + 700);
+  EXPECT_THAT(replayed(deployed, result.recording).fault, HasSubstr("row 701 is at 0.701 s"));
+}
+
+TEST(Replay, AMissingColumnIsAProblem) {
+  EmulatedCard card;
+  Deployed deployed(hw::in_virtual_time);
+  Recording log = deployed.run().recording;
+  std::erase_if(log.columns, [](const Column& c) { return c.name == "stage.position"; });
+  Problems problems;
+  replay(*deployed.plan, deployed.hardware, log, problems);
+  EXPECT_THAT(problems.text(), HasSubstr("no column \"stage.position\""));
+}
+
+}  // namespace
+}  // namespace loopwright

@@ -1,0 +1,60 @@
+// Records that cannot support a verdict are named, with what it costs.
+#include <gmock/gmock.h>
+#include "tests/tools/diagnose/recorded_axis.h"
+#include "tools/diagnose/diagnose.h"
+
+namespace loopwright {
+namespace {
+
+using testing::Contains;
+using testing::Field;
+using testing::HasSubstr;
+
+Diagnosis spoilt(const std::function<void(std::vector<double>&, std::vector<double>&)>& how,
+                 double duration_s = 6) {
+  Truth truth;
+  truth.duration_s = duration_s;
+  RecordedAxis axis(truth);
+  axis.spoil(how);
+  return diagnose(axis.diagram(), {axis.experiment()});
+}
+
+auto finds(const char* words) { return Contains(Field(&RecordFinding::what, HasSubstr(words))); }
+
+TEST(BadRecord, AWrongSignIsToldAndNothingIsNamed) {
+  const Diagnosis d = spoilt([](auto& force, auto&) {
+    for (double& f : force) f = -f;
+  });
+  EXPECT_THAT(d.findings, finds("pushes against the motion"));
+  EXPECT_TRUE(d.effects.empty());
+  EXPECT_EQ(d.verdict, Verdict::unexplained);
+}
+
+TEST(BadRecord, MillimetresTakenForMetresAreTold) {
+  const Diagnosis d = spoilt([](auto&, auto& position) {
+    for (double& x : position) x *= 1000;
+  });
+  EXPECT_THAT(d.findings, finds("times the force that the model needs"));
+  EXPECT_TRUE(d.effects.empty());
+}
+
+TEST(BadRecord, ColumnsThatAreNotSynchronousAreTold) {
+  const Diagnosis d =
+      spoilt([](auto& force, auto&) { std::rotate(force.begin(), force.end() - 30, force.end()); });
+  EXPECT_THAT(d.findings, finds("fit best when shifted by -"));
+}
+
+TEST(BadRecord, TooFewRowsGiveNoVerdict) {
+  const Diagnosis d = spoilt([](auto&, auto&) {}, 0.6);
+  EXPECT_THAT(d.findings, finds("the machine moves for"));
+  EXPECT_TRUE(d.effects.empty());
+  EXPECT_EQ(d.verdict, Verdict::unexplained);
+}
+
+TEST(BadRecord, OutliersAreCounted) {
+  const Diagnosis d = spoilt([](auto&, auto& position) { position[2000] += 1e-3, position[3500] -= 1e-3; });
+  EXPECT_THAT(d.findings, finds("leap out of line"));
+}
+
+}  // namespace
+}  // namespace loopwright

@@ -1,0 +1,87 @@
+// The prediction errors, and the filters that say how they answer to forces.
+#include "tools/diagnose/predictor.h"
+#include <cmath>
+#include "tests/tools/diagnose/recorded_axis.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+Noise noise_of_record() {
+  Noise noise;
+  noise.white = 0.01, noise.memory = 0.967, noise.step = 0.003 * std::sqrt(1 - 0.967 * 0.967);
+  noise.measurement = {7.6e-8};
+  return noise;
+}
+
+struct Predicted {
+  RecordedAxis files;
+  AxisModel model;
+  LinearAxis axis;
+  Gains gains;
+  Drives drives;
+
+  explicit Predicted(const Truth& truth)
+      : files(truth),
+        model(files.diagram(), files.experiment(), {}),
+        axis(model.linearise()),
+        gains(gains_of(axis, noise_of_record(), model.nominal_inertia())),
+        drives{model.record().input, std::vector<double>(model.record().rows(), 0.0), {}} {}
+  Prediction run() { return predict(model, gains, drives, 0.002); }
+};
+
+Truth short_record() {
+  Truth truth;
+  truth.duration_s = 4;
+  return truth;
+}
+
+TEST(Predictor, InertiaAndDampingAreReadOffTheDiagram) {
+  Predicted p(short_record());
+  EXPECT_NEAR(p.axis.inertia, 0.2621, 1e-6);
+  EXPECT_NEAR(p.axis.damping, 3, 1e-3);
+}
+
+TEST(Predictor, ErrorsOfARightDiagramAreWhiteAndAsLargeAsTheNoiseSays) {
+  Predicted p(short_record());
+  std::vector<double> e = p.run().error;
+  whiten(e, p.gains);
+  double square = 0, next = 0;
+  for (size_t k = 400; k < e.size(); ++k) square += e[k] * e[k], next += e[k] * e[k - 1];
+  EXPECT_NEAR(square / double(e.size() - 400), 1, 0.06);
+  EXPECT_NEAR(next / square, 0, 0.05);
+}
+
+TEST(Predictor, AForceChangesTheErrorsAsItsFilterSays) {
+  Predicted p(short_record());
+  const Prediction without = p.run();
+  std::vector<float> force(p.drives.force.size());
+  for (size_t k = 0; k < force.size(); ++k) force[k] = float(0.01 * std::sin(0.02 * double(k)));
+  for (size_t k = 0; k < force.size(); ++k) p.drives.force[k] = force[k];
+  std::vector<double> change = p.run().error;
+  for (size_t k = 0; k < change.size(); ++k) change[k] -= without.error[k];
+  whiten(change, p.gains);
+  const Columns columns{force};
+  const std::vector<double> expected =
+      responses(p.axis, p.gains, without.path, Acts::force, pointers(columns)).front();
+  double off = 0, size = 0;
+  for (size_t k = 0; k < change.size(); ++k)
+    off += std::pow(change[k] + expected[k], 2), size += expected[k] * expected[k];
+  EXPECT_LT(off, 1e-4 * size) << "consumed by the model instead of by the axis: the other sign";
+}
+
+TEST(Predictor, OtherGainsNeedNoOtherRun) {
+  Predicted p(short_record());
+  const Prediction first = p.run();
+  Noise other = noise_of_record();
+  other.white *= 3, other.measurement[0] *= 0.5, other.memory = 1, other.step = 0.002;
+  const Gains gains = gains_of(p.axis, other, p.model.nominal_inertia());
+  const std::vector<double> expected = predict(p.model, gains, p.drives, 0.002).error;
+  const std::vector<double> error = with_gains(p.axis, first, p.gains, gains);
+  double off = 0, size = 0;
+  for (size_t k = 0; k < error.size(); ++k)
+    off += std::pow(error[k] - expected[k], 2), size += expected[k] * expected[k];
+  EXPECT_LT(off, 1e-3 * size) << "the same but for samples near rest, where the two see other speeds";
+}
+
+}  // namespace
+}  // namespace loopwright::diagnosis

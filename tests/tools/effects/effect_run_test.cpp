@@ -1,0 +1,239 @@
+#include "tools/effects/effect_run.h"
+#include <gtest/gtest.h>
+#include <cmath>
+#include "tests/engine/written_diagram.h"
+#include "tests/tools/effects/axis_sizes.h"
+
+using namespace loopwright;
+
+namespace {
+
+/// A sine motion, sampled, with the force as input.
+struct Sampled {
+  std::vector<double> position, velocity, acceleration, input;
+  Sampled() {
+    const double w = 2 * M_PI * 1.3, dt = 1e-3;
+    for (int k = 0; k < 3000; ++k) {
+      const double t = k * dt;
+      position.push_back(0.3 - 0.1 * std::cos(w * t));
+      velocity.push_back(0.1 * w * std::sin(w * t));
+      acceleration.push_back(0.1 * w * w * std::cos(w * t));
+      input.push_back(std::round(20 * std::sin(1.7 * w * t)) / 20);
+    }
+  }
+  RoleSignals signals(bool looks_ahead = false) const {
+    return {position, velocity, acceleration, input, input, looks_ahead};
+  }
+};
+
+std::shared_ptr<const EffectPlan> compiled(const Effect& effect) {
+  Problems problems;
+  auto plan = compile_effect(effect, {}, axis_sizes(), problems);
+  EXPECT_EQ(problems.text(), "");
+  return plan;
+}
+
+std::vector<double> run(const std::string& name, const std::vector<double>& fitted,
+                        const RoleSignals& signals) {
+  EffectRun effect(compiled(effect_named(name)));
+  for (size_t i = 0; i < fitted.size(); ++i) effect.set(i, fitted[i]);
+  std::vector<double> values(signals.rows());
+  effect.run(signals, values);
+  return values;
+}
+
+}  // namespace
+
+TEST(EffectRun, GivesTheMeanForceOverEachSample) {
+  const Sampled s;
+  const auto force = run("viscous_friction", {2.0}, s.signals(true));
+  for (size_t k = 0; k + 1 < force.size(); ++k)
+    EXPECT_NEAR(force[k], 2.0 * 0.5 * (s.velocity[k] + s.velocity[k + 1]), 1e-12) << k;
+}
+
+TEST(EffectRun, WithoutLookingAheadARowDoesNotKnowTheNext) {
+  const Sampled whole;
+  for (const Effect& effect : whole_catalogue()) {
+    Sampled cut = whole;
+    for (auto* column : {&cut.position, &cut.velocity, &cut.acceleration, &cut.input})
+      for (size_t k = 1500; k < column->size(); ++k) (*column)[k] += 0.01;
+    EffectRun one(compiled(effect)), other(compiled(effect));
+    std::vector<double> a(3000), b(3000);
+    one.run(whole.signals(), a), other.run(cut.signals(), b);
+    EXPECT_TRUE(std::equal(a.begin(), a.begin() + 1500, b.begin())) << effect.name << " " << effect.form;
+  }
+}
+
+TEST(EffectRun, SetsSideBySideGiveTheBitsOfEachAlone) {
+  const Sampled s;
+  const RoleSignals signals = s.signals(false);
+  const size_t rows = signals.rows();
+  for (const char* name : {"presliding_hysteresis", "flexible_mode"}) {
+    const auto plan = compiled(effect_named(name));
+    EffectRun together(plan, 3), alone(plan);
+    const int lanes = std::min(together.lanes(), 3);
+    const double start = alone.get(1);
+    for (int lane = 0; lane < lanes; ++lane) together.set(1, start * (1 + 0.1 * lane), lane);
+    std::vector<double> all(size_t(lanes) * rows), one(rows);
+    together.run(signals, rows, all);
+    for (int lane = 0; lane < lanes; ++lane) {
+      alone.set(1, start * (1 + 0.1 * lane));
+      alone.run(signals, one);
+      for (size_t k = 0; k < rows; ++k) ASSERT_EQ(all[size_t(lane) * rows + k], one[k]) << name << " " << k;
+    }
+  }
+}
+
+TEST(EffectRun, IsProportionalToItsLinearParameters) {
+  const Sampled s;
+  for (const Effect& effect : whole_catalogue()) {
+    const auto plan = compiled(effect);
+    EffectRun effect_run(plan);
+    size_t i = 0;
+    std::vector<double> sum(s.position.size()), whole(s.position.size()), column(s.position.size());
+    for (const EffectParameter& p : effect.parameters) {
+      if (!p.is_fitted) continue;
+      if (p.is_linear) {
+        effect_run.column(s.signals(), i, column);
+        for (size_t k = 0; k < sum.size(); ++k) sum[k] += effect_run.get(i) * column[k];
+      }
+      ++i;
+    }
+    if (std::ranges::none_of(effect.parameters, &EffectParameter::is_linear)) continue;
+    effect_run.run(s.signals(), whole);
+    double size = 0;
+    for (double v : whole) size = std::max(size, std::abs(v));
+    for (size_t k = 0; k < sum.size(); ++k)
+      ASSERT_NEAR(whole[k], sum[k], 1e-9 * size + 1e-15) << effect.name << " " << effect.form << " row " << k;
+  }
+}
+
+TEST(EffectRun, ALagHasTheExactMeanOfAStaircase) {
+  const Sampled s;
+  const double time_constant = 2e-3;
+  const auto added = run("actuator_lag", {time_constant}, s.signals());
+  double force = 0;
+  const double left = std::exp(-1e-3 / time_constant);
+  for (size_t k = 0; k < added.size(); ++k) {
+    const double mean = s.input[k] + (force - s.input[k]) * (1 - left) * time_constant / 1e-3;
+    EXPECT_NEAR(added[k], mean - s.input[k], 1e-5) << k;
+    force = s.input[k] + (force - s.input[k]) * left;
+  }
+}
+
+TEST(EffectRun, ADelayAddsWhatComesLateLessWhatIsAsked) {
+  const Sampled s;
+  const auto added = run("input_delay", {2.25e-3}, s.signals());
+  for (size_t k = 3; k < added.size(); ++k)
+    EXPECT_NEAR(added[k], 0.75 * s.input[k - 2] + 0.25 * s.input[k - 3] - s.input[k], 1e-12) << k;
+}
+
+TEST(EffectRun, AFlexibleLoadIsThatOfTwoMasses) {
+  const Sampled s;  // the motor follows the sine; the load swings: x_l'' = w0² (x - x_l) + 2 z w0 (v - v_l)
+  const double mass = 0.1, frequency = 12, damping = 0.05;
+  const auto force = run("flexible_mode", {mass, frequency, damping}, s.signals(true));
+  const double w0 = 2 * M_PI * frequency, w = 2 * M_PI * 1.3;
+  double x = s.position[0], v = 0;
+  const int fine = 50;
+  for (size_t k = 0; k + 1 < force.size(); ++k) {
+    double mean = 0;
+    for (int i = 0; i < fine; ++i) {
+      const double h = 1e-3 / fine, t = double(k) * 1e-3 + i * h;
+      const auto pull = [&](double at, double xl, double vl) {
+        return w0 * w0 * (0.3 - 0.1 * std::cos(w * at) - xl) +
+               2 * damping * w0 * (0.1 * w * std::sin(w * at) - vl);
+      };
+      const double a = pull(t, x, v), xm = x + 0.5 * h * v, vm = v + 0.5 * h * a,
+                   am = pull(t + 0.5 * h, xm, vm);
+      mean += (mass * am - mass * 0.1 * w * w * std::cos(w * (t + 0.5 * h))) / fine;
+      x += h * vm, v += h * am;
+    }
+    ASSERT_NEAR(force[k], mean, 2e-5) << k;
+  }
+}
+
+TEST(EffectRun, RefusesToRunWithoutWhatItReads) {
+  const Sampled s;
+  EffectRun effect(compiled(effect_named("cogging")));
+  std::vector<double> values(10);
+  EXPECT_THROW(effect.run({{}, s.velocity, {}, {}, {}, false}, values), std::invalid_argument);
+}
+
+/// What the catalogue does not know is added by one more file: here a bump at one place of the track.
+TEST(EffectFile, AFurtherEffectIsOneMoreFile) {
+  DiagramFolder folder;
+  folder.with("bump.json", R"json({
+    "loopwright": 1, "effect": "bump", "title": "A bump on the track", "physics": "Dirt or a joint between two rails.",
+    "parameters": {
+      "height": {"unit": "$force", "linear": true, "range": ["=-3*force_level", "=3*force_level"], "start": "=0.1*force_level"},
+      "place":  {"unit": "$position", "range": ["=lowest_position", "=highest_position"], "start": "=lowest_position + 0.5*stroke"},
+      "width":  {"unit": "$position", "scale": "logarithmic", "range": ["=0.002*stroke", "=0.2*stroke"], "start": "=0.02*stroke"}},
+    "blocks": {
+      "centre": {"type": "Constant", "value": "=place"},
+      "offset": {"type": "Sum", "signs": "+-", "in": {"terms": ["position", "centre.y"]}},
+      "scaled": {"type": "Gain", "gain": "=1/width", "in": {"u": "offset.sum"}},
+      "shape":  {"type": "Expression", "formula": "exp(-s^2/2)", "names": ["s"], "in": {"arguments": ["scaled.y"]}},
+      "force":  {"type": "Gain", "gain": "=height", "in": {"u": "shape.y"}}},
+    "attach": [{"to": "force", "from": "force.y"}],
+    "needs": {"text": "motion over the place"}})json");
+  Problems problems;
+  const auto effects = load_catalogue({catalogue_folder(), folder.path("")}, problems);
+  const auto bump = std::ranges::find(effects, "bump", &Effect::name);
+  ASSERT_NE(bump, effects.end()) << problems.text();
+  EffectRun effect(compiled(*bump));
+  effect.set(0, 2), effect.set(1, 0.35), effect.set(2, 0.01);
+  const Sampled s;
+  std::vector<double> force(s.position.size());
+  effect.run(s.signals(true), force);
+  for (size_t k = 1; k + 1 < force.size(); ++k) {
+    const double middle = 0.5 * (s.position[k] + s.position[k + 1]), d = (middle - 0.35) / 0.01;
+    EXPECT_NEAR(force[k], 2 * std::exp(-d * d / 2), 2e-3) << k;
+  }
+}
+
+TEST(EffectFile, EveryMistakeIsToldAtItsPlace) {
+  DiagramFolder folder;
+  folder.with("wrong.json", R"({
+  "loopwright": 1, "effect": "wrong", "title": "Wrong", "physics": "Nothing.",
+  "parameters": {
+    "level": {"unit": "$force", "linear": true, "range": [0, "=3*stroke"], "start": 0.1},
+    "speed": {"unit": "$position/s", "range": ["=0.1*top_sped", 2], "start": 1},
+    "width": {"unit": "$position", "range": [2, 1], "start": 1}
+  },
+  "blocks": {"drag": {"type": "QuadraticDrag", "drag": "=level", "in": {"velocity": "velocty"}}},
+  "attach": [{"to": "forse", "from": "drag.force"}, {"to": "force", "from": "darg.force"}],
+  "needs": {"text": "", "direction": 2},
+  "extra": 1
+})");
+  Problems problems;
+  EXPECT_TRUE(load_effect(folder.path("wrong.json"), problems).empty());
+  const std::string text = problems.text();
+  for (const char* part : {"4:62: error: the expression has another unit", "there is no size \"top_sped\"",
+                           "did you mean \"top_speed\"?", "the range is empty", "did you mean \"velocity\"?",
+                           "did you mean \"force\"?", "did you mean \"drag\"?",
+                           "did you mean \"directions\"?", "/extra", "8 errors"})
+    EXPECT_TRUE(has(text, part)) << part << "\n" << text;
+}
+
+TEST(EffectFile, BlocksAreCheckedAsThoseOfADiagram) {
+  DiagramFolder folder;
+  folder.with("wrong.json", R"({
+  "loopwright": 1, "effect": "wrong", "title": "Wrong", "physics": "Nothing.",
+  "parameters": {"level": {"unit": "$force", "linear": true, "range": [0, 1], "start": 0.1}},
+  "blocks": {"drag": {"type": "QuadraticDarg", "drag": "=level", "in": {"velocity": "velocity"}}},
+  "attach": [{"to": "force", "from": "drag.force"}], "needs": {"text": ""}
+})");
+  Problems problems;
+  const auto effects = load_effect(folder.path("wrong.json"), problems);
+  ASSERT_EQ(effects.size(), 1u) << problems.text();
+  EXPECT_FALSE(compile_effect(effects[0], {}, axis_sizes(), problems));
+  EXPECT_TRUE(has(problems.text(), "wrong.json:4:31")) << problems.text();
+  EXPECT_TRUE(has(problems.text(), "did you mean \"QuadraticDrag\"?")) << problems.text();
+}
+
+TEST(EffectFile, AFixedPitchIsNoLongerFitted) {
+  Effect cogging = effect_named("cogging");
+  fix(cogging, "pitch", 0.0225);
+  const auto plan = compiled(cogging);
+  EXPECT_EQ(plan->fitted, (std::vector<std::string>{"sine", "cosine"}));
+}

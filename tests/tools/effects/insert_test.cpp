@@ -1,0 +1,217 @@
+#include "tools/effects/insert.h"
+#include <gtest/gtest.h>
+#include <cmath>
+#include <numeric>
+#include "engine/diagram/in_memory.h"
+#include "engine/diagram/json.h"
+#include "tests/engine/written_diagram.h"
+#include "tests/tools/effects/axis_sizes.h"
+#include "where.h"
+
+using namespace loopwright;
+
+namespace {
+
+const InsertionSite nominal_axis{{{"position", "axis.position"},
+                                  {"velocity", "axis.velocity"},
+                                  {"force", "axis.net_force"},
+                                  {"input", "axis.force"}},
+                                 {},
+                                 {}};
+
+std::shared_ptr<const SourceFile> source(const std::string& path) {
+  Problems problems;
+  return read_source(path, {}, problems);
+}
+std::shared_ptr<const SourceFile> nominal() {
+  return source(LOOPWRIGHT_SOURCE "/diagrams/axis/nominal.json");
+}
+
+RunResult run_text(const std::string& text, const std::string& path) {
+  Problems problems;
+  const Value root = parse_json(std::make_shared<SourceFile>(SourceFile{path, text}), problems);
+  const auto diagram = read_diagram(root, path, {.set = {{"solver.record_step", "0.001"}}}, problems);
+  const auto plan = diagram ? compile(*diagram, problems) : nullptr;
+  EXPECT_EQ(problems.text(), "") << text;
+  return plan ? simulate(*plan) : RunResult{RunStatus::failed};
+}
+
+std::vector<double> values(const Effect& effect, bool zero) {
+  std::vector<double> list;
+  for (const EffectParameter& p : effect.parameters) {
+    if (!p.is_fitted) continue;
+    const FitRange range = range_of(p, axis_sizes());
+    const double least = range.low > 0 ? range.low : 0;
+    if (p.name == "place") {  // of an end stop: within the motion, or far beyond it
+      list.push_back(!zero ? 0.001 : effect.form == "low end" ? -9 : 9);
+      continue;
+    }
+    const bool is_size = (p.is_linear && effect.name != "end_stop") || p.unit == "s";
+    list.push_back(zero && is_size ? least : range.start);
+  }
+  return list;
+}
+
+double rms_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0;
+  for (size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(sum / double(a.size()));
+}
+
+std::string insert_text(std::shared_ptr<const SourceFile> file, const InsertionSite& site,
+                        const Effect& effect, const std::vector<double>& fitted) {
+  Problems problems;
+  const auto insertion = insert_effect(file, site, effect, fitted, axis_sizes(), problems);
+  EXPECT_EQ(problems.text(), "");
+  return insertion ? insertion->text : "";
+}
+
+/// Lines of `b` that are not in `a`.
+std::string new_lines(const std::string& a, const std::string& b) {
+  std::istringstream lines(b);
+  std::string line, result;
+  while (std::getline(lines, line))
+    if (a.find(line) == a.npos) result += line + "\n";
+  return result;
+}
+
+}  // namespace
+
+TEST(Insertion, EveryEffectRunsInTheNominalAxisAndChangesIt) {
+  const auto file = nominal();
+  const RunResult before = run_text(file->text, file->name);
+  for (const Effect& effect : whole_catalogue()) {
+    const RunResult after =
+        run_text(insert_text(file, nominal_axis, effect, values(effect, false)), file->name);
+    ASSERT_EQ(after.status, RunStatus::finished) << effect.name << ": " << after.message;
+    EXPECT_GT(rms_difference(signal(before, "axis.position"), signal(after, "axis.position")), 1e-9)
+        << effect.name << " " << effect.form;
+  }
+}
+
+TEST(Insertion, AnEffectOfNoSizeChangesNothing) {
+  const auto file = nominal();
+  const RunResult before = run_text(file->text, file->name);
+  for (const Effect& effect : whole_catalogue()) {
+    if (effect.name == "backlash" || effect.name == "flexible_mode") continue;  // a load of no mass is none
+    const RunResult after =
+        run_text(insert_text(file, nominal_axis, effect, values(effect, true)), file->name);
+    // A lag cannot be zero, and a command that comes late comes sampled.
+    const bool is_small = effect.name == "actuator_lag" || effect.name == "input_delay";
+    const double allowed = is_small ? 2e-4 : 1e-12;
+    EXPECT_LE(rms_difference(signal(before, "axis.position"), signal(after, "axis.position")), allowed)
+        << effect.name << " " << effect.form;
+  }
+}
+
+TEST(Insertion, IsAFewLinesInTheUsersOwnForm) {
+  DiagramFolder folder;
+  folder.with("top.json", R"({
+  "loopwright": 1,
+  "solver": {"method": "rk4", "step": 0.0001, "stop": 1},
+  "blocks": {
+    "push":      {"type": "Sine", "amplitude": {"value": 2, "unit": "N"}, "frequency": 2},
+    "net_force": {"type": "Sum", "signs": "+", "in": {"terms": ["push.y"]}},
+    "mass":      {"type": "Mass", "mass": 0.5, "in": {"force": "net_force.sum"}}
+  },
+  "log": ["mass.position"]
+}
+)");
+  const auto file = source(folder.path("top.json"));
+  const InsertionSite site{{{"position", "mass.position"}, {"force", "net_force.sum"}}, {}, {}};
+  const std::string text = insert_text(file, site, effect_named("constant_force"), {0.25});
+  EXPECT_EQ(new_lines(file->text, text),
+            "    \"constant_force\": {\"type\": \"ConstantForce\", \"level\": 0.25},\n"
+            "    \"net_force\": {\"type\": \"Sum\", \"signs\": \"+-\", \"in\": {\"terms\": [\"push.y\", "
+            "\"constant_force.force\"]}},\n");
+  EXPECT_EQ(run_text(text, file->name).status, RunStatus::finished);
+}
+
+TEST(Insertion, InASubdiagramLeavesTheFileOfTheOthersAlone) {
+  const auto file = nominal();
+  const std::string text = insert_text(file, nominal_axis, effect_named("coulomb_friction"), {0.12});
+  EXPECT_TRUE(has(text, R"("coulomb_friction": {"type": "PreslidingFriction", "level": 0.12)")) << text;
+  EXPECT_TRUE(has(text, R"("signs": "+--")")) << text;
+  EXPECT_TRUE(has(text, R"("parameters": {"mass": "=mass", "damping": "=damping"},)")) << text;
+  EXPECT_FALSE(has(text, "plants/axis.json")) << text;
+}
+
+TEST(Insertion, TwoOfAKindStandBesideEachOther) {
+  const auto file = nominal();
+  const Effect cogging = effect_named("cogging");
+  const std::string once = insert_text(file, nominal_axis, cogging, {0.0225, 0.1, 0});
+  const auto again = std::make_shared<SourceFile>(SourceFile{file->name, once});
+  const std::string twice = insert_text(again, nominal_axis, cogging, {0.01, 0, 0.2});
+  EXPECT_TRUE(has(twice, R"("cogging_2": {)")) << twice;
+  const RunResult result = run_text(twice, file->name);
+  EXPECT_EQ(result.status, RunStatus::finished);
+}
+
+TEST(Insertion, WhatCanBeSetAfterwardsIsNamed) {
+  Problems problems;
+  const auto file = nominal();
+  const auto insertion =
+      insert_effect(file, nominal_axis, effect_named("inertia"), {0.07}, axis_sizes(), problems);
+  ASSERT_TRUE(insertion) << problems.text();
+  ASSERT_EQ(insertion->settings.size(), 1u);
+  EXPECT_EQ(insertion->settings[0].second, "axis.inertia_mass");
+  EXPECT_TRUE(has(insertion->text, R"("mass": "=mass + inertia_mass")")) << insertion->text;
+  EXPECT_TRUE(has(insertion->text, R"({"value": 0.07, "unit": "kg", "description": "More or)"))
+      << insertion->text;
+}
+
+TEST(Insertion, ForAnotherFolderPathsStillLeadToTheirFiles) {
+  DiagramFolder folder;
+  const std::string text = moved_to_folder(*nominal(), folder.path("deep/er"));
+  folder.with("deep/er/moved.json", text);
+  EXPECT_EQ(folder.problems("deep/er/moved.json"), "");
+}
+
+TEST(Insertion, SaysWhatIsMissing) {
+  Problems problems;
+  EXPECT_FALSE(insert_effect(nominal(), {{{"force", "axis.position"}}, {}, {}},
+                             effect_named("constant_force"), {1}, axis_sizes(), problems));
+  EXPECT_TRUE(has(problems.text(), "leads to no sum of forces")) << problems.text();
+  Problems second;
+  EXPECT_FALSE(
+      insert_effect(nominal(), {{}, {}, {}}, effect_named("constant_force"), {1}, axis_sizes(), second));
+  EXPECT_TRUE(has(second.text(), "no role \"force\"")) << second.text();
+}
+
+/// A controlled axis: the error of a sensor is seen by the controller and in what is compared, not by forces.
+TEST(Insertion, AnErrorOfTheSensorIsSeenOutsideAndNotByForces) {
+  DiagramFolder folder;
+  folder.with("axis.json", R"({"loopwright": 1, "inputs": {"force": "N"},
+    "outputs": {"position": "mass.position", "net_force": "net_force.sum"},
+    "blocks": {"spring": {"type": "Spring", "stiffness": 3, "in": {"position": "mass.position"}},
+               "net_force": {"type": "Sum", "signs": "+-", "in": {"terms": ["force", "spring.force"]}},
+               "mass": {"type": "Mass", "mass": 1, "in": {"force": "net_force.sum"}}}})");
+  folder.with("top.json", R"({"loopwright": 1, "solver": {"step": 0.001, "stop": 1}, "blocks": {
+    "push": {"type": "Constant", "value": {"value": 1, "unit": "N"}},
+    "axis": {"diagram": "axis.json", "in": {"force": "push.y"}}},
+    "log": ["axis.position", "axis.mass.position"]})");
+  const InsertionSite site{{{"position", "axis.position"}, {"force", "axis.net_force"}}, {}, {}};
+  const auto file = source(folder.path("top.json"));
+  const RunResult before = run_text(file->text, file->name);
+  const RunResult after =
+      run_text(insert_text(file, site, effect_named("encoder_periodic_error"), {0.01, 0.001, 0}), file->name);
+  EXPECT_EQ(signal(before, "axis.position"), signal(after, "axis.mass.position"));
+  EXPECT_GT(rms_difference(signal(after, "axis.position"), signal(after, "axis.mass.position")), 1e-4);
+}
+
+/// An observer that reads the command goes on reading the command, not what a lag makes of it.
+TEST(Insertion, OnTheInputOnlyTheMachineFeelsIt) {
+  DiagramFolder folder;
+  folder.with("top.json", R"({"loopwright": 1, "solver": {"step": 0.0001, "stop": 0.1}, "blocks": {
+    "push": {"type": "Step", "time": 0, "before": {"value": 0, "unit": "N"}, "after": 1},
+    "watch": {"type": "Gain", "gain": 1, "in": {"u": "push.y"}},
+    "net_force": {"type": "Sum", "in": {"terms": ["push.y"]}},
+    "mass": {"type": "Mass", "mass": 1, "in": {"force": "net_force.sum"}}},
+    "log": ["watch.y", "mass.velocity"]})");
+  const InsertionSite site{
+      {{"position", "mass.position"}, {"force", "net_force.sum"}, {"input", "push.y"}}, {}, {}};
+  const auto file = source(folder.path("top.json"));
+  const RunResult after = run_text(insert_text(file, site, effect_named("actuator_lag"), {0.01}), file->name);
+  EXPECT_EQ(signal(after, "watch.y").back(), 1);
+  EXPECT_NEAR(signal(after, "mass.velocity").back(), 0.1 - 0.01 * (1 - std::exp(-10)), 1e-6);
+}

@@ -1,0 +1,128 @@
+#include "tools/fit/fit.h"
+#include <gtest/gtest.h>
+#include <cmath>
+#include "models/random/philox.h"
+#include "tests/engine/written_diagram.h"
+
+namespace loopwright {
+namespace {
+
+/// x'' + (b/m) x' = u/m with u = sin(2t), from rest: a record in closed form, with noise.
+class Fitted : public testing::Test {
+ protected:
+  Fitted() {
+    folder.with("axis.json", R"({
+  "loopwright": 1,
+  "parameters": {
+    "mass":    {"value": 1500, "unit": "g"},
+    "damping": {"value": 1,   "unit": "N*s/m"},
+    "spare":   {"value": 3,   "unit": "N"}
+  },
+  "solver": {"method": "rk4", "step": 0.01, "stop": 1},
+  "blocks": {
+    "push":      {"type": "Constant", "value": {"value": 0, "unit": "N"}},
+    "motor":     {"type": "Gain", "gain": {"value": 1, "unit": "1"}, "in": {"u": "push.y"}},
+    "viscous":   {"type": "ViscousFriction", "damping": "=damping", "in": {"velocity": "mass.velocity"}},
+    "net_force": {"type": "Sum", "signs": "+-", "in": {"terms": ["motor.y", "viscous.force"]}},
+    "mass":      {"type": "Mass", "mass": "=mass", "initial_position": {"value": 0, "unit": "m"},
+                  "in": {"force": "net_force.sum"}},
+    "further":   {"type": "ConstantForce", "level": "=spare"}
+  }
+}
+)");
+    folder.with("e.json", R"({"loopwright": 1, "data": "data.csv", "time": "t",
+      "drive": {"motor.u": {"column": "u", "unit": "N", "interpolation": "linear"}},
+      "compare": {"mass.position": {"column": "x", "unit": "m"}}, "hold_out": {"fraction": 0.25}})");
+    record(1);
+  }
+  /// With normal noise of 1 mm.
+  void record(uint64_t seed) {
+    std::string text = "t,u,x\n";
+    const double m = 2, b = 3, w = 2;
+    // v' = (u - b v)/m: v = A sin wt + B (e^{-bt/m} - cos wt) with these factors.
+    const double d = b * b + m * m * w * w, sine = b / d, cosine = m * w / d;
+    for (int k = 0; k <= 800; ++k) {
+      const double t = k * 0.01;
+      const double x = sine / w * (1 - std::cos(w * t)) - cosine / w * std::sin(w * t) +
+                       cosine * m / b * (1 - std::exp(-b * t / m));
+      const UniformPair u = uniform_pair(seed, 1, uint64_t(k));
+      const double noise = 1e-3 * std::sqrt(-2 * std::log(u.first)) * std::cos(2 * M_PI * u.second);
+      text += fmt::format("{:.2f},{:.12g},{:.9g}\n", t, std::sin(w * t), x + noise);
+    }
+    folder.with("data.csv", text);
+  }
+  Fit fitted(const std::vector<std::string>& parameters) {
+    return fit(folder.path("axis.json"), folder.path("e.json"), parameters);
+  }
+  DiagramFolder folder;
+};
+
+TEST_F(Fitted, ParametersComeBackWithinTheirIntervals) {
+  int inside = 0;
+  const int records = 40;
+  for (int seed = 1; seed <= records; ++seed) {
+    record(uint64_t(seed));
+    const Fit result = fitted({"mass", "damping"});
+    EXPECT_TRUE(result.has_converged);
+    const FittedParameter &mass = result.parameters[0], &damping = result.parameters[1];
+    EXPECT_NEAR(mass.value, 2, 0.05);
+    EXPECT_NEAR(damping.value, 3, 0.05);
+    EXPECT_LT(mass.high - mass.low, 0.1);
+    EXPECT_GT(mass.high - mass.low, 1e-4);
+    inside += (mass.low < 2 && 2 < mass.high) + (damping.low < 3 && 3 < damping.high);
+    EXPECT_NEAR(result.signals[0].after, 1e-3, 1e-4);
+    EXPECT_NEAR(result.signals[0].held_out_after, 1e-3, 2e-4);
+  }
+  EXPECT_GE(inside, 2 * records * 85 / 100);
+  EXPECT_LT(inside, 2 * records);
+}
+
+TEST_F(Fitted, TheFileGetsNewNumbersInItsOwnUnitsAndNothingElse) {
+  Problems problems;
+  const Fit result = fitted({"mass", "damping"});
+  const std::string text = with_fitted_values(folder.path("axis.json"), result, problems);
+  EXPECT_EQ(problems.text(), "");
+  EXPECT_TRUE(has(text, fmt::format("\"mass\":    {{\"value\": {:.8g}, \"unit\": \"g\"}}",
+                                    1000 * result.parameters[0].value)))
+      << text;
+  folder.with("fitted.json", text);
+  const Comparison c = compare(folder.path("fitted.json"), folder.path("e.json"));
+  EXPECT_NEAR(c.signals[0].rmse, 1e-3, 1e-4);
+}
+
+TEST_F(Fitted, WhatTheRecordDoesNotTellIsSaid) {
+  const Fit idle = fitted({"mass", "spare"});
+  EXPECT_FALSE(idle.parameters[1].is_determined);
+  ASSERT_FALSE(idle.warnings.empty());
+  EXPECT_TRUE(has(idle.warnings[0], "does not depend on \"spare\"")) << idle.warnings[0];
+  const Fit scaled = fitted({"mass", "damping", "motor.gain"});  // force, mass and damping by one factor
+  EXPECT_TRUE(std::ranges::any_of(scaled.warnings, [](const std::string& w) { return has(w, "apart"); }));
+  EXPECT_FALSE(scaled.parameters[0].is_determined);
+}
+
+TEST_F(Fitted, BoundsAreThoseOfTheBlocks) {
+  const Fit result = fitted({"damping", "mass"});
+  EXPECT_EQ(result.parameters[0].least, 0);
+  EXPECT_EQ(result.parameters[1].least, 0);
+}
+
+TEST_F(Fitted, AMisspeltParameterIsAnError) {
+  try {
+    fitted({"mas", "viscous.dampin"});
+    FAIL() << "was not refused";
+  } catch (const InputError& error) {
+    EXPECT_TRUE(has(error.what(), "did you mean \"mass\"?")) << error.what();
+    EXPECT_TRUE(has(error.what(), "did you mean \"damping\"?")) << error.what();
+  }
+}
+
+TEST_F(Fitted, AnExpressionHasNoNumberToWrite) {
+  Problems problems;
+  const Fit result = fitted({"viscous.damping"});
+  EXPECT_NEAR(result.parameters[0].value, 2, 2) << "it can be fitted";
+  EXPECT_EQ(with_fitted_values(folder.path("axis.json"), result, problems), "");
+  EXPECT_TRUE(has(problems.text(), "is an expression")) << problems.text();
+}
+
+}  // namespace
+}  // namespace loopwright

@@ -1,0 +1,87 @@
+/// `loopwright linearize` from outside: exit codes, the files it leaves, what stands in them.
+#include <gmock/gmock.h>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include "tests/tools/command/program.h"
+
+namespace loopwright {
+namespace {
+
+using ::testing::HasSubstr;
+namespace fs = std::filesystem;
+
+/// A loop around 1/(s (s + 2)) with gain 5: natural frequency √5 rad/s, damping 1/√5.
+constexpr const char* loop =
+    R"({"loopwright": 1, "title": "Servo", "solver": {"stop": 1, "step": 0.001}, "blocks": {
+  "wish":  {"type": "Constant", "value": 1},
+  "error": {"type": "Sum", "signs": "+-", "in": {"terms": ["wish.y", "x.y"]}},
+  "gain":  {"type": "Gain", "gain": 5, "in": {"u": "error.sum"}},
+  "net":   {"type": "Sum", "signs": "+-", "in": {"terms": ["gain.y", "drag.y"]}},
+  "drag":  {"type": "Gain", "gain": 2, "in": {"u": "v.y"}},
+  "v":     {"type": "Integrator", "in": {"u": "net.sum"}},
+  "x":     {"type": "Integrator", "in": {"u": "v.y"}}}, "log": ["x.y"]})";
+constexpr const char* diverging = R"({"loopwright": 1, "solver": {"stop": 10, "step": 0.01}, "blocks": {
+  "x": {"type": "Integrator", "initial": 1, "in": {"u": "p.product"}}, "p": {"type": "Product", "in": {"factors": ["x.y", "x.y"]}}}})";
+
+class LinearizeCommand : public ::testing::Test {
+ protected:
+  void SetUp() override { folder.with("loop.json", loop).with("diverging.json", diverging); }
+  Outcome linearize(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), "linearize");
+    return loopwright_program(std::move(arguments), folder.path(""));
+  }
+  size_t files() const { return size_t(std::distance(fs::directory_iterator(folder.path("")), {})); }
+  DiagramFolder folder;
+};
+
+TEST_F(LinearizeCommand, WritesFiguresResponsesAndAPage) {
+  const Outcome outcome =
+      linearize({"loop.json", "--from", "gain.u", "--to", "x.y", "--break", "gain.u", "--continuous",
+                 "--json", "out.json", "--csv", "out.csv", "--report", "out.html"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "") << "what is for people goes to stderr";
+  const auto json = nlohmann::json::parse(text_of(folder.path("out.json")));
+  for (const char* key :
+       {"title", "plan", "sample_time", "states", "A", "B", "C", "D", "poles", "zeros", "notes"})
+    EXPECT_TRUE(json.contains(key)) << key;
+  ASSERT_EQ(json["poles"].size(), 2u);
+  for (const auto& pole : json["poles"]) {
+    EXPECT_NEAR(pole["re"].get<double>(), -1, 1e-9);
+    EXPECT_NEAR(std::abs(pole["im"].get<double>()), 2, 1e-9);
+  }
+  EXPECT_TRUE(json["loop"]["is_stable"].get<bool>());
+  EXPECT_EQ(json["response"]["channels"][0]["to"], "x.y");
+  EXPECT_THAT(text_of(folder.path("out.csv")), HasSubstr("frequency"));
+  const std::string page = text_of(folder.path("out.html"));
+  for (const char* part : {"Servo", "Phase", "Nyquist", "</html>"}) EXPECT_THAT(page, HasSubstr(part));
+}
+
+TEST_F(LinearizeCommand, ADashPutsTheFiguresOnStdout) {
+  const Outcome outcome = linearize({"loop.json", "--continuous", "--json", "-"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(nlohmann::json::parse(outcome.out)["poles"].size(), 2u);
+}
+
+TEST_F(LinearizeCommand, AnswersTwoToWrongInputAndLeavesNothing) {
+  const size_t before = files();
+  const Outcome port = linearize(
+      {"loop.json", "--from", "gain.x", "--to", "x.z", "--json", "out.json", "--report", "out.html"});
+  EXPECT_EQ(port.code, 2);
+  for (const char* part : {"gain.x", "x.z", "did you mean"}) EXPECT_THAT(port.err, HasSubstr(part));
+  EXPECT_EQ(linearize({"loop.json", "--csv", "out.csv"}).code, 2);
+  EXPECT_EQ(linearize({"loop.json", "--json", "no/such/folder.json"}).code, 2);
+  EXPECT_EQ(linearize({"missing.json"}).code, 2);
+  EXPECT_EQ(linearize({"loop.json", "--at", "-1"}).code, 2);
+  EXPECT_EQ(files(), before);
+}
+
+TEST_F(LinearizeCommand, AnswersOneWhenTheRunToTheOperatingPointFails) {
+  const size_t before = files();
+  const Outcome outcome = linearize({"diverging.json", "--at", "5", "--json", "out.json"});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("the run diverged"));
+  EXPECT_EQ(files(), before);
+}
+
+}  // namespace
+}  // namespace loopwright

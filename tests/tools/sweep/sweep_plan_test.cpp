@@ -1,0 +1,160 @@
+#include <gmock/gmock.h>
+#include <cmath>
+#include <set>
+#include "tests/tools/sweep/sweep_testing.h"
+#include "tools/sweep/sensitivity.h"
+#include "tools/sweep/tunables.h"
+
+namespace loopwright {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(SweepFile, TellsEveryProblemAtItsPlace) {
+  DiagramFolder folder;
+  folder.with("sweep.json", R"({
+    "loopwright": 1, "diagramm": "loop.json",
+    "axes": {"a.x": {"values": [1, "two"]}, "b": {"uniform": {"from": 2, "to": 1}}, "c": {}, "d": {"linear": {"from": 0, "to": 1}}},
+    "paired": [["a.x", "a.y"]],
+    "samples": {"method": "sobl", "count": 1.5},
+    "metrics": {"m": {"rsm": "e"}, "n": {"settling_time": "e"}, "o": {"rms": "e", "band": 1}},
+    "keep": "some"})");
+  Problems problems;
+  EXPECT_EQ(load_sweep(folder.path("sweep.json"), problems), nullptr);
+  const std::string text = problems.text();
+  for (const char* part :
+       {"\"diagram\"", "\"from\" must lie below \"to\"", "the axis does not vary", "\"count\" is missing",
+        "there is no axis \"a.y\"", "did you mean \"sobol\"", "no whole number",
+        "the metric measures nothing", "\"band\" of \"settling_time\" is missing",
+        "\"rms\" has no key \"band\"", "what shall be kept is not known", "sweep.json:3:"})
+    EXPECT_THAT(text, HasSubstr(part));
+}
+
+TEST(SweepPlan, PointsToTheAxisThatTheDiagramRefuses) {
+  EXPECT_THAT(SweepFolder(R"("mas.mass": {"values": [1]})").problems(), HasSubstr("did you mean \"mass\""));
+  const std::string range = SweepFolder(R"("mass.mass": {"values": [1, -2]})").problems();
+  EXPECT_THAT(range, HasSubstr("out of range"));
+  EXPECT_THAT(range, HasSubstr("sweep.json:1:"));
+  EXPECT_THAT(SweepFolder(R"("pull.frequency": {"values": [1], "unit": "N"})").problems(),
+              HasSubstr("sweep.json:1:"));
+  EXPECT_THAT(
+      SweepFolder(R"("mass.mass": {"values": [1]})", "", R"("m": {"rms": "mass.positon"})").problems(),
+      HasSubstr("did you mean \"mass.position\""));
+  EXPECT_THAT(SweepFolder(R"("mass.mass": {"values": [1]})", "",
+                          R"("m": {"first_violation": "mass.position", "threshold": 1, "unit": "N"})")
+                  .problems(),
+              HasSubstr("another unit"));
+}
+
+TEST(SweepPlan, FollowsExpressionsAndUnits) {
+  const SweepFolder folder(
+      R"("stiffness": {"values": [10, 1000]}, "mass.mass": {"values": [500, 900], "unit": "g"})");
+  const SweepPlan plan = folder.plan();
+  const World& world = plan.world(0);
+  EXPECT_TRUE(world.needs_loader);
+  for (int64_t run = 0; run < plan.runs(); ++run) {
+    const auto expected = tunable_numbers(*plan.plan_of(run));
+    const auto tuned = plan.tuned(run);
+    for (size_t i = 0; i < tuned.size(); ++i)
+      EXPECT_EQ(tuned[i], expected.at(world.tuned[i])) << world.tuned[i];
+  }
+  EXPECT_EQ(world.tuned, (std::vector<std::string>{"damper.gain", "mass.mass", "spring.gain"}));
+}
+
+// Neither axis alone moves the damper from where both begin; only runs in between show that both do.
+TEST(SweepPlan, NoticesWhatOnlyTwoAxesTogetherShow) {
+  std::string loop = small_loop;
+  loop.replace(loop.find("=2*damping_ratio*sqrt(stiffness)"), 32,
+               "=damping_ratio > 0.5 && stiffness > 15 ? 3 : 1");
+  const SweepFolder folder(
+      R"("damping_ratio": {"values": [0.1, 0.9]}, "stiffness": {"values": [10, 20, 30]})", "",
+      metrics_of_all_kinds, loop);
+  const SweepPlan plan = folder.plan();
+  for (int64_t run = 0; run < plan.runs(); ++run) {
+    const auto expected = tunable_numbers(*plan.plan_of(run));
+    const auto tuned = plan.tuned(run);
+    for (size_t i = 0; i < tuned.size(); ++i) EXPECT_EQ(tuned[i], expected.at(plan.world(0).tuned[i]));
+  }
+}
+
+TEST(SweepPlan, GivesVariantsAndStructuralValuesPlansOfTheirOwn) {
+  std::string loop = small_loop;
+  const std::string gain = R"({"type": "Gain", "gain": "=stiffness", "in": {"u": "mass.position"}})";
+  loop.replace(
+      loop.find(gain), gain.size(),
+      R"({"variants": {"soft": {"type": "Gain", "gain": 10}, "hard": {"type": "Gain", "gain": "=stiffness"}}, "variant": "soft", "in": {"u": "mass.position"}})");
+  const SweepFolder folder(
+      R"("mass.mass": {"values": [1, 2, 3]}, "spring": {"variants": ["soft", "hard"]}, "noise.sample_time": {"values": [0.05, 0.1]})",
+      "", metrics_of_all_kinds, loop);
+  const SweepPlan plan = folder.plan();
+  EXPECT_EQ(plan.design().worlds(), 4);
+  EXPECT_EQ(plan.runs(), 12);
+  run_sweep(plan, folder.results(), {});
+  const SweepResults results = read_results(plan, folder.results());
+  std::set<double> distinct(results.table.find("f")->values.begin(), results.table.find("f")->values.end());
+  EXPECT_EQ(distinct.size(), 12u);
+  EXPECT_THAT(plan.command(11), HasSubstr("--variant 'spring=hard'"));
+}
+
+TEST(Design, PairsAxesAndCountsTheLastFastest) {
+  const SweepFolder folder(
+      R"("mass.mass": {"values": [1, 2]}, "stiffness": {"values": [10, 20, 30]}, "pull.frequency": {"values": [3, 4]})",
+      R"(, "paired": [["mass.mass", "pull.frequency"]])");
+  const SweepPlan plan = folder.plan();
+  ASSERT_EQ(plan.runs(), 6);
+  EXPECT_EQ(plan.design().point(1), (std::vector<double>{1, 20, 3}));
+  EXPECT_EQ(plan.design().point(5), (std::vector<double>{2, 30, 4}));
+}
+
+TEST(Design, FillsEveryStratumOfALatinHypercubeOnce) {
+  for (const int count : {1, 2, 7, 64, 1000}) {
+    const SweepFolder folder(
+        R"("mass.mass": {"uniform": {"from": 1, "to": 2}}, "pull.frequency": {"uniform": {"from": 1, "to": 2}})",
+        fmt::format(R"(, "samples": {{"method": "latin_hypercube", "count": {}}})", count));
+    const SweepPlan plan = folder.plan();
+    std::vector<std::set<int>> strata(2);
+    for (int64_t run = 0; run < count; ++run)
+      for (size_t a = 0; a < 2; ++a) strata[a].insert(int((plan.design().point(run)[a] - 1) * count));
+    EXPECT_EQ(strata[0].size(), size_t(count));
+    EXPECT_EQ(strata[1].size(), size_t(count));
+  }
+}
+
+TEST(Design, SamplesEachDistributionAsStated) {
+  const SweepFolder folder(
+      R"("mass.mass": {"normal": {"mean": 5, "deviation": 0.5}}, "stiffness": {"log_uniform": {"from": 1, "to": 10000}})",
+      R"(, "samples": {"method": "sobol", "count": 4096})");
+  const SweepPlan plan = folder.plan();
+  double sum = 0, squares = 0, below = 0;
+  for (int64_t run = 0; run < plan.runs(); ++run) {
+    const auto point = plan.design().point(run);
+    sum += point[0], squares += (point[0] - 5) * (point[0] - 5), below += point[1] < 100;
+  }
+  EXPECT_NEAR(sum / 4096, 5, 1e-3);
+  EXPECT_NEAR(std::sqrt(squares / 4096), 0.5, 5e-3);
+  EXPECT_NEAR(below / 4096, 0.5, 2e-3);
+}
+
+// Known in closed form: the indices of the Ishigami function with a = 7, b = 0.1.
+TEST(Sensitivity, FindsTheIndicesOfTheIshigamiFunction) {
+  const char* const loop = R"json({"loopwright": 1, "solver": {"stop": 0.1, "step": 0.1}, "blocks": {
+    "x1": {"type": "Constant", "value": 0}, "x2": {"type": "Constant", "value": 0}, "x3": {"type": "Constant", "value": 0},
+    "y": {"type": "Expression", "formula": "sin(a) + 7*sin(b)^2 + 0.1*c^4*sin(a)", "names": ["a", "b", "c"],
+          "in": {"arguments": ["x1.y", "x2.y", "x3.y"]}}}, "log": ["y.y"]})json";
+  const std::string range = fmt::format(R"({{"uniform": {{"from": -{0}, "to": {0}}}}})", M_PI);
+  const SweepFolder folder(fmt::format(R"("x1.value": {0}, "x2.value": {0}, "x3.value": {0})", range),
+                           R"(, "samples": {"method": "saltelli", "count": 1024})",
+                           R"("y": {"final": "y.y"})", loop);
+  const SweepPlan plan = folder.plan();
+  run_sweep(plan, folder.results(), {});
+  const auto effects = effects_of(plan, read_results(plan, folder.results()).table, 0);
+  EXPECT_NEAR(effects[0].first_order, 0.3139, 0.03);
+  EXPECT_NEAR(effects[1].first_order, 0.4424, 0.03);
+  EXPECT_NEAR(effects[2].first_order, 0.0, 0.03);
+  EXPECT_NEAR(effects[0].total.value(), 0.5576, 0.03);
+  EXPECT_NEAR(effects[1].total.value(), 0.4424, 0.03);
+  EXPECT_NEAR(effects[2].total.value(), 0.2437, 0.03);
+}
+
+}  // namespace
+}  // namespace loopwright

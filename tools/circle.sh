@@ -1,0 +1,36 @@
+#!/bin/sh
+# The whole circle on the emulated card:  circle.sh [FOLDER]        (build/circle when left out)
+# deploy on a motor that hides an effect, see in the log what the model lacks, mend the model, learn a compensation from
+# the same log, deploy again. Everything lands in FOLDER; docs/hardware.md tells the story.
+set -eu
+here=$(cd "$(dirname "$0")/.." && pwd)
+out=${1:-$here/build/circle}
+mkdir -p "$out"
+out=$(cd "$out" && pwd)
+cd "$here"
+loopwright=${LOOPWRIGHT_PROGRAM:-$here/build/release/bin/loopwright}
+export HIL_LIBRARY=${HIL_LIBRARY:-$here/build/release/lib/libhil_emulator.so}
+export HIL_EMU=$here/hw/emulator/hidden_friction.json
+export LOOPWRIGHT_DATA=$out
+device="--variant stage=quanser --set stage.device=$here/hw/devices/qpid_e_emulated.json"
+motor=diagrams/linear_motor
+
+say() { printf '\n== %s\n' "$*"; }
+say "1  the identification run on the card"
+$loopwright deploy $motor/identification.json $device -o "$out/identification.csv" --report "$out/identification.html"
+$loopwright run $motor/identification.json $device --replay "$out/identification.csv"
+say "2  where the model fails"
+$loopwright compare $motor/identification.json diagrams/circle/deployed.experiment.json --json "$out/before.json" --report "$out/before.html"
+say "3  what it lacks"
+$loopwright diagnose $motor/identification.json diagrams/circle/deployed.experiment.json -o "$out/improved.json" \
+  --json "$out/diagnosis.json" --report "$out/diagnosis.html"
+say "4  the improved diagram against the same log, and let run"
+$loopwright compare "$out/improved.json" diagrams/circle/deployed.experiment.json --json "$out/after.json" --report "$out/after.html"
+$loopwright run "$out/improved.json" -o "$out/improved.csv" --report "$out/improved.html"
+say "5  a compensation from the same log"
+cp diagrams/circle/deployed.training.json "$out"
+(cd "$out" && $loopwright gp train deployed.training.json --model learned.model.json --report learned.html)
+say "6  the test motion without and with it"
+$loopwright deploy $motor/conventional.json $device -o "$out/conventional.csv" --report "$out/conventional.html"
+$loopwright deploy $motor/ps.json $device --set "model=$out/learned.model.json" --set "compensation.lead=2.6 ms" \
+  -o "$out/compensated.csv" --report "$out/compensated.html"

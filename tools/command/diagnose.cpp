@@ -1,0 +1,54 @@
+#include "tools/diagnose/diagnose.h"
+#include <fmt/format.h>
+#include "engine/record/atomic_file.h"
+#include "tools/command/command.h"
+
+namespace loopwright {
+namespace {
+
+struct Arguments {
+  DiagramArguments diagram;
+  std::vector<std::string> experiments, catalogues;
+  std::string json, report, improved;
+  bool trail = false;
+};
+
+int run(const Arguments& a) {
+  for (const auto& [path, option] : {std::pair(a.json, "--json"), {a.report, "--report"}, {a.improved, "-o"}})
+    require_writable(path, option);
+  DiagnoseOptions options;
+  options.load = a.diagram.options(), options.catalogues = a.catalogues,
+  options.improved_diagram = a.improved;
+  options.interrupt = &interruption();
+  Progress progress("diagnose");
+  options.progress = [&](const char*, double done) { progress.show(done, 1); };
+  const Diagnosis diagnosis = diagnose(a.diagram.path, a.experiments, options);
+  progress.finish();
+  if (diagnosis.was_interrupted) return interrupted;
+  if (a.trail)
+    for (const std::string& line : diagnosis.trail) fmt::print(stderr, "{}\n", line);
+  if (a.json == "-")
+    fmt::print("{}", to_json(diagnosis));
+  else if (!a.json.empty())
+    write_file(a.json, to_json(diagnosis));
+  if (!a.report.empty()) report::write_html(a.report, diagnosis_page(diagnosis));
+  fmt::print(stderr, "{}", to_text(diagnosis));
+  return done;
+}
+
+}  // namespace
+
+void add_diagnose(CLI::App& app, std::function<void(std::function<int()>)> choose) {
+  CLI::App* command = app.add_subcommand("diagnose", "Find the physical effect that a diagram lacks");
+  auto a = std::make_shared<Arguments>();
+  a->diagram.add_to(*command);
+  command->add_option("experiments", a->experiments, "Experiment files (JSON), one or more")->required();
+  command->add_option("--effects", a->catalogues, "Folders with effect files in the place of the catalogue");
+  command->add_option("--json", a->json, "Write the diagnosis as JSON; - for stdout");
+  command->add_option("--report", a->report, "Write an HTML page that tells the story");
+  command->add_option("-o,--output", a->improved, "Write the diagram with the effects that were found");
+  command->add_flag("--trail", a->trail, "Show what the search tried");
+  command->callback([=] { choose([=] { return run(*a); }); });
+}
+
+}  // namespace loopwright

@@ -1,0 +1,55 @@
+#include <fmt/format.h>
+#include "hw/drivers.h"
+#include "hw/quanser/probe.h"
+#include "hw/realtime/system.h"
+#include "tools/command/command.h"
+
+namespace loopwright {
+namespace {
+
+struct Arguments {
+  std::string device;
+  bool may_touch = false;
+};
+
+hw::quanser::Settings settings_of(const std::string& path) {
+  if (path.empty()) return {};
+  Problems problems;
+  const auto device = hw::load_device(path, {}, problems);
+  if (!device) throw InputError(std::move(problems));
+  if (device->driver == "quanser") return hw::quanser::read_settings(*device, problems);
+  problems.error({}, "/driver", "", fmt::format("{} is no device of the driver that can be probed", path))
+      .expected = "\"quanser\"";
+  throw InputError(std::move(problems));
+}
+
+int run(const Arguments& a) {
+  const auto settings = settings_of(a.device);
+  fmt::print("real-time service\n");
+  hw::SystemReport system;
+  {
+    const hw::RealTimeProcess process({}, system);
+    hw::make_thread_real_time({}, system);
+  }
+  fmt::print("{}device\n", hw::to_text(system));
+  bool is_good = true;
+  for (const hw::quanser::ProbeAnswer& answer : hw::quanser::probe(settings, a.may_touch)) {
+    fmt::print("  {} {}: {}\n", answer.is_good ? "+" : "-", answer.question, answer.answer);
+    is_good &= answer.is_good;
+  }
+  return is_good ? done : run_failed;
+}
+
+}  // namespace
+
+void add_probe(CLI::App& app, std::function<void(std::function<int()>)> choose) {
+  CLI::App* command = app.add_subcommand("probe", "Say what hardware and real-time service there is");
+  auto a = std::make_shared<Arguments>();
+  command->add_option("device", a->device, "Device file (JSON); a QPIDe when left out");
+  command->add_flag("--touch", a->may_touch,
+                    "Set the card up too: presets encoder 0, puts out 0 V, lets the watchdog expire. "
+                    "Disconnect the motor first");
+  command->callback([=] { choose([=] { return run(*a); }); });
+}
+
+}  // namespace loopwright

@@ -1,0 +1,235 @@
+#include "tools/compare/excitation.h"
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <map>
+
+namespace loopwright {
+namespace {
+
+double rms(const std::vector<double>& values) {
+  double sum = 0;
+  for (double v : values) sum += v * v;
+  return values.empty() ? 0 : std::sqrt(sum / double(values.size()));
+}
+
+double greatest(const std::vector<double>& values) {
+  double most = 0;
+  for (double v : values) most = std::max(most, std::abs(v));
+  return most;
+}
+
+int directions_in(const MeasuredMotion& m) {
+  double forward = 0, backward = 0;
+  for (size_t k = 0; k < m.rows(); ++k)
+    if (m.counts[k]) (m.velocity[k] > 0 ? forward : backward) += 1;
+  const double all = forward + backward;
+  return int(forward > 0.05 * all) + int(backward > 0.05 * all);
+}
+
+int speeds_in(const MeasuredMotion& m) {
+  std::map<int, double> seconds;  // by the logarithm of speed
+  for (size_t k = 0; k < m.rows(); ++k)
+    if (m.counts[k])
+      seconds[int(std::floor(std::log(std::abs(m.velocity[k])) / std::log(1.2)))] += m.sample_time;
+  double moving = 0;
+  for (const auto& [bin, s] : seconds) moving += s;
+  int count = 0, last = -1000;
+  for (const auto& [bin, s] : seconds)
+    if (s >= std::max(0.1, 0.02 * moving) && bin > last + 1)
+      ++count, last = bin;  // a speed may straddle two bins
+  return count;
+}
+
+int reversals_in(const MeasuredMotion& m) {
+  int count = 0;
+  double direction = 0;
+  for (size_t k = 0; k < m.rows(); ++k) {
+    if (std::abs(m.velocity[k]) <= m.rest_speed) continue;
+    const double now = m.velocity[k] > 0 ? 1 : -1;
+    count += direction != 0 && now != direction;
+    direction = now;
+  }
+  return count;
+}
+
+/// Spread of the force at the same place and in the same direction, against its spread over all.
+bool has_varied_force(const MeasuredMotion& m) {
+  constexpr int bins = 50;
+  std::vector<double> sum(2 * bins), squares(2 * bins), count(2 * bins);
+  const double low = *std::ranges::min_element(m.position), stroke = std::max(m.stroke(), 1e-300);
+  for (size_t k = 0; k < m.rows(); ++k) {
+    if (!m.counts[k]) continue;
+    const auto bin = size_t(std::clamp(int((m.position[k] - low) / stroke * bins), 0, bins - 1) +
+                            (m.velocity[k] > 0 ? bins : 0));
+    sum[bin] += m.input[k], squares[bin] += m.input[k] * m.input[k], count[bin] += 1;
+  }
+  double within = 0, all = 0;
+  for (size_t b = 0; b < sum.size(); ++b)
+    if (count[b] > 1) within += squares[b] - sum[b] * sum[b] / count[b], all += squares[b];
+  return within > 0.05 * all;
+}
+
+/// Rows where the second difference leaps out and comes back: single wrong samples of the position.
+size_t outliers_in(const MeasuredMotion& m) {
+  std::vector<double> leap;
+  for (size_t k = 1; k + 1 < m.rows(); ++k)
+    leap.push_back(std::abs(m.raw_position[k + 1] - 2 * m.raw_position[k] + m.raw_position[k - 1]));
+  std::vector<double> sorted = leap;
+  const size_t near_top = sorted.size() * 95 / 100;
+  std::ranges::nth_element(sorted, sorted.begin() + ptrdiff_t(near_top));
+  const double usual = sorted[near_top];
+  size_t count = 0;
+  for (size_t i = 1; i + 1 < leap.size(); ++i)
+    count += leap[i] > 20 * usual + 1e-300 && leap[i] > 1.5 * leap[i - 1] && leap[i] > 1.5 * leap[i + 1];
+  return count;
+}
+
+/// Part of the rows on which the input stands still at its highest or lowest value.
+double saturated_part(const MeasuredMotion& m) {
+  const auto [low, high] = std::ranges::minmax(m.input);
+  if (low == high) return 0;
+  const double width = 1e-6 * (high - low);
+  size_t rows = 0;
+  for (size_t k = 2; k < m.rows(); ++k) {
+    const auto all = [&](auto is) { return is(m.input[k]) && is(m.input[k - 1]) && is(m.input[k - 2]); };
+    rows += (high > 0 && all([&](double u) { return u >= high - width; })) ||
+            (low < 0 && all([&](double u) { return u <= low + width; }));
+  }
+  return double(rows) / double(m.rows());
+}
+
+/// Recorded input against the force that the model needs: slope, correlation, and by how many samples it is
+/// off.
+struct InputMatch {
+  double slope = 0, correlation = 0;
+  int late_samples = 0;
+  double gained = 0;  ///< part of the squared difference that shifting takes away
+};
+InputMatch match_input(const MeasuredMotion& m, const ForceResidual& residual) {
+  std::vector<double> needed(m.rows());
+  for (size_t k = 0; k < m.rows(); ++k) needed[k] = m.input[k] - residual.value[k];
+  const int most = int(std::ceil(0.1 / m.sample_time));
+  InputMatch match;
+  double at_zero = 0, best = 1e300;
+  for (int lag = -most; lag <= most; ++lag) {
+    double uf = 0, uu = 0, ff = 0;
+    for (size_t k = 0; k < m.rows(); ++k) {
+      const ptrdiff_t other = ptrdiff_t(k) - lag;
+      if (!m.counts[k] || other < 0 || other >= ptrdiff_t(m.rows())) continue;
+      const double u = m.input[size_t(other)], f = needed[k];
+      uf += u * f, uu += u * u, ff += f * f;
+    }
+    const double left = ff > 0 ? (uu + ff - 2 * uf) / ff : 0;
+    if (lag == 0) {
+      match.slope = ff > 0 ? uf / ff : 0, match.correlation = uf / std::sqrt(std::max(uu * ff, 1e-300));
+      at_zero = left;
+    }
+    if (left < best) best = left, match.late_samples = lag;
+  }
+  match.gained = at_zero > 0 ? 1 - best / at_zero : 0;
+  return match;
+}
+
+void check_input(const MeasuredMotion& m, const ForceResidual& residual, std::vector<RecordFault>& faults) {
+  const InputMatch match = match_input(m, residual);
+  const double size = std::abs(match.slope);
+  if (match.slope < 0 && match.correlation < -0.4)
+    faults.push_back(
+        {"wrong_sign", "the recorded input pushes against the motion that it should cause",
+         "nothing can be read from the residual until the sign of the input or of the position is turned", true});
+  else if (std::abs(match.correlation) > 0.7 && (size > 5 || size < 0.2))
+    faults.push_back(
+        {"wrong_unit", fmt::format("the recorded input is {:.3g} times the force that the model needs", size),
+         "the residual is mostly this factor: check the unit of the input, or the mass of the model",
+         size > 20 || size < 0.05});
+  const double late_s = match.late_samples * m.sample_time;
+  if (std::abs(match.late_samples) >= 8 && match.gained > 0.3 && match.slope > 0)
+    faults.push_back(
+        {"unsynchronised", fmt::format("input and motion fit best when shifted by {:.3g} ms", 1e3 * late_s),
+         "effects that depend on acceleration or on fast changes of the input cannot be told from this "
+         "shift; check that both columns share a clock",
+         late_s < 0});  // no machine moves before its input
+}
+
+}  // namespace
+
+RecordContent content_of(const Machine& machine, const ForceResidual& residual, double resolution) {
+  const MeasuredMotion& m = machine.motion;
+  RecordContent c;
+  c.sizes.stroke = m.stroke(), c.sizes.resolution = resolution;
+  c.sizes.lowest_position = *std::ranges::min_element(m.position);
+  c.sizes.highest_position = *std::ranges::max_element(m.position);
+  c.sizes.top_speed = greatest(m.velocity), c.sizes.top_acceleration = greatest(m.acceleration);
+  c.sizes.force_level = rms(m.input), c.sizes.machine_mass = machine.mass;
+  c.sizes.duration = double(m.rows()) * m.sample_time, c.sizes.sample_time = m.sample_time;
+  c.sizes.initial_position = m.position.front(), c.sizes.initial_velocity = m.velocity.front();
+  c.directions = directions_in(m), c.speeds = speeds_in(m), c.reversals = reversals_in(m);
+  double up = 0, down = 0;
+  for (size_t k = 0; k < m.rows(); ++k)
+    if (m.counts[k]) up = std::max(up, m.acceleration[k]), down = std::min(down, m.acceleration[k]);
+  const double clear = 5 * residual.noise_floor / std::max(machine.mass, 1e-300);
+  c.accelerations = int(up > clear) + int(-down > clear);
+  c.passes = residual.repeat_s > 0 ? int(c.sizes.duration / residual.repeat_s) : 1;
+  c.varied_force = has_varied_force(m);
+  return c;
+}
+
+std::vector<Identifiability> identifiable(const RecordContent& c, const std::vector<Effect>& catalogue) {
+  std::vector<Identifiability> result;
+  for (const Effect& effect : catalogue) {
+    if (!result.empty() && result.back().effect == effect.name) continue;  // forms need the same
+    Identifiability entry{effect.name};
+    const auto need = [&](bool is_met, std::string what) {
+      if (is_met) return;
+      entry.can_be_found = false;
+      entry.lacks += (entry.lacks.empty() ? "" : "; ") + what;
+    };
+    const Excitation& e = effect.needs;
+    need(c.directions >= e.directions, "motion in both directions");
+    need(c.speeds >= e.speeds,
+         fmt::format("{} different speeds (there {} {})", e.speeds, c.speeds == 1 ? "is" : "are", c.speeds));
+    need(c.accelerations >= e.accelerations, "acceleration and deceleration well above the noise");
+    need(c.reversals >= e.reversals, fmt::format("{} reversals (there are {})", e.reversals, c.reversals));
+    need(c.passes >= e.passes || c.sizes.duration > 60, "the same motion early and late");
+    need(c.sizes.duration >= e.duration_s, fmt::format("{:g} s of record", e.duration_s));
+    need(!e.varied_force || c.varied_force, "different forces at the same places");
+    result.push_back(std::move(entry));
+  }
+  return result;
+}
+
+std::vector<RecordFault> faults_of(const Machine& machine, const ForceResidual& residual,
+                                   const RecordContent& c, const std::vector<double>& recorded_time) {
+  const MeasuredMotion& m = machine.motion;
+  std::vector<RecordFault> faults;
+  const double moving = double(std::ranges::count(m.counts, 1)) * m.sample_time;
+  if (c.sizes.duration < 2 || moving < 1)
+    faults.push_back({"too_short", fmt::format("the machine moves for {:.2g} s in all", moving),
+                      "shares and noise floor are rough; no effect should be named from this record", true});
+  if (c.directions < 2)
+    faults.push_back({"one_direction", "all motion goes one way",
+                      "Coulomb friction, a constant force and direction-dependent friction look alike"});
+  if (c.speeds < 2)
+    faults.push_back({"one_speed", "nearly all motion is at one speed",
+                      "friction of any kind, drag and periodic errors of force or encoder look alike"});
+  size_t gaps = 0;
+  for (size_t k = 1; k < recorded_time.size(); ++k)
+    gaps += recorded_time[k] - recorded_time[k - 1] > 1.5 * m.sample_time;
+  if (gaps > 0)
+    faults.push_back({"gaps", fmt::format("samples are missing at {} place{}", gaps, gaps == 1 ? "" : "s"),
+                      "the motion is bridged there; residuals beside the gaps are not real"});
+  if (const size_t count = outliers_in(m); count > 0)
+    faults.push_back(
+        {"outliers",
+         fmt::format("{} sample{} of the position leap out of line", count, count == 1 ? "" : "s"),
+         "each spoils the residual for some hundredths of a second around it"});
+  if (const double part = saturated_part(m); part > 0.01)
+    faults.push_back(
+        {"saturated", fmt::format("the input stands at its limit for {:.1f} % of the record", 100 * part),
+         "the controller is out of the loop there; the recorded command may not be the force that acted"});
+  check_input(m, residual, faults);
+  return faults;
+}
+
+}  // namespace loopwright

@@ -1,0 +1,374 @@
+#include "tools/compare/machine.h"
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include "tools/compare/zero_phase.h"
+
+namespace loopwright {
+namespace {
+
+const std::string* port_of(const Experiment& experiment, std::string_view role) {
+  for (const auto& [name, port] : experiment.roles.ports)
+    if (name == role) return &port;
+  return nullptr;
+}
+
+/// The recorded signal of a port: the port itself, or one that is the same number in the plan.
+const RecordedSignal* recorded(const Experiment& experiment, const Plan& plan, const std::string& port,
+                               bool also_driven) {
+  const std::vector<Number> wanted = plan.find(port);
+  const auto is_it = [&](const RecordedSignal& signal) {
+    return signal.port == port || (!wanted.empty() && plan.find(signal.port) == wanted);
+  };
+  if (also_driven)
+    for (const RecordedSignal& signal : experiment.drives)
+      if (is_it(signal)) return &signal;
+  for (const RecordedSignal& signal : experiment.compared)
+    if (is_it(signal)) return &signal;
+  return nullptr;
+}
+
+/// The even grid on which a record is looked at. Time stamps may tremble: then row k is sample k. Where
+/// samples are missing, it is bridged.
+class EvenGrid {
+ public:
+  EvenGrid(const Experiment& experiment, MeasuredMotion& motion)
+      : time_(experiment.data.columns.front().values) {
+    const double dt = motion.sample_time = experiment.time.sample_time;  // the median, where stamps tremble
+    std::vector<double> starts;
+    for (size_t k = 0; k < time_.size(); ++k) starts.push_back(time_[k] - double(k) * dt);
+    const auto [earliest, latest] = std::ranges::minmax(starts);
+    is_bridged_ = latest - earliest > 5 * dt;
+    std::ranges::nth_element(starts, starts.begin() + ptrdiff_t(starts.size() / 2));
+    const double middle = std::round(starts[starts.size() / 2] / dt) * dt;
+    motion.start = experiment.time.regular ? time_.front()
+                   : is_bridged_           ? std::ceil(time_.front() / dt) * dt
+                                           : middle;
+    const size_t rows = is_bridged_ ? size_t((time_.back() - motion.start) / dt) : time_.size();
+    for (size_t k = 0; k < rows; ++k) motion.time.push_back(motion.start + double(k) * dt);
+    grid_ = motion.time;
+  }
+
+  /// A column on the grid; bridged by straight lines, or held.
+  std::vector<double> sampled(const std::vector<double>& values, bool is_held) const {
+    if (!is_bridged_) return values;
+    std::vector<double> result;
+    size_t i = 0;
+    for (double t : grid_) {
+      while (i + 2 < time_.size() && time_[i + 1] <= t + 1e-9) ++i;
+      const double s = std::clamp((t - time_[i]) / (time_[i + 1] - time_[i]), 0.0, 1.0);
+      result.push_back(is_held ? values[i] : (1 - s) * values[i] + s * values[i + 1]);
+    }
+    return result;
+  }
+
+ private:
+  const std::vector<double>& time_;
+  std::vector<double> grid_;
+  bool is_bridged_ = false;
+};
+
+std::vector<double> central_difference(const std::vector<double>& x, double dt) {
+  std::vector<double> v(x.size());
+  for (size_t k = 1; k + 1 < x.size(); ++k) v[k] = (x[k + 1] - x[k - 1]) / (2 * dt);
+  v.front() = v[1], v.back() = v[v.size() - 2];
+  return v;
+}
+
+std::vector<double> second_difference(const std::vector<double>& x, double dt) {
+  std::vector<double> a(x.size());
+  for (size_t k = 1; k + 1 < x.size(); ++k) a[k] = (x[k + 1] - 2 * x[k] + x[k - 1]) / (dt * dt);
+  a.front() = a[1], a.back() = a[a.size() - 2];
+  return a;
+}
+
+/// Fast enough for the sign of friction to be certain, a twelfth of a tenth of a second away from rest.
+void find_moving_rows(MeasuredMotion& m) {
+  const size_t n = m.rows(), margin = size_t(std::ceil(0.012 / m.sample_time)),
+               ends = std::min(n / 10, size_t(std::ceil(0.1 / m.sample_time)));
+  m.rest_speed = 0.005 * m.top_speed();
+  m.counts.assign(n, 1);
+  for (size_t k = 0; k < n; ++k) {
+    if (k < ends || k + ends >= n) m.counts[k] = 0;
+    if (std::abs(m.velocity[k]) > m.rest_speed) continue;
+    for (size_t i = k > margin ? k - margin : 0; i <= std::min(n - 1, k + margin); ++i) m.counts[i] = 0;
+  }
+}
+
+bool measure_motion(const Experiment& experiment, const Plan& plan, MeasuredMotion& m, std::string& why) {
+  const std::string* position = port_of(experiment, "position");
+  const std::string* velocity = port_of(experiment, "velocity");
+  const RecordedSignal* x = position ? recorded(experiment, plan, *position, false) : nullptr;
+  const RecordedSignal* v = velocity ? recorded(experiment, plan, *velocity, false) : nullptr;
+  if (!x && !v) {
+    why = "neither the position nor the velocity of the roles is compared with a measurement";
+    return false;
+  }
+  if (experiment.data.rows() < 50) {
+    why = "the record is too short";
+    return false;
+  }
+  const EvenGrid grid(experiment, m);
+  if (x) {
+    m.raw_position = grid.sampled(experiment.data.find(x->port)->values, false);
+    m.position_unit = experiment.data.find(x->port)->unit;
+  } else {
+    m.velocity = grid.sampled(experiment.data.find(v->port)->values, false);
+    const std::string& unit = experiment.data.find(v->port)->unit;
+    m.position_unit = unit == "Hz"           ? "1"
+                      : unit.ends_with("/s") ? unit.substr(0, unit.size() - 2)
+                                             : unit + "*s";
+  }
+  smooth_motion(m);
+  return true;
+}
+
+/// The solver of the record: fixed steps that divide a sample.
+void use_fixed_steps(LoadOptions& options, const Plan& plan, const MeasuredMotion& motion) {
+  const double sample_time = motion.sample_time;
+  const double wanted = plan.step_ticks > 0 ? plan.clock.time(plan.step_ticks) : sample_time / 10;
+  const double steps = std::clamp(std::round(sample_time / wanted), 4.0, 100.0);
+  options.set.emplace_back("solver.method", "rk4");
+  options.set.emplace_back("solver.step", fmt::format("{}", sample_time / steps));
+  options.set.emplace_back("solver.start", fmt::format("{}", motion.start));
+}
+
+/// The diagram with the recorded input in the place of what feeds the input of the machine.
+std::shared_ptr<const Plan> driven_plan(const std::string& diagram, const Experiment& experiment,
+                                        const LoadOptions& options, const RecordedSignal& input,
+                                        const std::string& port, bool is_driven, const MeasuredMotion& motion,
+                                        std::string& why) {
+  Experiment open = experiment;
+  if (!is_driven) {
+    RecordedSignal drive = input;
+    drive.port = port;
+    open.drives.push_back(std::move(drive));
+    open.drive_is_linear.push_back(false);
+  }
+  Problems problems;
+  auto load = [&](const LoadOptions& with) -> std::shared_ptr<const Plan> {
+    const auto loaded = load_diagram(diagram, follow(open, with), problems);
+    return loaded ? compile(*loaded, problems) : nullptr;
+  };
+  const auto first = load(options);
+  if (first) {
+    LoadOptions fixed = options;
+    use_fixed_steps(fixed, *first, motion);
+    if (const auto plan = load(fixed)) return plan;
+  }
+  why = fmt::format("the diagram does not run with the recorded input at \"{}\": {}", port,
+                    problems.list().empty() ? "" : problems.list().front().message);
+  return nullptr;
+}
+
+bool is_state(const Plan& plan, Number number) {
+  return number >= plan.signals && number < plan.signals + plan.states;
+}
+
+/// True where two ports cannot be the same quantity.
+bool differ_in_unit(const Plan& plan, Number a, Number b) {
+  const auto of_a = plan.unit_of(a), of_b = plan.unit_of(b);
+  return of_a && of_b && !of_a->same_dimension(*of_b);
+}
+
+/// Steps a run over one sample and calls `at_begin` and `at_end`.
+class Stepper {
+ public:
+  Stepper(const Machine& machine)
+      : machine_(machine),
+        run_(*machine.plan),
+        period_(std::llround(machine.motion.sample_time / machine.plan->clock.time(1))) {
+    switch_off_noise(run_, *machine.plan);
+    run_.reset({machine.plan->seed, 0});
+  }
+
+  void set(double position, double velocity) {
+    const int first = machine_.plan->signals;
+    run_.states()[size_t(machine_.position - first)] = position;
+    run_.states()[size_t(machine_.velocity - first)] = velocity;
+  }
+  double position() const { return run_.number(machine_.position); }
+  double sensed() const { return run_.number(machine_.sensor); }
+  double velocity() const { return run_.number(machine_.velocity); }
+  double net_force() const { return machine_.net_force < 0 ? 0 : run_.number(machine_.net_force); }
+  /// False when a block refused to go on.
+  bool step() {
+    const int64_t end = run_.now().tick + period_;
+    while (run_.now().tick < end && !run_.failed()) run_.step_fixed(end, true, [] {});
+    return !run_.failed();
+  }
+  /// Net force at this instant, with the states as set.
+  double evaluate() {
+    run_.evaluate(run_.due(), true);
+    return net_force();
+  }
+
+ private:
+  const Machine& machine_;
+  Run<double> run_;
+  int64_t period_;
+};
+
+/// Only from sample to sample does a block of the way from state to sensor work: an Encoder that counts.
+bool has_sampled_sensor(const Machine& machine) {
+  for (Number at = machine.sensor; at != machine.position;) {
+    const int source = machine.plan->source_of(at).first;
+    if (source < 0) return true;
+    const Plan::Block& block = machine.plan->blocks[size_t(source)];
+    if (block.period > 0) return true;
+    Number next = -1;
+    for (const auto& port : block.inputs)
+      for (Number input : port)
+        if (next < 0 && state_behind(*machine.plan, input) == machine.position) next = input;
+    if (next < 0) return true;
+    at = next;
+  }
+  return false;
+}
+
+/// What the model's sensor adds to the position is taken out of what was measured: the machine is then where
+/// the sensor says what it said. Errors far smaller than their period are met in two rounds.
+void take_out_sensor_error(Machine& machine) {
+  if (has_sampled_sensor(machine)) return;
+  MeasuredMotion& m = machine.motion;
+  Stepper stepper(machine);
+  for (double& place : m.raw_position) {
+    const double measured = place;
+    for (int round = 0; round < 2; ++round) {
+      stepper.set(place, 0);
+      stepper.evaluate();
+      place -= stepper.sensed() - measured;
+    }
+  }
+  smooth_motion(m);
+}
+
+}  // namespace
+
+void smooth_motion(MeasuredMotion& m) {
+  m.cutoff = std::min(200.0, 0.2 / m.sample_time);
+  if (!m.raw_position.empty()) {
+    m.position = zero_phase_low_pass(m.raw_position, m.cutoff, m.sample_time);
+    m.velocity = central_difference(m.position, m.sample_time);
+    m.acceleration = second_difference(m.position, m.sample_time);
+  } else {
+    m.velocity = zero_phase_low_pass(m.velocity, m.cutoff, m.sample_time);
+    m.acceleration = central_difference(m.velocity, m.sample_time);
+    m.position.assign(1, 0.0);
+    for (size_t k = 1; k < m.velocity.size(); ++k)
+      m.position.push_back(m.position.back() + 0.5 * m.sample_time * (m.velocity[k - 1] + m.velocity[k]));
+    m.raw_position = m.position;
+  }
+  find_moving_rows(m);
+}
+
+void switch_off_noise(Run<double>& run, const Plan& plan) {
+  for (const Plan::Block& block : plan.blocks)
+    if (double* level = block.type->info.type == "Noise" ? run.parameter(block.path + ".standard_deviation") : nullptr)
+      *level = 0;
+}
+
+Number state_behind(const Plan& plan, Number number) {
+  std::vector<Number> todo{number};
+  for (size_t i = 0; i < todo.size(); ++i) {  // the nearest first
+    if (is_state(plan, todo[i]) && !differ_in_unit(plan, todo[i], number)) return todo[i];
+    const int source = plan.source_of(todo[i]).first;
+    if (source < 0) continue;
+    for (const auto& port : plan.blocks[size_t(source)].inputs)
+      for (Number input : port)
+        if (input >= 0 && std::ranges::find(todo, input) == todo.end()) todo.push_back(input);
+  }
+  return -1;
+}
+
+double MeasuredMotion::stroke() const {
+  const auto [low, high] = std::ranges::minmax(position);
+  return high - low;
+}
+double MeasuredMotion::top_speed() const {
+  double top = 0;
+  for (double v : velocity) top = std::max(top, std::abs(v));
+  return top;
+}
+
+std::optional<Machine> find_machine(const std::string& diagram, const Experiment& experiment,
+                                    const LoadOptions& options, std::string& why) {
+  const std::string* input_port = port_of(experiment, "input");
+  const std::string *position = port_of(experiment, "position"), *velocity = port_of(experiment, "velocity");
+  if (!input_port || !position || !velocity) {
+    why = "the experiment names no roles \"input\", \"position\" and \"velocity\"";
+    return {};
+  }
+  Problems problems;
+  const auto loaded = load_diagram(diagram, follow(experiment, options), problems);
+  const auto plan = loaded ? compile(*loaded, problems) : nullptr;
+  if (!plan) {
+    why = "the diagram has errors";
+    return {};
+  }
+  Machine machine;
+  if (!measure_motion(experiment, *plan, machine.motion, why)) return {};
+  const bool is_driven =
+      std::ranges::any_of(experiment.drives, [&](const auto& d) { return d.port == *input_port; });
+  const RecordedSignal* input = recorded(experiment, *plan, *input_port, true);
+  if (!input) {
+    why = fmt::format(
+        "the input \"{}\" was not recorded: neither \"drive\" nor \"compare\" has a column for it",
+        *input_port);
+    return {};
+  }
+  MeasuredMotion grid_only;
+  machine.motion.input =
+      EvenGrid(experiment, grid_only).sampled(experiment.data.find(input->port)->values, true);
+  machine.motion.force_unit = experiment.data.find(input->port)->unit;
+  machine.plan =
+      driven_plan(diagram, experiment, options, *input, *input_port, is_driven, machine.motion, why);
+  if (!machine.plan) return {};
+  const auto x = machine.plan->find(*position), v = machine.plan->find(*velocity);
+  machine.position = x.size() == 1 ? state_behind(*machine.plan, x[0]) : -1;
+  machine.velocity = v.size() == 1 ? state_behind(*machine.plan, v[0]) : -1;
+  if (machine.position < 0 || machine.velocity < 0) {
+    why = "the roles \"position\" and \"velocity\" lead to no states of the model, such as those of a Mass";
+    return {};
+  }
+  machine.sensor = x[0];
+  if (const std::string* force = port_of(experiment, "force"))
+    if (const auto number = machine.plan->find(*force); number.size() == 1) machine.net_force = number[0];
+  if (machine.sensor != machine.position && recorded(experiment, *plan, *position, false)) take_out_sensor_error(machine);
+  return machine;
+}
+
+std::vector<double> model_acceleration(Machine& machine) {
+  const MeasuredMotion& m = machine.motion;
+  Stepper stepper(machine);
+  std::vector<double> acceleration;
+  double force_by_acceleration = 0, squared_acceleration = 0;
+  for (size_t k = 0; k < m.rows(); ++k) {
+    stepper.set(m.position[k], m.velocity[k]);
+    const double before = stepper.evaluate();
+    if (!stepper.step()) break;
+    acceleration.push_back((stepper.velocity() - m.velocity[k]) / m.sample_time);
+    // The force was read at the last step within the sample, hence in the middle by mean.
+    const double force = 0.5 * (before + stepper.net_force());
+    force_by_acceleration += force * acceleration.back();
+    squared_acceleration += acceleration.back() * acceleration.back();
+  }
+  acceleration.resize(m.rows(), acceleration.empty() ? 0 : acceleration.back());
+  if (machine.net_force >= 0 && squared_acceleration > 0)
+    machine.mass = force_by_acceleration / squared_acceleration;
+  return acceleration;
+}
+
+std::vector<double> simulate_position(const Machine& machine, size_t horizon) {
+  const MeasuredMotion& m = machine.motion;
+  Stepper stepper(machine);
+  std::vector<double> position;
+  for (size_t k = 0; k < m.rows(); ++k) {
+    if (k == 0 || (horizon > 0 && k % horizon == 0)) stepper.set(m.position[k], m.velocity[k]);
+    position.push_back(stepper.position());
+    if (!stepper.step()) break;
+  }
+  return position;
+}
+
+}  // namespace loopwright

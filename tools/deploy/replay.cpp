@@ -1,0 +1,111 @@
+#include "tools/deploy/replay.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include "hw/realtime/log_columns.h"
+
+namespace loopwright {
+namespace {
+
+/// What is fed in: the columns of one axis.
+struct Measured {
+  const Column* position = nullptr;
+  const Column* velocity = nullptr;  // of the device; null where the block works it out
+};
+
+/// A column of the log that the replay computes too.
+struct Computed {
+  const Column* logged;
+  Number number;
+};
+
+const Column* find(const Recording& log, const std::string& name, Problems& problems) {
+  if (const Column* column = log.find(name)) return column;
+  auto& p =
+      problems.error({}, "", "", fmt::format("the log has no column \"{}\", which the replay needs", name));
+  p.hint = "a log of loopwright deploy, of this diagram, with the same --variant and --set";
+  return nullptr;
+}
+
+std::vector<Measured> measured_columns(const hw::Hardware& hardware, const Recording& log,
+                                       Problems& problems) {
+  std::vector<Measured> measured;
+  for (const hw::Axis& axis : hardware.axes) {
+    Measured columns{find(log, axis.path + ".position", problems), nullptr};
+    if (axis.io->velocity_channel >= 0) columns.velocity = find(log, axis.path + ".velocity", problems);
+    measured.push_back(columns);
+  }
+  return measured;
+}
+
+bool equal_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+void compare(double logged, double computed, int64_t row, double time, ReplayedColumn& to) {
+  if (equal_bits(logged, computed)) return;
+  if (to.differing++ == 0) to.first_row = row, to.first_time = time;
+  to.largest = std::max(to.largest, std::abs(logged - computed));
+}
+
+}  // namespace
+
+bool Replay::explains() const {
+  return fault.empty() && rows > 0 &&
+         std::ranges::all_of(columns, [](const ReplayedColumn& c) { return c.differing == 0; });
+}
+
+Replay replay(const Plan& plan, const hw::Hardware& hardware, const Recording& log, Problems& problems) {
+  Replay result;
+  const Column* time = find(log, "time", problems);
+  const auto measured = measured_columns(hardware, log, problems);
+  std::vector<Computed> computed;
+  for (const hw::LogColumn& column : hw::log_columns(plan, hardware))
+    if (column.kind == hw::LogColumn::Kind::signal)
+      if (const Column* logged = find(log, column.name, problems)) {
+        computed.push_back({logged, column.number});
+        result.columns.push_back({column.name, column.unit});
+      }
+  if (problems.has_errors()) return result;
+  for (const auto& [key, value] : log.facts) result.same_plan &= key != "plan" || value == plan.hash;
+
+  hw::PeriodStepper stepper(plan, hardware);
+  for (size_t row = 0; row < log.rows(); ++row) {
+    const double now = stepper.run().now().time;
+    if (!equal_bits(time->values[row], now)) {
+      result.fault = fmt::format("the log has a hole: row {} is at {:g} s, and should be at {:g} s", row + 1,
+                                 time->values[row], now);
+      return result;
+    }
+    for (size_t a = 0; a < measured.size(); ++a)
+      stepper.measure(a, measured[a].position->values[row],
+                      measured[a].velocity ? measured[a].velocity->values[row] : 0);
+    stepper.compute([](int) {});
+    if (stepper.run().failed()) {
+      result.fault = stepper.fault();
+      return result;
+    }
+    for (size_t c = 0; c < computed.size(); ++c)
+      compare(computed[c].logged->values[row], stepper.run().number(computed[c].number), int64_t(row), now,
+              result.columns[c]);
+    stepper.finish();
+    ++result.rows;
+  }
+  return result;
+}
+
+std::string to_text(const Replay& replay) {
+  std::string text;
+  if (!replay.same_plan)
+    text += "the log was made by another plan: a changed parameter, or another version\n";
+  for (const ReplayedColumn& column : replay.columns)
+    text +=
+        column.differing == 0
+            ? fmt::format("  {}: equal in every bit\n", column.name)
+            : fmt::format("  {}: {} of {} rows differ, first at {:g} s, by at most {:.3g} {}\n", column.name,
+                          column.differing, replay.rows, column.first_time, column.largest, column.unit);
+  if (!replay.fault.empty()) text += replay.fault + "\n";
+  return text + fmt::format("{} rows: the log and the plan {} each other\n", replay.rows,
+                            replay.explains() ? "explain" : "do not explain");
+}
+
+}  // namespace loopwright

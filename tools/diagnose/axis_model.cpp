@@ -1,0 +1,182 @@
+#include "tools/diagnose/axis_model.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include "engine/run/run.h"
+#include "tools/compare/machine.h"
+#include "tools/diagnose/injection.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+const std::pair<std::string, Place> role(const Experiment& experiment, std::string_view name) {
+  for (size_t i = 0; i < experiment.roles.ports.size(); ++i)
+    if (experiment.roles.ports[i].first == name)
+      return {experiment.roles.ports[i].second, experiment.roles.places[i]};
+  return {};
+}
+
+Number number_of(const Plan& plan, const std::string& port) {
+  const std::vector<Number> numbers = plan.find(port);
+  return numbers.size() == 1 ? numbers[0] : -1;
+}
+
+/// Nobody computes the block any more: its output is what is written into the arena.
+void silence(Plan& plan, Number number) {
+  const int block = plan.source_of(number).first;
+  std::erase_if(plan.order, [&](const Plan::Entry& entry) {
+    return entry.kind != Plan::Entry::Kind::ring && entry.block == block;
+  });
+}
+
+/// Only what the axis itself needs is computed: the controller that the cut left behind is not.
+void keep_only(Plan& plan, const std::vector<Number>& wanted) {
+  std::vector<bool> needed(plan.blocks.size(), false);
+  std::vector<int> todo;
+  const auto want = [&](Number n) {
+    const int block = n < 0 ? -1 : plan.source_of(n).first;
+    if (block >= 0 && !needed[size_t(block)]) needed[size_t(block)] = true, todo.push_back(block);
+  };
+  for (Number n : wanted) want(n);
+  while (!todo.empty()) {
+    const Plan::Block& block = plan.blocks[size_t(todo.back())];
+    todo.pop_back();
+    for (const auto& port : block.inputs)
+      for (Number n : port) want(n);
+  }
+  std::erase_if(plan.order, [&](const Plan::Entry& entry) {
+    return entry.kind != Plan::Entry::Kind::ring && !needed[size_t(entry.block)];
+  });
+}
+
+/// "axis.mass.mass": the inertia on which this force acts.
+std::string inertia_parameter(const Plan& plan, Run<double>& run, Number force) {
+  for (const Plan::Block& block : plan.blocks) {
+    const bool reads = std::ranges::any_of(
+        block.inputs, [&](const auto& port) { return std::ranges::find(port, force) != port.end(); });
+    if (!reads || block.states == 0) continue;
+    for (const char* name : {"mass", "inertia", "motor_mass", "first_mass"})
+      if (run.parameter(block.path + "." + name)) return block.path + "." + name;
+  }
+  return {};
+}
+
+}  // namespace
+
+AxisModel::AxisModel(const std::string& path, const std::string& experiment_path,
+                     const LoadOptions& options) {
+  Problems problems;
+  const auto experiment = load_experiment(experiment_path, problems);
+  const auto whole = load_diagram(path, options, problems);
+  const auto whole_plan = whole ? compile(*whole, problems) : nullptr;
+  if (!experiment || !whole_plan || problems.has_errors()) throw InputError(std::move(problems));
+  const Experiment cut = cut_open(*experiment, *whole_plan, problems);
+  const auto [force_port, force_place] = role(cut, "force");
+  if (force_port.empty())
+    problems.error({}, "/roles", "", fmt::format("{}: no role \"force\"", experiment_path)).expected =
+        "\"roles\": {\"force\": the output of the Sum that adds up the forces on the moving part, …}";
+  if (problems.has_errors()) throw InputError(std::move(problems));
+
+  LoadOptions driven = follow(cut, options);
+  driven.set.emplace_back("solver.step", fmt::format("{}", cut.time.sample_time));
+  driven.set.emplace_back("solver.method", "rk4");
+  const auto diagram = load_diagram(path, driven, problems);
+  std::string parent;
+  const auto injected =
+      diagram ? with_injected_force(*diagram, force_port, force_place, problems, parent) : nullptr;
+  const auto plan = injected ? compile(*injected, problems) : nullptr;
+  if (!plan || problems.has_errors()) throw InputError(std::move(problems));
+  auto changed = std::make_shared<Plan>(*plan);
+  record_ = read_axis_record(cut, *changed, problems);
+  if (problems.has_errors()) throw InputError(std::move(problems));
+  input_ = number_of(*changed, role(cut, "input").first);
+  injected_ = number_of(*changed, parent + injected_force + ".y");
+  force_ = number_of(*changed, force_port);
+  const auto moving = [&](const char* name) {
+    const Number number = number_of(*changed, role(cut, name).first);
+    return number < 0 ? number : state_behind(*changed, number);
+  };
+  position_ = moving("position"), velocity_ = moving("velocity");
+  silence(*changed, input_), silence(*changed, injected_);
+  std::vector<Number> wanted{force_, position_, velocity_};
+  for (const MeasuredPort& port : record_.measured) wanted.push_back(port.number);
+  keep_only(*changed, wanted);
+  if (const auto unit = plan->unit_of(force_)) force_unit_ = to_string(*unit);
+  if (position_ >= 0)
+    if (const auto unit = plan->unit_of(position_)) position_unit_ = to_string(*unit);
+  plan_ = std::move(changed);
+  run_ = std::make_unique<Run<double>>(*plan_);
+  switch_off_noise(*run_, *plan_);
+  numbers_ = reinterpret_cast<double*>(run_->arena().data());
+  for (Number n : wanted) all_outputs_ |= n >= 0 && n < plan_->signals && n != force_;
+  inertia_parameter_ = inertia_parameter(*plan_, *run_, force_);
+  if (!inertia_parameter_.empty()) own_inertia_ = *run_->parameter(inertia_parameter_);
+  for (int i = 0; i < plan_->states; ++i) seen_.push_back(i);
+  LinearAxis linear = linearise();
+  keep_seen_states(linear);
+  nominal_inertia_ = linear.inertia, nominal_damping_ = linear.damping;
+  if (std::isfinite(nominal_inertia_) && nominal_inertia_ > 0) return;
+  auto& p = problems.error(force_place, "/roles/force", "", "a force there does not accelerate the axis");
+  p.expected = "the output of the Sum whose force moves the roles \"velocity\" and \"position\"";
+  p.found = fmt::format("an inertia of {:.3g}", nominal_inertia_);
+  throw InputError(std::move(problems));
+}
+
+AxisModel::~AxisModel() = default;
+AxisModel::AxisModel(AxisModel&&) noexcept = default;
+
+/// Backwards from the measured ports through the linear axis.
+void AxisModel::keep_seen_states(const LinearAxis& linear) {
+  const size_t n = seen_.size();
+  std::vector<bool> seen(n, false);
+  for (size_t pass = 0; pass <= n; ++pass)
+    for (size_t j = 0; j < n; ++j) {
+      const Eigen::Index c = Eigen::Index(j);
+      if (linear.C.col(c).cwiseAbs().maxCoeff() > 0) seen[j] = true;
+      for (size_t i = 0; i < n; ++i)
+        if (seen[i] && linear.A(Eigen::Index(i), c) != 0) seen[j] = true;
+    }
+  std::vector<int> kept;
+  for (size_t i = 0; i < n; ++i)
+    if (seen[i]) kept.push_back(seen_[i]);
+  seen_ = std::move(kept);
+}
+
+bool AxisModel::set_added_inertia(double added) {
+  double* parameter = inertia_parameter_.empty() ? nullptr : run_->parameter(inertia_parameter_);
+  if (!parameter) return false;
+  *parameter = own_inertia_ + added;
+  return true;
+}
+
+void AxisModel::start(double position, double velocity) {
+  run_->reset({plan_->seed, 0});
+  place(position, velocity);
+}
+
+void AxisModel::place(double position, double velocity) {
+  if (position_ >= plan_->signals) numbers_[position_] = position;
+  if (velocity_ >= plan_->signals) numbers_[velocity_] = velocity;
+}
+
+void AxisModel::step(double input, double force) {
+  numbers_[input_] = input;
+  numbers_[injected_] = force;
+  run_->step_fixed(INT64_MAX, false, [] {});
+  if (all_outputs_) run_->evaluate(0, true);
+}
+
+double AxisModel::position() const { return position_ < 0 ? 0 : numbers_[position_]; }
+double AxisModel::velocity() const { return velocity_ < 0 ? 0 : numbers_[velocity_]; }
+double AxisModel::measured(size_t port) const { return numbers_[record_.measured[port].number]; }
+double AxisModel::state(int index) const { return numbers_[plan_->signals + index]; }
+void AxisModel::correct(int index, double by) { numbers_[plan_->signals + index] += by; }
+
+double AxisModel::net_force(double input, double force) {
+  numbers_[input_] = input;
+  numbers_[injected_] = force;
+  run_->evaluate(0, true);
+  return numbers_[force_];
+}
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,81 @@
+/// The user's diagram, cut open at its input and given one more force: what the predictor steps.
+#pragma once
+#include <Eigen/Dense>
+#include <memory>
+#include <span>
+#include <string>
+#include "engine/diagram/diagram.h"
+#include "engine/plan/plan.h"
+#include "tools/diagnose/axis_record.h"
+
+namespace loopwright {
+template <class Real> class Run;
+}
+
+namespace loopwright::diagnosis {
+
+/// x[k+1] = A x[k] + push F (a force held over the sample), y = C x; small deviations from the recorded
+/// motion. States that the measurement never sees are left out.
+struct LinearAxis {
+  Eigen::MatrixXd A;           ///< n×n
+  Eigen::VectorXd push;        ///< n; of a unit of force that pushes forward
+  Eigen::VectorXd input_push;  ///< n; of a unit of input
+  Eigen::MatrixXd C;           ///< measured ports × n
+  double inertia = 0;          ///< force per acceleration, of what the force moves
+  double damping = 0;          ///< force per speed
+};
+
+class AxisModel {
+ public:
+  /// The diagram at `path`, driven by the experiment's input alone. Throws InputError with every problem.
+  AxisModel(const std::string& path, const std::string& experiment, const LoadOptions& options);
+  ~AxisModel();
+  AxisModel(AxisModel&&) noexcept;
+
+  const AxisRecord& record() const { return record_; }
+  const Plan& plan() const { return *plan_; }
+  bool has_position() const { return position_ >= 0; }
+  const std::string& force_unit() const { return force_unit_; }
+  const std::string& position_unit() const { return position_unit_; }
+
+  /// Adds to the mass (or moment of inertia) on which the force acts; 0 is the user's own. False when the
+  /// diagram has no such parameter.
+  bool set_added_inertia(double added);
+  /// Of the user's own diagram.
+  double nominal_inertia() const { return nominal_inertia_; }
+  double nominal_damping() const { return nominal_damping_; }
+
+  /// Back to the start: position and velocity as given, all else as the diagram starts.
+  void start(double position, double velocity);
+  /// A sample onward with held input and held force (added to the force role; pushes forward).
+  void step(double input, double force);
+  double position() const;
+  double velocity() const;
+  double measured(size_t port) const;
+  /// States that the measurement sees.
+  std::span<const int> states() const { return seen_; }
+  double state(int index) const;
+  void correct(int index, double by);
+  /// The mean force on the moving part at the present state, the added force included.
+  double net_force(double input, double force);
+  void place(double position, double velocity);
+
+  /// Linearised around the recorded motion.
+  LinearAxis linearise();
+
+ private:
+  void keep_seen_states(const LinearAxis& linear);
+  Eigen::VectorXd sample_from(const Eigen::VectorXd& states, double input, double force);
+
+  std::shared_ptr<const Plan> plan_;
+  std::unique_ptr<Run<double>> run_;
+  double* numbers_ = nullptr;  // the arena's
+  Number input_ = -1, injected_ = -1, force_ = -1, position_ = -1, velocity_ = -1;
+  bool all_outputs_ = false;  // a role is not a state: its block must run at every step
+  std::string inertia_parameter_, force_unit_, position_unit_;
+  double own_inertia_ = 0, nominal_inertia_ = 0, nominal_damping_ = 0;
+  std::vector<int> seen_;
+  AxisRecord record_;
+};
+
+}  // namespace loopwright::diagnosis

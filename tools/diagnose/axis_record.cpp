@@ -1,0 +1,135 @@
+#include "tools/diagnose/axis_record.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+
+namespace loopwright::diagnosis {
+namespace {
+
+/// Port and place of a role; a problem when the experiment does not name it and must.
+const std::string* role_port(const Experiment& experiment, std::string_view role, Place* place) {
+  for (size_t i = 0; i < experiment.roles.ports.size(); ++i)
+    if (experiment.roles.ports[i].first == role) {
+      if (place) *place = experiment.roles.places[i];
+      return &experiment.roles.ports[i].second;
+    }
+  return nullptr;
+}
+
+Number number_of_role(const Experiment& experiment, const Plan& plan, std::string_view role,
+                      Problems& problems) {
+  Place place;
+  const std::string* port = role_port(experiment, role, &place);
+  if (!port) return -1;
+  const std::vector<Number> numbers = plan.find(*port);
+  if (numbers.size() == 1) return numbers[0];
+  auto& p = problems.error(place, fmt::format("/roles/{}", role), "",
+                           fmt::format("the role \"{}\" names no single signal", role));
+  p.found = *port;
+  std::vector<std::string> names;
+  for (const auto& [name, list] : plan.ports) names.push_back(name);
+  const std::string near = nearest_name(*port, names);
+  if (!near.empty()) p.hint = "did you mean \"" + near + "\"?";
+  return -1;
+}
+
+/// Rows on the grid start + k Ts. An input holds across a hole, a measured value is joined across it.
+struct Grid {
+  std::vector<size_t> row;       // at or before the grid point
+  std::vector<double> fraction;  // of the way to the next row
+};
+
+Grid grid_of(const std::vector<double>& time, double sample_time) {
+  Grid grid;
+  const size_t rows = size_t(std::llround((time.back() - time.front()) / sample_time)) + 1;
+  size_t i = 0;
+  for (size_t k = 0; k < rows; ++k) {
+    const double t = time.front() + double(k) * sample_time;
+    while (i + 1 < time.size() && time[i + 1] <= t + 0.25 * sample_time) ++i;
+    const double beyond = t - time[i];
+    const bool missing = beyond > 0.25 * sample_time && i + 1 < time.size();
+    grid.row.push_back(i);
+    grid.fraction.push_back(missing ? beyond / (time[i + 1] - time[i]) : 0);
+  }
+  return grid;
+}
+
+std::vector<double> on_grid(const std::vector<double>& values, const Grid& grid, bool join) {
+  std::vector<double> result;
+  result.reserve(grid.row.size());
+  for (size_t k = 0; k < grid.row.size(); ++k) {
+    const size_t i = grid.row[k];
+    const double step = join && grid.fraction[k] > 0 ? values[i + 1] - values[i] : 0;
+    result.push_back(values[i] + grid.fraction[k] * step);
+  }
+  return result;
+}
+
+}  // namespace
+
+Experiment cut_open(const Experiment& experiment, const Plan& plan, Problems& problems) {
+  Experiment cut = experiment;
+  cut.drives.clear(), cut.drive_is_linear.clear();
+  Place place;
+  const std::string* port = role_port(experiment, "input", &place);
+  if (!port) {
+    problems.error(place, "/roles", "", fmt::format("{}: no role \"input\"", experiment.path)).expected =
+        "\"roles\": {\"input\": the port that the recorded force, current or voltage drives, …}";
+    return cut;
+  }
+  const Number wanted = number_of_role(experiment, plan, "input", problems);
+  const auto take = [&](const RecordedSignal& signal, bool linear) {
+    const std::vector<Number> numbers = plan.find(signal.port);
+    if (!cut.drives.empty() || numbers.size() != 1 || numbers[0] != wanted) return;
+    cut.drives.push_back(signal);
+    cut.drives.back().port = *port;
+    cut.drive_is_linear.push_back(linear);
+    if (signal.port == *port) return;
+    Column column = *experiment.data.find(signal.port);
+    column.name = *port;
+    if (!cut.data.find(*port)) cut.data.columns.push_back(std::move(column));
+  };
+  for (size_t i = 0; i < experiment.drives.size(); ++i)
+    take(experiment.drives[i], experiment.drive_is_linear[i]);
+  for (const RecordedSignal& signal : experiment.compared) take(signal, false);
+  if (cut.drives.empty() && wanted >= 0) {
+    auto& p =
+        problems.error(place, "/roles/input", "", fmt::format("the input \"{}\" was not recorded", *port));
+    p.expected = "a column in \"drive\" or \"compare\" for the port of this role";
+  }
+  return cut;
+}
+
+AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Problems& problems) {
+  AxisRecord record;
+  record.title = experiment.title, record.path = experiment.path;
+  const std::vector<double>& time = experiment.data.columns.front().values;
+  if (experiment.drives.empty() || time.size() < 2) return record;
+  record.sample_time = experiment.time.sample_time;
+  record.start = time.front(), record.recorded_time = time;
+  const Grid grid = grid_of(time, record.sample_time);
+  const Column& input = *experiment.data.find(experiment.drives.front().port);
+  record.input = on_grid(input.values, grid, false);
+  record.input_unit = input.unit;
+  for (const char* role : {"position", "velocity"}) {
+    const Number wanted = number_of_role(experiment, plan, role, problems);
+    if (wanted < 0) continue;
+    for (const RecordedSignal& signal : experiment.compared) {
+      const std::vector<Number> numbers = plan.find(signal.port);
+      if (numbers.size() != 1 || numbers[0] != wanted || record.find(role)) continue;
+      const Column& column = *experiment.data.find(signal.port);
+      const auto written = parse_unit(signal.unit);  // rad, not 1
+      const std::string unit = written && written->scale == 1 ? signal.unit : column.unit;
+      record.measured.push_back({role, wanted, unit, signal.resolution, on_grid(column.values, grid, true)});
+    }
+  }
+  record.held_out_from = size_t(std::llround(double(record.rows()) * (1 - experiment.hold_out_fraction)));
+  if (record.measured.empty())
+    problems
+        .error({}, "/compare", "",
+               fmt::format("{}: neither position nor velocity of the axis was recorded", experiment.path))
+        .expected = "a column in \"compare\" for the port of the role \"position\" or \"velocity\"";
+  return record;
+}
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,27 @@
+/// The catalogue's effects as candidates: each runs its own blocks.
+#pragma once
+#include "tools/diagnose/candidate.h"
+#include "tools/diagnose/diagnose.h"
+#include "tools/effects/effect.h"
+
+namespace loopwright::diagnosis {
+
+/// The effects of a catalogue, compiled for a machine.
+struct Catalogue {
+  std::vector<Effect> effects;
+  std::vector<Candidate> candidates;  ///< one for each effect, in the same order
+  std::vector<NotLookedFor> left_out;
+};
+
+/// Sizes of the records, all together.
+RecordSizes sizes_of(const std::vector<const Path*>& paths, const std::vector<const AxisModel*>& models);
+
+/// Why an effect cannot be added to the diagram; empty: it can.
+using WhyNot = std::function<std::string(const Effect&)>;
+
+/// Effects that cannot be added, and those whose numbers cannot be worked out for these records, are left out.
+/// Throws InputError with every problem of the effect files.
+Catalogue make_catalogue(const std::vector<std::string>& folders, const MachineUnits& units,
+                         const RecordSizes& sizes, const WhyNot& why_not);
+
+}  // namespace loopwright::diagnosis

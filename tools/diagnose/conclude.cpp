@@ -1,0 +1,197 @@
+#include "tools/diagnose/conclude.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include "tools/diagnose/search.h"
+#include "tools/diagnose/spectrum.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+constexpr double least_wald = 25, least_wald_per_row = 0.001;
+constexpr double least_force = 0.005;          // of the input's rms
+constexpr double least_force_to_noise = 0.25;  // of the white noise
+constexpr double least_unique_force = 0.001;   // of the input's rms
+
+/// Places of a member's parameters among the free ones. Only those that say whether it is there: the linear
+/// ones, or the shape of one that has none.
+std::vector<Eigen::Index> existence(const std::vector<Member>& members, size_t member) {
+  std::vector<Eigen::Index> places;
+  const std::vector<FreeParameter> free = free_parameters(members);
+  const bool by_shape = members[member].candidate->amplitude_is_one;
+  for (size_t i = 0; i < free.size(); ++i)
+    if (free[i].member == member && free[i].is_linear != by_shape) places.push_back(Eigen::Index(i));
+  return places;
+}
+
+/// χ² of the parameters that say whether a member is there; and with all others known.
+std::pair<double, double> wald(Estimate& estimate, size_t member) {
+  const std::vector<FreeParameter> free = free_parameters(estimate.members);
+  const std::vector<Eigen::Index> places = existence(estimate.members, member);
+  const Eigen::Index n = Eigen::Index(places.size());
+  const Eigen::MatrixXd information = estimate.covariance.inverse();
+  Eigen::VectorXd theta(n);
+  Eigen::MatrixXd covariance(n, n), alone(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    theta[i] = value_of(estimate.members, free[size_t(places[size_t(i)])]);
+    for (Eigen::Index j = 0; j < n; ++j) {
+      covariance(i, j) = estimate.covariance(places[size_t(i)], places[size_t(j)]);
+      alone(i, j) = information(places[size_t(i)], places[size_t(j)]);
+    }
+  }
+  return {theta.dot(covariance.ldlt().solve(theta)), theta.dot(alone * theta)};
+}
+
+/// Root of the mean square of what a member consumes over the rows that are fitted.
+double force_rms(const Trials& trials, const Estimate& estimate, size_t index) {
+  const Member& member = estimate.members[index];
+  double sum = 0, n = 0;
+  for (size_t t = 0; t < trials.list.size(); ++t) {
+    const Trial& trial = trials.list[t];
+    const Fitted& fitted = estimate.fitted[t];
+    const Columns columns = member.candidate->columns(fitted.prediction.path, member.nonlinear);
+    std::vector<float> whole(columns[0].size());
+    for (size_t c = 0; c < columns.size(); ++c)
+      for (size_t k = 0; k < whole.size(); ++k) whole[k] += float(member.linear[c]) * columns[c][k];
+    std::vector<double> seen(whole.begin(), whole.end());
+    if (member.candidate->acts == Acts::sensor) {
+      const std::vector<float>* const feigned = &whole;
+      seen =
+          responses(fitted.axis, fitted.gains, fitted.prediction.path, Acts::sensor, {&feigned, 1}).front();
+      for (double& e : seen) e *= estimate.noise.white;
+    }
+    for (size_t k = 0; k < trial.held_out_from; ++k)
+      if (trial.usable[k]) sum += seen[k] * seen[k], n += 1;
+  }
+  return std::sqrt(sum / std::max(n, 1.0));
+}
+
+Weight weigh(const Trials& trials, Estimate& estimate, size_t member) {
+  Weight weight;
+  const auto [among_others, alone] = wald(estimate, member);
+  weight.wald = among_others;
+  weight.force_rms = force_rms(trials, estimate, member);
+  weight.unique_force = weight.force_rms * std::sqrt(std::min(1.0, among_others / std::max(alone, 1e-300)));
+  return weight;
+}
+
+void maximise(Trials& trials, Estimate& estimate) {
+  for (int round = 0; round < 2; ++round) {
+    const Noise noise = fit_noise_alone(trials, estimate.fitted, estimate.noise, FreeNoise::all);
+    estimate = fit_members(trials, estimate.members, noise, estimate.paths(), 8);
+  }
+}
+
+/// What else would do: every other candidate in the place of a member, its shape and all parameters fitted.
+std::vector<Substitute> substitutes_of(Trials& trials, const Estimate& estimate, size_t member,
+                                       const std::vector<Proposal>& exchanges, size_t catalogue,
+                                       double reach) {
+  std::vector<Substitute> list;
+  const double now = criterion(trials, estimate, catalogue);
+  for (const Proposal& proposal : exchanges) {
+    if (proposal.removed != std::vector<size_t>{member} || list.size() >= 3) continue;
+    std::vector<Member> members = estimate.members;
+    members[member] = proposal.added.front();
+    Estimate other = fit_members(trials, members, estimate.noise, estimate.paths(), 4);
+    if (!other.is_valid) continue;
+    const double loss = criterion(trials, other, catalogue) - now;
+    // A richer effect that has this one as a special case always comes near: it must explain more to be a
+    // rival.
+    const bool is_richer =
+        parameters_of(*members[member].candidate) > parameters_of(*estimate.members[member].candidate);
+    if (is_richer && other.profile > estimate.profile - 4) continue;
+    if (loss < reach) list.push_back({proposal.added.front().candidate, loss});
+  }
+  std::ranges::stable_sort(list, {}, &Substitute::loss);
+  return list;
+}
+
+}  // namespace
+
+double material(const Trials& trials, const Estimate& estimate, const Weight& weight) {
+  const double n = double(fitted_numbers(trials));
+  return std::min({weight.wald / std::max(least_wald, least_wald_per_row * n),
+                   weight.force_rms /
+                       std::max(least_force * trials.input_rms, least_force_to_noise * estimate.noise.white),
+                   weight.unique_force / (least_unique_force * trials.input_rms)});
+}
+
+std::vector<Weight> weigh_all(Trials& trials, Estimate& estimate) {
+  work_out_covariance(trials, estimate);
+  if (portmanteau(trials, estimate.fitted) > most_portmanteau) widen_by_blocks(trials, estimate);
+  std::vector<Weight> weights;
+  for (size_t m = 0; m < estimate.members.size(); ++m) weights.push_back(weigh(trials, estimate, m));
+  return weights;
+}
+
+double portmanteau(const Trials& trials, const std::vector<Fitted>& fitted) {
+  constexpr size_t lags = 40;
+  double sums[lags + 1] = {}, n = 0;
+  const size_t ports = trials.ports();
+  for (size_t t = 0; t < trials.list.size(); ++t) {
+    const Trial& trial = trials.list[t];
+    for (size_t k = 0; k < trial.held_out_from; ++k) {
+      if (!trial.usable[k]) continue;
+      n += 1;
+      for (size_t lag = 0; lag <= std::min(lags, k); ++lag)
+        if (trial.usable[k - lag])
+          sums[lag] += fitted[t].white[k * ports] * fitted[t].white[(k - lag) * ports];
+    }
+  }
+  double sum = 0;
+  for (size_t lag = 1; lag <= lags; ++lag) sum += sums[lag] * sums[lag];
+  return n * sum / (sums[0] * sums[0]);
+}
+
+Conclusion conclude(Trials& trials, const std::vector<Candidate>& candidates,
+                    const std::vector<Shape>& shapes, Estimate found) {
+  Conclusion result;
+  Estimate& estimate = result.estimate;
+  estimate = std::move(found);
+  for (;;) {
+    maximise(trials, estimate);
+    result.weights = weigh_all(trials, estimate);
+    size_t weakest = 0;
+    double least = 1e300;
+    for (size_t m = 0; m < estimate.members.size(); ++m) {
+      if (const double size = material(trials, estimate, result.weights[m]); size < least)
+        least = size, weakest = m;
+    }
+    if (estimate.members.empty() || least >= 1) break;
+    const Weight& weight = result.weights[weakest];
+    result.trail.push_back(
+        fmt::format("not material: {}, χ² {:.0f}, force {:.3g}, unique {:.3g} beside an input of {:.3g} and "
+                    "noise of {:.3g} and {:.3g}",
+                    estimate.members[weakest].candidate->name, weight.wald, weight.force_rms,
+                    weight.unique_force, trials.input_rms, estimate.noise.white, estimate.noise.slow()));
+    std::vector<Member> members = estimate.members;
+    members.erase(members.begin() + std::ptrdiff_t(weakest));
+    estimate = fit_members(trials, members, estimate.noise, estimate.paths(), 4);
+  }
+  const double n = double(fitted_numbers(trials));
+  const std::vector<Shape> periodic = periodic_shapes(trials, estimate, candidates, 1);
+  std::vector<const Shape*> all;
+  for (const auto* list : {&shapes, &periodic})
+    for (const Shape& shape : *list) all.push_back(&shape);
+  const Evidence evidence(trials, estimate, all, candidates.size());
+  const std::vector<double> removal = evidence.gains_of_removal();
+  const std::vector<Proposal> exchanges = evidence.exchanges();
+  const double reach = std::max(10.0, 0.002 * n);
+  for (size_t m = 0; m < estimate.members.size(); ++m) {
+    result.weights[m].loss = -removal[m] * n / evidence.rows();
+    std::vector<Proposal> near;
+    for (const Proposal& p : exchanges)
+      if (p.gain > -3 * reach) near.push_back(p);
+    result.substitutes.push_back(substitutes_of(trials, estimate, m, near, candidates.size(), reach));
+    double others = std::exp(-std::min(result.weights[m].loss, 600.0) / 2);
+    for (const Substitute& s : result.substitutes[m]) others += std::exp(-std::max(s.loss, 0.0) / 4);
+    result.inclusion.push_back(0.995 / (1 + others));
+  }
+  const Noise free = fit_noise(trials, estimate.fitted, estimate.noise, FreeNoise::all);
+  result.is_remainder_noise = free.slow() <= most_slow_noise * free.white;
+  result.portmanteau = portmanteau(trials, estimate.fitted);
+  result.held_out_mean_square = mean_square(trials, estimate.fitted, true);
+  return result;
+}
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,183 @@
+#include "tools/diagnose/diagnose.h"
+#include <algorithm>
+#include <cmath>
+#include "tools/diagnose/catalogue.h"
+#include "tools/diagnose/conclude.h"
+#include "tools/diagnose/force_residual.h"
+#include "tools/diagnose/improve.h"
+#include "tools/diagnose/prepare.h"
+#include "tools/diagnose/search.h"
+#include "tools/diagnose/staircase.h"
+#include "tools/diagnose/unknown.h"
+#include "tools/diagnose/verdict.h"
+
+namespace loopwright {
+namespace {
+
+using namespace diagnosis;
+
+MachineUnits units_of(const AxisModel& model) {
+  MachineUnits units;
+  units.force = model.force_unit().empty() ? model.record().input_unit : model.force_unit();
+  const MeasuredPort* position = model.record().find("position");
+  if (position)
+    units.position = position->unit;
+  else if (model.position_unit().size())
+    units.position = model.position_unit();
+  return units;
+}
+
+const Effect& effect_of(const Catalogue& catalogue, const Candidate* candidate) {
+  return catalogue.effects[size_t(candidate - catalogue.candidates.data())];
+}
+
+/// "(N)*s/(m)" as a person writes it: brackets only around what is made of several units.
+std::string without_idle_brackets(const std::string& unit) {
+  std::string text;
+  for (size_t i = 0; i < unit.size(); ++i) {
+    size_t end = i + 1;
+    if (unit[i] == '(')
+      while (end < unit.size() && std::isalpha(static_cast<unsigned char>(unit[end]))) ++end;
+    const bool idle = unit[i] == '(' && end < unit.size() && unit[end] == ')' && end > i + 1;
+    text += idle ? unit.substr(i + 1, end - i - 1) : std::string(1, unit[i]);
+    if (idle) i = end;
+  }
+  return text;
+}
+
+/// Values and intervals of a member's parameters, in SI.
+std::vector<DiagnosedParameter> parameters_of_member(const Conclusion& conclusion, size_t index,
+                                                     const MachineUnits& units) {
+  const Estimate& estimate = conclusion.estimate;
+  std::vector<Member> members = estimate.members;
+  const std::vector<FreeParameter> free = free_parameters(members);
+  std::vector<DiagnosedParameter> list;
+  for (size_t i = 0; i < free.size(); ++i) {
+    if (free[i].member != index) continue;
+    const CandidateParameter& range = range_of(members, free[i]);
+    const double value = value_of(members, free[i]);
+    const double half =
+        1.96 * std::sqrt(std::max(0.0, estimate.covariance(Eigen::Index(i), Eigen::Index(i))));
+    const double edge = 1e-6 * (range.high - range.low);
+    list.push_back({range.name, without_idle_brackets(unit_in(range.unit, units)), value, value - half,
+                    value + half, value <= range.low + edge || value >= range.high - edge});
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string_view name_of(Verdict verdict) {
+  constexpr std::string_view names[] = {"nothing_missing", "explained", "partly_explained", "unexplained"};
+  return names[size_t(verdict)];
+}
+
+namespace {
+
+Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std::string>& experiments,
+                              const DiagnoseOptions& options) {
+  const auto progress = [&](const char* stage, double done) {
+    if (options.progress) options.progress(stage, done);
+  };
+  progress("reading the records", 0);
+  std::vector<Fitted> motion;
+  Trials trials = prepare(diagram, experiments, options.load, motion);
+  trials.interrupt = options.interrupt;
+  std::vector<const Path*> paths;
+  std::vector<const AxisModel*> models;
+  for (size_t t = 0; t < trials.list.size(); ++t)
+    paths.push_back(&motion[t].prediction.path), models.push_back(trials.list[t].model.get());
+  const MachineUnits units = units_of(*models.front());
+  const RecordSizes sizes = sizes_of(paths, models);
+  const std::vector<std::string> folders =
+      options.catalogues.empty() ? std::vector<std::string>{catalogue_folder()} : options.catalogues;
+  progress("running every effect's blocks on the records", 0.1);
+  const Catalogue catalogue = make_catalogue(
+      folders, units, sizes, attachable(diagram, experiments.front(), options.load, units, sizes));
+  const std::vector<Shape> shapes = shapes_of(catalogue.candidates, paths);
+  progress("searching", 0.4);
+  const std::vector<Candidate> unknown = unknown_forces(sizes);
+  std::vector<InverseDynamics> inverse;
+  for (Trial& trial : trials.list) inverse.push_back(inverse_dynamics(trial, trials.rest_speed));
+  Diagnosis result;
+  result.findings = look_at_records(trials, inverse), result.not_looked_for = catalogue.left_out;
+  const bool is_fatal = std::ranges::any_of(result.findings, &RecordFinding::is_fatal);
+  SearchResult searched;  // names from a record that cannot bear them would be guesses
+  if (is_fatal)
+    searched.estimate = fit_members(trials, {}, search_noise(trials), paths, 0);
+  else
+    searched = search(trials, catalogue.candidates, shapes, unknown, motion);
+  progress("fitting effects and noise together", 0.7);
+  Conclusion conclusion = conclude(trials, catalogue.candidates, shapes, std::move(searched.estimate));
+
+  std::ranges::copy(conclusion.trail, std::back_inserter(searched.trail));
+  result.diagram = diagram, result.experiments = experiments, result.trail = std::move(searched.trail);
+  result.title = models.front()->plan().title;
+  result.force_unit = units.force, result.position_unit = units.position;
+  result.measured_unit = models.front()->record().measured.front().unit;
+  progress("the staircase of the error", 0.85);
+  const Staircase staircase = climb(trials, conclusion, inverse, catalogue.candidates.size());
+  result.steps = staircase.steps;
+  for (size_t index : staircase.order) {
+    const Member& member = conclusion.estimate.members[index];
+    if (member.candidate->is_unknown) continue;
+    const Effect& effect = effect_of(catalogue, member.candidate);
+    DiagnosedEffect found{effect.name,
+                          effect.form,
+                          effect.title,
+                          effect.physics,
+                          parameters_of_member(conclusion, index, units),
+                          conclusion.inclusion[index],
+                          {},
+                          conclusion.weights[index].force_rms,
+                          conclusion.weights[index].loss};
+    for (const Substitute& other : conclusion.substitutes[index]) {
+      if (std::ranges::find(found.alternatives, other.candidate->name) != found.alternatives.end()) continue;
+      if (other.candidate->name == effect.name) continue;
+      found.alternatives.push_back(other.candidate->name);
+      result.suggested.push_back(separating_experiment(effect, other.candidate->name));
+    }
+    result.effects.push_back(std::move(found));
+  }
+  const bool holds_out = result.steps.front().held_out_force_rmse > 0;
+  const auto error = [&](const DiagnosisStep& step) {
+    return holds_out ? step.held_out_force_rmse : step.force_rmse;
+  };
+  result.error_before = error(result.steps.front()), result.error_after = error(result.steps.back());
+  const Noise& noise = conclusion.estimate.noise;
+  result.noise_floor = residual_floor(trials, noise);
+  result.mean_square = conclusion.estimate.mean_square;
+  result.held_out_mean_square = conclusion.held_out_mean_square;
+  result.portmanteau = conclusion.portmanteau;
+  result.white_force = noise.white, result.slow_force = noise.slow();
+  result.slow_force_time_s = -models.front()->record().sample_time / std::log(noise.memory);
+  result.measurement_noise = noise.measurement;
+  judge(trials, conclusion, search_noise(trials), result);
+  if (!options.improved_diagram.empty())
+    result.improved = write_improved(diagram, experiments.front(), options.load, catalogue,
+                                     conclusion.estimate, units, sizes, options.improved_diagram);
+  const InverseDynamics& first = inverse.front();
+  result.curves.position = first.path.position, result.curves.velocity = first.path.velocity;
+  result.curves.before = residual_with(trials.list.front(), first, {});
+  result.curves.after = residual_with(trials.list.front(), first, conclusion.estimate.members);
+  result.curves.time = first.motion.time;
+  for (size_t k = 0; k < first.motion.rows(); ++k) {
+    if (!first.motion.counts[k]) result.curves.before[k] = result.curves.after[k] = std::nan("");
+  }
+  return result;
+}
+
+}  // namespace
+
+Diagnosis diagnose(const std::string& diagram, const std::vector<std::string>& experiments,
+                   const DiagnoseOptions& options) {
+  try {
+    return diagnose_to_the_end(diagram, experiments, options);
+  } catch (const Interrupted&) {
+    Diagnosis result;
+    result.was_interrupted = true;
+    return result;
+  }
+}
+
+}  // namespace loopwright

@@ -1,0 +1,100 @@
+/// Which physical effect is missing in a diagram, as far as records of the real axis can tell.
+#pragma once
+#include <atomic>
+#include <functional>
+#include <string>
+#include <vector>
+#include "engine/diagram/diagram.h"
+#include "tools/report/report.h"
+
+namespace loopwright {
+
+struct DiagnoseOptions {
+  LoadOptions load;  ///< --set, --variant
+  std::vector<std::string>
+      catalogues;                ///< folders with effect files; empty: the catalogue of the installation
+  std::string improved_diagram;  ///< where the diagram with the effects goes; empty: nowhere
+  std::function<void(const char* stage, double done)> progress;
+  const std::atomic<bool>* interrupt = nullptr;  ///< once true, the diagnosis ends soon, without a verdict
+};
+
+struct DiagnosedParameter {
+  std::string name, unit;
+  double value = 0, low = 0, high = 0;  ///< SI; 95 % interval
+  bool at_limit = false;                ///< the range of the catalogue ends here: a warning, not a result
+};
+
+struct DiagnosedEffect {
+  std::string name, form, title, physics;
+  std::vector<DiagnosedParameter> parameters;
+  double inclusion = 0;                   ///< probability that it is there
+  std::vector<std::string> alternatives;  ///< cannot be told apart from it by this record
+  double force_rms = 0;                   ///< SI
+  double evidence = 0;                    ///< what the criterion loses without it
+};
+
+/// The errors with the effects up to this one.
+struct DiagnosisStep {
+  std::vector<std::string> added;
+  double force_rmse = 0, held_out_force_rmse = 0, simulation_rmse = 0;
+  bool is_optional = false;  ///< after the knee: improves little
+};
+
+struct SuggestedExperiment {
+  std::string text, between, and_effect;
+};
+
+/// Something about a record that limits what it can say.
+struct RecordFinding {
+  std::string what, cost;
+  bool is_fatal = false;  ///< no confident verdict from it
+};
+
+/// An effect of the catalogue that the diagram or the records leave no room for.
+struct NotLookedFor {
+  std::string effect, why;
+};
+
+/// A share of the remaining error that a variable explains.
+struct RemainderShare {
+  std::string variable;
+  double share = 0;
+};
+
+enum class Verdict { nothing_missing, explained, partly_explained, unexplained };
+std::string_view name_of(Verdict verdict);
+
+struct Diagnosis {
+  Verdict verdict = Verdict::nothing_missing;
+  std::string diagram, title;
+  std::vector<std::string> experiments;
+  std::vector<DiagnosedEffect> effects;                       ///< strongest first
+  std::vector<DiagnosisStep> steps;                           ///< the first is the nominal diagram
+  double error_before = 0, error_after = 0, noise_floor = 0;  ///< force, held out where there is a hold-out
+  std::string force_unit, position_unit, measured_unit;
+  std::vector<SuggestedExperiment> suggested;
+  std::vector<RecordFinding> findings;
+  std::vector<NotLookedFor> not_looked_for;
+  std::vector<std::string> remainder_variables;  ///< on which what is left depends
+  std::vector<RemainderShare> dependence;
+  bool was_interrupted = false;               ///< nothing else has a meaning, nothing was written
+  double mean_square = 0, held_out_mean_square = 0, portmanteau = 0;
+  double white_force = 0, slow_force = 0, slow_force_time_s = 0;
+  std::vector<double> measurement_noise;
+  std::string improved;  ///< the diagram that was written
+  std::vector<std::string> trail;
+  struct Curves {
+    std::vector<double> time, position, velocity, before, after;
+  } curves;  ///< force residuals of the first record
+};
+
+/// Throws InputError with every problem of diagram, experiments and effects.
+Diagnosis diagnose(const std::string& diagram, const std::vector<std::string>& experiments,
+                   const DiagnoseOptions& options = {});
+
+/// Stable keys, docs/diagnose.md.
+std::string to_json(const Diagnosis& diagnosis);
+std::string to_text(const Diagnosis& diagnosis);
+report::Page diagnosis_page(const Diagnosis& diagnosis);
+
+}  // namespace loopwright

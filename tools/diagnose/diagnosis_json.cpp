@@ -1,0 +1,55 @@
+#include <nlohmann/json.hpp>
+#include "tools/diagnose/diagnose.h"
+
+namespace loopwright {
+
+std::string to_json(const Diagnosis& d) {
+  nlohmann::ordered_json json;
+  json["verdict"] = name_of(d.verdict);
+  json["effects"] = nlohmann::ordered_json::array();
+  for (const DiagnosedEffect& effect : d.effects) {
+    nlohmann::ordered_json entry{{"effect", effect.name}};
+    if (!effect.form.empty()) entry["form"] = effect.form;
+    for (const DiagnosedParameter& p : effect.parameters) {
+      entry["parameters"][p.name] = {{"value", p.value}, {"unit", p.unit}, {"low", p.low}, {"high", p.high}};
+      if (p.at_limit) entry["parameters"][p.name]["at_limit"] = true;
+    }
+    entry["inclusion"] = effect.inclusion;
+    entry["alternatives"] = effect.alternatives;
+    entry["force_rms"] = effect.force_rms;
+    json["effects"].push_back(std::move(entry));
+  }
+  json["steps"] = nlohmann::ordered_json::array();
+  for (const DiagnosisStep& step : d.steps)
+    json["steps"].push_back({{"added", step.added},
+                             {"force_rmse", step.force_rmse},
+                             {"held_out_force_rmse", step.held_out_force_rmse},
+                             {"simulation_rmse", step.simulation_rmse},
+                             {"optional", step.is_optional}});
+  json["error"] = {{"before", d.error_before},
+                   {"after", d.error_after},
+                   {"noise_floor", d.noise_floor},
+                   {"unit", d.force_unit}};
+  json["remainder"]["variables"] = d.remainder_variables;
+  for (const RemainderShare& dependence : d.dependence)
+    json["remainder"]["explained_share"][dependence.variable] = dependence.share;
+  json["suggested_experiments"] = nlohmann::ordered_json::array();
+  for (const SuggestedExperiment& e : d.suggested)
+    json["suggested_experiments"].push_back({{"text", e.text}, {"between", {e.between, e.and_effect}}});
+  json["record"] = nlohmann::ordered_json::array();
+  for (const RecordFinding& f : d.findings) json["record"].push_back({{"finding", f.what}, {"cost", f.cost}});
+  json["not_looked_for"] = nlohmann::ordered_json::array();
+  for (const NotLookedFor& n : d.not_looked_for)
+    json["not_looked_for"].push_back({{"effect", n.effect}, {"why", n.why}});
+  json["prediction_errors"] = {{"mean_square", d.mean_square},
+                               {"held_out_mean_square", d.held_out_mean_square},
+                               {"portmanteau_40", d.portmanteau}};
+  json["noise"] = {{"white_force", d.white_force},
+                   {"slow_force", d.slow_force},
+                   {"slow_force_time_s", d.slow_force_time_s},
+                   {"measurement", d.measurement_noise}};
+  json["diagram"] = d.improved.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(d.improved);
+  return json.dump(2) + "\n";
+}
+
+}  // namespace loopwright

@@ -1,0 +1,185 @@
+#include <fmt/format.h>
+#include <cmath>
+#include "tools/diagnose/diagnose.h"
+#include "tools/report/typography.h"
+
+namespace loopwright {
+namespace {
+
+std::string shown(double value, const std::string& unit) {
+  const report::Quantity q = report::engineering(value, unit);
+  return q.unit.empty() ? q.value : fmt::format("{} {}", q.value, q.unit);
+}
+
+std::string joined(const std::vector<std::string>& names, const char* with) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : with) + name;
+  return text;
+}
+
+/// The catalogue's name as words.
+std::string words(std::string name) {
+  for (char& c : name)
+    if (c == '_') c = ' ';
+  return name;
+}
+
+report::Notice verdict(const Diagnosis& d) {
+  using Severity = report::Notice::Severity;
+  std::vector<std::string> names;
+  for (const DiagnosedEffect& effect : d.effects) {
+    std::string name = words(effect.name);
+    for (const std::string& other : effect.alternatives) name += " (or " + words(other) + ")";
+    names.push_back(name);
+  }
+  const std::string fall =
+      fmt::format("The residual force falls from {} to {}; noise alone would leave {}.",
+                  shown(d.error_before, d.force_unit), shown(d.error_after, d.force_unit),
+                  shown(d.noise_floor, d.force_unit));
+  const std::string remainder =
+      d.remainder_variables.empty()
+          ? ""
+          : " What is left depends on " + joined(d.remainder_variables, " and ") + ".";
+  switch (d.verdict) {
+    case Verdict::nothing_missing:
+      return {Severity::good, "Nothing is missing. The diagram explains the record down to its noise."};
+    case Verdict::explained:
+      return {Severity::good,
+              "Missing: " + joined(names, ", ") + ". With that the record is explained. " + fall};
+    case Verdict::partly_explained:
+      return {Severity::warning, "Missing: " + joined(names, ", ") +
+                                     ". Something else is left that the catalogue does not hold. " + fall +
+                                     remainder};
+    default:
+      return {Severity::warning,
+              "Something is missing that no effect of the catalogue explains." + remainder};
+  }
+}
+
+/// The error against time, position or velocity, before and after.
+report::Plot overlay(const Diagnosis& d, const char* title, const std::string& unit,
+                     const std::vector<double>& x, const char* label, bool cloud) {
+  report::Plot plot;
+  plot.title = title;
+  plot.x = {label, unit}, plot.y = {"Residual force", d.force_unit};
+  const auto shape = cloud ? report::Series::Shape::points : report::Series::Shape::line;
+  plot.series.push_back({"nominal diagram", x, d.curves.before, shape});
+  if (!d.effects.empty()) plot.series.push_back({"with the effects found", x, d.curves.after, shape});
+  return plot;
+}
+
+report::Section where_it_fails(const Diagnosis& d) {
+  report::Section section{"Where the diagram fails", {}};
+  section.items.push_back(report::Paragraph{
+      "The force that the diagram leaves unexplained: net force of the diagram at the measured motion less "
+      "mass times "
+      "acceleration, filtered without delay. Gaps are rests, where dry friction may take any value."});
+  section.items.push_back(overlay(d, "Residual force over time", "s", d.curves.time, "Time", false));
+  section.items.push_back(
+      overlay(d, "Residual force over position", d.position_unit, d.curves.position, "Position", true));
+  section.items.push_back(overlay(d, "Residual force over velocity", d.position_unit + "/s",
+                                  d.curves.velocity, "Velocity", true));
+  return section;
+}
+
+report::Section what_is_missing(const Diagnosis& d) {
+  report::Section section{"What is missing", {}};
+  if (d.effects.empty())
+    section.items.push_back(report::Paragraph{"No effect of the catalogue is called for by this record."});
+  for (const DiagnosedEffect& effect : d.effects) {
+    std::string text =
+        fmt::format("{}. {} Its force is {} rms. Probability that it is there: {:.2f}.", effect.title,
+                    effect.physics, shown(effect.force_rms, d.force_unit), effect.inclusion);
+    for (const std::string& other : effect.alternatives)
+      text += fmt::format(" It might as well be {}: these two cannot be told apart by this record.",
+                          words(other));
+    section.items.push_back(report::Paragraph{std::move(text)});
+    report::Table table{{words(effect.name), "Value", "95 % interval", ""}, {}, ""};
+    for (const DiagnosedParameter& p : effect.parameters)
+      table.rows.push_back({words(p.name), shown(p.value, p.unit),
+                            shown(p.low, p.unit) + " … " + shown(p.high, p.unit),
+                            p.at_limit ? "at the limit of its range: a warning, not a result" : ""});
+    section.items.push_back(std::move(table));
+  }
+  return section;
+}
+
+report::Section staircase(const Diagnosis& d) {
+  report::Section section{"The staircase of the error", {}};
+  report::Table table{
+      {"Diagram", "Residual force, fitted", "Residual force, held out", "Position after 0.1 s", ""},
+      {},
+      "Each row has all parameters fitted anew. Held-out rows were never fitted."};
+  for (const DiagnosisStep& step : d.steps) {
+    std::vector<std::string> names;
+    for (const std::string& name : step.added) names.push_back(words(name));
+    table.rows.push_back(
+        {names.empty() ? "nominal" : "+ " + joined(names, " + "), shown(step.force_rmse, d.force_unit),
+         step.held_out_force_rmse > 0 ? shown(step.held_out_force_rmse, d.force_unit) : "–",
+         shown(step.simulation_rmse, d.measured_unit), step.is_optional ? "optional: past the knee" : ""});
+  }
+  table.rows.push_back({"noise alone", shown(d.noise_floor, d.force_unit), "", "", ""});
+  section.items.push_back(std::move(table));
+  return section;
+}
+
+report::Section what_remains(const Diagnosis& d) {
+  report::Section section{"What remains", {}};
+  section.items.push_back(report::KeyNumbers{
+      {{"Squared prediction error, fitted", fmt::format("{:.3f}", d.mean_square), "",
+        "1 when all is explained"},
+       {"held out", fmt::format("{:.3f}", d.held_out_mean_square), "", ""},
+       {"Whiteness, 40 lags", fmt::format("{:.0f}", d.portmanteau), "", "near 40 when nothing is left"},
+       {"White force noise", shown(d.white_force, d.force_unit), "", ""},
+       {"Slow force noise", shown(d.slow_force, d.force_unit), "",
+        fmt::format("over {:.3g} s", d.slow_force_time_s)}}});
+  if (!d.dependence.empty()) {
+    report::Table table{
+        {"Variable", "Share of the remainder that it explains"}, {}, "On rows left out of the fit."};
+    for (const RemainderShare& dependence : d.dependence)
+      table.rows.push_back(
+          {words(dependence.variable), fmt::format("{:.0f} %", 100 * std::max(0.0, dependence.share))});
+    section.items.push_back(std::move(table));
+  }
+  if (!d.remainder_variables.empty())
+    section.items.push_back(report::Paragraph{
+        "No effect of the catalogue has this dependence. A learned force (a Gpr block, trained by loopwright gp train) that reads " +
+        joined(d.remainder_variables, " and ") + " can stand in for it until its cause is known."});
+  return section;
+}
+
+report::Section what_next(const Diagnosis& d) {
+  report::Section section{"What to measure next", {}};
+  for (const SuggestedExperiment& e : d.suggested)
+    section.items.push_back(report::Paragraph{
+        fmt::format("To tell {} from {}: {}", words(e.between), words(e.and_effect), e.text)});
+  for (const RecordFinding& f : d.findings)
+    section.items.push_back(
+        report::Notice{f.is_fatal ? report::Notice::Severity::error : report::Notice::Severity::warning,
+                       fmt::format("The record: {}. What it costs: {}.", f.what, f.cost)});
+  for (const NotLookedFor& n : d.not_looked_for)
+    section.items.push_back(
+        report::Notice{report::Notice::Severity::warning,
+                       fmt::format("Not looked for: {}; {}. If that is missing, it is not named.", words(n.effect), n.why)});
+  if (section.items.empty())
+    section.items.push_back(report::Paragraph{"Nothing: this record answers what was asked of it."});
+  return section;
+}
+
+}  // namespace
+
+report::Page diagnosis_page(const Diagnosis& d) {
+  report::Page page;
+  page.title = d.title, page.subtitle = "Which physical effect is missing?";
+  page.facts = {{"Diagram", d.diagram}, {"Records", joined(d.experiments, ", ")}};
+  if (!d.improved.empty()) page.facts.emplace_back("Improved diagram", d.improved);
+  page.sections.push_back({"Answer", {verdict(d)}});
+  page.sections.push_back(what_is_missing(d));
+  page.sections.push_back(where_it_fails(d));
+  page.sections.push_back(staircase(d));
+  page.sections.push_back(what_remains(d));
+  page.sections.push_back(what_next(d));
+  return page;
+}
+
+}  // namespace loopwright

@@ -1,0 +1,74 @@
+#include <fmt/format.h>
+#include <algorithm>
+#include "tools/diagnose/diagnose.h"
+#include "tools/report/typography.h"
+
+namespace loopwright {
+namespace {
+
+std::string shown(double value, const std::string& unit) {
+  const report::Quantity q = report::engineering(value, unit);
+  return q.unit.empty() ? q.value : fmt::format("{} {}", q.value, q.unit);
+}
+
+std::string joined(const std::vector<std::string>& names, const char* with) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : with) + name;
+  return text;
+}
+
+/// A force of position and velocity, which is what a Gpr block learns.
+bool can_be_learned(const Diagnosis& d) {
+  return !d.remainder_variables.empty() && std::ranges::all_of(d.remainder_variables, [](const std::string& v) {
+    return v == "position" || v == "velocity" || v == "direction";
+  });
+}
+
+}  // namespace
+
+std::string to_text(const Diagnosis& d) {
+  std::string text;
+  const auto line = [&](const std::string& words) { text += words + "\n"; };
+  switch (d.verdict) {
+    case Verdict::nothing_missing:
+      line("Nothing is missing: the diagram explains the record down to its noise.");
+      break;
+    case Verdict::explained:
+      line("Missing, and with it the record is explained down to its noise:");
+      break;
+    case Verdict::partly_explained:
+      line("Missing, but something is left that these effects do not explain:");
+      break;
+    case Verdict::unexplained:
+      line("Something is missing that no effect of the catalogue explains.");
+      break;
+  }
+  for (const DiagnosedEffect& effect : d.effects) {
+    line(fmt::format("  {}{}  ({}, force {} rms, probability {:.2f})", effect.name,
+                     effect.form.empty() ? "" : " of the " + effect.form, effect.title,
+                     shown(effect.force_rms, d.force_unit), effect.inclusion));
+    for (const DiagnosedParameter& p : effect.parameters)
+      line(fmt::format("    {} = {}  ({} … {}){}", p.name, shown(p.value, p.unit), shown(p.low, p.unit),
+                       shown(p.high, p.unit), p.at_limit ? "  at the limit of its range" : ""));
+    for (const std::string& other : effect.alternatives)
+      line(fmt::format("    or {}: these two cannot be told apart by this record", other));
+  }
+  if (!d.remainder_variables.empty())
+    line("What is left depends on " + joined(d.remainder_variables, " and ") + ".");
+  if (can_be_learned(d))
+    line("A Gpr block can stand in for it: train one on this record with `loopwright gp train`, with label.command, mass and damping.");
+  line(fmt::format("  {:<42} {:>14} {:>14} {:>14}", "residual force", "fitted", "held out", "0.1 s ahead"));
+  for (const DiagnosisStep& step : d.steps)
+    line(fmt::format("  {:<42} {:>14} {:>14} {:>14}{}",
+                     step.added.empty() ? "nominal diagram" : "+ " + joined(step.added, " + "),
+                     shown(step.force_rmse, d.force_unit), shown(step.held_out_force_rmse, d.force_unit),
+                     shown(step.simulation_rmse, d.measured_unit), step.is_optional ? "  optional" : ""));
+  line(fmt::format("  {:<42} {:>14}", "noise alone", shown(d.noise_floor, d.force_unit)));
+  for (const SuggestedExperiment& e : d.suggested)
+    line(fmt::format("To tell {} from {}: {}", e.between, e.and_effect, e.text));
+  for (const RecordFinding& f : d.findings) line(fmt::format("The record: {}; {}.", f.what, f.cost));
+  for (const NotLookedFor& n : d.not_looked_for) line(fmt::format("Not looked for: {}; {}.", n.effect, n.why));
+  return text;
+}
+
+}  // namespace loopwright

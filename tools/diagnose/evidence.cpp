@@ -1,0 +1,280 @@
+#include "tools/diagnose/evidence.h"
+#include <algorithm>
+#include <cmath>
+
+namespace loopwright::diagnosis {
+namespace {
+
+/// Every combination of the grids.
+std::vector<std::vector<double>> grid_points(const Candidate& candidate) {
+  std::vector<std::vector<double>> points{{}};
+  for (const CandidateParameter& parameter : candidate.nonlinear) {
+    std::vector<std::vector<double>> longer;
+    for (const auto& point : points)
+      for (double value : parameter.grid) {
+        longer.push_back(point);
+        longer.back().push_back(value);
+      }
+    points = std::move(longer);
+  }
+  return points;
+}
+
+bool is_feasible(const Shape& shape, const Eigen::VectorXd& theta, Eigen::Index first) {
+  const Candidate& candidate = *shape.candidate;
+  if (candidate.amplitude_is_one) return theta[first] > 0.6 && theta[first] < 1.7;
+  for (size_t i = 0; i < candidate.linear.size(); ++i) {
+    const double value = theta[first + Eigen::Index(i)];
+    if (value < candidate.linear[i].low || value > candidate.linear[i].high) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+size_t parameters_of(const Candidate& candidate) {
+  return (candidate.amplitude_is_one ? 0 : candidate.linear.size()) + candidate.nonlinear.size();
+}
+
+double price(size_t parameters, size_t effects, double n, size_t catalogue) {
+  return double(parameters) * std::log(n) + 2 * double(effects) * std::log(double(catalogue));
+}
+
+void add_shapes(const Candidate& candidate, const std::vector<std::vector<double>>& points,
+                const std::vector<const Path*>& paths, std::vector<Shape>& shapes) {
+  const size_t first = shapes.size();
+  for (const auto& point : points) shapes.push_back({&candidate, point, {}});
+  for (const Path* path : paths) {
+    std::vector<Columns> columns = candidate.columns_at(*path, points);
+    for (size_t i = 0; i < points.size(); ++i) shapes[first + i].columns.push_back(std::move(columns[i]));
+  }
+}
+
+std::vector<Shape> shapes_of(const std::vector<Candidate>& candidates,
+                             const std::vector<const Path*>& paths) {
+  std::vector<Shape> shapes;
+  for (const Candidate& candidate : candidates) {
+    if (candidate.is_periodic) continue;
+    add_shapes(candidate, grid_points(candidate), paths, shapes);
+  }
+  return shapes;
+}
+
+Evidence::Evidence(const Trials& trials, const Estimate& estimate, const std::vector<const Shape*>& shapes,
+                   size_t catalogue, size_t most_rows)
+    : members_(estimate.members),
+      shapes_(shapes),
+      catalogue_(catalogue),
+      free_(free_parameters(estimate.members)) {
+  Eigen::Index width = Eigen::Index(free_.size());
+  for (const Shape* shape : shapes)
+    first_column_.push_back(int(width)), width += Eigen::Index(shape->columns[0].size());
+  const size_t ports = trials.ports();
+  const size_t stride = std::max<size_t>(1, fitted_numbers(trials) / ports / most_rows);
+  std::vector<std::vector<size_t>> rows;
+  size_t count = 0;
+  for (const Trial& trial : trials.list) {
+    rows.emplace_back();
+    for (size_t k = 0, usable = 0; k < trial.held_out_from; ++k)
+      if (trial.usable[k] && usable++ % stride == 0) rows.back().push_back(k);
+    count += rows.back().size() * ports;
+  }
+  n_ = double(count);
+  X_.resize(Eigen::Index(count), width + 1);
+  Eigen::Index top = 0;
+  for (size_t t = 0; t < trials.list.size(); ++t) {
+    const Fitted& fitted = estimate.fitted[t];
+    const Path& path = fitted.prediction.path;
+    const auto fill = [&](Eigen::Index column, const std::vector<double>& values) {
+      Eigen::Index r = top;
+      for (size_t k : rows[t])
+        for (size_t p = 0; p < ports; ++p) X_(r++, column) = values[k * ports + p];
+    };
+    const Sensitivity own = sensitivity(estimate.members, path, fitted, trials.list[t].model->record().input);
+    for (size_t c = 0; c < own.columns.size(); ++c) fill(Eigen::Index(c), own.columns[c]);
+    for (const Acts acts : {Acts::force, Acts::input, Acts::sensor}) {
+      std::vector<const std::vector<float>*> columns;
+      std::vector<Eigen::Index> places;
+      for (size_t s = 0; s < shapes.size(); ++s)
+        for (size_t c = 0; shapes[s]->candidate->acts == acts && c < shapes[s]->columns[t].size(); ++c)
+          columns.push_back(&shapes[s]->columns[t][c]), places.push_back(first_column_[s] + Eigen::Index(c));
+      constexpr size_t together = 16;  // more would be many megabytes
+      for (size_t first = 0; first < columns.size(); first += together) {
+        const auto some = std::span(columns).subspan(first, std::min(together, columns.size() - first));
+        const auto seen = responses(fitted.axis, fitted.gains, path, acts, some);
+        for (size_t c = 0; c < seen.size(); ++c) fill(places[first + c], seen[c]);
+      }
+    }
+    fill(width, fitted.white);
+    top += Eigen::Index(rows[t].size() * ports);
+  }
+  G_ = Eigen::MatrixXd::Zero(width, width);
+  const Eigen::Index own = Eigen::Index(free_.size());
+  G_.topRows(own).noalias() = X_.leftCols(own).transpose() * X_.leftCols(width);
+  G_.leftCols(own) = G_.topRows(own).transpose().eval();
+  for (size_t s = 0; s < shapes.size(); ++s) multiply(s, s);
+  b_ = X_.leftCols(width).transpose() * X_.col(width);
+  squares_ = X_.col(width).squaredNorm();
+  explained_ = solve(member_columns(), b_, squares_).squares;
+}
+
+void Evidence::multiply(size_t shape, size_t other) {
+  const int i = first_column_[shape], j = first_column_[other];
+  G_.block(i, j, width_of(shape), width_of(other)).noalias() =
+      X_.middleCols(i, width_of(shape)).transpose() * X_.middleCols(j, width_of(other));
+  G_.block(j, i, width_of(other), width_of(shape)) =
+      G_.block(i, j, width_of(shape), width_of(other)).transpose().eval();
+}
+
+Evidence::Solution Evidence::solve(const std::vector<int>& columns, const Eigen::VectorXd& b,
+                                   double squares) const {
+  const Eigen::Index n = Eigen::Index(columns.size());
+  if (n == 0) return {squares, {}};
+  Eigen::MatrixXd G(n, n);
+  Eigen::VectorXd right(n), scale(n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    scale[i] = 1 / std::sqrt(std::max(G_(columns[size_t(i)], columns[size_t(i)]), 1e-300));
+  for (Eigen::Index i = 0; i < n; ++i) {
+    right[i] = scale[i] * b[columns[size_t(i)]];
+    for (Eigen::Index j = 0; j < n; ++j)
+      G(i, j) = scale[i] * scale[j] * G_(columns[size_t(i)], columns[size_t(j)]) + (i == j ? 1e-9 : 0.0);
+  }
+  const Eigen::VectorXd theta = G.ldlt().solve(right);
+  return {std::max(squares - right.dot(theta), 1e-12 * squares), scale.cwiseProduct(theta)};
+}
+
+std::vector<int> Evidence::member_columns(const std::vector<size_t>& without) const {
+  std::vector<int> columns;
+  for (size_t i = 0; i < free_.size(); ++i)
+    if (std::ranges::find(without, free_[i].member) == without.end()) columns.push_back(int(i));
+  return columns;
+}
+
+/// What a member explains becomes part of the errors again. A shape that is not proportional to a parameter
+/// (a delay) counts as its derivative times its value.
+Evidence::Errors Evidence::errors_without(const std::vector<size_t>& removed) const {
+  const Eigen::Index own = Eigen::Index(free_.size());
+  Eigen::VectorXd theta = Eigen::VectorXd::Zero(own);
+  for (size_t i = 0; i < free_.size(); ++i) {
+    const FreeParameter& p = free_[i];
+    if (std::ranges::find(removed, p.member) == removed.end()) continue;
+    const Member& m = members_[p.member];
+    if (p.is_linear)
+      theta[Eigen::Index(i)] = m.linear[p.index];
+    else if (m.candidate->amplitude_is_one)
+      theta[Eigen::Index(i)] = m.nonlinear[p.index];
+  }
+  const Eigen::VectorXd added = G_.leftCols(own) * theta;
+  return {removed, b_ + added, squares_ + 2 * theta.dot(b_.head(own)) + theta.dot(added.head(own))};
+}
+
+/// A candidate is a member once; one that repeats along the axis again at another pitch.
+bool Evidence::may_be_added(const Shape& shape, const std::vector<size_t>& removed) const {
+  for (size_t m = 0; m < members_.size(); ++m) {
+    const Member& member = members_[m];
+    if (member.candidate != shape.candidate) continue;
+    const bool other_pitch = shape.candidate->is_periodic && shape.candidate->is_repeatable &&
+                             std::abs(shape.nonlinear[0] / member.nonlinear[0] - 1) > 0.02;
+    if (!other_pitch) return false;
+    if (std::ranges::find(removed, m) != removed.end()) return false;
+  }
+  return true;
+}
+
+std::optional<Proposal> Evidence::with_shapes(const std::vector<size_t>& shapes, const Errors& errors) const {
+  const std::vector<size_t>& removed = errors.removed;
+  std::vector<int> columns = member_columns(removed);
+  const Eigen::Index before = Eigen::Index(columns.size());
+  for (size_t s : shapes)
+    for (size_t c = 0; c < shapes_[s]->columns[0].size(); ++c) columns.push_back(first_column_[s] + int(c));
+  const Solution solution = solve(columns, errors.b, errors.squares);
+  Proposal proposal;
+  proposal.removed = removed;
+  Eigen::Index first = before;
+  double cost = 0;
+  for (size_t s : shapes) {
+    const Shape& shape = *shapes_[s];
+    if (!is_feasible(shape, solution.theta, first)) return {};
+    Member member{shape.candidate, {}, shape.nonlinear};
+    for (size_t c = 0; c < shape.columns[0].size(); ++c)
+      member.linear.push_back(shape.candidate->amplitude_is_one ? 1
+                                                                : solution.theta[first + Eigen::Index(c)]);
+    first += Eigen::Index(shape.columns[0].size());
+    cost += price(parameters_of(*shape.candidate), 1, n_, catalogue_);
+    proposal.added.push_back(std::move(member));
+  }
+  for (size_t m : removed) cost -= price(parameters_of(*members_[m].candidate), 1, n_, catalogue_);
+  proposal.gain = n_ * std::log(explained_ / solution.squares) - cost;
+  return proposal;
+}
+
+/// Of every candidate that is not a member, the shape that saves most.
+std::vector<size_t> Evidence::best_shapes(const Errors& errors) const {
+  std::vector<size_t> best;
+  std::vector<double> gains;
+  for (size_t s = 0; s < shapes_.size(); ++s) {
+    if (!may_be_added(*shapes_[s], errors.removed)) continue;
+    const auto proposal = with_shapes({s}, errors);
+    if (!proposal) continue;
+    const auto same = std::ranges::find_if(
+        best, [&](size_t other) { return shapes_[other]->candidate == shapes_[s]->candidate; });
+    if (same == best.end()) {
+      best.push_back(s), gains.push_back(proposal->gain);
+    } else if (double& gain = gains[size_t(same - best.begin())]; proposal->gain > gain) {
+      *same = s, gain = proposal->gain;
+    }
+  }
+  return best;
+}
+
+std::vector<Proposal> Evidence::extensions() const {
+  std::vector<Proposal> list;
+  const Errors errors = errors_without({});
+  for (size_t s : best_shapes(errors))
+    if (auto proposal = with_shapes({s}, errors); proposal && proposal->gain > 0)
+      list.push_back(std::move(*proposal));
+  std::ranges::stable_sort(list, std::ranges::greater{}, &Proposal::gain);
+  return list;
+}
+
+Proposal Evidence::best_pair() {
+  const Errors errors = errors_without({});
+  const std::vector<size_t> best = best_shapes(errors);
+  Proposal result;
+  for (size_t i = 0; i < best.size(); ++i)
+    for (size_t j = i + 1; j < best.size(); ++j) {
+      multiply(best[i], best[j]);
+      if (auto pair = with_shapes({best[i], best[j]}, errors); pair && pair->gain > result.gain)
+        result = std::move(*pair);
+    }
+  return result;
+}
+
+std::vector<Proposal> Evidence::exchanges() const {
+  std::vector<Proposal> list;
+  std::vector<std::vector<size_t>> removals;
+  for (size_t i = 0; i < members_.size(); ++i) {
+    removals.push_back({i});
+    for (size_t j = i + 1; j < members_.size(); ++j) removals.push_back({i, j});
+  }
+  for (const auto& removed : removals) {
+    const Errors errors = errors_without(removed);
+    for (size_t s : best_shapes(errors))
+      if (auto proposal = with_shapes({s}, errors)) list.push_back(std::move(*proposal));
+  }
+  std::ranges::stable_sort(list, std::ranges::greater{}, &Proposal::gain);
+  return list;
+}
+
+std::vector<double> Evidence::gains_of_removal() const {
+  std::vector<double> gains;
+  for (size_t m = 0; m < members_.size(); ++m) {
+    const Errors errors = errors_without({m});
+    const double without = solve(member_columns({m}), errors.b, errors.squares).squares;
+    gains.push_back(price(parameters_of(*members_[m].candidate), 1, n_, catalogue_) -
+                    n_ * std::log(without / explained_));
+  }
+  return gains;
+}
+
+}  // namespace loopwright::diagnosis

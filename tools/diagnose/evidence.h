@@ -1,0 +1,81 @@
+/// Which further effects the prediction errors speak for: columns of every candidate on a coarse grid of
+/// shapes, and their sums of squares, so that a set of effects costs one small solve.
+#pragma once
+#include "tools/diagnose/fit.h"
+
+namespace loopwright::diagnosis {
+
+/// A candidate at one point of its grid, with its columns along each record.
+struct Shape {
+  const Candidate* candidate = nullptr;
+  std::vector<double> nonlinear;
+  std::vector<Columns> columns;  ///< a record each
+};
+
+/// A candidate at several points, side by side.
+void add_shapes(const Candidate& candidate, const std::vector<std::vector<double>>& points,
+                const std::vector<const Path*>& paths, std::vector<Shape>& shapes);
+/// Every candidate at every point of its grid; those that scan pitches are not among them.
+std::vector<Shape> shapes_of(const std::vector<Candidate>& candidates, const std::vector<const Path*>& paths);
+
+/// A set of effects that explains the errors, as the linearisation sees it.
+struct Proposal {
+  std::vector<size_t> removed;  ///< members taken out
+  std::vector<Member> added;
+  double gain = 0;  ///< what it saves in the extended information criterion
+};
+
+/// Extended Bayesian information criterion (Chen and Chen 2008): what a set must save in n ln(mean square).
+double price(size_t parameters, size_t effects, double n, size_t catalogue);
+size_t parameters_of(const Candidate& candidate);
+
+/// Sums of squares of the errors, of the members' sensitivities, and of every shape.
+class Evidence {
+ public:
+  /// At most so many rows are looked at, evenly spread.
+  Evidence(const Trials& trials, const Estimate& estimate, const std::vector<const Shape*>& shapes,
+           size_t catalogue, size_t most_rows = 9000);
+
+  /// The best shape of every candidate that is not a member yet, best first; those that save nothing left
+  /// out.
+  std::vector<Proposal> extensions() const;
+  /// The best two shapes together, out of the best shapes of every candidate.
+  Proposal best_pair();
+  /// A member, or two, replaced by one shape: the best for each candidate, best first.
+  std::vector<Proposal> exchanges() const;
+  /// The members without one, with what that saves (mostly negative).
+  std::vector<double> gains_of_removal() const;
+  double rows() const { return n_; }
+
+ private:
+  struct Solution {
+    double squares = 0;
+    Eigen::VectorXd theta;
+  };
+  /// The errors with some members taken out.
+  struct Errors {
+    std::vector<size_t> removed;
+    Eigen::VectorXd b;  ///< products with all columns
+    double squares = 0;
+  };
+  Solution solve(const std::vector<int>& columns, const Eigen::VectorXd& b, double squares) const;
+  std::vector<int> member_columns(const std::vector<size_t>& without = {}) const;
+  Errors errors_without(const std::vector<size_t>& removed) const;
+  void multiply(size_t shape, size_t other);
+  int width_of(size_t shape) const { return int(shapes_[shape]->columns[0].size()); }
+  std::optional<Proposal> with_shapes(const std::vector<size_t>& shapes, const Errors& errors) const;
+  bool may_be_added(const Shape& shape, const std::vector<size_t>& removed) const;
+  std::vector<size_t> best_shapes(const Errors& errors) const;
+
+  const std::vector<Member>& members_;
+  const std::vector<const Shape*> shapes_;
+  const size_t catalogue_;
+  std::vector<FreeParameter> free_;
+  std::vector<int> first_column_;  // of each shape
+  Eigen::MatrixXd X_;              // rows that are looked at × columns: members', shapes', errors
+  Eigen::MatrixXd G_;  // Xᵀ X, as far as it was needed: of two shapes only where they were tried together
+  Eigen::VectorXd b_;
+  double squares_ = 0, n_ = 0, explained_ = 0;  // explained_: squares that the members leave
+};
+
+}  // namespace loopwright::diagnosis

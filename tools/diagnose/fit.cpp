@@ -1,0 +1,148 @@
+#include "tools/diagnose/fit.h"
+#include <algorithm>
+#include <cmath>
+
+namespace loopwright::diagnosis {
+namespace {
+
+struct NormalEquations {
+  Eigen::MatrixXd G;
+  Eigen::VectorXd b;
+};
+
+/// Jᵀ J and Jᵀ e over the fitted rows of all records.
+NormalEquations normal_equations(const Trials& trials, const std::vector<Member>& members,
+                                 const std::vector<Fitted>& fitted, const std::vector<const Path*>& paths) {
+  const Eigen::Index n = Eigen::Index(free_parameters(members).size());
+  NormalEquations equations{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
+  const size_t ports = trials.ports();
+  for (size_t t = 0; t < trials.list.size(); ++t) {
+    const Trial& trial = trials.list[t];
+    const Sensitivity s = sensitivity(members, *paths[t], fitted[t], trial.model->record().input);
+    constexpr size_t chunk = 1024;
+    Eigen::MatrixXd rows(Eigen::Index(chunk * ports), n + 1);
+    for (size_t start = 0; start < trial.held_out_from; start += chunk) {
+      Eigen::Index r = 0;
+      for (size_t k = start; k < std::min(start + chunk, trial.held_out_from); ++k) {
+        if (!trial.usable[k]) continue;
+        for (size_t p = 0; p < ports; ++p, ++r) {
+          for (Eigen::Index c = 0; c < n; ++c) rows(r, c) = s.columns[size_t(c)][k * ports + p];
+          rows(r, n) = fitted[t].white[k * ports + p];
+        }
+      }
+      equations.G.noalias() += rows.topRows(r).leftCols(n).transpose() * rows.topRows(r).leftCols(n);
+      equations.b.noalias() += rows.topRows(r).leftCols(n).transpose() * rows.topRows(r).col(n);
+    }
+  }
+  return equations;
+}
+
+/// Solves with columns scaled to one and a ridge that only dependent columns feel.
+Eigen::VectorXd solve(const NormalEquations& e) {
+  const Eigen::VectorXd scale = e.G.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  Eigen::MatrixXd scaled = scale.asDiagonal() * e.G * scale.asDiagonal();
+  scaled.diagonal().array() += 1e-9;
+  return scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * e.b);
+}
+
+/// The members a step further, inside their ranges; shapes move at most by a third at a time.
+std::vector<Member> moved(std::vector<Member> members, const std::vector<FreeParameter>& free,
+                          const Eigen::VectorXd& step, double fraction) {
+  for (size_t i = 0; i < free.size(); ++i) {
+    const CandidateParameter& range = range_of(members, free[i]);
+    double& value = value_of(members, free[i]);
+    double by = fraction * step[Eigen::Index(i)];
+    if (!free[i].is_linear) {
+      const double most = range.span > 0      ? 0.2 * value * value / range.span
+                          : range.logarithmic ? std::abs(value) / 3
+                                              : (range.high - range.low) / 6;
+      by = std::clamp(by, -most, most);
+    }
+    value = std::clamp(value + by, range.low, range.high);
+  }
+  return members;
+}
+
+}  // namespace
+
+std::vector<const Path*> Estimate::paths() const {
+  std::vector<const Path*> list;
+  for (const Fitted& f : fitted) list.push_back(&f.prediction.path);
+  return list;
+}
+
+Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& noise,
+                     const std::vector<const Path*>& paths, int iterations) {
+  Estimate best;
+  best.members = std::move(members), best.noise = noise;
+  best.fitted = run_members(trials, best.members, paths, noise);
+  best.mean_square = mean_square(trials, best.fitted);
+  best.profile = diagnosis::profile(trials, best.fitted);
+  best.is_valid = std::isfinite(best.mean_square);
+  if (!best.is_valid) return best;
+  const std::vector<FreeParameter> free = free_parameters(best.members);
+  for (int i = 0; i < iterations && !free.empty(); ++i) {
+    const std::vector<const Path*> now = best.paths();
+    const Eigen::VectorXd step = solve(normal_equations(trials, best.members, best.fitted, now));
+    const double before = best.profile;
+    double fraction = 1;
+    for (int shorter = 0; shorter < 4; ++shorter, fraction *= 0.35) {
+      Estimate next = best;
+      next.members = moved(best.members, free, step, fraction);
+      next.fitted = run_members(trials, next.members, now, noise);
+      next.mean_square = mean_square(trials, next.fitted);
+      next.profile = diagnosis::profile(trials, next.fitted);
+      if (!(next.profile < before)) continue;
+      best = std::move(next);
+      break;
+    }
+    if (!(best.profile < before - 0.01)) break;
+  }
+  return best;
+}
+
+void widen_by_blocks(const Trials& trials, Estimate& estimate) {
+  constexpr double block_s = 0.5;
+  const Eigen::Index n = estimate.covariance.rows();
+  if (n == 0) return;
+  const size_t ports = trials.ports();
+  Eigen::MatrixXd between = Eigen::MatrixXd::Zero(n, n), within = between;  // of blocks, of rows
+  for (size_t t = 0; t < trials.list.size(); ++t) {
+    const Trial& trial = trials.list[t];
+    const Fitted& fitted = estimate.fitted[t];
+    const Path& path = fitted.prediction.path;
+    const Sensitivity s = sensitivity(estimate.members, path, fitted, trial.model->record().input);
+    const size_t block = std::max<size_t>(1, size_t(block_s / path.sample_time));
+    Eigen::VectorXd sum(n), score(n);
+    for (size_t start = 0; start < trial.held_out_from; start += block) {
+      sum.setZero();
+      for (size_t k = start; k < std::min(start + block, trial.held_out_from); ++k) {
+        if (!trial.usable[k]) continue;
+        score.setZero();
+        for (size_t p = 0; p < ports; ++p)
+          for (Eigen::Index c = 0; c < n; ++c)
+            score[c] += s.columns[size_t(c)][k * ports + p] * fitted.white[k * ports + p];
+        sum += score, within += score * score.transpose();
+      }
+      between += sum * sum.transpose();
+    }
+  }
+  const Eigen::MatrixXd& C = estimate.covariance;
+  const Eigen::VectorXd alike = (C * between * C).diagonal(), independent = (C * within * C).diagonal();
+  const Eigen::VectorXd factor =
+      alike.cwiseQuotient(independent.cwiseMax(1e-300)).cwiseMax(1.0).cwiseSqrt();
+  estimate.covariance = factor.asDiagonal() * C * factor.asDiagonal();
+}
+
+void work_out_covariance(Trials& trials, Estimate& estimate) {
+  const std::vector<FreeParameter> free = free_parameters(estimate.members);
+  if (free.empty()) return;
+  const NormalEquations e = normal_equations(trials, estimate.members, estimate.fitted, estimate.paths());
+  const Eigen::VectorXd scale = e.G.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  Eigen::MatrixXd scaled = scale.asDiagonal() * e.G * scale.asDiagonal();
+  scaled.diagonal().array() += 1e-12;
+  estimate.covariance = scale.asDiagonal() * scaled.inverse() * scale.asDiagonal();
+  estimate.covariance *= std::max(1.0, estimate.mean_square);
+}
+
+}  // namespace loopwright::diagnosis

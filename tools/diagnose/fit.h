@@ -1,0 +1,46 @@
+/// Joint maximum likelihood: the parameters of all members, and the noise.
+#pragma once
+#include "tools/diagnose/hypothesis.h"
+
+namespace loopwright::diagnosis {
+
+struct Estimate {
+  std::vector<Member> members;
+  Noise noise;
+  std::vector<Fitted> fitted;
+  double mean_square = 0;      ///< of the whitened errors; 1 when model and noise are right
+  double profile = 0;          ///< see profile(): smaller is better
+  Eigen::MatrixXd covariance;  ///< of the free parameters, times max(1, mean_square)
+  bool is_valid = false;
+
+  std::vector<const Path*> paths() const;
+};
+
+/// Gauss-Newton on the prediction errors with the noise as given, from the members as given. Each iteration
+/// steps the diagram once or, where a step has to be shortened, a few times.
+Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& noise,
+                     const std::vector<const Path*>& paths, int iterations);
+
+/// Which of its numbers the likelihood may change.
+enum class FreeNoise { with_random_walk, white_and_slow, all };
+/// Maximises the likelihood of the noise, the errors of the estimate given. Bounded: a factor of thirty
+/// around the start.
+Noise fit_noise(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& start, FreeNoise free);
+
+/// A slow force above this part of the white one is no noise but something that the model lacks.
+constexpr double most_slow_noise = 0.8;
+
+/// fit_noise; but where the slow force comes out as more than noise, all of it is counted as white. The
+/// predictor would else follow what the model lacks, and effects fitted beside it would lose their steady
+/// parts to it.
+Noise fit_noise_alone(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& start,
+                      FreeNoise free);
+
+/// Widens the covariance where errors in blocks of half a second are more alike than independent errors are:
+/// the sandwich estimator by blocks (Liang and Zeger 1986), a factor for each parameter, never less than one.
+void widen_by_blocks(const Trials& trials, Estimate& estimate);
+
+/// Fills Estimate::covariance.
+void work_out_covariance(Trials& trials, Estimate& estimate);
+
+}  // namespace loopwright::diagnosis

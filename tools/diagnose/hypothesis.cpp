@@ -1,0 +1,210 @@
+#include "tools/diagnose/hypothesis.h"
+#include <algorithm>
+#include <cmath>
+
+namespace loopwright::diagnosis {
+namespace {
+
+double added_inertia(const std::vector<Member>& members) {
+  double added = 0;
+  for (const Member& member : members)
+    if (member.candidate->added_inertia) added += member.candidate->added_inertia(member);
+  return added;
+}
+
+/// Members that change the input, in the order of the signal path.
+std::vector<const Member*> chain_of(const std::vector<Member>& members) {
+  std::vector<const Member*> chain;
+  for (const Member& member : members)
+    if (member.candidate->acts == Acts::input) chain.push_back(&member);
+  std::ranges::stable_sort(chain, {}, [](const Member* m) { return m->candidate->place_in_chain; });
+  return chain;
+}
+
+std::vector<double> through(const std::vector<const Member*>& chain, const Path& path,
+                            const std::vector<double>& raw_input) {
+  Path upstream;
+  if (chain.empty()) return raw_input;
+  upstream = path;
+  upstream.input = raw_input;
+  for (const Member* member : chain) {
+    const Columns columns = member->candidate->columns(upstream, member->nonlinear);
+    for (size_t c = 0; c < columns.size(); ++c)
+      for (size_t i = 0; i < upstream.input.size(); ++i)
+        upstream.input[i] -= member->linear[c] * double(columns[c][i]);
+  }
+  return upstream.input;
+}
+
+void add_columns(const Member& member, const Columns& columns, std::vector<double>& sum, double sign = 1) {
+  for (size_t c = 0; c < columns.size(); ++c)
+    for (size_t i = 0; i < sum.size(); ++i) sum[i] += sign * member.linear[c] * double(columns[c][i]);
+}
+
+/// A step in a nonlinear parameter for its derivative, inside its range.
+double difference_step(const CandidateParameter& range, double at) {
+  if (range.span > 0) return 0.003 * at * at / range.span;
+  const double step = 1e-3 * (range.logarithmic ? std::abs(at) : range.high - range.low);
+  return at + step > range.high ? -step : step;
+}
+
+/// d(consumed)/d(parameter) of a member that does not change the input: its columns, then a difference for
+/// each shape.
+Columns derivatives(const Member& member, const Path& path) {
+  std::vector<std::vector<double>> shapes{member.nonlinear};
+  std::vector<double> steps;
+  for (size_t i = 0; i < member.nonlinear.size(); ++i) {
+    shapes.push_back(member.nonlinear);
+    steps.push_back(difference_step(member.candidate->nonlinear[i], member.nonlinear[i]));
+    shapes.back()[i] += steps[i];
+  }
+  std::vector<Columns> at = member.candidate->columns_at(path, shapes);
+  Columns result = member.candidate->amplitude_is_one ? Columns{} : at[0];
+  for (size_t i = 0; i < steps.size(); ++i) {
+    std::vector<double> change(path.samples());
+    add_columns(member, at[i + 1], change);
+    add_columns(member, at[0], change, -1);
+    std::vector<float> column(change.size());
+    for (size_t k = 0; k < column.size(); ++k) column[k] = float(change[k] / steps[i]);
+    result.push_back(std::move(column));
+  }
+  return result;
+}
+
+/// The same for a member that does, as consumed input at the end of the chain.
+std::vector<float> input_derivative(std::vector<Member> members, const FreeParameter& parameter,
+                                    const Path& path, const std::vector<double>& raw_input) {
+  double& value = value_of(members, parameter);
+  const double step = parameter.is_linear ? 1e-3 : difference_step(range_of(members, parameter), value);
+  value += step;
+  const std::vector<double> high = through(chain_of(members), path, raw_input);
+  value -= 2 * step;
+  const std::vector<double> low = through(chain_of(members), path, raw_input);
+  std::vector<float> result(high.size());
+  for (size_t i = 0; i < high.size(); ++i) result[i] = float((low[i] - high[i]) / (2 * step));
+  return result;
+}
+
+template <class F>
+void for_counted_rows(const Trials& trials, const std::vector<Fitted>& fitted, bool held_out, F&& f) {
+  const size_t ports = trials.ports();
+  for (size_t t = 0; t < trials.list.size(); ++t) {
+    const Trial& trial = trials.list[t];
+    const size_t from = held_out ? trial.held_out_from : 0;
+    const size_t to = held_out ? trial.usable.size() : trial.held_out_from;
+    for (size_t k = from; k < to; ++k)
+      if (trial.usable[k]) f(fitted[t], std::span(fitted[t].white).subspan(k * ports, ports));
+  }
+}
+
+}  // namespace
+
+std::vector<FreeParameter> free_parameters(const std::vector<Member>& members) {
+  std::vector<FreeParameter> free;
+  for (size_t m = 0; m < members.size(); ++m) {
+    if (!members[m].candidate->amplitude_is_one)
+      for (size_t i = 0; i < members[m].linear.size(); ++i) free.push_back({m, true, i});
+    for (size_t i = 0; i < members[m].nonlinear.size(); ++i) free.push_back({m, false, i});
+  }
+  return free;
+}
+
+double& value_of(std::vector<Member>& members, const FreeParameter& p) {
+  Member& member = members[p.member];
+  return p.is_linear ? member.linear[p.index] : member.nonlinear[p.index];
+}
+
+const CandidateParameter& range_of(const std::vector<Member>& members, const FreeParameter& p) {
+  const Candidate& candidate = *members[p.member].candidate;
+  return p.is_linear ? candidate.linear[p.index] : candidate.nonlinear[p.index];
+}
+
+Drives drives_of(const std::vector<Member>& members, const Path& path, const std::vector<double>& raw_input) {
+  Drives drives;
+  drives.input = through(chain_of(members), path, raw_input);
+  drives.force.assign(raw_input.size(), 0.0);
+  const double inertia = added_inertia(members);
+  if (inertia != 0)
+    for (size_t k = 0; k < drives.force.size(); ++k) drives.force[k] = -inertia * path.acceleration[k];
+  for (const Member& member : members) {
+    const Candidate& candidate = *member.candidate;
+    if (candidate.acts == Acts::force)
+      add_columns(member, candidate.columns(path, member.nonlinear), drives.force);
+    if (candidate.acts != Acts::sensor) continue;
+    drives.sensor.resize(raw_input.size(), 0.0);
+    add_columns(member, candidate.columns(path, member.nonlinear), drives.sensor);
+  }
+  return drives;
+}
+
+std::vector<Fitted> run_members(Trials& trials, const std::vector<Member>& members,
+                                const std::vector<const Path*>& paths, const Noise& noise) {
+  if (trials.interrupt && *trials.interrupt) throw Interrupted{};
+  std::vector<Fitted> result;
+  const double inertia = added_inertia(members);
+  for (size_t t = 0; t < trials.list.size(); ++t) {
+    AxisModel& model = *trials.list[t].model;
+    Fitted fitted;
+    model.set_added_inertia(inertia);
+    fitted.axis = model.linearise();
+    fitted.gains = gains_of(fitted.axis, noise, model.nominal_inertia());
+    const std::vector<double>& raw = model.record().input;
+    Drives drives;
+    if (paths.empty())
+      drives = {raw, std::vector<double>(raw.size(), 0.0), {}};
+    else
+      drives = drives_of(members, *paths[t], raw);
+    fitted.prediction = predict(model, fitted.gains, drives, trials.rest_speed);
+    fitted.white = fitted.prediction.error;
+    whiten(fitted.white, fitted.gains);
+    result.push_back(std::move(fitted));
+  }
+  return result;
+}
+
+double mean_square(const Trials& trials, const std::vector<Fitted>& fitted, bool held_out) {
+  double sum = 0;
+  size_t n = 0;
+  for_counted_rows(trials, fitted, held_out, [&](const Fitted&, std::span<const double> white) {
+    for (double e : white) sum += e * e, ++n;
+  });
+  return n ? sum / double(n) : 0;
+}
+
+double profile(const Trials& trials, const std::vector<Fitted>& fitted) {
+  double sum = 0;
+  for_counted_rows(trials, fitted, false,
+                   [&](const Fitted& f, std::span<const double>) { sum += f.gains.log_determinant; });
+  return sum + double(fitted_numbers(trials)) * std::log(mean_square(trials, fitted));
+}
+
+size_t fitted_numbers(const Trials& trials) {
+  size_t n = 0;
+  for (const Trial& trial : trials.list)
+    for (size_t k = 0; k < trial.held_out_from; ++k) n += trial.usable[k] ? trials.ports() : 0;
+  return n;
+}
+
+Sensitivity sensitivity(const std::vector<Member>& members, const Path& path, const Fitted& fitted,
+                        const std::vector<double>& raw_input) {
+  Sensitivity result;
+  const std::vector<FreeParameter> free = free_parameters(members);
+  result.columns.resize(free.size());
+  for (const Acts acts : {Acts::force, Acts::input, Acts::sensor}) {
+    Columns columns;
+    std::vector<size_t> places;
+    for (size_t i = 0; i < free.size(); ++i)
+      if (members[free[i].member].candidate->acts == acts) {
+        places.push_back(i);
+        if (acts == Acts::input) columns.push_back(input_derivative(members, free[i], path, raw_input));
+      }
+    for (const Member& member : members)
+      if (acts != Acts::input && member.candidate->acts == acts)
+        std::ranges::move(derivatives(member, path), std::back_inserter(columns));
+    auto response = responses(fitted.axis, fitted.gains, path, acts, pointers(columns));
+    for (size_t i = 0; i < places.size(); ++i) result.columns[places[i]] = std::move(response[i]);
+  }
+  return result;
+}
+
+}  // namespace loopwright::diagnosis

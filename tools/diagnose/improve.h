@@ -1,0 +1,19 @@
+/// "Add it": the user's diagram with the effects that were found.
+#pragma once
+#include "tools/diagnose/catalogue.h"
+#include "tools/diagnose/fit.h"
+#include "tools/effects/insert.h"
+
+namespace loopwright::diagnosis {
+
+/// Tries each effect on the user's diagram, in memory.
+WhyNot attachable(const std::string& diagram, const std::string& experiment, const LoadOptions& load,
+                  const MachineUnits& units, const RecordSizes& sizes);
+
+/// Writes the diagram with every member's blocks to `target`, whole or not at all, and answers its path.
+/// Throws InputError.
+std::string write_improved(const std::string& diagram, const std::string& experiment, const LoadOptions& load,
+                           const Catalogue& catalogue, const Estimate& estimate, const MachineUnits& units,
+                           const RecordSizes& sizes, const std::string& target);
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,215 @@
+#include "tools/diagnose/predictor.h"
+#include <array>
+#include <cmath>
+
+namespace loopwright::diagnosis {
+namespace {
+
+/// Columns that go through the filter side by side, so that none waits for its own last sample.
+constexpr int side_by_side = 8;
+using Side = Eigen::Array<double, side_by_side, 1>;
+
+/// The error filter with states (x, d): how small forces and sensor errors travel into the prediction errors.
+/// Sizes known when compiling make it three times as fast; `States` and `Ports` are 0 for any size.
+template <int States, int Ports> class ErrorFilter {
+ public:
+  ErrorFilter(const LinearAxis& axis, const Gains& gains, bool is_input)
+      : n_(int(axis.A.rows())), ports_(int(axis.C.rows())), memory_(gains.memory) {
+    for (int i = 0; i < n(); ++i) {
+      for (int j = 0; j < n(); ++j) A_[i][j] = axis.A(i, j);
+      push_[i] = axis.push[i];
+      enters_[i] = is_input ? axis.input_push[i] : push_[i];
+      x_[i].setZero();
+    }
+    for (int p = 0; p < ports(); ++p) {
+      for (int i = 0; i <= n(); ++i) K_[i][p] = gains.K(i, p);
+      for (int j = 0; j < n(); ++j) C_[p][j] = axis.C(p, j);
+      for (int q = 0; q < ports(); ++q) whiten_[p][q] = gains.whiten(p, q);
+    }
+    d_.setZero();
+  }
+
+  /// Deviations from what was predicted, in the measured ports.
+  void seen(Side* e) const {
+    for (int p = 0; p < ports(); ++p) {
+      e[p].setZero();
+      for (int j = 0; j < n(); ++j) e[p] += C_[p][j] * x_[j];
+    }
+  }
+  /// The predictor corrects itself by what it saw, the truth goes on with the forces.
+  void step(const Side* e, const Side& force, bool rests) {
+    for (int p = 0; p < ports(); ++p) {
+      for (int i = 0; i < n(); ++i) x_[i] -= K_[i][p] * e[p];
+      d_ -= K_[n()][p] * e[p];
+    }
+    if (rests) d_.setZero();
+    Side next[most_];
+    for (int i = 0; i < n(); ++i) {
+      next[i] = push_[i] * d_ + enters_[i] * force;
+      for (int j = 0; j < n(); ++j) next[i] += A_[i][j] * x_[j];
+    }
+    for (int i = 0; i < n(); ++i) x_[i] = next[i];
+    d_ *= memory_;
+  }
+  Side white(const Side* e, int port) const {
+    Side sum = Side::Zero();
+    for (int q = 0; q <= port; ++q) sum += whiten_[port][q] * e[q];
+    return sum;
+  }
+  int n() const { return States > 0 ? States : n_; }
+  int ports() const { return Ports > 0 ? Ports : ports_; }
+
+ private:
+  static constexpr int most_ = States > 0 ? States + 1 : 24;
+  const int n_, ports_;
+  const double memory_;
+  double A_[most_][most_], push_[most_], enters_[most_], C_[2][most_], K_[most_][2], whiten_[2][2];
+  Side x_[most_], d_;
+};
+
+/// At most `side_by_side` columns.
+template <class Filter>
+void run(Filter filter, const Path& path, Acts acts, std::span<const std::vector<float>* const> columns,
+         std::span<std::vector<double>> out) {
+  const size_t ports = size_t(filter.ports());
+  Side e[2], drive = Side::Zero();
+  const Side none = Side::Zero();
+  for (size_t k = 0; k < path.samples(); ++k) {
+    for (size_t c = 0; c < columns.size(); ++c) drive[Eigen::Index(c)] = double((*columns[c])[k]);
+    filter.seen(e);
+    if (acts == Acts::sensor) e[0] += drive;
+    for (size_t p = 0; p < ports; ++p) {
+      const Side white = filter.white(e, int(p));
+      for (size_t c = 0; c < columns.size(); ++c) out[c][k * ports + p] = white[Eigen::Index(c)];
+    }
+    filter.step(e, acts == Acts::sensor ? none : Side(-drive), path.rests[k]);
+  }
+}
+
+}  // namespace
+
+std::vector<const std::vector<float>*> pointers(const Columns& columns) {
+  std::vector<const std::vector<float>*> list;
+  for (const std::vector<float>& column : columns) list.push_back(&column);
+  return list;
+}
+
+std::vector<std::vector<double>> responses(const LinearAxis& axis, const Gains& gains, const Path& path,
+                                           Acts acts, std::span<const std::vector<float>* const> columns) {
+  const auto states = axis.A.rows(), ports = axis.C.rows();
+  std::vector<std::vector<double>> out(columns.size(), std::vector<double>(path.samples() * size_t(ports)));
+  for (size_t first = 0; first < columns.size(); first += side_by_side) {
+    const size_t count = std::min<size_t>(side_by_side, columns.size() - first);
+    const auto some = columns.subspan(first, count);
+    const auto to = std::span(out).subspan(first, count);
+    const bool is_input = acts == Acts::input;
+    if (states == 2 && ports == 1)
+      run(ErrorFilter<2, 1>(axis, gains, is_input), path, acts, some, to);
+    else if (states == 2 && ports == 2)
+      run(ErrorFilter<2, 2>(axis, gains, is_input), path, acts, some, to);
+    else
+      run(ErrorFilter<0, 0>(axis, gains, is_input), path, acts, some, to);
+  }
+  return out;
+}
+
+Prediction predict(AxisModel& model, const Gains& gains, const Drives& drives, double rest_speed) {
+  const AxisRecord& record = model.record();
+  const size_t rows = record.rows(), ports = record.measured.size();
+  const std::span<const int> states = model.states();
+  Prediction result;
+  result.error.resize(rows * ports), result.slow.resize(rows);
+  Path& path = result.path;
+  path.sample_time = record.sample_time, path.rest_speed = rest_speed;
+  for (auto* list : {&path.position, &path.velocity, &path.acceleration}) list->resize(rows);
+  path.input = drives.input;
+  path.predicted_position.resize(rows), path.rests.resize(rows);
+  const MeasuredPort* position = record.find("position");
+  const MeasuredPort* velocity = record.find("velocity");
+  const auto& first = record.measured.front().value;
+  model.start(
+      position ? position->value[0] : 0,
+      velocity ? velocity->value[0] : (first[std::min<size_t>(rows - 1, 1)] - first[0]) / record.sample_time);
+  double d = 0;
+  std::array<double, 2> e{};
+  for (size_t k = 0; k < rows; ++k) {
+    const double sensor = drives.sensor.empty() ? 0 : drives.sensor[k];
+    path.predicted_position[k] = model.position();
+    for (size_t p = 0; p < ports; ++p) {
+      const double expected = model.measured(p) + (p == 0 && position ? sensor : 0.0);
+      e[p] = record.measured[p].value[k] - expected;
+      result.error[k * ports + p] = e[p];
+    }
+    for (size_t p = 0; p < ports; ++p) {
+      for (size_t i = 0; i < states.size(); ++i)
+        model.correct(states[i], gains.K(Eigen::Index(i), Eigen::Index(p)) * e[p]);
+      d += gains.K(Eigen::Index(states.size()), Eigen::Index(p)) * e[p];
+    }
+    const double velocity_now = model.velocity();
+    path.position[k] = model.position(), path.velocity[k] = velocity_now;
+    path.rests[k] = std::abs(velocity_now) < rest_speed;
+    if (path.rests[k]) d = 0;
+    result.slow[k] = d;
+    model.step(drives.input[k], d - drives.force[k]);
+    path.acceleration[k] = (model.velocity() - velocity_now) / record.sample_time;
+    d *= gains.memory;
+  }
+  return result;
+}
+
+namespace {
+
+/// with_gains for sizes known when compiling; 0: any.
+template <int States, int Ports>
+void change_gains(const LinearAxis& axis, const Prediction& prediction, const Gains& from, const Gains& to,
+                  std::vector<double>& error) {
+  constexpr int states = States ? States : Eigen::Dynamic, ports = Ports ? Ports : Eigen::Dynamic;
+  using State = Eigen::Matrix<double, states, 1>;
+  using Port = Eigen::Matrix<double, ports, 1>;
+  const Eigen::Index n = axis.A.rows(), p = axis.C.rows();
+  const Eigen::Matrix<double, states, states> A = axis.A;
+  const Eigen::Matrix<double, ports, states> C = axis.C;
+  const Eigen::Matrix<double, states, ports> K = to.K.topRows(n), before_K = from.K.topRows(n);
+  const Port slow_K = to.K.row(n).transpose();
+  const State push = axis.push;
+  State difference = State::Zero(n), next(n);
+  Port e(p);
+  double d = 0;
+  for (size_t k = 0; k < prediction.slow.size(); ++k) {
+    const Eigen::Map<const Port> before(prediction.error.data() + k * size_t(p), p);
+    e.noalias() = before - C * difference;
+    Eigen::Map<Port>(error.data() + k * size_t(p), p) = e;
+    difference.noalias() += K * e - before_K * before;
+    d += slow_K.dot(e);
+    if (prediction.path.rests[k]) d = 0;
+    next.noalias() = A * difference + push * (d - prediction.slow[k]);
+    difference = next;
+    d *= to.memory;
+  }
+}
+
+}  // namespace
+
+std::vector<double> with_gains(const LinearAxis& axis, const Prediction& prediction, const Gains& from,
+                               const Gains& to) {
+  std::vector<double> error(prediction.error.size());
+  if (axis.A.rows() == 2 && axis.C.rows() == 1)
+    change_gains<2, 1>(axis, prediction, from, to, error);
+  else
+    change_gains<0, 0>(axis, prediction, from, to, error);
+  return error;
+}
+
+void whiten(std::vector<double>& error, const Gains& gains) {
+  const Eigen::Index ports = gains.whiten.rows();
+  for (size_t k = 0; k < error.size(); k += size_t(ports)) {
+    if (ports == 1) {
+      error[k] *= gains.whiten(0, 0);
+      continue;
+    }
+    Eigen::Map<Eigen::VectorXd> e(error.data() + k, ports);
+    e = (gains.whiten * e).eval();
+  }
+}
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,61 @@
+/// One-step predictions of the measured signals by the user's own diagram, and how they answer to further
+/// forces.
+#pragma once
+#include <span>
+#include <vector>
+#include "tools/diagnose/axis_model.h"
+#include "tools/diagnose/noise.h"
+
+namespace loopwright::diagnosis {
+
+/// What the model is driven with, a value each sample: means over the sample of the input and of `force`,
+/// which pushes backward (it is what effects consume); `sensor` is added to the predicted position.
+struct Drives {
+  std::vector<double> input, force, sensor;
+};
+
+/// The motion as the predictor saw it: position and velocity at the start of each sample, the acceleration
+/// predicted for it. They are functions of the past alone, so that nothing computed from them correlates with
+/// the noise to come.
+struct Path {
+  double sample_time = 0;
+  std::vector<double> position, velocity, acceleration, input;
+  std::vector<double> predicted_position;  ///< before the sample itself was measured
+  std::vector<char> rests;                 ///< slower than `rest_speed`
+  double rest_speed = 0;
+  size_t samples() const { return rests.size(); }
+};
+
+struct Prediction {
+  std::vector<double> error;  ///< samples × ports: measured minus predicted
+  std::vector<double> slow;   ///< of each sample: the disturbing force believed after measuring
+  Path path;
+};
+
+/// Steps the diagram along the record: correct with what was measured, predict the next sample.
+Prediction predict(AxisModel& model, const Gains& gains, const Drives& drives, double rest_speed);
+
+/// The errors that other gains would have made on the same record, without stepping the diagram again.
+std::vector<double> with_gains(const LinearAxis& axis, const Prediction& prediction, const Gains& from,
+                               const Gains& to);
+
+/// z[k] = whiten · e[k], in place.
+void whiten(std::vector<double>& error, const Gains& gains);
+
+/// Where an effect acts.
+enum class Acts {
+  force,   ///< consumes a force
+  input,   ///< replaces the input by another one
+  sensor,  ///< adds an error to the measured position
+};
+
+/// Columns of an effect at given nonlinear parameters: what it consumes per unit of each linear parameter
+/// (adds to the measured position, for Acts::sensor), a mean over each sample.
+using Columns = std::vector<std::vector<float>>;
+
+/// What each column adds to the whitened errors, samples × ports; eight at a time are as fast as two alone.
+std::vector<std::vector<double>> responses(const LinearAxis& axis, const Gains& gains, const Path& path,
+                                           Acts acts, std::span<const std::vector<float>* const> columns);
+std::vector<const std::vector<float>*> pointers(const Columns& columns);
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,93 @@
+#include "tools/diagnose/prepare.h"
+#include <algorithm>
+#include <cmath>
+
+namespace loopwright::diagnosis {
+namespace {
+
+constexpr double settling_s = 0.1;  // rows after the start that do not count
+constexpr int memory_of_rest = 50;  // rows after a rest that do not count: the slow force forgets in 30
+
+double quantile(std::vector<double> values, double fraction) {
+  if (values.empty()) return 0;
+  const auto at = values.begin() + std::ptrdiff_t(fraction * double(values.size() - 1));
+  std::ranges::nth_element(values, at);
+  return *at;
+}
+
+std::vector<double> speeds(const AxisRecord& record) {
+  std::vector<double> speed;
+  if (const MeasuredPort* velocity = record.find("velocity")) {
+    for (double v : velocity->value) speed.push_back(std::abs(v));
+    return speed;
+  }
+  const std::vector<double>& x = record.measured.front().value;
+  const size_t span = 5;
+  for (size_t k = span; k + span < x.size(); ++k)
+    speed.push_back(std::abs(x[k + span] - x[k - span]) / (2 * double(span) * record.sample_time));
+  return speed;
+}
+
+/// White noise of a measured port: third differences leave little of the motion.
+double measurement_noise(const MeasuredPort& port) {
+  std::vector<double> difference;
+  for (size_t k = 3; k < port.value.size(); ++k)
+    difference.push_back(
+        std::abs(port.value[k] - 3 * port.value[k - 1] + 3 * port.value[k - 2] - port.value[k - 3]));
+  const double normal = quantile(difference, 0.5) / (0.6745 * std::sqrt(20.0));
+  double scale = 0;
+  for (double v : port.value) scale = std::max(scale, std::abs(v));
+  return std::max({normal, port.resolution / std::sqrt(12.0), 1e-9 * scale, 1e-15});
+}
+
+Noise first_guess(const Trials& trials) {
+  Noise noise;
+  noise.white = 0.01 * trials.input_rms;
+  noise.step = 0.3 * noise.white;
+  for (const MeasuredPort& port : trials.list.front().model->record().measured)
+    noise.measurement.push_back(measurement_noise(port));
+  return noise;
+}
+
+/// Rows while moving, some time after the last rest.
+void mark_usable(Trial& trial, const Path& path) {
+  const size_t rows = path.samples();
+  trial.usable.assign(rows, 1);
+  int since_rest = memory_of_rest;
+  const int start = int(std::ceil(settling_s / path.sample_time));
+  for (size_t k = 0; k < rows; ++k) {
+    since_rest = path.rests[k] ? 0 : since_rest + 1;
+    trial.usable[k] = since_rest > memory_of_rest && int(k) >= start;
+  }
+}
+
+}  // namespace
+
+Trials prepare(const std::string& diagram, const std::vector<std::string>& experiments,
+               const LoadOptions& options, std::vector<Fitted>& motion) {
+  Trials trials;
+  std::vector<double> speed;
+  double square = 0;
+  size_t n = 0;
+  for (const std::string& experiment : experiments) {
+    Trial trial;
+    trial.model = std::make_unique<AxisModel>(diagram, experiment, options);
+    const AxisRecord& record = trial.model->record();
+    trial.held_out_from = record.held_out_from;
+    const std::vector<double> own = speeds(record);
+    speed.insert(speed.end(), own.begin(), own.end());
+    for (double u : record.input) square += u * u, ++n;
+    trials.list.push_back(std::move(trial));
+  }
+  trials.rest_speed = 0.005 * quantile(speed, 0.99);
+  trials.input_rms = std::sqrt(square / double(std::max<size_t>(n, 1)));
+  trials.noise = first_guess(trials);
+  motion = run_members(trials, {}, {}, trials.noise);
+  for (size_t t = 0; t < trials.list.size(); ++t) mark_usable(trials.list[t], motion[t].prediction.path);
+  trials.noise = fit_noise(trials, motion, trials.noise, FreeNoise::with_random_walk);
+  motion = run_members(trials, {}, {}, trials.noise);
+  for (size_t t = 0; t < trials.list.size(); ++t) mark_usable(trials.list[t], motion[t].prediction.path);
+  return trials;
+}
+
+}  // namespace loopwright::diagnosis

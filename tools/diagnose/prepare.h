@@ -1,0 +1,12 @@
+/// Records ready for the search: noise, rows that count, the motion.
+#pragma once
+#include "tools/diagnose/fit.h"
+
+namespace loopwright::diagnosis {
+
+/// Reads the experiments, works out which rows count, and estimates the noise with a random walk standing in
+/// for every missing force. `motion` is that first prediction: unbiased whatever is missing.
+Trials prepare(const std::string& diagram, const std::vector<std::string>& experiments,
+               const LoadOptions& options, std::vector<Fitted>& motion);
+
+}  // namespace loopwright::diagnosis

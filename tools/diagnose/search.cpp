@@ -1,0 +1,210 @@
+#include "tools/diagnose/search.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include "tools/diagnose/conclude.h"
+#include "tools/diagnose/spectrum.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+constexpr size_t most_effects = 8;
+constexpr size_t tried_extensions = 4;
+constexpr size_t tried_exchanges = 3;
+
+class Search {
+ public:
+  Search(Trials& trials, const std::vector<Candidate>& candidates, const std::vector<Shape>& shapes,
+         const std::vector<Candidate>& unknown, const std::vector<Fitted>& motion)
+      : unknown_(unknown),
+        trials_(trials),
+        candidates_(candidates),
+        shapes_(shapes),
+        noise_(search_noise(trials)) {
+    for (const Fitted& f : motion) motion_.push_back(&f.prediction.path);
+    best_ = fit_members(trials_, {}, noise_, motion_, 0);
+  }
+
+  SearchResult run() {
+    for (size_t step = 0; step < most_effects && extend(); ++step) {
+      sharpen_noise();
+      exchange();
+      prune();
+    }
+    if (explain_without_name())
+      for (size_t step = 0; step < 2 && extend(); ++step) prune();
+    return {std::move(best_), std::move(trail_)};
+  }
+
+ private:
+  double score(const Estimate& e) const { return criterion(trials_, e, candidates_.size()); }
+
+  Estimate refined(const std::vector<Member>& members, int iterations) {
+    return fit_members(trials_, members, noise_, paths(), iterations);
+  }
+  std::vector<const Path*> paths() const { return best_.members.empty() ? motion_ : best_.paths(); }
+
+  std::vector<Member> applied(const Proposal& proposal) const {
+    std::vector<Member> members;
+    for (size_t m = 0; m < best_.members.size(); ++m)
+      if (std::ranges::find(proposal.removed, m) == proposal.removed.end())
+        members.push_back(best_.members[m]);
+    members.insert(members.end(), proposal.added.begin(), proposal.added.end());
+    return members;
+  }
+
+  void note(const char* what) {
+    std::string line =
+        fmt::format("{}: mean square {:.5g}, criterion {:.1f}:", what, best_.mean_square, score(best_));
+    for (const Member& member : best_.members) {
+      line += fmt::format(" {}", member.candidate->name);
+      if (member.candidate->is_unknown) line += " of " + member.candidate->form;
+      for (double v : member.linear)
+        if (!member.candidate->is_unknown) line += fmt::format(" {:.5g}", v);
+      for (double v : member.nonlinear) line += fmt::format(" | {:.5g}", v);
+      line += ",";
+    }
+    trail_.push_back(std::move(line));
+  }
+
+  /// Shapes on the grid, and the pitches that stand out now.
+  std::vector<const Shape*> all_shapes() {
+    periodic_ = periodic_shapes(trials_, best_, candidates_);
+    std::vector<const Shape*> list;
+    for (const Shape& shape : shapes_) list.push_back(&shape);
+    for (const Shape& shape : periodic_) list.push_back(&shape);
+    return list;
+  }
+
+  bool extend() {
+    Evidence evidence(trials_, best_, all_shapes(), candidates_.size());
+    std::vector<Proposal> proposals = evidence.extensions();
+    const double single = proposals.empty() ? 0 : proposals.front().gain;
+    if (proposals.size() > tried_extensions) proposals.resize(tried_extensions);
+    if (const Proposal pair = evidence.best_pair(); pair.gain > single + 10) proposals.push_back(pair);
+    const double before = score(best_), least = std::max(10.0, 0.002 * double(fitted_numbers(trials_)));
+    std::vector<Estimate> tried;
+    for (const Proposal& proposal : proposals) {
+      Estimate trial = refined(applied(proposal), 2);
+      if (trial.is_valid && score(trial) < before - least) tried.push_back(std::move(trial));
+    }
+    std::ranges::stable_sort(tried, {}, [&](const Estimate& e) { return score(e); });
+    Estimate best;
+    for (Estimate& trial : tried)
+      if (!best.is_valid && adds_material(trial)) best = std::move(trial);
+    if (!best.is_valid) return note("no extension"), false;
+    best_ = fit_members(trials_, best.members, noise_, best.paths(), 6);
+    note("extended");
+    return true;
+  }
+
+  /// What would be taken out at the end is not let in.
+  bool adds_material(Estimate& trial) const {
+    const std::vector<Weight> weights = weigh_all(trials_, trial);
+    for (size_t m = best_.members.size(); m < weights.size(); ++m)
+      if (material(trials_, trial, weights[m]) < 1) return false;
+    return true;
+  }
+
+  /// What the catalogue does not hold, and the effects that had stood in for it.
+  bool explain_without_name() {
+    std::vector<Shape> shapes = shapes_of(unknown_, paths());
+    std::vector<Shape> tones = periodic_shapes(trials_, best_, unknown_, 1);
+    std::ranges::move(tones, std::back_inserter(shapes));
+    std::vector<const Shape*> list;
+    for (const Shape& shape : shapes) list.push_back(&shape);
+    const Evidence evidence(trials_, best_, list, candidates_.size());
+    std::vector<Proposal> proposals = evidence.extensions();
+    if (proposals.size() > 2) proposals.resize(2);
+    Estimate best;
+    double best_score = score(best_) - std::max(20.0, 0.004 * double(fitted_numbers(trials_)));
+    for (const Proposal& proposal : proposals) {
+      Estimate trial = refined(applied(proposal), 2);
+      if (!trial.is_valid || score(trial) >= best_score) continue;
+      best_score = score(trial), best = std::move(trial);
+    }
+    if (!best.is_valid) return false;
+    best_ = std::move(best);
+    note("without a name");
+    prune();
+    return true;
+  }
+
+  void exchange() {
+    for (int round = 0; round < 4; ++round) {
+      if (best_.members.empty()) return;
+      const Evidence evidence(trials_, best_, all_shapes(), candidates_.size());
+      const std::vector<Proposal> proposals = evidence.exchanges();
+      Estimate best;
+      double best_score = score(best_) - 3;
+      for (size_t i = 0; i < std::min(tried_exchanges, proposals.size()); ++i) {
+        if (proposals[i].gain < -0.01 * evidence.rows()) break;
+        Estimate trial = refined(applied(proposals[i]), 4);
+        if (!trial.is_valid || score(trial) >= best_score) continue;
+        best_score = score(trial), best = std::move(trial);
+      }
+      if (!best.is_valid) return;
+      best_ = std::move(best);
+      note("exchanged");
+    }
+  }
+
+  void prune() {
+    while (best_.members.size() > 1) {
+      const Evidence evidence(trials_, best_, {}, candidates_.size());
+      const std::vector<double> gains = evidence.gains_of_removal();
+      const size_t worst = size_t(std::ranges::max_element(gains) - gains.begin());
+      if (gains[worst] < -10) return;
+      std::vector<Member> members = best_.members;
+      members.erase(members.begin() + std::ptrdiff_t(worst));
+      Estimate without = refined(members, 4);
+      if (!without.is_valid || score(without) > score(best_)) return;
+      best_ = std::move(without);
+      note("removed");
+    }
+  }
+
+  /// Once little is left to find, the level of the noise can be told from it.
+  void sharpen_noise() {
+    if (best_.mean_square >= 8) return;
+    noise_ = fit_noise_alone(trials_, best_.fitted, noise_, FreeNoise::white_and_slow);
+    best_ = fit_members(trials_, best_.members, noise_, best_.paths(), 2);
+  }
+
+  const std::vector<Candidate>& unknown_;
+  Trials& trials_;
+  const std::vector<Candidate>& candidates_;
+  const std::vector<Shape>& shapes_;
+  Noise noise_;
+  std::vector<const Path*> motion_;
+  std::vector<Shape> periodic_;
+  Estimate best_;
+  std::vector<std::string> trail_;
+};
+
+}  // namespace
+
+Noise search_noise(const Trials& trials) {
+  constexpr double memory_s = 0.03;
+  Noise noise = trials.noise;
+  noise.white = std::clamp(noise.white, 0.005 * trials.input_rms, 0.02 * trials.input_rms);
+  const double sample_time = trials.list.front().model->record().sample_time;
+  noise.memory = std::exp(-sample_time / memory_s);
+  noise.step = 0.3 * noise.white * std::sqrt(1 - noise.memory * noise.memory);
+  return noise;
+}
+
+double criterion(const Trials& trials, const Estimate& estimate, size_t catalogue) {
+  const double n = double(fitted_numbers(trials));
+  size_t parameters = 0;
+  for (const Member& member : estimate.members) parameters += parameters_of(*member.candidate);
+  return profile(trials, estimate.fitted) + price(parameters, estimate.members.size(), n, catalogue);
+}
+
+SearchResult search(Trials& trials, const std::vector<Candidate>& candidates,
+                    const std::vector<Shape>& shapes, const std::vector<Candidate>& unknown,
+                    const std::vector<Fitted>& motion) {
+  return Search(trials, candidates, shapes, unknown, motion).run();
+}
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,25 @@
+/// From nothing to a set of effects: extension, exchange and removal, each step confirmed by running the
+/// diagram.
+#pragma once
+#include "tools/diagnose/evidence.h"
+
+namespace loopwright::diagnosis {
+
+struct SearchResult {
+  Estimate estimate;               ///< noise as in the search
+  std::vector<std::string> trail;  ///< what was tried and taken, for people who want to know
+};
+
+/// Noise for the search: tight, so that a missing effect is not taken for noise.
+Noise search_noise(const Trials& trials);
+
+/// n ln(mean square) + ln|S| + what the parameters cost; smaller is better.
+double criterion(const Trials& trials, const Estimate& estimate, size_t catalogue);
+
+/// From the first prediction's motion, on which the shapes were computed.
+/// `unknown`: forces without a name, tried when no further effect helps; effects that they make worthless go.
+SearchResult search(Trials& trials, const std::vector<Candidate>& candidates,
+                    const std::vector<Shape>& shapes, const std::vector<Candidate>& unknown,
+                    const std::vector<Fitted>& motion);
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,78 @@
+#include "tools/diagnose/unknown.h"
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace loopwright::diagnosis {
+namespace {
+
+using Variable = std::function<double(const Path&, size_t)>;
+
+double middle_velocity(const Path& path, size_t k) {
+  return path.velocity[k] + 0.5 * path.sample_time * path.acceleration[k];
+}
+double middle_position(const Path& path, size_t k) {
+  return path.position[k] + 0.5 * path.sample_time * path.velocity[k];
+}
+
+/// Σ level_i · hat_i(variable) · factor: piecewise linear between even knots.
+Candidate piecewise(std::string variables, size_t knots, double low, double high, Variable variable,
+                    Variable factor) {
+  Candidate candidate;
+  candidate.name = "unknown", candidate.form = std::move(variables), candidate.is_unknown = true;
+  for (size_t i = 0; i < knots; ++i) candidate.linear.push_back({"level", "", -1e300, 1e300, false, {}});
+  candidate.columns_at = [=](const Path& path, const std::vector<std::vector<double>>& shapes) {
+    Columns columns(knots, std::vector<float>(path.samples()));
+    for (size_t k = 0; k < path.samples(); ++k) {
+      const double at = std::clamp((variable(path, k) - low) / (high - low), 0.0, 1.0) * double(knots - 1);
+      const size_t i = std::min(size_t(at), knots - 2);
+      const double size = factor(path, k), beyond = at - double(i);
+      columns[i][k] = float(size * (1 - beyond)), columns[i + 1][k] = float(size * beyond);
+    }
+    return std::vector(shapes.size(), columns);
+  };
+  return candidate;
+}
+
+Candidate tone(const RecordSizes& sizes) {
+  Candidate candidate;
+  candidate.name = "unknown", candidate.form = "time", candidate.is_unknown = true;
+  candidate.is_periodic = candidate.repeats_in_time = true;
+  candidate.linear = {{"sine", "", -1e300, 1e300, false, {}}, {"cosine", "", -1e300, 1e300, false, {}}};
+  const double shortest = 10 * sizes.sample_time, longest = sizes.duration / 4;
+  candidate.nonlinear = {
+      {"period", "s", shortest, longest, true, {std::sqrt(shortest * longest)}, sizes.duration}};
+  candidate.columns_at = [](const Path& path, const std::vector<std::vector<double>>& shapes) {
+    std::vector<Columns> result;
+    for (const std::vector<double>& shape : shapes) {
+      Columns& columns = result.emplace_back(2, std::vector<float>(path.samples()));
+      for (size_t k = 0; k < path.samples(); ++k) {
+        const double angle = 2 * std::numbers::pi * (double(k) + 0.5) * path.sample_time / shape[0];
+        columns[0][k] = float(std::sin(angle)), columns[1][k] = float(std::cos(angle));
+      }
+    }
+    return result;
+  };
+  return candidate;
+}
+
+}  // namespace
+
+std::vector<Candidate> unknown_forces(const RecordSizes& sizes) {
+  const double low = sizes.lowest_position, high = sizes.highest_position, top = sizes.top_speed;
+  const Variable one = [](const Path&, size_t) { return 1.0; };
+  const Variable direction = [](const Path& path, size_t k) {
+    return middle_velocity(path, k) > 0 ? 1.0 : -1.0;
+  };
+  const Variable acceleration = [](const Path& path, size_t k) { return path.acceleration[k]; };
+  const Variable time = [](const Path& path, size_t k) { return double(k) * path.sample_time; };
+  return {piecewise("position", 40, low, high, middle_position, one),
+          piecewise("velocity", 24, -top, top, middle_velocity, one),
+          piecewise("time", 40, 0, sizes.duration, time, one),
+          piecewise("position,direction", 24, low, high, middle_position, direction),
+          piecewise("position,velocity", 24, low, high, middle_position, middle_velocity),
+          piecewise("position,acceleration", 24, low, high, middle_position, acceleration),
+          tone(sizes)};
+}
+
+}  // namespace loopwright::diagnosis

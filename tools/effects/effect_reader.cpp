@@ -1,0 +1,432 @@
+#include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
+#include <set>
+#include "engine/diagram/expression.h"
+#include "engine/diagram/json.h"
+#include "engine/diagram/reader.h"
+#include "engine/diagram/wires.h"
+#include "tools/effects/effect.h"
+
+namespace loopwright {
+namespace {
+
+namespace fs = std::filesystem;
+using Kind = Value::Kind;
+
+/// Reads one form of an effect file: the members of the file, replaced by those of the form.
+class FormReader {
+ public:
+  FormReader(const Value& file, const Value* form, Problems& problems)
+      : file_(file), form_(form), reader_{problems, ""} {}
+
+  Effect read() {
+    read_words();
+    if (const Value* list = object("parameters", "parameters by name"))
+      for (const Value::Member& member : list->members) read_parameter(member);
+    read_blocks();
+    read_attachments();
+    read_needs();
+    read_confusable();
+    return std::move(effect_);
+  }
+
+ private:
+  const Value::Member* member(std::string_view key) const {
+    if (const Value::Member* own = form_ ? form_->find(key) : nullptr) return own;
+    return file_.find(key);
+  }
+  const Value* object(std::string_view key, std::string_view expected) {
+    const Value::Member* found = member(key);
+    if (!found) {
+      reader_.error(file_, fmt::format("the effect has no \"{}\"", key)).expected = expected;
+      return nullptr;
+    }
+    const bool fits = reader_.expect(found->value, Kind::object, fmt::format("\"{}\"", key),
+                                     fmt::format("an object of {}", expected));
+    return fits ? &found->value : nullptr;
+  }
+  std::string text(const Value& owner, std::string_view key, std::string_view what) {
+    const std::string found = reader_.text(owner, key);
+    if (found.empty() && !owner.find(key))
+      reader_.error(owner, fmt::format("{} has no \"{}\"", what, key)).expected = "a text";
+    return found;
+  }
+  bool flag(const Value& owner, std::string_view key) {
+    const Value::Member* found = owner.find(key);
+    return found &&
+           reader_.expect(found->value, Kind::boolean, fmt::format("\"{}\"", key), "true or false") &&
+           found->value.boolean;
+  }
+  double number(const Value& owner, std::string_view key, double otherwise) {
+    const Value::Member* found = owner.find(key);
+    if (!found || !reader_.expect(found->value, Kind::number, fmt::format("\"{}\"", key), "a number"))
+      return otherwise;
+    if (found->value.number < 0) {
+      reader_.error(*found, fmt::format("\"{}\" cannot be negative", key)).found = shown(found->value);
+      return otherwise;
+    }
+    return found->value.number;
+  }
+  std::vector<std::string> texts(const Value& list, std::string_view what) {
+    std::vector<std::string> found;
+    if (!reader_.expect(list, Kind::list, what, "a list of texts")) return found;
+    for (const Value& item : list.items)
+      if (reader_.expect(item, Kind::text, what, "a text in quotes")) found.push_back(item.text);
+    return found;
+  }
+
+  void read_words() {
+    effect_.name = text(file_, "effect", "the file");
+    effect_.title = text(file_, "title", "the effect");
+    if (const auto* words = member("physics"))
+      effect_.physics = reader_.text(form_ && form_->find("physics") ? *form_ : file_, words->name);
+    else
+      text(file_, "physics", "the effect");
+    if (const auto* list = member("equivalents")) effect_.equivalents = texts(list->value, "\"equivalents\"");
+    effect_.is_repeatable = flag(file_, "repeatable");
+  }
+
+  // ---- Parameters ----
+
+  void read_parameter(const Value::Member& member) {
+    if (!reader_.check_name(member, "a parameter") ||
+        !reader_.expect(member.value, Kind::object, "a parameter", "{\"unit\": …, \"range\": …}"))
+      return;
+    const Value& body = member.value;
+    reader_.reject_unknown(body,
+                           {"description", "unit", "linear", "period", "scale", "range", "start", "value"},
+                           "a parameter of an effect");
+    EffectParameter parameter;
+    parameter.name = member.name, parameter.place = member.place;
+    parameter.description = reader_.text(body, "description");
+    parameter.unit = reader_.text(body, "unit");
+    parameter.is_linear = flag(body, "linear"), parameter.is_period = flag(body, "period");
+    const Value::Member* value = body.find("value");
+    parameter.is_fitted = !value;
+    if (value)
+      parameter.value = value->value, reject_fit_keys(body);
+    else
+      read_fit(body, parameter);
+    if (std::ranges::any_of(record_sizes, [&](const NamedSize& s) { return s.name == member.name; }))
+      reader_.error(member, fmt::format("\"{}\" is the name of a size of the record", member.name));
+    effect_.parameters.push_back(std::move(parameter));
+  }
+  void reject_fit_keys(const Value& body) {
+    for (const char* key : {"range", "start", "scale", "linear", "period"})
+      if (const auto* misplaced = body.find(key))
+        reader_.error(*misplaced, fmt::format("\"{}\" is of no use: a \"value\" is given", key)).hint =
+            "leave out \"value\" for a parameter that is to be fitted";
+  }
+  void read_fit(const Value& body, EffectParameter& parameter) {
+    const Value::Member* range = body.find("range");
+    if (!range) {
+      reader_
+          .error(body,
+                 fmt::format("the parameter \"{}\" has neither \"range\" nor \"value\"", parameter.name))
+          .expected = "\"range\": [0, \"=3*force_level\"], or a \"value\" that is not fitted";
+      return;
+    }
+    if (!reader_.expect(range->value, Kind::list, "\"range\"", "a list of lowest and highest value")) return;
+    if (range->value.items.size() != 2) {
+      reader_.error(*range, "a range has two ends").found = shown(range->value);
+      return;
+    }
+    parameter.low = range->value.items[0], parameter.high = range->value.items[1];
+    const Value::Member* start = body.find("start");
+    if (start)
+      parameter.start = start->value;
+    else
+      reader_.error(body, fmt::format("the parameter \"{}\" has no \"start\"", parameter.name)).expected =
+          "\"start\": a number or an expression within the range";
+    if (const Value::Member* scale = body.find("scale")) parameter.scale = read_scale(*scale);
+    const RecordSizes example = example_sizes();
+    const size_t problems_before = reader_.problems.list().size();
+    const double low = size_value(parameter.low, parameter.unit, example),
+                 high = size_value(parameter.high, parameter.unit, example),
+                 first = start ? size_value(parameter.start, parameter.unit, example) : low;
+    if (reader_.problems.list().size() != problems_before) return;
+    if (!(low < high))
+      reader_.error(*range, "the range is empty").found = shown(range->value);
+    else if (start && (first < low || first > high))
+      reader_.error(*start, "the start is outside the range").found = shown(start->value);
+    if (parameter.scale != EffectParameter::Scale::linear && low <= 0)
+      reader_.error(*range, "only a range above 0 can have this scale").found = shown(range->value);
+  }
+  EffectParameter::Scale read_scale(const Value::Member& member) {
+    using Scale = EffectParameter::Scale;
+    const std::string name = member.value.text;
+    const std::vector<std::pair<std::string, Scale>> known = {
+        {"linear", Scale::linear}, {"logarithmic", Scale::logarithmic}, {"reciprocal", Scale::reciprocal}};
+    for (const auto& [text, scale] : known)
+      if (name == text) return scale;
+    KnownNames({"linear", "logarithmic", "reciprocal"})
+        .explain(reader_.error(member, "there is no such scale"), name);
+    return Scale::linear;
+  }
+  /// Sizes that a machine might have, to see whether ranges make sense.
+  static RecordSizes example_sizes() {
+    RecordSizes sizes;
+    for (const NamedSize& size : record_sizes) sizes.*size.value = 1;
+    sizes.lowest_position = -0.4, sizes.highest_position = 0.6, sizes.resolution = 1e-6, sizes.duration = 10,
+    sizes.sample_time = 1e-3;
+    return sizes;
+  }
+  /// A number, or an expression over sizes whose unit must be that of the parameter.
+  double size_value(const Value& value, const std::string& unit, const RecordSizes& sizes) {
+    if (value.kind == Kind::number) return value.number;
+    if (!reader_.expect(value, Kind::text, "a bound", "a number, or an expression such as \"=0.1*stroke\""))
+      return 0;
+    if (!value.text.starts_with('=')) {
+      reader_.error(value, "this is no expression").expected = "a number, or \"=\" and an expression";
+      return 0;
+    }
+    std::vector<Quantity> quantities;
+    for (const NamedSize& size : record_sizes)
+      quantities.push_back({sizes.*size.value, parse_unit(unit_in(size.unit, {}))});
+    ExpressionSite site{value.place, value.pointer, "", {}};
+    site.lookup = [&](const NameUse& use, const Place& place) -> const Quantity* {
+      for (size_t i = 0; i < record_sizes.size(); ++i)
+        if (record_sizes[i].name == use.name) return &quantities[i];
+      auto& p =
+          reader_.problems.error(place, value.pointer, "", fmt::format("there is no size \"{}\"", use.name));
+      KnownNames names;
+      for (const NamedSize& size : record_sizes) names.add(std::string(size.name));
+      names.explain(p, use.name);
+      return nullptr;
+    };
+    const auto result = evaluate(std::string_view(value.text).substr(1), site, reader_.problems);
+    if (!result) return 0;
+    const auto wanted = parse_unit(unit_in(unit, {}));
+    if (result->unit && wanted && !result->unit->same_dimension(*wanted)) {
+      auto& p = reader_.error(value, "the expression has another unit than its parameter");
+      p.expected = to_string(*wanted), p.found = to_string(*result->unit);
+    }
+    return result->number;
+  }
+
+  // ---- Blocks and where they act ----
+
+  void read_blocks() {
+    const Value* blocks = object("blocks", "blocks, as in a diagram");
+    if (!blocks) return;
+    effect_.blocks = *blocks;
+    std::set<std::string> reads;
+    for (const Value::Member& block : blocks->members)
+      if (const auto* in = block.value.find("in"))
+        for (const PortWires& port : read_inputs(in->value, reader_))
+          for (const Wire& wire : port.wires)
+            if (wire.source.find('.') == std::string::npos && is_role(wire)) reads.insert(wire.source);
+    for (const std::string& role : effect_roles)
+      if (reads.contains(role)) effect_.reads.push_back(role);
+  }
+  bool is_role(const Wire& wire) {
+    if (std::ranges::find(effect_roles, wire.source) != effect_roles.end()) return true;
+    auto& p = reader_.problems.error(wire.place, wire.pointer, "",
+                                     fmt::format("there is no signal \"{}\" to read", wire.source));
+    KnownNames(effect_roles).explain(p, wire.source);
+    return false;
+  }
+
+  void read_attachments() {
+    const Value::Member* list = member("attach");
+    if (!list) {
+      reader_.error(file_, "the effect does not say where it acts").expected =
+          "\"attach\": [{\"to\": \"force\", \"from\": \"block.output\"}]";
+      return;
+    }
+    if (!reader_.expect(list->value, Kind::list, "\"attach\"", "a list of objects")) return;
+    for (const Value& item : list->value.items)
+      if (reader_.expect(item, Kind::object, "an attachment", "{\"to\": …, \"from\": …}"))
+        read_attachment(item);
+    if (list->value.items.empty()) reader_.error(*list, "the effect acts nowhere");
+  }
+  void read_attachment(const Value& item) {
+    using To = Attachment::To;
+    reader_.reject_unknown(item, {"to", "from", "parameter", "add", "optional"}, "an attachment");
+    Attachment attachment;
+    attachment.place = item.place;
+    attachment.from = text(item, "from", "the attachment");
+    const std::vector<std::pair<std::string, To>> known = {
+        {"force", To::force}, {"input", To::input}, {"sensor", To::sensor}, {"parameter", To::parameter}};
+    const std::string to = text(item, "to", "the attachment");
+    const auto found = std::ranges::find(known, to, [](const auto& k) { return k.first; });
+    if (found == known.end()) {
+      if (item.find("to"))
+        KnownNames({"force", "input", "sensor", "parameter"})
+            .explain(reader_.error(*item.find("to"), "an effect cannot be attached there"), to);
+      return;
+    }
+    attachment.to = found->second;
+    check_source(item, attachment.from);
+    if (attachment.to == To::parameter) {
+      if (const auto* targets = item.find("parameter"))
+        attachment.targets = texts(targets->value, "\"parameter\"");
+      if (attachment.targets.empty())
+        reader_.error(item, "the attachment names no parameter").expected = "\"parameter\": [\"Mass.mass\"]";
+      if (const auto* add = item.find("add"))
+        attachment.add = add->value;
+      else
+        reader_.error(item, "the attachment does not say what to add").expected = "\"add\": \"=mass\"";
+      attachment.is_optional = flag(item, "optional");
+    }
+    effect_.attachments.push_back(std::move(attachment));
+  }
+  void check_source(const Value& item, const std::string& from) {
+    const std::vector<std::string> path = split_path(from);
+    if (path.size() == 2 && effect_.blocks.find(path[0])) return;
+    const Value::Member* member = item.find("from");
+    if (!member) return;
+    KnownNames names;
+    for (const Value::Member& block : effect_.blocks.members) names.add(block.name);
+    names.explain(reader_.error(*member, fmt::format("\"{}\" is no output of the effect's blocks", from)),
+                  path.empty() ? from : path[0]);
+  }
+
+  // ---- What a search must know ----
+
+  void read_needs() {
+    const Value* needs = object("needs", "what a record must contain, with a \"text\"");
+    if (!needs) return;
+    reader_.reject_unknown(*needs,
+                           {"text", "directions", "speeds", "accelerations", "reversals", "passes", "periods",
+                            "duration_s", "varied_force"},
+                           "\"needs\"");
+    Excitation& e = effect_.needs;
+    e.text = text(*needs, "text", "\"needs\"");
+    e.directions = int(number(*needs, "directions", 1)), e.speeds = int(number(*needs, "speeds", 1));
+    e.accelerations = int(number(*needs, "accelerations", 0));
+    e.reversals = int(number(*needs, "reversals", 0)), e.passes = int(number(*needs, "passes", 1));
+    e.periods = number(*needs, "periods", 0), e.duration_s = number(*needs, "duration_s", 0);
+    e.varied_force = flag(*needs, "varied_force");
+  }
+
+  void read_confusable() {
+    const Value::Member* list = member("confusable");
+    if (!list || !reader_.expect(list->value, Kind::list, "\"confusable\"", "a list of objects")) return;
+    for (const Value& item : list->value.items) {
+      if (!reader_.expect(item, Kind::object, "a confusable effect", "{\"with\": …, \"experiment\": …}"))
+        continue;
+      reader_.reject_unknown(item, {"with", "when", "experiment"}, "a confusable effect");
+      ConfusableEffect other;
+      other.with = text(item, "with", "the confusable effect");
+      other.when = reader_.text(item, "when");
+      if (const auto* experiment = item.find("experiment"))
+        other.experiment = read_experiment(experiment->value);
+      else
+        reader_.error(item, "the experiment that separates them is missing").expected = "\"experiment\": {…}";
+      effect_.confusable.push_back(std::move(other));
+    }
+  }
+  SeparatingExperiment read_experiment(const Value& value) {
+    SeparatingExperiment e;
+    if (!reader_.expect(value, Kind::object, "\"experiment\"", "an object")) return e;
+    reader_.reject_unknown(value,
+                           {"text", "speeds", "distance", "acceleration", "passes", "pause_s", "added_mass",
+                            "chirp_amplitude", "chirp_from_hz", "chirp_to_hz"},
+                           "an experiment");
+    e.text = text(value, "text", "the experiment");
+    if (const auto* speeds = value.find("speeds");
+        speeds && reader_.expect(speeds->value, Kind::list, "\"speeds\"", "a list of numbers")) {
+      e.speeds.clear();
+      for (const Value& speed : speeds->value.items)
+        if (reader_.expect(speed, Kind::number, "a speed", "a number")) e.speeds.push_back(speed.number);
+      if (e.speeds.empty()) reader_.error(*speeds, "the experiment has no speed");
+    }
+    e.distance = number(value, "distance", 1), e.acceleration = number(value, "acceleration", 1);
+    e.passes = int(number(value, "passes", 1)), e.pause_s = number(value, "pause_s", 0.2);
+    e.added_mass = number(value, "added_mass", 0);
+    e.chirp_amplitude = number(value, "chirp_amplitude", 0);
+    e.chirp_from_hz = number(value, "chirp_from_hz", 1), e.chirp_to_hz = number(value, "chirp_to_hz", 100);
+    return e;
+  }
+
+  const Value& file_;
+  const Value* form_;
+  Reader reader_;
+  Effect effect_;
+};
+
+std::vector<std::string> effect_files(const std::string& folder, Problems& problems) {
+  std::vector<std::string> files;
+  std::error_code code;
+  if (!fs::is_directory(folder, code)) {
+    problems.error({}, "", "", fmt::format("the folder of effects \"{}\" is not there", folder)).hint =
+        "the environment variable LOOPWRIGHT_EFFECTS may name it";
+    return files;
+  }
+  for (const auto& entry : fs::directory_iterator(folder, code))
+    if (entry.path().extension() == ".json") files.push_back(entry.path().string());
+  std::ranges::sort(files);
+  return files;
+}
+
+/// Effects name each other; a name that is not there is a slip of the pen.
+void check_names(const std::vector<Effect>& effects, Problems& problems) {
+  std::vector<std::string> names;
+  for (const Effect& effect : effects) names.push_back(effect.name);
+  for (const Effect& effect : effects)
+    for (const ConfusableEffect& other : effect.confusable)
+      if (std::ranges::find(names, other.with) == names.end()) {
+        auto& p = problems.error(
+            effect.blocks.place, "/confusable", "",
+            fmt::format("\"{}\" is confusable with \"{}\", which is no effect", effect.name, other.with));
+        KnownNames(names).explain(p, other.with);
+      }
+}
+
+}  // namespace
+
+std::vector<Effect> load_effect(const std::string& path, Problems& problems) {
+  Problems own;
+  std::vector<Effect> effects;
+  const auto source = read_source(path, {}, own);
+  const Value file = source ? parse_json(source, own) : Value{};
+  const Reader reader{own, ""};
+  if (!own.has_errors() && reader.expect(file, Kind::object, "an effect", "an object in braces")) {
+    reader.reject_unknown(file,
+                          {"loopwright", "effect", "title", "physics", "parameters", "blocks", "attach",
+                           "equivalents", "needs", "confusable", "repeatable", "forms"},
+                          "an effect");
+    const Value::Member* version = file.find("loopwright");
+    if (!version || version->value.kind != Kind::number || version->value.number != 1)
+      reader.error(file, "the version of the format is missing or not known").expected = "\"loopwright\": 1";
+    const Value::Member* forms = file.find("forms");
+    if (!forms)
+      effects.push_back(FormReader(file, nullptr, own).read());
+    else if (reader.expect(forms->value, Kind::object, "\"forms\"", "an object: name → what differs"))
+      for (const Value::Member& form : forms->value.members) {
+        if (!reader.expect(form.value, Kind::object, "a form", "an object")) continue;
+        reader.reject_unknown(
+            form.value, {"physics", "parameters", "blocks", "attach", "equivalents", "needs", "confusable"},
+            "a form of an effect");
+        effects.push_back(FormReader(file, &form.value, own).read());
+        effects.back().form = form.name;
+      }
+    for (Effect& effect : effects) {
+      effect.path = path;
+      if (!effect.name.empty() && fs::path(path).stem() != effect.name)
+        reader.error(file, fmt::format("the effect \"{}\" stands in a file of another name", effect.name))
+            .expected = effect.name + ".json";
+    }
+  }
+  for (const Problem& problem : own.list()) problems.add(problem);
+  if (own.has_errors()) effects.clear();
+  return effects;
+}
+
+std::vector<Effect> load_catalogue(const std::vector<std::string>& folders, Problems& problems) {
+  std::vector<Effect> catalogue;
+  for (const std::string& folder : folders)
+    for (const std::string& file : effect_files(folder, problems)) {
+      std::vector<Effect> effects = load_effect(file, problems);
+      if (effects.empty()) continue;
+      std::erase_if(catalogue, [&](const Effect& e) { return e.name == effects.front().name; });
+      std::ranges::move(effects, std::back_inserter(catalogue));
+    }
+  std::ranges::stable_sort(catalogue, {}, [](const Effect& e) { return e.name; });
+  if (!problems.has_errors()) check_names(catalogue, problems);
+  return catalogue;
+}
+
+}  // namespace loopwright

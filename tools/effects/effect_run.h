@@ -1,0 +1,103 @@
+/// An effect's blocks, run on given signals: fast, with parameters that change without compiling anew.
+#pragma once
+#include <memory>
+#include <span>
+#include "engine/lanes/lane_run.h"
+#include "tools/effects/effect_values.h"
+
+namespace loopwright {
+
+/// An effect compiled for a machine and a record; shared by runs and threads.
+struct EffectPlan {
+  /// A number of a block that follows the effect's parameters.
+  struct Binding {
+    std::string path;  ///< in the plan, "effect.friction.level"
+    Value value;       ///< as written: "=level"
+  };
+  Effect effect;
+  RecordSizes sizes;
+  std::vector<std::string> fitted;  ///< the parameters that `EffectRun::set` sets, in their order
+  std::vector<Binding> bindings;
+  Plan plan;
+  Number output = 0;     ///< what the effect does, at an instant
+  Number integral = -1;  ///< the same, integrated; -1: nothing in it has states or rates of its own
+  bool acts_on_sensor = false;
+};
+
+/// Null after a problem: blocks that are not there, units that do not fit the machine's.
+std::shared_ptr<const EffectPlan> compile_effect(const Effect& effect, const MachineUnits& units,
+                                                 const RecordSizes& sizes, Problems& problems);
+
+/// What the effect may read at one sample; roles that it does not read are of no matter.
+struct RoleSample {
+  double position = 0, velocity = 0, acceleration = 0, input = 0, force = 0;
+  /// At the next sample; NaN: the velocity goes on by the acceleration, which stays. Leave it so where the
+  /// value must not depend on later measurements.
+  double next_velocity = std::numeric_limits<double>::quiet_NaN();
+  double next_acceleration = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// Columns of a record, or of a predictor; empty where the effect does not read them.
+struct RoleSignals {
+  std::span<const double> position, velocity, acceleration, input, force;
+  /// True: within a sample velocity and acceleration go to those of the next, as is best for a look at the
+  /// whole record.
+  /// False: it goes on by velocity and acceleration, so that row k depends on rows up to k alone.
+  bool looks_ahead = false;
+
+  size_t rows() const;
+  RoleSample at(size_t row) const;
+};
+
+/// Runs an effect, with several sets of parameters side by side on SIMD lanes if so wished. What it gives for
+/// each sample is
+///   acting on force or parameters: the force that it consumes [force], mean over the sample
+///   acting on the input:           what it adds to the input [force], mean over the sample
+///   acting on the sensor:          what it adds to the measured position [position], at the sample
+/// Within a sample the position is a parabola and velocity a straight line; input and force are held. The
+/// mean is by Gauss's two points where the effect has no states, else by an integrator beside them.
+class EffectRun {
+ public:
+  /// `lanes`: how many sets are wanted; see lanes().
+  explicit EffectRun(std::shared_ptr<const EffectPlan> plan, int lanes = 1);
+
+  /// Sets of parameters that run side by side: one, or as many as this machine has lanes for.
+  int lanes() const { return run_->lanes(); }
+  /// A fitted parameter in SI, by its place in EffectPlan::fitted; counts from the next start.
+  void set(size_t parameter, double value, int lane = 0) { fitted_[size_t(lane)].at(parameter) = value; }
+  double get(size_t parameter, int lane = 0) const { return fitted_[size_t(lane)].at(parameter); }
+  /// Leaves of all linear parameters this one, at its usual magnitude, which is returned: some effects are
+  /// straight only up to a limit.
+  double isolate(size_t parameter, int lane = 0);
+  /// Back to rest at the first sample.
+  void start(const RoleSample& first);
+  /// The values of the next sample, one a lane.
+  std::span<const double> step(const RoleSample& sample);
+  /// Starts, and fills one value a row, the rows of lane 0, then those of lane 1, …: values.size() is a
+  /// multiple of the rows, lanes beyond it are left out. Throws std::invalid_argument when a role that is
+  /// read is missing.
+  void run(const RoleSignals& signals, size_t rows, std::span<double> values);
+  void run(const RoleSignals& signals, std::span<double> values) { run(signals, values.size(), values); }
+  /// The same with one fitted parameter at 1 and all other linear ones at 0: the column of a linear
+  /// parameter.
+  void column(const RoleSignals& signals, size_t parameter, std::span<double> values);
+
+ private:
+  struct Wire {  // the parameters of an ExternalSignal, in every lane
+    std::vector<double*> value, slope, bend, since;
+  };
+  Wire wire(const char* role);
+  static void give(const Wire& wire, double now, double value, double slope = 0, double bend = 0);
+  void give(const RoleSample& sample, double now);
+  void read(Number number, std::vector<double>& to) const { run_->read({&number, 1}, to.data()); }
+
+  std::shared_ptr<const EffectPlan> plan_;
+  std::unique_ptr<LaneRun> run_;
+  std::vector<std::vector<double>> fitted_;  // of each lane
+  std::vector<std::vector<double*>> bound_;
+  Wire position_, velocity_, acceleration_, input_, force_;
+  int64_t sample_ticks_ = 1;
+  std::vector<double> value_, integral_, second_;  // a lane each
+};
+
+}  // namespace loopwright

@@ -1,0 +1,28 @@
+/// The numbers behind an effect's expressions.
+#pragma once
+#include <map>
+#include <string>
+#include <string_view>
+#include "tools/effects/effect.h"
+
+namespace loopwright {
+
+/// Names and numbers in SI; units were checked when the effect was loaded and when its blocks were compiled.
+class EffectValues {
+ public:
+  explicit EffectValues(const RecordSizes& sizes);
+  void set(std::string_view name, double value) { numbers_[std::string(name)] = value; }
+  double at(std::string_view name) const { return numbers_.find(name)->second; }
+  /// Sets every parameter that is not fitted from those that are.
+  void work_out(const Effect& effect);
+  /// A number as written, or the result of an expression; NaN where it cannot be worked out.
+  double evaluate(const Value& value) const;
+
+ private:
+  std::map<std::string, double, std::less<>> numbers_;
+};
+
+/// Sizes, the fitted values given (in the order of the fitted parameters), and what follows from them.
+EffectValues values_of(const Effect& effect, const RecordSizes& sizes, const std::vector<double>& fitted);
+
+}  // namespace loopwright

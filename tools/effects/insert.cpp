@@ -1,0 +1,655 @@
+#include "tools/effects/insert.h"
+#include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
+#include <set>
+#include "engine/block/registry.h"
+#include "engine/diagram/json.h"
+#include "engine/diagram/reader.h"
+#include "tools/effects/effect_values.h"
+#include "tools/effects/json_text.h"
+
+namespace loopwright {
+namespace {
+
+namespace fs = std::filesystem;
+using Kind = Value::Kind;
+using To = Attachment::To;
+
+/// A file that takes part: the outermost diagram, and those of the subdiagrams on the way.
+struct Document {
+  std::shared_ptr<const SourceFile> file;
+  Value root;
+  TextEdits edits;
+  Document* parent = nullptr;
+  const Value* named_at = nullptr;  // "diagram": "…" in the parent
+  const std::string& text() const { return file->text; }
+};
+
+/// A diagram in the nest.
+struct Level {
+  Document* document = nullptr;
+  const Value* diagram = nullptr;
+  std::string prefix;  // path of its block, empty at the top
+
+  const Value::Member* block(std::string_view name) const {
+    const Value::Member* blocks = diagram->find("blocks");
+    return blocks ? blocks->value.find(name) : nullptr;
+  }
+};
+
+/// A port that was followed down to a block, or to an input of the diagram in which it is read.
+struct Port {
+  Level level;
+  std::string block, port;                // no block: an input of the level's diagram
+  const Value::Member* output = nullptr;  // the last "outputs" entry of a subdiagram on the way
+  Level output_level{};
+  std::string path() const { return joined(joined(level.prefix, block), port); }
+};
+
+std::string wire_text(const Value& wire) { return wire.kind == Kind::text ? wire.text : ""; }
+
+std::string type_of(const Value& block) {
+  const Value::Member* type = block.find("type");
+  return type ? type->value.text : "";
+}
+
+/// Calls `f(wire)` for every wire into a block.
+template <class F> void each_wire(const Value& block, F&& f) {
+  const Value::Member* in = block.find("in");
+  if (!in) return;
+  for (const Value::Member& port : in->value.members) {
+    if (port.value.kind == Kind::text) f(port.value);
+    for (const Value& item : port.value.items)
+      if (item.kind == Kind::text) f(item);
+  }
+}
+
+/// Files and diagrams, opened as ports are followed.
+class Nest {
+ public:
+  Nest(std::shared_ptr<const SourceFile> file, const InsertionSite& site, Problems& problems)
+      : site_(site), problems_(problems) {
+    open(std::move(file), nullptr, nullptr);
+  }
+  bool is_readable() const { return documents_.front()->root.kind == Kind::object; }
+  Level top() const { return {documents_.front().get(), &documents_.front()->root, ""}; }
+
+  /// The body of a block: of its active variant, if it has several.
+  const Value* body(const Level& level, const Value::Member& block) const {
+    const Value::Member* variants = block.value.find("variants");
+    if (!variants || variants->value.members.empty()) return &block.value;
+    std::string name = variants->value.members.front().name;
+    if (const auto* chosen = block.value.find("variant")) name = chosen->value.text;
+    const auto option = site_.variants.find(joined(level.prefix, block.name));
+    if (option != site_.variants.end()) name = option->second;
+    const Value::Member* variant = variants->value.find(name);
+    return variant ? &variant->value : &variants->value.members.front().value;
+  }
+
+  /// The diagram inside a block; nothing when it is an ordinary block or cannot be read.
+  std::optional<Level> inside(const Level& level, const Value::Member& block) {
+    const Value* body = this->body(level, block);
+    const Value::Member* diagram = body->find("diagram");
+    if (!diagram) return {};
+    const std::string prefix = joined(level.prefix, block.name);
+    if (diagram->value.kind == Kind::object) return Level{level.document, &diagram->value, prefix};
+    for (const auto& document : documents_)
+      if (document->named_at == &diagram->value) return Level{document.get(), &document->root, prefix};
+    const std::string path = resolve_relative(diagram->value.place, diagram->value.text);
+    auto file = read_source(path, diagram->value.place, problems_);
+    if (!file) return {};
+    Document* opened = open(std::move(file), level.document, &diagram->value);
+    if (opened->root.kind != Kind::object) return {};
+    return Level{opened, &opened->root, prefix};
+  }
+
+  /// Follows a port, "axis.position", through outputs of subdiagrams to the block behind it, or to the input
+  /// that it is. Nothing when there is no such port.
+  std::optional<Port> follow(const Level& start, const std::string& text) {
+    std::vector<std::string> path = split_path(text);
+    Port port{start, "", "", nullptr, {}};
+    for (size_t i = 0; i < path.size(); ++i) {
+      const std::string name = path[i].substr(0, path[i].find('['));
+      if (i + 1 == path.size()) return last_step(std::move(port), name);
+      const Value::Member* block = port.level.block(name);
+      if (!block) return {};
+      if (auto inner = inside(port.level, *block)) {
+        port.level = std::move(*inner);
+        continue;
+      }
+      if (i + 2 != path.size()) return {};
+      port.block = name, port.port = path[i + 1];
+      return port;
+    }
+    return {};
+  }
+
+  /// The changed text, with changed files written out where they were named.
+  std::string text() {
+    for (size_t i = documents_.size(); i-- > 1;) {
+      Document& document = *documents_[i];
+      if (document.edits.empty()) continue;
+      rebase(document);
+      if (const auto* version = document.root.find("loopwright")) remove_member(document, *version);
+      std::string inner = document.edits.apply(document.text());
+      while (!inner.empty() && inner.back() == '\n') inner.pop_back();
+      const std::string& outer = document.parent->text();
+      const size_t at = document.named_at->place.offset;
+      const std::string moved = indented(inner, indentation_at(outer, at) + "  ");
+      document.parent->edits.replace(at, end_of_value(outer, at), moved);
+    }
+    return documents_.front()->edits.apply(documents_.front()->text());
+  }
+
+ private:
+  Document* open(std::shared_ptr<const SourceFile> file, Document* parent, const Value* named_at) {
+    auto document = std::make_unique<Document>();
+    document->file = std::move(file), document->parent = parent, document->named_at = named_at;
+    document->root = parse_json(document->file, problems_);
+    documents_.push_back(std::move(document));
+    return documents_.back().get();
+  }
+
+  std::optional<Port> last_step(Port port, const std::string& name) {
+    const auto* outputs = port.level.diagram->find("outputs");
+    if (const auto* output = outputs ? outputs->value.find(name) : nullptr) {
+      const Value* source = &output->value;
+      if (source->kind == Kind::object && source->find("source")) source = &source->find("source")->value;
+      const Level level = port.level;
+      auto behind = follow(level, wire_text(*source));
+      if (behind && !behind->output) behind->output = output, behind->output_level = level;
+      return behind;
+    }
+    const auto* inputs = port.level.diagram->find("inputs");
+    if (!inputs || !inputs->value.find(name)) return {};
+    port.port = name;
+    return port;
+  }
+
+  static void remove_member(Document& document, const Value::Member& member) {
+    const std::string& text = document.text();
+    size_t end = end_of_value(text, member.value.place.offset);
+    if (end < text.size() && text[end] == ',')
+      end = std::min(text.find_first_not_of(" \t\r\n", end + 1), text.size());
+    document.edits.replace(member.place.offset, end, "");
+  }
+
+  /// Paths in a file that is written out elsewhere.
+  void rebase(Document& document) const {
+    const fs::path folder = fs::path(documents_.front()->file->name).parent_path();
+    rebase_paths(document.root, folder, document.edits);
+  }
+
+ public:
+  /// Every text that leads to a file, so that it still does from `folder`. Texts of further files are not
+  /// touched: they keep their own places.
+  static void rebase_paths(const Value& value, const fs::path& folder, TextEdits& edits) {
+    for (const Value::Member& member : value.members) rebase_paths(member.value, folder, edits);
+    for (const Value& item : value.items) rebase_paths(item, folder, edits);
+    if (value.kind != Kind::text || value.text.empty() || fs::path(value.text).is_absolute()) return;
+    std::error_code code;
+    const std::string now = resolve_relative(value.place, value.text);
+    if (!fs::is_regular_file(now, code)) return;
+    const fs::path absolute = fs::weakly_canonical(now, code),
+                   base = fs::weakly_canonical(fs::absolute(folder), code);
+    const std::string moved = absolute.lexically_relative(base).string();
+    const size_t at = value.place.offset;
+    if (moved != value.text) edits.replace(at, end_of_value(value.place.file->text, at), "\"" + moved + "\"");
+  }
+
+ private:
+  const InsertionSite& site_;
+  Problems& problems_;
+  std::vector<std::unique_ptr<Document>> documents_;
+};
+
+class Inserter {
+ public:
+  Inserter(std::shared_ptr<const SourceFile> file, const InsertionSite& site, const Effect& effect,
+           const std::vector<double>& fitted, const RecordSizes& sizes, Problems& problems)
+      : site_(site),
+        effect_(effect),
+        values_(values_of(effect, sizes, fitted)),
+        problems_(problems),
+        place_{file, 0},
+        nest_(std::move(file), site, problems) {}
+
+  std::optional<Insertion> run() {
+    if (!nest_.is_readable() || !find_sum()) return {};
+    find_mass();
+    choose_names();
+    for (const Attachment& attachment : effect_.attachments) attach(attachment);
+    if (failed_) return {};
+    result_.text = nest_.text();
+    return std::move(result_);
+  }
+
+ private:
+  Problem& error(std::string message) {
+    failed_ = true;
+    return problems_.error(place_, "", "",
+                           fmt::format("the effect \"{}\" cannot be added: {}", effect_.name, message));
+  }
+
+  std::string port_of(std::string_view role) const {
+    for (const auto& [name, port] : site_.roles)
+      if (name == role) return port;
+    return "";
+  }
+
+  // ---- Where the machine is ----
+
+  bool find_sum() {
+    const std::string port = port_of("force");
+    if (port.empty()) {
+      error("the experiment names no role \"force\"").expected = "\"roles\": {\"force\": a Sum of forces}";
+      return false;
+    }
+    const auto found = nest_.follow(nest_.top(), port);
+    const Value::Member* block = found && !found->block.empty() ? found->level.block(found->block) : nullptr;
+    const bool is_sum = block && type_of(*nest_.body(found->level, *block)) == "Sum";
+    if (!is_sum) {
+      auto& p = error(fmt::format("the role \"force\" leads to no sum of forces"));
+      p.expected = "the output of a Sum that accepts more terms";
+      p.found = port + (block ? ", a " + type_of(block->value) : "");
+      return false;
+    }
+    sum_level_ = found->level, sum_ = block;
+    return true;
+  }
+
+  /// The mass that the sum of forces moves.
+  void find_mass() {
+    const std::string sum_output = sum_->name + ".sum";
+    for (const Value::Member& block : sum_level_.diagram->find("blocks")->value.members) {
+      const std::string type = type_of(block.value);
+      if (type != "Mass" && type != "TwoMass") continue;
+      each_wire(block.value, [&](const Value& wire) {
+        if (wire.text == sum_output) mass_ = &block, mass_prefix_ = type == "TwoMass" ? "motor_" : "";
+      });
+    }
+  }
+
+  /// What carries a role's signal, as a wire in the diagram of `level`.
+  std::string source_of(std::string_view role, const Level& level) {
+    std::string path;
+    const bool has_acceleration = mass_prefix_.empty();
+    if (mass_ && (role == "position" || role == "velocity" || (role == "acceleration" && has_acceleration))) {
+      path = joined(joined(sum_level_.prefix, mass_->name), mass_prefix_ + std::string(role));
+    } else if (const std::string port = port_of(role); !port.empty()) {
+      const auto found = nest_.follow(nest_.top(), port);
+      path = found ? found->path() : port;
+    }
+    if (level.prefix.empty() && !path.empty()) return path;
+    if (path.starts_with(level.prefix + ".")) return path.substr(level.prefix.size() + 1);
+    error(fmt::format("it reads the {}, which is not known there", role)).expected =
+        fmt::format("a role \"{}\" of the experiment, computed in the diagram of \"{}\"", role, level.prefix);
+    return "";
+  }
+
+  // ---- The effect's blocks ----
+
+  static std::string block_of(const std::string& port) { return port.substr(0, port.find('.')); }
+
+  /// Blocks that act themselves; those that only stand for a changed parameter are not needed.
+  void need(const std::string& name) {
+    const Value::Member* block = effect_.blocks.find(name);
+    if (!block || !needed_.insert(name).second) return;
+    each_wire(block->value, [&](const Value& wire) {
+      if (wire.text.find('.') != std::string::npos) need(block_of(wire.text));
+    });
+  }
+
+  void choose_names() {
+    for (const Attachment& a : effect_.attachments)
+      if (a.to != To::parameter) need(block_of(a.from));
+    std::set<std::string> used;
+    for (const char* key : {"blocks", "parameters", "inputs"})
+      if (const auto* list = sum_level_.diagram->find(key))
+        for (const Value::Member& member : list->value.members) used.insert(member.name);
+    const auto is_used = [&](const std::string& name) {
+      return std::ranges::any_of(
+          used, [&](const std::string& u) { return u == name || u.starts_with(name + "_"); });
+    };
+    base_ = effect_.name;
+    for (int i = 2; is_used(base_); ++i) base_ = fmt::format("{}_{}", effect_.name, i);
+  }
+  std::string name_of(const std::string& block) const {
+    return needed_.size() == 1 ? base_ : base_ + "_" + block;
+  }
+
+  void add_blocks(const Level& level, const Value::Member& before) {
+    if (were_added_) return;
+    were_added_ = true;
+    std::string text;
+    for (const Value::Member& block : effect_.blocks.members) {
+      if (!needed_.contains(block.name)) continue;
+      text += member_before(level.diagram->find("blocks")->value, before, name_of(block.name),
+                            block_text(block, level));
+      result_.blocks.push_back(joined(level.prefix, name_of(block.name)));
+    }
+    level.document->edits.insert(before.place.offset, text);
+  }
+
+  std::string block_text(const Value::Member& block, const Level& level) {
+    std::string settings, wires;
+    const std::string path = joined(level.prefix, name_of(block.name));
+    for (const Value::Member& member : block.value.members) {
+      if (member.name == "in") {
+        for (const Value::Member& port : member.value.members)
+          wires += fmt::format("{}\"{}\": {}", wires.empty() ? "" : ", ", port.name,
+                               wires_text(port.value, level));
+      } else if (const std::string value = setting_text(member, path); !value.empty()) {
+        settings += fmt::format("{}\"{}\": {}", settings.empty() ? "" : ", ", member.name, value);
+      }
+    }
+    if (wires.empty()) return "{" + settings + "}";
+    const bool is_long = name_of(block.name).size() + settings.size() + wires.size() > 95;
+    return fmt::format("{{{},{}\"in\": {{{}}}}}", settings, is_long ? "\n " : " ", wires);
+  }
+  std::string wires_text(const Value& port, const Level& level) {
+    if (port.kind != Kind::list) return wire_in(port, level);
+    std::string list;
+    for (const Value& item : port.items) list += (list.empty() ? "" : ", ") + wire_in(item, level);
+    return "[" + list + "]";
+  }
+  std::string wire_in(const Value& wire, const Level& level) {
+    const std::string& source = wire.text;
+    const size_t dot = source.find('.');
+    if (dot != source.npos)
+      return fmt::format("\"{}{}\"", name_of(source.substr(0, dot)), source.substr(dot));
+    if (source == "input") return fmt::format("\"{}\"", input_source_);
+    return fmt::format("\"{}\"", source_of(source, level));
+  }
+  /// A setting as it stands in the new diagram; empty: it is left out.
+  std::string setting_text(const Value::Member& setting, const std::string& path) {
+    const bool is_start =
+        setting.value.text == "=initial_position" || setting.value.text == "=initial_velocity";
+    if (is_start) return start_of_mass(setting.value.text.substr(1));
+    return value_text(setting.value, path + "." + setting.name);
+  }
+  /// A load begins where its motor does.
+  std::string start_of_mass(const std::string& name) const {
+    const Value::Member* own = mass_ ? mass_->value.find(name) : nullptr;
+    return own ? to_json(own->value) : "";
+  }
+  std::string value_text(const Value& value, const std::string& path) {
+    if (value.kind == Kind::text && value.text.starts_with('=')) {
+      const std::string name = value.text.substr(1);
+      if (effect_.find(name)) result_.settings.emplace_back(name, path);
+      return readable_number(values_.evaluate(value));
+    }
+    std::string items;
+    if (value.kind == Kind::list) {
+      for (size_t i = 0; i < value.items.size(); ++i)
+        items += (i ? ", " : "") + value_text(value.items[i], fmt::format("{}.{}", path, i));
+      return "[" + items + "]";
+    }
+    if (value.kind == Kind::object) {
+      for (const Value::Member& m : value.members)
+        items += fmt::format("{}\"{}\": {}", items.empty() ? "" : ", ", m.name,
+                             value_text(m.value, path + "." + m.name));
+      return "{" + items + "}";
+    }
+    return to_json(value);
+  }
+
+  // ---- Attachments ----
+
+  void attach(const Attachment& attachment) {
+    if (attachment.to == To::force) attach_to_force(attachment);
+    if (attachment.to == To::input) attach_to_input(attachment);
+    if (attachment.to == To::sensor) attach_to_sensor(attachment);
+    if (attachment.to == To::parameter) attach_to_parameter(attachment);
+  }
+
+  std::string new_port(const std::string& from) const {
+    return name_of(block_of(from)) + from.substr(from.find('.'));
+  }
+
+  void attach_to_force(const Attachment& attachment) {
+    add_blocks(sum_level_, *sum_);
+    TextEdits& edits = sum_level_.document->edits;
+    const std::string& text = sum_level_.document->text();
+    const Value::Member* in = sum_->value.find("in");
+    const Value::Member* terms = in ? in->value.find("terms") : nullptr;
+    if (!terms || terms->value.kind != Kind::list || terms->value.items.empty()) {
+      error("the sum of forces has no list of terms").expected = "\"in\": {\"terms\": [\"motor.force\", …]}";
+      return;
+    }
+    const size_t last = terms->value.items.back().place.offset;
+    edits.insert(end_of_value(text, last), fmt::format(", \"{}\"", new_port(attachment.from)));
+    if (const auto* signs = sum_->value.find("signs"))
+      edits.insert(end_of_value(text, signs->value.place.offset) - 1, "-");
+    else
+      edits.insert(sum_->value.find("in")->place.offset,
+                   fmt::format("\"signs\": \"{}-\", ", std::string(terms->value.items.size(), '+')));
+  }
+
+  void attach_to_input(const Attachment& attachment) {
+    const std::string role = port_of("input");
+    const auto found = role.empty() ? std::nullopt : nest_.follow(nest_.top(), role);
+    if (!found) {
+      error("the role \"input\" leads to no port").found = role.empty() ? "no role \"input\"" : role;
+      return;
+    }
+    const Value::Member* block = found->block.empty() ? nullptr : found->level.block(found->block);
+    const Value::Member* in = block ? block->value.find("in") : nullptr;
+    const Value::Member* own = in ? in->value.find(found->port) : nullptr;
+    std::vector<std::pair<const Value::Member*, const Value*>> readers;
+    if (own && own->value.kind == Kind::text) {  // an input port: the wire into it
+      input_source_ = own->value.text;
+      readers.emplace_back(block, &own->value);
+    } else {  // an output, or an input of the diagram: who reads it
+      input_source_ = block ? found->block + "." + found->port : found->port;
+      readers = readers_of(found->level, input_source_);
+    }
+    if (readers.empty()) {
+      error("nothing reads the input").found = role;
+      return;
+    }
+    add_blocks(found->level, *readers.front().first);
+    redirect(found->level, readers, new_port(attachment.from));
+  }
+
+  void redirect(const Level& level, const std::vector<std::pair<const Value::Member*, const Value*>>& readers,
+                const std::string& source) {
+    for (const auto& [block, wire] : readers) {
+      const size_t at = wire->place.offset;
+      level.document->edits.replace(at, end_of_value(level.document->text(), at), "\"" + source + "\"");
+    }
+  }
+
+  /// Wires from `source` into blocks that lead to the sum of forces by the shortest way: an observer that
+  /// reads the same command still reads the command.
+  std::vector<std::pair<const Value::Member*, const Value*>> readers_of(const Level& level,
+                                                                        const std::string& source) {
+    std::vector<std::pair<const Value::Member*, const Value*>> readers;
+    int best = 1 << 20;
+    for (const Value::Member& block : level.diagram->find("blocks")->value.members)
+      each_wire(block.value, [&](const Value& wire) {
+        if (wire.text != source) return;
+        const int distance = distance_to_sum(level, block.name);
+        if (distance > best) return;
+        if (distance < best) readers.clear(), best = distance;
+        readers.emplace_back(&block, &wire);
+      });
+    return readers;
+  }
+  /// Wires between a block and the sum of forces, or the subdiagram that holds it.
+  int distance_to_sum(const Level& level, const std::string& from) const {
+    std::string target = sum_->name;
+    if (sum_level_.prefix != level.prefix) {
+      const size_t skip = level.prefix.empty() ? 0 : level.prefix.size() + 1;
+      target = split_path(sum_level_.prefix.substr(skip)).front();
+    }
+    std::set<std::string> reached{from};
+    for (int distance = 0; distance < 100; ++distance) {
+      if (reached.contains(target)) return distance;
+      std::set<std::string> next = reached;
+      for (const Value::Member& block : level.diagram->find("blocks")->value.members)
+        each_wire(block.value, [&](const Value& wire) {
+          if (reached.contains(block_of(wire.text))) next.insert(block.name);
+        });
+      if (next == reached) break;
+      reached = std::move(next);
+    }
+    return 1 << 19;
+  }
+
+  void attach_to_sensor(const Attachment& attachment) {
+    const std::string role = port_of("position");
+    const auto found = role.empty() ? std::nullopt : nest_.follow(nest_.top(), role);
+    const Value::Member* block = found && !found->block.empty() ? found->level.block(found->block) : nullptr;
+    if (!block) {
+      error("the role \"position\" leads to no block").found = role.empty() ? "no role \"position\"" : role;
+      return;
+    }
+    const std::string source = found->block + "." + found->port;
+    if (found->output && found->output_level.diagram == found->level.diagram) {
+      add_blocks(found->level, *block);
+      const Value* wire = &found->output->value;
+      if (const auto* inner = wire->find("source")) wire = &inner->value;
+      redirect(found->level, {{block, wire}}, new_port(attachment.from));
+      return;
+    }
+    add_blocks(found->level, *block);
+    redirect(found->level, sensor_readers(found->level, source), new_port(attachment.from));
+    result_.moved_ports.emplace_back(role, joined(found->level.prefix, new_port(attachment.from)));
+  }
+  /// All but the mechanics: a force depends on where the machine is, not on where it is seen.
+  std::vector<std::pair<const Value::Member*, const Value*>> sensor_readers(const Level& level,
+                                                                            const std::string& source) const {
+    std::vector<std::pair<const Value::Member*, const Value*>> readers;
+    for (const Value::Member& block : level.diagram->find("blocks")->value.members) {
+      const BlockType* type = find_block(type_of(*nest_.body(level, block)));
+      if (type && type->info.room == "mechanics") continue;
+      each_wire(block.value, [&](const Value& wire) {
+        if (wire.text == source) readers.emplace_back(&block, &wire);
+      });
+    }
+    return readers;
+  }
+
+  void attach_to_parameter(const Attachment& attachment) {
+    for (const std::string& target : attachment.targets) {
+      const std::vector<std::string> path = split_path(target);
+      const Value::Member* block = path.size() == 2 ? block_of_type(path[0]) : nullptr;
+      const Value::Member* setting = block ? block->value.find(path[1]) : nullptr;
+      if (!setting) continue;
+      change(*setting, attachment, path[1], joined(sum_level_.prefix, block->name));
+      return;
+    }
+    if (attachment.is_optional) return;
+    error("the machine has no block with the parameter that it changes").expected =
+        fmt::format("one of {} in the diagram of the sum of forces", fmt::join(attachment.targets, ", "));
+  }
+  /// The mass of the machine, or a block that feeds the sum of forces.
+  const Value::Member* block_of_type(const std::string& type) const {
+    if (mass_ && type_of(mass_->value) == type) return mass_;
+    const Value::Member* found = nullptr;
+    each_wire(sum_->value, [&](const Value& wire) {
+      const Value::Member* block = sum_level_.block(block_of(wire.text));
+      if (!found && block && type_of(block->value) == type) found = block;
+    });
+    if (found) return found;
+    for (const Value::Member& block : sum_level_.diagram->find("blocks")->value.members)
+      if (type_of(block.value) == type) return &block;
+    return nullptr;
+  }
+
+  void change(const Value::Member& setting, const Attachment& attachment, const std::string& parameter,
+              const std::string& block_path) {
+    const double add = values_.evaluate(attachment.add);
+    Document& document = *sum_level_.document;
+    const std::string& text = document.text();
+    const size_t at = setting.value.place.offset;
+    const std::string fitted = attachment.add.text.empty() ? "" : attachment.add.text.substr(1);
+    if (setting.value.kind == Kind::number) {
+      document.edits.replace(at, end_of_value(text, at), readable_number(setting.value.number + add));
+      return;
+    }
+    const Value::Member* value = setting.value.find("value");
+    const Value::Member* unit = setting.value.find("unit");
+    if (value && value->value.kind == Kind::number && unit) {
+      const auto parsed = parse_unit(unit->value.text);
+      const size_t number = value->value.place.offset;
+      document.edits.replace(number, end_of_value(text, number),
+                             readable_number(value->value.number + add / (parsed ? parsed->scale : 1)));
+      return;
+    }
+    if (setting.value.kind != Kind::text || !setting.value.text.starts_with('=')) {
+      error(fmt::format("the setting \"{}.{}\" is no number", block_path, parameter)).found =
+          shown(setting.value);
+      return;
+    }
+    const std::string name = base_ + "_" + parameter;
+    const std::string expression = setting.value.text.substr(1);
+    declare(name, add, expression, attachment);
+    const bool has_lower_rank = expression.find_first_of("?<>=&|") != expression.npos;
+    const std::string whole = has_lower_rank ? "(" + expression + ")" : expression;
+    document.edits.replace(at, end_of_value(text, at), fmt::format("\"={} + {}\"", whole, name));
+    if (effect_.find(fitted)) result_.settings.emplace_back(fitted, joined(sum_level_.prefix, name));
+  }
+
+  /// The unit that the diagram uses for what is added to, in its own words; else that of the effect.
+  std::string unit_beside(const std::string& expression, const Attachment& attachment) const {
+    if (const auto* list = sum_level_.diagram->find("parameters"))
+      for (const Value::Member& parameter : list->value.members)
+        if (const auto* unit = parameter.value.find("unit"); unit && expression.starts_with(parameter.name))
+          return unit->value.text;
+    std::string by_role;
+    for (const EffectParameter& p : effect_.parameters)
+      if (attachment.add.text.find(p.name) != std::string::npos) by_role = p.unit;
+    return unit_in(by_role, site_.units);
+  }
+  /// A new parameter of the diagram that holds the sum of forces.
+  void declare(const std::string& name, double value, const std::string& expression,
+               const Attachment& attachment) {
+    const std::string unit = unit_beside(expression, attachment);
+    const std::string text = fmt::format("{{\"value\": {}, \"unit\": \"{}\", \"description\": \"{}\"}}",
+                                         readable_number(value), unit, effect_.title);
+    Document& document = *sum_level_.document;
+    const Value::Member* list = sum_level_.diagram->find("parameters");
+    if (list && !list->value.members.empty()) {
+      const Value::Member& first = list->value.members.front();
+      document.edits.insert(first.place.offset, member_before(list->value, first, name, text));
+    } else {
+      const Value::Member& blocks = *sum_level_.diagram->find("blocks");
+      document.edits.insert(blocks.place.offset, member_before(*sum_level_.diagram, blocks, "parameters",
+                                                               fmt::format("{{\"{}\": {}}}", name, text)));
+    }
+  }
+
+  const InsertionSite& site_;
+  const Effect& effect_;
+  EffectValues values_;
+  Problems& problems_;
+  Place place_;
+  Nest nest_;
+  Insertion result_;
+  bool failed_ = false, were_added_ = false;
+  Level sum_level_;
+  const Value::Member *sum_ = nullptr, *mass_ = nullptr;
+  std::string mass_prefix_, base_, input_source_;
+  std::set<std::string> needed_;
+};
+
+}  // namespace
+
+std::optional<Insertion> insert_effect(std::shared_ptr<const SourceFile> file, const InsertionSite& site,
+                                       const Effect& effect, const std::vector<double>& fitted,
+                                       const RecordSizes& sizes, Problems& problems) {
+  return Inserter(std::move(file), site, effect, fitted, sizes, problems).run();
+}
+
+std::string moved_to_folder(const SourceFile& file, const std::string& folder) {
+  Problems problems;
+  const Value root = parse_json(std::make_shared<SourceFile>(file), problems);
+  TextEdits edits;
+  Nest::rebase_paths(root, folder, edits);
+  return edits.apply(file.text);
+}
+
+}  // namespace loopwright

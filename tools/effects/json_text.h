@@ -1,0 +1,45 @@
+/// Changes to a JSON text that leave the rest of it as its author wrote it.
+#pragma once
+#include <string>
+#include <vector>
+#include "engine/diagram/value.h"
+
+namespace loopwright {
+
+/// One past the last character of the value that begins at `begin`; the text is known to be JSON.
+size_t end_of_value(const std::string& text, size_t begin);
+
+/// Edits of one text, collected and then made at once: places stay those of the text as it was read.
+class TextEdits {
+ public:
+  void replace(size_t begin, size_t end, std::string text) {
+    edits_.push_back({begin, end, std::move(text)});
+  }
+  void insert(size_t at, std::string text) { replace(at, at, std::move(text)); }
+  bool empty() const { return edits_.empty(); }
+  std::string apply(const std::string& text) const;
+
+ private:
+  struct Edit {
+    size_t begin, end;
+    std::string text;
+  };
+  std::vector<Edit> edits_;
+};
+
+/// The spaces at the beginning of the line on which a place stands.
+std::string indentation_at(const std::string& text, size_t at);
+/// True if nothing but spaces stands before the place on its line.
+bool begins_line(const std::string& text, size_t at);
+/// Every line but the first moved to the right.
+std::string indented(const std::string& text, const std::string& by);
+
+/// A new member of an object before an existing one: on a line of its own if that one has one, its value in
+/// the same column if those of the object are aligned.
+std::string member_before(const Value& object, const Value::Member& next, const std::string& name,
+                          const std::string& value);
+
+/// At most seven digits: more than a fit knows, few enough to read.
+std::string readable_number(double number);
+
+}  // namespace loopwright

@@ -1,0 +1,121 @@
+#include <fmt/format.h>
+#include <algorithm>
+#include <charconv>
+#include <nlohmann/json.hpp>
+#include "engine/diagram/json.h"
+#include "engine/diagram/reader.h"
+#include "tools/effects/json_text.h"
+#include "tools/fit/fit.h"
+#include "tools/report/typography.h"
+
+namespace loopwright {
+namespace {
+
+using Kind = Value::Kind;
+
+/// Where in the text a path leads, as `--set` would follow it; nothing when it leaves the file.
+const Value* find_in_file(const Value& diagram, const std::vector<std::string>& path, size_t at) {
+  if (at + 1 == path.size())
+    if (const auto* parameters = diagram.find("parameters"))
+      if (const auto* own = parameters->value.find(path[at])) return &own->value;
+  const Value::Member* blocks = diagram.find("blocks");
+  const Value::Member* block = blocks ? blocks->value.find(path[at]) : nullptr;
+  if (!block) return nullptr;
+  const Value* body = &block->value;
+  if (const auto* inner = body->find("diagram")) {
+    if (const auto* given = body->find("parameters"); given && at + 2 == path.size())
+      if (const auto* own = given->value.find(path[at + 1])) return &own->value;
+    return inner->value.kind == Kind::object ? find_in_file(inner->value, path, at + 1) : nullptr;
+  }
+  for (size_t i = at + 1; i < path.size() && body; ++i) {
+    size_t index = 0;
+    const auto [end, code] = std::from_chars(path[i].data(), path[i].data() + path[i].size(), index);
+    const bool is_index = body->kind == Kind::list && code == std::errc() && index < body->items.size();
+    const Value::Member* member = is_index ? nullptr : body->find(path[i]);
+    body = is_index ? &body->items[index] : member ? &member->value : nullptr;
+  }
+  return body;
+}
+
+/// Eight digits: more than any record determines.
+std::string digits(double number) { return fmt::format("{:.8g}", number); }
+
+}  // namespace
+
+std::string with_fitted_values(const std::string& path, const Fit& fit, Problems& problems) {
+  const auto file = read_source(path, {}, problems);
+  const Value root = file ? parse_json(file, problems) : Value{};
+  if (problems.has_errors()) return "";
+  TextEdits edits;
+  for (const FittedParameter& p : fit.parameters) {
+    const Value* value = find_in_file(root, split_path(p.path), 0);
+    if (!value) {
+      problems.error({file, 0}, "", "", fmt::format("\"{}\" stands in the file of a subdiagram", p.path))
+          .hint = "hand it down as a parameter of the subdiagram's block";
+      continue;
+    }
+    double scale = 1;
+    if (const auto* unit = value->find("unit"))
+      if (const auto parsed = parse_unit(unit->value.text)) scale = parsed->scale;
+    if (const auto* inner = value->find("value")) value = &inner->value;
+    if (value->kind != Kind::number) {
+      auto& problem =
+          problems.error(value->place, value->pointer, "",
+                         fmt::format("\"{}\" is an expression: it has no number of its own", p.path));
+      problem.found = shown(*value), problem.hint = "fit the parameters that it is made of";
+      continue;
+    }
+    const size_t at = value->place.offset;
+    edits.replace(at, end_of_value(file->text, at), digits(p.value / scale));
+  }
+  return problems.has_errors() ? "" : edits.apply(file->text);
+}
+
+std::string to_json(const Fit& fit) {
+  nlohmann::ordered_json json;
+  json["converged"] = fit.has_converged;
+  json["simulations"] = fit.simulations;
+  for (const FittedParameter& p : fit.parameters)
+    json["parameters"][p.path] = {{"value", p.value}, {"low", p.low},   {"high", p.high},
+                                  {"start", p.start}, {"unit", p.unit}, {"determined", p.is_determined}};
+  for (const FittedSignal& s : fit.signals) {
+    json["signals"][s.name] = {{"rmse_before", s.before}, {"rmse_after", s.after}, {"unit", s.unit}};
+    if (s.held_out_before > 0)
+      json["signals"][s.name]["held_out_before"] = s.held_out_before,
+      json["signals"][s.name]["held_out_after"] = s.held_out_after;
+  }
+  json["warnings"] = fit.warnings;
+  return json.dump(2) + "\n";
+}
+
+std::string to_text(const Fit& fit) {
+  size_t width = 9;
+  for (const FittedParameter& p : fit.parameters) width = std::max(width, p.path.size());
+  for (const FittedSignal& s : fit.signals) width = std::max(width, s.name.size());
+  std::string text =
+      fmt::format("  {:<{}} {:>12} {:>12}   {}\n", "parameter", width, "before", "fitted", "95 % interval");
+  for (const FittedParameter& p : fit.parameters) {
+    const std::string interval = p.is_determined ? fmt::format("{:.5g} to {:.5g} {}", p.low, p.high, p.unit)
+                                                 : "not determined by this record";
+    text += fmt::format("  {:<{}} {:>12.6g} {:>12.6g}   {}\n", p.path, width, p.start, p.value, interval);
+  }
+  const auto shown_error = [](double value, const std::string& unit) {
+    const report::Quantity q = report::engineering(value, unit);
+    return fmt::format("{} {}", q.value, q.unit);
+  };
+  text += fmt::format("  {:<{}} {:>12} {:>12}\n", "error, rms", width, "before", "fitted");
+  for (const FittedSignal& s : fit.signals) {
+    text += fmt::format("  {:<{}} {:>12} {:>12}", s.name, width, shown_error(s.before, s.unit),
+                        shown_error(s.after, s.unit));
+    if (s.held_out_before > 0)
+      text += fmt::format("   held out: {} → {}", shown_error(s.held_out_before, s.unit),
+                          shown_error(s.held_out_after, s.unit));
+    text += "\n";
+  }
+  for (const std::string& warning : fit.warnings) text += "  " + warning + "\n";
+  if (!fit.has_converged && !fit.was_interrupted)
+    text += "  the fit did not settle: more iterations, or another start, may help\n";
+  return text;
+}
+
+}  // namespace loopwright

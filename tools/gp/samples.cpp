@@ -1,0 +1,259 @@
+#include "tools/gp/samples.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include "engine/diagram/reader.h"
+#include "engine/diagram/unit.h"
+#include "engine/record/hash.h"
+#include "engine/record/recording_file.h"
+#include "engine/record/time_axis.h"
+#include "models/signal/zero_phase.h"
+#include "tools/compare/data_file.h"
+
+namespace loopwright {
+namespace {
+
+/// What one recording gives, row by row.
+struct Rows {
+  std::vector<double> time, position, velocity, label;
+  size_t begin = 0, end = 0;  ///< rows whose label can be trusted
+  double sample_time = 0;
+};
+
+class Collector {
+ public:
+  Collector(const Training& training, Problems& problems) : training_(training), problems_(problems) {}
+
+  std::shared_ptr<const TrainingSamples> run() {
+    std::vector<Rows> all;
+    for (const std::string& name : training_.recordings) all.push_back(read(name));
+    if (problems_.has_errors()) return nullptr;
+    for (size_t i = 0; i < all.size(); ++i) add_rows(training_.recordings[i], all[i]);
+    warn_of_missing_velocities();
+    if (result_->samples.labels.empty()) {
+      auto& p = problem("no sample of the recordings is in the windows and at the velocities wanted");
+      p.found = fmt::format("velocities from {:.4g} to {:.4g} m/s", least_velocity_, greatest_velocity_);
+      p.hint = "look at velocities, velocity_tolerance, window_length and window_centers";
+      return nullptr;
+    }
+    thin();
+    const auto bytes = [](const auto& values) {
+      return std::string_view(reinterpret_cast<const char*>(values.data()),
+                              values.size() * sizeof(values[0]));
+    };
+    result_->hash =
+        ContentHash().add(bytes(result_->samples.inputs)).add(bytes(result_->samples.labels)).text();
+    return result_;
+  }
+
+ private:
+  Problem& problem(std::string message) {
+    return problems_.error({training_.source, 0}, "", "", std::move(message));
+  }
+
+  /// A column in SI units; null after a problem.
+  std::vector<double> column(const Recording& recording, const std::string& file, const std::string& name,
+                             const std::string& unit_text, std::string* si_unit = nullptr) {
+    const Column* found = recording.find(name);
+    if (!found) {
+      auto& p = problem(fmt::format("{} has no column \"{}\"", file, name));
+      std::vector<std::string> names;
+      for (const Column& c : recording.columns) names.push_back(c.name);
+      KnownNames(names).explain(p, name);
+      return {};
+    }
+    const auto unit = parse_unit(unit_text.empty() ? found->unit : unit_text);
+    if (!unit) {
+      auto& p = problem(fmt::format("the unit of \"{}\" in {} cannot be read", name, file));
+      p.found = unit_text.empty() ? found->unit : unit_text;
+      p.expected = "a unit such as \"mm\" or \"V\"";
+      return {};
+    }
+    if (si_unit) *si_unit = to_string(Unit{1, unit->exponents});
+    std::vector<double> values = found->values;
+    for (double& v : values) v *= unit->scale;
+    return values;
+  }
+
+  Rows read(const std::string& name) {
+    Rows rows;
+    std::vector<std::string> tried;
+    const std::string path = find_data_file(training_.path, name, tried);
+    if (path.empty()) {
+      problem(fmt::format("the recording \"{}\" is not there", name)).expected =
+          tried.front() + (tried.size() > 1 ? ", or below $LOOPWRIGHT_DATA" : "");
+      return rows;
+    }
+    const Recording recording = read_recording(path, problems_);
+    if (problems_.has_errors()) return rows;
+    result_->files.push_back(name);
+    const std::string time = training_.time.empty() ? recording.columns[0].name : training_.time;
+    rows.time = column(recording, name, time, "s");
+    if (rows.time.empty()) return rows;
+    TimeOptions options;
+    options.must_be_regular = true;
+    rows.sample_time =
+        check_time({time, "s", rows.time}, problems_, options, {training_.source, 0}).sample_time;
+    rows.position = column(recording, name, training_.position.column, training_.position.unit);
+    if (problems_.has_errors() || rows.position.empty()) return rows;
+    if (rows.time.size() < 10) {
+      problem(fmt::format("{} has only {} rows", name, rows.time.size()));
+      return rows;
+    }
+    if (training_.velocity.column.empty())
+      rows.velocity = central_difference(
+          zero_phase_low_pass(rows.position, velocity_cutoff, rows.sample_time), rows.sample_time);
+    else
+      rows.velocity = column(recording, name, training_.velocity.column, training_.velocity.unit);
+    rows.begin = 0, rows.end = rows.time.size();
+    if (training_.label.command.empty())
+      observed_label(recording, name, rows);
+    else
+      label_from_command(recording, name, rows);
+    return rows;
+  }
+  static constexpr double velocity_cutoff = 60;  // rad/s: below cogging, above changes of the motion
+
+  /// Columns added up, and read where they will say what holds now: later by their lag.
+  void observed_label(const Recording& recording, const std::string& name, Rows& rows) {
+    std::vector<double> sum(rows.time.size(), 0.0);
+    for (const std::string& each : training_.label.columns) {
+      const std::vector<double> values =
+          column(recording, name, each, training_.label.unit, &result_->label_unit);
+      if (values.empty()) return;
+      for (size_t i = 0; i < sum.size(); ++i) sum[i] += values[i];
+    }
+    const double shift = training_.label.lag / rows.sample_time;
+    rows.label.assign(sum.size(), 0.0);
+    for (size_t i = 0; i < sum.size(); ++i) {
+      const double at = double(i) + shift;
+      if (!(at >= 0 && at <= double(sum.size() - 1))) {
+        (shift > 0 ? rows.end : rows.begin) = shift > 0 ? std::min(rows.end, i) : i + 1;
+        continue;
+      }
+      const size_t k = std::min(size_t(at), sum.size() - 2);
+      const double s = at - double(k);
+      rows.label[i] = (1 - s) * sum[k] + s * sum[k + 1];
+    }
+  }
+
+  /// d = mass·a + damping·v - u. A command held over samples moves a mass so that the second difference of
+  /// its position over T² is the acceleration by the mean of the last two commands: exact, and in phase.
+  void label_from_command(const Recording& recording, const std::string& name, Rows& rows) {
+    const LabelChoice& label = training_.label;
+    const std::vector<double> command =
+        column(recording, name, label.command, label.unit, &result_->label_unit);
+    if (command.empty()) return;
+    const double t = rows.sample_time;
+    const auto& x = rows.position;
+    const size_t n = x.size(), late = size_t(std::lround(label.delay / t));
+    std::vector<double> d(n, 0.0);
+    for (size_t i = late + 1; i + 1 < n; ++i) {
+      const double acceleration = (x[i + 1] - 2 * x[i] + x[i - 1]) / (t * t);
+      const double velocity = (x[i + 1] - x[i - 1]) / (2 * t);
+      const double applied = 0.5 * (command[i - late] + command[i - late - 1]);
+      d[i] = label.mass * acceleration + label.damping * velocity - applied;
+    }
+    if (n < late + 4) return;
+    std::fill(d.begin(), d.begin() + std::ptrdiff_t(late + 1), d[late + 1]);
+    d[n - 1] = d[n - 2];
+    rows.label = zero_phase_low_pass(std::move(d), label.cutoff, t);
+    const auto margin = size_t(std::ceil(4 / (label.cutoff * t)));
+    rows.begin = late + 1 + margin;
+    rows.end = n > margin + 1 ? n - 1 - margin : 0;
+  }
+
+  void add_rows(const std::string& file, const Rows& rows) {
+    for (double v : rows.velocity) {
+      least_velocity_ = std::min(least_velocity_, v);
+      greatest_velocity_ = std::max(greatest_velocity_, v);
+    }
+    if (training_.velocities.empty()) {
+      TrainingSamples::Section section{file, 0, rows.time.front(), rows.time.back(), 0, 0, 0};
+      for (size_t i = rows.begin; i < rows.end; ++i)
+        if (std::abs(rows.velocity[i]) >= training_.slowest) add(rows, i, rows.velocity[i], section);
+      if (section.count) result_->sections.push_back(section);
+      return;
+    }
+    seen_.resize(training_.velocities.size(), false);
+    for (size_t which = 0; which < training_.velocities.size(); ++which) add_sections(file, rows, which);
+  }
+
+  /// Every stretch of rows that keeps one of the velocities.
+  void add_sections(const std::string& file, const Rows& rows, size_t which) {
+    const double wanted = training_.velocities[which];
+    const auto keeps = [&](size_t i) {
+      return std::abs(rows.velocity[i] - wanted) <= training_.velocity_tolerance * std::abs(wanted) + 1e-9;
+    };
+    const auto settled = size_t(std::ceil(training_.settling / rows.sample_time));
+    for (size_t i = 0; i < rows.time.size();) {
+      size_t next = i + 1;
+      if (keeps(i)) {
+        while (next < rows.time.size() && keeps(next)) ++next;
+        const size_t first = std::max(i + settled, rows.begin), last = std::min(next, rows.end);
+        // Shorter stretches are ramps that pass through the velocity.
+        if (last > first + settled + 20) add_window(file, rows, which, first, last - settled);
+      }
+      i = next;
+    }
+  }
+  void add_window(const std::string& file, const Rows& rows, size_t which, size_t first, size_t last) {
+    const double center = training_.window_centers.empty()
+                              ? 0.5 * (rows.position[first] + rows.position[last - 1])
+                              : training_.window_centers[which];
+    const double half = 0.5 * training_.window_length;
+    const double velocity = training_.velocities[which];
+    TrainingSamples::Section section{file, velocity, 0, 0, 0, 0, 0};
+    for (size_t i = first; i < last; ++i)
+      if (half == 0 || std::abs(rows.position[i] - center) <= half)
+        add(rows, i, training_.pairing == VelocityPairing::plateau ? velocity : rows.velocity[i], section);
+    if (section.count == 0) return;
+    seen_[which] = true;
+    result_->sections.push_back(section);
+  }
+  void add(const Rows& rows, size_t i, double velocity, TrainingSamples::Section& section) {
+    const double x = rows.position[i];
+    if (section.count++ == 0) section.from = rows.time[i], section.low = section.high = x;
+    section.to = rows.time[i];
+    section.low = std::min(section.low, x), section.high = std::max(section.high, x);
+    result_->samples.inputs.push_back({x - training_.homing_offset, velocity});
+    result_->samples.labels.push_back(rows.label[i]);
+  }
+
+  void warn_of_missing_velocities() {
+    for (size_t i = 0; i < seen_.size(); ++i)
+      if (!seen_[i])
+        result_->warnings.push_back(fmt::format(
+            "no section of the recordings keeps {:.4g} m/s in its window: nothing was learned there",
+            training_.velocities[i]));
+  }
+
+  void thin() {
+    gp::Samples& all = result_->samples;
+    const size_t n = result_->before_thinning = all.labels.size(), most = size_t(training_.most_samples);
+    if (most == 0 || n <= most) return;
+    gp::Samples kept;
+    for (size_t i = 0; i < most; ++i) {
+      const size_t k = i * n / most;
+      kept.inputs.push_back(all.inputs[k]);
+      kept.labels.push_back(all.labels[k]);
+    }
+    all = std::move(kept);
+  }
+
+  const Training& training_;
+  Problems& problems_;
+  std::shared_ptr<TrainingSamples> result_ = std::make_shared<TrainingSamples>();
+  std::vector<bool> seen_;
+  double least_velocity_ = 1e300, greatest_velocity_ = -1e300;
+};
+
+}  // namespace
+
+std::shared_ptr<const TrainingSamples> collect_samples(const Training& training, Problems& problems) {
+  return Collector(training, problems).run();
+}
+
+}  // namespace loopwright

@@ -1,0 +1,65 @@
+/// What `loopwright linearize` finds out about a diagram: matrices, poles, zeros, responses, margins.
+#pragma once
+#include <optional>
+#include "models/linear/margins.h"
+#include "models/linear/poles.h"
+#include "tools/linearize/linear_diagram.h"
+#include "tools/linearize/measured_response.h"
+#include "tools/report/report.h"
+
+namespace loopwright {
+
+struct LinearizeRequest {
+  Access access;
+  std::optional<double> at;  ///< s; none: the start
+  std::string break_point;   ///< port at which the loop is cut for margins; empty: none
+  bool continuous = false;   ///< the continuous part alone, discrete signals held
+  double sample_time = 0;    ///< s; samples a diagram without rates
+  int frequencies = 400;     ///< of the plots
+};
+
+/// The loop seen from a break point, with negative feedback: what returns when 1 goes in, times -1.
+struct LoopAnalysis {
+  std::string port;
+  Margins margins;
+  std::vector<double> frequency;               ///< rad/s
+  std::vector<std::complex<double>> response;  ///< loop gain L
+};
+
+struct LinearAnalysis {
+  std::string title, plan;  ///< hash
+  double time = 0;          ///< s, of the operating point
+  LinearSystem system;
+  int lifted = 1;
+  std::vector<Pole> poles;
+  std::optional<std::vector<std::complex<double>>> zeros;  ///< none: not a square system, or lifted
+  std::vector<double> frequency;                           ///< rad/s
+  std::vector<Eigen::MatrixXcd> response;                  ///< outputs by inputs, a matrix for each frequency
+  std::optional<LoopAnalysis> loop;
+  std::vector<MeasuredPoint> measured;  ///< of the first channel, by simulation
+  std::vector<LinearizationNote> notes;
+
+  bool is_sampled() const { return system.matrices.sample_time > 0; }
+};
+
+/// Throws InputError for ports that do not exist or a break point of several numbers, std::runtime_error when
+/// the run up to the operating point fails.
+LinearAnalysis analyse(const Plan& plan, const LinearizeRequest& request, const RunOptions& options = {});
+
+/// Stable keys: time, sample_time, lifted, states, inputs, outputs, A, B, C, D, delays, poles[], zeros[],
+/// response.{frequency,channels[]}, loop.{port,margins…}, measured[], notes[].
+std::string to_json(const LinearAnalysis& analysis);
+/// One row a frequency: gain, phase of every channel.
+Recording to_recording(const LinearAnalysis& analysis);
+std::string to_text(const LinearAnalysis& analysis);
+report::Page linear_page(const LinearAnalysis& analysis);
+
+/// Phase in degrees, continued over frequency without jumps.
+std::vector<double> unwrapped_degrees(const std::vector<std::complex<double>>& response);
+/// One channel of the response over frequency.
+std::vector<std::complex<double>> channel_response(const LinearAnalysis& analysis, Eigen::Index input,
+                                                   Eigen::Index output);
+/// "feedback.command 62 %, stage.mass.velocity 30 %": who owns a pole.
+std::string owners(const Pole& pole, const std::vector<std::string>& states);
+
+}  // namespace loopwright

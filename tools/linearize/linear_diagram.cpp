@@ -1,0 +1,42 @@
+#include "tools/linearize/linear_diagram.h"
+#include <cmath>
+#include <stdexcept>
+
+namespace loopwright {
+
+LinearDiagram linearize(const Run<double>& run) {
+  const Plan& plan = run.plan();
+  LinearDiagram diagram;
+  diagram.plan = &plan;
+  diagram.time = run.now().time;
+  for (int b = 0; b < int(plan.blocks.size()); ++b)
+    diagram.blocks.push_back(linearize_block(run, b, diagram.notes));
+  for (Number n = 0; n < plan.signals + plan.states; ++n) diagram.operating_point.push_back(run.number(n));
+  return diagram;
+}
+
+LinearDiagram linearize_at_start(const Plan& plan) {
+  Run<double> run(plan);
+  run.evaluate(run.due(), true);
+  run.accept();
+  if (run.failed())
+    throw std::runtime_error("\"" + plan.blocks[size_t(run.fault().block)].path +
+                             "\" stopped the run at its start: " + run.fault().reason);
+  return linearize(run);
+}
+
+LinearDiagram linearize_at(const Plan& plan, double time, const RunOptions& options) {
+  Plan until = plan;
+  until.stop_tick = std::max<int64_t>(plan.start_tick, std::llround(time / plan.clock.base.value()));
+  LinearDiagram diagram;
+  RunOptions with_stop = options;
+  with_stop.at_stop = [&](Run<double>& run) { diagram = linearize(run); };
+  const RunResult result = simulate(until, with_stop);
+  if (result.status != RunStatus::finished) throw std::runtime_error(result.message);
+  diagram.plan = &plan;
+  return diagram;
+}
+
+bool has_samples(const LinearDiagram& diagram) { return !diagram.plan->rates.empty(); }
+
+}  // namespace loopwright

@@ -1,0 +1,191 @@
+#include <fmt/format.h>
+#include <cmath>
+#include <numbers>
+#include "tools/linearize/analysis.h"
+
+namespace loopwright {
+namespace {
+
+using Eigen::Index;
+using report::Series;
+using Complex = std::complex<double>;
+using std::numbers::pi;
+
+std::vector<double> in_hertz(const std::vector<double>& frequency) {
+  std::vector<double> hertz;
+  for (double f : frequency) hertz.push_back(f / (2 * pi));
+  return hertz;
+}
+std::vector<double> gains(const std::vector<Complex>& response) {
+  std::vector<double> gain;
+  for (const Complex& value : response) gain.push_back(std::abs(value));
+  return gain;
+}
+
+struct Bode {
+  report::Plot gain, phase;
+  explicit Bode(std::string unit) {
+    gain.x = phase.x = {"Frequency", "Hz", true};
+    gain.y = {"Gain", std::move(unit), true}, phase.y = {"Phase", "°", false};
+    gain.group = phase.group = "frequency";
+  }
+  void add(const std::string& name, const std::vector<double>& frequency,
+           const std::vector<Complex>& response, Series::Shape shape = Series::Shape::line) {
+    gain.series.push_back({name, in_hertz(frequency), gains(response), shape});
+    phase.series.push_back({name, in_hertz(frequency), unwrapped_degrees(response), shape});
+  }
+};
+
+std::string gain_unit(const LinearAnalysis& a, size_t input, size_t output) {
+  const std::string &in = a.system.input_units[input], &out = a.system.output_units[output];
+  if (in.empty() || out.empty() || in == out) return "";
+  return in.find_first_of("*/^") == in.npos ? fmt::format("{}/{}", out == "1" ? "1" : out, in)
+                                            : fmt::format("{}/({})", out, in);
+}
+
+report::Section responses(const LinearAnalysis& analysis) {
+  report::Section section{"Frequency response", {}};
+  for (size_t i = 0; i < analysis.system.inputs.size(); ++i)
+    for (size_t o = 0; o < analysis.system.outputs.size(); ++o) {
+      const std::string name = fmt::format("{} → {}", analysis.system.inputs[i], analysis.system.outputs[o]);
+      Bode bode(gain_unit(analysis, i, o));
+      bode.gain.title = name;
+      bode.add("linearised", analysis.frequency, channel_response(analysis, Index(i), Index(o)));
+      if (i == 0 && o == 0 && !analysis.measured.empty()) {
+        std::vector<double> frequency;
+        std::vector<Complex> response;
+        for (const MeasuredPoint& point : analysis.measured)
+          frequency.push_back(point.frequency), response.push_back(point.response);
+        bode.add("measured by simulated sines", frequency, response, Series::Shape::points);
+      }
+      section.items.push_back(std::move(bode.gain));
+      section.items.push_back(std::move(bode.phase));
+    }
+  return section;
+}
+
+report::Section loop_section(const LoopAnalysis& loop) {
+  const Margins& m = loop.margins;
+  report::Section section{fmt::format("Loop cut at {}", loop.port), {}};
+  using Severity = report::Notice::Severity;
+  section.items.push_back(
+      report::Notice{m.is_stable ? Severity::good : Severity::error,
+                     m.is_stable ? "The closed loop is stable." : "The closed loop is unstable."});
+  const auto at = [](double frequency) { return fmt::format("at {:.4g} Hz", frequency / (2 * pi)); };
+  report::KeyNumbers numbers;
+  if (std::isfinite(m.gain))
+    numbers.numbers.push_back({"Gain margin", fmt::format("{:.3g}", m.gain), "", at(m.gain_frequency)});
+  if (m.lower_gain > 0)
+    numbers.numbers.push_back(
+        {"Lower gain margin", fmt::format("{:.3g}", m.lower_gain), "", at(m.lower_gain_frequency)});
+  if (std::isfinite(m.phase))
+    numbers.numbers.push_back(
+        {"Phase margin", fmt::format("{:.1f}", m.phase * 180 / pi), "°", at(m.phase_frequency)});
+  if (std::isfinite(m.delay))
+    numbers.numbers.push_back(
+        {"Delay margin", fmt::format("{:.3g}", 1e3 * m.delay), "ms", at(m.delay_frequency)});
+  numbers.numbers.push_back({"Ms", fmt::format("{:.3g}", m.Ms), "", at(m.Ms_frequency)});
+  section.items.push_back(std::move(numbers));
+  Bode bode("");
+  bode.gain.title = "Loop gain L";
+  bode.add("L", loop.frequency, loop.response);
+  if (std::vector<double>& phase = bode.phase.series[0].y; !phase.empty() && phase[0] > 0)
+    for (double& value : phase) value -= 360;  // loops lag
+  std::vector<Complex> sensitivity;
+  for (const Complex& value : loop.response) sensitivity.push_back(1.0 / (1.0 + value));
+  bode.gain.series.push_back(
+      {"1/(1 + L)", in_hertz(loop.frequency), gains(sensitivity), Series::Shape::line});
+  section.items.push_back(std::move(bode.gain));
+  section.items.push_back(std::move(bode.phase));
+  section.items.push_back([&] {
+    report::Plot nyquist;
+    nyquist.title = "Nyquist";
+    nyquist.x = {"Re L", "", false}, nyquist.y = {"Im L", "", false};
+    Series curve{"L", {}, {}, Series::Shape::line}, point{"-1", {-1}, {0}, Series::Shape::points},
+        circle{"Ms", {}, {}, Series::Shape::line};
+    for (const Complex& value : loop.response) {
+      const bool is_near = std::abs(value) < 5;  // far away the curve says nothing about margins
+      curve.x.push_back(is_near ? value.real() : std::nan("")),
+          curve.y.push_back(is_near ? value.imag() : std::nan(""));
+    }
+    for (int i = 0; i <= 90; ++i)
+      circle.x.push_back(-1 + std::cos(i * pi / 45) / m.Ms), circle.y.push_back(std::sin(i * pi / 45) / m.Ms);
+    nyquist.series = {std::move(curve), std::move(circle), std::move(point)};
+    nyquist.caption = "Where |L| < 5. The circle around -1 that the curve touches has the radius 1/Ms.";
+    return nyquist;
+  }());
+  return section;
+}
+
+report::Table pole_table(const LinearAnalysis& analysis) {
+  report::Table table;
+  table.head = {analysis.is_sampled() ? "Pole in z" : "Pole in s (1/s)", "Frequency (Hz)", "Damping",
+                "Time constant (ms)", "Who takes part"};
+  for (const Pole& pole : analysis.poles) {
+    if (pole.value.imag() < 0) continue;
+    const bool finite = std::isfinite(pole.frequency) && pole.frequency > 0;
+    table.rows.push_back({pole.value.imag() > 0
+                              ? fmt::format("{:.6f} ± {:.6f} j", pole.value.real(), pole.value.imag())
+                              : fmt::format("{:.6g}", pole.value.real()),
+                          finite ? fmt::format("{:.4g}", pole.frequency / (2 * pi)) : "",
+                          finite ? fmt::format("{:.4f}", pole.damping) : "",
+                          finite ? fmt::format("{:.4g}", -1e3 / pole.continuous.real()) : "",
+                          owners(pole, analysis.system.states)});
+  }
+  table.caption = "Shares are participation factors.";
+  return table;
+}
+
+report::Plot pole_plot(const LinearAnalysis& analysis) {
+  report::Plot plot;
+  const char* plane = analysis.is_sampled() ? "z" : "s";
+  const char* unit = analysis.is_sampled() ? "" : "1/s";
+  plot.x = {fmt::format("Re {}", plane), unit, false}, plot.y = {fmt::format("Im {}", plane), unit, false};
+  Series poles{"poles", {}, {}, Series::Shape::points};
+  for (const Pole& pole : analysis.poles)
+    poles.x.push_back(pole.value.real()), poles.y.push_back(pole.value.imag());
+  plot.series.push_back(std::move(poles));
+  if (analysis.zeros && !analysis.zeros->empty()) {
+    Series zeros{"transmission zeros", {}, {}, Series::Shape::points};
+    for (const Complex& zero : *analysis.zeros)
+      zeros.x.push_back(zero.real()), zeros.y.push_back(zero.imag());
+    plot.series.push_back(std::move(zeros));
+  }
+  if (analysis.is_sampled()) {
+    Series circle{"unit circle", {}, {}, Series::Shape::line};
+    for (int i = 0; i <= 180; ++i)
+      circle.x.push_back(std::cos(i * pi / 90)), circle.y.push_back(std::sin(i * pi / 90));
+    plot.series.push_back(std::move(circle));
+  }
+  return plot;
+}
+
+}  // namespace
+
+report::Page linear_page(const LinearAnalysis& analysis) {
+  report::Page page;
+  page.title = analysis.title.empty() ? "A linearised diagram" : analysis.title;
+  page.subtitle = fmt::format("Linearised at t = {:g} s", analysis.time);
+  page.facts = {
+      {"Plan", analysis.plan},
+      {"Time", analysis.is_sampled() ? fmt::format("sampled, {:g} s", analysis.system.matrices.sample_time)
+                                     : "continuous"},
+      {"States", fmt::format("{}", analysis.system.matrices.states())}};
+  if (analysis.lifted > 1) page.facts.emplace_back("Samples lifted", fmt::format("{}", analysis.lifted));
+  if (analysis.loop) page.sections.push_back(loop_section(*analysis.loop));
+  if (!analysis.response.empty()) page.sections.push_back(responses(analysis));
+  report::Section poles{"Poles and zeros", {pole_table(analysis)}};
+  if (!analysis.poles.empty()) poles.items.push_back(pole_plot(analysis));
+  if (analysis.zeros && analysis.zeros->empty())
+    poles.items.push_back(report::Paragraph{"There are no finite transmission zeros."});
+  page.sections.push_back(std::move(poles));
+  if (!analysis.notes.empty()) {
+    report::Table notes{
+        {"Block", "What was done"}, {}, "Where a block is no straight line, this is how it was taken."};
+    for (const LinearizationNote& note : analysis.notes) notes.rows.push_back({note.block, note.text});
+    page.sections.push_back({"What the linear model leaves out", {std::move(notes)}});
+  }
+  return page;
+}
+
+}  // namespace loopwright

@@ -1,0 +1,32 @@
+/// Which axis a metric hangs on.
+#pragma once
+#include <optional>
+#include "tools/sweep/run_sweep.h"
+
+namespace loopwright {
+
+/// Values of an axis put together: each value of its own, or shares of equal size of many.
+struct Bin {
+  double from = 0, to = 0;  ///< least and greatest value, as the sweep file states them
+  double mean = 0;          ///< of the metric
+  int64_t runs = 0;
+};
+
+struct Effect {
+  std::string axis;
+  std::vector<Bin> bins;  ///< main effect: the mean of the metric along the axis
+  /// First-order Sobol index: the share of the variance that the axis explains by itself. From the bins,
+  /// (SSB - (k - 1) MSW) / SST, not below zero; of Saltelli's design by Jansen's estimator.
+  double first_order = 0;
+  /// With all its interactions; of Saltelli's design only. Source: M. J. W. Jansen, Comput. Phys. Commun. 117
+  /// (1999) 35.
+  std::optional<double> total;
+};
+
+/// An effect each axis, for one metric. Runs whose metric is no finite number are left out.
+std::vector<Effect> effects_of(const SweepPlan& plan, const Recording& table, size_t metric);
+
+/// The bin of each run on an axis.
+std::vector<int> bins_of(const Axis& axis, const std::vector<double>& values, int most, int& count);
+
+}  // namespace loopwright
