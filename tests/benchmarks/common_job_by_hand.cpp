@@ -1,4 +1,5 @@
 #include "tests/benchmarks/common_job_by_hand.h"
+#include "tests/benchmarks/common_job_lanes_by_hand.h"
 #include <cvode/cvode.h>
 #include <nvector/nvector_serial.h>
 #include <sunlinsol/sunlinsol_dense.h>
@@ -11,10 +12,6 @@ namespace loopwright::by_hand {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-
-struct Wanted {
-  double position, velocity, acceleration;
-};
 
 /// Velocity ramps w = (1 - cos πs)/2 between given velocities.
 class Reference {
@@ -123,6 +120,13 @@ Outcome Rows::outcome() const {
   Outcome outcome{position.back(), 0};
   for (double e : error) outcome.peak_error = std::max(outcome.peak_error, std::fabs(e));
   return outcome;
+}
+
+std::vector<Wanted> tabulated_reference(const Job& job) {
+  Reference reference(job);
+  std::vector<Wanted> table;
+  for (int k = 0; k <= samples(job); ++k) table.push_back(reference.at(k * job.sample_time));
+  return table;
 }
 
 Outcome run_rk4(const Job& job, int steps_per_sample) {

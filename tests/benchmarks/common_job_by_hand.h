@@ -29,6 +29,10 @@ struct Job {
   double transition_speed = 0.05;                            ///< [m/s]
 };
 
+struct Wanted {
+  double position, velocity, acceleration;  ///< [m], [m/s], [m/s²]
+};
+
 struct Outcome {
   double final_position = 0;  ///< [m]
   double peak_error = 0;      ///< [m] largest |reference - position| over the rows

@@ -33,8 +33,7 @@ std::string diagram_of(int blocks) {
     add(i, "gain",
         fmt::format(R"("type": "Gain", "gain": "=2*mass", "in": {{"u": "feedback_{}.command"}})", i));
     add(i, "limit",
-        fmt::format(R"("type": "Saturation", "low": -100, "high": 100, "in": {{"u": "gain_{}.y"}})",
-                    i));
+        fmt::format(R"("type": "Saturation", "low": -100, "high": 100, "in": {{"u": "gain_{}.y"}})", i));
     add(i, "viscous",
         fmt::format(
             R"("type": "ViscousFriction", "damping": {{"value": 3, "unit": "N*s/m"}}, "in": {{"velocity": "stage_{}.velocity"}})",

@@ -14,6 +14,10 @@ int main(int argc, char** argv) {
   benchmarks::add_memory();
   benchmarks::add_common_job();
   benchmarks::add_compile();
+  benchmarks::add_gp();
+  benchmarks::add_sweep();
+  benchmarks::add_deploy();
+  benchmarks::add_diagnose();
   try {
     if (benchmark::RunSpecifiedBenchmarks() == 0) return 2;
     write_file(argv[1], benchmarks::report_text());
