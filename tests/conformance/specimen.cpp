@@ -5,6 +5,7 @@
 #include <map>
 #include "engine/diagram/diagram.h"
 #include "engine/diagram/json.h"
+#include "where.h"
 
 namespace loopwright {
 namespace {
@@ -62,6 +63,7 @@ const Specimen further[] = {
      R"({"method": "backward", "low": -3, "high": 5})",
      0.001,
      {1, 1, 1}},
+    {"FractionalDelay", "of less than a sample", R"({"delay": 0.0004})", 0.001, {1}},
     {"Chirp",
      "of short sweeps",
      R"({"from": 0, "to": 30, "duration": 0.25, "start": 0.1, "repeats": true, "phase": 1})",
@@ -88,11 +90,19 @@ void collect(const Diagram& diagram, const std::string& prefix, Collection& to) 
   }
 }
 
+/// ds.json beside ds.model.json: made of the same blocks as others, but slow to load.
+bool has_large_model(const fs::path& diagram) {
+  return diagram.parent_path().filename() != "examples" &&
+         fs::exists(fs::path(diagram).replace_extension(".model.json"));
+}
+
 Collection collect_all() {
   Collection all;
   std::vector<fs::path> files;
   for (const auto& file : fs::recursive_directory_iterator(fs::path(LOOPWRIGHT_SOURCE) / "diagrams"))
-    if (file.path().extension() == ".json" && file.path().string().find(".experiment.") == std::string::npos)
+    if (file.path().extension() == ".json" && !file.path().stem().has_extension() &&
+        !has_large_model(file.path()) &&
+        file.path().parent_path().filename() != "effects")  // fragments, tested in tests/tools/effects
       files.push_back(file.path());
   std::ranges::sort(files);  // examples come before the larger diagrams that use the same blocks
   for (const fs::path& file : files) {
