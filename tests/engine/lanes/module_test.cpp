@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 #include <array>
 #include <cstdio>
-#include <filesystem>
 #include <sstream>
 #include "tests/engine/lanes/lane_testing.h"
 #include "where.h"
