@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include "tools/effects/effect_run.h"
 
 namespace loopwright::diagnosis {
@@ -45,14 +46,59 @@ std::vector<double> grid_of(const CandidateParameter& p, bool is_first) {
   return grid;
 }
 
+/// The columns that were computed last: fits come back to the same path and shape many times.
+class Remembered {
+ public:
+  const Columns* find(const Path& path, const std::vector<double>& shape) const {
+    const auto entry = std::ranges::find_if(entries_, [&](const Entry& e) {
+      return e.path == path.identity && e.path != 0 && e.shape == shape;
+    });
+    return entry == entries_.end() ? nullptr : &entry->columns;
+  }
+  void keep(const Path& path, const std::vector<double>& shape, const Columns& columns) {
+    if (path.identity == 0) return;
+    entries_.push_back({path.identity, shape, columns});
+    if (entries_.size() > most) entries_.pop_front();
+  }
+
+ private:
+  static constexpr size_t most = 12;
+  struct Entry {
+    uint64_t path;
+    std::vector<double> shape;
+    Columns columns;
+  };
+  std::deque<Entry> entries_;
+};
+
 /// An effect with the places of its parameters.
 struct Compiled {
   std::shared_ptr<const EffectPlan> plan;
   std::vector<size_t> linear, nonlinear;  // in EffectPlan::fitted
   Acts acts;
+  Remembered remembered;
 
+  /// Runs only the shapes that are not remembered.
+  std::vector<Columns> columns(const Path& path, const std::vector<std::vector<double>>& shapes) {
+    std::vector<Columns> result(shapes.size());
+    std::vector<std::vector<double>> others;
+    std::vector<size_t> places;
+    for (size_t i = 0; i < shapes.size(); ++i) {
+      if (const Columns* known = remembered.find(path, shapes[i]))
+        result[i] = *known;
+      else
+        others.push_back(shapes[i]), places.push_back(i);
+    }
+    if (others.empty()) return result;
+    std::vector<Columns> computed = run(path, others);
+    for (size_t i = 0; i < others.size(); ++i) {
+      if (others.size() < 8) remembered.keep(path, others[i], computed[i]);  // no whole grids
+      result[places[i]] = std::move(computed[i]);
+    }
+    return result;
+  }
   /// Every linear parameter of every shape has a lane.
-  std::vector<Columns> columns(const Path& path, const std::vector<std::vector<double>>& shapes) const {
+  std::vector<Columns> run(const Path& path, const std::vector<std::vector<double>>& shapes) const {
     RoleSignals signals;
     signals.position = acts == Acts::sensor ? path.predicted_position : path.position;
     signals.velocity = path.velocity, signals.acceleration = path.acceleration;

@@ -5,6 +5,8 @@
 namespace loopwright::diagnosis {
 namespace {
 
+constexpr double least_gain = 0.01;  // of an iteration, in twice the log-likelihood
+
 struct NormalEquations {
   Eigen::MatrixXd G;
   Eigen::VectorXd b;
@@ -83,7 +85,9 @@ Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& n
   const std::vector<FreeParameter> free = free_parameters(best.members);
   for (int i = 0; i < iterations && !free.empty(); ++i) {
     const std::vector<const Path*> now = best.paths();
-    const Eigen::VectorXd step = solve(normal_equations(trials, best.members, best.fitted, now));
+    const NormalEquations equations = normal_equations(trials, best.members, best.fitted, now);
+    const Eigen::VectorXd step = solve(equations);
+    if (step.dot(equations.b) < least_gain * best.mean_square) break;  // what the step promises
     const double before = best.profile;
     double fraction = 1;
     for (int shorter = 0; shorter < 4; ++shorter, fraction *= 0.35) {
@@ -96,7 +100,7 @@ Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& n
       best = std::move(next);
       break;
     }
-    if (!(best.profile < before - 0.01)) break;
+    if (!(best.profile < before - least_gain)) break;
   }
   return best;
 }

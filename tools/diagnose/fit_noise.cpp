@@ -71,7 +71,7 @@ Noise fit_noise(const Trials& trials, const std::vector<Fitted>& fitted, const N
   // Where the sensor's counts are the only noise, that of the force would go to nothing.
   low[0] = std::max(low[0], std::log(least_white * trials.input_rms));
   x[0] = std::max(x[0], low[0]), high[0] = std::max(high[0], x[0]);
-  nlopt_opt optimiser = nlopt_create(NLOPT_LN_SBPLX, unsigned(x.size()));
+  nlopt_opt optimiser = nlopt_create(NLOPT_LN_BOBYQA, unsigned(x.size()));
   nlopt_set_min_objective(optimiser, evaluate, &objective);
   nlopt_set_lower_bounds(optimiser, low.data());
   nlopt_set_upper_bounds(optimiser, high.data());

@@ -26,7 +26,7 @@ std::vector<double> through(const std::vector<const Member*>& chain, const Path&
   Path upstream;
   if (chain.empty()) return raw_input;
   upstream = path;
-  upstream.input = raw_input;
+  upstream.input = raw_input, upstream.identity = 0;
   for (const Member* member : chain) {
     const Columns columns = member->candidate->columns(upstream, member->nonlinear);
     for (size_t c = 0; c < columns.size(); ++c)

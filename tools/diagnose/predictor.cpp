@@ -1,5 +1,6 @@
 #include "tools/diagnose/predictor.h"
 #include <array>
+#include <atomic>
 #include <cmath>
 
 namespace loopwright::diagnosis {
@@ -120,7 +121,8 @@ Prediction predict(AxisModel& model, const Gains& gains, const Drives& drives, d
   Prediction result;
   result.error.resize(rows * ports), result.slow.resize(rows);
   Path& path = result.path;
-  path.sample_time = record.sample_time, path.rest_speed = rest_speed;
+  static std::atomic<uint64_t> paths = 0;
+  path.identity = ++paths, path.sample_time = record.sample_time, path.rest_speed = rest_speed;
   for (auto* list : {&path.position, &path.velocity, &path.acceleration}) list->resize(rows);
   path.input = drives.input;
   path.predicted_position.resize(rows), path.rests.resize(rows);

@@ -154,6 +154,19 @@ std::vector<EffectPlan::Binding> bindings_of(const Effect& effect) {
   return bindings;
 }
 
+/// Whether anything in it keeps more than what its parameters and inputs say. The given signals count their
+/// time from the sample.
+bool remembers(const Plan& plan) {
+  const bool decides = std::ranges::any_of(
+      plan.order, [](const Plan::Entry& e) { return e.kind != Plan::Entry::Kind::outputs; });
+  return decides || std::ranges::any_of(plan.blocks, [](const Plan::Block& block) {
+           const BlockInfo& info = block.type->info;
+           if (info.type == "ExternalSignal") return false;
+           return info.uses_time || info.is_sampled || info.is_continuous || info.buffers > 0 ||
+                  !info.memory_numbers.empty();
+         });
+}
+
 /// Parameters that change between runs must reach numbers that a run can change.
 void check_bindings(const EffectPlan& result, Problems& problems) {
   Run<double> run(result.plan);
@@ -189,6 +202,7 @@ std::shared_ptr<const EffectPlan> compile_effect(const Effect& effect, const Mac
     if (const auto integral = plan->find("integral.y"); !integral.empty()) result->integral = integral[0];
     result->acts_on_sensor = std::ranges::any_of(
         effect.attachments, [](const Attachment& a) { return a.to == Attachment::To::sensor; });
+    result->remembers = result->integral >= 0 || remembers(*plan);
     check_bindings(*result, own);
   }
   for (const Problem& problem : own.list()) problems.add(problem);
@@ -212,14 +226,15 @@ RoleSample RoleSignals::at(size_t row) const {
 
 EffectRun::EffectRun(std::shared_ptr<const EffectPlan> plan, int lanes) : plan_(std::move(plan)) {
   // A whole arena of lanes costs about as much as four scalar runs.
-  const InstructionSet set = lanes > 4 ? widest_instruction_set() : InstructionSet::scalar;
+  const bool is_wide = lanes > 4 || !plan_->remembers;
+  const InstructionSet set = is_wide ? widest_instruction_set() : InstructionSet::scalar;
   const int width = lanes_in_arena(set);
-  const int arenas = set == InstructionSet::scalar ? 1 : (std::min(lanes, most_lanes) + width - 1) / width;
-  run_ = make_lane_run(plan_->plan, set, arenas);
+  const int sets = set == InstructionSet::scalar || !plan_->remembers ? 1 : std::min(lanes, most_lanes);
+  run_ = make_lane_run(plan_->plan, set, (sets + width - 1) / width);
   std::vector<double> starts;
   for (const EffectParameter& p : plan_->effect.parameters)
     if (p.is_fitted) starts.push_back(range_of(p, plan_->sizes).start);
-  fitted_.assign(size_t(run_->lanes()), starts);
+  fitted_.assign(plan_->remembers ? size_t(run_->lanes()) : 1, starts);
   for (int lane = 0; lane < run_->lanes(); ++lane)
     for (std::vector<double*>& bound = bound_.emplace_back();
          const EffectPlan::Binding& binding : plan_->bindings)
@@ -241,19 +256,18 @@ EffectRun::Wire EffectRun::wire(const char* role) {
   return {setting("value"), setting("slope"), setting("bend"), setting("since")};
 }
 
-void EffectRun::give(const Wire& wire, double now, double value, double slope, double bend) {
-  const auto fill = [](const std::vector<double*>& lanes, double number) {
-    for (double* lane : lanes) *lane = number;
-  };
-  fill(wire.value, value), fill(wire.slope, slope), fill(wire.bend, bend), fill(wire.since, now);
-}
-
-void EffectRun::give(const RoleSample& s, double now) {
+void EffectRun::give(const RoleSample& s, double now, size_t from, size_t to) {
   const double period = plan_->sizes.sample_time;
   const double gain = std::isnan(s.next_velocity) ? s.acceleration : (s.next_velocity - s.velocity) / period;
   const double jerk = std::isnan(s.next_acceleration) ? 0.0 : (s.next_acceleration - s.acceleration) / period;
-  give(position_, now, s.position, s.velocity, 0.5 * gain), give(velocity_, now, s.velocity, gain);
-  give(acceleration_, now, s.acceleration, jerk), give(input_, now, s.input), give(force_, now, s.force);
+  const auto give_one = [&](const Wire& wire, double value, double slope, double bend) {
+    if (wire.value.empty()) return;
+    for (size_t lane = from; lane < to; ++lane)
+      *wire.value[lane] = value, *wire.slope[lane] = slope, *wire.bend[lane] = bend, *wire.since[lane] = now;
+  };
+  give_one(position_, s.position, s.velocity, 0.5 * gain), give_one(velocity_, s.velocity, gain, 0);
+  give_one(acceleration_, s.acceleration, jerk, 0), give_one(input_, s.input, 0, 0);
+  give_one(force_, s.force, 0, 0);
 }
 
 double EffectRun::isolate(size_t parameter, int lane) {
@@ -271,27 +285,34 @@ double EffectRun::isolate(size_t parameter, int lane) {
 void EffectRun::start(const RoleSample& first) {
   RecordSizes sizes = plan_->sizes;
   sizes.initial_position = first.position, sizes.initial_velocity = first.velocity;
-  for (size_t lane = 0; lane < fitted_.size(); ++lane) {
-    const EffectValues values = values_of(plan_->effect, sizes, fitted_[lane]);
-    for (size_t i = 0; i < plan_->bindings.size(); ++i)
-      *bound_[lane][i] = values.evaluate(plan_->bindings[i].value);
+  for (size_t set = 0; set < fitted_.size(); ++set) {
+    const EffectValues values = values_of(plan_->effect, sizes, fitted_[set]);
+    for (size_t i = 0; i < plan_->bindings.size(); ++i) {
+      const double value = values.evaluate(plan_->bindings[i].value);
+      for (size_t lane = set; lane < bound_.size(); lane += fitted_.size()) *bound_[lane][i] = value;
+    }
   }
   run_->reset({});
   std::ranges::fill(integral_, 0.0);
 }
 
+std::span<const double> EffectRun::mean_from(double now) {
+  constexpr double gauss_point = 0.21132486540518712;  // (1 - 1/√3) / 2
+  const double period = plan_->sizes.sample_time;
+  run_->evaluate(plan_->acts_on_sensor ? now : now + gauss_point * period);
+  read(plan_->output, value_);
+  if (plan_->acts_on_sensor) return value_;
+  run_->evaluate(now + (1 - gauss_point) * period);
+  read(plan_->output, second_);
+  for (size_t i = 0; i < value_.size(); ++i) value_[i] = 0.5 * (value_[i] + second_[i]);
+  return value_;
+}
+
 std::span<const double> EffectRun::step(const RoleSample& s) {
-  const double now = run_->time(), period = plan_->sizes.sample_time;
-  give(s, now);
+  const double now = run_->time();
+  give(s, now, 0, bound_.size());
   if (plan_->integral < 0) {
-    constexpr double gauss_point = 0.21132486540518712;  // (1 - 1/√3) / 2
-    run_->evaluate(plan_->acts_on_sensor ? now : now + gauss_point * period);
-    read(plan_->output, value_);
-    if (!plan_->acts_on_sensor) {
-      run_->evaluate(now + (1 - gauss_point) * period);
-      read(plan_->output, second_);
-      for (size_t i = 0; i < value_.size(); ++i) value_[i] = 0.5 * (value_[i] + second_[i]);
-    }
+    mean_from(now);
     run_->integrate(sample_ticks_);
     return value_;
   }
@@ -303,8 +324,26 @@ std::span<const double> EffectRun::step(const RoleSample& s) {
   if (plan_->acts_on_sensor) return value_;
   second_ = integral_;
   read(plan_->integral, integral_);
-  for (size_t i = 0; i < value_.size(); ++i) value_[i] = (integral_[i] - second_[i]) / period;
+  for (size_t i = 0; i < value_.size(); ++i)
+    value_[i] = (integral_[i] - second_[i]) / plan_->sizes.sample_time;
   return value_;
+}
+
+void EffectRun::run_in_turn(const RoleSignals& signals, size_t rows, std::span<double> values) {
+  const size_t lanes = std::min(values.size() / rows, value_.size());
+  for (size_t row = 0; row < rows; ++row) {
+    const std::span<const double> now = step(signals.at(row));
+    for (size_t lane = 0; lane < lanes; ++lane) values[lane * rows + row] = now[lane];
+  }
+}
+
+void EffectRun::run_side_by_side(const RoleSignals& signals, size_t rows, std::span<double> values) {
+  const double now = run_->time();
+  for (size_t first = 0; first < rows; first += bound_.size()) {
+    const size_t count = std::min(bound_.size(), rows - first);
+    for (size_t i = 0; i < count; ++i) give(signals.at(first + i), now, i, i + 1);
+    std::ranges::copy(mean_from(now).first(count), values.begin() + std::ptrdiff_t(first));
+  }
 }
 
 void EffectRun::run(const RoleSignals& signals, size_t rows, std::span<double> values) {
@@ -319,12 +358,11 @@ void EffectRun::run(const RoleSignals& signals, size_t rows, std::span<double> v
           fmt::format("the effect \"{}\" reads the {}, which is not given", plan_->effect.name, role));
   }
   if (rows == 0) return;
-  const size_t lanes = std::min(values.size() / rows, value_.size());
   start(signals.at(0));
-  for (size_t row = 0; row < rows; ++row) {
-    const std::span<const double> now = step(signals.at(row));
-    for (size_t lane = 0; lane < lanes; ++lane) values[lane * rows + row] = now[lane];
-  }
+  if (plan_->remembers)
+    run_in_turn(signals, rows, values);
+  else
+    run_side_by_side(signals, rows, values);
 }
 
 void EffectRun::column(const RoleSignals& signals, size_t parameter, std::span<double> values) {

@@ -22,6 +22,7 @@ struct EffectPlan {
   Number output = 0;     ///< what the effect does, at an instant
   Number integral = -1;  ///< the same, integrated; -1: nothing in it has states or rates of its own
   bool acts_on_sensor = false;
+  bool remembers = true;  ///< else a sample depends on nothing but itself, not even on time
 };
 
 /// Null after a problem: blocks that are not there, units that do not fit the machine's.
@@ -49,8 +50,8 @@ struct RoleSignals {
   RoleSample at(size_t row) const;
 };
 
-/// Runs an effect, with several sets of parameters side by side on SIMD lanes if so wished. What it gives for
-/// each sample is
+/// Runs an effect on SIMD lanes: several sets of parameters side by side if so wished, and, where the effect
+/// remembers nothing, many samples of one set. What it gives for each sample is
 ///   acting on force or parameters: the force that it consumes [force], mean over the sample
 ///   acting on the input:           what it adds to the input [force], mean over the sample
 ///   acting on the sensor:          what it adds to the measured position [position], at the sample
@@ -62,17 +63,13 @@ class EffectRun {
   explicit EffectRun(std::shared_ptr<const EffectPlan> plan, int lanes = 1);
 
   /// Sets of parameters that run side by side: one, or as many as this machine has lanes for.
-  int lanes() const { return run_->lanes(); }
+  int lanes() const { return int(fitted_.size()); }
   /// A fitted parameter in SI, by its place in EffectPlan::fitted; counts from the next start.
   void set(size_t parameter, double value, int lane = 0) { fitted_[size_t(lane)].at(parameter) = value; }
   double get(size_t parameter, int lane = 0) const { return fitted_[size_t(lane)].at(parameter); }
   /// Leaves of all linear parameters this one, at its usual magnitude, which is returned: some effects are
   /// straight only up to a limit.
   double isolate(size_t parameter, int lane = 0);
-  /// Back to rest at the first sample.
-  void start(const RoleSample& first);
-  /// The values of the next sample, one a lane.
-  std::span<const double> step(const RoleSample& sample);
   /// Starts, and fills one value a row, the rows of lane 0, then those of lane 1, …: values.size() is a
   /// multiple of the rows, lanes beyond it are left out. Throws std::invalid_argument when a role that is
   /// read is missing.
@@ -87,8 +84,16 @@ class EffectRun {
     std::vector<double*> value, slope, bend, since;
   };
   Wire wire(const char* role);
-  static void give(const Wire& wire, double now, double value, double slope = 0, double bend = 0);
-  void give(const RoleSample& sample, double now);
+  /// Back to rest at the first sample.
+  void start(const RoleSample& first);
+  /// The values of the next sample, one a lane.
+  std::span<const double> step(const RoleSample& sample);
+  /// The means over samples that were given, at the two points of Gauss from `now` on.
+  std::span<const double> mean_from(double now);
+  void run_in_turn(const RoleSignals& signals, size_t rows, std::span<double> values);
+  void run_side_by_side(const RoleSignals& signals, size_t rows, std::span<double> values);
+  /// To the lanes from `from` up to `to`.
+  void give(const RoleSample& sample, double now, size_t from, size_t to);
   void read(Number number, std::vector<double>& to) const { run_->read({&number, 1}, to.data()); }
 
   std::shared_ptr<const EffectPlan> plan_;
