@@ -24,22 +24,38 @@ std::vector<Eigen::Index> existence(const std::vector<Member>& members, size_t m
   return places;
 }
 
-/// χ² of the parameters that say whether a member is there; and with all others known.
+/// Quadratic form of theta with the inverse of the covariance that remains when the parameters at `known` are
+/// known and those at neither `known` nor `places` are estimated with them.
+double chi_square(const Eigen::MatrixXd& information, const Eigen::VectorXd& theta,
+                  const std::vector<Eigen::Index>& places, const std::vector<Eigen::Index>& known) {
+  std::vector<Eigen::Index> free = places;
+  for (Eigen::Index i = 0; i < information.rows(); ++i)
+    if (std::ranges::find(places, i) == places.end() && std::ranges::find(known, i) == known.end())
+      free.push_back(i);
+  const Eigen::MatrixXd covariance = information(free, free).inverse();
+  const Eigen::Index n = Eigen::Index(places.size());
+  const Eigen::VectorXd at = theta(places);
+  return at.dot(covariance.topLeftCorner(n, n).ldlt().solve(at));
+}
+
+/// χ² of the parameters that say whether a member is there; and with all others known. Its own shape is taken
+/// as known: a drift much longer than the record is certain, though its size and time are not one by one.
 std::pair<double, double> wald(Estimate& estimate, size_t member) {
   const std::vector<FreeParameter> free = free_parameters(estimate.members);
   const std::vector<Eigen::Index> places = existence(estimate.members, member);
-  const Eigen::Index n = Eigen::Index(places.size());
-  const Eigen::MatrixXd information = estimate.covariance.inverse();
-  Eigen::VectorXd theta(n);
-  Eigen::MatrixXd covariance(n, n), alone(n, n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    theta[i] = value_of(estimate.members, free[size_t(places[size_t(i)])]);
-    for (Eigen::Index j = 0; j < n; ++j) {
-      covariance(i, j) = estimate.covariance(places[size_t(i)], places[size_t(j)]);
-      alone(i, j) = information(places[size_t(i)], places[size_t(j)]);
-    }
+  const Eigen::VectorXd scale = estimate.covariance.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd correlation = scale.asDiagonal() * estimate.covariance * scale.asDiagonal();
+  const Eigen::MatrixXd information = scale.asDiagonal() * correlation.inverse() * scale.asDiagonal();
+  Eigen::VectorXd theta(Eigen::Index(free.size()));
+  std::vector<Eigen::Index> shape, others;
+  for (size_t i = 0; i < free.size(); ++i) {
+    const Eigen::Index at = Eigen::Index(i);
+    theta[at] = value_of(estimate.members, free[i]);
+    if (std::ranges::find(places, at) != places.end()) continue;
+    others.push_back(at);
+    if (free[i].member == member) shape.push_back(at);
   }
-  return {theta.dot(covariance.ldlt().solve(theta)), theta.dot(alone * theta)};
+  return {chi_square(information, theta, places, shape), chi_square(information, theta, places, others)};
 }
 
 /// Root of the mean square of what a member consumes over the rows that are fitted.
@@ -90,15 +106,14 @@ std::vector<Substitute> substitutes_of(Trials& trials, const Estimate& estimate,
   const double now = criterion(trials, estimate, catalogue);
   for (const Proposal& proposal : exchanges) {
     if (proposal.removed != std::vector<size_t>{member} || list.size() >= 3) continue;
-    std::vector<Member> members = estimate.members;
-    members[member] = proposal.added.front();
+    const std::vector<Member> members = applied(proposal, estimate.members);
     Estimate other = fit_members(trials, members, estimate.noise, estimate.paths(), 4);
     if (!other.is_valid) continue;
     const double loss = criterion(trials, other, catalogue) - now;
     // A richer effect that has this one as a special case always comes near: it must explain more to be a
     // rival.
     const bool is_richer =
-        parameters_of(*members[member].candidate) > parameters_of(*estimate.members[member].candidate);
+        parameters_of(*members.back().candidate) > parameters_of(*estimate.members[member].candidate);
     if (is_richer && other.profile > estimate.profile - 4) continue;
     if (loss < reach) list.push_back({proposal.added.front().candidate, loss});
   }

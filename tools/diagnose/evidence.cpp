@@ -40,6 +40,26 @@ double price(size_t parameters, size_t effects, double n, size_t catalogue) {
   return double(parameters) * std::log(n) + 2 * double(effects) * std::log(double(catalogue));
 }
 
+std::vector<Member> applied(const Proposal& proposal, std::vector<Member> members) {
+  for (size_t i = proposal.removed.size(); i-- > 0;)
+    members.erase(members.begin() + std::ptrdiff_t(proposal.removed[i]));
+  const std::vector<FreeParameter> free = free_parameters(members);
+  double fraction = 1;  // all together, as far as the first end of a range
+  for (size_t i = 0; i < free.size(); ++i) {
+    const CandidateParameter& range = range_of(members, free[i]);
+    const double value = value_of(members, free[i]), step = proposal.step[i];
+    const double room = step > 0 ? range.high - value : value - range.low;
+    if (std::abs(step) > room) fraction = std::min(fraction, room / std::abs(step));
+  }
+  for (size_t i = 0; i < free.size(); ++i) value_of(members, free[i]) += fraction * proposal.step[i];
+  for (Member member : proposal.added) {
+    if (!member.candidate->amplitude_is_one)
+      for (double& amplitude : member.linear) amplitude *= fraction;
+    members.push_back(std::move(member));
+  }
+  return members;
+}
+
 void add_shapes(const Candidate& candidate, const std::vector<std::vector<double>>& points,
                 const std::vector<const Path*>& paths, std::vector<Shape>& shapes) {
   const size_t first = shapes.size();
@@ -143,10 +163,11 @@ Evidence::Solution Evidence::solve(const std::vector<int>& columns, const Eigen:
   return {std::max(squares - right.dot(theta), 1e-12 * squares), scale.cwiseProduct(theta)};
 }
 
-std::vector<int> Evidence::member_columns(const std::vector<size_t>& without) const {
+std::vector<int> Evidence::member_columns(const std::vector<size_t>& without, bool only_linear) const {
   std::vector<int> columns;
   for (size_t i = 0; i < free_.size(); ++i)
-    if (std::ranges::find(without, free_[i].member) == without.end()) columns.push_back(int(i));
+    if (std::ranges::find(without, free_[i].member) == without.end() && (free_[i].is_linear || !only_linear))
+      columns.push_back(int(i));
   return columns;
 }
 
@@ -183,28 +204,44 @@ bool Evidence::may_be_added(const Shape& shape, const std::vector<size_t>& remov
 
 std::optional<Proposal> Evidence::with_shapes(const std::vector<size_t>& shapes, const Errors& errors) const {
   const std::vector<size_t>& removed = errors.removed;
-  std::vector<int> columns = member_columns(removed);
-  const Eigen::Index before = Eigen::Index(columns.size());
-  for (size_t s : shapes)
-    for (size_t c = 0; c < shapes_[s]->columns[0].size(); ++c) columns.push_back(first_column_[s] + int(c));
-  const Solution solution = solve(columns, errors.b, errors.squares);
-  Proposal proposal;
-  proposal.removed = removed;
-  Eigen::Index first = before;
+  const auto with_members = [&](bool only_linear) {
+    std::vector<int> columns = member_columns(removed, only_linear);
+    for (size_t s : shapes)
+      for (int c = 0; c < width_of(s); ++c) columns.push_back(first_column_[s] + c);
+    return columns;
+  };
+  const Solution solution = solve(with_members(false), errors.b, errors.squares);
+  Eigen::Index first = Eigen::Index(member_columns(removed).size());
   double cost = 0;
   for (size_t s : shapes) {
-    const Shape& shape = *shapes_[s];
-    if (!is_feasible(shape, solution.theta, first)) return {};
-    Member member{shape.candidate, {}, shape.nonlinear};
-    for (size_t c = 0; c < shape.columns[0].size(); ++c)
-      member.linear.push_back(shape.candidate->amplitude_is_one ? 1
-                                                                : solution.theta[first + Eigen::Index(c)]);
-    first += Eigen::Index(shape.columns[0].size());
-    cost += price(parameters_of(*shape.candidate), 1, n_, catalogue_);
-    proposal.added.push_back(std::move(member));
+    if (!is_feasible(*shapes_[s], solution.theta, first)) return {};
+    first += width_of(s);
+    cost += price(parameters_of(*shapes_[s]->candidate), 1, n_, catalogue_);
   }
   for (size_t m : removed) cost -= price(parameters_of(*members_[m].candidate), 1, n_, catalogue_);
+  // Where the members' shapes are nearly free, the whole step would lead far out of what is linear.
+  const std::vector<int> columns = with_members(true);
+  Proposal proposal = with_step(shapes, removed, solve(columns, errors.b, errors.squares).theta);
   proposal.gain = n_ * std::log(explained_ / solution.squares) - cost;
+  return proposal;
+}
+
+/// `theta`: steps of the linear parameters of the members that stay, then the shapes' own.
+Proposal Evidence::with_step(const std::vector<size_t>& shapes, const std::vector<size_t>& removed,
+                             const Eigen::VectorXd& theta) const {
+  Proposal proposal;
+  proposal.removed = removed;
+  Eigen::Index next = 0;
+  for (const FreeParameter& p : free_)
+    if (std::ranges::find(removed, p.member) == removed.end())
+      proposal.step.push_back(p.is_linear ? theta[next++] : 0);
+  for (size_t s : shapes) {
+    const Shape& shape = *shapes_[s];
+    Member member{shape.candidate, {}, shape.nonlinear};
+    for (int c = 0; c < width_of(s); ++c, ++next)
+      member.linear.push_back(shape.candidate->amplitude_is_one ? 1 : theta[next]);
+    proposal.added.push_back(std::move(member));
+  }
   return proposal;
 }
 

@@ -22,12 +22,16 @@ std::vector<Shape> shapes_of(const std::vector<Candidate>& candidates, const std
 struct Proposal {
   std::vector<size_t> removed;  ///< members taken out
   std::vector<Member> added;
+  std::vector<double> step;  ///< of the free parameters of the members that stay, to go with what is added
   double gain = 0;  ///< what it saves in the extended information criterion
 };
 
 /// Extended Bayesian information criterion (Chen and Chen 2008): what a set must save in n ln(mean square).
 double price(size_t parameters, size_t effects, double n, size_t catalogue);
 size_t parameters_of(const Candidate& candidate);
+
+/// The members with the proposal carried out.
+std::vector<Member> applied(const Proposal& proposal, std::vector<Member> members);
 
 /// Sums of squares of the errors, of the members' sensitivities, and of every shape.
 class Evidence {
@@ -59,11 +63,13 @@ class Evidence {
     double squares = 0;
   };
   Solution solve(const std::vector<int>& columns, const Eigen::VectorXd& b, double squares) const;
-  std::vector<int> member_columns(const std::vector<size_t>& without = {}) const;
+  std::vector<int> member_columns(const std::vector<size_t>& without = {}, bool only_linear = false) const;
   Errors errors_without(const std::vector<size_t>& removed) const;
   void multiply(size_t shape, size_t other);
   int width_of(size_t shape) const { return int(shapes_[shape]->columns[0].size()); }
   std::optional<Proposal> with_shapes(const std::vector<size_t>& shapes, const Errors& errors) const;
+  Proposal with_step(const std::vector<size_t>& shapes, const std::vector<size_t>& removed,
+                     const Eigen::VectorXd& theta) const;
   bool may_be_added(const Shape& shape, const std::vector<size_t>& removed) const;
   std::vector<size_t> best_shapes(const Errors& errors) const;
 

@@ -1,6 +1,7 @@
 #include "tools/diagnose/fit.h"
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace loopwright::diagnosis {
 namespace {
@@ -40,11 +41,34 @@ NormalEquations normal_equations(const Trials& trials, const std::vector<Member>
 }
 
 /// Solves with columns scaled to one and a ridge that only dependent columns feel.
-Eigen::VectorXd solve(const NormalEquations& e) {
-  const Eigen::VectorXd scale = e.G.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  Eigen::MatrixXd scaled = scale.asDiagonal() * e.G * scale.asDiagonal();
+Eigen::VectorXd solve(const Eigen::MatrixXd& G, const Eigen::VectorXd& b) {
+  const Eigen::VectorXd scale = G.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  Eigen::MatrixXd scaled = scale.asDiagonal() * G * scale.asDiagonal();
   scaled.diagonal().array() += 1e-9;
-  return scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * e.b);
+  return scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * b);
+}
+
+/// The step inside the ranges of all amplitudes: one that would leave its range goes to the end of it, and the
+/// others make the best of that. To cut it off alone would upset all that balance it.
+Eigen::VectorXd step_in_range(const NormalEquations& e, std::vector<Member> members,
+                              const std::vector<FreeParameter>& free) {
+  Eigen::VectorXd step = Eigen::VectorXd::Zero(e.b.size());
+  std::vector<Eigen::Index> open(free.size()), held;
+  std::iota(open.begin(), open.end(), 0);
+  while (!open.empty()) {
+    const Eigen::VectorXd b = e.b(open) - e.G(open, held) * step(held);
+    step(open) = solve(e.G(open, open), b);
+    const size_t before = held.size();
+    for (const Eigen::Index i : std::vector(open)) {
+      const FreeParameter& p = free[size_t(i)];
+      const CandidateParameter& range = range_of(members, p);
+      const double value = value_of(members, p), inside = std::clamp(value + step[i], range.low, range.high);
+      if (!p.is_linear || inside == value + step[i]) continue;
+      step[i] = inside - value, held.push_back(i), std::erase(open, i);
+    }
+    if (held.size() == before) break;
+  }
+  return step;
 }
 
 /// The members a step further, inside their ranges; shapes move at most by a third at a time.
@@ -86,7 +110,7 @@ Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& n
   for (int i = 0; i < iterations && !free.empty(); ++i) {
     const std::vector<const Path*> now = best.paths();
     const NormalEquations equations = normal_equations(trials, best.members, best.fitted, now);
-    const Eigen::VectorXd step = solve(equations);
+    const Eigen::VectorXd step = step_in_range(equations, best.members, free);
     if (step.dot(equations.b) < least_gain * best.mean_square) break;  // what the step promises
     const double before = best.profile;
     double fraction = 1;
@@ -142,7 +166,9 @@ void work_out_covariance(Trials& trials, Estimate& estimate) {
   const std::vector<FreeParameter> free = free_parameters(estimate.members);
   if (free.empty()) return;
   const NormalEquations e = normal_equations(trials, estimate.members, estimate.fitted, estimate.paths());
-  const Eigen::VectorXd scale = e.G.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  // A level that no row reaches is not known at all, yet a finite number.
+  const auto inverse_root = [](double squares) { return squares > 0 ? 1 / std::sqrt(squares) : 1.0; };
+  const Eigen::VectorXd scale = e.G.diagonal().unaryExpr(inverse_root);
   Eigen::MatrixXd scaled = scale.asDiagonal() * e.G * scale.asDiagonal();
   scaled.diagonal().array() += 1e-12;
   estimate.covariance = scale.asDiagonal() * scaled.inverse() * scale.asDiagonal();

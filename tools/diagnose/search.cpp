@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include "tools/diagnose/conclude.h"
 #include "tools/diagnose/spectrum.h"
 
@@ -26,13 +27,11 @@ class Search {
   }
 
   SearchResult run() {
-    for (size_t step = 0; step < most_effects && extend(); ++step) {
-      sharpen_noise();
-      exchange();
-      prune();
+    grow(4);
+    if (is_much_left() || explain_without_name()) {
+      start_from_what_has_no_name();
+      grow(most_effects - std::min(most_effects, best_.members.size()));
     }
-    if (explain_without_name())
-      for (size_t step = 0; step < 2 && extend(); ++step) prune();
     return {std::move(best_), std::move(trail_)};
   }
 
@@ -43,15 +42,6 @@ class Search {
     return fit_members(trials_, members, noise_, paths(), iterations);
   }
   std::vector<const Path*> paths() const { return best_.members.empty() ? motion_ : best_.paths(); }
-
-  std::vector<Member> applied(const Proposal& proposal) const {
-    std::vector<Member> members;
-    for (size_t m = 0; m < best_.members.size(); ++m)
-      if (std::ranges::find(proposal.removed, m) == proposal.removed.end())
-        members.push_back(best_.members[m]);
-    members.insert(members.end(), proposal.added.begin(), proposal.added.end());
-    return members;
-  }
 
   void note(const char* what) {
     std::string line =
@@ -67,6 +57,17 @@ class Search {
     trail_.push_back(std::move(line));
   }
 
+  /// What the linearisation promises, best first.
+  void note(const std::vector<Proposal>& proposals) {
+    std::string line = "promised:";
+    for (const Proposal& proposal : proposals | std::views::take(8)) {
+      for (const Member& member : proposal.added)
+        line += fmt::format(" {}{}", member.candidate->name, member.candidate->is_unknown ? " of " + member.candidate->form : "");
+      line += fmt::format(" {:.0f},", proposal.gain);
+    }
+    trail_.push_back(std::move(line));
+  }
+
   /// Shapes on the grid, and the pitches that stand out now.
   std::vector<const Shape*> all_shapes() {
     periodic_ = periodic_shapes(trials_, best_, candidates_);
@@ -76,16 +77,27 @@ class Search {
     return list;
   }
 
+  bool is_much_left() const { return best_.mean_square >= 8; }
+
+  void grow(size_t most) {
+    for (size_t step = 0; step < most && extend(); ++step) {
+      sharpen_noise();
+      exchange();
+      prune();
+    }
+  }
+
   bool extend() {
     Evidence evidence(trials_, best_, all_shapes(), candidates_.size());
     std::vector<Proposal> proposals = evidence.extensions();
+    note(proposals);
     const double single = proposals.empty() ? 0 : proposals.front().gain;
     if (proposals.size() > tried_extensions) proposals.resize(tried_extensions);
     if (const Proposal pair = evidence.best_pair(); pair.gain > single + 10) proposals.push_back(pair);
     const double before = score(best_), least = std::max(10.0, 0.002 * double(fitted_numbers(trials_)));
     std::vector<Estimate> tried;
     for (const Proposal& proposal : proposals) {
-      Estimate trial = refined(applied(proposal), 2);
+      Estimate trial = refined(applied(proposal, best_.members), 2);
       if (trial.is_valid && score(trial) < before - least) tried.push_back(std::move(trial));
     }
     std::ranges::stable_sort(tried, {}, [&](const Estimate& e) { return score(e); });
@@ -106,20 +118,24 @@ class Search {
     return true;
   }
 
-  /// What the catalogue does not hold, and the effects that had stood in for it.
-  bool explain_without_name() {
-    std::vector<Shape> shapes = shapes_of(unknown_, paths());
-    std::vector<Shape> tones = periodic_shapes(trials_, best_, unknown_, 1);
-    std::ranges::move(tones, std::back_inserter(shapes));
+  /// What the catalogue does not hold, best first.
+  std::vector<Proposal> without_name() {
+    nameless_ = shapes_of(unknown_, paths());
+    std::ranges::move(periodic_shapes(trials_, best_, unknown_, 1), std::back_inserter(nameless_));
     std::vector<const Shape*> list;
-    for (const Shape& shape : shapes) list.push_back(&shape);
-    const Evidence evidence(trials_, best_, list, candidates_.size());
-    std::vector<Proposal> proposals = evidence.extensions();
+    for (const Shape& shape : nameless_) list.push_back(&shape);
+    std::vector<Proposal> proposals = Evidence(trials_, best_, list, candidates_.size()).extensions();
+    note(proposals);
     if (proposals.size() > 2) proposals.resize(2);
+    return proposals;
+  }
+
+  /// And the effects that had stood in for it.
+  bool explain_without_name() {
     Estimate best;
     double best_score = score(best_) - std::max(20.0, 0.004 * double(fitted_numbers(trials_)));
-    for (const Proposal& proposal : proposals) {
-      Estimate trial = refined(applied(proposal), 2);
+    for (const Proposal& proposal : without_name()) {
+      Estimate trial = refined(applied(proposal, best_.members), 2);
       if (!trial.is_valid || score(trial) >= best_score) continue;
       best_score = score(trial), best = std::move(trial);
     }
@@ -128,6 +144,31 @@ class Search {
     note("without a name");
     prune();
     return true;
+  }
+
+  /// The effects that were found first may only have stood in for what has no name: all over again, with that
+  /// taken in before them.
+  void start_from_what_has_no_name() {
+    Estimate best = std::move(best_);
+    const Estimate nominal = fit_members(trials_, {}, noise_, motion_, 0);
+    best_ = nominal;
+    std::vector<Member> starts;
+    for (const Member& member : best.members)
+      if (member.candidate->is_unknown) starts.push_back(member);
+    for (Proposal& proposal : without_name())
+      if (std::ranges::none_of(starts, [&](const Member& m) { return m.candidate == proposal.added[0].candidate; }))
+        starts.push_back(std::move(proposal.added[0]));
+    for (Member& start : starts) {
+      best_ = nominal;
+      best_ = refined({std::move(start)}, 2);
+      if (!best_.is_valid) continue;
+      note("started without a name");
+      grow(4);
+      best = fit_members(trials_, best.members, noise_, best.paths(), 1);  // noise as it is now
+      if (score(best_) < score(best)) best = std::move(best_);
+    }
+    best_ = std::move(best);
+    note("best of all");
   }
 
   void exchange() {
@@ -139,7 +180,7 @@ class Search {
       double best_score = score(best_) - 3;
       for (size_t i = 0; i < std::min(tried_exchanges, proposals.size()); ++i) {
         if (proposals[i].gain < -0.01 * evidence.rows()) break;
-        Estimate trial = refined(applied(proposals[i]), 4);
+        Estimate trial = refined(applied(proposals[i], best_.members), 4);
         if (!trial.is_valid || score(trial) >= best_score) continue;
         best_score = score(trial), best = std::move(trial);
       }
@@ -166,9 +207,10 @@ class Search {
 
   /// Once little is left to find, the level of the noise can be told from it.
   void sharpen_noise() {
-    if (best_.mean_square >= 8) return;
+    if (is_much_left()) return;
     noise_ = fit_noise_alone(trials_, best_.fitted, noise_, FreeNoise::white_and_slow);
     best_ = fit_members(trials_, best_.members, noise_, best_.paths(), 2);
+    trail_.push_back(fmt::format("noise: white {:.3g}, slow {:.3g}", noise_.white, noise_.slow()));
   }
 
   const std::vector<Candidate>& unknown_;
@@ -177,7 +219,7 @@ class Search {
   const std::vector<Shape>& shapes_;
   Noise noise_;
   std::vector<const Path*> motion_;
-  std::vector<Shape> periodic_;
+  std::vector<Shape> periodic_, nameless_;
   Estimate best_;
   std::vector<std::string> trail_;
 };

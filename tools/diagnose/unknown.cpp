@@ -15,19 +15,23 @@ double middle_position(const Path& path, size_t k) {
   return path.position[k] + 0.5 * path.sample_time * path.velocity[k];
 }
 
-/// Σ level_i · hat_i(variable) · factor: piecewise linear between even knots.
-Candidate piecewise(std::string variables, size_t knots, double low, double high, Variable variable,
-                    Variable factor) {
+/// Σ level_i · B_i(variable) · factor: a cubic spline over even intervals.
+Candidate spline(std::string variables, size_t levels, double low, double high, Variable variable,
+                 Variable factor) {
   Candidate candidate;
   candidate.name = "unknown", candidate.form = std::move(variables), candidate.is_unknown = true;
-  for (size_t i = 0; i < knots; ++i) candidate.linear.push_back({"level", "", -1e300, 1e300, false, {}});
+  for (size_t i = 0; i < levels; ++i) candidate.linear.push_back({"level", "", -1e300, 1e300, false, {}});
   candidate.columns_at = [=](const Path& path, const std::vector<std::vector<double>>& shapes) {
-    Columns columns(knots, std::vector<float>(path.samples()));
+    Columns columns(levels, std::vector<float>(path.samples()));
+    const size_t intervals = levels - 3;
     for (size_t k = 0; k < path.samples(); ++k) {
-      const double at = std::clamp((variable(path, k) - low) / (high - low), 0.0, 1.0) * double(knots - 1);
-      const size_t i = std::min(size_t(at), knots - 2);
-      const double size = factor(path, k), beyond = at - double(i);
-      columns[i][k] = float(size * (1 - beyond)), columns[i + 1][k] = float(size * beyond);
+      const double at = std::clamp((variable(path, k) - low) / (high - low), 0.0, 1.0) * double(intervals);
+      const size_t i = std::min(size_t(at), intervals - 1);
+      const double t = at - double(i), left = 1 - t, size = factor(path, k) / 6;
+      columns[i][k] = float(size * left * left * left);
+      columns[i + 1][k] = float(size * (4 - 3 * t * t * (2 - t)));
+      columns[i + 2][k] = float(size * (4 - 3 * left * left * (2 - left)));
+      columns[i + 3][k] = float(size * t * t * t);
     }
     return std::vector(shapes.size(), columns);
   };
@@ -66,12 +70,12 @@ std::vector<Candidate> unknown_forces(const RecordSizes& sizes) {
   };
   const Variable acceleration = [](const Path& path, size_t k) { return path.acceleration[k]; };
   const Variable time = [](const Path& path, size_t k) { return double(k) * path.sample_time; };
-  return {piecewise("position", 40, low, high, middle_position, one),
-          piecewise("velocity", 24, -top, top, middle_velocity, one),
-          piecewise("time", 40, 0, sizes.duration, time, one),
-          piecewise("position,direction", 24, low, high, middle_position, direction),
-          piecewise("position,velocity", 24, low, high, middle_position, middle_velocity),
-          piecewise("position,acceleration", 24, low, high, middle_position, acceleration),
+  return {spline("position", 60, low, high, middle_position, one),
+          spline("velocity", 24, -top, top, middle_velocity, one),
+          spline("time", 40, 0, sizes.duration, time, one),
+          spline("position,direction", 24, low, high, middle_position, direction),
+          spline("position,velocity", 24, low, high, middle_position, middle_velocity),
+          spline("position,acceleration", 24, low, high, middle_position, acceleration),
           tone(sizes)};
 }
 
