@@ -63,7 +63,7 @@ template <class Real> struct PreslidingFriction {
   }
   void outputs(const In& in, const Memory& memory, Out& out) const {
     out.fraction = fraction(in, memory);
-    out.force = fraction(in, memory) * sliding_level(in.velocity);
+    out.force = out.fraction * sliding_level(in.velocity);
   }
   void accept(const In& in, Memory& memory) const { memory = {in.position, fraction(in, memory), 1.0}; }
   void crossings(const In& in, Crossings& value) const { value.reversal = in.velocity; }

@@ -108,7 +108,8 @@ Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& n
   if (!best.is_valid) return best;
   const std::vector<FreeParameter> free = free_parameters(best.members);
   for (int i = 0; i < iterations && !free.empty(); ++i) {
-    const std::vector<const Path*> now = best.paths();
+    // The first along the paths given, on which the columns of most members are known.
+    const std::vector<const Path*> now = i == 0 && !paths.empty() ? paths : best.paths();
     const NormalEquations equations = normal_equations(trials, best.members, best.fitted, now);
     const Eigen::VectorXd step = step_in_range(equations, best.members, free);
     if (step.dot(equations.b) < least_gain * best.mean_square) break;  // what the step promises

@@ -160,7 +160,7 @@ class Search {
         starts.push_back(std::move(proposal.added[0]));
     for (Member& start : starts) {
       best_ = nominal;
-      best_ = refined({std::move(start)}, 2);
+      best_ = refined({std::move(start)}, 4);
       if (!best_.is_valid) continue;
       note("started without a name");
       grow(4);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace loopwright::diagnosis {
 namespace {
@@ -34,6 +35,14 @@ Candidate spline(std::string variables, size_t levels, double low, double high, 
       columns[i + 3][k] = float(size * t * t * t);
     }
     return std::vector(shapes.size(), columns);
+  };
+  return candidate;
+}
+
+/// The mean of it acts like a mass, at once.
+Candidate mass_along(Candidate candidate) {
+  candidate.added_inertia = [](const Member& member) {
+    return std::accumulate(member.linear.begin(), member.linear.end(), 0.0) / double(member.linear.size());
   };
   return candidate;
 }
@@ -75,7 +84,7 @@ std::vector<Candidate> unknown_forces(const RecordSizes& sizes) {
           spline("time", 40, 0, sizes.duration, time, one),
           spline("position,direction", 24, low, high, middle_position, direction),
           spline("position,velocity", 24, low, high, middle_position, middle_velocity),
-          spline("position,acceleration", 24, low, high, middle_position, acceleration),
+          mass_along(spline("position,acceleration", 24, low, high, middle_position, acceleration)),
           tone(sizes)};
 }
 
