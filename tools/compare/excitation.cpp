@@ -149,7 +149,8 @@ void check_input(const MeasuredMotion& m, const ForceResidual& residual, std::ve
         {"unsynchronised", fmt::format("input and motion fit best when shifted by {:.3g} ms", 1e3 * late_s),
          "effects that depend on acceleration or on fast changes of the input cannot be told from this "
          "shift; check that both columns share a clock",
-         late_s < 0});  // no machine moves before its input
+         late_s < 0,  // no machine moves before its input; but a load on a spring looks so
+         late_s < 0});
 }
 
 }  // namespace

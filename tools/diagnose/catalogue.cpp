@@ -35,10 +35,11 @@ constexpr double linear_points = 8;
 constexpr double grid_ratio = 1.7;  // between neighbours on a logarithmic scale, at most
 
 /// Where the search looks first. Later shapes of an effect start in the middle: the fit moves them.
-std::vector<double> grid_of(const CandidateParameter& p, bool is_first) {
+std::vector<double> grid_of(const CandidateParameter& p, bool is_first, int points) {
   std::vector<double> grid;
   const double low = p.logarithmic ? std::max(p.low, 1e-6 * p.high) : p.low;
-  const double n = !is_first       ? 1
+  const double n = points > 0      ? points
+                   : !is_first     ? 1
                    : p.logarithmic ? std::ceil(std::log(p.high / low) / std::log(grid_ratio))
                                    : linear_points;
   for (double i = 0.5; i < n; i += 1)
@@ -161,7 +162,7 @@ Candidate candidate_of(const Effect& effect, std::shared_ptr<const EffectPlan> p
       parameter.low = std::max(parameter.low, 4 * sizes.top_speed * sizes.sample_time);
       parameter.high = std::max(parameter.high, 2 * parameter.low);
     }
-    parameter.grid = grid_of(parameter, candidate.nonlinear.empty());
+    parameter.grid = grid_of(parameter, candidate.nonlinear.empty(), p.points);
     candidate.nonlinear.push_back(parameter), compiled->nonlinear.push_back(index);
   }
   candidate.amplitude_is_one = candidate.linear.empty();

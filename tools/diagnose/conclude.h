@@ -23,6 +23,9 @@ struct Substitute {
   double loss = 0;  ///< how much worse the criterion is with it; negative: better
 };
 
+/// Above it the errors are not white. Counts of an encoder that pass at a steady speed alone make up to 170.
+constexpr double most_portmanteau = 300;
+
 struct Conclusion {
   Estimate estimate;
   std::vector<Weight> weights;                       ///< a member each
@@ -32,14 +35,15 @@ struct Conclusion {
   double portmanteau = 0;  ///< n Σ ρ², 40 lags of the whitened errors; 40 when white
   double held_out_mean_square = 0;
   std::vector<std::string> trail;  ///< what was taken out, and why
+
+  /// Whether nothing is left in the errors.
+  bool is_white() const { return is_remainder_noise && portmanteau <= most_portmanteau; }
 };
 
 /// Joint maximum likelihood of parameters and noise, immaterial members taken out one by one.
 Conclusion conclude(Trials& trials, const std::vector<Candidate>& candidates,
                     const std::vector<Shape>& shapes, Estimate found);
 
-/// Above it the errors are not white.
-constexpr double most_portmanteau = 150;
 /// n Σ ρ² over 40 lags; near 40 when nothing is left in the errors.
 double portmanteau(const Trials& trials, const std::vector<Fitted>& fitted);
 

@@ -45,6 +45,16 @@ std::string without_idle_brackets(const std::string& unit) {
   return text;
 }
 
+/// The held-out rows are explained worse than this, over the fitted ones: they hold something else.
+constexpr double most_held_out = 1.5;
+
+/// Effects of the catalogue, and nothing is left.
+bool explains_all(const Conclusion& conclusion) {
+  const std::vector<Member>& members = conclusion.estimate.members;
+  return conclusion.is_white() && !members.empty() &&
+         std::ranges::none_of(members, [](const Member& m) { return m.candidate->is_unknown; });
+}
+
 /// Values and intervals of a member's parameters, in SI.
 std::vector<DiagnosedParameter> parameters_of_member(const Conclusion& conclusion, size_t index,
                                                      const MachineUnits& units) {
@@ -101,17 +111,32 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   for (Trial& trial : trials.list) inverse.push_back(inverse_dynamics(trial, trials.rest_speed));
   Diagnosis result;
   result.findings = look_at_records(trials, inverse), result.not_looked_for = catalogue.left_out;
-  const bool is_fatal = std::ranges::any_of(result.findings, &RecordFinding::is_fatal);
-  SearchResult searched;  // names from a record that cannot bear them would be guesses
-  if (is_fatal)
-    searched.estimate = fit_members(trials, {}, search_noise(trials), paths, 0);
-  else
-    searched = search(trials, catalogue.candidates, shapes, unknown, motion);
-  progress("fitting effects and noise together", 0.7);
-  Conclusion conclusion = conclude(trials, catalogue.candidates, shapes, std::move(searched.estimate));
-
-  std::ranges::copy(conclusion.trail, std::back_inserter(searched.trail));
-  result.diagram = diagram, result.experiments = experiments, result.trail = std::move(searched.trail);
+  const auto find_names = [&] {
+    SearchResult searched = search(trials, catalogue.candidates, shapes, unknown, motion);
+    progress("fitting effects and noise together", 0.7);
+    Conclusion conclusion = conclude(trials, catalogue.candidates, shapes, std::move(searched.estimate));
+    std::ranges::move(conclusion.trail, std::back_inserter(searched.trail));
+    conclusion.trail = std::move(searched.trail);
+    return conclusion;
+  };
+  const auto is_certain = [](const RecordFinding& f) { return f.is_fatal && !f.may_be_physics; };
+  const auto is_doubtful = [](const RecordFinding& f) { return f.is_fatal && f.may_be_physics; };
+  const bool is_fatal = std::ranges::any_of(result.findings, is_certain);
+  Conclusion conclusion;
+  if (!is_fatal) conclusion = find_names();
+  if (!is_fatal && conclusion.held_out_mean_square > most_held_out * std::max(1.0, conclusion.estimate.mean_square)) {
+    for (Trial& trial : trials.list) trial.held_out_from = trial.usable.size();
+    result.findings.push_back({"the part that was to be held out shows something that the other part does not",
+                               "it was used for the fit too, and no error is held out"});
+    conclusion = find_names();
+  }
+  if (!is_fatal && explains_all(conclusion))
+    std::erase_if(result.findings, is_doubtful);
+  else if (is_fatal || std::ranges::any_of(result.findings, is_doubtful))
+    // Names from a record that cannot bear them would be guesses.
+    conclusion = conclude(trials, catalogue.candidates, shapes,
+                          fit_members(trials, {}, search_noise(trials), paths, 0));
+  result.diagram = diagram, result.experiments = experiments, result.trail = conclusion.trail;
   result.title = models.front()->plan().title;
   result.force_unit = units.force, result.position_unit = units.position;
   result.measured_unit = models.front()->record().measured.front().unit;

@@ -47,7 +47,8 @@ struct SuggestedExperiment {
 /// Something about a record that limits what it can say.
 struct RecordFinding {
   std::string what, cost;
-  bool is_fatal = false;  ///< no confident verdict from it
+  bool is_fatal = false;        ///< no confident verdict from it
+  bool may_be_physics = false;  ///< unless effects explain the whole record: then it says nothing
 };
 
 /// An effect of the catalogue that the diagram or the records leave no room for.

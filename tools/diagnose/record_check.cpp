@@ -17,7 +17,7 @@ std::vector<RecordFinding> look_at_records(const Trials& trials, const std::vect
     const RecordContent content = content_of(machine, residual, position ? position->resolution : 0);
     const std::string of = trials.list.size() > 1 ? fmt::format("record {}: ", t + 1) : "";
     for (const RecordFault& fault : faults_of(machine, residual, content, model.record().recorded_time))
-      findings.push_back({of + fault.text, fault.cost, fault.is_fatal});
+      findings.push_back({of + fault.text, fault.cost, fault.is_fatal, fault.may_be_physics});
   }
   return findings;
 }

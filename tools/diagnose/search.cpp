@@ -130,10 +130,16 @@ class Search {
     return proposals;
   }
 
+  /// A spline bends itself to what is not quite right in an effect: it must explain a tenth more.
+  double worth_losing_names() const { return std::max(20.0, 0.1 * double(fitted_numbers(trials_))); }
+  static bool has_unknown(const Estimate& e) {
+    return std::ranges::any_of(e.members, [](const Member& m) { return m.candidate->is_unknown; });
+  }
+
   /// And the effects that had stood in for it.
   bool explain_without_name() {
     Estimate best;
-    double best_score = score(best_) - std::max(20.0, 0.004 * double(fitted_numbers(trials_)));
+    double best_score = score(best_) - worth_losing_names();
     for (const Proposal& proposal : without_name()) {
       Estimate trial = refined(applied(proposal, best_.members), 2);
       if (!trial.is_valid || score(trial) >= best_score) continue;
@@ -165,7 +171,8 @@ class Search {
       note("started without a name");
       grow(4);
       best = fit_members(trials_, best.members, noise_, best.paths(), 1);  // noise as it is now
-      if (score(best_) < score(best)) best = std::move(best_);
+      const double least = has_unknown(best) || !has_unknown(best_) ? 0 : worth_losing_names();
+      if (score(best_) < score(best) - least) best = std::move(best_);
     }
     best_ = std::move(best);
     note("best of all");

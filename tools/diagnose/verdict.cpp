@@ -32,7 +32,7 @@ void judge(Trials& trials, const Conclusion& conclusion, const Noise& tight, Dia
   for (const Member& member : e.members)
     if (member.candidate->is_unknown) add_variables(diagnosis.remainder_variables, member.candidate->form);
   const bool has_unknown = !diagnosis.remainder_variables.empty();
-  const bool is_not_white = !conclusion.is_remainder_noise || conclusion.portmanteau > most_portmanteau;
+  const bool is_not_white = !conclusion.is_white();
   if (is_not_white || has_unknown) {
     std::vector<Member> named;
     std::ranges::copy_if(e.members, std::back_inserter(named),

@@ -52,6 +52,7 @@ struct EffectParameter {
   bool is_linear = false;       ///< the effect is proportional to it, and effects of several add up
   bool is_period = false;       ///< a distance after which the effect repeats: found by a spatial spectrum
   Scale scale = Scale::linear;  ///< on which grids are even and steps are taken
+  int points = 0;               ///< of the range on which a search looks first; 0: as is usual
   Value low, high, start;       ///< numbers or expressions over sizes; a low of 0 is a sign limit
   Value value;                  ///< of one that is not fitted: over sizes and other parameters
   Place place;

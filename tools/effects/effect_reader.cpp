@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 #include <set>
@@ -95,7 +96,7 @@ class FormReader {
       return;
     const Value& body = member.value;
     reader_.reject_unknown(body,
-                           {"description", "unit", "linear", "period", "scale", "range", "start", "value"},
+                           {"description", "unit", "linear", "period", "scale", "range", "start", "points", "value"},
                            "a parameter of an effect");
     EffectParameter parameter;
     parameter.name = member.name, parameter.place = member.place;
@@ -113,7 +114,7 @@ class FormReader {
     effect_.parameters.push_back(std::move(parameter));
   }
   void reject_fit_keys(const Value& body) {
-    for (const char* key : {"range", "start", "scale", "linear", "period"})
+    for (const char* key : {"range", "start", "scale", "points", "linear", "period"})
       if (const auto* misplaced = body.find(key))
         reader_.error(*misplaced, fmt::format("\"{}\" is of no use: a \"value\" is given", key)).hint =
             "leave out \"value\" for a parameter that is to be fitted";
@@ -140,6 +141,7 @@ class FormReader {
       reader_.error(body, fmt::format("the parameter \"{}\" has no \"start\"", parameter.name)).expected =
           "\"start\": a number or an expression within the range";
     if (const Value::Member* scale = body.find("scale")) parameter.scale = read_scale(*scale);
+    if (const Value::Member* points = body.find("points")) parameter.points = read_points(*points);
     const RecordSizes example = example_sizes();
     const size_t problems_before = reader_.problems.list().size();
     const double low = size_value(parameter.low, parameter.unit, example),
@@ -152,6 +154,13 @@ class FormReader {
       reader_.error(*start, "the start is outside the range").found = shown(start->value);
     if (parameter.scale != EffectParameter::Scale::linear && low <= 0)
       reader_.error(*range, "only a range above 0 can have this scale").found = shown(range->value);
+  }
+  int read_points(const Value::Member& member) {
+    const double points = member.value.kind == Kind::number ? member.value.number : 0;
+    if (points >= 1 && points <= 200 && points == std::floor(points)) return int(points);
+    reader_.error(member, "\"points\" says on how many values of the range a search looks first").expected =
+        "a whole number from 1 to 200";
+    return 0;
   }
   EffectParameter::Scale read_scale(const Value::Member& member) {
     using Scale = EffectParameter::Scale;
