@@ -274,12 +274,14 @@ std::vector<Proposal> Evidence::extensions() const {
   return list;
 }
 
-Proposal Evidence::best_pair() {
+Proposal Evidence::best_pair(bool one_without_name) {
   const Errors errors = errors_without({});
   const std::vector<size_t> best = best_shapes(errors);
   Proposal result;
   for (size_t i = 0; i < best.size(); ++i)
     for (size_t j = i + 1; j < best.size(); ++j) {
+      const bool has_unknown = shapes_[best[i]]->candidate->is_unknown != shapes_[best[j]]->candidate->is_unknown;
+      if (one_without_name && !has_unknown) continue;
       multiply(best[i], best[j]);
       if (auto pair = with_shapes({best[i], best[j]}, errors); pair && pair->gain > result.gain)
         result = std::move(*pair);

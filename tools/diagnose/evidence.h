@@ -43,8 +43,8 @@ class Evidence {
   /// The best shape of every candidate that is not a member yet, best first; those that save nothing left
   /// out.
   std::vector<Proposal> extensions() const;
-  /// The best two shapes together, out of the best shapes of every candidate.
-  Proposal best_pair();
+  /// The best two shapes together, out of the best shapes of every candidate; if so wished one without a name.
+  Proposal best_pair(bool one_without_name = false);
   /// A member, or two, replaced by one shape: the best for each candidate, best first.
   std::vector<Proposal> exchanges() const;
   /// The members without one, with what that saves (mostly negative).

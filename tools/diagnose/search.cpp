@@ -118,13 +118,18 @@ class Search {
     return true;
   }
 
-  /// What the catalogue does not hold, best first.
-  std::vector<Proposal> without_name() {
+  /// What the catalogue does not hold.
+  std::vector<const Shape*> shapes_without_name() {
     nameless_ = shapes_of(unknown_, paths());
     std::ranges::move(periodic_shapes(trials_, best_, unknown_, 1), std::back_inserter(nameless_));
     std::vector<const Shape*> list;
     for (const Shape& shape : nameless_) list.push_back(&shape);
-    std::vector<Proposal> proposals = Evidence(trials_, best_, list, candidates_.size()).extensions();
+    return list;
+  }
+  /// The best two.
+  std::vector<Proposal> without_name() {
+    std::vector<Proposal> proposals =
+        Evidence(trials_, best_, shapes_without_name(), candidates_.size()).extensions();
     note(proposals);
     if (proposals.size() > 2) proposals.resize(2);
     return proposals;
@@ -152,21 +157,29 @@ class Search {
     return true;
   }
 
+  /// Sets to begin with instead: the best function of the variables alone, and with one effect.
+  std::vector<std::vector<Member>> starts_without_name() {
+    std::vector<std::vector<Member>> starts;
+    for (Proposal& proposal : without_name()) starts.push_back(std::move(proposal.added));
+    std::vector<const Shape*> shapes = shapes_without_name();
+    std::ranges::copy(all_shapes(), std::back_inserter(shapes));
+    Proposal pair = Evidence(trials_, best_, shapes, candidates_.size()).best_pair(true);
+    if (!pair.added.empty()) starts.push_back(std::move(pair.added));
+    return starts;
+  }
+
   /// The effects that were found first may only have stood in for what has no name: all over again, with that
   /// taken in before them.
   void start_from_what_has_no_name() {
     Estimate best = std::move(best_);
     const Estimate nominal = fit_members(trials_, {}, noise_, motion_, 0);
     best_ = nominal;
-    std::vector<Member> starts;
+    std::vector<std::vector<Member>> starts = starts_without_name();
     for (const Member& member : best.members)
-      if (member.candidate->is_unknown) starts.push_back(member);
-    for (Proposal& proposal : without_name())
-      if (std::ranges::none_of(starts, [&](const Member& m) { return m.candidate == proposal.added[0].candidate; }))
-        starts.push_back(std::move(proposal.added[0]));
-    for (Member& start : starts) {
+      if (member.candidate->is_unknown) starts.push_back({member});
+    for (std::vector<Member>& start : starts) {
       best_ = nominal;
-      best_ = refined({std::move(start)}, 4);
+      best_ = refined(start, 4);
       if (!best_.is_valid) continue;
       note("started without a name");
       grow(4);
@@ -178,16 +191,53 @@ class Search {
     note("best of all");
   }
 
+  const Candidate* candidate(std::string_view name) const {
+    const auto found = std::ranges::find(candidates_, name, &Candidate::name);
+    return found == candidates_.end() ? nullptr : &*found;
+  }
+
+  /// The same law of motion, divided by the gain: (1 + g) u = M a + B v + … is also u = M / (1 + g) a + …,
+  /// so that mass and damping stand in the place of the gain. Too far for a linearisation to find. Empty
+  /// without a gain.
+  std::vector<Member> mass_for_gain() const {
+    const Candidate *gain = candidate("force_gain"), *inertia = candidate("inertia"),
+                    *damping = candidate("viscous_friction");
+    std::vector<Member> members = best_.members;
+    const auto place = std::ranges::find(members, gain, &Member::candidate);
+    const bool has_mass = std::ranges::find(members, inertia, &Member::candidate) != members.end();
+    if (!gain || !inertia || !damping || place == members.end() || has_mass) return {};
+    const double divided = 1 / (1 + place->linear[0]);
+    members.erase(place);
+    for (Member& member : members)
+      if (member.candidate->acts == Acts::force)
+        for (double& amplitude : member.linear) amplitude *= divided;
+    const AxisModel& model = *trials_.list.front().model;
+    members.push_back({inertia, {model.nominal_inertia() * (divided - 1)}, {}});
+    auto viscous = std::ranges::find(members, damping, &Member::candidate);
+    if (viscous == members.end()) viscous = members.insert(viscous, {damping, {0.0}, {}});
+    viscous->linear[0] += model.nominal_damping() * (divided - 1);
+    for (Member& member : members)
+      for (size_t i = 0; i < member.linear.size() && !member.candidate->amplitude_is_one; ++i) {
+        const CandidateParameter& range = member.candidate->linear[i];
+        member.linear[i] = std::clamp(member.linear[i], range.low, range.high);
+      }
+    return members;
+  }
+
+  /// A member, or two, for another: also one as good, if then others are not needed any more.
   void exchange() {
     for (int round = 0; round < 4; ++round) {
       if (best_.members.empty()) return;
       const Evidence evidence(trials_, best_, all_shapes(), candidates_.size());
       const std::vector<Proposal> proposals = evidence.exchanges();
+      std::vector<std::vector<Member>> others;
+      for (size_t i = 0; i < std::min(tried_exchanges, proposals.size()); ++i)
+        if (proposals[i].gain >= -0.01 * evidence.rows()) others.push_back(applied(proposals[i], best_.members));
+      if (auto members = mass_for_gain(); !members.empty()) others.push_back(std::move(members));
       Estimate best;
       double best_score = score(best_) - 3;
-      for (size_t i = 0; i < std::min(tried_exchanges, proposals.size()); ++i) {
-        if (proposals[i].gain < -0.01 * evidence.rows()) break;
-        Estimate trial = refined(applied(proposals[i], best_.members), 4);
+      for (const std::vector<Member>& members : others) {
+        Estimate trial = pruned(refined(members, 4));
         if (!trial.is_valid || score(trial) >= best_score) continue;
         best_score = score(trial), best = std::move(trial);
       }
@@ -198,18 +248,25 @@ class Search {
   }
 
   void prune() {
-    while (best_.members.size() > 1) {
-      const Evidence evidence(trials_, best_, {}, candidates_.size());
+    const size_t before = best_.members.size();
+    best_ = pruned(std::move(best_));
+    if (best_.members.size() < before) note("removed");
+  }
+
+  /// Without the members that are not worth their price.
+  Estimate pruned(Estimate estimate) {
+    while (estimate.is_valid && estimate.members.size() > 1) {
+      const Evidence evidence(trials_, estimate, {}, candidates_.size());
       const std::vector<double> gains = evidence.gains_of_removal();
       const size_t worst = size_t(std::ranges::max_element(gains) - gains.begin());
-      if (gains[worst] < -10) return;
-      std::vector<Member> members = best_.members;
+      if (gains[worst] < -10) break;
+      std::vector<Member> members = estimate.members;
       members.erase(members.begin() + std::ptrdiff_t(worst));
-      Estimate without = refined(members, 4);
-      if (!without.is_valid || score(without) > score(best_)) return;
-      best_ = std::move(without);
-      note("removed");
+      Estimate without = fit_members(trials_, members, noise_, estimate.paths(), 4);
+      if (!without.is_valid || score(without) > score(estimate)) break;
+      estimate = std::move(without);
     }
+    return estimate;
   }
 
   /// Once little is left to find, the level of the noise can be told from it.
