@@ -8,7 +8,7 @@
 namespace loopwright::diagnosis {
 namespace {
 
-constexpr double least_wald = 25, least_wald_per_row = 0.001;
+constexpr double least_wald = 25, least_wald_per_row = 0.001, plain_wald_per_row = 0.01;
 constexpr double least_force = 0.005;          // of the input's rms
 constexpr double least_force_to_noise = 0.25;  // of the white noise
 constexpr double least_unique_force = 0.001;   // of the input's rms
@@ -125,9 +125,11 @@ std::vector<Substitute> substitutes_of(Trials& trials, const Estimate& estimate,
 
 double material(const Trials& trials, const Estimate& estimate, const Weight& weight) {
   const double n = double(fitted_numbers(trials));
-  return std::min({weight.wald / std::max(least_wald, least_wald_per_row * n),
-                   weight.force_rms /
-                       std::max(least_force * trials.input_rms, least_force_to_noise * estimate.noise.white),
+  const double least_force_now =
+      std::max(least_force * trials.input_rms, least_force_to_noise * estimate.noise.white);
+  // A delay shows for moments only, yet plainly.
+  const double size = std::max(weight.force_rms / least_force_now, weight.wald / (plain_wald_per_row * n));
+  return std::min({weight.wald / std::max(least_wald, least_wald_per_row * n), size,
                    weight.unique_force / (least_unique_force * trials.input_rms)});
 }
 

@@ -60,12 +60,17 @@ class Search {
   /// What the linearisation promises, best first.
   void note(const std::vector<Proposal>& proposals) {
     std::string line = "promised:";
-    for (const Proposal& proposal : proposals | std::views::take(8)) {
-      for (const Member& member : proposal.added)
-        line += fmt::format(" {}{}", member.candidate->name, member.candidate->is_unknown ? " of " + member.candidate->form : "");
-      line += fmt::format(" {:.0f},", proposal.gain);
-    }
+    for (const Proposal& proposal : proposals | std::views::take(8))
+      line += fmt::format(" {} {:.0f},", names_of(proposal), proposal.gain);
     trail_.push_back(std::move(line));
+  }
+  static std::string names_of(const Proposal& proposal) {
+    std::string names;
+    for (const Member& member : proposal.added) {
+      names += (names.empty() ? "" : " + ") + member.candidate->name;
+      if (!member.candidate->form.empty()) names += " of " + member.candidate->form;
+    }
+    return names;
   }
 
   /// Shapes on the grid, and the pitches that stand out now.
@@ -98,6 +103,7 @@ class Search {
     std::vector<Estimate> tried;
     for (const Proposal& proposal : proposals) {
       Estimate trial = refined(applied(proposal, best_.members), 2);
+      trail_.push_back(fmt::format("tried {}: criterion {:+.1f}", names_of(proposal), score(trial) - before));
       if (trial.is_valid && score(trial) < before - least) tried.push_back(std::move(trial));
     }
     std::ranges::stable_sort(tried, {}, [&](const Estimate& e) { return score(e); });
@@ -111,10 +117,15 @@ class Search {
   }
 
   /// What would be taken out at the end is not let in.
-  bool adds_material(Estimate& trial) const {
+  bool adds_material(Estimate& trial) {
     const std::vector<Weight> weights = weigh_all(trials_, trial);
-    for (size_t m = best_.members.size(); m < weights.size(); ++m)
-      if (material(trials_, trial, weights[m]) < 1) return false;
+    for (size_t m = best_.members.size(); m < weights.size(); ++m) {
+      const Weight& w = weights[m];
+      if (material(trials_, trial, w) >= 1) continue;
+      trail_.push_back(fmt::format("not material: {}, χ² {:.0f}, force {:.3g}, unique {:.3g}",
+                                   trial.members[m].candidate->name, w.wald, w.force_rms, w.unique_force));
+      return false;
+    }
     return true;
   }
 
