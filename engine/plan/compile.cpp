@@ -85,6 +85,7 @@ void add_sources(const PortUnits& units, const std::vector<int>& flat_of_block, 
 }
 
 void add_ports(const FlatDiagram& flat, const Layout& layout, Plan& plan) {
+  plan.ports.reserve(flat.names.size());
   for (const FlatName& name : flat.names)
     if (name.wire.is_resolved()) plan.ports.emplace_back(name.name, layout.numbers_of(name.wire));
   std::ranges::stable_sort(plan.ports, {}, [](const auto& p) { return std::string_view(p.first); });
