@@ -112,6 +112,9 @@ void add_crossings(Plan& plan) {
 
 /// Effective parameters: every setting as evaluated, and the defaults of what was left out.
 void add_parameters(const Diagram& diagram, const FlatDiagram& flat, Plan& plan) {
+  size_t count = diagram.parameters.size();
+  for (const FlatBlock& block : flat.blocks) count += block.type->info.parameters.size();
+  plan.parameters.reserve(count);
   for (const Parameter& parameter : diagram.parameters)
     plan.parameters.emplace_back(
         parameter.name,

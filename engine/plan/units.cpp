@@ -104,6 +104,7 @@ class Solver {
   Solver(const FlatDiagram& flat, const Diagram& diagram, Problems& problems)
       : flat_(flat), problems_(problems) {
     number_variables();
+    equations_.reserve(most_equations());
     for (size_t b = 0; b < flat.blocks.size(); ++b) add_block(int(b));
     add_declarations(diagram, "");
     list_readers();
@@ -132,6 +133,15 @@ class Solver {
       variables += type.variables();
     }
     variables_.resize(variables);
+  }
+  /// Where no subdiagram declares a unit, and no list holds numbers with units.
+  size_t most_equations() const {
+    size_t count = 0;
+    for (const FlatBlock& block : flat_.blocks) {
+      for (const auto& wires : block.inputs) count += wires.size();
+      count += block.entry->settings.members.size();
+    }
+    return count;
   }
   size_t variable_of(int block, const UnitFactor& factor) const {
     return first_variable_[size_t(block)] + size_t(factor.variable);
