@@ -320,28 +320,8 @@ class Flattener {
     }
   }
 
-  /// Outputs and inputs of blocks and subdiagrams by full path.
+  /// Outputs and inputs of subdiagrams by full path.
   void add_names() {
-    size_t ports = 0;
-    for (const FlatBlock& block : flat_.blocks)
-      ports += block.inputs.size() + block.type->info.outputs.size();
-    flat_.names.reserve(ports);
-    const auto add = [&](const FlatBlock& block, std::string_view port, int source, int output, int element) {
-      FlatName& name = flat_.names.emplace_back();
-      name.name.reserve(block.path.size() + 1 + port.size());
-      name.name.append(block.path).append(".").append(port);
-      name.wire.block = source, name.wire.output = output, name.wire.element = element;
-    };
-    for (size_t b = 0; b < flat_.blocks.size(); ++b) {
-      const FlatBlock& block = flat_.blocks[b];
-      const BlockInfo& info = block.type->info;
-      for (size_t o = 0; o < info.outputs.size(); ++o) add(block, info.outputs[o].name, int(b), int(o), -1);
-      for (size_t i = 0; i < info.inputs.size(); ++i)
-        if (block.inputs[i].size() == 1) {
-          const FlatWire& wire = block.inputs[i][0];
-          add(block, info.inputs[i].name, wire.block, wire.output, wire.element);
-        }
-    }
     Problems unheard;  // told already
     std::swap(unheard, problems_);
     for (Scope& scope : scopes_) {

@@ -89,11 +89,10 @@ static void check_port(const FlatDiagram& flat, const FlatBlock& block, size_t i
   }
 }
 
-/// An element that a wire names must be there. A wire has many readers; it is told once, at a wire with its
-/// text.
+/// An element that a wire names must be there. A wire has many readers; it is told once.
 static void check_element(const FlatDiagram& flat, const FlatWire& wire, const std::string& reader,
                           std::set<std::string>& told, Problems& problems) {
-  if (!wire.is_resolved() || wire.element < 0 || wire.text.empty()) return;
+  if (!wire.is_resolved() || wire.element < 0) return;
   FlatWire whole = wire;
   whole.element = -1;
   const int n = length_of(flat, whole);

@@ -94,7 +94,7 @@ struct Equation {
   End left, right;
   const Place* place;
   const std::string* pointer;
-  std::string declared;  // the path of a subdiagram's port, if that is its left end
+  const std::string* declared;  // the path of a subdiagram's port, if that is its left end
   bool is_wire() const { return left.block >= 0 && right.block >= 0; }
   bool is_parameter() const { return left.block >= 0 && right.block < 0; }
 };
@@ -160,7 +160,7 @@ class Solver {
                               output_end(wire),
                               &wire.place,
                               &wire.pointer,
-                              {}});
+                              nullptr});
       }
     for (const ParameterInfo& parameter : info.parameters)
       if (const Value::Member* member = block.entry->settings.find(parameter.name))
@@ -181,7 +181,7 @@ class Solver {
                             {-1, constant(*value.unit), value.text},
                             &value.place,
                             &value.pointer,
-                            {}});
+                            nullptr});
     if (!info.element.empty())
       for (const Value& item : value.items) add_parameter(b, info.element[0], name, item);
     for (const Value::Member& member : value.members)
@@ -197,7 +197,11 @@ class Solver {
       const auto unit = parse_unit(unit_text);
       const FlatWire* const wire = declared(prefix + name);
       if (!unit || !wire || !wire->is_resolved()) return;
-      equations_.push_back({{-1, constant(*unit), {}}, output_end(*wire), &place, &pointer, prefix + name});
+      equations_.push_back({{-1, constant(*unit), {}},
+                            output_end(*wire),
+                            &place,
+                            &pointer,
+                            &declared_paths_.emplace_back(prefix + name)});
     };
     if (!prefix.empty()) {
       for (const DiagramInput& input : diagram.inputs)
@@ -286,7 +290,7 @@ class Solver {
 
   std::string name_of(const Equation& equation, const End& end) const {
     if (end.block >= 0) return fmt::format("{}.{}", flat_.blocks[size_t(end.block)].path, end.name);
-    return equation.declared.empty() ? std::string(end.name) : equation.declared;
+    return equation.declared ? *equation.declared : std::string(end.name);
   }
 
   void check(const Equation& equation) {
@@ -294,7 +298,7 @@ class Solver {
     if (!left || !right || left->same_dimension(*right)) return;
     const std::string left_unit = to_string(*left), right_unit = to_string(*right);
     const std::string& block =
-        equation.left.block >= 0 ? flat_.blocks[size_t(equation.left.block)].path : equation.declared;
+        equation.left.block >= 0 ? flat_.blocks[size_t(equation.left.block)].path : *equation.declared;
     const auto report = [&](std::string message, std::string_view what, std::string found) {
       auto& p = problems_.error(*equation.place, *equation.pointer, block, std::move(message));
       p.expected = fmt::format("a {} in {}", what, left_unit);
@@ -314,6 +318,7 @@ class Solver {
   std::unordered_map<const BlockType*, TypeUnits> types_;
   std::vector<const TypeUnits*> types_of_blocks_;
   std::deque<UnitExpression> constants_;
+  std::deque<std::string> declared_paths_;
   std::unordered_map<std::string_view, const FlatWire*> declared_;
   std::vector<Equation> equations_;
   std::vector<size_t> first_variable_;          // of each block
