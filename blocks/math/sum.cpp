@@ -5,7 +5,6 @@ namespace loopwright::blocks {
 
 template <class Real> struct Sum {
   std::string signs;
-  std::vector<double> factors;
   struct In {
     Many<Real> terms;
   };
@@ -26,17 +25,13 @@ template <class Real> struct Sum {
     p.expected = "one + or - for each term, as in \"++-\"";
     p.found = "\"" + signs + "\"";
   }
-  void prepare(double) {
-    factors.assign(signs.size(), 1.0);
-    for (size_t i = 0; i < signs.size(); ++i)
-      if (signs[i] == '-') factors[i] = -1.0;
-  }
   void outputs(const In& in, Out& out) const {
     Real sum = 0.0;
-    if (factors.empty())
-      for (int i = 0; i < in.terms.size(); ++i) sum = sum + in.terms[i];
-    else
-      for (int i = 0; i < in.terms.size(); ++i) sum = sum + factors[size_t(i)] * in.terms[i];
+    for (int i = 0; i < in.terms.size(); ++i)
+      if (signs.empty() || signs[size_t(i)] == '+')
+        sum = sum + in.terms[i];
+      else
+        sum = sum - in.terms[i];
     out.sum = sum;
   }
 };

@@ -32,6 +32,7 @@ template <class Real> struct CoggingForce {
   std::vector<Harmonic> harmonics;
   Modulation modulation;
   Real modulation_wave_number;
+  bool is_sloped = false, is_modulated = false;  // in any lane
   struct In {
     Real position, velocity;
   };
@@ -59,17 +60,16 @@ template <class Real> struct CoggingForce {
   void prepare(double) {
     for (Harmonic& h : harmonics) h.wave_number = double(h.order) * 2 * pi / pole_pitch;
     modulation_wave_number = 2 * pi / modulation.period;
+    is_sloped = any(velocity_slope != 0.0), is_modulated = any(modulation.depth != 0.0);
   }
   void outputs(const In& in, Out& out) const {
-    const Real by_speed = maximum(1.0 - velocity_slope * absolute(in.velocity), Real(0.0));
-    const Real scale = by_speed * along_track(in.position);  // while the sines are on their way
+    Real scale = 1.0;  // while the sines are on their way
+    if (is_sloped) scale = maximum(1.0 - velocity_slope * absolute(in.velocity), Real(0.0));
+    if (is_modulated)
+      scale *= 1.0 + modulation.depth * sine(modulation_wave_number * in.position + modulation.phase);
     Real sum = 0.0;
     for (const Harmonic& h : harmonics) sum += h.amplitude * sine(h.wave_number * in.position + h.phase);
     out.force = scale * sum;
-  }
-  Real along_track(const Real& position) const {
-    if (!any(modulation.depth != 0.0)) return 1.0;
-    return 1.0 + modulation.depth * sine(modulation_wave_number * position + modulation.phase);
   }
 };
 LOOPWRIGHT_BLOCK(CoggingForce)

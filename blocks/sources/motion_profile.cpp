@@ -94,6 +94,8 @@ template <class Real> struct MotionProfile {
  private:
   Real begin_of(const Real& pass, const Piece& p) const { return (start_time + pass * period) + p.begin; }
   Piece piece_at(const Real& index) const {
+    const double first = lane(index, 0);
+    if (!any(index != first)) return pieces[size_t(std::max(0.0, first))];
     Piece here;
     for (int l = 0; l < lanes_of<Real>; ++l) {
       const Piece& p = pieces[size_t(std::max(0.0, lane(index, l)))];

@@ -51,7 +51,9 @@ template <class Real> struct Kernels {
   Step<Real> derivatives, update, accept, decide, jump, crossings;
 };
 
-template <class R> LW_INLINE void attach(R& to, const Port<R>& w, ptrdiff_t at) { to = w.data[at]; }
+template <class R> LW_INLINE void attach(R& to, const Port<R>& w, ptrdiff_t at) {
+  to = by_register(w.data[at]);
+}
 template <class R> LW_INLINE void attach(Vector<const R>& to, const Port<R>& w, ptrdiff_t at) {
   to = {w.data + at, size_t(w.length)};
 }
@@ -199,7 +201,7 @@ template <class B, class Real, int group> [[gnu::flatten]] uint64_t step_outputs
         for_each<B, is_output>([&](auto o, const auto& entry) {
           if constexpr (group_of_output<B>[o] == group)
             if constexpr (std::is_same_v<std::remove_cvref_t<decltype(out.*entry.member)>, Real>)
-              c.out[o].data[at] = out.*entry.member;
+              c.out[o].data[at] = by_register(out.*entry.member);
         });
         return fault;
       });

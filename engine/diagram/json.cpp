@@ -180,7 +180,16 @@ class ValueBuilder {
     return true;
   }
 
+  static bool has_duplicates(const std::vector<Value::Member>& members) {
+    for (size_t i = 1; i < members.size(); ++i)
+      for (size_t j = 0; j < i; ++j)
+        if (members[j].name == members[i].name) return true;
+    return false;
+  }
+
   void reject_duplicates(const Value& object) {
+    constexpr size_t few = 8;  // sooner compared each with each than entered in a table
+    if (object.members.size() <= few && !has_duplicates(object.members)) return;
     std::unordered_map<std::string_view, const Value::Member*> first;
     first.reserve(object.members.size());
     for (const Value::Member& member : object.members) {

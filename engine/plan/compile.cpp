@@ -84,7 +84,27 @@ void add_sources(const PortUnits& units, const std::vector<int>& flat_of_block, 
   }
 }
 
+/// Outputs and inputs of blocks and subdiagrams by full path.
 void add_ports(const FlatDiagram& flat, const Layout& layout, Plan& plan) {
+  size_t count = flat.names.size();
+  for (const FlatBlock& block : flat.blocks) count += block.inputs.size() + block.type->info.outputs.size();
+  plan.ports.reserve(count);
+  const auto add = [&](const FlatBlock& block, std::string_view port, std::vector<Number> numbers) {
+    auto& entry = plan.ports.emplace_back(std::string{}, std::move(numbers));
+    entry.first.reserve(block.path.size() + 1 + port.size());
+    entry.first.append(block.path).append(".").append(port);
+  };
+  for (size_t b = 0; b < flat.blocks.size(); ++b) {
+    const FlatBlock& block = flat.blocks[b];
+    const BlockInfo& info = block.type->info;
+    FlatWire own;
+    own.block = int(b);
+    for (own.output = 0; own.output < int(info.outputs.size()); ++own.output)
+      add(block, info.outputs[size_t(own.output)].name, layout.numbers_of(own));
+    for (size_t i = 0; i < info.inputs.size(); ++i)
+      if (block.inputs[i].size() == 1 && block.inputs[i][0].is_resolved())
+        add(block, info.inputs[i].name, layout.numbers_of(block.inputs[i][0]));
+  }
   for (const FlatName& name : flat.names)
     if (name.wire.is_resolved()) plan.ports.emplace_back(name.name, layout.numbers_of(name.wire));
   std::ranges::stable_sort(plan.ports, {}, [](const auto& p) { return std::string_view(p.first); });
@@ -111,6 +131,9 @@ void add_crossings(Plan& plan) {
 
 /// Effective parameters: every setting as evaluated, and the defaults of what was left out.
 void add_parameters(const Diagram& diagram, const FlatDiagram& flat, Plan& plan) {
+  size_t count = diagram.parameters.size();
+  for (const FlatBlock& block : flat.blocks) count += block.type->info.parameters.size();
+  plan.parameters.reserve(count);
   for (const Parameter& parameter : diagram.parameters)
     plan.parameters.emplace_back(
         parameter.name,

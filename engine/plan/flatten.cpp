@@ -16,8 +16,9 @@ struct Scope {
   std::string prefix;       // "" or "stage."
   const BlockEntry* entry;  // in the parent; null at the top
   Scope* parent;
-  std::unordered_map<std::string, int> blocks;    // ordinary blocks: index in the flat list
-  std::unordered_map<std::string, Scope*> inner;  // subdiagrams
+  std::vector<int> flat_blocks;                        // ordinary blocks: index in the flat list
+  std::unordered_map<std::string_view, int> blocks;    // of the same, by name
+  std::unordered_map<std::string_view, Scope*> inner;  // subdiagrams
 };
 
 class Flattener {
@@ -25,6 +26,7 @@ class Flattener {
   Flattener(Problems& problems, bool open) : problems_(problems), open_(open) {}
 
   FlatDiagram run(const Diagram& diagram) {
+    flat_.blocks.reserve(diagram.blocks.size());
     Scope& top = add_scope(diagram, "", nullptr, nullptr);
     for (size_t i = 0; i < scopes_.size(); ++i) wire_blocks(scopes_[i]);  // the deque does not grow any more
     for (size_t i = 0; i < scopes_.size(); ++i) check_subdiagram_wires(scopes_[i]);
@@ -35,7 +37,8 @@ class Flattener {
 
  private:
   Scope& add_scope(const Diagram& diagram, std::string prefix, const BlockEntry* entry, Scope* parent) {
-    Scope& scope = scopes_.emplace_back(Scope{&diagram, std::move(prefix), entry, parent, {}, {}});
+    Scope& scope = scopes_.emplace_back(Scope{&diagram, std::move(prefix), entry, parent, {}, {}, {}});
+    scope.blocks.reserve(diagram.blocks.size());
     for (const BlockEntry& block : diagram.blocks) {
       if (block.subdiagram)
         scope.inner[block.name] =
@@ -70,6 +73,7 @@ class Flattener {
     if (problems_.list().size() == before)
       flat.type->info.check(memory, Checker(entry.settings, flat.path, problems_));
     flat.inputs.resize(flat.type->info.inputs.size());
+    scope.flat_blocks.push_back(int(flat_.blocks.size()));
     scope.blocks[entry.name] = int(flat_.blocks.size());
     flat_.blocks.push_back(std::move(flat));
     scope_of_block_.push_back(&scope);
@@ -85,10 +89,7 @@ class Flattener {
   }
 
   void wire_blocks(Scope& scope) {
-    for (const BlockEntry& entry : scope.diagram->blocks) {
-      const auto found = scope.blocks.find(entry.name);
-      if (found != scope.blocks.end()) wire_block(scope, flat_.blocks[size_t(found->second)]);
-    }
+    for (const int block : scope.flat_blocks) wire_block(scope, flat_.blocks[size_t(block)]);
   }
 
   void wire_block(Scope& scope, FlatBlock& flat) {
@@ -134,16 +135,14 @@ class Flattener {
   /// deep paths.
   FlatWire resolve(Scope& scope, std::string_view text, const Wire& at, const std::string& reader,
                    int depth) {
-    FlatWire wire;
-    wire.place = at.place, wire.pointer = at.pointer, wire.text = at.source;
     if (depth > 200)
       return fail(at, reader, "the wire leads round in a circle of subdiagram outputs", {}, "");
     const size_t dot = text.find('.');
-    const std::string head(text.substr(0, dot));
+    const std::string_view head = text.substr(0, dot);
     if (dot == text.npos) {
       const auto bracket = head.find('[');
-      return resolve_input(scope, head.substr(0, bracket), bracket == head.npos ? "" : head.substr(bracket),
-                           at, reader, depth);
+      return resolve_input(scope, std::string(head.substr(0, bracket)),
+                           std::string(bracket == head.npos ? "" : head.substr(bracket)), at, reader, depth);
     }
     const std::string_view rest = text.substr(dot + 1);
     if (const auto inner = scope.inner.find(head); inner != scope.inner.end())
@@ -151,10 +150,17 @@ class Flattener {
     if (const auto found = scope.blocks.find(head); found != scope.blocks.end())
       return resolve_port(found->second, rest, at, reader, depth);
     for (const auto& [broken_scope, name] : broken_)
-      if (broken_scope == &scope && name == head) return wire;  // already told
+      if (broken_scope == &scope && name == head) return unresolved(at);  // already told
     std::vector<std::string> names;
     for (const BlockEntry& entry : scope.diagram->blocks) names.push_back(entry.name);
-    return fail(at, reader, fmt::format("there is no block \"{}\"", scope.prefix + head), names, head);
+    return fail(at, reader, fmt::format("there is no block \"{}{}\"", scope.prefix, head), names,
+                std::string(head));
+  }
+
+  static FlatWire unresolved(const Wire& at) {
+    FlatWire wire;
+    wire.place = at.place, wire.pointer = at.pointer, wire.text = at.source;
+    return wire;
   }
 
   FlatWire resolve_input(Scope& scope, const std::string& name, const std::string& element, const Wire& at,
@@ -214,22 +220,21 @@ class Flattener {
     const std::string name(rest.substr(0, bracket)),
         element(bracket == rest.npos ? "" : rest.substr(bracket));
     const BlockInfo& info = flat.type->info;
-    std::vector<std::string> names;
-    for (size_t o = 0; o < info.outputs.size(); ++o) {
+    for (size_t o = 0; o < info.outputs.size(); ++o)
       if (info.outputs[o].name == name) {
         FlatWire wire;
         wire.block = block, wire.output = int(o), wire.place = at.place, wire.pointer = at.pointer,
         wire.text = at.source;
-        return with_element(wire, element, at, reader);
+        return with_element(std::move(wire), element, at, reader);
       }
-      names.emplace_back(info.outputs[o].name);
-    }
     if (reader == "log")  // an input may be looked at: what feeds it
       for (const PortWires& wires : flat.entry->in)
         if (wires.port == name && wires.wires.size() == 1)
           return with_element(
               resolve(*scope_of_block_[size_t(block)], wires.wires[0].source, at, reader, depth + 1), element,
               at, reader);
+    std::vector<std::string> names;
+    for (const PortInfo& output : info.outputs) names.emplace_back(output.name);
     return fail(at, reader, fmt::format("{} \"{}\" has no output \"{}\"", info.type, flat.path, name), names,
                 name);
   }
@@ -315,20 +320,8 @@ class Flattener {
     }
   }
 
-  /// Outputs and inputs of blocks and subdiagrams by full path.
+  /// Outputs and inputs of subdiagrams by full path.
   void add_names() {
-    for (size_t b = 0; b < flat_.blocks.size(); ++b) {
-      const FlatBlock& block = flat_.blocks[b];
-      const BlockInfo& info = block.type->info;
-      for (size_t o = 0; o < info.outputs.size(); ++o) {
-        FlatWire wire;
-        wire.block = int(b), wire.output = int(o);
-        flat_.names.push_back({fmt::format("{}.{}", block.path, info.outputs[o].name), wire});
-      }
-      for (size_t i = 0; i < info.inputs.size(); ++i)
-        if (block.inputs[i].size() == 1)
-          flat_.names.push_back({fmt::format("{}.{}", block.path, info.inputs[i].name), block.inputs[i][0]});
-    }
     Problems unheard;  // told already
     std::swap(unheard, problems_);
     for (Scope& scope : scopes_) {

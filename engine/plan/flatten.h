@@ -29,7 +29,7 @@ struct FlatLog {
   FlatWire wire;
 };
 
-/// A name under which a port can be asked for: outputs and inputs, of subdiagrams too.
+/// A port of a subdiagram, under which what it leads to can be asked for.
 struct FlatName {
   std::string name;
   FlatWire wire;
@@ -38,7 +38,7 @@ struct FlatName {
 struct FlatDiagram {
   std::vector<FlatBlock> blocks;
   std::vector<FlatLog> log;
-  std::vector<FlatName> names;
+  std::vector<FlatName> names;  ///< those of blocks are plain: path.port
 };
 
 /// `open`: inputs of the outermost diagram may lack a source, as those of a subdiagram looked at alone do.

@@ -174,6 +174,9 @@ Layout::Layout(const FlatDiagram& flat, Plan& plan) : flat_(flat), plan_(plan) {
 }
 
 void Layout::add_blocks() {
+  size_t blocks = 0;
+  for (const FlatBlock& flat : flat_.blocks) blocks += size_t(flat.width);
+  first_instance_.reserve(flat_.blocks.size()), plan_.blocks.reserve(blocks);
   for (const FlatBlock& flat : flat_.blocks) {
     first_instance_.push_back(int(plan_.blocks.size()));
     const BlockInfo& info = flat.type->info;

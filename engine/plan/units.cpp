@@ -1,46 +1,87 @@
 #include "engine/plan/units.h"
 #include <fmt/format.h>
+#include <algorithm>
 #include <charconv>
+#include <deque>
 #include <unordered_map>
 
 namespace loopwright {
 namespace {
 
+struct UnitFactor {
+  int variable;  // of the block type
+  double exponent;
+};
 /// constant · Π variable^exponent, as a port's description says it.
 struct UnitExpression {
   Unit constant;
-  std::vector<std::pair<std::string, double>> variables;
+  std::vector<UnitFactor> factors;
 };
 
-/// "$command*s^2/m": factors split at * and /, those with $ are variables.
-UnitExpression parse_expression(std::string_view text) {
-  UnitExpression expression;
-  if (text.find('$') == text.npos) {
-    expression.constant = parse_unit(text).value_or(Unit{});
+/// The units that a block type's description names; their variables are counted.
+class TypeUnits {
+ public:
+  explicit TypeUnits(const BlockInfo& info) {
+    for (const PortInfo& port : info.inputs) inputs_.push_back(&add(port.unit));
+    for (const PortInfo& port : info.outputs) outputs_.push_back(&add(port.unit));
+    for (const ParameterInfo& parameter : info.parameters) add_parameter(parameter);
+  }
+  const UnitExpression& of_input(size_t input) const { return *inputs_[input]; }
+  const UnitExpression& of_output(size_t output) const { return *outputs_[output]; }
+  const UnitExpression& of(const ParameterInfo& parameter) const { return parsed_.at(parameter.unit); }
+  size_t variables() const { return names_.size(); }
+
+ private:
+  void add_parameter(const ParameterInfo& parameter) {
+    add(parameter.unit);
+    for (const ParameterInfo& element : parameter.element) add_parameter(element);
+    for (const ParameterInfo& field : parameter.fields) add_parameter(field);
+  }
+  const UnitExpression& add(std::string_view text) {
+    const auto [entry, is_new] = parsed_.try_emplace(text);
+    if (is_new) entry->second = parse(text);
+    return entry->second;
+  }
+
+  /// "$command*s^2/m": factors split at * and /, those with $ are variables.
+  UnitExpression parse(std::string_view text) {
+    UnitExpression expression;
+    if (text.find('$') == text.npos) {
+      expression.constant = parse_unit(text).value_or(Unit{});
+      return expression;
+    }
+    std::string plain = "1";
+    char before = '*';
+    for (size_t i = 0; i <= text.size();) {
+      const size_t end = std::min(text.find_first_of("*/", i), text.size());
+      const std::string_view factor = text.substr(i, end - i);
+      if (factor.starts_with('$')) {
+        const size_t caret = factor.find('^');
+        double exponent = 1;
+        if (caret != factor.npos)
+          std::from_chars(factor.data() + caret + 1, factor.data() + factor.size(), exponent);
+        expression.factors.push_back({variable(factor.substr(1, std::min(caret, factor.size()) - 1)),
+                                      before == '/' ? -exponent : exponent});
+      } else {
+        plain += before;
+        plain += factor;
+      }
+      before = end < text.size() ? text[end] : '*';
+      i = end + 1;
+    }
+    expression.constant = parse_unit(plain).value_or(Unit{});
     return expression;
   }
-  std::string plain = "1";
-  char before = '*';
-  for (size_t i = 0; i <= text.size();) {
-    const size_t end = std::min(text.find_first_of("*/", i), text.size());
-    const std::string_view factor = text.substr(i, end - i);
-    if (factor.starts_with('$')) {
-      const size_t caret = factor.find('^');
-      double exponent = 1;
-      if (caret != factor.npos)
-        std::from_chars(factor.data() + caret + 1, factor.data() + factor.size(), exponent);
-      expression.variables.emplace_back(factor.substr(1, std::min(caret, factor.size()) - 1),
-                                        before == '/' ? -exponent : exponent);
-    } else {
-      plain += before;
-      plain += factor;
-    }
-    before = end < text.size() ? text[end] : '*';
-    i = end + 1;
+  int variable(std::string_view name) {
+    const auto index = std::ranges::find(names_, name) - names_.begin();
+    if (index == std::ssize(names_)) names_.push_back(name);
+    return int(index);
   }
-  expression.constant = parse_unit(plain).value_or(Unit{});
-  return expression;
-}
+
+  std::vector<std::string_view> names_;
+  std::unordered_map<std::string_view, UnitExpression> parsed_;
+  std::vector<const UnitExpression*> inputs_, outputs_;
+};
 
 /// Unit expressions of one end of an equation: of a port or parameter of a block, or a plain unit.
 struct End {
@@ -53,7 +94,7 @@ struct Equation {
   End left, right;
   const Place* place;
   const std::string* pointer;
-  std::string declared;  // the path of a subdiagram's port, if that is its left end
+  const std::string* declared;  // the path of a subdiagram's port, if that is its left end
   bool is_wire() const { return left.block >= 0 && right.block >= 0; }
   bool is_parameter() const { return left.block >= 0 && right.block < 0; }
 };
@@ -62,31 +103,51 @@ class Solver {
  public:
   Solver(const FlatDiagram& flat, const Diagram& diagram, Problems& problems)
       : flat_(flat), problems_(problems) {
-    variables_.resize(flat.blocks.size());
+    number_variables();
+    equations_.reserve(most_equations());
     for (size_t b = 0; b < flat.blocks.size(); ++b) add_block(int(b));
-    for (const FlatName& name : flat.names) declared_[name.name] = &name.wire;
     add_declarations(diagram, "");
+    list_readers();
   }
 
   PortUnits run() {
     propagate();
     for (const Equation& equation : equations_) check(equation);
     PortUnits units(flat_.blocks.size());
-    for (size_t b = 0; b < flat_.blocks.size(); ++b)
-      for (const PortInfo& port : flat_.blocks[b].type->info.outputs)
-        units[b].push_back(value({int(b), expression(port.unit), {}}));
+    for (size_t b = 0; b < flat_.blocks.size(); ++b) {
+      const size_t outputs = flat_.blocks[b].type->info.outputs.size();
+      units[b].reserve(outputs);
+      for (size_t o = 0; o < outputs; ++o)
+        units[b].push_back(value({int(b), &types_of_blocks_[b]->of_output(o), {}}));
+    }
     return units;
   }
 
  private:
-  const UnitExpression* expression(std::string_view text) {
-    const auto found = parsed_.find(std::string(text));
-    if (found != parsed_.end()) return &found->second;
-    return &parsed_.emplace(std::string(text), parse_expression(text)).first->second;
+  void number_variables() {
+    types_of_blocks_.reserve(flat_.blocks.size()), first_variable_.reserve(flat_.blocks.size());
+    size_t variables = 0;
+    for (const FlatBlock& block : flat_.blocks) {
+      const TypeUnits& type = types_.try_emplace(block.type, block.type->info).first->second;
+      types_of_blocks_.push_back(&type), first_variable_.push_back(variables);
+      variables += type.variables();
+    }
+    variables_.resize(variables);
+  }
+  /// Where no subdiagram declares a unit, and no list holds numbers with units.
+  size_t most_equations() const {
+    size_t count = 0;
+    for (const FlatBlock& block : flat_.blocks) {
+      for (const auto& wires : block.inputs) count += wires.size();
+      count += block.entry->settings.members.size();
+    }
+    return count;
+  }
+  size_t variable_of(int block, const UnitFactor& factor) const {
+    return first_variable_[size_t(block)] + size_t(factor.variable);
   }
   const UnitExpression* constant(const Unit& unit) {
-    const std::string key = "=" + to_string(unit);
-    return &parsed_.emplace(key, UnitExpression{unit, {}}).first->second;
+    return &constants_.emplace_back(UnitExpression{unit, {}});
   }
 
   void add_block(int b) {
@@ -95,17 +156,20 @@ class Solver {
     for (size_t i = 0; i < info.inputs.size(); ++i)
       for (const FlatWire& wire : block.inputs[i]) {
         if (!wire.is_resolved() || info.inputs[i].unit == any_unit) continue;
-        const FlatBlock& source = flat_.blocks[size_t(wire.block)];
-        const PortInfo& output = source.type->info.outputs[size_t(wire.output)];
-        add({{b, expression(info.inputs[i].unit), info.inputs[i].name},
-             {wire.block, expression(output.unit), output.name},
-             &wire.place,
-             &wire.pointer,
-             {}});
+        equations_.push_back({{b, &types_of_blocks_[size_t(b)]->of_input(i), info.inputs[i].name},
+                              output_end(wire),
+                              &wire.place,
+                              &wire.pointer,
+                              nullptr});
       }
     for (const ParameterInfo& parameter : info.parameters)
       if (const Value::Member* member = block.entry->settings.find(parameter.name))
         add_parameter(b, parameter, member->value);
+  }
+
+  End output_end(const FlatWire& wire) const {
+    const PortInfo& output = flat_.blocks[size_t(wire.block)].type->info.outputs[size_t(wire.output)];
+    return {wire.block, &types_of_blocks_[size_t(wire.block)]->of_output(size_t(wire.output)), output.name};
   }
 
   void add_parameter(int b, const ParameterInfo& info, const Value& value) {
@@ -113,11 +177,11 @@ class Solver {
   }
   void add_parameter(int b, const ParameterInfo& info, std::string_view name, const Value& value) {
     if (value.kind == Value::Kind::number && value.unit)
-      add({{b, expression(info.unit), name},
-           {-1, constant(*value.unit), value.text},
-           &value.place,
-           &value.pointer,
-           {}});
+      equations_.push_back({{b, &types_of_blocks_[size_t(b)]->of(info), name},
+                            {-1, constant(*value.unit), value.text},
+                            &value.place,
+                            &value.pointer,
+                            nullptr});
     if (!info.element.empty())
       for (const Value& item : value.items) add_parameter(b, info.element[0], name, item);
     for (const Value::Member& member : value.members)
@@ -131,15 +195,13 @@ class Solver {
                              const std::string& pointer) {
       if (unit_text.empty()) return;
       const auto unit = parse_unit(unit_text);
-      const auto wire = declared_.find(prefix + name);
-      if (!unit || wire == declared_.end() || !wire->second->is_resolved()) return;
-      const FlatBlock& source = flat_.blocks[size_t(wire->second->block)];
-      const PortInfo& output = source.type->info.outputs[size_t(wire->second->output)];
-      add({{-1, constant(*unit), {}},
-           {wire->second->block, expression(output.unit), output.name},
-           &place,
-           &pointer,
-           prefix + name});
+      const FlatWire* const wire = declared(prefix + name);
+      if (!unit || !wire || !wire->is_resolved()) return;
+      equations_.push_back({{-1, constant(*unit), {}},
+                            output_end(*wire),
+                            &place,
+                            &pointer,
+                            &declared_paths_.emplace_back(prefix + name)});
     };
     if (!prefix.empty()) {
       for (const DiagramInput& input : diagram.inputs)
@@ -151,54 +213,66 @@ class Solver {
       if (block.subdiagram) add_declarations(*block.subdiagram, prefix + block.name + ".");
   }
 
-  void add(Equation equation) {
-    const size_t index = equations_.size();
-    for (const End* end : {&equation.left, &equation.right})
-      if (end->block >= 0)
-        for (const auto& [name, exponent] : end->expression->variables)
-          readers_[{end->block, name}].push_back(index);
-    equations_.push_back(std::move(equation));
+  /// What a port of a subdiagram leads to.
+  const FlatWire* declared(const std::string& path) {
+    if (declared_.empty())
+      for (const FlatName& name : flat_.names) declared_[name.name] = &name.wire;
+    const auto found = declared_.find(path);
+    return found == declared_.end() ? nullptr : found->second;
   }
 
-  std::optional<Unit> known(int block, const std::string& name) const {
-    for (const auto& [n, unit] : variables_[size_t(block)])
-      if (n == name) return unit;
-    return {};
+  /// For every variable the equations that it occurs in, one after the other in one list.
+  void list_readers() {
+    first_reader_.assign(variables_.size() + 1, 0);
+    each_occurrence([&](size_t variable, size_t) { ++first_reader_[variable + 1]; });
+    for (size_t v = 0; v < variables_.size(); ++v) first_reader_[v + 1] += first_reader_[v];
+    readers_.resize(first_reader_.back());
+    std::vector<size_t> next(first_reader_.begin(), first_reader_.end() - 1);
+    each_occurrence([&](size_t variable, size_t equation) { readers_[next[variable]++] = equation; });
   }
+  template <class F> void each_occurrence(F&& f) const {
+    for (size_t i = 0; i < equations_.size(); ++i)
+      for (const End* end : {&equations_[i].left, &equations_[i].right})
+        for (const UnitFactor& factor : end->expression->factors) f(variable_of(end->block, factor), i);
+  }
+
   std::optional<Unit> value(const End& end) const {
     Unit unit = end.expression->constant;
-    for (const auto& [name, exponent] : end.expression->variables) {
-      const auto factor = known(end.block, name);
-      if (!factor) return {};
-      unit = unit * power(*factor, exponent);
+    for (const UnitFactor& factor : end.expression->factors) {
+      const auto& known = variables_[variable_of(end.block, factor)];
+      if (!known) return {};
+      unit = unit * power(*known, factor.exponent);
     }
     return unit;
   }
 
-  /// Solves an equation that has one unknown; true if it did.
-  bool solve(const Equation& equation) {
+  /// Solves an equation that has one unknown.
+  void solve(const Equation& equation) {
     Unit rest;
-    int unknown_block = -1;
-    std::string unknown;
+    std::optional<size_t> unknown;
     double exponent = 0;
     double sign = 1;
     for (const End* end : {&equation.left, &equation.right}) {
-      rest = rest * power(end->expression->constant, sign);
-      for (const auto& [name, e] : end->expression->variables) {
-        if (const auto unit = known(end->block, name)) {
-          rest = rest * power(*unit, sign * e);
-        } else {
-          if (!unknown.empty() && (unknown != name || unknown_block != end->block)) return false;
-          unknown = name, unknown_block = end->block, exponent += sign * e;
-        }
+      for (const UnitFactor& factor : end->expression->factors) {
+        const size_t variable = variable_of(end->block, factor);
+        if (variables_[variable]) continue;
+        if (unknown && unknown != variable) return;
+        unknown = variable, exponent += sign * factor.exponent;
       }
       sign = -1;
     }
-    if (unknown.empty() || exponent == 0) return false;
-    variables_[size_t(unknown_block)].emplace_back(unknown, power(rest, -1 / exponent));
-    const auto readers = readers_.find({unknown_block, unknown});
-    if (readers != readers_.end()) todo_.insert(todo_.end(), readers->second.begin(), readers->second.end());
-    return true;
+    if (!unknown || exponent == 0) return;
+    sign = 1;
+    for (const End* end : {&equation.left, &equation.right}) {
+      rest = rest * power(end->expression->constant, sign);
+      for (const UnitFactor& factor : end->expression->factors)
+        if (const auto& known = variables_[variable_of(end->block, factor)])
+          rest = rest * power(*known, sign * factor.exponent);
+      sign = -1;
+    }
+    variables_[*unknown] = power(rest, -1 / exponent);
+    todo_.insert(todo_.end(), readers_.begin() + ptrdiff_t(first_reader_[*unknown]),
+                 readers_.begin() + ptrdiff_t(first_reader_[*unknown + 1]));
   }
 
   /// First what is written down at blocks and borders, then along the wires: a clash shows at the wire that
@@ -216,7 +290,7 @@ class Solver {
 
   std::string name_of(const Equation& equation, const End& end) const {
     if (end.block >= 0) return fmt::format("{}.{}", flat_.blocks[size_t(end.block)].path, end.name);
-    return equation.declared.empty() ? std::string(end.name) : equation.declared;
+    return equation.declared ? *equation.declared : std::string(end.name);
   }
 
   void check(const Equation& equation) {
@@ -224,7 +298,7 @@ class Solver {
     if (!left || !right || left->same_dimension(*right)) return;
     const std::string left_unit = to_string(*left), right_unit = to_string(*right);
     const std::string& block =
-        equation.left.block >= 0 ? flat_.blocks[size_t(equation.left.block)].path : equation.declared;
+        equation.left.block >= 0 ? flat_.blocks[size_t(equation.left.block)].path : *equation.declared;
     const auto report = [&](std::string message, std::string_view what, std::string found) {
       auto& p = problems_.error(*equation.place, *equation.pointer, block, std::move(message));
       p.expected = fmt::format("a {} in {}", what, left_unit);
@@ -239,18 +313,17 @@ class Solver {
            "signal", right_unit);
   }
 
-  struct KeyHash {
-    size_t operator()(const std::pair<int, std::string>& k) const {
-      return std::hash<std::string>()(k.second) * 31 + size_t(k.first);
-    }
-  };
   const FlatDiagram& flat_;
   Problems& problems_;
-  std::unordered_map<std::string, UnitExpression> parsed_;
-  std::unordered_map<std::string, const FlatWire*> declared_;
+  std::unordered_map<const BlockType*, TypeUnits> types_;
+  std::vector<const TypeUnits*> types_of_blocks_;
+  std::deque<UnitExpression> constants_;
+  std::deque<std::string> declared_paths_;
+  std::unordered_map<std::string_view, const FlatWire*> declared_;
   std::vector<Equation> equations_;
-  std::vector<std::vector<std::pair<std::string, Unit>>> variables_;
-  std::unordered_map<std::pair<int, std::string>, std::vector<size_t>, KeyHash> readers_;
+  std::vector<size_t> first_variable_;          // of each block
+  std::vector<std::optional<Unit>> variables_;  // of all blocks
+  std::vector<size_t> first_reader_, readers_;  // of each variable, and the end; equations
   std::vector<size_t> todo_;
 };
 

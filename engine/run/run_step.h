@@ -75,12 +75,12 @@ template <class Real> void Run<Real>::integrate(int64_t ticks) {
 
 template <class Real> void Run<Real>::euler(double h) {
   run(derivatives_);
-  each_state([&](auto i) { x_[i] = x_[i] + Real(h) * rate_[i]; });
+  each_state([&](auto i) __attribute__((always_inline)) { x_[i] = x_[i] + Real(h) * rate_[i]; });
 }
 
 template <class Real> void Run<Real>::heun(double h) {
   run(derivatives_);
-  each_state([&](auto i) {
+  each_state([&](auto i) __attribute__((always_inline)) {
     start_[i] = x_[i];
     sum_[i] = rate_[i];
     x_[i] = x_[i] + Real(h) * rate_[i];
@@ -88,13 +88,15 @@ template <class Real> void Run<Real>::heun(double h) {
   now_.time += h;
   run(stage_);
   run(derivatives_);
-  each_state([&](auto i) { x_[i] = start_[i] + Real(0.5 * h) * (sum_[i] + rate_[i]); });
+  each_state([&](auto i) __attribute__((always_inline)) {
+    x_[i] = start_[i] + Real(0.5 * h) * (sum_[i] + rate_[i]);
+  });
 }
 
 template <class Real> void Run<Real>::rk4(double h) {
   const double half = 0.5 * h, sixth = h / 6, start = now_.time;
   run(derivatives_);
-  each_state([&](auto i) {
+  each_state([&](auto i) __attribute__((always_inline)) {
     start_[i] = x_[i];
     sum_[i] = rate_[i];
     x_[i] = start_[i] + Real(half) * rate_[i];
@@ -102,20 +104,21 @@ template <class Real> void Run<Real>::rk4(double h) {
   now_.time = start + half;
   run(stage_);
   run(derivatives_);
-  each_state([&](auto i) {
+  each_state([&](auto i) __attribute__((always_inline)) {
     sum_[i] = sum_[i] + Real(2.0) * rate_[i];
     x_[i] = start_[i] + Real(half) * rate_[i];
   });
   run(stage_);
   run(derivatives_);
-  each_state([&](auto i) {
+  each_state([&](auto i) __attribute__((always_inline)) {
     sum_[i] = sum_[i] + Real(2.0) * rate_[i];
     x_[i] = start_[i] + Real(h) * rate_[i];
   });
   now_.time = start + h;
   run(stage_);
   run(derivatives_);
-  each_state([&](auto i) { x_[i] = start_[i] + Real(sixth) * (sum_[i] + rate_[i]); });
+  each_state([&](auto i)
+                 __attribute__((always_inline)) { x_[i] = start_[i] + Real(sixth) * (sum_[i] + rate_[i]); });
 }
 
 // Between discontinuities, for variable-step solvers.

@@ -211,6 +211,11 @@ template <int N, int R = 1> struct Lanes {
   LW_INLINE friend Lanes select(bool condition, const Lanes& yes, const Lanes& no) {
     return condition ? yes : no;
   }
+  LW_INLINE friend Lanes by_register(const Lanes& x) {
+    Lanes y;
+    LW_EACH_REGISTER y.registers[i] = x.registers[i];
+    return y;
+  }
   LW_INLINE friend double lane(const Lanes& x, int index) { return x.registers[index / N][index % N]; }
   LW_INLINE friend void set_lane(Lanes& x, int index, double value) {
     x.registers[index / N][index % N] = value;
@@ -239,6 +244,8 @@ LW_INLINE bool lane(const bool& condition, int) { return condition; }
 LW_INLINE void set_lane(double& x, int, double value) { x = value; }
 LW_INLINE void set_lane(bool& condition, int, bool value) { condition = value; }
 
+/// x, copied register by register. A plain copy of lanes is one of memory, for which GCC keeps x in memory.
+LW_INLINE double by_register(double x) { return x; }
 /// |x|.
 LW_INLINE double absolute(double x) { return bits::absolute<std::uint64_t>(x); }
 /// The greater of two; NaN if either is NaN, so that a limit does not hide a NaN.
