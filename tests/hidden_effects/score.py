@@ -81,13 +81,21 @@ def exact(result):
     return result["answer"] is not None and comparable(true_names(result)) == comparable(found_names(result))
 
 
+def declared_choices(result):
+    """For each declared explanation, the names that each of its effects may have."""
+    yield [[effect["effect"], *alternatives(effect)] for effect in found(result)]
+    for other in result["answer"].get("other_explanations", []):
+        kept = [effect for effect in found(result) if effect["effect"] not in other["in_place_of"]]
+        yield [[effect["effect"], *alternatives(effect)] for effect in kept] + [[name] for name in other["effects"]]
+
+
 def exact_or_declared(result):
-    """Some choice of each named effect or one of its declared alternatives is the truth."""
+    """Some declared explanation, with some choice of each named effect or one of its alternatives, is the truth."""
     if result["answer"] is None:
         return False
-    choices = [[effect["effect"], *alternatives(effect)] for effect in found(result)]
     truth = comparable(true_names(result))
-    return any(comparable(choice) == truth and len(set(choice)) == len(choice) for choice in itertools.product(*choices))
+    return any(comparable(choice) == truth and len(set(choice)) == len(choice)
+               for choices in declared_choices(result) for choice in itertools.product(*choices))
 
 
 def first_true(result):
@@ -264,6 +272,8 @@ def summary(results):
         "by_effect": by_effect(results),
         "calibration": calibration(results),
         "coverage": coverage(results),
+        "other_explanations_per_answer": quantile([len(r["answer"].get("other_explanations", [])) for r in results
+                                                   if r["answer"]], 0.9),
         "declared_alternatives_per_effect": quantile([len(alternatives(e)) for r in results for e in found(r)], 0.9),
         "failures": [describe(r) for r in results if wrong(r)],
     }

@@ -37,6 +37,14 @@ class Sets(unittest.TestCase):
     def test_alternatives_do_not_excuse_an_extra_effect(self):
         self.assertFalse(score.exact_or_declared(result(hidden("cogging"), named("cogging"), named("spring", "cogging"))))
 
+    def test_a_declared_set_counts_as_declared_with_the_alternatives_of_what_stays(self):
+        other = [{"in_place_of": ["inertia", "viscous_friction"], "effects": ["force_gain"]}]
+        said = (named("inertia"), named("viscous_friction"), named("actuator_lag", "input_delay"))
+        r = result(hidden("force_gain", "input_delay"), *said, other_explanations=other)
+        self.assertFalse(score.exact(r))
+        self.assertTrue(score.exact_or_declared(r))
+        self.assertFalse(score.exact_or_declared(result(hidden("force_gain", "input_delay"), *said)))
+
     def test_offset_is_not_asked_beside_a_spring_but_else_it_is(self):
         self.assertTrue(score.exact(result(hidden("spring", "constant_force"), named("spring"))))
         self.assertTrue(score.exact(result(hidden("hardening_spring"), named("hardening_spring"), named("constant_force"))))

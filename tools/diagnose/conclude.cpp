@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <set>
 #include "tools/diagnose/search.h"
 #include "tools/diagnose/spectrum.h"
 
@@ -98,26 +100,56 @@ void maximise(Trials& trials, Estimate& estimate) {
   }
 }
 
+/// How much worse the criterion is when another set has been fitted; nothing: out of reach. A richer set that
+/// has this one as a special case always comes near: it must explain more to be a rival.
+std::optional<double> loss_of(Trials& trials, const Estimate& estimate, const Proposal& proposal, size_t catalogue,
+                              double reach) {
+  const Estimate other = fit_members(trials, applied(proposal, estimate.members), estimate.noise,
+                                     estimate.paths(), 4);
+  if (!other.is_valid) return {};
+  size_t before = 0, now = 0;
+  for (size_t m : proposal.removed) before += parameters_of(*estimate.members[m].candidate);
+  for (const Member& m : proposal.added) now += parameters_of(*m.candidate);
+  if (now > before && other.profile > estimate.profile - 4) return {};
+  const double loss = criterion(trials, other, catalogue) - criterion(trials, estimate, catalogue);
+  return loss < reach ? std::optional(loss) : std::nullopt;
+}
+
 /// What else would do: every other candidate in the place of a member, its shape and all parameters fitted.
 std::vector<Substitute> substitutes_of(Trials& trials, const Estimate& estimate, size_t member,
                                        const std::vector<Proposal>& exchanges, size_t catalogue,
                                        double reach) {
   std::vector<Substitute> list;
-  const double now = criterion(trials, estimate, catalogue);
   for (const Proposal& proposal : exchanges) {
     if (proposal.removed != std::vector<size_t>{member} || list.size() >= 3) continue;
-    const std::vector<Member> members = applied(proposal, estimate.members);
-    Estimate other = fit_members(trials, members, estimate.noise, estimate.paths(), 4);
-    if (!other.is_valid) continue;
-    const double loss = criterion(trials, other, catalogue) - now;
-    // A richer effect that has this one as a special case always comes near: it must explain more to be a
-    // rival.
-    const bool is_richer =
-        parameters_of(*members.back().candidate) > parameters_of(*estimate.members[member].candidate);
-    if (is_richer && other.profile > estimate.profile - 4) continue;
-    if (loss < reach) list.push_back({proposal.added.front().candidate, loss});
+    if (const auto loss = loss_of(trials, estimate, proposal, catalogue, reach))
+      list.push_back({proposal.added.front().candidate, *loss});
   }
   std::ranges::stable_sort(list, {}, &Substitute::loss);
+  return list;
+}
+
+/// The same for several at a time; the most promising are tried.
+std::vector<OtherSet> other_sets(Trials& trials, const Estimate& estimate, const std::vector<Proposal>& proposals,
+                                 size_t catalogue, double reach) {
+  constexpr size_t most_tried = 8;
+  std::vector<OtherSet> list;
+  std::set<std::multiset<std::string>> tried;
+  for (const Proposal& proposal : proposals) {
+    if (tried.size() >= most_tried) break;
+    OtherSet other;
+    std::multiset<std::string> names;
+    for (size_t m : proposal.removed) other.replaced.push_back(estimate.members[m].candidate);
+    for (const Member& m : proposal.added) other.by.push_back(m.candidate), names.insert(m.candidate->name);
+    const bool is_one_for_one = other.replaced.size() == 1 && other.by.size() == 1;
+    const bool comes_back = std::ranges::any_of(
+        other.replaced, [&](const Candidate* c) { return names.contains(c->name) || c->is_unknown; });
+    for (const Candidate* c : other.replaced) names.insert("without " + c->name);
+    if (is_one_for_one || comes_back || !tried.insert(names).second) continue;
+    if (const auto loss = loss_of(trials, estimate, proposal, catalogue, reach))
+      other.loss = *loss, list.push_back(std::move(other));
+  }
+  std::ranges::stable_sort(list, {}, &OtherSet::loss);
   return list;
 }
 
@@ -190,10 +222,15 @@ Conclusion conclude(Trials& trials, const std::vector<Candidate>& candidates,
   std::vector<const Shape*> all;
   for (const auto* list : {&shapes, &periodic})
     for (const Shape& shape : *list) all.push_back(&shape);
-  const Evidence evidence(trials, estimate, all, candidates.size());
+  Evidence evidence(trials, estimate, all, candidates.size());
   const std::vector<double> removal = evidence.gains_of_removal();
   const std::vector<Proposal> exchanges = evidence.exchanges();
   const double reach = std::max(10.0, 0.002 * n);
+  std::vector<Proposal> several = evidence.exchanges_for_pairs();
+  std::ranges::copy(exchanges, std::back_inserter(several));
+  std::erase_if(several, [&](const Proposal& p) { return p.gain < -3 * reach; });
+  std::ranges::stable_sort(several, std::ranges::greater{}, &Proposal::gain);
+  result.other_sets = other_sets(trials, estimate, several, candidates.size(), reach);
   for (size_t m = 0; m < estimate.members.size(); ++m) {
     result.weights[m].loss = -removal[m] * n / evidence.rows();
     std::vector<Proposal> near;

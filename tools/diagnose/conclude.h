@@ -23,6 +23,12 @@ struct Substitute {
   double loss = 0;  ///< how much worse the criterion is with it; negative: better
 };
 
+/// Members that others together could replace, two for one or two or one for two.
+struct OtherSet {
+  std::vector<const Candidate*> replaced, by;
+  double loss = 0;  ///< how much worse the criterion is with it
+};
+
 /// Above it the errors are not white. Counts of an encoder that pass at a steady speed alone make up to 170.
 constexpr double most_portmanteau = 300;
 
@@ -30,6 +36,7 @@ struct Conclusion {
   Estimate estimate;
   std::vector<Weight> weights;                       ///< a member each
   std::vector<std::vector<Substitute>> substitutes;  ///< within reach, best first
+  std::vector<OtherSet> other_sets;                  ///< within reach, best first
   std::vector<double> inclusion;                     ///< probability that the effect is there, calibrated
   bool is_remainder_noise = true;  ///< else a slow force is left that is more than noise
   double portmanteau = 0;  ///< n Σ ρ², 40 lags of the whitened errors; 40 when white

@@ -164,6 +164,13 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
     }
     result.effects.push_back(std::move(found));
   }
+  for (const OtherSet& other : conclusion.other_sets) {
+    OtherExplanation& explanation = result.other_explanations.emplace_back();
+    for (const Candidate* c : other.replaced) explanation.in_place_of.push_back(c->name);
+    for (const Candidate* c : other.by) explanation.effects.push_back(c->name);
+    result.suggested.push_back(
+        separating_experiment(effect_of(catalogue, other.replaced.front()), other.by.front()->name));
+  }
   const bool holds_out = result.steps.front().held_out_force_rmse > 0;
   const auto error = [&](const DiagnosisStep& step) {
     return holds_out ? step.held_out_force_rmse : step.force_rmse;

@@ -33,6 +33,11 @@ struct DiagnosedEffect {
   double evidence = 0;                    ///< what the criterion loses without it
 };
 
+/// Effects that, in the place of some that were named, explain the records as well.
+struct OtherExplanation {
+  std::vector<std::string> in_place_of, effects;
+};
+
 /// The errors with the effects up to this one.
 struct DiagnosisStep {
   std::vector<std::string> added;
@@ -70,6 +75,7 @@ struct Diagnosis {
   std::string diagram, title;
   std::vector<std::string> experiments;
   std::vector<DiagnosedEffect> effects;                       ///< strongest first
+  std::vector<OtherExplanation> other_explanations;           ///< where more than one effect changes
   std::vector<DiagnosisStep> steps;                           ///< the first is the nominal diagram
   double error_before = 0, error_after = 0, noise_floor = 0;  ///< force, held out where there is a hold-out
   std::string force_unit, position_unit, measured_unit;

@@ -19,6 +19,9 @@ std::string to_json(const Diagnosis& d) {
     entry["force_rms"] = effect.force_rms;
     json["effects"].push_back(std::move(entry));
   }
+  json["other_explanations"] = nlohmann::ordered_json::array();
+  for (const OtherExplanation& other : d.other_explanations)
+    json["other_explanations"].push_back({{"in_place_of", other.in_place_of}, {"effects", other.effects}});
   json["steps"] = nlohmann::ordered_json::array();
   for (const DiagnosisStep& step : d.steps)
     json["steps"].push_back({{"added", step.added},

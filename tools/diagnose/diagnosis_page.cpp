@@ -82,6 +82,12 @@ report::Section where_it_fails(const Diagnosis& d) {
   return section;
 }
 
+std::string in_words(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : " and ") + words(name);
+  return text;
+}
+
 report::Section what_is_missing(const Diagnosis& d) {
   report::Section section{"What is missing", {}};
   if (d.effects.empty())
@@ -101,6 +107,10 @@ report::Section what_is_missing(const Diagnosis& d) {
                             p.at_limit ? "at the limit of its range: a warning, not a result" : ""});
     section.items.push_back(std::move(table));
   }
+  for (const OtherExplanation& other : d.other_explanations)
+    section.items.push_back(
+        report::Paragraph{fmt::format("In the place of {}, {} would explain the record as well.",
+                                      in_words(other.in_place_of), in_words(other.effects))});
   return section;
 }
 

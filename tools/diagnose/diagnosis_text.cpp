@@ -53,6 +53,9 @@ std::string to_text(const Diagnosis& d) {
     for (const std::string& other : effect.alternatives)
       line(fmt::format("    or {}: these two cannot be told apart by this record", other));
   }
+  for (const OtherExplanation& other : d.other_explanations)
+    line(fmt::format("  or {} in the place of {}: this record cannot tell", joined(other.effects, " + "),
+                     joined(other.in_place_of, " + ")));
   if (!d.remainder_variables.empty())
     line("What is left depends on " + joined(d.remainder_variables, " and ") + ".");
   if (can_be_learned(d))

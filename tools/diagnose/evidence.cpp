@@ -289,17 +289,36 @@ Proposal Evidence::best_pair(bool one_without_name) {
   return result;
 }
 
+std::vector<std::vector<size_t>> Evidence::removals() const {
+  std::vector<std::vector<size_t>> list;
+  for (size_t i = 0; i < members_.size(); ++i) {
+    list.push_back({i});
+    for (size_t j = i + 1; j < members_.size(); ++j) list.push_back({i, j});
+  }
+  return list;
+}
+
 std::vector<Proposal> Evidence::exchanges() const {
   std::vector<Proposal> list;
-  std::vector<std::vector<size_t>> removals;
-  for (size_t i = 0; i < members_.size(); ++i) {
-    removals.push_back({i});
-    for (size_t j = i + 1; j < members_.size(); ++j) removals.push_back({i, j});
-  }
-  for (const auto& removed : removals) {
+  for (const auto& removed : removals()) {
     const Errors errors = errors_without(removed);
     for (size_t s : best_shapes(errors))
       if (auto proposal = with_shapes({s}, errors)) list.push_back(std::move(*proposal));
+  }
+  std::ranges::stable_sort(list, std::ranges::greater{}, &Proposal::gain);
+  return list;
+}
+
+std::vector<Proposal> Evidence::exchanges_for_pairs() {
+  std::vector<Proposal> list;
+  for (const auto& removed : removals()) {
+    const Errors errors = errors_without(removed);
+    const std::vector<size_t> best = best_shapes(errors);
+    for (size_t i = 0; i < best.size(); ++i)
+      for (size_t j = i + 1; j < best.size(); ++j) {
+        multiply(best[i], best[j]);
+        if (auto proposal = with_shapes({best[i], best[j]}, errors)) list.push_back(std::move(*proposal));
+      }
   }
   std::ranges::stable_sort(list, std::ranges::greater{}, &Proposal::gain);
   return list;

@@ -47,6 +47,8 @@ class Evidence {
   Proposal best_pair(bool one_without_name = false);
   /// A member, or two, replaced by one shape: the best for each candidate, best first.
   std::vector<Proposal> exchanges() const;
+  /// A member, or two, replaced by two shapes: the best for each pair of candidates, best first.
+  std::vector<Proposal> exchanges_for_pairs();
   /// The members without one, with what that saves (mostly negative).
   std::vector<double> gains_of_removal() const;
   double rows() const { return n_; }
@@ -64,6 +66,8 @@ class Evidence {
   };
   Solution solve(const std::vector<int>& columns, const Eigen::VectorXd& b, double squares) const;
   std::vector<int> member_columns(const std::vector<size_t>& without = {}, bool only_linear = false) const;
+  /// Every member, and every two.
+  std::vector<std::vector<size_t>> removals() const;
   Errors errors_without(const std::vector<size_t>& removed) const;
   void multiply(size_t shape, size_t other);
   int width_of(size_t shape) const { return int(shapes_[shape]->columns[0].size()); }
