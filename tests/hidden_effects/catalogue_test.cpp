@@ -52,10 +52,10 @@ RecordSizes sizes_of(const Scenario& scenario) {
 
 /// The effect of that name, in the form that is true.
 loopwright::Effect effect_of(const std::string& name, const nlohmann::json& truth) {
-  const std::string form = name == "end_stop"            ? "high end"
-                           : name == "stribeck_friction" ? truth.at("exponent") == 1 ? "exponential fall"
-                                                                                     : "bell-shaped fall"
-                                                         : truth.value("of", "");
+  const std::string form = name == "end_stop" ? "high end"
+                           : name == "stribeck_friction"
+                               ? truth.at("exponent") == 1 ? "exponential fall" : "bell-shaped fall"
+                               : truth.value("of", "");
   Problems problems;
   for (const loopwright::Effect& effect : load_catalogue({catalogue_folder()}, problems))
     if (effect.name == name && effect.form == form) return effect;

@@ -137,7 +137,8 @@ void check_input(const MeasuredMotion& m, const ForceResidual& residual, std::ve
   if (match.slope < 0 && match.correlation < -0.4)
     faults.push_back(
         {"wrong_sign", "the recorded input pushes against the motion that it should cause",
-         "nothing can be read from the residual until the sign of the input or of the position is turned", true});
+         "nothing can be read from the residual until the sign of the input or of the position is turned",
+         true});
   else if (std::abs(match.correlation) > 0.7 && (size > 5 || size < 0.2))
     faults.push_back(
         {"wrong_unit", fmt::format("the recorded input is {:.3g} times the force that the model needs", size),

@@ -31,7 +31,7 @@ struct RecordFault {
                      ///< outliers, saturated
   std::string text;  ///< what was seen
   std::string cost;  ///< what cannot be relied on because of it
-  bool is_fatal = false;  ///< no effect can be named from such a record
+  bool is_fatal = false;        ///< no effect can be named from such a record
   bool may_be_physics = false;  ///< unless effects explain all of it: then it was no fault
 };
 std::vector<RecordFault> faults_of(const Machine& machine, const ForceResidual& residual,

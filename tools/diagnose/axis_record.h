@@ -20,10 +20,10 @@ struct MeasuredPort {
 
 struct AxisRecord {
   std::string title, path;
-  double sample_time = 0;     ///< s
-  double start = 0;           ///< s
+  double sample_time = 0;             ///< s
+  double start = 0;                   ///< s
   std::vector<double> recorded_time;  ///< s; of the rows as they were
-  std::vector<double> input;  ///< SI; held from its sample to the next
+  std::vector<double> input;          ///< SI; held from its sample to the next
   std::string input_unit;
   std::vector<MeasuredPort> measured;  ///< position first; at least one
   size_t held_out_from = 0;            ///< first row kept out of the identification; rows() without hold-out

@@ -18,10 +18,12 @@ Acts acts(const Effect& effect) {
   return Acts::force;
 }
 
-/// What comes first on the way from command to force: late, then slow, then stronger or weaker.
+/// What comes first on the way from command to force: late, then slow, then at its limit, then what the
+/// magnets make of the current.
 int place_in_chain(const Effect& effect) {
   if (effect.name == "input_delay") return 0;
-  return effect.name == "actuator_lag" ? 1 : 2;
+  if (effect.name == "actuator_lag") return 1;
+  return effect.name == "force_saturation" ? 2 : 3;
 }
 
 bool adds_inertia(const Attachment& attachment) {
@@ -51,9 +53,8 @@ std::vector<double> grid_of(const CandidateParameter& p, bool is_first, int poin
 class Remembered {
  public:
   const Columns* find(const Path& path, const std::vector<double>& shape) const {
-    const auto entry = std::ranges::find_if(entries_, [&](const Entry& e) {
-      return e.path == path.identity && e.path != 0 && e.shape == shape;
-    });
+    const auto entry = std::ranges::find_if(
+        entries_, [&](const Entry& e) { return e.path == path.identity && e.path != 0 && e.shape == shape; });
     return entry == entries_.end() ? nullptr : &entry->columns;
   }
   void keep(const Path& path, const std::vector<double>& shape, const Columns& columns) {
@@ -143,7 +144,7 @@ Candidate candidate_of(const Effect& effect, std::shared_ptr<const EffectPlan> p
   compiled->plan = std::move(plan), compiled->acts = acts(effect);
   Candidate candidate;
   candidate.name = effect.name, candidate.form = effect.form, candidate.acts = compiled->acts;
-  candidate.place_in_chain = place_in_chain(effect);
+  if (candidate.acts == Acts::input) candidate.place_in_chain = place_in_chain(effect);
   for (const EffectParameter& p : effect.parameters) {
     if (!p.is_fitted) continue;
     const FitRange range = range_of(p, compiled->plan->sizes);

@@ -19,8 +19,8 @@ RecordSizes sizes_of(const std::vector<const Path*>& paths, const std::vector<co
 /// Why an effect cannot be added to the diagram; empty: it can.
 using WhyNot = std::function<std::string(const Effect&)>;
 
-/// Effects that cannot be added, and those whose numbers cannot be worked out for these records, are left out.
-/// Throws InputError with every problem of the effect files.
+/// Effects that cannot be added, and those whose numbers cannot be worked out for these records, are left
+/// out. Throws InputError with every problem of the effect files.
 Catalogue make_catalogue(const std::vector<std::string>& folders, const MachineUnits& units,
                          const RecordSizes& sizes, const WhyNot& why_not);
 

@@ -102,10 +102,10 @@ void maximise(Trials& trials, Estimate& estimate) {
 
 /// How much worse the criterion is when another set has been fitted; nothing: out of reach. A richer set that
 /// has this one as a special case always comes near: it must explain more to be a rival.
-std::optional<double> loss_of(Trials& trials, const Estimate& estimate, const Proposal& proposal, size_t catalogue,
-                              double reach) {
-  const Estimate other = fit_members(trials, applied(proposal, estimate.members), estimate.noise,
-                                     estimate.paths(), 4);
+std::optional<double> loss_of(Trials& trials, const Estimate& estimate, const Proposal& proposal,
+                              size_t catalogue, double reach) {
+  const Estimate other =
+      fit_members(trials, applied(proposal, estimate.members), estimate.noise, estimate.paths(), 4);
   if (!other.is_valid) return {};
   size_t before = 0, now = 0;
   for (size_t m : proposal.removed) before += parameters_of(*estimate.members[m].candidate);
@@ -130,9 +130,9 @@ std::vector<Substitute> substitutes_of(Trials& trials, const Estimate& estimate,
 }
 
 /// The same for several at a time; the most promising are tried.
-std::vector<OtherSet> other_sets(Trials& trials, const Estimate& estimate, const std::vector<Proposal>& proposals,
-                                 size_t catalogue, double reach) {
-  constexpr size_t most_tried = 8;
+std::vector<OtherSet> other_sets(Trials& trials, const Estimate& estimate,
+                                 const std::vector<Proposal>& proposals, size_t catalogue, double reach) {
+  constexpr size_t most_tried = 8, most_told = 3;
   std::vector<OtherSet> list;
   std::set<std::multiset<std::string>> tried;
   for (const Proposal& proposal : proposals) {
@@ -150,6 +150,7 @@ std::vector<OtherSet> other_sets(Trials& trials, const Estimate& estimate, const
       other.loss = *loss, list.push_back(std::move(other));
   }
   std::ranges::stable_sort(list, {}, &OtherSet::loss);
+  if (list.size() > most_told) list.resize(most_told);
   return list;
 }
 

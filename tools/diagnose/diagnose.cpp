@@ -48,11 +48,21 @@ std::string without_idle_brackets(const std::string& unit) {
 /// The held-out rows are explained worse than this, over the fitted ones: they hold something else.
 constexpr double most_held_out = 1.5;
 
-/// Effects of the catalogue, and nothing is left.
-bool explains_all(const Conclusion& conclusion) {
-  const std::vector<Member>& members = conclusion.estimate.members;
-  return conclusion.is_white() && !members.empty() &&
-         std::ranges::none_of(members, [](const Member& m) { return m.candidate->is_unknown; });
+/// Whether what was found explains everything, a motion that runs ahead of its input too: only a load that
+/// swings or rattles makes an axis look so.
+bool explains_lead(const Conclusion& conclusion) {
+  const auto names = [&](std::string_view name) {
+    return std::ranges::any_of(conclusion.estimate.members,
+                               [&](const Member& m) { return m.candidate->name == name; });
+  };
+  return conclusion.is_white() && !names("unknown") && (names("flexible_mode") || names("backlash"));
+}
+
+void suggest(std::vector<SuggestedExperiment>& list, SuggestedExperiment experiment) {
+  const bool is_there = std::ranges::any_of(list, [&](const SuggestedExperiment& e) {
+    return e.between == experiment.between && e.and_effect == experiment.and_effect;
+  });
+  if (!is_there) list.push_back(std::move(experiment));
 }
 
 /// Values and intervals of a member's parameters, in SI.
@@ -124,13 +134,15 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   const bool is_fatal = std::ranges::any_of(result.findings, is_certain);
   Conclusion conclusion;
   if (!is_fatal) conclusion = find_names();
-  if (!is_fatal && conclusion.held_out_mean_square > most_held_out * std::max(1.0, conclusion.estimate.mean_square)) {
+  if (!is_fatal &&
+      conclusion.held_out_mean_square > most_held_out * std::max(1.0, conclusion.estimate.mean_square)) {
     for (Trial& trial : trials.list) trial.held_out_from = trial.usable.size();
-    result.findings.push_back({"the part that was to be held out shows something that the other part does not",
-                               "it was used for the fit too, and no error is held out"});
+    result.findings.push_back(
+        {"the part that was to be held out shows something that the other part does not",
+         "it was used for the fit too, and no error is held out"});
     conclusion = find_names();
   }
-  if (!is_fatal && explains_all(conclusion))
+  if (!is_fatal && explains_lead(conclusion))
     std::erase_if(result.findings, is_doubtful);
   else if (is_fatal || std::ranges::any_of(result.findings, is_doubtful))
     // Names from a record that cannot bear them would be guesses.
@@ -160,7 +172,7 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
       if (std::ranges::find(found.alternatives, other.candidate->name) != found.alternatives.end()) continue;
       if (other.candidate->name == effect.name) continue;
       found.alternatives.push_back(other.candidate->name);
-      result.suggested.push_back(separating_experiment(effect, other.candidate->name));
+      suggest(result.suggested, separating_experiment(effect, other.candidate->name));
     }
     result.effects.push_back(std::move(found));
   }
@@ -168,8 +180,8 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
     OtherExplanation& explanation = result.other_explanations.emplace_back();
     for (const Candidate* c : other.replaced) explanation.in_place_of.push_back(c->name);
     for (const Candidate* c : other.by) explanation.effects.push_back(c->name);
-    result.suggested.push_back(
-        separating_experiment(effect_of(catalogue, other.replaced.front()), other.by.front()->name));
+    suggest(result.suggested,
+            separating_experiment(effect_of(catalogue, other.replaced.front()), other.by.front()->name));
   }
   const bool holds_out = result.steps.front().held_out_force_rmse > 0;
   const auto error = [&](const DiagnosisStep& step) {

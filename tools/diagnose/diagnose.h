@@ -84,7 +84,7 @@ struct Diagnosis {
   std::vector<NotLookedFor> not_looked_for;
   std::vector<std::string> remainder_variables;  ///< on which what is left depends
   std::vector<RemainderShare> dependence;
-  bool was_interrupted = false;               ///< nothing else has a meaning, nothing was written
+  bool was_interrupted = false;  ///< nothing else has a meaning, nothing was written
   double mean_square = 0, held_out_mean_square = 0, portmanteau = 0;
   double white_force = 0, slow_force = 0, slow_force_time_s = 0;
   std::vector<double> measurement_noise;

@@ -153,7 +153,8 @@ report::Section what_remains(const Diagnosis& d) {
   }
   if (!d.remainder_variables.empty())
     section.items.push_back(report::Paragraph{
-        "No effect of the catalogue has this dependence. A learned force (a Gpr block, trained by loopwright gp train) that reads " +
+        "No effect of the catalogue has this dependence. A learned force (a Gpr block, trained by loopwright "
+        "gp train) that reads " +
         joined(d.remainder_variables, " and ") + " can stand in for it until its cause is known."});
   return section;
 }
@@ -168,9 +169,9 @@ report::Section what_next(const Diagnosis& d) {
         report::Notice{f.is_fatal ? report::Notice::Severity::error : report::Notice::Severity::warning,
                        fmt::format("The record: {}. What it costs: {}.", f.what, f.cost)});
   for (const NotLookedFor& n : d.not_looked_for)
-    section.items.push_back(
-        report::Notice{report::Notice::Severity::warning,
-                       fmt::format("Not looked for: {}; {}. If that is missing, it is not named.", words(n.effect), n.why)});
+    section.items.push_back(report::Notice{
+        report::Notice::Severity::warning,
+        fmt::format("Not looked for: {}; {}. If that is missing, it is not named.", words(n.effect), n.why)});
   if (section.items.empty())
     section.items.push_back(report::Paragraph{"Nothing: this record answers what was asked of it."});
   return section;

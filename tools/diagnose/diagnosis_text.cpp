@@ -19,9 +19,10 @@ std::string joined(const std::vector<std::string>& names, const char* with) {
 
 /// A force of position and velocity, which is what a Gpr block learns.
 bool can_be_learned(const Diagnosis& d) {
-  return !d.remainder_variables.empty() && std::ranges::all_of(d.remainder_variables, [](const std::string& v) {
-    return v == "position" || v == "velocity" || v == "direction";
-  });
+  return !d.remainder_variables.empty() &&
+         std::ranges::all_of(d.remainder_variables, [](const std::string& v) {
+           return v == "position" || v == "velocity" || v == "direction";
+         });
 }
 
 }  // namespace
@@ -59,7 +60,9 @@ std::string to_text(const Diagnosis& d) {
   if (!d.remainder_variables.empty())
     line("What is left depends on " + joined(d.remainder_variables, " and ") + ".");
   if (can_be_learned(d))
-    line("A Gpr block can stand in for it: train one on this record with `loopwright gp train`, with label.command, mass and damping.");
+    line(
+        "A Gpr block can stand in for it: train one on this record with `loopwright gp train`, with "
+        "label.command, mass and damping.");
   line(fmt::format("  {:<42} {:>14} {:>14} {:>14}", "residual force", "fitted", "held out", "0.1 s ahead"));
   for (const DiagnosisStep& step : d.steps)
     line(fmt::format("  {:<42} {:>14} {:>14} {:>14}{}",
@@ -70,7 +73,8 @@ std::string to_text(const Diagnosis& d) {
   for (const SuggestedExperiment& e : d.suggested)
     line(fmt::format("To tell {} from {}: {}", e.between, e.and_effect, e.text));
   for (const RecordFinding& f : d.findings) line(fmt::format("The record: {}; {}.", f.what, f.cost));
-  for (const NotLookedFor& n : d.not_looked_for) line(fmt::format("Not looked for: {}; {}.", n.effect, n.why));
+  for (const NotLookedFor& n : d.not_looked_for)
+    line(fmt::format("Not looked for: {}; {}.", n.effect, n.why));
   return text;
 }
 

@@ -280,7 +280,8 @@ Proposal Evidence::best_pair(bool one_without_name) {
   Proposal result;
   for (size_t i = 0; i < best.size(); ++i)
     for (size_t j = i + 1; j < best.size(); ++j) {
-      const bool has_unknown = shapes_[best[i]]->candidate->is_unknown != shapes_[best[j]]->candidate->is_unknown;
+      const bool has_unknown =
+          shapes_[best[i]]->candidate->is_unknown != shapes_[best[j]]->candidate->is_unknown;
       if (one_without_name && !has_unknown) continue;
       multiply(best[i], best[j]);
       if (auto pair = with_shapes({best[i], best[j]}, errors); pair && pair->gain > result.gain)

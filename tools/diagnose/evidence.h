@@ -23,7 +23,7 @@ struct Proposal {
   std::vector<size_t> removed;  ///< members taken out
   std::vector<Member> added;
   std::vector<double> step;  ///< of the free parameters of the members that stay, to go with what is added
-  double gain = 0;  ///< what it saves in the extended information criterion
+  double gain = 0;           ///< what it saves in the extended information criterion
 };
 
 /// Extended Bayesian information criterion (Chen and Chen 2008): what a set must save in n ln(mean square).
@@ -43,7 +43,8 @@ class Evidence {
   /// The best shape of every candidate that is not a member yet, best first; those that save nothing left
   /// out.
   std::vector<Proposal> extensions() const;
-  /// The best two shapes together, out of the best shapes of every candidate; if so wished one without a name.
+  /// The best two shapes together, out of the best shapes of every candidate; if so wished one without a
+  /// name.
   Proposal best_pair(bool one_without_name = false);
   /// A member, or two, replaced by one shape: the best for each candidate, best first.
   std::vector<Proposal> exchanges() const;

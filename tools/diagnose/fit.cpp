@@ -48,8 +48,8 @@ Eigen::VectorXd solve(const Eigen::MatrixXd& G, const Eigen::VectorXd& b) {
   return scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * b);
 }
 
-/// The step inside the ranges of all amplitudes: one that would leave its range goes to the end of it, and the
-/// others make the best of that. To cut it off alone would upset all that balance it.
+/// The step inside the ranges of all amplitudes: one that would leave its range goes to the end of it, and
+/// the others make the best of that. To cut it off alone would upset all that balance it.
 Eigen::VectorXd step_in_range(const NormalEquations& e, std::vector<Member> members,
                               const std::vector<FreeParameter>& free) {
   Eigen::VectorXd step = Eigen::VectorXd::Zero(e.b.size());
@@ -158,8 +158,7 @@ void widen_by_blocks(const Trials& trials, Estimate& estimate) {
   }
   const Eigen::MatrixXd& C = estimate.covariance;
   const Eigen::VectorXd alike = (C * between * C).diagonal(), independent = (C * within * C).diagonal();
-  const Eigen::VectorXd factor =
-      alike.cwiseQuotient(independent.cwiseMax(1e-300)).cwiseMax(1.0).cwiseSqrt();
+  const Eigen::VectorXd factor = alike.cwiseQuotient(independent.cwiseMax(1e-300)).cwiseMax(1.0).cwiseSqrt();
   estimate.covariance = factor.asDiagonal() * C * factor.asDiagonal();
 }
 

@@ -44,7 +44,9 @@ std::string write_improved(const std::string& diagram, const std::string& experi
   auto file = read_source(diagram, {}, problems);
   if (!file || !experiment) throw InputError(std::move(problems));
   InsertionSite site{experiment->roles.ports, load.variants, units};
-  for (const Member& member : estimate.members) {
+  std::vector<Member> members = estimate.members;  // along the way of the signal
+  std::ranges::stable_sort(members, {}, [](const Member& m) { return m.candidate->place_in_chain; });
+  for (const Member& member : members) {
     if (member.candidate->is_unknown) continue;
     const Effect& effect = catalogue.effects[size_t(member.candidate - catalogue.candidates.data())];
     const auto inserted = insert_effect(file, site, effect, fitted_values(effect, member), sizes, problems);
@@ -52,6 +54,9 @@ std::string write_improved(const std::string& diagram, const std::string& experi
     for (auto& [role, port] : site.roles)
       for (const auto& [from, to] : inserted->moved_ports)
         if (port == from) port = to;
+    if (!inserted->input_behind.empty())
+      for (auto& [role, port] : site.roles)
+        if (role == "input") port = inserted->input_behind;
     file = std::make_shared<SourceFile>(SourceFile{diagram, inserted->text});
   }
   const std::string folder = std::filesystem::path(target).parent_path().string();

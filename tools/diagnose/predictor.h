@@ -19,7 +19,8 @@ struct Drives {
 /// predicted for it. They are functions of the past alone, so that nothing computed from them correlates with
 /// the noise to come.
 struct Path {
-  uint64_t identity = 0;  ///< equal only for equal paths, as what was computed along one is remembered; 0: none
+  uint64_t identity =
+      0;  ///< equal only for equal paths, as what was computed along one is remembered; 0: none
   double sample_time = 0;
   std::vector<double> position, velocity, acceleration, input;
   std::vector<double> predicted_position;  ///< before the sample itself was measured

@@ -5,7 +5,8 @@
 
 namespace loopwright::diagnosis {
 
-std::vector<RecordFinding> look_at_records(const Trials& trials, const std::vector<InverseDynamics>& inverse) {
+std::vector<RecordFinding> look_at_records(const Trials& trials,
+                                           const std::vector<InverseDynamics>& inverse) {
   std::vector<RecordFinding> findings;
   for (size_t t = 0; t < trials.list.size(); ++t) {
     const AxisModel& model = *trials.list[t].model;

@@ -7,13 +7,37 @@
 namespace loopwright::diagnosis {
 namespace {
 
-using Variable = std::function<double(const Path&, size_t)>;
+/// A value for each sample.
+using Variable = std::function<std::vector<double>(const Path&)>;
+
+template <class F> Variable each_sample(F&& of) {
+  return [of](const Path& path) {
+    std::vector<double> values(path.samples());
+    for (size_t k = 0; k < values.size(); ++k) values[k] = of(path, k);
+    return values;
+  };
+}
 
 double middle_velocity(const Path& path, size_t k) {
   return path.velocity[k] + 0.5 * path.sample_time * path.acceleration[k];
 }
 double middle_position(const Path& path, size_t k) {
   return path.position[k] + 0.5 * path.sample_time * path.velocity[k];
+}
+
+/// From -1 to 1, turned over a way as short as in the catalogue's dry friction: a function without a name
+/// must not win by its reversals.
+Variable direction_of(double transition_distance) {
+  return [=](const Path& path) {
+    std::vector<double> values(path.samples());
+    double fraction = 0;
+    for (size_t k = 0; k < values.size(); ++k) {
+      const double way = path.sample_time * middle_velocity(path, k), sign = way < 0 ? -1 : 1;
+      const double left = std::exp(-std::abs(way) / transition_distance);
+      fraction = sign + (fraction - sign) * left, values[k] = fraction;
+    }
+    return values;
+  };
 }
 
 /// Σ level_i · B_i(variable) · factor: a cubic spline over even intervals.
@@ -25,10 +49,11 @@ Candidate spline(std::string variables, size_t levels, double low, double high, 
   candidate.columns_at = [=](const Path& path, const std::vector<std::vector<double>>& shapes) {
     Columns columns(levels, std::vector<float>(path.samples()));
     const size_t intervals = levels - 3;
+    const std::vector<double> along = variable(path), factors = factor(path);
     for (size_t k = 0; k < path.samples(); ++k) {
-      const double at = std::clamp((variable(path, k) - low) / (high - low), 0.0, 1.0) * double(intervals);
+      const double at = std::clamp((along[k] - low) / (high - low), 0.0, 1.0) * double(intervals);
       const size_t i = std::min(size_t(at), intervals - 1);
-      const double t = at - double(i), left = 1 - t, size = factor(path, k) / 6;
+      const double t = at - double(i), left = 1 - t, size = factors[k] / 6;
       columns[i][k] = float(size * left * left * left);
       columns[i + 1][k] = float(size * (4 - 3 * t * t * (2 - t)));
       columns[i + 2][k] = float(size * (4 - 3 * left * left * (2 - left)));
@@ -73,18 +98,17 @@ Candidate tone(const RecordSizes& sizes) {
 
 std::vector<Candidate> unknown_forces(const RecordSizes& sizes) {
   const double low = sizes.lowest_position, high = sizes.highest_position, top = sizes.top_speed;
-  const Variable one = [](const Path&, size_t) { return 1.0; };
-  const Variable direction = [](const Path& path, size_t k) {
-    return middle_velocity(path, k) > 0 ? 1.0 : -1.0;
-  };
-  const Variable acceleration = [](const Path& path, size_t k) { return path.acceleration[k]; };
-  const Variable time = [](const Path& path, size_t k) { return double(k) * path.sample_time; };
-  return {spline("position", 60, low, high, middle_position, one),
-          spline("velocity", 24, -top, top, middle_velocity, one),
+  const Variable one = each_sample([](const Path&, size_t) { return 1.0; });
+  const Variable acceleration = each_sample([](const Path& path, size_t k) { return path.acceleration[k]; });
+  const Variable time = each_sample([](const Path& path, size_t k) { return double(k) * path.sample_time; });
+  const Variable position = each_sample(middle_position), velocity = each_sample(middle_velocity);
+  const Variable direction = direction_of(std::max(1e-6 * sizes.stroke, sizes.resolution));
+  return {spline("position", 60, low, high, position, one),
+          spline("velocity", 24, -top, top, velocity, one),
           spline("time", 40, 0, sizes.duration, time, one),
-          spline("position,direction", 24, low, high, middle_position, direction),
-          spline("position,velocity", 24, low, high, middle_position, middle_velocity),
-          mass_along(spline("position,acceleration", 24, low, high, middle_position, acceleration)),
+          spline("position,direction", 24, low, high, position, direction),
+          spline("position,velocity", 24, low, high, position, velocity),
+          mass_along(spline("position,acceleration", 24, low, high, position, acceleration)),
           tone(sizes)};
 }
 

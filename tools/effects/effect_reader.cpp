@@ -95,9 +95,9 @@ class FormReader {
         !reader_.expect(member.value, Kind::object, "a parameter", "{\"unit\": …, \"range\": …}"))
       return;
     const Value& body = member.value;
-    reader_.reject_unknown(body,
-                           {"description", "unit", "linear", "period", "scale", "range", "start", "points", "value"},
-                           "a parameter of an effect");
+    reader_.reject_unknown(
+        body, {"description", "unit", "linear", "period", "scale", "range", "start", "points", "value"},
+        "a parameter of an effect");
     EffectParameter parameter;
     parameter.name = member.name, parameter.place = member.place;
     parameter.description = reader_.text(body, "description");

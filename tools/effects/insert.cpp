@@ -444,6 +444,7 @@ class Inserter {
     } else {  // an output, or an input of the diagram: who reads it
       input_source_ = block ? found->block + "." + found->port : found->port;
       readers = readers_of(found->level, input_source_);
+      result_.input_behind = joined(found->level.prefix, new_port(attachment.from));
     }
     if (readers.empty()) {
       error("nothing reads the input").found = role;

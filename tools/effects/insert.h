@@ -23,6 +23,8 @@ struct Insertion {
   /// Ports whose meaning went over to another: with an error of the sensor in a flat diagram the measured
   /// position is no longer "mass.position". Experiments must name the new one.
   std::vector<std::pair<std::string, std::string>> moved_ports;
+  /// The role "input" with which a further effect of the input acts behind this one; empty: as it was.
+  std::string input_behind;
 };
 
 /// The diagram of `file` with the effect added where its roles say; `fitted` are the effect's fitted
