@@ -34,3 +34,9 @@ say "6  the test motion without and with it"
 $loopwright deploy $motor/conventional.json $device -o "$out/conventional.csv" --report "$out/conventional.html"
 $loopwright deploy $motor/ps.json $device --set "model=$out/learned.model.json" --set "compensation.lead=2.6 ms" \
   -o "$out/compensated.csv" --report "$out/compensated.html"
+# Root of the mean square of the column error.sum [m], in micrometres.
+tracking_error() {
+  awk -F, '/^#/ { next } !column { for (i = 1; i <= NF; ++i) if ($i ~ /^error.sum/) column = i; next }
+           { sum += $column * $column; ++rows } END { printf "%.2f µm", 1e6 * sqrt(sum / rows) }' "$1"
+}
+say "tracking error, rms: $(tracking_error "$out/conventional.csv") without, $(tracking_error "$out/compensated.csv") with the compensation"
