@@ -27,11 +27,12 @@ class Search {
   }
 
   SearchResult run() {
-    grow(4);
+    bool goes_on = grow(4);
     if (is_much_left() || explain_without_name()) {
       start_from_what_has_no_name();
-      grow(most_effects - std::min(most_effects, best_.members.size()));
+      goes_on = true;
     }
+    if (goes_on) grow(most_effects - std::min(most_effects, best_.members.size()));
     return {std::move(best_), std::move(trail_)};
   }
 
@@ -84,12 +85,15 @@ class Search {
 
   bool is_much_left() const { return best_.mean_square >= 8; }
 
-  void grow(size_t most) {
-    for (size_t step = 0; step < most && extend(); ++step) {
+  /// False when nothing more was found.
+  bool grow(size_t most) {
+    for (size_t step = 0; step < most; ++step) {
+      if (!extend()) return false;
       sharpen_noise();
       exchange();
       prune();
     }
+    return true;
   }
 
   bool extend() {
