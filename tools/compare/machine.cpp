@@ -209,27 +209,10 @@ class Stepper {
   int64_t period_;
 };
 
-/// Only from sample to sample does a block of the way from state to sensor work: an Encoder that counts.
-bool has_sampled_sensor(const Machine& machine) {
-  for (Number at = machine.sensor; at != machine.position;) {
-    const int source = machine.plan->source_of(at).first;
-    if (source < 0) return true;
-    const Plan::Block& block = machine.plan->blocks[size_t(source)];
-    if (block.period > 0) return true;
-    Number next = -1;
-    for (const auto& port : block.inputs)
-      for (Number input : port)
-        if (next < 0 && state_behind(*machine.plan, input) == machine.position) next = input;
-    if (next < 0) return true;
-    at = next;
-  }
-  return false;
-}
-
 /// What the model's sensor adds to the position is taken out of what was measured: the machine is then where
 /// the sensor says what it said. Errors far smaller than their period are met in two rounds.
 void take_out_sensor_error(Machine& machine) {
-  if (has_sampled_sensor(machine)) return;
+  if (is_sampled_between(*machine.plan, machine.position, machine.sensor)) return;
   MeasuredMotion& m = machine.motion;
   Stepper stepper(machine);
   for (double& place : m.raw_position) {
@@ -279,6 +262,22 @@ Number state_behind(const Plan& plan, Number number) {
         if (input >= 0 && std::ranges::find(todo, input) == todo.end()) todo.push_back(input);
   }
   return -1;
+}
+
+bool is_sampled_between(const Plan& plan, Number state, Number sensor) {
+  for (Number at = sensor; at != state;) {
+    const int source = plan.source_of(at).first;
+    if (source < 0) return true;
+    const Plan::Block& block = plan.blocks[size_t(source)];
+    if (block.period > 0) return true;
+    Number next = -1;
+    for (const auto& port : block.inputs)
+      for (Number input : port)
+        if (next < 0 && state_behind(plan, input) == state) next = input;
+    if (next < 0) return true;
+    at = next;
+  }
+  return false;
 }
 
 double MeasuredMotion::stroke() const {

@@ -45,6 +45,9 @@ void switch_off_noise(Run<double>& run, const Plan& plan);
 /// among states of the same unit. -1: none.
 Number state_behind(const Plan& plan, Number number);
 
+/// Whether a block on the way from a state to its sensor works from sample to sample only, as an Encoder.
+bool is_sampled_between(const Plan& plan, Number state, Number sensor);
+
 /// Nothing when the experiment does not say enough: `why` is then a sentence for the user.
 std::optional<Machine> find_machine(const std::string& diagram, const Experiment& experiment,
                                     const LoadOptions& options, std::string& why);

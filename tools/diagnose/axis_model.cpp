@@ -97,6 +97,10 @@ AxisModel::AxisModel(const std::string& path, const std::string& experiment_path
     return number < 0 ? number : state_behind(*changed, number);
   };
   position_ = moving("position"), velocity_ = moving("velocity");
+  for (MeasuredPort& port : record_.measured) {  // what counts and samples has no slope to be corrected by
+    const Number behind = port.role == "position" ? position_ : velocity_;
+    if (behind >= 0 && is_sampled_between(*changed, behind, port.number)) port.number = behind;
+  }
   silence(*changed, input_), silence(*changed, injected_);
   std::vector<Number> wanted{force_, position_, velocity_};
   for (const MeasuredPort& port : record_.measured) wanted.push_back(port.number);

@@ -31,15 +31,18 @@ const Effect& effect_of(const Catalogue& catalogue, const Candidate* candidate) 
   return catalogue.effects[size_t(candidate - catalogue.candidates.data())];
 }
 
-/// "(N)*s/(m)" as a person writes it: brackets only around what is made of several units.
+/// "(N*m)*s/(rad)" as a person writes it: brackets only around what is made of several units, and not around
+/// the first of the factors.
 std::string without_idle_brackets(const std::string& unit) {
   std::string text;
   for (size_t i = 0; i < unit.size(); ++i) {
-    size_t end = i + 1;
-    if (unit[i] == '(')
-      while (end < unit.size() && std::isalpha(static_cast<unsigned char>(unit[end]))) ++end;
-    const bool idle = unit[i] == '(' && end < unit.size() && unit[end] == ')' && end > i + 1;
-    text += idle ? unit.substr(i + 1, end - i - 1) : std::string(1, unit[i]);
+    const size_t end = unit[i] == '(' ? unit.find(')', i) : unit.npos;
+    const std::string inside = end == unit.npos ? "" : unit.substr(i + 1, end - i - 1);
+    const bool is_one = std::ranges::all_of(inside, [](unsigned char c) { return std::isalpha(c); });
+    const bool is_raised = end + 1 < unit.size() && unit[end + 1] == '^';
+    const bool idle =
+        !inside.empty() && inside.find('(') == inside.npos && (is_one || (i == 0 && !is_raised));
+    text += idle ? inside : std::string(1, unit[i]);
     if (idle) i = end;
   }
   return text;

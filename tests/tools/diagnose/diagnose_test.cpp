@@ -2,6 +2,7 @@
 #include "tools/diagnose/diagnose.h"
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
+#include "tests/tools/diagnose/diagnosed.h"
 #include "tests/tools/diagnose/recorded_axis.h"
 
 namespace loopwright {
@@ -9,12 +10,6 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-std::vector<std::string> names(const Diagnosis& d) {
-  std::vector<std::string> list;
-  for (const DiagnosedEffect& effect : d.effects) list.push_back(effect.name);
-  return list;
-}
 
 Diagnosis diagnosis_of(const RecordedAxis& axis) { return diagnose(axis.diagram(), {axis.experiment()}); }
 

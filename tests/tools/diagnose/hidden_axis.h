@@ -1,0 +1,184 @@
+/// Records of an axis that the generator's plant makes (tests/hidden_effects, plain C): its physics, its
+/// solver and its random numbers share nothing with the blocks. Any motion, controller or none, any units.
+#pragma once
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+extern "C" {
+#include "tests/hidden_effects/controller.h"
+#include "tests/hidden_effects/plant.h"
+#include "tests/hidden_effects/random.h"
+}
+
+namespace loopwright {
+
+constexpr double hidden_sample_time = 1e-3;
+
+/// Wanted positions, a sample each: strokes whose speed rises and falls by half a cosine.
+struct WantedMotion {
+  std::vector<double> position{0};
+  std::vector<double> added_force;  ///< on top of the command; empty: none
+  double initial_speed = 0;         ///< the axis moves already
+
+  WantedMotion& rest(double seconds) {
+    position.insert(position.end(), size_t(seconds / hidden_sample_time), position.back());
+    return *this;
+  }
+  WantedMotion& stroke(double way, double speed, double ramp_s) {
+    const double begin = position.back(), size = std::abs(way), end = size / speed + ramp_s;
+    const auto risen = [&](double t) {
+      if (t >= ramp_s) return speed * (t - ramp_s / 2);
+      return speed / 2 * (t - ramp_s / std::numbers::pi * std::sin(std::numbers::pi * t / ramp_s));
+    };
+    for (double t = hidden_sample_time; t < end; t += hidden_sample_time)
+      position.push_back(begin + std::copysign(t < end - ramp_s ? risen(t) : size - risen(end - t), way));
+    position.push_back(begin + way);
+    return *this;
+  }
+};
+
+/// What the diagram says of the axis, and with what noise it is measured.
+struct HiddenMachine {
+  double mass = 0.2621, damping = 3;
+  std::string position_unit = "m", force_unit = "N";
+  double force_noise = 0.01, encoder_noise = 5e-8, resolution = 2e-7;
+  std::optional<double> velocity_noise;  ///< measured with so much noise; empty: not measured
+  bool measures_position = true, has_controller = true;
+  double leaves_out_s = 0;  ///< of the start of every record
+  std::string position_port = "mass.position", velocity_port = "mass.velocity",
+              damping_port = "viscous.force";
+  std::string further_blocks;   ///< of the diagram
+  std::string moving, viscous;  ///< in the place of its Mass and of its ViscousFriction; empty: these
+};
+
+/// Folder with nominal.json and a pair of files for every record; gone with the object.
+class HiddenAxis {
+ public:
+  explicit HiddenAxis(HiddenMachine machine = {}) : machine_(std::move(machine)) {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::path(testing::TempDir()) /
+              fmt::format("hidden_axis_{}_{}", test->test_suite_name(), test->name());
+    std::filesystem::create_directories(folder_);
+    write_diagram();
+  }
+  HiddenAxis(const HiddenAxis&) = delete;
+  ~HiddenAxis() {
+    std::error_code code;
+    std::filesystem::remove_all(folder_, code);
+  }
+  /// The physics of the diagram: a truth is that, and what it hides.
+  Physics nominal() const {
+    Physics physics{};
+    physics.mass_kg = machine_.mass, physics.damping_n_s_per_m = machine_.damping;
+    return physics;
+  }
+  std::string diagram() const { return file("nominal.json"); }
+  std::string file(const std::string& name) const { return (folder_ / name).string(); }
+
+  /// Records the motion and returns the path of the experiment.
+  std::string record(const std::string& name, const Physics& truth, const WantedMotion& wanted) {
+    write_data(name, truth, wanted), write_experiment(name);
+    return file(name + ".experiment.json");
+  }
+  /// Root of the mean square of what was commanded in the last record.
+  double force_level() const { return force_level_; }
+
+ private:
+  void write_data(const std::string& name, const Physics& truth, const WantedMotion& wanted) {
+    Random random = random_stream(1, name.c_str());
+    Plant plant = plant_at_rest(&truth, hidden_sample_time, 10);
+    Controller controller =
+        controller_make(PD_WITH_OBSERVER, machine_.mass, machine_.damping, hidden_sample_time);
+    const std::vector<double>& x = wanted.position;
+    const double home = x.front();
+    plant.state[POSITION] = plant.state[LOAD_POSITION] = home, plant.state[VELOCITY] = wanted.initial_speed;
+    double slow = 0, square = 0;
+    std::ofstream out(file(name + ".csv"));
+    out << "t_s,force,position,velocity\n";
+    const double scale = machine_.force_noise, memory = std::exp(-hidden_sample_time / 0.03);
+    for (size_t k = 0; k < x.size(); ++k) {
+      const double before = x[k > 0 ? k - 1 : 0], after = x[std::min(k + 1, x.size() - 1)];
+      const double speed = k > 0 ? (after - before) / (2 * hidden_sample_time) : wanted.initial_speed;
+      const double acceleration =
+          k > 0 ? (after - 2 * x[k] + before) / (hidden_sample_time * hidden_sample_time) : 0;
+      const double feedforward = machine_.mass * acceleration + machine_.damping * speed;
+      const double seen =
+          std::round((plant_encoder(&plant) + machine_.encoder_noise * random_normal(&random)) /
+                     machine_.resolution) *
+          machine_.resolution;
+      double force = feedforward;
+      if (machine_.has_controller)
+        force = controller_step(&controller, x[k] - home, feedforward, seen - home);
+      if (!wanted.added_force.empty()) force += wanted.added_force[k];
+      const double velocity =
+          plant.state[VELOCITY] + machine_.velocity_noise.value_or(0) * random_normal(&random);
+      const double t = double(k) * hidden_sample_time;
+      if (t >= machine_.leaves_out_s)
+        out << fmt::format("{:.3f},{:.10g},{:.10g},{:.10g}\n", t, force, seen, velocity);
+      plant_sample(&plant, force, scale * random_normal(&random) + slow);
+      slow = memory * slow + 0.3 * scale * std::sqrt(1 - memory * memory) * random_normal(&random);
+      square += force * force;
+    }
+    force_level_ = std::sqrt(square / double(x.size()));
+  }
+  void write_diagram() const {
+    std::string moving = machine_.moving, viscous = machine_.viscous;
+    if (moving.empty())
+      moving = fmt::format(
+          R"("mass":      {{"type": "Mass", "mass": {{"value": {}, "unit": "{}*s^2/{}"}}, "in": {{"force": "net_force.sum"}}}})",
+          machine_.mass, machine_.force_unit, machine_.position_unit);
+    if (viscous.empty())
+      viscous = fmt::format(
+          R"("viscous":   {{"type": "ViscousFriction", "damping": {{"value": {}, "unit": "{}*s/{}"}}, "in": {{"velocity": "{}"}}}})",
+          machine_.damping, machine_.force_unit, machine_.position_unit, machine_.velocity_port);
+    std::ofstream(file("nominal.json")) << fmt::format(
+        R"({{
+  "loopwright": 1,
+  "title": "An axis, nominal",
+  "solver": {{"method": "rk4", "step": 0.001, "stop": 12}},
+  "blocks": {{
+    "force":     {{"type": "Constant", "value": {{"value": 0, "unit": "{1}"}}}},
+    "motor":     {{"type": "Gain", "gain": 1, "in": {{"u": "force.y"}}}},
+    {3},
+    "net_force": {{"type": "Sum", "signs": "+-", "in": {{"terms": ["motor.y", "{6}"]}}}},
+    {4}
+    {2}
+  }},
+  "log": ["{5}"]
+}}
+)",
+        machine_.position_unit, machine_.force_unit, moving, viscous, machine_.further_blocks,
+        machine_.position_port, machine_.damping_port);
+  }
+  void write_experiment(const std::string& name) const {
+    std::string compared;
+    if (machine_.measures_position)
+      compared = fmt::format(R"("{}": {{"column": "position", "unit": "{}", "resolution": {}}})",
+                             machine_.position_port, machine_.position_unit, machine_.resolution);
+    if (machine_.velocity_noise)
+      compared += fmt::format(R"({}"{}": {{"column": "velocity", "unit": "{}/s"}})",
+                              compared.empty() ? "" : ", ", machine_.velocity_port, machine_.position_unit);
+    std::ofstream(file(name + ".experiment.json")) << fmt::format(
+        R"({{
+  "loopwright": 1, "title": "{0}", "data": "{0}.csv", "time": "t_s",
+  "drive":   {{"motor.u": {{"column": "force", "unit": "{1}"}}}},
+  "compare": {{{2}}},
+  "roles":   {{"position": "{3}", "velocity": "{4}", "force": "net_force.sum", "input": "motor.u"}}
+}}
+)",
+        name, machine_.force_unit, compared, machine_.position_port, machine_.velocity_port);
+  }
+
+  HiddenMachine machine_;
+  std::filesystem::path folder_;
+  double force_level_ = 0;
+};
+
+}  // namespace loopwright

@@ -1,0 +1,93 @@
+// Two records say together what neither says alone.
+#include <gmock/gmock.h>
+#include "tests/tools/diagnose/diagnosed.h"
+#include "tests/tools/diagnose/hidden_axis.h"
+
+namespace loopwright {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::Not;
+
+WantedMotion one_way(double direction) {
+  WantedMotion motion;
+  motion.rest(0.2);
+  for (double speed : {0.2, 0.4, 0.1, 0.3}) motion.stroke(direction * 0.15, speed, 0.1).rest(0.2);
+  return motion;
+}
+
+TEST(SeveralRecords, OneForwardAndOneBackwardNameCoulombFriction) {
+  HiddenAxis axis;
+  Physics truth = axis.nominal();
+  truth.coulomb_n = 0.15;
+  const std::string forward = axis.record("forward", truth, one_way(1));
+  const std::string backward = axis.record("backward", truth, one_way(-1));
+  for (const std::string& alone : {forward, backward}) {
+    const Diagnosis d = diagnose(axis.diagram(), {alone});
+    ASSERT_EQ(d.effects.size(), 1u) << to_text(d);
+    EXPECT_THAT(d.effects[0].alternatives, Not(IsEmpty())) << to_text(d);
+    EXPECT_EQ(d.findings.at(0).what, "all motion goes one way");
+  }
+  const Diagnosis d = diagnose(axis.diagram(), {forward, backward});
+  EXPECT_EQ(d.verdict, Verdict::explained);
+  ASSERT_THAT(names(d), ElementsAre("coulomb_friction")) << to_text(d);
+  EXPECT_THAT(d.effects[0].alternatives, IsEmpty()) << to_text(d);
+  expect_parameter(d.effects[0], "level", 0.15, 0.005, "N");
+  EXPECT_THAT(d.experiments, ElementsAre(forward, backward));
+}
+
+/// A constant force and Coulomb friction together: each way alone shows their sum or their difference.
+TEST(SeveralRecords, OneForwardAndOneBackwardTellTwoEffectsWithTheirNumbers) {
+  HiddenAxis axis;
+  Physics truth = axis.nominal();
+  truth.coulomb_n = 0.15, truth.offset_n = 0.1;
+  const std::string forward = axis.record("forward", truth, one_way(1));
+  const std::string backward = axis.record("backward", truth, one_way(-1));
+  for (const std::string& alone : {forward, backward})
+    EXPECT_EQ(diagnose(axis.diagram(), {alone}).effects.size(), 1u);
+  for (const auto& order : {std::vector{forward, backward}, std::vector{backward, forward}}) {
+    const Diagnosis d = diagnose(axis.diagram(), order);
+    ASSERT_THAT(names(d), ElementsAre("coulomb_friction", "constant_force")) << to_text(d);
+    expect_parameter(d.effects[0], "level", 0.15, 0.005, "N");
+    expect_parameter(d.effects[1], "level", 0.1, 0.005, "N");
+  }
+}
+
+/// A spindle that turns at one speed all the while: no dry friction, damping or steady pull differs in it.
+TEST(SeveralRecords, OneSlowBackwardAndOneFastForwardNameCoulombFriction) {
+  HiddenMachine machine;
+  machine.leaves_out_s = 1;
+  HiddenAxis axis(machine);
+  Physics truth = axis.nominal();
+  truth.coulomb_n = 0.15;
+  const auto turning = [](double speed) {
+    WantedMotion motion;
+    motion.initial_speed = speed;
+    while (motion.position.size() < 5000) motion.position.push_back(motion.position.back() + 1e-3 * speed);
+    return motion;
+  };
+  const std::string forward = axis.record("forward", truth, turning(0.4));
+  const std::string backward = axis.record("backward", truth, turning(-0.15));
+  for (const std::string& alone : {forward, backward}) {
+    const Diagnosis d = diagnose(axis.diagram(), {alone});
+    ASSERT_EQ(d.effects.size(), 1u) << to_text(d);
+    EXPECT_THAT(d.effects[0].alternatives, Not(IsEmpty())) << to_text(d);
+  }
+  const Diagnosis d = diagnose(axis.diagram(), {forward, backward});
+  EXPECT_EQ(d.verdict, Verdict::explained);
+  ASSERT_THAT(names(d), ElementsAre("coulomb_friction")) << to_text(d);
+  EXPECT_THAT(d.effects[0].alternatives, IsEmpty()) << to_text(d);
+  expect_parameter(d.effects[0], "level", 0.15, 0.005, "N");
+}
+
+TEST(SeveralRecords, NothingIsMissingWhenNeitherLacksAnything) {
+  HiddenAxis axis;
+  const Diagnosis d = diagnose(axis.diagram(), {axis.record("forward", axis.nominal(), one_way(1)),
+                                                axis.record("backward", axis.nominal(), one_way(-1))});
+  EXPECT_EQ(d.verdict, Verdict::nothing_missing) << to_text(d);
+  EXPECT_NEAR(d.mean_square, 1, 0.06);
+}
+
+}  // namespace
+}  // namespace loopwright

@@ -1,0 +1,137 @@
+// A record that leaves two effects alike says so; the motion that it suggests, made with the same hidden
+// effect, tells them apart.
+#include <gmock/gmock.h>
+#include "tests/tools/diagnose/diagnosed.h"
+#include "tests/tools/diagnose/hidden_axis.h"
+#include "tools/effects/motion.h"
+
+namespace loopwright {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// The motion that the catalogue means by a suggestion, in sizes of the record.
+WantedMotion suggested_motion(const SuggestedExperiment& suggestion, const WantedMotion& record,
+                              const RecordSizes& sizes) {
+  Problems problems;
+  for (const Effect& effect : load_catalogue({catalogue_folder()}, problems)) {
+    if (effect.name != suggestion.between) continue;
+    for (const ConfusableEffect& other : effect.confusable) {
+      if (other.with != suggestion.and_effect) continue;
+      EXPECT_EQ(other.experiment.text, suggestion.text);
+      EXPECT_EQ(other.experiment.added_mass, 0);
+      const Motion motion = motion_of(other.experiment, sizes);
+      return {motion.position, motion.added_force};
+    }
+  }
+  ADD_FAILURE() << "no suggestion for " << suggestion.between << " and " << suggestion.and_effect;
+  return record;
+}
+
+RecordSizes sizes_of(const WantedMotion& record, const HiddenAxis& axis) {
+  RecordSizes sizes;
+  const auto& x = record.position;
+  const auto [low, high] = std::ranges::minmax_element(x);
+  sizes.lowest_position = *low, sizes.highest_position = *high, sizes.stroke = *high - *low;
+  for (size_t k = 1; k + 1 < x.size(); ++k) {
+    const double speed = (x[k + 1] - x[k - 1]) / 2e-3, acceleration = (x[k + 1] - 2 * x[k] + x[k - 1]) / 1e-6;
+    sizes.top_speed = std::max(sizes.top_speed, std::abs(speed));
+    sizes.top_acceleration = std::max(sizes.top_acceleration, std::abs(acceleration));
+  }
+  sizes.force_level = axis.force_level(), sizes.sample_time = hidden_sample_time;
+  return sizes;
+}
+
+/// Diagnoses a record, then with it the one that it asks for. The first must leave the two alike, whichever
+/// of them it names; the second must not.
+void expect_told_apart(HiddenAxis& axis, const Physics& truth, const WantedMotion& motion,
+                       const std::string& hidden, const std::string& alike) {
+  const std::string first = axis.record("first", truth, motion);
+  const RecordSizes sizes = sizes_of(motion, axis);
+  const Diagnosis before = diagnose(axis.diagram(), {first});
+  ASSERT_EQ(before.effects.size(), 1u) << to_text(before);
+  const DiagnosedEffect& named = before.effects.front();
+  const std::string& other = named.name == hidden ? alike : hidden;
+  ASSERT_THAT(named.name, testing::AnyOf(hidden, alike)) << to_text(before);
+  ASSERT_THAT(named.alternatives, testing::Contains(other)) << to_text(before);
+  EXPECT_THAT(to_text(before), HasSubstr("or " + other + ": these two cannot be told apart by this record"));
+  const auto suggestion = std::ranges::find(before.suggested, other, &SuggestedExperiment::and_effect);
+  ASSERT_NE(suggestion, before.suggested.end());
+  const std::string second = axis.record("second", truth, suggested_motion(*suggestion, motion, sizes));
+  const Diagnosis after = diagnose(axis.diagram(), {first, second});
+  EXPECT_THAT(names(after), ElementsAre(hidden)) << to_text(after);
+  EXPECT_EQ(after.verdict, Verdict::explained);
+  ASSERT_FALSE(after.effects.empty());
+  EXPECT_THAT(after.effects.front().alternatives, IsEmpty()) << to_text(after);
+}
+
+/// Several speeds, but forward alone.
+WantedMotion forward() {
+  WantedMotion motion;
+  motion.rest(0.2);
+  for (double speed : {0.2, 0.4, 0.1, 0.3}) motion.stroke(0.15, speed, 0.1).rest(0.2);
+  return motion;
+}
+
+TEST(SuggestedExperiment, TellsCoulombFrictionFromAConstantForce) {
+  HiddenAxis axis;
+  Physics truth = axis.nominal();
+  truth.coulomb_n = 0.15;
+  expect_told_apart(axis, truth, forward(), "coulomb_friction", "constant_force");
+}
+
+TEST(SuggestedExperiment, TellsAConstantForceFromCoulombFriction) {
+  HiddenAxis axis;
+  Physics truth = axis.nominal();
+  truth.offset_n = 0.15;
+  expect_told_apart(axis, truth, forward(), "constant_force", "coulomb_friction");
+}
+
+TEST(SuggestedExperiment, TellsDampingFromFrictionThatDiffersWithTheDirection) {
+  HiddenAxis axis;
+  Physics truth = axis.nominal();
+  truth.added_damping_n_s_per_m = 1.2;
+  expect_told_apart(axis, truth, forward(), "viscous_friction", "direction_dependent_friction");
+}
+
+TEST(SuggestedExperiment, TellsFrictionThatDiffersWithTheDirectionFromDamping) {
+  HiddenAxis axis;
+  Physics truth = axis.nominal();
+  truth.direction_damping_n_s_per_m = 1.2;
+  expect_told_apart(axis, truth, forward(), "direction_dependent_friction", "viscous_friction");
+}
+
+/// Without a controller and below 3 Hz the command is so smooth that a delay and a lag of 3 ms differ by
+/// τ²/2 d²u/dt²: 0.1 mN beside 10 mN of noise.
+WantedMotion smooth() {
+  WantedMotion motion;
+  for (double t = hidden_sample_time; t < 10; t += hidden_sample_time) {
+    const double fade = std::pow(std::sin(std::numbers::pi * t / 10), 2);
+    motion.position.push_back(fade *
+                              (0.08 * std::sin(2 * t) + 0.02 * std::sin(7 * t) + 0.006 * std::sin(15 * t)));
+  }
+  return motion;
+}
+
+TEST(SuggestedExperiment, TellsADelayFromALag) {
+  HiddenMachine machine;
+  machine.has_controller = false;
+  HiddenAxis axis(machine);
+  Physics truth = axis.nominal();
+  truth.delay_s = 0.003;
+  expect_told_apart(axis, truth, smooth(), "input_delay", "actuator_lag");
+}
+
+TEST(SuggestedExperiment, TellsALagFromADelay) {
+  HiddenMachine machine;
+  machine.has_controller = false;
+  HiddenAxis axis(machine);
+  Physics truth = axis.nominal();
+  truth.lag_s = 0.003;
+  expect_told_apart(axis, truth, smooth(), "actuator_lag", "input_delay");
+}
+
+}  // namespace
+}  // namespace loopwright
