@@ -247,7 +247,8 @@ void smooth_motion(MeasuredMotion& m) {
 
 void switch_off_noise(Run<double>& run, const Plan& plan) {
   for (const Plan::Block& block : plan.blocks)
-    if (double* level = block.type->info.type == "Noise" ? run.parameter(block.path + ".standard_deviation") : nullptr)
+    if (double* level =
+            block.type->info.type == "Noise" ? run.parameter(block.path + ".standard_deviation") : nullptr)
       *level = 0;
 }
 
@@ -333,7 +334,8 @@ std::optional<Machine> find_machine(const std::string& diagram, const Experiment
   machine.sensor = x[0];
   if (const std::string* force = port_of(experiment, "force"))
     if (const auto number = machine.plan->find(*force); number.size() == 1) machine.net_force = number[0];
-  if (machine.sensor != machine.position && recorded(experiment, *plan, *position, false)) take_out_sensor_error(machine);
+  if (machine.sensor != machine.position && recorded(experiment, *plan, *position, false))
+    take_out_sensor_error(machine);
   return machine;
 }
 

@@ -24,8 +24,8 @@ struct MeasuredMotion {
   double top_speed() const;
 };
 
-/// Position, velocity and acceleration below the cut-off, and the rows that count: from the raw position, or where
-/// there is none from the velocity as it was measured. Sample time and time must be there.
+/// Position, velocity and acceleration below the cut-off, and the rows that count: from the raw position, or
+/// where there is none from the velocity as it was measured. Sample time and time must be there.
 void smooth_motion(MeasuredMotion& motion);
 
 /// The model with its input driven by the record, so that its states can be set to what was measured.
@@ -33,16 +33,17 @@ struct Machine {
   std::shared_ptr<const Plan> plan;
   MeasuredMotion motion;
   Number position = 0, velocity = 0;  ///< states of the plan
-  Number sensor = 0;                  ///< what stands for the measured position: the state, or a sensor's output
-  Number net_force = -1;              ///< -1: no role "force"
-  double mass = 0;                    ///< [force s²/position] net force per acceleration of the model
+  Number sensor = 0;      ///< what stands for the measured position: the state, or a sensor's output
+  Number net_force = -1;  ///< -1: no role "force"
+  double mass = 0;        ///< [force s²/position] net force per acceleration of the model
 };
 
-/// A model that is held against a record makes no noise of its own: the record has it. From the next start on.
+/// A model that is held against a record makes no noise of its own: the record has it. From the next start
+/// on.
 void switch_off_noise(Run<double>& run, const Plan& plan);
 
-/// The state of the model that a port shows: itself, or the one behind a sensor, found against the signal path
-/// among states of the same unit. -1: none.
+/// The state of the model that a port shows: itself, or the one behind a sensor, found against the signal
+/// path among states of the same unit. -1: none.
 Number state_behind(const Plan& plan, Number number);
 
 /// Whether a block on the way from a state to its sensor works from sample to sample only, as an Encoder.

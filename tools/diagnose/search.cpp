@@ -195,7 +195,7 @@ class Search {
     for (std::vector<Member>& start : starts) {
       best_ = nominal;
       best_ = refined(start, 4);
-      if (!best_.is_valid) continue;
+      if (!best_.is_valid || score(best_) >= score(nominal)) continue;
       note("started without a name");
       grow(4);
       best = fit_members(trials_, best.members, noise_, best.paths(), 1);  // noise as it is now

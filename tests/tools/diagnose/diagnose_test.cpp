@@ -57,8 +57,8 @@ TEST(Diagnose, CoggingIsFoundAtItsPitchInRadiansAndAmperes) {
   ASSERT_THAT(names(d), ElementsAre("cogging"));
   EXPECT_EQ(parameter(d.effects[0], "pitch").unit, "rad");
   EXPECT_NEAR(parameter(d.effects[0], "pitch").value, 0.0225, 1e-5);
-  EXPECT_NEAR(
-      std::hypot(parameter(d.effects[0], "sine").value, parameter(d.effects[0], "cosine").value), 0.1, 0.002);
+  EXPECT_NEAR(std::hypot(parameter(d.effects[0], "sine").value, parameter(d.effects[0], "cosine").value), 0.1,
+              0.002);
   EXPECT_EQ(d.force_unit, "A");
 }
 
