@@ -226,17 +226,18 @@ Conclusion conclude(Trials& trials, const std::vector<Candidate>& candidates,
   Evidence evidence(trials, estimate, all, candidates.size());
   const std::vector<double> removal = evidence.gains_of_removal();
   const std::vector<Proposal> exchanges = evidence.exchanges();
-  const double reach = std::max(10.0, 0.002 * n);
+  // What a linearisation promises far from where it was made may be a hundred off.
+  const double reach = std::max(10.0, 0.002 * n), far = std::max(100.0, 3 * reach);
   std::vector<Proposal> several = evidence.exchanges_for_pairs();
   std::ranges::copy(exchanges, std::back_inserter(several));
-  std::erase_if(several, [&](const Proposal& p) { return p.gain < -3 * reach; });
+  std::erase_if(several, [&](const Proposal& p) { return p.gain < -far; });
   std::ranges::stable_sort(several, std::ranges::greater{}, &Proposal::gain);
   result.other_sets = other_sets(trials, estimate, several, candidates.size(), reach);
   for (size_t m = 0; m < estimate.members.size(); ++m) {
     result.weights[m].loss = -removal[m] * n / evidence.rows();
     std::vector<Proposal> near;
     for (const Proposal& p : exchanges)
-      if (p.gain > -3 * reach) near.push_back(p);
+      if (p.gain > -far) near.push_back(p);
     result.substitutes.push_back(substitutes_of(trials, estimate, m, near, candidates.size(), reach));
     double others = std::exp(-std::min(result.weights[m].loss, 600.0) / 2);
     for (const Substitute& s : result.substitutes[m]) others += std::exp(-std::max(s.loss, 0.0) / 4);
