@@ -115,6 +115,13 @@ std::optional<double> loss_of(Trials& trials, const Estimate& estimate, const Pr
   return loss < reach ? std::optional(loss) : std::nullopt;
 }
 
+/// Whether one candidate comes in the place of the same member.
+bool contains(const std::vector<Proposal>& list, const Proposal& proposal) {
+  return std::ranges::any_of(list, [&](const Proposal& p) {
+    return p.removed == proposal.removed && p.added[0].candidate == proposal.added[0].candidate;
+  });
+}
+
 /// What else would do: every other candidate in the place of a member, its shape and all parameters fitted.
 std::vector<Substitute> substitutes_of(Trials& trials, const Estimate& estimate, size_t member,
                                        const std::vector<Proposal>& exchanges, size_t catalogue,
@@ -228,6 +235,7 @@ Conclusion conclude(Trials& trials, const std::vector<Candidate>& candidates,
   const std::vector<Proposal> exchanges = evidence.exchanges();
   // What a linearisation promises far from where it was made may be a hundred off.
   const double reach = std::max(10.0, 0.002 * n), far = std::max(100.0, 3 * reach);
+  const std::vector<Proposal> swaps = shape_swaps(estimate.members, candidates);
   std::vector<Proposal> several = evidence.exchanges_for_pairs();
   std::ranges::copy(exchanges, std::back_inserter(several));
   std::erase_if(several, [&](const Proposal& p) { return p.gain < -far; });
@@ -235,9 +243,9 @@ Conclusion conclude(Trials& trials, const std::vector<Candidate>& candidates,
   result.other_sets = other_sets(trials, estimate, several, candidates.size(), reach);
   for (size_t m = 0; m < estimate.members.size(); ++m) {
     result.weights[m].loss = -removal[m] * n / evidence.rows();
-    std::vector<Proposal> near;
+    std::vector<Proposal> near = swaps;
     for (const Proposal& p : exchanges)
-      if (p.gain > -far) near.push_back(p);
+      if (p.gain > -far && !contains(swaps, p)) near.push_back(p);
     result.substitutes.push_back(substitutes_of(trials, estimate, m, near, candidates.size(), reach));
     double others = std::exp(-std::min(result.weights[m].loss, 600.0) / 2);
     for (const Substitute& s : result.substitutes[m]) others += std::exp(-std::max(s.loss, 0.0) / 4);

@@ -33,6 +33,11 @@ size_t parameters_of(const Candidate& candidate);
 /// The members with the proposal carried out.
 std::vector<Member> applied(const Proposal& proposal, std::vector<Member> members);
 
+/// Members that are pure shapes (a delay, a lag) replaced by another such of the same size: alike to first
+/// order, and too nonlinear for the evidence to see it.
+std::vector<Proposal> shape_swaps(const std::vector<Member>& members,
+                                  const std::vector<Candidate>& candidates);
+
 /// Sums of squares of the errors, of the members' sensitivities, and of every shape.
 class Evidence {
  public:

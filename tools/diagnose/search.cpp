@@ -249,6 +249,8 @@ class Search {
       for (size_t i = 0; i < std::min(tried_exchanges, proposals.size()); ++i)
         if (proposals[i].gain >= -0.01 * evidence.rows())
           others.push_back(applied(proposals[i], best_.members));
+      for (const Proposal& swap : shape_swaps(best_.members, candidates_))
+        others.push_back(applied(swap, best_.members));
       if (auto members = mass_for_gain(); !members.empty()) others.push_back(std::move(members));
       Estimate best;
       double best_score = score(best_) - 3;
