@@ -1,6 +1,7 @@
 /// Records of an axis that the generator's plant makes (tests/hidden_effects, plain C): its physics, its
 /// solver and its random numbers share nothing with the blocks. Any motion, controller or none, any units.
 #pragma once
+#include <unistd.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <algorithm>
@@ -64,7 +65,7 @@ class HiddenAxis {
   explicit HiddenAxis(HiddenMachine machine = {}) : machine_(std::move(machine)) {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
     folder_ = std::filesystem::path(testing::TempDir()) /
-              fmt::format("hidden_axis_{}_{}", test->test_suite_name(), test->name());
+              fmt::format("hidden_axis_{}_{}_{}", getpid(), test->test_suite_name(), test->name());
     std::filesystem::create_directories(folder_);
     write_diagram();
   }

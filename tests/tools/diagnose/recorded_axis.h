@@ -1,5 +1,6 @@
 /// Records of a made-up axis in closed loop, with a force that the diagram beside them does not know.
 #pragma once
+#include <unistd.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <cmath>
@@ -30,8 +31,9 @@ class RecordedAxis {
  public:
   explicit RecordedAxis(const Truth& truth) : truth_(truth) {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              fmt::format("recorded_axis_{}_{}_{}", test->test_suite_name(), test->name(), truth.seed);
+    folder_ =
+        std::filesystem::path(testing::TempDir()) /
+        fmt::format("recorded_axis_{}_{}_{}_{}", getpid(), test->test_suite_name(), test->name(), truth.seed);
     std::filesystem::create_directories(folder_);
     record();
     write_diagram(), write_experiment("train"), write_data("train");
