@@ -139,7 +139,7 @@ std::vector<Substitute> substitutes_of(Trials& trials, const Estimate& estimate,
 /// The same for several at a time; the most promising are tried.
 std::vector<OtherSet> other_sets(Trials& trials, const Estimate& estimate,
                                  const std::vector<Proposal>& proposals, size_t catalogue, double reach) {
-  constexpr size_t most_tried = 8, most_told = 3;
+  constexpr size_t most_tried = 5, most_told = 3;
   std::vector<OtherSet> list;
   std::set<std::multiset<std::string>> tried;
   for (const Proposal& proposal : proposals) {
@@ -238,7 +238,7 @@ Conclusion conclude(Trials& trials, const std::vector<Candidate>& candidates,
   const std::vector<Proposal> swaps = shape_swaps(estimate.members, candidates);
   std::vector<Proposal> several = evidence.exchanges_for_pairs();
   std::ranges::copy(exchanges, std::back_inserter(several));
-  std::erase_if(several, [&](const Proposal& p) { return p.gain < -far; });
+  std::erase_if(several, [&](const Proposal& p) { return p.gain < -std::max(30.0, reach); });
   std::ranges::stable_sort(several, std::ranges::greater{}, &Proposal::gain);
   result.other_sets = other_sets(trials, estimate, several, candidates.size(), reach);
   for (size_t m = 0; m < estimate.members.size(); ++m) {
