@@ -1,21 +1,10 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include "tools/diagnose/diagnose.h"
-#include "tools/report/typography.h"
+#include "tools/diagnose/wording.h"
 
 namespace loopwright {
 namespace {
-
-std::string shown(double value, const std::string& unit) {
-  const report::Quantity q = report::engineering(value, unit);
-  return q.unit.empty() ? q.value : fmt::format("{} {}", q.value, q.unit);
-}
-
-std::string joined(const std::vector<std::string>& names, const char* with) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : with) + name;
-  return text;
-}
 
 /// A force of position and velocity, which is what a Gpr block learns.
 bool can_be_learned(const Diagnosis& d) {

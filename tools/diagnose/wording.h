@@ -1,0 +1,23 @@
+/// How text and page of a diagnosis write quantities and lists.
+#pragma once
+#include <fmt/format.h>
+#include <string>
+#include <vector>
+#include "tools/report/typography.h"
+
+namespace loopwright {
+
+/// "3.2 mN"
+inline std::string shown(double value, const std::string& unit) {
+  const report::Quantity q = report::engineering(value, unit);
+  return q.unit.empty() ? q.value : fmt::format("{} {}", q.value, q.unit);
+}
+
+/// "cogging and spring", with " and "
+inline std::string joined(const std::vector<std::string>& names, const char* with) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : with) + name;
+  return text;
+}
+
+}  // namespace loopwright
