@@ -201,7 +201,8 @@ std::string unknown_number(const Effect& effect, const RecordSizes& sizes) {
 
 }  // namespace
 
-RecordSizes sizes_of(const std::vector<const Path*>& paths, const std::vector<const AxisModel*>& models) {
+RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
+                     const std::vector<const AxisModel*>& models) {
   RecordSizes sizes;
   double square = 0, count = 0, low = 1e300, high = -1e300;
   for (size_t i = 0; i < paths.size(); ++i) {

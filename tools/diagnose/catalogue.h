@@ -14,7 +14,8 @@ struct Catalogue {
 };
 
 /// Sizes of the records, all together.
-RecordSizes sizes_of(const std::vector<const Path*>& paths, const std::vector<const AxisModel*>& models);
+RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
+                     const std::vector<const AxisModel*>& models);
 
 /// Why an effect cannot be added to the diagram; empty: it can.
 using WhyNot = std::function<std::string(const Effect&)>;

@@ -67,7 +67,7 @@ double force_rms(const Trials& trials, const Estimate& estimate, size_t index) {
   for (size_t t = 0; t < trials.list.size(); ++t) {
     const Trial& trial = trials.list[t];
     const Fitted& fitted = estimate.fitted[t];
-    const Columns columns = member.candidate->columns(fitted.prediction.path, member.nonlinear);
+    const Columns columns = member.candidate->columns(*estimate.motion.paths[t], member.nonlinear);
     std::vector<float> whole(columns[0].size());
     for (size_t c = 0; c < columns.size(); ++c)
       for (size_t k = 0; k < whole.size(); ++k) whole[k] += float(member.linear[c]) * columns[c][k];
@@ -96,7 +96,7 @@ Weight weigh(const Trials& trials, Estimate& estimate, size_t member) {
 void maximise(Trials& trials, Estimate& estimate) {
   for (int round = 0; round < 2; ++round) {
     const Noise noise = fit_noise_alone(trials, estimate.fitted, estimate.noise, FreeNoise::all);
-    estimate = fit_members(trials, estimate.members, noise, estimate.paths(), 8);
+    estimate = fit_members(trials, estimate.members, noise, estimate.motion, 8);
   }
 }
 
@@ -105,7 +105,7 @@ void maximise(Trials& trials, Estimate& estimate) {
 std::optional<double> loss_of(Trials& trials, const Estimate& estimate, const Proposal& proposal,
                               size_t catalogue, double reach) {
   const Estimate other =
-      fit_members(trials, applied(proposal, estimate.members), estimate.noise, estimate.paths(), 4);
+      fit_members(trials, applied(proposal, estimate.members), estimate.noise, estimate.motion, 4);
   if (!other.is_valid) return {};
   size_t before = 0, now = 0;
   for (size_t m : proposal.removed) before += parameters_of(*estimate.members[m].candidate);
@@ -223,7 +223,7 @@ Conclusion conclude(Trials& trials, const std::vector<Candidate>& candidates,
                     weight.unique_force, trials.input_rms, estimate.noise.white, estimate.noise.slow()));
     std::vector<Member> members = estimate.members;
     members.erase(members.begin() + std::ptrdiff_t(weakest));
-    estimate = fit_members(trials, members, estimate.noise, estimate.paths(), 4);
+    estimate = fit_members(trials, members, estimate.noise, estimate.motion, 4);
   }
   const double n = double(fitted_numbers(trials));
   const std::vector<Shape> periodic = periodic_shapes(trials, estimate, candidates, 1);

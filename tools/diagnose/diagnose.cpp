@@ -103,21 +103,19 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
     if (options.progress) options.progress(stage, done);
   };
   progress("reading the records", 0);
-  std::vector<Fitted> motion;
+  Motion motion;
   Trials trials = prepare(diagram, experiments, options.load, motion);
   trials.interrupt = options.interrupt;
-  std::vector<const Path*> paths;
   std::vector<const AxisModel*> models;
-  for (size_t t = 0; t < trials.list.size(); ++t)
-    paths.push_back(&motion[t].prediction.path), models.push_back(trials.list[t].model.get());
+  for (const Trial& trial : trials.list) models.push_back(trial.model.get());
   const MachineUnits units = units_of(*models.front());
-  const RecordSizes sizes = sizes_of(paths, models);
+  const RecordSizes sizes = sizes_of(motion.paths, models);
   const std::vector<std::string> folders =
       options.catalogues.empty() ? std::vector<std::string>{catalogue_folder()} : options.catalogues;
   progress("running every effect's blocks on the records", 0.1);
   const Catalogue catalogue = make_catalogue(
       folders, units, sizes, attachable(diagram, experiments.front(), options.load, units, sizes));
-  const std::vector<Shape> shapes = shapes_of(catalogue.candidates, paths);
+  const std::vector<Shape> shapes = shapes_of(catalogue.candidates, motion);
   progress("searching", 0.4);
   const std::vector<Candidate> unknown = unknown_forces(sizes);
   std::vector<InverseDynamics> inverse;
@@ -150,7 +148,7 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   else if (is_fatal || std::ranges::any_of(result.findings, is_doubtful))
     // Names from a record that cannot bear them would be guesses.
     conclusion = conclude(trials, catalogue.candidates, shapes,
-                          fit_members(trials, {}, search_noise(trials), paths, 0));
+                          fit_members(trials, {}, search_noise(trials), motion, 0));
   result.diagram = diagram, result.experiments = experiments, result.trail = conclusion.trail;
   result.title = models.front()->plan().title;
   result.force_unit = units.force, result.position_unit = units.position;

@@ -79,21 +79,20 @@ std::vector<Proposal> shape_swaps(const std::vector<Member>& members,
 }
 
 void add_shapes(const Candidate& candidate, const std::vector<std::vector<double>>& points,
-                const std::vector<const Path*>& paths, std::vector<Shape>& shapes) {
+                const Motion& motion, std::vector<Shape>& shapes) {
   const size_t first = shapes.size();
   for (const auto& point : points) shapes.push_back({&candidate, point, {}});
-  for (const Path* path : paths) {
+  for (const auto& path : motion.paths) {
     std::vector<Columns> columns = candidate.columns_at(*path, points);
     for (size_t i = 0; i < points.size(); ++i) shapes[first + i].columns.push_back(std::move(columns[i]));
   }
 }
 
-std::vector<Shape> shapes_of(const std::vector<Candidate>& candidates,
-                             const std::vector<const Path*>& paths) {
+std::vector<Shape> shapes_of(const std::vector<Candidate>& candidates, const Motion& motion) {
   std::vector<Shape> shapes;
   for (const Candidate& candidate : candidates) {
     if (candidate.is_periodic) continue;
-    add_shapes(candidate, grid_points(candidate), paths, shapes);
+    add_shapes(candidate, grid_points(candidate), motion, shapes);
   }
   return shapes;
 }
@@ -122,7 +121,7 @@ Evidence::Evidence(const Trials& trials, const Estimate& estimate, const std::ve
   Eigen::Index top = 0;
   for (size_t t = 0; t < trials.list.size(); ++t) {
     const Fitted& fitted = estimate.fitted[t];
-    const Path& path = fitted.prediction.path;
+    const Path& path = *estimate.motion.paths[t];
     const auto fill = [&](Eigen::Index column, const std::vector<double>& values) {
       Eigen::Index r = top;
       for (size_t k : rows[t])
@@ -333,10 +332,13 @@ std::vector<Proposal> Evidence::exchanges_for_pairs() {
   for (const auto& removed : removals()) {
     const Errors errors = errors_without(removed);
     const std::vector<size_t> best = best_shapes(errors);
+    std::vector<double> alone;
+    for (size_t s : best) alone.push_back(with_shapes({s}, errors)->gain);
     for (size_t i = 0; i < best.size(); ++i)
       for (size_t j = i + 1; j < best.size(); ++j) {
         multiply(best[i], best[j]);
-        if (auto proposal = with_shapes({best[i], best[j]}, errors)) list.push_back(std::move(*proposal));
+        auto proposal = with_shapes({best[i], best[j]}, errors);
+        if (proposal && proposal->gain > std::max(alone[i], alone[j])) list.push_back(std::move(*proposal));
       }
   }
   std::ranges::stable_sort(list, std::ranges::greater{}, &Proposal::gain);

@@ -14,9 +14,9 @@ struct Shape {
 
 /// A candidate at several points, side by side.
 void add_shapes(const Candidate& candidate, const std::vector<std::vector<double>>& points,
-                const std::vector<const Path*>& paths, std::vector<Shape>& shapes);
+                const Motion& motion, std::vector<Shape>& shapes);
 /// Every candidate at every point of its grid; those that scan pitches are not among them.
-std::vector<Shape> shapes_of(const std::vector<Candidate>& candidates, const std::vector<const Path*>& paths);
+std::vector<Shape> shapes_of(const std::vector<Candidate>& candidates, const Motion& motion);
 
 /// A set of effects that explains the errors, as the linearisation sees it.
 struct Proposal {
@@ -53,7 +53,8 @@ class Evidence {
   Proposal best_pair(bool one_without_name = false);
   /// A member, or two, replaced by one shape: the best for each candidate, best first.
   std::vector<Proposal> exchanges() const;
-  /// A member, or two, replaced by two shapes: the best for each pair of candidates, best first.
+  /// A member, or two, replaced by two shapes, both of which it takes: the best for each pair of candidates,
+  /// best first.
   std::vector<Proposal> exchanges_for_pairs();
   /// The members without one, with what that saves (mostly negative).
   std::vector<double> gains_of_removal() const;

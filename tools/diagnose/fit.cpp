@@ -7,6 +7,7 @@ namespace loopwright::diagnosis {
 namespace {
 
 constexpr double least_gain = 0.01;  // of an iteration, in twice the log-likelihood
+constexpr double same_motion = 0.01;  // two models that differ less in ln(mean square) see the same motion
 
 struct NormalEquations {
   Eigen::MatrixXd G;
@@ -15,13 +16,13 @@ struct NormalEquations {
 
 /// Jᵀ J and Jᵀ e over the fitted rows of all records.
 NormalEquations normal_equations(const Trials& trials, const std::vector<Member>& members,
-                                 const std::vector<Fitted>& fitted, const std::vector<const Path*>& paths) {
+                                 const std::vector<Fitted>& fitted, const Motion& motion) {
   const Eigen::Index n = Eigen::Index(free_parameters(members).size());
   NormalEquations equations{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
   const size_t ports = trials.ports();
   for (size_t t = 0; t < trials.list.size(); ++t) {
     const Trial& trial = trials.list[t];
-    const Sensitivity s = sensitivity(members, *paths[t], fitted[t], trial.model->record().input);
+    const Sensitivity s = sensitivity(members, *motion.paths[t], fitted[t], trial.model->record().input);
     constexpr size_t chunk = 1024;
     Eigen::MatrixXd rows(Eigen::Index(chunk * ports), n + 1);
     for (size_t start = 0; start < trial.held_out_from; start += chunk) {
@@ -89,43 +90,43 @@ std::vector<Member> moved(std::vector<Member> members, const std::vector<FreePar
   return members;
 }
 
-}  // namespace
-
-std::vector<const Path*> Estimate::paths() const {
-  std::vector<const Path*> list;
-  for (const Fitted& f : fitted) list.push_back(&f.prediction.path);
-  return list;
+Estimate evaluated(Trials& trials, std::vector<Member> members, const Noise& noise, const Motion& motion) {
+  Estimate estimate;
+  estimate.members = std::move(members), estimate.noise = noise, estimate.motion = motion;
+  estimate.fitted = run_members(trials, estimate.members, motion, noise);
+  estimate.mean_square = mean_square(trials, estimate.fitted);
+  estimate.profile = profile(trials, estimate.fitted);
+  estimate.is_valid = std::isfinite(estimate.mean_square);
+  return estimate;
 }
 
-Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& noise,
-                     const std::vector<const Path*>& paths, int iterations) {
-  Estimate best;
-  best.members = std::move(members), best.noise = noise;
-  best.fitted = run_members(trials, best.members, paths, noise);
-  best.mean_square = mean_square(trials, best.fitted);
-  best.profile = diagnosis::profile(trials, best.fitted);
-  best.is_valid = std::isfinite(best.mean_square);
-  if (!best.is_valid) return best;
+/// On the motion that it saw itself.
+Estimate on_own_motion(Trials& trials, Estimate estimate) {
+  Motion motion{{}, estimate.profile};
+  for (Fitted& fitted : estimate.fitted)
+    motion.paths.push_back(std::make_shared<const Path>(std::move(fitted.prediction.path)));
+  return evaluated(trials, std::move(estimate.members), estimate.noise, motion);
+}
+
+}  // namespace
+
+Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& noise, const Motion& motion,
+                     int iterations) {
+  Estimate best = evaluated(trials, std::move(members), noise, motion);
   const std::vector<FreeParameter> free = free_parameters(best.members);
-  for (int i = 0; i < iterations && !free.empty(); ++i) {
-    // The first along the paths given, on which the columns of most members are known.
-    const std::vector<const Path*> now = i == 0 && !paths.empty() ? paths : best.paths();
-    const NormalEquations equations = normal_equations(trials, best.members, best.fitted, now);
+  const double far = same_motion * double(fitted_numbers(trials));
+  for (int i = 0; i < iterations && best.is_valid && !free.empty(); ++i) {
+    const NormalEquations equations = normal_equations(trials, best.members, best.fitted, best.motion);
     const Eigen::VectorXd step = step_in_range(equations, best.members, free);
     if (step.dot(equations.b) < least_gain * best.mean_square) break;  // what the step promises
     const double before = best.profile;
     double fraction = 1;
-    for (int shorter = 0; shorter < 4; ++shorter, fraction *= 0.35) {
-      Estimate next = best;
-      next.members = moved(best.members, free, step, fraction);
-      next.fitted = run_members(trials, next.members, now, noise);
-      next.mean_square = mean_square(trials, next.fitted);
-      next.profile = diagnosis::profile(trials, next.fitted);
-      if (!(next.profile < before)) continue;
-      best = std::move(next);
-      break;
+    for (int shorter = 0; shorter < 4 && best.profile == before; ++shorter, fraction *= 0.35) {
+      Estimate next = evaluated(trials, moved(best.members, free, step, fraction), noise, best.motion);
+      if (next.profile < before) best = std::move(next);
     }
     if (!(best.profile < before - least_gain)) break;
+    if (std::abs(best.profile - best.motion.profile) > far) best = on_own_motion(trials, std::move(best));
   }
   return best;
 }
@@ -139,7 +140,7 @@ void widen_by_blocks(const Trials& trials, Estimate& estimate) {
   for (size_t t = 0; t < trials.list.size(); ++t) {
     const Trial& trial = trials.list[t];
     const Fitted& fitted = estimate.fitted[t];
-    const Path& path = fitted.prediction.path;
+    const Path& path = *estimate.motion.paths[t];
     const Sensitivity s = sensitivity(estimate.members, path, fitted, trial.model->record().input);
     const size_t block = std::max<size_t>(1, size_t(block_s / path.sample_time));
     Eigen::VectorXd sum(n), score(n);
@@ -165,7 +166,7 @@ void widen_by_blocks(const Trials& trials, Estimate& estimate) {
 void work_out_covariance(Trials& trials, Estimate& estimate) {
   const std::vector<FreeParameter> free = free_parameters(estimate.members);
   if (free.empty()) return;
-  const NormalEquations e = normal_equations(trials, estimate.members, estimate.fitted, estimate.paths());
+  const NormalEquations e = normal_equations(trials, estimate.members, estimate.fitted, estimate.motion);
   // A level that no row reaches is not known at all, yet a finite number.
   const auto inverse_root = [](double squares) { return squares > 0 ? 1 / std::sqrt(squares) : 1.0; };
   const Eigen::VectorXd scale = e.G.diagonal().unaryExpr(inverse_root);

@@ -7,19 +7,19 @@ namespace loopwright::diagnosis {
 struct Estimate {
   std::vector<Member> members;
   Noise noise;
+  Motion motion;  ///< on which the members ran
   std::vector<Fitted> fitted;
   double mean_square = 0;      ///< of the whitened errors; 1 when model and noise are right
   double profile = 0;          ///< see profile(): smaller is better
   Eigen::MatrixXd covariance;  ///< of the free parameters, times max(1, mean_square)
   bool is_valid = false;
-
-  std::vector<const Path*> paths() const;
 };
 
 /// Gauss-Newton on the prediction errors with the noise as given, from the members as given. Each iteration
-/// steps the diagram once or, where a step has to be shortened, a few times.
-Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& noise,
-                     const std::vector<const Path*>& paths, int iterations);
+/// steps the diagram once or, where a step has to be shortened, a few times. What a better model sees takes
+/// the place of the motion given as soon as the two may differ.
+Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& noise, const Motion& motion,
+                     int iterations);
 
 /// Which of its numbers the likelihood may change.
 enum class FreeNoise { with_random_walk, white_and_slow, all };

@@ -129,7 +129,7 @@ double short_horizon_error(Trials& trials, const Estimate& estimate, double hori
     AxisModel& model = *trials.list[t].model;
     const AxisRecord& record = model.record();
     const Path& path = estimate.fitted[t].prediction.path;
-    const Drives drives = drives_of(estimate.members, path, record.input);
+    const Drives drives = drives_of(estimate.members, *estimate.motion.paths[t], record.input);
     model.set_added_inertia(inertia);
     model.start(path.position[0], path.velocity[0]);
     const size_t horizon = std::max<size_t>(2, size_t(horizon_s / record.sample_time));

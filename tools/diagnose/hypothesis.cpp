@@ -137,8 +137,8 @@ Drives drives_of(const std::vector<Member>& members, const Path& path, const std
   return drives;
 }
 
-std::vector<Fitted> run_members(Trials& trials, const std::vector<Member>& members,
-                                const std::vector<const Path*>& paths, const Noise& noise) {
+std::vector<Fitted> run_members(Trials& trials, const std::vector<Member>& members, const Motion& motion,
+                                const Noise& noise) {
   if (trials.interrupt && *trials.interrupt) throw Interrupted{};
   std::vector<Fitted> result;
   const double inertia = added_inertia(members);
@@ -150,10 +150,10 @@ std::vector<Fitted> run_members(Trials& trials, const std::vector<Member>& membe
     fitted.gains = gains_of(fitted.axis, noise, model.nominal_inertia());
     const std::vector<double>& raw = model.record().input;
     Drives drives;
-    if (paths.empty())
+    if (motion.paths.empty())
       drives = {raw, std::vector<double>(raw.size(), 0.0), {}};
     else
-      drives = drives_of(members, *paths[t], raw);
+      drives = drives_of(members, *motion.paths[t], raw);
     fitted.prediction = predict(model, fitted.gains, drives, trials.rest_speed);
     fitted.white = fitted.prediction.error;
     whiten(fitted.white, fitted.gains);

@@ -1,6 +1,7 @@
 /// A model under test: the nominal diagram and some effects, run along every record.
 #pragma once
 #include <atomic>
+#include <limits>
 #include <memory>
 #include <optional>
 #include "tools/diagnose/candidate.h"
@@ -28,6 +29,13 @@ struct Trials {
   size_t ports() const { return list.front().model->record().measured.size(); }
 };
 
+/// What the blocks of effects run on: the motion that one prediction saw. Two sets of effects can be held
+/// against each other on the same motion; on different ones even the same set differs a little.
+struct Motion {
+  std::vector<std::shared_ptr<const Path>> paths;            ///< of each record
+  double profile = std::numeric_limits<double>::infinity();  ///< of the prediction that saw it
+};
+
 /// What the members make of one record.
 struct Fitted {
   LinearAxis axis;
@@ -36,10 +44,9 @@ struct Fitted {
   std::vector<double> white;  ///< whitened errors
 };
 
-/// Runs the nominal diagram with the members along each record. The members' own blocks run on `paths`, the
-/// motion of an earlier prediction; nothing when a run went astray.
-std::vector<Fitted> run_members(Trials& trials, const std::vector<Member>& members,
-                                const std::vector<const Path*>& paths, const Noise& noise);
+/// Runs the nominal diagram with the members along each record; without members no motion is needed.
+std::vector<Fitted> run_members(Trials& trials, const std::vector<Member>& members, const Motion& motion,
+                                const Noise& noise);
 
 /// The input behind the members that change it, and what the others consume, along a path.
 Drives drives_of(const std::vector<Member>& members, const Path& path, const std::vector<double>& raw_input);

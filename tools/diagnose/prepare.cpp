@@ -64,7 +64,7 @@ void mark_usable(Trial& trial, const Path& path) {
 }  // namespace
 
 Trials prepare(const std::string& diagram, const std::vector<std::string>& experiments,
-               const LoadOptions& options, std::vector<Fitted>& motion) {
+               const LoadOptions& options, Motion& motion) {
   Trials trials;
   std::vector<double> speed;
   double square = 0;
@@ -82,11 +82,14 @@ Trials prepare(const std::string& diagram, const std::vector<std::string>& exper
   trials.rest_speed = 0.005 * quantile(speed, 0.99);
   trials.input_rms = std::sqrt(square / double(std::max<size_t>(n, 1)));
   trials.noise = first_guess(trials);
-  motion = run_members(trials, {}, {}, trials.noise);
-  for (size_t t = 0; t < trials.list.size(); ++t) mark_usable(trials.list[t], motion[t].prediction.path);
-  trials.noise = fit_noise(trials, motion, trials.noise, FreeNoise::with_random_walk);
-  motion = run_members(trials, {}, {}, trials.noise);
-  for (size_t t = 0; t < trials.list.size(); ++t) mark_usable(trials.list[t], motion[t].prediction.path);
+  std::vector<Fitted> nominal = run_members(trials, {}, {}, trials.noise);
+  for (size_t t = 0; t < trials.list.size(); ++t) mark_usable(trials.list[t], nominal[t].prediction.path);
+  trials.noise = fit_noise(trials, nominal, trials.noise, FreeNoise::with_random_walk);
+  nominal = run_members(trials, {}, {}, trials.noise);
+  for (size_t t = 0; t < trials.list.size(); ++t) {
+    mark_usable(trials.list[t], nominal[t].prediction.path);
+    motion.paths.push_back(std::make_shared<const Path>(std::move(nominal[t].prediction.path)));
+  }
   return trials;
 }
 

@@ -5,8 +5,8 @@
 namespace loopwright::diagnosis {
 
 /// Reads the experiments, works out which rows count, and estimates the noise with a random walk standing in
-/// for every missing force. `motion` is that first prediction: unbiased whatever is missing.
+/// for every missing force. `motion` is what that first prediction saw: unbiased whatever is missing.
 Trials prepare(const std::string& diagram, const std::vector<std::string>& experiments,
-               const LoadOptions& options, std::vector<Fitted>& motion);
+               const LoadOptions& options, Motion& motion);
 
 }  // namespace loopwright::diagnosis

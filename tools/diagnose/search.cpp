@@ -16,13 +16,13 @@ constexpr size_t tried_exchanges = 3;
 class Search {
  public:
   Search(Trials& trials, const std::vector<Candidate>& candidates, const std::vector<Shape>& shapes,
-         const std::vector<Candidate>& unknown, const std::vector<Fitted>& motion)
+         const std::vector<Candidate>& unknown, const Motion& motion)
       : unknown_(unknown),
         trials_(trials),
         candidates_(candidates),
         shapes_(shapes),
-        noise_(search_noise(trials)) {
-    for (const Fitted& f : motion) motion_.push_back(&f.prediction.path);
+        noise_(search_noise(trials)),
+        motion_(motion) {
     best_ = fit_members(trials_, {}, noise_, motion_, 0);
   }
 
@@ -40,9 +40,8 @@ class Search {
   double score(const Estimate& e) const { return criterion(trials_, e, candidates_.size()); }
 
   Estimate refined(const std::vector<Member>& members, int iterations) {
-    return fit_members(trials_, members, noise_, paths(), iterations);
+    return fit_members(trials_, members, noise_, best_.motion, iterations);
   }
-  std::vector<const Path*> paths() const { return best_.members.empty() ? motion_ : best_.paths(); }
 
   void note(const char* what) {
     std::string line =
@@ -62,12 +61,12 @@ class Search {
   void note(const std::vector<Proposal>& proposals) {
     std::string line = "promised:";
     for (const Proposal& proposal : proposals | std::views::take(8))
-      line += fmt::format(" {} {:.0f},", names_of(proposal), proposal.gain);
+      line += fmt::format(" {} {:.0f},", names_of(proposal.added), proposal.gain);
     trail_.push_back(std::move(line));
   }
-  static std::string names_of(const Proposal& proposal) {
+  static std::string names_of(const std::vector<Member>& members) {
     std::string names;
-    for (const Member& member : proposal.added) {
+    for (const Member& member : members) {
       names += (names.empty() ? "" : " + ") + member.candidate->name;
       if (!member.candidate->form.empty()) names += " of " + member.candidate->form;
     }
@@ -107,7 +106,7 @@ class Search {
     std::vector<Estimate> tried;
     for (const Proposal& proposal : proposals) {
       Estimate trial = refined(applied(proposal, best_.members), 2);
-      trail_.push_back(fmt::format("tried {}: criterion {:+.1f}", names_of(proposal), score(trial) - before));
+      trail_.push_back(fmt::format("tried {}: criterion {:+.1f}", names_of(proposal.added), score(trial) - before));
       if (trial.is_valid && score(trial) < before - least) tried.push_back(std::move(trial));
     }
     std::ranges::stable_sort(tried, {}, [&](const Estimate& e) { return score(e); });
@@ -115,7 +114,7 @@ class Search {
     for (Estimate& trial : tried)
       if (!best.is_valid && adds_material(trial)) best = std::move(trial);
     if (!best.is_valid) return note("no extension"), false;
-    best_ = fit_members(trials_, best.members, noise_, best.paths(), 6);
+    best_ = fit_members(trials_, best.members, noise_, best.motion, 6);
     note("extended");
     return true;
   }
@@ -135,7 +134,7 @@ class Search {
 
   /// What the catalogue does not hold.
   std::vector<const Shape*> shapes_without_name() {
-    nameless_ = shapes_of(unknown_, paths());
+    nameless_ = shapes_of(unknown_, best_.motion);
     std::ranges::move(periodic_shapes(trials_, best_, unknown_, 1), std::back_inserter(nameless_));
     std::vector<const Shape*> list;
     for (const Shape& shape : nameless_) list.push_back(&shape);
@@ -198,7 +197,7 @@ class Search {
       if (!best_.is_valid || score(best_) >= score(nominal)) continue;
       note("started without a name");
       grow(4);
-      best = fit_members(trials_, best.members, noise_, best.paths(), 1);  // noise as it is now
+      best = fit_members(trials_, best.members, noise_, best.motion, 1);  // noise as it is now
       const double least = has_unknown(best) || !has_unknown(best_) ? 0 : worth_losing_names();
       if (score(best_) < score(best) - least) best = std::move(best_);
     }
@@ -253,9 +252,12 @@ class Search {
         others.push_back(applied(swap, best_.members));
       if (auto members = mass_for_gain(); !members.empty()) others.push_back(std::move(members));
       Estimate best;
-      double best_score = score(best_) - 3;
+      const double before = score(best_);
+      double best_score = before - 3;
       for (const std::vector<Member>& members : others) {
         Estimate trial = pruned(refined(members, 4));
+        trail_.push_back(
+            fmt::format("tried instead {}: criterion {:+.1f}", names_of(members), score(trial) - before));
         if (!trial.is_valid || score(trial) >= best_score) continue;
         best_score = score(trial), best = std::move(trial);
       }
@@ -280,7 +282,7 @@ class Search {
       if (gains[worst] < -10) break;
       std::vector<Member> members = estimate.members;
       members.erase(members.begin() + std::ptrdiff_t(worst));
-      Estimate without = fit_members(trials_, members, noise_, estimate.paths(), 4);
+      Estimate without = fit_members(trials_, members, noise_, estimate.motion, 4);
       if (!without.is_valid || score(without) > score(estimate)) break;
       estimate = std::move(without);
     }
@@ -291,7 +293,7 @@ class Search {
   void sharpen_noise() {
     if (is_much_left()) return;
     noise_ = fit_noise_alone(trials_, best_.fitted, noise_, FreeNoise::white_and_slow);
-    best_ = fit_members(trials_, best_.members, noise_, best_.paths(), 2);
+    best_ = fit_members(trials_, best_.members, noise_, best_.motion, 2);
     trail_.push_back(fmt::format("noise: white {:.3g}, slow {:.3g}", noise_.white, noise_.slow()));
   }
 
@@ -300,7 +302,7 @@ class Search {
   const std::vector<Candidate>& candidates_;
   const std::vector<Shape>& shapes_;
   Noise noise_;
-  std::vector<const Path*> motion_;
+  Motion motion_;  // along which the shapes were worked out
   std::vector<Shape> periodic_, nameless_;
   Estimate best_;
   std::vector<std::string> trail_;
@@ -327,7 +329,7 @@ double criterion(const Trials& trials, const Estimate& estimate, size_t catalogu
 
 SearchResult search(Trials& trials, const std::vector<Candidate>& candidates,
                     const std::vector<Shape>& shapes, const std::vector<Candidate>& unknown,
-                    const std::vector<Fitted>& motion) {
+                    const Motion& motion) {
   return Search(trials, candidates, shapes, unknown, motion).run();
 }
 

@@ -20,6 +20,6 @@ double criterion(const Trials& trials, const Estimate& estimate, size_t catalogu
 /// `unknown`: forces without a name, tried when no further effect helps; effects that they make worthless go.
 SearchResult search(Trials& trials, const std::vector<Candidate>& candidates,
                     const std::vector<Shape>& shapes, const std::vector<Candidate>& unknown,
-                    const std::vector<Fitted>& motion);
+                    const Motion& motion);
 
 }  // namespace loopwright::diagnosis

@@ -107,7 +107,7 @@ std::vector<double> spectrum(const Trials& trials, const Estimate& estimate, con
     for (double v : fitted.prediction.path.velocity)
       if (!candidate.repeats_in_time) top = std::max(top, std::abs(v));
   for (size_t t = 0; t < trials.list.size(); ++t) {
-    const Path& path = estimate.fitted[t].prediction.path;
+    const Path& path = *estimate.motion.paths[t];
     const std::vector<double> weight = adjoint(trials.list[t], estimate.fitted[t], candidate.acts);
     const std::vector<float> swell = envelope(candidate, path, stroke);
     const double T = path.sample_time;
@@ -198,7 +198,7 @@ std::vector<Shape> periodic_shapes(const Trials& trials, const Estimate& estimat
       for (const CandidateParameter& p : candidate.nonlinear) point.push_back(p.grid[p.grid.size() / 2]);
       point[0] = pitch;
     }
-    add_shapes(candidate, points, estimate.paths(), shapes);
+    add_shapes(candidate, points, estimate.motion, shapes);
   }
   return shapes;
 }

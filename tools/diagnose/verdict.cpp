@@ -37,7 +37,7 @@ void judge(Trials& trials, const Conclusion& conclusion, const Noise& tight, Dia
     std::vector<Member> named;
     std::ranges::copy_if(e.members, std::back_inserter(named),
                          [](const Member& m) { return !m.candidate->is_unknown; });
-    const Estimate seen = fit_members(trials, named, tight, e.paths(), 0);
+    const Estimate seen = fit_members(trials, named, tight, e.motion, 0);
     diagnosis.dependence = dependence_of(trials, seen.fitted);
     if (!has_unknown && !diagnosis.dependence.empty() && diagnosis.dependence.front().share > 0.05)
       add_variables(diagnosis.remainder_variables, diagnosis.dependence.front().variable);
