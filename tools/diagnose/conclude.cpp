@@ -115,6 +115,13 @@ std::optional<double> loss_of(Trials& trials, const Estimate& estimate, const Pr
   return loss < reach ? std::optional(loss) : std::nullopt;
 }
 
+/// What a set leaves unexplained, in twice the log-likelihood: about what a model of the errors' own
+/// correlation would gain. A set that is worse by less cannot be ruled out. Beyond what counts as white there
+/// is no end to it.
+double unexplained(double portmanteau) {
+  return std::clamp(portmanteau - double(portmanteau_lags), 0.0, most_portmanteau);
+}
+
 /// Whether one candidate comes in the place of the same member.
 bool contains(const std::vector<Proposal>& list, const Proposal& proposal) {
   return std::ranges::any_of(list, [&](const Proposal& p) {
@@ -182,7 +189,7 @@ std::vector<Weight> weigh_all(Trials& trials, Estimate& estimate) {
 }
 
 double portmanteau(const Trials& trials, const std::vector<Fitted>& fitted) {
-  constexpr size_t lags = 40;
+  constexpr size_t lags = portmanteau_lags;
   double sums[lags + 1] = {}, n = 0;
   const size_t ports = trials.ports();
   for (size_t t = 0; t < trials.list.size(); ++t) {
@@ -225,6 +232,7 @@ Conclusion conclude(Trials& trials, const std::vector<Candidate>& candidates,
     members.erase(members.begin() + std::ptrdiff_t(weakest));
     estimate = fit_members(trials, members, estimate.noise, estimate.motion, 4);
   }
+  result.portmanteau = portmanteau(trials, estimate.fitted);
   const double n = double(fitted_numbers(trials));
   const std::vector<Shape> periodic = periodic_shapes(trials, estimate, candidates, 1);
   std::vector<const Shape*> all;
@@ -234,7 +242,8 @@ Conclusion conclude(Trials& trials, const std::vector<Candidate>& candidates,
   const std::vector<double> removal = evidence.gains_of_removal();
   const std::vector<Proposal> exchanges = evidence.exchanges();
   // What a linearisation promises far from where it was made may be a hundred off.
-  const double reach = std::max(10.0, 0.002 * n), far = std::max(100.0, 3 * reach);
+  const double reach = std::max({10.0, 0.002 * n, unexplained(result.portmanteau)});
+  const double far = std::max(100.0, 3 * reach);
   const std::vector<Proposal> swaps = shape_swaps(estimate.members, candidates);
   std::vector<Proposal> several = evidence.exchanges_for_pairs();
   std::ranges::copy(exchanges, std::back_inserter(several));
@@ -253,7 +262,6 @@ Conclusion conclude(Trials& trials, const std::vector<Candidate>& candidates,
   }
   const Noise free = fit_noise(trials, estimate.fitted, estimate.noise, FreeNoise::all);
   result.is_remainder_noise = free.slow() <= most_slow_noise * free.white;
-  result.portmanteau = portmanteau(trials, estimate.fitted);
   result.held_out_mean_square = mean_square(trials, estimate.fitted, true);
   return result;
 }

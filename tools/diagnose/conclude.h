@@ -31,6 +31,7 @@ struct OtherSet {
 
 /// Above it the errors are not white. Counts of an encoder that pass at a steady speed alone make up to 170.
 constexpr double most_portmanteau = 300;
+constexpr size_t portmanteau_lags = 40;
 
 struct Conclusion {
   Estimate estimate;
