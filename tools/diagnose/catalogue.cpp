@@ -110,7 +110,7 @@ struct Compiled {
     std::vector<Columns> result(shapes.size());
     EffectRun run(plan, int(wanted));
     const size_t lanes = size_t(run.lanes());
-    std::vector<double> values(std::min(lanes, wanted) * rows), sizes(lanes, 1.0);
+    std::vector<double> values(std::min(lanes, wanted) * rows), slopes(values.size()), sizes(lanes, 1.0);
     for (size_t first = 0; first < wanted; first += lanes) {
       const size_t count = std::min(lanes, wanted - first);
       for (size_t lane = 0; lane < count; ++lane) {
@@ -118,12 +118,18 @@ struct Compiled {
         for (size_t i = 0; i < nonlinear.size(); ++i) run.set(nonlinear[i], shape[i], int(lane));
         if (!linear.empty()) sizes[lane] = run.isolate(linear[(first + lane) % per_shape], int(lane));
       }
-      run.run(signals, rows, values);
+      run.run(signals, rows, values, slopes);
       for (size_t lane = 0; lane < count; ++lane) {
         // What it adds to the input it does not consume.
         const double scale = (acts == Acts::input ? -1.0 : 1.0) / sizes[lane];
-        std::vector<float>& column = result[(first + lane) / per_shape].emplace_back(rows);
-        for (size_t k = 0; k < rows; ++k) column[k] = float(scale * values[lane * rows + k]);
+        Column& column = result[(first + lane) / per_shape].emplace_back();
+        const auto scaled = [&](const std::vector<double>& of) {
+          std::vector<float> list(rows);
+          for (size_t k = 0; k < rows; ++k) list[k] = float(scale * of[lane * rows + k]);
+          return list;
+        };
+        column.mean = scaled(values);
+        if (acts != Acts::sensor) column.slope = scaled(slopes);
       }
     }
     return result;

@@ -68,12 +68,13 @@ double force_rms(const Trials& trials, const Estimate& estimate, size_t index) {
     const Trial& trial = trials.list[t];
     const Fitted& fitted = estimate.fitted[t];
     const Columns columns = member.candidate->columns(*estimate.motion.paths[t], member.nonlinear);
-    std::vector<float> whole(columns[0].size());
+    Column whole{std::vector<float>(columns[0].mean.size()), {}};
     for (size_t c = 0; c < columns.size(); ++c)
-      for (size_t k = 0; k < whole.size(); ++k) whole[k] += float(member.linear[c]) * columns[c][k];
-    std::vector<double> seen(whole.begin(), whole.end());
+      for (size_t k = 0; k < whole.mean.size(); ++k)
+        whole.mean[k] += float(member.linear[c]) * columns[c].mean[k];
+    std::vector<double> seen(whole.mean.begin(), whole.mean.end());
     if (member.candidate->acts == Acts::sensor) {
-      const std::vector<float>* const feigned = &whole;
+      const Column* const feigned = &whole;
       seen =
           responses(fitted.axis, fitted.gains, fitted.prediction.path, Acts::sensor, {&feigned, 1}).front();
       for (double& e : seen) e *= estimate.noise.white;

@@ -130,7 +130,7 @@ Evidence::Evidence(const Trials& trials, const Estimate& estimate, const std::ve
     const Sensitivity own = sensitivity(estimate.members, path, fitted, trials.list[t].model->record().input);
     for (size_t c = 0; c < own.columns.size(); ++c) fill(Eigen::Index(c), own.columns[c]);
     for (const Acts acts : {Acts::force, Acts::input, Acts::sensor}) {
-      std::vector<const std::vector<float>*> columns;
+      std::vector<const Column*> columns;
       std::vector<Eigen::Index> places;
       for (size_t s = 0; s < shapes.size(); ++s)
         for (size_t c = 0; shapes[s]->candidate->acts == acts && c < shapes[s]->columns[t].size(); ++c)

@@ -66,7 +66,7 @@ std::vector<double> residual_with(const Trial& trial, const InverseDynamics& inv
   const AxisRecord& record = trial.model->record();
   const double T = record.sample_time, mass = trial.model->nominal_inertia();
   std::vector<double> residual = inverse.residual;
-  Drives consumed{record.input, std::vector<double>(record.rows(), 0.0), {}};
+  Drives consumed{record.input, std::vector<double>(record.rows(), 0.0), {}, {}, {}};
   std::vector<Member> others;
   for (const Member& member : members) {
     if (member.candidate->acts != Acts::force) {
@@ -76,7 +76,7 @@ std::vector<double> residual_with(const Trial& trial, const InverseDynamics& inv
     const Columns columns = member.candidate->columns(inverse.path, member.nonlinear);
     for (size_t c = 0; c < columns.size(); ++c)
       for (size_t k = 0; k < residual.size(); ++k)
-        consumed.force[k] += member.linear[c] * double(columns[c][k]);
+        consumed.force[k] += member.linear[c] * double(columns[c].mean[k]);
   }
   const Drives changed = drives_of(others, inverse.path, record.input);
   for (size_t k = 0; k < residual.size(); ++k) consumed.force[k] += record.input[k] - changed.input[k];

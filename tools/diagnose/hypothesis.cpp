@@ -21,24 +21,31 @@ std::vector<const Member*> chain_of(const std::vector<Member>& members) {
   return chain;
 }
 
-std::vector<double> through(const std::vector<const Member*>& chain, const Path& path,
-                            const std::vector<double>& raw_input) {
-  Path upstream;
-  if (chain.empty()) return raw_input;
-  upstream = path;
-  upstream.input = raw_input, upstream.identity = 0;
-  for (const Member* member : chain) {
-    const Columns columns = member->candidate->columns(upstream, member->nonlinear);
-    for (size_t c = 0; c < columns.size(); ++c)
-      for (size_t i = 0; i < upstream.input.size(); ++i)
-        upstream.input[i] -= member->linear[c] * double(columns[c][i]);
+/// Adds `sign` times what a member consumes; a slope that is not needed stays empty.
+void add_columns(const Member& member, const Columns& columns, std::vector<double>& mean,
+                 std::vector<double>& slope, double sign = 1) {
+  for (size_t c = 0; c < columns.size(); ++c) {
+    const double amplitude = sign * member.linear[c];
+    for (size_t k = 0; k < mean.size(); ++k) mean[k] += amplitude * double(columns[c].mean[k]);
+    if (columns[c].slope.empty()) continue;
+    slope.resize(mean.size(), 0.0);
+    for (size_t k = 0; k < slope.size(); ++k) slope[k] += amplitude * double(columns[c].slope[k]);
   }
-  return upstream.input;
 }
 
-void add_columns(const Member& member, const Columns& columns, std::vector<double>& sum, double sign = 1) {
-  for (size_t c = 0; c < columns.size(); ++c)
-    for (size_t i = 0; i < sum.size(); ++i) sum[i] += sign * member.linear[c] * double(columns[c][i]);
+/// The input behind a chain, as mean and slope.
+struct ChangedInput {
+  std::vector<double> mean, slope;
+};
+ChangedInput through(const std::vector<const Member*>& chain, const Path& path,
+                     const std::vector<double>& raw_input) {
+  if (chain.empty()) return {raw_input, {}};
+  Path upstream = path;
+  upstream.input = raw_input, upstream.identity = 0;
+  std::vector<double> slope;
+  for (const Member* member : chain)
+    add_columns(*member, member->candidate->columns(upstream, member->nonlinear), upstream.input, slope, -1);
+  return {std::move(upstream.input), std::move(slope)};
 }
 
 /// A step in a nonlinear parameter for its derivative, inside its range.
@@ -46,6 +53,12 @@ double difference_step(const CandidateParameter& range, double at) {
   if (range.span > 0) return 0.003 * at * at / range.span;
   const double step = 1e-3 * (range.logarithmic ? std::abs(at) : range.high - range.low);
   return at + step > range.high ? -step : step;
+}
+
+std::vector<float> divided(const std::vector<double>& change, double step) {
+  std::vector<float> result(change.size());
+  for (size_t k = 0; k < result.size(); ++k) result[k] = float(change[k] / step);
+  return result;
 }
 
 /// d(consumed)/d(parameter) of a member that does not change the input: its columns, then a difference for
@@ -61,28 +74,26 @@ Columns derivatives(const Member& member, const Path& path) {
   std::vector<Columns> at = member.candidate->columns_at(path, shapes);
   Columns result = member.candidate->amplitude_is_one ? Columns{} : at[0];
   for (size_t i = 0; i < steps.size(); ++i) {
-    std::vector<double> change(path.samples());
-    add_columns(member, at[i + 1], change);
-    add_columns(member, at[0], change, -1);
-    std::vector<float> column(change.size());
-    for (size_t k = 0; k < column.size(); ++k) column[k] = float(change[k] / steps[i]);
-    result.push_back(std::move(column));
+    std::vector<double> change(path.samples()), slope;
+    add_columns(member, at[i + 1], change, slope);
+    add_columns(member, at[0], change, slope, -1);
+    result.push_back({divided(change, steps[i]), divided(slope, steps[i])});
   }
   return result;
 }
 
 /// The same for a member that does, as consumed input at the end of the chain.
-std::vector<float> input_derivative(std::vector<Member> members, const FreeParameter& parameter,
-                                    const Path& path, const std::vector<double>& raw_input) {
+Column input_derivative(std::vector<Member> members, const FreeParameter& parameter, const Path& path,
+                        const std::vector<double>& raw_input) {
   double& value = value_of(members, parameter);
   const double step = parameter.is_linear ? 1e-3 : difference_step(range_of(members, parameter), value);
   value += step;
-  const std::vector<double> high = through(chain_of(members), path, raw_input);
+  ChangedInput change = through(chain_of(members), path, raw_input);
   value -= 2 * step;
-  const std::vector<double> low = through(chain_of(members), path, raw_input);
-  std::vector<float> result(high.size());
-  for (size_t i = 0; i < high.size(); ++i) result[i] = float((low[i] - high[i]) / (2 * step));
-  return result;
+  const ChangedInput low = through(chain_of(members), path, raw_input);
+  for (size_t k = 0; k < change.mean.size(); ++k) change.mean[k] -= low.mean[k];
+  for (size_t k = 0; k < change.slope.size(); ++k) change.slope[k] -= low.slope[k];
+  return {divided(change.mean, -2 * step), divided(change.slope, -2 * step)};
 }
 
 template <class F>
@@ -121,7 +132,8 @@ const CandidateParameter& range_of(const std::vector<Member>& members, const Fre
 
 Drives drives_of(const std::vector<Member>& members, const Path& path, const std::vector<double>& raw_input) {
   Drives drives;
-  drives.input = through(chain_of(members), path, raw_input);
+  ChangedInput changed = through(chain_of(members), path, raw_input);
+  drives.input = std::move(changed.mean), drives.input_slope = std::move(changed.slope);
   drives.force.assign(raw_input.size(), 0.0);
   const double inertia = added_inertia(members);
   if (inertia != 0)
@@ -129,10 +141,11 @@ Drives drives_of(const std::vector<Member>& members, const Path& path, const std
   for (const Member& member : members) {
     const Candidate& candidate = *member.candidate;
     if (candidate.acts == Acts::force)
-      add_columns(member, candidate.columns(path, member.nonlinear), drives.force);
+      add_columns(member, candidate.columns(path, member.nonlinear), drives.force, drives.force_slope);
     if (candidate.acts != Acts::sensor) continue;
+    std::vector<double> no_slope;
     drives.sensor.resize(raw_input.size(), 0.0);
-    add_columns(member, candidate.columns(path, member.nonlinear), drives.sensor);
+    add_columns(member, candidate.columns(path, member.nonlinear), drives.sensor, no_slope);
   }
   return drives;
 }
@@ -151,10 +164,10 @@ std::vector<Fitted> run_members(Trials& trials, const std::vector<Member>& membe
     const std::vector<double>& raw = model.record().input;
     Drives drives;
     if (motion.paths.empty())
-      drives = {raw, std::vector<double>(raw.size(), 0.0), {}};
+      drives = {raw, std::vector<double>(raw.size(), 0.0), {}, {}, {}};
     else
       drives = drives_of(members, *motion.paths[t], raw);
-    fitted.prediction = predict(model, fitted.gains, drives, trials.rest_speed);
+    fitted.prediction = predict(model, fitted.axis, fitted.gains, drives, trials.rest_speed);
     fitted.white = fitted.prediction.error;
     whiten(fitted.white, fitted.gains);
     result.push_back(std::move(fitted));

@@ -80,7 +80,10 @@ LinearAxis AxisModel::linearise() {
       }
     }
   }
-  const Eigen::Index v = velocity_ - plan_->signals;
+  const Eigen::Index v = velocity_ - plan_->signals, x = position_ - plan_->signals;
+  linear.slope_share = Eigen::VectorXd::Zero(n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    if (position_ >= 0 && seen_[size_t(i)] == x) linear.slope_share[i] = -1.0 / 6;
   for (Eigen::Index i = 0; i < n; ++i)
     if (seen_[size_t(i)] == v) {
       const double decay = linear.A(i, i), per_force = linear.push[i];  // of v' = (F - D v) / M, exactly

@@ -20,6 +20,7 @@ template <int States, int Ports> class ErrorFilter {
       for (int j = 0; j < n(); ++j) A_[i][j] = axis.A(i, j);
       push_[i] = axis.push[i];
       enters_[i] = is_input ? axis.input_push[i] : push_[i];
+      bends_[i] = axis.slope_share[i] * enters_[i];
       x_[i].setZero();
     }
     for (int p = 0; p < ports(); ++p) {
@@ -38,7 +39,7 @@ template <int States, int Ports> class ErrorFilter {
     }
   }
   /// The predictor corrects itself by what it saw, the truth goes on with the forces.
-  void step(const Side* e, const Side& force, bool rests) {
+  void step(const Side* e, const Side& force, const Side& slope, bool rests) {
     for (int p = 0; p < ports(); ++p) {
       for (int i = 0; i < n(); ++i) x_[i] -= K_[i][p] * e[p];
       d_ -= K_[n()][p] * e[p];
@@ -46,7 +47,7 @@ template <int States, int Ports> class ErrorFilter {
     if (rests) d_.setZero();
     Side next[most_];
     for (int i = 0; i < n(); ++i) {
-      next[i] = push_[i] * d_ + enters_[i] * force;
+      next[i] = push_[i] * d_ + enters_[i] * force + bends_[i] * slope;
       for (int j = 0; j < n(); ++j) next[i] += A_[i][j] * x_[j];
     }
     for (int i = 0; i < n(); ++i) x_[i] = next[i];
@@ -64,39 +65,41 @@ template <int States, int Ports> class ErrorFilter {
   static constexpr int most_ = States > 0 ? States + 1 : 24;
   const int n_, ports_;
   const double memory_;
-  double A_[most_][most_], push_[most_], enters_[most_], C_[2][most_], K_[most_][2], whiten_[2][2];
+  double A_[most_][most_], push_[most_], enters_[most_], bends_[most_], C_[2][most_], K_[most_][2], whiten_[2][2];
   Side x_[most_], d_;
 };
 
 /// At most `side_by_side` columns.
 template <class Filter>
-void run(Filter filter, const Path& path, Acts acts, std::span<const std::vector<float>* const> columns,
+void run(Filter filter, const Path& path, Acts acts, std::span<const Column* const> columns,
          std::span<std::vector<double>> out) {
   const size_t ports = size_t(filter.ports());
-  Side e[2], drive = Side::Zero();
+  Side e[2], drive = Side::Zero(), slope = Side::Zero();
   const Side none = Side::Zero();
   for (size_t k = 0; k < path.samples(); ++k) {
-    for (size_t c = 0; c < columns.size(); ++c) drive[Eigen::Index(c)] = double((*columns[c])[k]);
+    for (size_t c = 0; c < columns.size(); ++c) drive[Eigen::Index(c)] = double(columns[c]->mean[k]);
+    for (size_t c = 0; c < columns.size(); ++c)
+      if (!columns[c]->slope.empty()) slope[Eigen::Index(c)] = double(columns[c]->slope[k]);
     filter.seen(e);
     if (acts == Acts::sensor) e[0] += drive;
     for (size_t p = 0; p < ports; ++p) {
       const Side white = filter.white(e, int(p));
       for (size_t c = 0; c < columns.size(); ++c) out[c][k * ports + p] = white[Eigen::Index(c)];
     }
-    filter.step(e, acts == Acts::sensor ? none : Side(-drive), path.rests[k]);
+    filter.step(e, acts == Acts::sensor ? none : Side(-drive), Side(-slope), path.rests[k]);
   }
 }
 
 }  // namespace
 
-std::vector<const std::vector<float>*> pointers(const Columns& columns) {
-  std::vector<const std::vector<float>*> list;
-  for (const std::vector<float>& column : columns) list.push_back(&column);
+std::vector<const Column*> pointers(const Columns& columns) {
+  std::vector<const Column*> list;
+  for (const Column& column : columns) list.push_back(&column);
   return list;
 }
 
 std::vector<std::vector<double>> responses(const LinearAxis& axis, const Gains& gains, const Path& path,
-                                           Acts acts, std::span<const std::vector<float>* const> columns) {
+                                           Acts acts, std::span<const Column* const> columns) {
   const auto states = axis.A.rows(), ports = axis.C.rows();
   std::vector<std::vector<double>> out(columns.size(), std::vector<double>(path.samples() * size_t(ports)));
   for (size_t first = 0; first < columns.size(); first += side_by_side) {
@@ -114,7 +117,8 @@ std::vector<std::vector<double>> responses(const LinearAxis& axis, const Gains& 
   return out;
 }
 
-Prediction predict(AxisModel& model, const Gains& gains, const Drives& drives, double rest_speed) {
+Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains, const Drives& drives,
+                   double rest_speed) {
   const AxisRecord& record = model.record();
   const size_t rows = record.rows(), ports = record.measured.size();
   const std::span<const int> states = model.states();
@@ -153,6 +157,13 @@ Prediction predict(AxisModel& model, const Gains& gains, const Drives& drives, d
     if (path.rests[k]) d = 0;
     result.slow[k] = d;
     model.step(drives.input[k], d - drives.force[k]);
+    for (size_t i = 0; i < states.size(); ++i) {
+      const Eigen::Index at = Eigen::Index(i);
+      double by = 0;
+      if (!drives.input_slope.empty()) by += axis.input_push[at] * drives.input_slope[k];
+      if (!drives.force_slope.empty()) by -= axis.push[at] * drives.force_slope[k];
+      if (axis.slope_share[at] != 0) model.correct(states[i], axis.slope_share[at] * by);
+    }
     path.acceleration[k] = (model.velocity() - velocity_now) / record.sample_time;
     d *= gains.memory;
   }

@@ -10,9 +10,11 @@
 namespace loopwright::diagnosis {
 
 /// What the model is driven with, a value each sample: means over the sample of the input and of `force`,
-/// which pushes backward (it is what effects consume); `sensor` is added to the predicted position.
+/// which pushes backward (it is what effects consume); `sensor` is added to the predicted position. Slopes
+/// are changes within the sample, see Column; empty: none.
 struct Drives {
   std::vector<double> input, force, sensor;
+  std::vector<double> input_slope, force_slope;
 };
 
 /// The motion as the predictor saw it: position and velocity at the start of each sample, the acceleration
@@ -36,7 +38,8 @@ struct Prediction {
 };
 
 /// Steps the diagram along the record: correct with what was measured, predict the next sample.
-Prediction predict(AxisModel& model, const Gains& gains, const Drives& drives, double rest_speed);
+Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains, const Drives& drives,
+                   double rest_speed);
 
 /// The errors that other gains would have made on the same record, without stepping the diagram again.
 std::vector<double> with_gains(const LinearAxis& axis, const Prediction& prediction, const Gains& from,
@@ -52,13 +55,17 @@ enum class Acts {
   sensor,  ///< adds an error to the measured position
 };
 
-/// Columns of an effect at given nonlinear parameters: what it consumes per unit of each linear parameter
-/// (adds to the measured position, for Acts::sensor), a mean over each sample.
-using Columns = std::vector<std::vector<float>>;
+/// What is consumed, or added to the measured position: a mean over each sample, and how much more at its end
+/// than at its start, as far as that moves the axis (see EffectRun). Empty slope: none.
+struct Column {
+  std::vector<float> mean, slope;
+};
+/// Columns of an effect at given nonlinear parameters, per unit of each linear parameter.
+using Columns = std::vector<Column>;
 
 /// What each column adds to the whitened errors, samples × ports; eight at a time are as fast as two alone.
 std::vector<std::vector<double>> responses(const LinearAxis& axis, const Gains& gains, const Path& path,
-                                           Acts acts, std::span<const std::vector<float>* const> columns);
-std::vector<const std::vector<float>*> pointers(const Columns& columns);
+                                           Acts acts, std::span<const Column* const> columns);
+std::vector<const Column*> pointers(const Columns& columns);
 
 }  // namespace loopwright::diagnosis

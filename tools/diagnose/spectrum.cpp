@@ -88,12 +88,12 @@ std::vector<float> envelope(const Candidate& candidate, const Path& path, double
   for (const CandidateParameter& p : candidate.nonlinear) shape.push_back(p.grid[p.grid.size() / 2]);
   shape[0] = 1e9 * stroke;
   Columns columns = candidate.columns(path, shape);
-  const auto size = [](const std::vector<float>& c) {
+  const auto size = [](const Column& c) {
     double sum = 0;
-    for (float v : c) sum += double(v) * double(v);
+    for (float v : c.mean) sum += double(v) * double(v);
     return sum;
   };
-  return *std::ranges::max_element(columns, {}, size);
+  return std::ranges::max_element(columns, {}, size)->mean;
 }
 
 /// Explained squares at every spatial frequency, over all records.

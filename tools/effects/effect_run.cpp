@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <numbers>
 #include <stdexcept>
 #include "engine/diagram/in_memory.h"
 #include "engine/diagram/reader.h"
@@ -242,7 +243,8 @@ EffectRun::EffectRun(std::shared_ptr<const EffectPlan> plan, int lanes) : plan_(
   position_ = wire("position"), velocity_ = wire("velocity"), acceleration_ = wire("acceleration");
   input_ = wire("input"), force_ = wire("force");
   sample_ticks_ = std::llround(plan_->sizes.sample_time / plan_->plan.clock.time(1));
-  for (auto* list : {&value_, &integral_, &second_}) list->resize(size_t(run_->lanes()));
+  for (auto* list : {&value_, &slope_, &integral_, &second_, &area_})
+    list->resize(size_t(run_->lanes()));
 }
 
 EffectRun::Wire EffectRun::wire(const char* role) {
@@ -296,57 +298,75 @@ void EffectRun::start(const RoleSample& first) {
   std::ranges::fill(integral_, 0.0);
 }
 
-std::span<const double> EffectRun::mean_from(double now) {
+void EffectRun::mean_from(double now) {
   constexpr double gauss_point = 0.21132486540518712;  // (1 - 1/√3) / 2
   const double period = plan_->sizes.sample_time;
   run_->evaluate(plan_->acts_on_sensor ? now : now + gauss_point * period);
   read(plan_->output, value_);
-  if (plan_->acts_on_sensor) return value_;
+  if (plan_->acts_on_sensor) return;
   run_->evaluate(now + (1 - gauss_point) * period);
   read(plan_->output, second_);
-  for (size_t i = 0; i < value_.size(); ++i) value_[i] = 0.5 * (value_[i] + second_[i]);
-  return value_;
+  for (size_t i = 0; i < value_.size(); ++i) {
+    slope_[i] = std::numbers::sqrt3 * (second_[i] - value_[i]);
+    value_[i] = 0.5 * (value_[i] + second_[i]);
+  }
 }
 
-std::span<const double> EffectRun::step(const RoleSample& s) {
-  const double now = run_->time();
-  give(s, now, 0, bound_.size());
-  if (plan_->integral < 0) {
-    mean_from(now);
-    run_->integrate(sample_ticks_);
-    return value_;
-  }
+/// ∫ (u - ½) f du = mean / 2 - ∫ I du over the sample, u = 0 … 1, with the integral I of f from its start; a
+/// straight line of slope s has s / 12.
+void EffectRun::integrate_sample() {
+  const double period = plan_->sizes.sample_time;
+  const std::vector<double>& at_start = second_ = integral_;
+  std::ranges::fill(area_, 0.0);
   for (int64_t left = sample_ticks_; left > 0;) {
     run_->evaluate(run_->time());
     if (left == sample_ticks_) read(plan_->output, value_);
-    left -= run_->integrate(left);
+    slope_ = integral_;
+    const int64_t passed = run_->integrate(std::min(left, std::max<int64_t>(1, sample_ticks_ / steps_per_sample)));
+    left -= passed;
+    read(plan_->integral, integral_);
+    for (size_t i = 0; i < area_.size(); ++i)
+      area_[i] += 0.5 * double(passed) / double(sample_ticks_) * (slope_[i] + integral_[i] - 2 * at_start[i]);
   }
-  if (plan_->acts_on_sensor) return value_;
-  second_ = integral_;
-  read(plan_->integral, integral_);
-  for (size_t i = 0; i < value_.size(); ++i)
-    value_[i] = (integral_[i] - second_[i]) / plan_->sizes.sample_time;
-  return value_;
+  if (plan_->acts_on_sensor) return;
+  for (size_t i = 0; i < value_.size(); ++i) {
+    const double whole = integral_[i] - at_start[i];
+    value_[i] = whole / period, slope_[i] = 12 * (0.5 * whole - area_[i]) / period;
+  }
 }
 
-void EffectRun::run_in_turn(const RoleSignals& signals, size_t rows, std::span<double> values) {
+void EffectRun::step(const RoleSample& s) {
+  const double now = run_->time();
+  give(s, now, 0, bound_.size());
+  if (plan_->integral >= 0) return integrate_sample();
+  mean_from(now);
+  run_->integrate(sample_ticks_);
+}
+
+void EffectRun::run_in_turn(const RoleSignals& signals, size_t rows, std::span<double> values,
+                            std::span<double> slopes) {
   const size_t lanes = std::min(values.size() / rows, value_.size());
   for (size_t row = 0; row < rows; ++row) {
-    const std::span<const double> now = step(signals.at(row));
-    for (size_t lane = 0; lane < lanes; ++lane) values[lane * rows + row] = now[lane];
+    step(signals.at(row));
+    for (size_t lane = 0; lane < lanes; ++lane) values[lane * rows + row] = value_[lane];
+    for (size_t lane = 0; !slopes.empty() && lane < lanes; ++lane) slopes[lane * rows + row] = slope_[lane];
   }
 }
 
-void EffectRun::run_side_by_side(const RoleSignals& signals, size_t rows, std::span<double> values) {
+void EffectRun::run_side_by_side(const RoleSignals& signals, size_t rows, std::span<double> values,
+                                 std::span<double> slopes) {
   const double now = run_->time();
   for (size_t first = 0; first < rows; first += bound_.size()) {
     const size_t count = std::min(bound_.size(), rows - first);
     for (size_t i = 0; i < count; ++i) give(signals.at(first + i), now, i, i + 1);
-    std::ranges::copy(mean_from(now).first(count), values.begin() + std::ptrdiff_t(first));
+    mean_from(now);
+    std::copy_n(value_.begin(), count, values.begin() + std::ptrdiff_t(first));
+    if (!slopes.empty()) std::copy_n(slope_.begin(), count, slopes.begin() + std::ptrdiff_t(first));
   }
 }
 
-void EffectRun::run(const RoleSignals& signals, size_t rows, std::span<double> values) {
+void EffectRun::run(const RoleSignals& signals, size_t rows, std::span<double> values,
+                    std::span<double> slopes) {
   for (const std::string& role : plan_->effect.reads) {
     const std::span<const double> column = role == "position"       ? signals.position
                                            : role == "velocity"     ? signals.velocity
@@ -360,9 +380,9 @@ void EffectRun::run(const RoleSignals& signals, size_t rows, std::span<double> v
   if (rows == 0) return;
   start(signals.at(0));
   if (plan_->remembers)
-    run_in_turn(signals, rows, values);
+    run_in_turn(signals, rows, values, slopes);
   else
-    run_side_by_side(signals, rows, values);
+    run_side_by_side(signals, rows, values, slopes);
 }
 
 void EffectRun::column(const RoleSignals& signals, size_t parameter, std::span<double> values) {

@@ -56,7 +56,9 @@ struct RoleSignals {
 ///   acting on the input:           what it adds to the input [force], mean over the sample
 ///   acting on the sensor:          what it adds to the measured position [position], at the sample
 /// Within a sample the position is a parabola and velocity a straight line; input and force are held. The
-/// mean is by Gauss's two points where the effect has no states, else by an integrator beside them.
+/// mean is by Gauss's two points where the effect has no states, else by an integrator beside them. Beside
+/// the mean there is a slope: the change over the sample of the straight line with the same first moment. A
+/// force that swings fast moves the axis by its slope as well as by its mean.
 class EffectRun {
  public:
   /// `lanes`: how many sets are wanted; see lanes().
@@ -73,7 +75,8 @@ class EffectRun {
   /// Starts, and fills one value a row, the rows of lane 0, then those of lane 1, …: values.size() is a
   /// multiple of the rows, lanes beyond it are left out. Throws std::invalid_argument when a role that is
   /// read is missing.
-  void run(const RoleSignals& signals, size_t rows, std::span<double> values);
+  /// `slopes`: as many, or none wanted.
+  void run(const RoleSignals& signals, size_t rows, std::span<double> values, std::span<double> slopes = {});
   void run(const RoleSignals& signals, std::span<double> values) { run(signals, values.size(), values); }
   /// The same with one fitted parameter at 1 and all other linear ones at 0: the column of a linear
   /// parameter.
@@ -86,12 +89,15 @@ class EffectRun {
   Wire wire(const char* role);
   /// Back to rest at the first sample.
   void start(const RoleSample& first);
-  /// The values of the next sample, one a lane.
-  std::span<const double> step(const RoleSample& sample);
-  /// The means over samples that were given, at the two points of Gauss from `now` on.
-  std::span<const double> mean_from(double now);
-  void run_in_turn(const RoleSignals& signals, size_t rows, std::span<double> values);
-  void run_side_by_side(const RoleSignals& signals, size_t rows, std::span<double> values);
+  /// Fills `value_` and `slope_` with those of the next sample, one a lane.
+  void step(const RoleSample& sample);
+  /// The same over samples that were given, at the two points of Gauss from `now` on.
+  void mean_from(double now);
+  void integrate_sample();
+  void run_in_turn(const RoleSignals& signals, size_t rows, std::span<double> values,
+                   std::span<double> slopes);
+  void run_side_by_side(const RoleSignals& signals, size_t rows, std::span<double> values,
+                        std::span<double> slopes);
   /// To the lanes from `from` up to `to`.
   void give(const RoleSample& sample, double now, size_t from, size_t to);
   void read(Number number, std::vector<double>& to) const { run_->read({&number, 1}, to.data()); }
@@ -102,7 +108,7 @@ class EffectRun {
   std::vector<std::vector<double*>> bound_;
   Wire position_, velocity_, acceleration_, input_, force_;
   int64_t sample_ticks_ = 1;
-  std::vector<double> value_, integral_, second_;  // a lane each
+  std::vector<double> value_, slope_, integral_, second_, area_;  // a lane each
 };
 
 }  // namespace loopwright

@@ -25,8 +25,8 @@ struct Predicted {
         model(files.diagram(), files.experiment(), {}),
         axis(model.linearise()),
         gains(gains_of(axis, noise_of_record(), model.nominal_inertia())),
-        drives{model.record().input, std::vector<double>(model.record().rows(), 0.0), {}} {}
-  Prediction run() { return predict(model, gains, drives, 0.002); }
+        drives{model.record().input, std::vector<double>(model.record().rows(), 0.0), {}, {}, {}} {}
+  Prediction run() { return predict(model, axis, gains, drives, 0.002); }
 };
 
 Truth short_record() {
@@ -54,9 +54,13 @@ TEST(Predictor, ErrorsOfARightDiagramAreWhiteAndAsLargeAsTheNoiseSays) {
 TEST(Predictor, AForceChangesTheErrorsAsItsFilterSays) {
   Predicted p(short_record());
   const Prediction without = p.run();
-  std::vector<float> force(p.drives.force.size());
-  for (size_t k = 0; k < force.size(); ++k) force[k] = float(0.01 * std::sin(0.02 * double(k)));
-  for (size_t k = 0; k < force.size(); ++k) p.drives.force[k] = force[k];
+  Column force;
+  for (size_t k = 0; k < p.drives.force.size(); ++k) {
+    force.mean.push_back(float(0.01 * std::sin(0.02 * double(k))));
+    force.slope.push_back(float(0.3 * std::cos(0.03 * double(k))));
+    p.drives.force[k] = double(force.mean.back());
+    p.drives.force_slope.push_back(double(force.slope.back()));
+  }
   std::vector<double> change = p.run().error;
   for (size_t k = 0; k < change.size(); ++k) change[k] -= without.error[k];
   whiten(change, p.gains);
@@ -75,7 +79,7 @@ TEST(Predictor, OtherGainsNeedNoOtherRun) {
   Noise other = noise_of_record();
   other.white *= 3, other.measurement[0] *= 0.5, other.memory = 1, other.step = 0.002;
   const Gains gains = gains_of(p.axis, other, p.model.nominal_inertia());
-  const std::vector<double> expected = predict(p.model, gains, p.drives, 0.002).error;
+  const std::vector<double> expected = predict(p.model, p.axis, gains, p.drives, 0.002).error;
   const std::vector<double> error = with_gains(p.axis, first, p.gains, gains);
   double off = 0, size = 0;
   for (size_t k = 0; k < error.size(); ++k)
