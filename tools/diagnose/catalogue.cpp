@@ -122,14 +122,15 @@ struct Compiled {
       for (size_t lane = 0; lane < count; ++lane) {
         // What it adds to the input it does not consume.
         const double scale = (acts == Acts::input ? -1.0 : 1.0) / sizes[lane];
-        Column& column = result[(first + lane) / per_shape].emplace_back();
         const auto scaled = [&](const std::vector<double>& of) {
           std::vector<float> list(rows);
           for (size_t k = 0; k < rows; ++k) list[k] = float(scale * of[lane * rows + k]);
           return list;
         };
-        column.mean = scaled(values);
-        if (acts != Acts::sensor) column.slope = scaled(slopes);
+        const auto own = std::span(slopes).subspan(lane * rows, rows);
+        const bool has_slope = std::ranges::any_of(own, [](double s) { return s != 0; });
+        result[(first + lane) / per_shape].emplace_back(
+            scaled(values), has_slope ? scaled(slopes) : std::vector<float>());
       }
     }
     return result;

@@ -68,15 +68,15 @@ double force_rms(const Trials& trials, const Estimate& estimate, size_t index) {
     const Trial& trial = trials.list[t];
     const Fitted& fitted = estimate.fitted[t];
     const Columns columns = member.candidate->columns(*estimate.motion.paths[t], member.nonlinear);
-    Column whole{std::vector<float>(columns[0].mean.size()), {}};
+    std::vector<float> whole(columns[0].mean->size());
     for (size_t c = 0; c < columns.size(); ++c)
-      for (size_t k = 0; k < whole.mean.size(); ++k)
-        whole.mean[k] += float(member.linear[c]) * columns[c].mean[k];
-    std::vector<double> seen(whole.mean.begin(), whole.mean.end());
+      for (size_t k = 0; k < whole.size(); ++k) whole[k] += float(member.linear[c]) * (*columns[c].mean)[k];
+    std::vector<double> seen(whole.begin(), whole.end());
     if (member.candidate->acts == Acts::sensor) {
-      const Column* const feigned = &whole;
+      const Column feigned(whole);
+      const Column* const one = &feigned;
       seen =
-          responses(fitted.axis, fitted.gains, fitted.prediction.path, Acts::sensor, {&feigned, 1}).front();
+          responses(fitted.axis, fitted.gains, fitted.prediction.path, Acts::sensor, {&one, 1}).front();
       for (double& e : seen) e *= estimate.noise.white;
     }
     for (size_t k = 0; k < trial.held_out_from; ++k)

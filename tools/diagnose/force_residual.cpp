@@ -76,7 +76,7 @@ std::vector<double> residual_with(const Trial& trial, const InverseDynamics& inv
     const Columns columns = member.candidate->columns(inverse.path, member.nonlinear);
     for (size_t c = 0; c < columns.size(); ++c)
       for (size_t k = 0; k < residual.size(); ++k)
-        consumed.force[k] += member.linear[c] * double(columns[c].mean[k]);
+        consumed.force[k] += member.linear[c] * double((*columns[c].mean)[k]);
   }
   const Drives changed = drives_of(others, inverse.path, record.input);
   for (size_t k = 0; k < residual.size(); ++k) consumed.force[k] += record.input[k] - changed.input[k];

@@ -26,10 +26,12 @@ void add_columns(const Member& member, const Columns& columns, std::vector<doubl
                  std::vector<double>& slope, double sign = 1) {
   for (size_t c = 0; c < columns.size(); ++c) {
     const double amplitude = sign * member.linear[c];
-    for (size_t k = 0; k < mean.size(); ++k) mean[k] += amplitude * double(columns[c].mean[k]);
-    if (columns[c].slope.empty()) continue;
+    const std::vector<float>& mean_of = *columns[c].mean;
+    for (size_t k = 0; k < mean.size(); ++k) mean[k] += amplitude * double(mean_of[k]);
+    if (!columns[c].slope) continue;
+    const std::vector<float>& slope_of = *columns[c].slope;
     slope.resize(mean.size(), 0.0);
-    for (size_t k = 0; k < slope.size(); ++k) slope[k] += amplitude * double(columns[c].slope[k]);
+    for (size_t k = 0; k < slope.size(); ++k) slope[k] += amplitude * double(slope_of[k]);
   }
 }
 
@@ -77,7 +79,7 @@ Columns derivatives(const Member& member, const Path& path) {
     std::vector<double> change(path.samples()), slope;
     add_columns(member, at[i + 1], change, slope);
     add_columns(member, at[0], change, slope, -1);
-    result.push_back({divided(change, steps[i]), divided(slope, steps[i])});
+    result.emplace_back(divided(change, steps[i]), divided(slope, steps[i]));
   }
   return result;
 }
@@ -93,7 +95,7 @@ Column input_derivative(std::vector<Member> members, const FreeParameter& parame
   const ChangedInput low = through(chain_of(members), path, raw_input);
   for (size_t k = 0; k < change.mean.size(); ++k) change.mean[k] -= low.mean[k];
   for (size_t k = 0; k < change.slope.size(); ++k) change.slope[k] -= low.slope[k];
-  return {divided(change.mean, -2 * step), divided(change.slope, -2 * step)};
+  return Column(divided(change.mean, -2 * step), divided(change.slope, -2 * step));
 }
 
 template <class F>

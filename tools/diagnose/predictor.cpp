@@ -77,9 +77,9 @@ void run(Filter filter, const Path& path, Acts acts, std::span<const Column* con
   Side e[2], drive = Side::Zero(), slope = Side::Zero();
   const Side none = Side::Zero();
   for (size_t k = 0; k < path.samples(); ++k) {
-    for (size_t c = 0; c < columns.size(); ++c) drive[Eigen::Index(c)] = double(columns[c]->mean[k]);
+    for (size_t c = 0; c < columns.size(); ++c) drive[Eigen::Index(c)] = double((*columns[c]->mean)[k]);
     for (size_t c = 0; c < columns.size(); ++c)
-      if (!columns[c]->slope.empty()) slope[Eigen::Index(c)] = double(columns[c]->slope[k]);
+      if (columns[c]->slope) slope[Eigen::Index(c)] = double((*columns[c]->slope)[k]);
     filter.seen(e);
     if (acts == Acts::sensor) e[0] += drive;
     for (size_t p = 0; p < ports; ++p) {

@@ -2,6 +2,7 @@
 /// forces.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 #include "tools/diagnose/axis_model.h"
@@ -56,9 +57,16 @@ enum class Acts {
 };
 
 /// What is consumed, or added to the measured position: a mean over each sample, and how much more at its end
-/// than at its start, as far as that moves the axis (see EffectRun). Empty slope: none.
+/// than at its start, as far as that moves the axis (see EffectRun). No slope: null. Copies share the numbers.
 struct Column {
-  std::vector<float> mean, slope;
+  using Numbers = std::shared_ptr<const std::vector<float>>;
+  Numbers mean, slope;
+
+  Column() = default;
+  explicit Column(std::vector<float> mean_, std::vector<float> slope_ = {})
+      : mean(std::make_shared<const std::vector<float>>(std::move(mean_))) {
+    if (!slope_.empty()) slope = std::make_shared<const std::vector<float>>(std::move(slope_));
+  }
 };
 /// Columns of an effect at given nonlinear parameters, per unit of each linear parameter.
 using Columns = std::vector<Column>;

@@ -83,14 +83,14 @@ struct SpatialGrid {
 };
 
 /// How an effect of unit amplitude swells and fades when it does not repeat: the limit of an endless pitch.
-std::vector<float> envelope(const Candidate& candidate, const Path& path, double stroke) {
+Column::Numbers envelope(const Candidate& candidate, const Path& path, double stroke) {
   std::vector<double> shape;
   for (const CandidateParameter& p : candidate.nonlinear) shape.push_back(p.grid[p.grid.size() / 2]);
   shape[0] = 1e9 * stroke;
   Columns columns = candidate.columns(path, shape);
   const auto size = [](const Column& c) {
     double sum = 0;
-    for (float v : c.mean) sum += double(v) * double(v);
+    for (float v : *c.mean) sum += double(v) * double(v);
     return sum;
   };
   return std::ranges::max_element(columns, {}, size)->mean;
@@ -109,7 +109,8 @@ std::vector<double> spectrum(const Trials& trials, const Estimate& estimate, con
   for (size_t t = 0; t < trials.list.size(); ++t) {
     const Path& path = *estimate.motion.paths[t];
     const std::vector<double> weight = adjoint(trials.list[t], estimate.fitted[t], candidate.acts);
-    const std::vector<float> swell = envelope(candidate, path, stroke);
+    const Column::Numbers envelope_now = envelope(candidate, path, stroke);
+    const std::vector<float>& swell = *envelope_now;
     const double T = path.sample_time;
     const auto coordinate = [&](size_t k) {
       if (candidate.repeats_in_time) return (double(k) + 0.5) * T;

@@ -47,18 +47,20 @@ Candidate spline(std::string variables, size_t levels, double low, double high, 
   candidate.name = "unknown", candidate.form = std::move(variables), candidate.is_unknown = true;
   for (size_t i = 0; i < levels; ++i) candidate.linear.push_back({"level", "", -1e300, 1e300, false, {}});
   candidate.columns_at = [=](const Path& path, const std::vector<std::vector<double>>& shapes) {
-    Columns columns(levels, {std::vector<float>(path.samples()), {}});
+    std::vector<std::vector<float>> values(levels, std::vector<float>(path.samples()));
     const size_t intervals = levels - 3;
     const std::vector<double> along = variable(path), factors = factor(path);
     for (size_t k = 0; k < path.samples(); ++k) {
       const double at = std::clamp((along[k] - low) / (high - low), 0.0, 1.0) * double(intervals);
       const size_t i = std::min(size_t(at), intervals - 1);
       const double t = at - double(i), left = 1 - t, size = factors[k] / 6;
-      columns[i].mean[k] = float(size * left * left * left);
-      columns[i + 1].mean[k] = float(size * (4 - 3 * t * t * (2 - t)));
-      columns[i + 2].mean[k] = float(size * (4 - 3 * left * left * (2 - left)));
-      columns[i + 3].mean[k] = float(size * t * t * t);
+      values[i][k] = float(size * left * left * left);
+      values[i + 1][k] = float(size * (4 - 3 * t * t * (2 - t)));
+      values[i + 2][k] = float(size * (4 - 3 * left * left * (2 - left)));
+      values[i + 3][k] = float(size * t * t * t);
     }
+    Columns columns;
+    for (std::vector<float>& column : values) columns.emplace_back(std::move(column));
     return std::vector(shapes.size(), columns);
   };
   return candidate;
@@ -83,11 +85,12 @@ Candidate tone(const RecordSizes& sizes) {
   candidate.columns_at = [](const Path& path, const std::vector<std::vector<double>>& shapes) {
     std::vector<Columns> result;
     for (const std::vector<double>& shape : shapes) {
-      Columns& columns = result.emplace_back(2, Column{std::vector<float>(path.samples()), {}});
+      std::vector<float> sine(path.samples()), cosine(path.samples());
       for (size_t k = 0; k < path.samples(); ++k) {
         const double angle = 2 * std::numbers::pi * (double(k) + 0.5) * path.sample_time / shape[0];
-        columns[0].mean[k] = float(std::sin(angle)), columns[1].mean[k] = float(std::cos(angle));
+        sine[k] = float(std::sin(angle)), cosine[k] = float(std::cos(angle));
       }
+      result.push_back({Column(std::move(sine)), Column(std::move(cosine))});
     }
     return result;
   };

@@ -54,17 +54,17 @@ TEST(Predictor, ErrorsOfARightDiagramAreWhiteAndAsLargeAsTheNoiseSays) {
 TEST(Predictor, AForceChangesTheErrorsAsItsFilterSays) {
   Predicted p(short_record());
   const Prediction without = p.run();
-  Column force;
+  std::vector<float> mean, slope;
   for (size_t k = 0; k < p.drives.force.size(); ++k) {
-    force.mean.push_back(float(0.01 * std::sin(0.02 * double(k))));
-    force.slope.push_back(float(0.3 * std::cos(0.03 * double(k))));
-    p.drives.force[k] = double(force.mean.back());
-    p.drives.force_slope.push_back(double(force.slope.back()));
+    mean.push_back(float(0.01 * std::sin(0.02 * double(k))));
+    slope.push_back(float(0.3 * std::cos(0.03 * double(k))));
+    p.drives.force[k] = double(mean.back());
+    p.drives.force_slope.push_back(double(slope.back()));
   }
   std::vector<double> change = p.run().error;
   for (size_t k = 0; k < change.size(); ++k) change[k] -= without.error[k];
   whiten(change, p.gains);
-  const Columns columns{force};
+  const Columns columns{Column(mean, slope)};
   const std::vector<double> expected =
       responses(p.axis, p.gains, without.path, Acts::force, pointers(columns)).front();
   double off = 0, size = 0;
