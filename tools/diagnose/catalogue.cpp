@@ -212,12 +212,13 @@ RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
                      const std::vector<const AxisModel*>& models) {
   RecordSizes sizes;
   double square = 0, count = 0, low = 1e300, high = -1e300;
+  std::vector<double> speeds;
   for (size_t i = 0; i < paths.size(); ++i) {
     const Path& path = *paths[i];
     for (size_t k = 0; k < path.samples(); ++k) {
       low = std::min(low, path.predicted_position[k]), high = std::max(high, path.predicted_position[k]);
       if (k < 10) continue;
-      sizes.top_speed = std::max(sizes.top_speed, std::abs(path.velocity[k]));
+      speeds.push_back(std::abs(path.velocity[k]));
       if (!path.rests[k]) square += path.input[k] * path.input[k], count += 1;
     }
     for (size_t k = 20; k + 20 < path.samples(); k += 5)
@@ -227,6 +228,11 @@ RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
     sizes.duration = std::max(sizes.duration, double(path.samples()) * path.sample_time);
     if (const MeasuredPort* position = models[i]->record().find("position"))
       sizes.resolution = std::max(sizes.resolution, position->resolution);
+  }
+  if (!speeds.empty()) {  // a few rows may have been disturbed
+    const auto top = speeds.begin() + std::ptrdiff_t(0.995 * double(speeds.size() - 1));
+    std::ranges::nth_element(speeds, top);
+    sizes.top_speed = *top;
   }
   sizes.lowest_position = low, sizes.highest_position = high, sizes.stroke = high - low;
   sizes.force_level = std::sqrt(square / std::max(count, 1.0));
