@@ -135,7 +135,8 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   const bool is_fatal = std::ranges::any_of(result.findings, is_certain);
   Conclusion conclusion;
   if (!is_fatal) conclusion = find_names();
-  if (!is_fatal &&
+  // What is not explained anyway shows there as well.
+  if (!is_fatal && conclusion.is_white() &&
       conclusion.held_out_mean_square > most_held_out * std::max(1.0, conclusion.estimate.mean_square)) {
     for (Trial& trial : trials.list) trial.held_out_from = trial.usable.size();
     result.findings.push_back(
