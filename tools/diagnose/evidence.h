@@ -84,7 +84,7 @@ class Evidence {
   bool may_be_added(const Shape& shape, const std::vector<size_t>& removed) const;
   std::vector<size_t> best_shapes(const Errors& errors) const;
 
-  const std::vector<Member>& members_;
+  const std::vector<Member> members_;
   const std::vector<const Shape*> shapes_;
   const size_t catalogue_;
   std::vector<FreeParameter> free_;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <ranges>
 #include "tools/diagnose/conclude.h"
 #include "tools/diagnose/spectrum.h"
@@ -73,6 +74,11 @@ class Search {
     return names;
   }
 
+  void take(Estimate better) {
+    best_ = std::move(better);
+    evidence_.reset();
+  }
+
   /// Shapes on the grid, and the pitches that stand out now.
   std::vector<const Shape*> all_shapes() {
     periodic_ = periodic_shapes(trials_, best_, candidates_);
@@ -80,6 +86,11 @@ class Search {
     for (const Shape& shape : shapes_) list.push_back(&shape);
     for (const Shape& shape : periodic_) list.push_back(&shape);
     return list;
+  }
+  /// Of all that has a name, beside the best set.
+  Evidence& evidence() {
+    if (!evidence_) evidence_.emplace(trials_, best_, all_shapes(), candidates_.size());
+    return *evidence_;
   }
 
   bool is_much_left() const { return best_.mean_square >= 8; }
@@ -96,12 +107,11 @@ class Search {
   }
 
   bool extend() {
-    Evidence evidence(trials_, best_, all_shapes(), candidates_.size());
-    std::vector<Proposal> proposals = evidence.extensions();
+    std::vector<Proposal> proposals = evidence().extensions();
     note(proposals);
     const double single = proposals.empty() ? 0 : proposals.front().gain;
     if (proposals.size() > tried_extensions) proposals.resize(tried_extensions);
-    if (const Proposal pair = evidence.best_pair(); pair.gain > single + 10) proposals.push_back(pair);
+    if (const Proposal pair = evidence().best_pair(); pair.gain > single + 10) proposals.push_back(pair);
     const double before = score(best_), least = std::max(10.0, 0.002 * double(fitted_numbers(trials_)));
     std::vector<Estimate> tried;
     for (const Proposal& proposal : proposals) {
@@ -114,7 +124,7 @@ class Search {
     for (Estimate& trial : tried)
       if (!best.is_valid && adds_material(trial)) best = std::move(trial);
     if (!best.is_valid) return note("no extension"), false;
-    best_ = fit_members(trials_, best.members, noise_, best.motion, 6);
+    take(fit_members(trials_, best.members, noise_, best.motion, 6));
     note("extended");
     return true;
   }
@@ -165,7 +175,7 @@ class Search {
       best_score = score(trial), best = std::move(trial);
     }
     if (!best.is_valid) return false;
-    best_ = std::move(best);
+    take(std::move(best));
     note("without a name");
     prune();
     return true;
@@ -175,6 +185,7 @@ class Search {
   std::vector<std::vector<Member>> starts_without_name() {
     std::vector<std::vector<Member>> starts;
     for (Proposal& proposal : without_name()) starts.push_back(std::move(proposal.added));
+    evidence_.reset();  // its shapes come anew
     std::vector<const Shape*> shapes = shapes_without_name();
     std::ranges::copy(all_shapes(), std::back_inserter(shapes));
     Proposal pair = Evidence(trials_, best_, shapes, candidates_.size()).best_pair(true);
@@ -187,13 +198,13 @@ class Search {
   void start_from_what_has_no_name() {
     Estimate best = std::move(best_);
     const Estimate nominal = fit_members(trials_, {}, noise_, motion_, 0);
-    best_ = nominal;
+    take(nominal);
     std::vector<std::vector<Member>> starts = starts_without_name();
     for (const Member& member : best.members)
       if (member.candidate->is_unknown) starts.push_back({member});
     for (std::vector<Member>& start : starts) {
-      best_ = nominal;
-      best_ = refined(start, 4);
+      take(nominal);
+      take(refined(start, 4));
       if (!best_.is_valid || score(best_) >= score(nominal)) continue;
       note("started without a name");
       grow(4);
@@ -201,7 +212,7 @@ class Search {
       const double least = has_unknown(best) || !has_unknown(best_) ? 0 : worth_losing_names();
       if (score(best_) < score(best) - least) best = std::move(best_);
     }
-    best_ = std::move(best);
+    take(std::move(best));
     note("best of all");
   }
 
@@ -242,11 +253,10 @@ class Search {
   void exchange() {
     for (int round = 0; round < 4; ++round) {
       if (best_.members.empty()) return;
-      const Evidence evidence(trials_, best_, all_shapes(), candidates_.size());
-      const std::vector<Proposal> proposals = evidence.exchanges();
+      const std::vector<Proposal> proposals = evidence().exchanges();
       std::vector<std::vector<Member>> others;
       for (size_t i = 0; i < std::min(tried_exchanges, proposals.size()); ++i)
-        if (proposals[i].gain >= -0.01 * evidence.rows())
+        if (proposals[i].gain >= -0.01 * evidence().rows())
           others.push_back(applied(proposals[i], best_.members));
       for (const Proposal& swap : shape_swaps(best_.members, candidates_))
         others.push_back(applied(swap, best_.members));
@@ -262,15 +272,16 @@ class Search {
         best_score = score(trial), best = std::move(trial);
       }
       if (!best.is_valid) return;
-      best_ = std::move(best);
+      take(std::move(best));
       note("exchanged");
     }
   }
 
   void prune() {
-    const size_t before = best_.members.size();
-    best_ = pruned(std::move(best_));
-    if (best_.members.size() < before) note("removed");
+    Estimate left = pruned(best_);
+    if (left.members.size() == best_.members.size()) return;
+    take(std::move(left));
+    note("removed");
   }
 
   /// Without the members that are not worth their price.
@@ -293,7 +304,7 @@ class Search {
   void sharpen_noise() {
     if (is_much_left()) return;
     noise_ = fit_noise_alone(trials_, best_.fitted, noise_, FreeNoise::white_and_slow);
-    best_ = fit_members(trials_, best_.members, noise_, best_.motion, 2);
+    take(fit_members(trials_, best_.members, noise_, best_.motion, 2));
     trail_.push_back(fmt::format("noise: white {:.3g}, slow {:.3g}", noise_.white, noise_.slow()));
   }
 
@@ -305,6 +316,7 @@ class Search {
   Motion motion_;  // along which the shapes were worked out
   std::vector<Shape> periodic_, nameless_;
   Estimate best_;
+  std::optional<Evidence> evidence_;  // of best_
   std::vector<std::string> trail_;
 };
 

@@ -249,13 +249,20 @@ EffectRun::EffectRun(std::shared_ptr<const EffectPlan> plan, int lanes) : plan_(
 
 EffectRun::Wire EffectRun::wire(const char* role) {
   const auto setting = [&](const char* name) {
-    std::vector<double*> lanes;
+    Setting all;
     for (int lane = 0; lane < run_->lanes(); ++lane)
       if (double* number = run_->parameter(fmt::format("given_{}.{}", role, name), lane))
-        lanes.push_back(number);
-    return lanes;
+        all.lanes.push_back(number);
+    for (size_t lane = 0; lane < all.lanes.size(); ++lane)
+      all.is_row = all.lanes[lane] == all.lanes[0] + lane && (lane == 0 || all.is_row);
+    return all;
   };
   return {setting("value"), setting("slope"), setting("bend"), setting("since")};
+}
+
+void EffectRun::Setting::set(double to, size_t from, size_t end) const {
+  if (is_row) return std::fill(lanes[from], lanes[from] + (end - from), to);
+  for (size_t lane = from; lane < end; ++lane) *lanes[lane] = to;
 }
 
 void EffectRun::give(const RoleSample& s, double now, size_t from, size_t to) {
@@ -263,9 +270,9 @@ void EffectRun::give(const RoleSample& s, double now, size_t from, size_t to) {
   const double gain = std::isnan(s.next_velocity) ? s.acceleration : (s.next_velocity - s.velocity) / period;
   const double jerk = std::isnan(s.next_acceleration) ? 0.0 : (s.next_acceleration - s.acceleration) / period;
   const auto give_one = [&](const Wire& wire, double value, double slope, double bend) {
-    if (wire.value.empty()) return;
-    for (size_t lane = from; lane < to; ++lane)
-      *wire.value[lane] = value, *wire.slope[lane] = slope, *wire.bend[lane] = bend, *wire.since[lane] = now;
+    if (wire.value.lanes.empty()) return;
+    wire.value.set(value, from, to), wire.slope.set(slope, from, to);
+    wire.bend.set(bend, from, to), wire.since.set(now, from, to);
   };
   give_one(position_, s.position, s.velocity, 0.5 * gain), give_one(velocity_, s.velocity, gain, 0);
   give_one(acceleration_, s.acceleration, jerk, 0), give_one(input_, s.input, 0, 0);

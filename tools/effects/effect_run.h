@@ -83,8 +83,13 @@ class EffectRun {
   void column(const RoleSignals& signals, size_t parameter, std::span<double> values);
 
  private:
-  struct Wire {  // the parameters of an ExternalSignal, in every lane
-    std::vector<double*> value, slope, bend, since;
+  struct Setting {  // a parameter of an ExternalSignal, in every lane
+    std::vector<double*> lanes;
+    bool is_row = false;  // one lane lies beside the other
+    void set(double to, size_t from, size_t end) const;
+  };
+  struct Wire {
+    Setting value, slope, bend, since;
   };
   Wire wire(const char* role);
   /// Back to rest at the first sample.
