@@ -131,16 +131,11 @@ Evidence::Evidence(const Trials& trials, const Estimate& estimate, const std::ve
     for (size_t c = 0; c < own.columns.size(); ++c) fill(Eigen::Index(c), own.columns[c]);
     for (const Acts acts : {Acts::force, Acts::input, Acts::sensor}) {
       std::vector<const Column*> columns;
-      std::vector<Eigen::Index> places;
+      std::vector<double*> places;
       for (size_t s = 0; s < shapes.size(); ++s)
         for (size_t c = 0; shapes[s]->candidate->acts == acts && c < shapes[s]->columns[t].size(); ++c)
-          columns.push_back(&shapes[s]->columns[t][c]), places.push_back(first_column_[s] + Eigen::Index(c));
-      constexpr size_t together = 16;  // more would be many megabytes
-      for (size_t first = 0; first < columns.size(); first += together) {
-        const auto some = std::span(columns).subspan(first, std::min(together, columns.size() - first));
-        const auto seen = responses(fitted.axis, fitted.gains, path, acts, some);
-        for (size_t c = 0; c < seen.size(); ++c) fill(places[first + c], seen[c]);
-      }
+          columns.push_back(&shapes[s]->columns[t][c]), places.push_back(&X_(top, first_column_[s] + int(c)));
+      responses(fitted.axis, fitted.gains, path, acts, columns, rows[t], places);
     }
     fill(width, fitted.white);
     top += Eigen::Index(rows[t].size() * ports);

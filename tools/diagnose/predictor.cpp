@@ -3,6 +3,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <numeric>
 
 namespace loopwright::diagnosis {
 namespace {
@@ -94,14 +95,20 @@ using Block = std::array<Side, rows_at_a_time>;
   for (size_t r = 0; r < count; ++r) lane[r * side_by_side] = double(numbers[r]);
 }
 
+/// Where the responses of the columns go: each wanted row's ports one after the other.
+struct Rows {
+  std::span<const size_t> wanted;  ///< ascending
+  std::span<double* const> to;     ///< of each column
+};
+
 /// At most `side_by_side` columns.
 template <class Filter>
 [[gnu::always_inline]] inline void run(Filter filter, const Path& path, Acts acts,
-                                       std::span<const Column* const> columns,
-                                       std::span<std::vector<double>> out) {
+                                       std::span<const Column* const> columns, const Rows& rows) {
   const size_t ports = size_t(filter.ports());
   Block drive{}, slope{}, white[2];
-  for (size_t first = 0; first < path.samples(); first += rows_at_a_time) {
+  size_t next = 0;
+  for (size_t first = 0; next < rows.wanted.size(); first += rows_at_a_time) {
     const size_t count = std::min(rows_at_a_time, path.samples() - first);
     for (size_t c = 0; c < columns.size(); ++c) {
       gather(columns[c]->mean, first, count, c, drive);
@@ -114,26 +121,28 @@ template <class Filter>
       for (size_t p = 0; p < ports; ++p) white[p][r] = filter.white(e, int(p));
       filter.step(e, acts == Acts::sensor ? Side{} : drive[r], slope[r], path.rests[first + r]);
     }
+    const size_t begin = next;
+    while (next < rows.wanted.size() && rows.wanted[next] < first + count) ++next;
     for (size_t c = 0; c < columns.size(); ++c)
       for (size_t p = 0; p < ports; ++p) {
         const double* lane = reinterpret_cast<const double*>(white[p].data()) + c;
-        for (size_t r = 0; r < count; ++r) out[c][(first + r) * ports + p] = lane[r * side_by_side];
+        for (size_t i = begin; i < next; ++i)
+          rows.to[c][i * ports + p] = lane[(rows.wanted[i] - first) * side_by_side];
       }
   }
 }
 template <class Filter>
 [[gnu::target("avx2")]] void run_wide(const Filter& filter, const Path& path, Acts acts,
-                                      std::span<const Column* const> columns,
-                                      std::span<std::vector<double>> out) {
-  run(filter, path, acts, columns, out);
+                                      std::span<const Column* const> columns, const Rows& rows) {
+  run(filter, path, acts, columns, rows);
 }
 template <class Filter>
 void run_on_this_machine(const Filter& filter, const Path& path, Acts acts,
-                         std::span<const Column* const> columns, std::span<std::vector<double>> out) {
+                         std::span<const Column* const> columns, const Rows& rows) {
   if (__builtin_cpu_supports("avx2"))
-    run_wide(filter, path, acts, columns, out);
+    run_wide(filter, path, acts, columns, rows);
   else
-    run(filter, path, acts, columns, out);
+    run(filter, path, acts, columns, rows);
 }
 
 }  // namespace
@@ -144,22 +153,32 @@ std::vector<const Column*> pointers(const Columns& columns) {
   return list;
 }
 
-std::vector<std::vector<double>> responses(const LinearAxis& axis, const Gains& gains, const Path& path,
-                                           Acts acts, std::span<const Column* const> columns) {
+void responses(const LinearAxis& axis, const Gains& gains, const Path& path, Acts acts,
+               std::span<const Column* const> columns, std::span<const size_t> rows,
+               std::span<double* const> to) {
   const auto states = axis.A.rows(), ports = axis.C.rows();
-  std::vector<std::vector<double>> out(columns.size(), std::vector<double>(path.samples() * size_t(ports)));
+  const bool is_input = acts == Acts::input;
   for (size_t first = 0; first < columns.size(); first += side_by_side) {
     const size_t count = std::min<size_t>(side_by_side, columns.size() - first);
     const auto some = columns.subspan(first, count);
-    const auto to = std::span(out).subspan(first, count);
-    const bool is_input = acts == Acts::input;
+    const Rows wanted{rows, to.subspan(first, count)};
     if (states == 2 && ports == 1)
-      run_on_this_machine(ErrorFilter<2, 1>(axis, gains, is_input), path, acts, some, to);
+      run_on_this_machine(ErrorFilter<2, 1>(axis, gains, is_input), path, acts, some, wanted);
     else if (states == 2 && ports == 2)
-      run_on_this_machine(ErrorFilter<2, 2>(axis, gains, is_input), path, acts, some, to);
+      run_on_this_machine(ErrorFilter<2, 2>(axis, gains, is_input), path, acts, some, wanted);
     else
-      run_on_this_machine(ErrorFilter<0, 0>(axis, gains, is_input), path, acts, some, to);
+      run_on_this_machine(ErrorFilter<0, 0>(axis, gains, is_input), path, acts, some, wanted);
   }
+}
+
+std::vector<std::vector<double>> responses(const LinearAxis& axis, const Gains& gains, const Path& path,
+                                           Acts acts, std::span<const Column* const> columns) {
+  std::vector<size_t> rows(path.samples());
+  std::iota(rows.begin(), rows.end(), size_t(0));
+  std::vector<std::vector<double>> out(columns.size(), std::vector<double>(rows.size() * size_t(axis.C.rows())));
+  std::vector<double*> to;
+  for (std::vector<double>& column : out) to.push_back(column.data());
+  responses(axis, gains, path, acts, columns, rows, to);
   return out;
 }
 

@@ -74,6 +74,10 @@ using Columns = std::vector<Column>;
 /// What each column adds to the whitened errors, samples × ports; eight at a time are as fast as two alone.
 std::vector<std::vector<double>> responses(const LinearAxis& axis, const Gains& gains, const Path& path,
                                            Acts acts, std::span<const Column* const> columns);
+/// The same at some rows, ascending, each with its ports, written from to[column] on.
+void responses(const LinearAxis& axis, const Gains& gains, const Path& path, Acts acts,
+               std::span<const Column* const> columns, std::span<const size_t> rows,
+               std::span<double* const> to);
 std::vector<const Column*> pointers(const Columns& columns);
 
 }  // namespace loopwright::diagnosis
