@@ -110,27 +110,20 @@ struct Compiled {
     std::vector<Columns> result(shapes.size());
     EffectRun run(plan, int(wanted));
     const size_t lanes = size_t(run.lanes());
-    std::vector<double> values(std::min(lanes, wanted) * rows), slopes(values.size()), sizes(lanes, 1.0);
     for (size_t first = 0; first < wanted; first += lanes) {
-      const size_t count = std::min(lanes, wanted - first);
-      for (size_t lane = 0; lane < count; ++lane) {
+      std::vector<EffectRun::Output> outputs(std::min(lanes, wanted - first));
+      for (size_t lane = 0; lane < outputs.size(); ++lane) {
         const std::vector<double>& shape = shapes[(first + lane) / per_shape];
         for (size_t i = 0; i < nonlinear.size(); ++i) run.set(nonlinear[i], shape[i], int(lane));
-        if (!linear.empty()) sizes[lane] = run.isolate(linear[(first + lane) % per_shape], int(lane));
-      }
-      run.run(signals, rows, values, slopes);
-      for (size_t lane = 0; lane < count; ++lane) {
+        const double size = linear.empty() ? 1 : run.isolate(linear[(first + lane) % per_shape], int(lane));
         // What it adds to the input it does not consume.
-        const double scale = (acts == Acts::input ? -1.0 : 1.0) / sizes[lane];
-        const auto scaled = [&](const std::vector<double>& of) {
-          std::vector<float> list(rows);
-          for (size_t k = 0; k < rows; ++k) list[k] = float(scale * of[lane * rows + k]);
-          return list;
-        };
-        const auto own = std::span(slopes).subspan(lane * rows, rows);
-        const bool has_slope = std::ranges::any_of(own, [](double s) { return s != 0; });
-        result[(first + lane) / per_shape].emplace_back(
-            scaled(values), has_slope ? scaled(slopes) : std::vector<float>());
+        outputs[lane].factor = (acts == Acts::input ? -1.0 : 1.0) / size;
+      }
+      run.run(signals, rows, outputs);
+      for (size_t lane = 0; lane < outputs.size(); ++lane) {
+        auto& [factor, mean, slope] = outputs[lane];
+        if (std::ranges::all_of(slope, [](float s) { return s == 0; })) slope.clear();
+        result[(first + lane) / per_shape].emplace_back(std::move(mean), std::move(slope));
       }
     }
     return result;

@@ -350,30 +350,27 @@ void EffectRun::step(const RoleSample& s) {
   run_->integrate(sample_ticks_);
 }
 
-void EffectRun::run_in_turn(const RoleSignals& signals, size_t rows, std::span<double> values,
-                            std::span<double> slopes) {
-  const size_t lanes = std::min(values.size() / rows, value_.size());
+template <class Take>
+void EffectRun::run_in_turn(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take) {
   for (size_t row = 0; row < rows; ++row) {
     step(signals.at(row));
-    for (size_t lane = 0; lane < lanes; ++lane) values[lane * rows + row] = value_[lane];
-    for (size_t lane = 0; !slopes.empty() && lane < lanes; ++lane) slopes[lane * rows + row] = slope_[lane];
+    for (size_t lane = 0; lane < lanes; ++lane) take(lane, row, value_[lane], slope_[lane]);
   }
 }
 
-void EffectRun::run_side_by_side(const RoleSignals& signals, size_t rows, std::span<double> values,
-                                 std::span<double> slopes) {
+template <class Take>
+void EffectRun::run_side_by_side(const RoleSignals& signals, size_t rows, Take&& take) {
   const double now = run_->time();
   for (size_t first = 0; first < rows; first += bound_.size()) {
     const size_t count = std::min(bound_.size(), rows - first);
     for (size_t i = 0; i < count; ++i) give(signals.at(first + i), now, i, i + 1);
     mean_from(now);
-    std::copy_n(value_.begin(), count, values.begin() + std::ptrdiff_t(first));
-    if (!slopes.empty()) std::copy_n(slope_.begin(), count, slopes.begin() + std::ptrdiff_t(first));
+    for (size_t i = 0; i < count; ++i) take(size_t(0), first + i, value_[i], slope_[i]);
   }
 }
 
-void EffectRun::run(const RoleSignals& signals, size_t rows, std::span<double> values,
-                    std::span<double> slopes) {
+template <class Take>
+void EffectRun::run_lanes(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take) {
   for (const std::string& role : plan_->effect.reads) {
     const std::span<const double> column = role == "position"       ? signals.position
                                            : role == "velocity"     ? signals.velocity
@@ -387,9 +384,22 @@ void EffectRun::run(const RoleSignals& signals, size_t rows, std::span<double> v
   if (rows == 0) return;
   start(signals.at(0));
   if (plan_->remembers)
-    run_in_turn(signals, rows, values, slopes);
+    run_in_turn(signals, rows, std::min(lanes, value_.size()), take);
   else
-    run_side_by_side(signals, rows, values, slopes);
+    run_side_by_side(signals, rows, take);
+}
+
+void EffectRun::run(const RoleSignals& signals, size_t rows, std::span<double> values) {
+  run_lanes(signals, rows, rows ? values.size() / rows : 0,
+            [&](size_t lane, size_t row, double value, double) { values[lane * rows + row] = value; });
+}
+
+void EffectRun::run(const RoleSignals& signals, size_t rows, std::span<Output> outputs) {
+  for (Output& output : outputs) output.mean.resize(rows), output.slope.resize(rows);
+  run_lanes(signals, rows, outputs.size(), [&](size_t lane, size_t row, double value, double slope) {
+    Output& output = outputs[lane];
+    output.mean[row] = float(output.factor * value), output.slope[row] = float(output.factor * slope);
+  });
 }
 
 void EffectRun::column(const RoleSignals& signals, size_t parameter, std::span<double> values) {

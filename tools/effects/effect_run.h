@@ -75,9 +75,14 @@ class EffectRun {
   /// Starts, and fills one value a row, the rows of lane 0, then those of lane 1, …: values.size() is a
   /// multiple of the rows, lanes beyond it are left out. Throws std::invalid_argument when a role that is
   /// read is missing.
-  /// `slopes`: as many, or none wanted.
-  void run(const RoleSignals& signals, size_t rows, std::span<double> values, std::span<double> slopes = {});
+  void run(const RoleSignals& signals, size_t rows, std::span<double> values);
   void run(const RoleSignals& signals, std::span<double> values) { run(signals, values.size(), values); }
+  /// The same with the slopes, times a factor, as a column a lane; lanes beyond the list are left out.
+  struct Output {
+    double factor = 1;
+    std::vector<float> mean, slope;
+  };
+  void run(const RoleSignals& signals, size_t rows, std::span<Output> outputs);
   /// The same with one fitted parameter at 1 and all other linear ones at 0: the column of a linear
   /// parameter.
   void column(const RoleSignals& signals, size_t parameter, std::span<double> values);
@@ -99,10 +104,12 @@ class EffectRun {
   /// The same over samples that were given, at the two points of Gauss from `now` on.
   void mean_from(double now);
   void integrate_sample();
-  void run_in_turn(const RoleSignals& signals, size_t rows, std::span<double> values,
-                   std::span<double> slopes);
-  void run_side_by_side(const RoleSignals& signals, size_t rows, std::span<double> values,
-                        std::span<double> slopes);
+  /// Each value and slope goes to take(lane, row, value, slope).
+  template <class Take>
+  void run_lanes(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take);
+  template <class Take>
+  void run_in_turn(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take);
+  template <class Take> void run_side_by_side(const RoleSignals& signals, size_t rows, Take&& take);
   /// To the lanes from `from` up to `to`.
   void give(const RoleSample& sample, double now, size_t from, size_t to);
   void read(Number number, std::vector<double>& to) const { run_->read({&number, 1}, to.data()); }
