@@ -48,7 +48,8 @@ void add_log(const FlatDiagram& flat, const Layout& layout, const PortUnits& uni
   std::ranges::sort(names);
   const auto twice = std::ranges::adjacent_find(names);
   if (twice != names.end())
-    problems.error(flat.log.front().wire.place, "/log", "", fmt::format("\"{}\" is logged twice", *twice));
+    problems.error(flat.log.front().wire.at ? flat.log.front().wire.at->place : Place{}, "/log", "",
+                   fmt::format("\"{}\" is logged twice", *twice));
 }
 
 void add_rates_to_log(Plan& plan) {
@@ -84,19 +85,43 @@ void add_sources(const PortUnits& units, const std::vector<int>& flat_of_block, 
   }
 }
 
+using Ports = std::vector<std::pair<std::string, std::vector<Number>>>;
+
+/// Ports that are neighbours when all are sorted by name: those of a block, or one of a subdiagram.
+struct PortGroup {
+  size_t key, key_length;  // what their names begin with, in the text of all keys
+  size_t first, end;       // of the ports
+};
+
+/// The groups in the order of their names. The keys stand side by side: to compare names all over memory
+/// takes the longer the more there are.
+void sort_groups(std::vector<PortGroup>& groups, std::string_view keys) {
+  std::ranges::stable_sort(groups, {},
+                           [&](const PortGroup& group) { return keys.substr(group.key, group.key_length); });
+}
+
 /// Outputs and inputs of blocks and subdiagrams by full path.
 void add_ports(const FlatDiagram& flat, const Layout& layout, Plan& plan) {
   size_t count = flat.names.size();
   for (const FlatBlock& block : flat.blocks) count += block.inputs.size() + block.type->info.outputs.size();
-  plan.ports.reserve(count);
+  Ports ports;
+  ports.reserve(count);
+  std::vector<PortGroup> groups;
+  groups.reserve(flat.blocks.size() + flat.names.size());
+  std::string keys;
+  const auto add_group = [&](std::string_view name, std::string_view dot, size_t first) {
+    groups.push_back({keys.size(), name.size() + dot.size(), first, ports.size()});
+    keys.append(name).append(dot);
+  };
   const auto add = [&](const FlatBlock& block, std::string_view port, std::vector<Number> numbers) {
-    auto& entry = plan.ports.emplace_back(std::string{}, std::move(numbers));
+    auto& entry = ports.emplace_back(std::string{}, std::move(numbers));
     entry.first.reserve(block.path.size() + 1 + port.size());
     entry.first.append(block.path).append(".").append(port);
   };
   for (size_t b = 0; b < flat.blocks.size(); ++b) {
     const FlatBlock& block = flat.blocks[b];
     const BlockInfo& info = block.type->info;
+    const size_t first = ports.size();
     FlatWire own;
     own.block = int(b);
     for (own.output = 0; own.output < int(info.outputs.size()); ++own.output)
@@ -104,10 +129,20 @@ void add_ports(const FlatDiagram& flat, const Layout& layout, Plan& plan) {
     for (size_t i = 0; i < info.inputs.size(); ++i)
       if (block.inputs[i].size() == 1 && block.inputs[i][0].is_resolved())
         add(block, info.inputs[i].name, layout.numbers_of(block.inputs[i][0]));
+    std::stable_sort(ports.begin() + ptrdiff_t(first), ports.end(),
+                     [](const auto& a, const auto& c) { return a.first < c.first; });
+    add_group(block.path, ".", first);
   }
   for (const FlatName& name : flat.names)
-    if (name.wire.is_resolved()) plan.ports.emplace_back(name.name, layout.numbers_of(name.wire));
-  std::ranges::stable_sort(plan.ports, {}, [](const auto& p) { return std::string_view(p.first); });
+    if (name.wire.is_resolved()) {
+      ports.emplace_back(name.name, layout.numbers_of(name.wire));
+      add_group(name.name, "", ports.size() - 1);
+    }
+  sort_groups(groups, keys);
+  plan.ports.reserve(ports.size());
+  for (const PortGroup& group : groups)
+    std::move(ports.begin() + ptrdiff_t(group.first), ports.begin() + ptrdiff_t(group.end),
+              std::back_inserter(plan.ports));
 }
 
 void add_crossings(Plan& plan) {
@@ -142,8 +177,10 @@ void add_parameters(const Diagram& diagram, const FlatDiagram& flat, Plan& plan)
     for (const ParameterInfo& info : block.type->info.parameters) {
       const Value::Member* given = block.entry->settings.find(info.name);
       std::string text = given ? to_json(given->value) : info.default_text;
-      if (!info.unit.empty() && info.unit.find('$') == info.unit.npos) text += fmt::format(" {}", info.unit);
-      plan.parameters.emplace_back(fmt::format("{}.{}", block.path, info.name), std::move(text));
+      if (!info.unit.empty() && info.unit.find('$') == info.unit.npos) text.append(" ").append(info.unit);
+      auto& entry = plan.parameters.emplace_back(std::string{}, std::move(text));
+      entry.first.reserve(block.path.size() + 1 + info.name.size());
+      entry.first.append(block.path).append(".").append(info.name);
     }
 }
 

@@ -39,8 +39,8 @@ TEST(Json, GivesEveryValueAndNameItsPlaceAndPointer) {
   EXPECT_EQ(at(a.value.items[0].place), "2:10");
   EXPECT_EQ(at(a.value.items[1].place), "2:13");
   EXPECT_EQ(at(a.value.items[2].place), "2:21");
-  EXPECT_EQ(a.value.items[2].find("b")->value.pointer, "/a/2/b");
-  EXPECT_EQ(root.members[1].value.pointer, "/c~1d~0");
+  EXPECT_EQ(a.value.items[2].find("b")->value.place.pointer(), "/a/2/b");
+  EXPECT_EQ(root.members[1].value.place.pointer(), "/c~1d~0");
   EXPECT_EQ(at(root.members[1].value.place), "3:11");
   EXPECT_EQ(at(root.members[2].place), "3:19");
   EXPECT_EQ(at(root.members[2].value.place), "3:24");
@@ -191,10 +191,9 @@ TEST(JsonErrors, SizeHasALimit) {
 }
 
 TEST(JsonErrors, MemoryHasALimit) {
-  std::string many =
-      "{\"" + std::string(2000, 'x') + "\": [1";  // a long name stands in the pointer of every value
-  for (int i = 0; i < 400'000; ++i) many += ",1";
-  EXPECT_NE(problem_in(many + "]}").find("too many values"), std::string::npos);
+  std::string many = "[1";
+  for (int i = 0; i < 4'000'000; ++i) many += ",1";
+  EXPECT_NE(problem_in(many + "]").find("too many values"), std::string::npos);
 }
 
 TEST(JsonErrors, ThousandsOfDuplicatesCostNoThousandsOfWalks) {
