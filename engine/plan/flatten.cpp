@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <deque>
-#include <new>
 #include <optional>
 #include <unordered_map>
 #include <unordered_set>
@@ -19,6 +18,27 @@ struct Scope {
   std::vector<int> flat_blocks;                        // ordinary blocks: index in the flat list
   std::unordered_map<std::string_view, int> blocks;    // of the same, by name
   std::unordered_map<std::string_view, Scope*> inner;  // subdiagrams
+};
+
+/// The scalar blocks of a diagram, one after the other in memory. They live as long as any of them is held.
+class BlockValues {
+ public:
+  BlockValues() = default;
+  BlockValues(const BlockValues&) = delete;
+  BlockValues& operator=(const BlockValues&) = delete;
+  ~BlockValues() {
+    for (const auto& [value, kernels] : values_) kernels->destroy(value);
+  }
+  void* add(const Kernels<double>& kernels) {
+    void* const memory = memory_.allocate(kernels.size, 64);
+    kernels.construct(memory);
+    values_.emplace_back(memory, &kernels);
+    return memory;
+  }
+
+ private:
+  std::pmr::monotonic_buffer_resource memory_;
+  std::vector<std::pair<void*, const Kernels<double>*>> values_;
 };
 
 class Flattener {
@@ -63,17 +83,11 @@ class Flattener {
       broken_.push_back({&scope, entry.name});
       return;
     }
-    const Kernels<double>& kernels = flat.type->kernels;
-    void* memory = ::operator new(kernels.size, std::align_val_t(64));
-    kernels.construct(memory);
-    flat.value = {memory, [&kernels](void* p) {
-                    kernels.destroy(p);
-                    ::operator delete(p, std::align_val_t(64));
-                  }};
+    flat.value = {values_, values_->add(flat.type->kernels)};
     const size_t before = problems_.list().size();
-    flat.type->info.read(memory, entry.settings, flat.path, problems_);
+    flat.type->info.read(flat.value.get(), entry.settings, flat.path, problems_);
     if (problems_.list().size() == before)
-      flat.type->info.check(memory, Checker(entry.settings, flat.path, problems_));
+      flat.type->info.check(flat.value.get(), Checker(entry.settings, flat.path, problems_));
     flat.inputs.resize(flat.type->info.inputs.size());
     flat.output_lengths.assign(flat.type->info.outputs.size(), 1);
     scope.flat_blocks.push_back(int(flat_.blocks.size()));
@@ -342,6 +356,7 @@ class Flattener {
   Problems& problems_;
   const bool open_;
   FlatDiagram flat_;
+  std::shared_ptr<BlockValues> values_ = std::make_shared<BlockValues>();
   std::deque<Scope> scopes_;
   std::vector<Scope*> scope_of_block_;
   std::vector<std::pair<const Scope*, std::string>> broken_;

@@ -112,12 +112,12 @@ class Solver {
   PortUnits run() {
     propagate();
     for (const Equation& equation : equations_) check(equation);
-    PortUnits units(flat_.blocks.size());
+    PortUnits units;
+    units.first.reserve(flat_.blocks.size());
     for (size_t b = 0; b < flat_.blocks.size(); ++b) {
-      const size_t outputs = flat_.blocks[b].type->info.outputs.size();
-      units[b].reserve(outputs);
-      for (size_t o = 0; o < outputs; ++o)
-        units[b].push_back(value({int(b), &types_of_blocks_[b]->of_output(o), {}}));
+      units.first.push_back(units.outputs.size());
+      for (size_t o = 0; o < flat_.blocks[b].type->info.outputs.size(); ++o)
+        units.outputs.push_back(value({int(b), &types_of_blocks_[b]->of_output(o), {}}));
     }
     return units;
   }
