@@ -1,5 +1,6 @@
 #include "engine/diagram/json.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -184,10 +185,19 @@ class ValueBuilder {
         if (members[j].name == members[i].name) return true;
     return false;
   }
+  /// No two names share a hash: then none is there twice. Numbers in a row are sooner sorted than a table is
+  /// filled.
+  static bool have_own_hashes(std::span<const Value::Member> members) {
+    std::vector<size_t> hashes;
+    hashes.reserve(members.size());
+    for (const Value::Member& member : members) hashes.push_back(std::hash<std::string_view>()(member.name));
+    std::ranges::sort(hashes);
+    return std::ranges::adjacent_find(hashes) == hashes.end();
+  }
 
   void reject_duplicates(std::span<const Value::Member> members) {
-    constexpr size_t few = 8;  // sooner compared each with each than entered in a table
-    if (members.size() <= few && !has_duplicates(members)) return;
+    constexpr size_t few = 8;  // sooner compared each with each
+    if (members.size() <= few ? !has_duplicates(members) : have_own_hashes(members)) return;
     std::unordered_map<std::string_view, const Value::Member*> first;
     first.reserve(members.size());
     for (const Value::Member& member : members) {

@@ -104,11 +104,11 @@ class PortList {
     if (first == ports_.size()) return;
     std::stable_sort(ports_.begin() + ptrdiff_t(first), ports_.end(),
                      [this](const Port& a, const Port& b) { return name(a) < name(b); });
-    groups_.push_back({first, ports_.size(), same_letters});
+    groups_.push_back({first, ports_.size(), ports_[first].name, same_letters});
   }
   std::vector<std::pair<std::string, std::vector<Number>>> sorted() {
     std::ranges::stable_sort(groups_, {}, [this](const Group& group) {
-      return std::string_view(text_).substr(ports_[group.first].name, group.same_letters);
+      return std::string_view(text_).substr(group.name, group.same_letters);
     });
     std::vector<std::pair<std::string, std::vector<Number>>> list;
     list.reserve(ports_.size());
@@ -126,7 +126,8 @@ class PortList {
     size_t first_number, numbers;
   };
   struct Group {
-    size_t first, end, same_letters;
+    size_t first, end;          // of the ports
+    size_t name, same_letters;  // in the text
   };
   std::string_view name(const Port& port) const {
     return std::string_view(text_).substr(port.name, port.name_length);
