@@ -171,6 +171,18 @@ TEST(JsonErrors, SayInPlainWordsWhatIsWrongAndWhere) {
   for (const Golden& golden : cases) EXPECT_EQ(problem_in(golden.text), golden.problem) << golden.text;
 }
 
+TEST(Json, APointerSaysNamesAsTheyAreMeant) {
+  const Value root = good(
+      "\xEF\xBB\xBF { \"\\u00b5\\ud83d\\ude00\\n\\\"/~\" : [ 1 , { \"{,:]\" : \"a,b\" , \"c\":null } ] }");
+  const Value& list = root.members[0].value;
+  const std::string name = "/\u00b5\U0001F600\n\"~1~0";
+  EXPECT_EQ(root.place.pointer(), "");
+  EXPECT_EQ(list.place.pointer(), name);
+  EXPECT_EQ(root.members[0].place.pointer(), name);
+  EXPECT_EQ(list.items[1].members[0].value.place.pointer(), name + "/1/{,:]");
+  EXPECT_EQ(list.items[1].members[1].place.pointer(), name + "/1/c");
+}
+
 TEST(JsonErrors, NestingHasALimit) {
   const auto nested = [](int depth) { return std::string(depth, '[') + std::string(depth, ']'); };
   EXPECT_EQ(good(nested(64)).items.size(), 1u);
