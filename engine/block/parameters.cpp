@@ -12,11 +12,11 @@ static const Value& where(const Value& settings, std::string_view parameter) {
 Place Checker::place(std::string_view parameter) const { return where(settings_, parameter).place; }
 Problem& Checker::error(std::string_view parameter, std::string message) const {
   const Value& value = where(settings_, parameter);
-  return problems_.error(value.place, value.pointer, block_, std::move(message));
+  return problems_.error(value.place, value.place.pointer(), block_, std::move(message));
 }
 Problem& Checker::warning(std::string_view parameter, std::string message) const {
   const Value& value = where(settings_, parameter);
-  return problems_.warning(value.place, value.pointer, block_, std::move(message));
+  return problems_.warning(value.place, value.place.pointer(), block_, std::move(message));
 }
 std::string Checker::resolve_file(std::string_view parameter, std::string_view path) const {
   const Place at = place(parameter);
@@ -57,7 +57,7 @@ static std::string range_text(const Range& r) {
 static bool wrong_kind(const Value& v, std::string expected, const std::string& block, Problems& problems,
                        std::string_view sentence = {}) {
   if (v.is_broken) return false;  // told when it was loaded
-  auto& p = problems.error(v.place, v.pointer, block, "wrong kind of value");
+  auto& p = problems.error(v.place, v.place.pointer(), block, "wrong kind of value");
   p.expected = std::move(expected);
   p.found = kind_of(v);
   p.hint = sentence;
@@ -72,7 +72,7 @@ bool number(double& to, const Value& v, const Range& range, const std::string& b
   const bool inside = std::isfinite(v.number) && v.number >= range.low && v.number <= range.high &&
                       !(range.low_is_open && v.number <= range.low);
   if (!inside) {
-    auto& p = problems.error(v.place, v.pointer, block, "the number is out of range");
+    auto& p = problems.error(v.place, v.place.pointer(), block, "the number is out of range");
     p.expected = with_unit(fmt::format("a number {}", range_text(range)), range.unit);
     p.found = number_text(v.number) + (v.text.empty() ? "" : " from " + v.text);
     p.hint = range.sentence;
@@ -117,24 +117,25 @@ bool object(const Value& v, const std::string& block, Problems& problems) {
 }
 void missing(const Value& object, std::string_view name, std::string_view unit, std::string_view sentence,
              const std::string& block, Problems& problems) {
-  auto& p = problems.error(object.place, object.pointer, block,
+  auto& p = problems.error(object.place, object.place.pointer(), block,
                            fmt::format("the parameter \"{}\" is missing", name));
   p.expected = fmt::format("\"{}\": {}", name, with_unit("a value", unit));
   p.hint = sentence;
 }
-void unknown_keys(const Value& object, const std::vector<std::string>& names, const std::string& block,
+void unknown_keys(const Value& object, std::span<const std::string_view> names, const std::string& block,
                   Problems& problems) {
   for (const Value::Member& member : object.members) {
     bool known = false;
-    for (const std::string& name : names) known |= member.name == name;
+    for (const std::string_view name : names) known |= member.name == name;
     if (known) continue;
-    auto& p = problems.error(member.place, member.value.pointer, block,
+    auto& p = problems.error(member.place, member.value.place.pointer(), block,
                              fmt::format("there is no parameter \"{}\"", member.name));
-    const std::string near = nearest_name(member.name, names);
+    const std::string near = nearest_name(member.name, {names.begin(), names.end()});
     if (!near.empty())
       p.hint = fmt::format("did you mean \"{}\"?", near);
     else
-      for (const std::string& name : names) p.expected += (p.expected.empty() ? "one of " : ", ") + name;
+      for (const std::string_view name : names)
+        p.expected.append(p.expected.empty() ? "one of " : ", ").append(name);
   }
 }
 

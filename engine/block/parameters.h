@@ -1,7 +1,9 @@
 /// Parameters of a block: read from a file, spread over lanes, found by path ("harmonics.0.amplitude"),
 /// described.
 #pragma once
+#include <array>
 #include <concepts>
+#include <span>
 #include <string>
 #include <vector>
 #include "engine/block/describe.h"
@@ -126,7 +128,7 @@ bool list(const Value&, const std::string& block, std::string_view sentence, Pro
 bool object(const Value&, const std::string& block, Problems&);
 void missing(const Value& object, std::string_view name, std::string_view unit, std::string_view sentence,
              const std::string& block, Problems&);
-void unknown_keys(const Value& object, const std::vector<std::string>& names, const std::string& block,
+void unknown_keys(const Value& object, std::span<const std::string_view> names, const std::string& block,
                   Problems&);
 std::string number_text(double);
 }  // namespace reading
@@ -164,9 +166,10 @@ void read(T& to, const Value& value, const reading::Range& range, const std::str
 
 template <class B>
 void read_fields(B& to, const Value& object, const std::string& block, Problems& problems) {
-  std::vector<std::string> names;
+  std::array<std::string_view, count_of<B, is_parameter>> names;
+  size_t n = 0;
   for_each<B, is_parameter>([&](auto, const auto& p) {
-    names.emplace_back(p.name);
+    names[n++] = p.name;
     if (const Value::Member* found = object.find(p.name))
       read(to.*p.member, found->value, {p.low, p.high, p.low_is_open, p.unit, p.sentence}, block, problems);
     else if (!p.has_default)

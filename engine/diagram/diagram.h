@@ -27,14 +27,12 @@ struct Diagram;
 struct Wire {
   std::string source;
   Place place;
-  std::string pointer;
 };
 
 /// What feeds one input port of a block.
 struct PortWires {
   std::string port;
-  Place place;  ///< of the port's name
-  std::string pointer;
+  Place place;           ///< of the port's name
   bool is_list = false;  ///< written as a list, even of one wire
   std::vector<Wire> wires;
 };
@@ -42,12 +40,11 @@ struct PortWires {
 /// A block, or a subdiagram in the place of a block. Of a block with variants only the active one is kept.
 struct BlockEntry {
   std::string name;
-  Place place;  ///< of the name
-  std::string pointer;
+  Place place;       ///< of the name
   std::string type;  ///< empty for a subdiagram, and for an entry with errors
   Place type_place;
   Value settings;  ///< object: every member but the engine's own keys; expressions evaluated, units attached
-  std::optional<Value> sample_time, sample_offset;  ///< numbers in s
+  Boxed<Value> sample_time, sample_offset;  ///< numbers in s
   std::vector<PortWires> in;
   std::shared_ptr<const Diagram> subdiagram;
   std::string variant;  ///< name of the active variant; empty without variants
@@ -56,13 +53,11 @@ struct BlockEntry {
 struct DiagramInput {
   std::string name, unit, description;  ///< empty unit: whatever the wire brings
   Place place;
-  std::string pointer;
 };
 
 struct DiagramOutput {
   std::string name, unit, description;  ///< empty unit: whatever the source has
   Place place;
-  std::string pointer;
   Wire source;
 };
 
@@ -72,7 +67,6 @@ struct Parameter {
   Value value;               ///< number, boolean, text, or a list of them
   std::optional<Unit> unit;  ///< as declared, with its scale (mm: 1e-3); none: a bare number
   Place place;               ///< of the name
-  std::string pointer;
 };
 
 /// One key of "solver", with its place for messages.
@@ -80,7 +74,6 @@ template <class T> struct Setting {
   T value{};
   bool is_given = false;
   Place place{};
-  std::string pointer{};
 };
 
 struct SolverSettings {
@@ -95,7 +88,6 @@ struct SolverSettings {
   Setting<std::string> algebraic_loops{"error"};  ///< or "solve"
   Setting<uint64_t> seed{1};                      ///< of every random source
   Place place;                                    ///< of the object, or of the diagram where it has none
-  std::string pointer;
 };
 
 struct Diagram {

@@ -32,7 +32,6 @@ class Driver {
         column.name, [](char c) { return c == '.' || c == '[' || c == ']'; }, '_');
     column.name = unused_name("recorded_" + column.name, top.blocks);
     column.place = column.type_place = drive_.settings.place;
-    column.pointer = drive_.settings.pointer;
     column.type = "RecordedColumn";
     column.settings = drive_.settings;
     const Wire wire = wire_from(column.name + ".value");
@@ -44,12 +43,10 @@ class Driver {
   }
 
  private:
-  Wire wire_from(std::string source) const {
-    return {std::move(source), drive_.settings.place, drive_.settings.pointer};
-  }
+  Wire wire_from(std::string source) const { return {std::move(source), drive_.settings.place}; }
 
   Problem& error(std::string message, std::string block) const {
-    return problems_.error(drive_.settings.place, drive_.settings.pointer, std::move(block),
+    return problems_.error(drive_.settings.place, drive_.settings.place.pointer(), std::move(block),
                            std::move(message));
   }
 
@@ -100,9 +97,9 @@ class Driver {
     auto inner = std::make_shared<Diagram>(*entry->subdiagram);
     const std::string name = unused_name(passage, inner->inputs);
     if (!lead(*inner, path.subspan(1), entry_path, passage, wire_from(name))) return false;
-    inner->inputs.push_back({name, "", "recorded column", wire.place, wire.pointer});
+    inner->inputs.push_back({name, "", "recorded column", wire.place});
     entry->subdiagram = std::move(inner);
-    entry->in.push_back({name, wire.place, wire.pointer, false, {wire}});
+    entry->in.push_back({name, wire.place, false, {wire}});
     return true;
   }
 
@@ -117,8 +114,7 @@ class Driver {
       return false;
     }
     auto port = std::ranges::find(entry.in, port_name, &PortWires::port);
-    if (port == entry.in.end())
-      port = entry.in.insert(entry.in.end(), {port_name, wire.place, wire.pointer, false, {}});
+    if (port == entry.in.end()) port = entry.in.insert(entry.in.end(), {port_name, wire.place, false, {}});
     if (bracket == port_text.npos) {
       port->wires = {wire};
       return true;

@@ -239,7 +239,8 @@ class Evaluator {
   }
 
   Problem& report(std::string message, size_t offset) {
-    Problem& problem = problems_.error(place_of(offset), site_.pointer, site_.block, std::move(message));
+    Problem& problem =
+        problems_.error(place_of(offset), site_.place.pointer(), site_.block, std::move(message));
     problem.found = fmt::format("={}", expression_.substr(0, 200));
     return problem;
   }

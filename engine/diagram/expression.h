@@ -33,7 +33,7 @@ bool is_constant_name(std::string_view name);
 /// Where a message about an expression points, and what its names mean.
 struct ExpressionSite {
   Place place;  ///< of the text in the file: its opening quote
-  std::string pointer, block;
+  std::string block;
   /// The quantity of a name; null when the name stands for no number, which `lookup` has then reported.
   std::function<const Quantity*(const NameUse& use, const Place& place)> lookup;
 };

@@ -1,5 +1,6 @@
 #include "engine/diagram/json.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -7,6 +8,7 @@
 #include <fstream>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <unordered_map>
 #include "engine/diagram/syntax_error.h"
 
@@ -18,20 +20,6 @@ constexpr size_t largest_file = 64u << 20;     // bytes
 constexpr size_t largest_memory = 512u << 20;  // bytes, of the values in one text
 constexpr size_t deepest_nesting = 64;
 constexpr int most_duplicates = 100;  // reported; each costs a walk through the text
-
-/// One token of a JSON pointer (RFC 6901).
-std::string pointer_token(std::string_view name) {
-  std::string token = "/";
-  for (const char c : name) {
-    if (c == '~')
-      token += "~0";
-    else if (c == '/')
-      token += "~1";
-    else
-      token += c;
-  }
-  return token;
-}
 
 /// Receives the events of nlohmann's parser. It tells no positions, so a cursor walks through the text along
 /// with it: at each event the token starts at the next character that is no white space, comma or colon.
@@ -67,7 +55,7 @@ class ValueBuilder {
   }
   bool string(string_t& text) {
     Value value = begin_value(Value::Kind::text);
-    value.text = std::move(text);
+    value.text = text;  // a copy of its own length: what the parser reads into is longer, and used again
     return leaf(std::move(value));
   }
   bool binary(binary_t&) { return false; }  // of other formats than JSON
@@ -76,30 +64,30 @@ class ValueBuilder {
   bool start_array(size_t) { return open(Value::Kind::list, Awaited::first_item); }
   bool key(string_t& name) {
     find_token();
-    name_ = std::move(name);
+    name_ = name;
     name_place_ = {file_, static_cast<uint32_t>(cursor_)};
     cursor_ = end_of_token();
     awaited_ = Awaited::colon;
     return true;
   }
   bool end_object() {
-    reject_duplicates(open_.back().value);
+    reject_duplicates(std::span(values_).subspan(open_.back().first));
     return close();
   }
   bool end_array() { return close(); }
 
   bool parse_error(size_t, const std::string&, const nlohmann::json::exception&) {
     SyntaxErrorSite site{awaited_, cursor_, std::string::npos, pointer_in_hand()};
-    if (!open_.empty()) site.innermost_bracket = open_.back().value.place.offset;
+    if (!open_.empty()) site.innermost_bracket = open_.back().member.value.place.offset;
     problems_.add(explain_syntax_error(file_, site));
     return false;
   }
 
  private:
+  /// A value whose end was not met yet; what it holds so far stands in `values_`.
   struct Open {
-    Value value;
-    std::string name;  // its own, as a member
-    Place name_place;
+    Value::Member member;
+    size_t first;  // of its own
   };
 
   void find_token() {
@@ -116,10 +104,17 @@ class ValueBuilder {
   }
 
   std::string pointer_in_hand() const {
-    if (open_.empty()) return {};
-    const Value& parent = open_.back().value;
-    if (parent.kind == Value::Kind::list) return fmt::format("{}/{}", parent.pointer, parent.items.size());
-    return awaited_ == Awaited::colon ? parent.pointer + pointer_token(name_) : parent.pointer;
+    std::string pointer;
+    for (size_t i = 0; i < open_.size(); ++i) {
+      const bool is_last = i + 1 == open_.size();
+      if (open_[i].member.value.kind == Value::Kind::list)
+        pointer += fmt::format("/{}", (is_last ? values_.size() : open_[i + 1].first) - open_[i].first);
+      else if (!is_last)
+        pointer += pointer_token(open_[i + 1].member.name);
+      else if (awaited_ == Awaited::colon)
+        pointer += pointer_token(name_);
+    }
+    return pointer;
   }
 
   Value begin_value(Value::Kind kind) {
@@ -127,76 +122,89 @@ class ValueBuilder {
     Value value;
     value.kind = kind;
     value.place = {file_, static_cast<uint32_t>(cursor_)};
-    value.pointer = pointer_in_hand();
-    memory_ += sizeof(Value::Member) + value.pointer.size();
+    memory_ += sizeof(Value::Member);
     return value;
   }
 
   bool leaf(Value value) {
     cursor_ = end_of_token();
-    return add(std::move(value), std::move(name_), std::move(name_place_));
+    return add({std::move(name_), std::move(name_place_), std::move(value)});
   }
 
   bool open(Value::Kind kind, Awaited awaited) {
-    Open open{begin_value(kind), std::move(name_), std::move(name_place_)};
+    Value value = begin_value(kind);
     ++cursor_;
     awaited_ = awaited;
     if (open_.size() == deepest_nesting) {
-      problems_.error(open.value.place, open.value.pointer, {},
+      problems_.error(value.place, value.place.pointer(), {},
                       fmt::format("the values nest deeper than {} levels", deepest_nesting));
       return false;
     }
-    open_.push_back(std::move(open));
+    open_.push_back({{std::move(name_), std::move(name_place_), std::move(value)}, values_.size()});
     return true;
   }
 
+  /// The values of the innermost bracket move into lists of just their length.
   bool close() {
     find_token();
     ++cursor_;
-    Open closed = std::move(open_.back());
+    Value::Member closed = std::move(open_.back().member);
+    const auto first = values_.begin() + ptrdiff_t(open_.back().first);
     open_.pop_back();
-    return add(std::move(closed.value), std::move(closed.name), std::move(closed.name_place));
+    if (closed.value.kind == Value::Kind::object) {
+      closed.value.members.assign(std::move_iterator(first), std::move_iterator(values_.end()));
+    } else {
+      closed.value.items.reserve(size_t(values_.end() - first));
+      for (auto item = first; item != values_.end(); ++item)
+        closed.value.items.push_back(std::move(item->value));
+    }
+    values_.erase(first, values_.end());
+    return add(std::move(closed));
   }
 
-  bool add(Value value, std::string name, Place name_place) {
+  bool add(Value::Member member) {
     if (memory_ > largest_memory) {
-      problems_.error(value.place, value.pointer, {},
+      problems_.error(member.value.place, member.value.place.pointer(), {},
                       "the file holds too many values to fit into 512 MB of memory");
       return false;
     }
     if (open_.empty()) {
-      result_ = std::move(value);
+      result_ = std::move(member.value);
       awaited_ = Awaited::end_of_text;
       return true;
     }
-    Value& parent = open_.back().value;
-    if (parent.kind == Value::Kind::list) {
-      parent.items.push_back(std::move(value));
-      awaited_ = Awaited::comma_in_list;
-    } else {
-      parent.members.push_back({std::move(name), std::move(name_place), std::move(value)});
-      awaited_ = Awaited::comma_in_object;
-    }
+    const bool in_list = open_.back().member.value.kind == Value::Kind::list;
+    values_.push_back(std::move(member));
+    awaited_ = in_list ? Awaited::comma_in_list : Awaited::comma_in_object;
     return true;
   }
 
-  static bool has_duplicates(const std::vector<Value::Member>& members) {
+  static bool has_duplicates(std::span<const Value::Member> members) {
     for (size_t i = 1; i < members.size(); ++i)
       for (size_t j = 0; j < i; ++j)
         if (members[j].name == members[i].name) return true;
     return false;
   }
+  /// No two names share a hash: then none is there twice. Numbers in a row are sooner sorted than a table is
+  /// filled.
+  static bool have_own_hashes(std::span<const Value::Member> members) {
+    std::vector<size_t> hashes;
+    hashes.reserve(members.size());
+    for (const Value::Member& member : members) hashes.push_back(std::hash<std::string_view>()(member.name));
+    std::ranges::sort(hashes);
+    return std::ranges::adjacent_find(hashes) == hashes.end();
+  }
 
-  void reject_duplicates(const Value& object) {
-    constexpr size_t few = 8;  // sooner compared each with each than entered in a table
-    if (object.members.size() <= few && !has_duplicates(object.members)) return;
+  void reject_duplicates(std::span<const Value::Member> members) {
+    constexpr size_t few = 8;  // sooner compared each with each
+    if (members.size() <= few ? !has_duplicates(members) : have_own_hashes(members)) return;
     std::unordered_map<std::string_view, const Value::Member*> first;
-    first.reserve(object.members.size());
-    for (const Value::Member& member : object.members) {
+    first.reserve(members.size());
+    for (const Value::Member& member : members) {
       const auto [found, is_new] = first.try_emplace(member.name, &member);
       if (is_new || ++duplicates_ > most_duplicates) continue;
       const LineColumn place = line_column(found->second->place);
-      Problem& problem = problems_.error(member.place, member.value.pointer, {},
+      Problem& problem = problems_.error(member.place, member.place.pointer(), {},
                                          fmt::format("\"{}\" is there twice", member.name));
       problem.hint = fmt::format("the first one is in line {}, column {}", place.line, place.column);
     }
@@ -208,7 +216,8 @@ class ValueBuilder {
   size_t cursor_ = 0;
   Awaited awaited_ = Awaited::value;
   std::vector<Open> open_;
-  std::string name_;  // of the member whose value comes next
+  std::vector<Value::Member> values_;  // of all open brackets, those of outer ones first; items lack a name
+  std::string name_;                   // of the member whose value comes next
   Place name_place_;
   size_t memory_ = 0;
   int duplicates_ = 0;

@@ -40,8 +40,7 @@ struct Nest {
   std::vector<std::string> identities{};  // of the same
   size_t blocks = 0;
 
-  std::shared_ptr<Diagram> load(const std::string& path, const Place& reference, const std::string& pointer,
-                                Instance instance);
+  std::shared_ptr<Diagram> load(const std::string& path, const Place& reference, Instance instance);
   /// A diagram that stands in the file at `path` where others name a file.
   std::shared_ptr<Diagram> read(const Value& root, const std::string& path, Instance instance);
 };
@@ -86,7 +85,7 @@ class DiagramReader {
       const bool is_block = blocks && blocks->value.find(edit.head());
       if (!scope_.declares(edit.head()) || (is_block && !edit.is_last())) return false;
       scope_.override_with(
-          {edit.head(), edit.value.place, "", edited(scope_.given_value(edit.head()), edit.inside())});
+          {edit.head(), edit.value.place, edited(scope_.given_value(edit.head()), edit.inside())});
       return true;
     });
     scope_.resolve();
@@ -105,7 +104,6 @@ class DiagramReader {
     if (!written) {
       solver.kind = Value::Kind::object;
       solver.place = root.place;
-      solver.pointer = root.pointer;
     }
     if (is_top()) {
       std::erase_if(instance_.edits, [&](const Edit& edit) {
@@ -141,10 +139,8 @@ class DiagramReader {
     BlockEntry& entry = diagram_->blocks.emplace_back();
     entry.name = member.name;
     entry.place = member.place;
-    entry.pointer = member.value.pointer;
     entry.settings.kind = Value::Kind::object;
     entry.settings.place = member.value.place;
-    entry.settings.pointer = member.value.pointer;
 
     const Reader reader{nest_.problems, joined(instance_.block, member.name)};
     auto edits = take_options(instance_.edits, member.name);
@@ -204,15 +200,18 @@ class DiagramReader {
       const std::string message = fmt::format("the block \"{}\" is not a subdiagram", reader.block);
       reader.problems.error(choice.place, {}, reader.block, message);
     }
-    constexpr std::array engine_keys = {"type", "in", "sample_time", "sample_offset", "description"};
+    constexpr std::array<std::string_view, 5> engine_keys = {"type", "in", "sample_time", "sample_offset",
+                                                             "description"};
+    const auto is_setting = [&](const Value::Member& member) {
+      return std::ranges::find(engine_keys, member.name) == engine_keys.end();
+    };
+    entry.settings.members.reserve(size_t(std::ranges::count_if(body.members, is_setting)));
     for (const Value::Member& member : body.members) {
-      if (is_misplaced_key(member, is_variant, reader)) continue;
-      if (std::ranges::find(engine_keys, member.name) != engine_keys.end()) continue;
+      if (is_misplaced_key(member, is_variant, reader) || !is_setting(member)) continue;
       entry.settings.members.push_back(
           {member.name, member.place, scope_.evaluate(member.value, reader.block)});
     }
     entry.settings.place = body.place;
-    entry.settings.pointer = body.pointer;
     reader.text(body, "description");
     if (const auto* time = body.find("sample_time"))
       entry.sample_time = read_time(time->value, "sample_time", scope_, reader);
@@ -306,7 +305,7 @@ class DiagramReader {
     }
     entry.type_place = path.place;
     const std::string resolved = resolve_relative(path.place, path.text);
-    entry.subdiagram = nest_.load(resolved, path.place, path.pointer, std::move(inner));
+    entry.subdiagram = nest_.load(resolved, path.place, std::move(inner));
   }
 
   std::vector<Override> overrides(const Value& parameters, const Reader& reader) {
@@ -314,8 +313,7 @@ class DiagramReader {
     if (!reader.expect(parameters, Value::Kind::object, "\"parameters\"", "an object of named values"))
       return list;
     for (const Value::Member& member : parameters.members)
-      list.push_back(
-          {member.name, member.place, member.value.pointer, scope_.evaluate(member.value, reader.block)});
+      list.push_back({member.name, member.place, scope_.evaluate(member.value, reader.block)});
     return list;
   }
 
@@ -358,10 +356,9 @@ class DiagramReader {
   std::shared_ptr<Diagram> diagram_ = std::make_shared<Diagram>();
 };
 
-std::shared_ptr<Diagram> Nest::load(const std::string& path, const Place& reference,
-                                    const std::string& pointer, Instance instance) {
+std::shared_ptr<Diagram> Nest::load(const std::string& path, const Place& reference, Instance instance) {
   const auto fail = [&](std::string message) -> Problem& {
-    return problems.error(reference, pointer, instance.block, std::move(message));
+    return problems.error(reference, reference.pointer(), instance.block, std::move(message));
   };
   if (opened.size() == deepest_nesting) {
     fail(fmt::format("subdiagrams nest deeper than {} levels", deepest_nesting));
@@ -428,7 +425,7 @@ std::shared_ptr<const Diagram> with_options(const LoadOptions& options, Problems
 std::shared_ptr<const Diagram> load_diagram(const std::string& path, const LoadOptions& options,
                                             Problems& problems) {
   return with_options(options, problems,
-                      [&](Nest& nest, Instance top) { return nest.load(path, {}, {}, std::move(top)); });
+                      [&](Nest& nest, Instance top) { return nest.load(path, {}, std::move(top)); });
 }
 
 std::shared_ptr<const Diagram> read_diagram(const Value& root, const std::string& path,

@@ -20,7 +20,6 @@ Value broken(const Value& at) {
   Value value;
   value.is_broken = true;
   value.place = at.place;
-  value.pointer = at.pointer;
   return value;
 }
 
@@ -67,7 +66,6 @@ void ParameterScope::declare_one(const Value::Member& member) {
   Entry& entry = entries_.emplace_back();
   entry.parameter.name = member.name;
   entry.parameter.place = member.place;
-  entry.parameter.pointer = member.value.pointer;
   names_.push_back(member.name);
   known_.add(member.name);
 
@@ -94,7 +92,7 @@ void ParameterScope::override_with(Override replacement) {
     return;
   }
   Problem& problem =
-      reader_.problems.error(replacement.place, replacement.pointer, reader_.block,
+      reader_.problems.error(replacement.place, replacement.place.pointer(), reader_.block,
                              fmt::format("the diagram has no parameter \"{}\"", replacement.name));
   known_.explain(problem, replacement.name);
 }
@@ -172,7 +170,7 @@ void ParameterScope::report_ring(const std::vector<size_t>& stack, size_t again)
     }
     ring += entries_[*member].parameter.name + " → ";
   }
-  Problem& problem = reader_.problems.error(first.place, first.pointer, reader_.block,
+  Problem& problem = reader_.problems.error(first.place, first.place.pointer(), reader_.block,
                                             "parameters depend on each other in a ring");
   problem.found = ring + first.name;
 }
@@ -238,9 +236,15 @@ void ParameterScope::convert(Value& value, const std::optional<Unit>& unit, cons
 Value ParameterScope::evaluate(const Value& value, const std::string& block) {
   if (is_expression(value)) return evaluate_text(value, block);
   if (is_number_with_unit(value)) return number_with_unit(value, block);
-  Value result = value;
-  for (Value& item : result.items) item = evaluate(item, block);
-  for (Value::Member& member : result.members) member.value = evaluate(member.value, block);
+  if (value.items.empty() && value.members.empty()) return value;
+  Value result;
+  result.kind = value.kind;
+  result.place = value.place;
+  result.items.reserve(value.items.size());
+  result.members.reserve(value.members.size());
+  for (const Value& item : value.items) result.items.push_back(evaluate(item, block));
+  for (const Value::Member& member : value.members)
+    result.members.push_back({member.name, member.place, evaluate(member.value, block)});
   return result;
 }
 
@@ -248,26 +252,24 @@ Value ParameterScope::evaluate_text(const Value& text, const std::string& block)
   const std::string_view expression = std::string_view(text.text).substr(1);
   if (is_name(expression) && !is_constant_name(expression)) {  // hands on a text or a list as well
     Place place = text.place;
-    const Entry* entry = find({expression, 0, false}, place, text.pointer, block);
+    const Entry* entry = find({expression, 0, false}, place, text, block);
     if (!entry || entry->parameter.value.is_broken) return broken(text);
     Value value = entry->parameter.value;
     value.place = text.place;
-    value.pointer = text.pointer;
     if (value.kind == Value::Kind::number) value.text = text.text;
     return value;
   }
 
   const auto lookup = [&](const NameUse& use, const Place& place) -> const Quantity* {
-    const Entry* entry = find(use, place, text.pointer, block);
+    const Entry* entry = find(use, place, text, block);
     if (!entry || entry->parameter.value.is_broken) return nullptr;
     if (entry->quantity) return &*entry->quantity;
-    Problem& problem = reader_.problems.error(place, text.pointer, block,
+    Problem& problem = reader_.problems.error(place, text.place.pointer(), block,
                                               fmt::format("the parameter \"{}\" is not a number", use.name));
     problem.found = shown(entry->parameter.value);
     return nullptr;
   };
-  const auto quantity =
-      loopwright::evaluate(expression, {text.place, text.pointer, block, lookup}, reader_.problems);
+  const auto quantity = loopwright::evaluate(expression, {text.place, block, lookup}, reader_.problems);
   if (!quantity) return broken(text);
   Value value = text;  // its text stays: the expression
   value.kind = Value::Kind::number;
@@ -294,12 +296,12 @@ Value ParameterScope::number_with_unit(const Value& object, const std::string& b
   return number;
 }
 
-ParameterScope::Entry* ParameterScope::find(const NameUse& use, const Place& place,
-                                            const std::string& pointer, const std::string& block) {
+ParameterScope::Entry* ParameterScope::find(const NameUse& use, const Place& place, const Value& text,
+                                            const std::string& block) {
   if (const auto found = index_.find(std::string(use.name)); found != index_.end())
     return &entries_[found->second];
-  Problem& problem =
-      reader_.problems.error(place, pointer, block, fmt::format("there is no parameter \"{}\"", use.name));
+  Problem& problem = reader_.problems.error(place, text.place.pointer(), block,
+                                            fmt::format("there is no parameter \"{}\"", use.name));
   known_.explain(problem, use.name);
   if (problem.hint.empty() && problem.expected.empty())
     problem.hint = "an expression uses the \"parameters\" of its own diagram";

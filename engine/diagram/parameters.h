@@ -13,7 +13,6 @@ namespace loopwright {
 struct Override {
   std::string name;
   Place place;  ///< of the name
-  std::string pointer;
   Value value;
 };
 
@@ -61,7 +60,7 @@ class ParameterScope {
 
   Value evaluate_text(const Value& text, const std::string& block);
   Value number_with_unit(const Value& object, const std::string& block);
-  Entry* find(const NameUse& use, const Place& place, const std::string& pointer, const std::string& block);
+  Entry* find(const NameUse& use, const Place& place, const Value& text, const std::string& block);
 
   Reader reader_;
   std::vector<Entry> entries_;

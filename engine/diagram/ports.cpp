@@ -25,7 +25,7 @@ std::string unit_text(const Value& object, const Reader& reader) {
 std::vector<DiagramInput> read_inputs_of_diagram(const Value& root, const Reader& reader) {
   std::vector<DiagramInput> inputs;
   each_port(root, "inputs", reader, [&](const Value::Member& member) {
-    DiagramInput input{member.name, {}, {}, member.place, member.value.pointer};
+    DiagramInput input{member.name, {}, {}, member.place};
     if (member.value.kind == Value::Kind::text) {
       if (reader.unit(member.value)) input.unit = member.value.text;
     } else if (reader.expect(member.value, Value::Kind::object, "an input",
@@ -42,7 +42,7 @@ std::vector<DiagramInput> read_inputs_of_diagram(const Value& root, const Reader
 std::vector<DiagramOutput> read_outputs_of_diagram(const Value& root, const Reader& reader) {
   std::vector<DiagramOutput> outputs;
   each_port(root, "outputs", reader, [&](const Value::Member& member) {
-    DiagramOutput output{member.name, {}, {}, member.place, member.value.pointer, {}};
+    DiagramOutput output{member.name, {}, {}, member.place, {}};
     const std::string what = fmt::format("the source of the output \"{}\"", member.name);
     if (member.value.kind != Value::Kind::object) {
       output.source = read_wire(member.value, what, reader);

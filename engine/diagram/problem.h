@@ -10,17 +10,26 @@
 
 namespace loopwright {
 
+class PointerTable;
+
 /// The text of a file that the user wrote; places point into it.
 struct SourceFile {
   std::string name;  ///< as the user gave it, for messages
   std::string text;
+  mutable std::shared_ptr<const PointerTable> pointers{};  ///< of a JSON text; made by the first who asks
 };
 
-/// A spot in a file. Line and column are worked out only when a message is written.
+/// A spot in a file. Line, column and JSON pointer are worked out only when a message is written.
 struct Place {
   std::shared_ptr<const SourceFile> file;
   uint32_t offset = 0;
+
+  /// "/blocks/feedback/Kp": the JSON pointer (RFC 6901) of the value that stands there, or whose name does.
+  std::string pointer() const;
 };
+
+/// One token of a JSON pointer: a slash and the name.
+std::string pointer_token(std::string_view name);
 
 /// Line and column of a place, both counted from 1; columns count characters, not bytes.
 struct LineColumn {

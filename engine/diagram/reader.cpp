@@ -64,11 +64,11 @@ void KnownNames::explain(Problem& problem, std::string_view wrong) {
 }
 
 Problem& Reader::error(const Value& at, std::string message) const {
-  return problems.error(at.place, at.pointer, block, std::move(message));
+  return problems.error(at.place, at.place.pointer(), block, std::move(message));
 }
 
 Problem& Reader::error(const Value::Member& at, std::string message) const {
-  return problems.error(at.place, at.value.pointer, block, std::move(message));
+  return problems.error(at.place, at.value.place.pointer(), block, std::move(message));
 }
 
 bool Reader::expect(const Value& value, Value::Kind kind, std::string_view what,

@@ -62,8 +62,11 @@ class SettingsReader {
   }
 
   bool is_number(const Value& value, std::string_view key, const Unit& unit) {
-    const std::string expected = unit == Unit{} ? "a number" : fmt::format("a number in {}", to_string(unit));
-    if (!reader_.expect(value, Value::Kind::number, fmt::format("\"{}\"", key), expected)) return false;
+    if (value.kind != Value::Kind::number) {
+      const std::string expected =
+          unit == Unit{} ? "a number" : fmt::format("a number in {}", to_string(unit));
+      return reader_.expect(value, Value::Kind::number, fmt::format("\"{}\"", key), expected);
+    }
     if (!value.unit || value.unit->same_dimension(unit)) return true;
     Problem& problem = reader_.error(value, fmt::format("the unit does not fit \"{}\"", key));
     problem.expected = to_string(unit);
@@ -77,7 +80,6 @@ class SettingsReader {
     if (!member) return {};
     to.is_given = true;
     to.place = member->value.place;
-    to.pointer = member->value.pointer;
     return scope_.evaluate(member->value, reader_.block);
   }
 
@@ -91,7 +93,6 @@ class SettingsReader {
 SolverSettings read_solver_settings(const Value& object, ParameterScope& scope, const Reader& reader) {
   SolverSettings solver;
   solver.place = object.place;
-  solver.pointer = object.pointer;
   if (!reader.expect(object, Value::Kind::object, "\"solver\"", "an object")) return solver;
   reader.reject_unknown(object,
                         {"method", "start", "stop", "step", "maximum_step", "relative_tolerance",
@@ -109,7 +110,7 @@ SolverSettings read_solver_settings(const Value& object, ParameterScope& scope, 
   read.choice("algebraic_loops", {"error", "solve"}, solver.algebraic_loops);
   read.whole("seed", solver.seed);
   if (solver.stop.is_given && solver.stop.value < solver.start.value) {
-    Problem& problem = reader.problems.error(solver.stop.place, solver.stop.pointer, reader.block,
+    Problem& problem = reader.problems.error(solver.stop.place, solver.stop.place.pointer(), reader.block,
                                              "the run stops before it starts");
     problem.expected = fmt::format("at least {} s", solver.start.value);
     problem.found = fmt::format("{} s", solver.stop.value);

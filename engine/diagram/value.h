@@ -1,11 +1,11 @@
 /// A parameter value as it stands in a file, with its place and unit. Light: block files do not pay for a
 /// JSON parser.
 #pragma once
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+#include "engine/diagram/boxed.h"
 #include "engine/diagram/problem.h"
 #include "engine/diagram/unit.h"
 
@@ -20,12 +20,11 @@ struct Value {
   bool boolean = false;
   bool whole = false;  ///< the number was written without fraction or exponent
   double number = 0;
-  std::string text;          ///< of a text; for numbers from an expression, the expression
-  std::optional<Unit> unit;  ///< known for numbers that come from parameters with units
+  std::string text;  ///< of a text; for numbers from an expression, the expression
+  Boxed<Unit> unit;  ///< known for numbers that come from parameters with units
   std::vector<Value> items;
   std::vector<Member> members;
   Place place;
-  std::string pointer;
 
   const Member* find(std::string_view name) const;
 };

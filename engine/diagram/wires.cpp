@@ -23,20 +23,23 @@ bool is_pattern(std::string_view text) {
   return text.ends_with(".*") && is_port(text.substr(0, text.size() - 2)) && text.find('[') == text.npos;
 }
 
-Wire wire_at(const Value& value) { return {value.text, value.place, value.pointer}; }
+Wire wire_at(const Value& value) { return {value.text, value.place}; }
 
 PortWires read_port(const Value::Member& member, const Reader& reader) {
-  PortWires port{member.name, member.place, member.value.pointer, false, {}};
-  const std::string what = fmt::format("the wire of the input \"{}\"", member.name);
-  if (member.value.kind != Value::Kind::list) {
-    if (Wire wire = read_wire(member.value, what, reader); !wire.source.empty())
-      port.wires.push_back(std::move(wire));
+  PortWires port{member.name, member.place, member.value.kind == Value::Kind::list, {}};
+  const auto add = [&](const Value& value) {
+    if (value.kind == Value::Kind::text && is_port(value.text))
+      port.wires.push_back(wire_at(value));
+    else
+      read_wire(value, fmt::format("the wire of the input \"{}\"", member.name),
+                reader);  // tells what is wrong
+  };
+  if (!port.is_list) {
+    add(member.value);
     return port;
   }
-  port.is_list = true;
-  for (const Value& item : member.value.items)
-    if (Wire wire = read_wire(item, what, reader); !wire.source.empty())
-      port.wires.push_back(std::move(wire));
+  port.wires.reserve(member.value.items.size());
+  for (const Value& item : member.value.items) add(item);
   return port;
 }
 
@@ -66,6 +69,7 @@ std::vector<PortWires> read_inputs(const Value& in, const Reader& reader) {
   std::vector<PortWires> ports;
   if (!reader.expect(in, Value::Kind::object, "\"in\"", "an object: {\"input\": \"block.output\"}"))
     return ports;
+  ports.reserve(in.members.size());
   for (const Value::Member& member : in.members)
     if (reader.check_name(member, "an input")) ports.push_back(read_port(member, reader));
   return ports;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <charconv>
+#include <span>
 #include "engine/diagram/json.h"
 #include "engine/plan/order.h"
 #include "engine/plan/shapes.h"
@@ -34,7 +35,7 @@ void add_log(const FlatDiagram& flat, const Layout& layout, const PortUnits& uni
   for (const FlatLog& log : flat.log) {
     if (!log.wire.is_resolved()) continue;
     const auto numbers = layout.numbers_of(log.wire);
-    const auto& unit = units[size_t(log.wire.block)][size_t(log.wire.output)];
+    const auto& unit = units.of(log.wire.block, log.wire.output);
     for (size_t i = 0; i < numbers.size(); ++i) {
       Plan::Logged logged;
       logged.name = numbers.size() == 1 ? log.name : fmt::format("{}[{}]", log.name, i);
@@ -48,7 +49,8 @@ void add_log(const FlatDiagram& flat, const Layout& layout, const PortUnits& uni
   std::ranges::sort(names);
   const auto twice = std::ranges::adjacent_find(names);
   if (twice != names.end())
-    problems.error(flat.log.front().wire.place, "/log", "", fmt::format("\"{}\" is logged twice", *twice));
+    problems.error(flat.log.front().wire.at ? flat.log.front().wire.at->place : Place{}, "/log", "",
+                   fmt::format("\"{}\" is logged twice", *twice));
 }
 
 void add_rates_to_log(Plan& plan) {
@@ -75,39 +77,89 @@ void add_sources(const PortUnits& units, const std::vector<int>& flat_of_block, 
   plan.sources.assign(size_t(plan.signals + plan.states), {-1, -1});
   for (size_t b = 0; b < plan.blocks.size(); ++b) {
     Plan::Block& block = plan.blocks[b];
+    block.output_units.reserve(block.outputs.size());
     for (size_t o = 0; o < block.outputs.size(); ++o) {
       const int length =
           block.type->info.outputs[o].shape == PortInfo::Shape::vector ? block.output_lengths[o] : 1;
       for (int i = 0; i < length; ++i) plan.sources[size_t(block.outputs[o] + i)] = {int(b), int(o)};
-      block.output_units.push_back(flat_of_block[b] < 0 ? std::nullopt : units[size_t(flat_of_block[b])][o]);
+      block.output_units.push_back(flat_of_block[b] < 0 ? std::nullopt : units.of(flat_of_block[b], int(o)));
     }
   }
 }
 
+/// Every port by path, sorted by name. Names and numbers are gathered side by side and sorted there: to
+/// compare and to build them all over memory takes the longer the more there are.
+class PortList {
+ public:
+  void add(std::string_view path, std::string_view dot, std::string_view port,
+           std::span<const Number> numbers) {
+    ports_.push_back({text_.size(), path.size() + dot.size() + port.size(), numbers_.size(), numbers.size()});
+    text_.append(path).append(dot).append(port);
+    numbers_.insert(numbers_.end(), numbers.begin(), numbers.end());
+  }
+  /// The ports since the last end are neighbours in the order of names: so many letters at their beginning
+  /// are the same, and tell where they stand among the others.
+  void end_group(size_t same_letters) {
+    const size_t first = groups_.empty() ? 0 : groups_.back().end;
+    if (first == ports_.size()) return;
+    std::stable_sort(ports_.begin() + ptrdiff_t(first), ports_.end(),
+                     [this](const Port& a, const Port& b) { return name(a) < name(b); });
+    groups_.push_back({first, ports_.size(), ports_[first].name, same_letters});
+  }
+  std::vector<std::pair<std::string, std::vector<Number>>> sorted() {
+    std::ranges::stable_sort(groups_, {}, [this](const Group& group) {
+      return std::string_view(text_).substr(group.name, group.same_letters);
+    });
+    std::vector<std::pair<std::string, std::vector<Number>>> list;
+    list.reserve(ports_.size());
+    for (const Group& group : groups_)
+      for (size_t p = group.first; p < group.end; ++p) {
+        const auto first = numbers_.begin() + ptrdiff_t(ports_[p].first_number);
+        list.emplace_back(name(ports_[p]), std::vector<Number>(first, first + ptrdiff_t(ports_[p].numbers)));
+      }
+    return list;
+  }
+
+ private:
+  struct Port {
+    size_t name, name_length;  // in the text
+    size_t first_number, numbers;
+  };
+  struct Group {
+    size_t first, end;          // of the ports
+    size_t name, same_letters;  // in the text
+  };
+  std::string_view name(const Port& port) const {
+    return std::string_view(text_).substr(port.name, port.name_length);
+  }
+
+  std::string text_;
+  std::vector<Number> numbers_;
+  std::vector<Port> ports_;
+  std::vector<Group> groups_;
+};
+
 /// Outputs and inputs of blocks and subdiagrams by full path.
 void add_ports(const FlatDiagram& flat, const Layout& layout, Plan& plan) {
-  size_t count = flat.names.size();
-  for (const FlatBlock& block : flat.blocks) count += block.inputs.size() + block.type->info.outputs.size();
-  plan.ports.reserve(count);
-  const auto add = [&](const FlatBlock& block, std::string_view port, std::vector<Number> numbers) {
-    auto& entry = plan.ports.emplace_back(std::string{}, std::move(numbers));
-    entry.first.reserve(block.path.size() + 1 + port.size());
-    entry.first.append(block.path).append(".").append(port);
-  };
+  PortList list;
   for (size_t b = 0; b < flat.blocks.size(); ++b) {
     const FlatBlock& block = flat.blocks[b];
     const BlockInfo& info = block.type->info;
     FlatWire own;
     own.block = int(b);
     for (own.output = 0; own.output < int(info.outputs.size()); ++own.output)
-      add(block, info.outputs[size_t(own.output)].name, layout.numbers_of(own));
+      list.add(block.path, ".", info.outputs[size_t(own.output)].name, layout.numbers_of(own));
     for (size_t i = 0; i < info.inputs.size(); ++i)
       if (block.inputs[i].size() == 1 && block.inputs[i][0].is_resolved())
-        add(block, info.inputs[i].name, layout.numbers_of(block.inputs[i][0]));
+        list.add(block.path, ".", info.inputs[i].name, layout.numbers_of(block.inputs[i][0]));
+    list.end_group(block.path.size() + 1);
   }
   for (const FlatName& name : flat.names)
-    if (name.wire.is_resolved()) plan.ports.emplace_back(name.name, layout.numbers_of(name.wire));
-  std::ranges::stable_sort(plan.ports, {}, [](const auto& p) { return std::string_view(p.first); });
+    if (name.wire.is_resolved()) {
+      list.add(name.name, "", "", layout.numbers_of(name.wire));
+      list.end_group(name.name.size());
+    }
+  plan.ports = list.sorted();
 }
 
 void add_crossings(Plan& plan) {
@@ -142,8 +194,10 @@ void add_parameters(const Diagram& diagram, const FlatDiagram& flat, Plan& plan)
     for (const ParameterInfo& info : block.type->info.parameters) {
       const Value::Member* given = block.entry->settings.find(info.name);
       std::string text = given ? to_json(given->value) : info.default_text;
-      if (!info.unit.empty() && info.unit.find('$') == info.unit.npos) text += fmt::format(" {}", info.unit);
-      plan.parameters.emplace_back(fmt::format("{}.{}", block.path, info.name), std::move(text));
+      if (!info.unit.empty() && info.unit.find('$') == info.unit.npos) text.append(" ").append(info.unit);
+      auto& entry = plan.parameters.emplace_back(std::string{}, std::move(text));
+      entry.first.reserve(block.path.size() + 1 + info.name.size());
+      entry.first.append(block.path).append(".").append(info.name);
     }
 }
 

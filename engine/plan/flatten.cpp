@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <deque>
-#include <new>
 #include <optional>
 #include <unordered_map>
 #include <unordered_set>
@@ -19,6 +18,27 @@ struct Scope {
   std::vector<int> flat_blocks;                        // ordinary blocks: index in the flat list
   std::unordered_map<std::string_view, int> blocks;    // of the same, by name
   std::unordered_map<std::string_view, Scope*> inner;  // subdiagrams
+};
+
+/// The scalar blocks of a diagram, one after the other in memory. They live as long as any of them is held.
+class BlockValues {
+ public:
+  BlockValues() = default;
+  BlockValues(const BlockValues&) = delete;
+  BlockValues& operator=(const BlockValues&) = delete;
+  ~BlockValues() {
+    for (const auto& [value, kernels] : values_) kernels->destroy(value);
+  }
+  void* add(const Kernels<double>& kernels) {
+    void* const memory = memory_.allocate(kernels.size, 64);
+    kernels.construct(memory);
+    values_.emplace_back(memory, &kernels);
+    return memory;
+  }
+
+ private:
+  std::pmr::monotonic_buffer_resource memory_;
+  std::vector<std::pair<void*, const Kernels<double>*>> values_;
 };
 
 class Flattener {
@@ -52,27 +72,24 @@ class Flattener {
   }
 
   void add_block(Scope& scope, const BlockEntry& entry) {
-    FlatBlock flat;
-    flat.path = scope.prefix + entry.name;
-    flat.entry = &entry;
-    flat.type = find_block(entry.type);
+    FlatBlock flat{.path = scope.prefix + entry.name,
+                   .entry = &entry,
+                   .type = find_block(entry.type),
+                   .value = {},
+                   .inputs = FlatInputs(flat_.memory.get()),
+                   .output_lengths = std::pmr::vector<int>(flat_.memory.get())};
     if (!flat.type) {
       unknown_type(flat.path, entry);
       broken_.push_back({&scope, entry.name});
       return;
     }
-    const Kernels<double>& kernels = flat.type->kernels;
-    void* memory = ::operator new(kernels.size, std::align_val_t(64));
-    kernels.construct(memory);
-    flat.value = {memory, [&kernels](void* p) {
-                    kernels.destroy(p);
-                    ::operator delete(p, std::align_val_t(64));
-                  }};
+    flat.value = {values_, values_->add(flat.type->kernels)};
     const size_t before = problems_.list().size();
-    flat.type->info.read(memory, entry.settings, flat.path, problems_);
+    flat.type->info.read(flat.value.get(), entry.settings, flat.path, problems_);
     if (problems_.list().size() == before)
-      flat.type->info.check(memory, Checker(entry.settings, flat.path, problems_));
+      flat.type->info.check(flat.value.get(), Checker(entry.settings, flat.path, problems_));
     flat.inputs.resize(flat.type->info.inputs.size());
+    flat.output_lengths.assign(flat.type->info.outputs.size(), 1);
     scope.flat_blocks.push_back(int(flat_.blocks.size()));
     scope.blocks[entry.name] = int(flat_.blocks.size());
     flat_.blocks.push_back(std::move(flat));
@@ -82,7 +99,7 @@ class Flattener {
   void unknown_type(const std::string& path, const BlockEntry& entry) {
     std::vector<std::string> types;
     for (const auto& [name, type] : all_blocks()) types.push_back(name);
-    auto& p = problems_.error(entry.type_place, entry.pointer + "/type", path,
+    auto& p = problems_.error(entry.type_place, entry.place.pointer() + "/type", path,
                               fmt::format("there is no block type \"{}\"", entry.type));
     const std::string near = nearest_name(entry.type, types);
     p.hint = near.empty() ? "`loopwright blocks` lists all types" : fmt::format("did you mean \"{}\"?", near);
@@ -101,20 +118,21 @@ class Flattener {
         continue;
       }
       if (port->shape != PortInfo::Shape::many && wires.wires.size() != 1) {
-        auto& p = problems_.error(wires.place, wires.pointer, flat.path,
+        auto& p = problems_.error(wires.place, wires.place.pointer(), flat.path,
                                   fmt::format("the input \"{}\" takes one wire", wires.port));
         p.expected = "one source, as in \"stage.position\"";
         p.found = fmt::format("a list of {}", wires.wires.size());
         continue;
       }
       auto& sources = flat.inputs[size_t(port - info.inputs.begin())];
+      sources.reserve(sources.size() + wires.wires.size());
       for (const Wire& wire : wires.wires) sources.push_back(resolve(scope, wire.source, wire, flat.path, 0));
     }
     for (size_t i = 0; i < info.inputs.size(); ++i) {
       const bool listed = std::ranges::any_of(
           flat.entry->in, [&](const PortWires& w) { return w.port == info.inputs[i].name; });
       if (listed || info.inputs[i].is_optional) continue;
-      auto& p = problems_.error(flat.entry->place, flat.entry->pointer, flat.path,
+      auto& p = problems_.error(flat.entry->place, flat.entry->place.pointer(), flat.path,
                                 fmt::format("the input \"{}\" is not wired", info.inputs[i].name));
       p.expected = fmt::format("\"in\": {{\"{}\": \"block.output\"}}", info.inputs[i].name);
       p.hint = info.inputs[i].sentence;
@@ -124,7 +142,7 @@ class Flattener {
   void unknown_input(const FlatBlock& flat, const PortWires& wires, const BlockInfo& info) {
     std::vector<std::string> names;
     for (const PortInfo& port : info.inputs) names.emplace_back(port.name);
-    auto& p = problems_.error(wires.place, wires.pointer, flat.path,
+    auto& p = problems_.error(wires.place, wires.place.pointer(), flat.path,
                               fmt::format("{} has no input \"{}\"", info.type, wires.port));
     const std::string near = nearest_name(wires.port, names);
     p.expected = names.empty() ? "no inputs" : fmt::format("{}", fmt::join(names, ", "));
@@ -159,7 +177,7 @@ class Flattener {
 
   static FlatWire unresolved(const Wire& at) {
     FlatWire wire;
-    wire.place = at.place, wire.pointer = at.pointer, wire.text = at.source;
+    wire.at = &at;
     return wire;
   }
 
@@ -223,8 +241,7 @@ class Flattener {
     for (size_t o = 0; o < info.outputs.size(); ++o)
       if (info.outputs[o].name == name) {
         FlatWire wire;
-        wire.block = block, wire.output = int(o), wire.place = at.place, wire.pointer = at.pointer,
-        wire.text = at.source;
+        wire.block = block, wire.output = int(o), wire.at = &at;
         return with_element(std::move(wire), element, at, reader);
       }
     if (reader == "log")  // an input may be looked at: what feeds it
@@ -253,9 +270,9 @@ class Flattener {
 
   FlatWire fail(const Wire& at, const std::string& reader, std::string message,
                 std::vector<std::string> names, const std::string& wrong) {
-    if (!told_.insert(at.pointer + message).second)
+    if (!told_.insert(at.place.pointer() + message).second)
       return {};  // one wire into a subdiagram may have many readers
-    auto& p = problems_.error(at.place, at.pointer, reader, std::move(message));
+    auto& p = problems_.error(at.place, at.place.pointer(), reader, std::move(message));
     p.found = "\"" + at.source + "\"";
     const std::string near = wrong.empty() ? "" : nearest_name(wrong, names);
     if (!near.empty())
@@ -274,20 +291,20 @@ class Flattener {
       names.push_back(input.name);
       if (std::ranges::any_of(scope.entry->in, [&](const PortWires& w) { return w.port == input.name; }))
         continue;
-      auto& p = problems_.error(scope.entry->place, scope.entry->pointer, path,
+      auto& p = problems_.error(scope.entry->place, scope.entry->place.pointer(), path,
                                 fmt::format("the input \"{}\" is not wired", input.name));
       p.expected = fmt::format("\"in\": {{\"{}\": \"block.output\"}}", input.name);
     }
     for (const PortWires& wires : scope.entry->in) {
       if (std::ranges::find(names, wires.port) == names.end()) {
-        auto& p = problems_.error(wires.place, wires.pointer, path,
+        auto& p = problems_.error(wires.place, wires.place.pointer(), path,
                                   fmt::format("the subdiagram has no input \"{}\"", wires.port));
         const std::string near = nearest_name(wires.port, names);
         p.expected = names.empty() ? "no inputs" : fmt::format("{}", fmt::join(names, ", "));
         if (!near.empty()) p.hint = fmt::format("did you mean \"{}\"?", near);
       } else if (wires.wires.size() != 1) {
         problems_
-            .error(wires.place, wires.pointer, path,
+            .error(wires.place, wires.place.pointer(), path,
                    fmt::format("the input \"{}\" takes one wire", wires.port))
             .found = fmt::format("a list of {}", wires.wires.size());
       } else {
@@ -309,7 +326,7 @@ class Flattener {
           for (size_t o = 0; o < block.type->info.outputs.size(); ++o) {
             any = true;
             FlatWire source;
-            source.block = int(b), source.output = int(o), source.place = wire.place;
+            source.block = int(b), source.output = int(o), source.at = &wire;
             flat_.log.push_back({fmt::format("{}.{}", block.path, block.type->info.outputs[o].name), source});
           }
         }
@@ -330,8 +347,8 @@ class Flattener {
         flat_.names.push_back(
             {scope.prefix + output.name, resolve(scope, output.source.source, output.source, "", 0)});
       for (const DiagramInput& input : scope.diagram->inputs)
-        flat_.names.push_back({scope.prefix + input.name,
-                               resolve_input(scope, input.name, "", Wire{input.name, {}, {}}, "", 0)});
+        flat_.names.push_back(
+            {scope.prefix + input.name, resolve_input(scope, input.name, "", Wire{input.name, {}}, "", 0)});
     }
     std::swap(unheard, problems_);
   }
@@ -339,6 +356,7 @@ class Flattener {
   Problems& problems_;
   const bool open_;
   FlatDiagram flat_;
+  std::shared_ptr<BlockValues> values_ = std::make_shared<BlockValues>();
   std::deque<Scope> scopes_;
   std::vector<Scope*> scope_of_block_;
   std::vector<std::pair<const Scope*, std::string>> broken_;

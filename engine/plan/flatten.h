@@ -1,27 +1,30 @@
 /// Subdiagrams dissolved: a flat list of blocks with their types, parameters and resolved wires.
 #pragma once
+#include <memory_resource>
 #include "engine/block/registry.h"
 #include "engine/diagram/diagram.h"
 
 namespace loopwright {
 
-/// A wire's source: an output of a flat block, or one element of it.
+/// A wire's source: an output of a flat block, or one element of it. Points into the diagram.
 struct FlatWire {
   int block = -1, output = -1;
-  int element = -1;  ///< -1: the whole port
-  Place place;
-  std::string pointer, text;
+  int element = -1;          ///< -1: the whole port
+  const Wire* at = nullptr;  ///< as the reader wrote it; null: nobody did
   bool is_resolved() const { return block >= 0; }
 };
+
+/// What feeds the ports of a block, a list each, in the memory of its diagram; empty: not wired.
+using FlatInputs = std::pmr::vector<std::pmr::vector<FlatWire>>;
 
 struct FlatBlock {
   std::string path;
   const BlockEntry* entry = nullptr;
   const BlockType* type = nullptr;
-  std::shared_ptr<void> value;                ///< scalar block, parameters read
-  std::vector<std::vector<FlatWire>> inputs;  ///< a port each; empty: not wired
-  int width = 1;                              ///< elements, when scalar ports are wired with vectors
-  std::vector<int> output_lengths;            ///< of one element's port
+  std::shared_ptr<void> value;  ///< scalar block, parameters read
+  FlatInputs inputs;
+  int width = 1;                         ///< elements, when scalar ports are wired with vectors
+  std::pmr::vector<int> output_lengths;  ///< of one element's port; 1 until the shapes are found
 };
 
 struct FlatLog {
@@ -36,6 +39,9 @@ struct FlatName {
 };
 
 struct FlatDiagram {
+  /// Of the lists of blocks: one after the other, and given back at once.
+  std::unique_ptr<std::pmr::monotonic_buffer_resource> memory =
+      std::make_unique<std::pmr::monotonic_buffer_resource>();
   std::vector<FlatBlock> blocks;
   std::vector<FlatLog> log;
   std::vector<FlatName> names;  ///< those of blocks are plain: path.port

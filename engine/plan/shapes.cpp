@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 #include <set>
+#include <span>
 
 namespace loopwright {
 
@@ -23,7 +24,7 @@ static bool has_vector_ports(const BlockInfo& info) {
 constexpr int longest_vector = 1'000'000;      // elements
 constexpr int64_t most_numbers = 500'000'000;  // in the arena of a run: 4 GB
 
-static int total_length(const FlatDiagram& flat, const std::vector<FlatWire>& wires) {
+static int total_length(const FlatDiagram& flat, std::span<const FlatWire> wires) {
   int64_t n = 0;
   for (const FlatWire& wire : wires) n += length_of(flat, wire);
   return int(std::min<int64_t>(n, longest_vector + 1));
@@ -58,15 +59,14 @@ static void check_port(const FlatDiagram& flat, const FlatBlock& block, size_t i
     if (port.shape == PortInfo::Shape::many && listed != block.entry->in.end() && wanted != 0 &&
         !port.is_optional)
       problems
-          .error(listed->place, listed->pointer, block.path,
+          .error(listed->place, listed->place.pointer(), block.path,
                  fmt::format("the input \"{}\" is not wired", port.name))
           .expected = wanted > 0 ? fmt::format("{} wires", wanted) : "at least one wire";
     return;
   }
   const auto clash = [&](const FlatWire& wire, std::string expected, std::string found) {
-    const bool has_place = wire.place.file != nullptr;  // a wire that leads nowhere has none
-    auto& p = problems.error(has_place ? wire.place : block.entry->place,
-                             has_place ? wire.pointer : block.entry->pointer, block.path,
+    const Place& place = wire.at && wire.at->place.file ? wire.at->place : block.entry->place;
+    auto& p = problems.error(place, place.pointer(), block.path,
                              fmt::format("the input \"{}\" has the wrong width", port.name));
     p.expected = std::move(expected), p.found = std::move(found);
   };
@@ -85,7 +85,7 @@ static void check_port(const FlatDiagram& flat, const FlatBlock& block, size_t i
       clash(wire,
             width == 1 ? "a scalar; an element is written \"block.port[0]\""
                        : fmt::format("a scalar or {} elements, as its other inputs have", width),
-            fmt::format("\"{}\" with {} elements", wire.text, n));
+            fmt::format("\"{}\" with {} elements", wire.at->source, n));
   }
 }
 
@@ -96,12 +96,13 @@ static void check_element(const FlatDiagram& flat, const FlatWire& wire, const s
   FlatWire whole = wire;
   whole.element = -1;
   const int n = length_of(flat, whole);
-  if (wire.element < n || !told.insert(fmt::format("{}@{}", wire.text, wire.place.offset)).second) return;
+  if (wire.element < n || !told.insert(fmt::format("{}@{}", wire.at->source, wire.at->place.offset)).second)
+    return;
   problems
-      .error(
-          wire.place, wire.pointer, reader,
-          fmt::format("\"{}\" has {} elements, counted from 0", wire.text.substr(0, wire.text.find('[')), n))
-      .found = "\"" + wire.text + "\"";
+      .error(wire.at->place, wire.at->place.pointer(), reader,
+             fmt::format("\"{}\" has {} elements, counted from 0",
+                         wire.at->source.substr(0, wire.at->source.find('[')), n))
+      .found = "\"" + wire.at->source + "\"";
 }
 
 /// All numbers of a run must fit into memory, and their places into a Number; told at the block that takes
@@ -121,18 +122,22 @@ static void check_size(const FlatDiagram& flat, Problems& problems) {
   }
   if (total <= most_numbers) return;
   auto& p = problems.error(
-      greediest->entry->place, greediest->entry->pointer, greediest->path,
+      greediest->entry->place, greediest->entry->place.pointer(), greediest->path,
       fmt::format("the diagram needs {:.3g} GB of memory, most of it here", 8e-9 * double(total)));
   p.expected = fmt::format("at most {:.3g} GB", 8e-9 * double(most_numbers));
 }
 
-void find_shapes(FlatDiagram& flat, Problems& problems) {
-  for (FlatBlock& block : flat.blocks) block.output_lengths.assign(block.type->info.outputs.size(), 1);
+static std::vector<std::vector<int>> readers_of_blocks(const FlatDiagram& flat) {
   std::vector<std::vector<int>> readers(flat.blocks.size());
   for (size_t b = 0; b < flat.blocks.size(); ++b)
     for (const auto& wires : flat.blocks[b].inputs)
       for (const FlatWire& wire : wires)
         if (wire.is_resolved()) readers[size_t(wire.block)].push_back(int(b));
+  return readers;
+}
+
+void find_shapes(FlatDiagram& flat, Problems& problems) {
+  std::vector<std::vector<int>> readers;  // listed once a vector is found
   std::vector<int> todo(flat.blocks.size());
   std::iota(todo.rbegin(), todo.rend(), 0);
   std::vector<int> visits(flat.blocks.size(), 0);
@@ -143,17 +148,18 @@ void find_shapes(FlatDiagram& flat, Problems& problems) {
     if (!update_shape(flat, block)) continue;
     if (block.width > longest_vector ||
         std::ranges::any_of(block.output_lengths, [](int n) { return n > longest_vector; })) {
-      auto& p =
-          problems.error(block.entry->place, block.entry->pointer, block.path, "its vectors are too long");
+      auto& p = problems.error(block.entry->place, block.entry->place.pointer(), block.path,
+                               "its vectors are too long");
       p.expected = fmt::format("at most {} elements", longest_vector),
       p.hint = "does a vector that grows feed itself?";
       return;
     }
     if (++visits[size_t(b)] > 50) {
-      problems.error(block.entry->place, block.entry->pointer, block.path,
+      problems.error(block.entry->place, block.entry->place.pointer(), block.path,
                      "its vectors grow round a ring of wires without end");
       return;
     }
+    if (readers.empty()) readers = readers_of_blocks(flat);
     todo.insert(todo.end(), readers[size_t(b)].begin(), readers[size_t(b)].end());
   }
   std::set<std::string> told;
@@ -190,12 +196,14 @@ void Layout::add_blocks() {
       Plan::Block block;
       block.path = flat.width == 1 ? flat.path : fmt::format("{}[{}]", flat.path, element);
       block.type = flat.type, block.value = flat.value, block.place = flat.entry->place;
-      block.output_lengths = flat.output_lengths;
+      block.output_lengths.assign(flat.output_lengths.begin(), flat.output_lengths.end());
+      block.outputs.reserve(first_output.size());
       for (Number n : first_output) block.outputs.push_back(n < 0 ? n : n + element);
       block.states = info.state_length(flat.value.get());
       block.first_state = plan_.states;
       plan_.states += block.states;
       block.first_buffer = plan_.buffer_numbers;
+      block.buffer_lengths.reserve(size_t(info.buffers));
       for (int i = 0; i < info.buffers; ++i) {
         block.buffer_lengths.push_back(info.buffer_length(flat.value.get(), i));
         plan_.buffer_numbers += block.buffer_lengths.back();
@@ -220,7 +228,17 @@ void Layout::number_constants_and_states() {
         block.outputs[o] = -1 - (block.first_state + state);
 }
 
+/// The number of a scalar port of a block that stands once, which most are.
+std::optional<Number> Layout::scalar_of(const FlatWire& wire) const {
+  if (!wire.is_resolved() || wire.element > 0) return {};
+  const FlatBlock& flat = flat_.blocks[size_t(wire.block)];
+  const size_t output = size_t(wire.output);
+  if (flat.width != 1 || flat.type->info.outputs[output].shape == PortInfo::Shape::vector) return {};
+  return plan_.blocks[size_t(first_instance_[size_t(wire.block)])].outputs[output];
+}
+
 std::vector<Number> Layout::numbers_of(const FlatWire& wire) const {
+  if (const auto scalar = scalar_of(wire)) return {*scalar};
   std::vector<Number> numbers;
   if (!wire.is_resolved()) return numbers;
   const FlatBlock& flat = flat_.blocks[size_t(wire.block)];
@@ -269,7 +287,13 @@ void Layout::wire_port(Plan::Block& block, const FlatBlock& flat, size_t port, i
       if (value == info.otherwise_value) numbers = {number};
     return;
   }
-  for (const FlatWire& wire : flat.inputs[port]) {
+  const auto& wires = flat.inputs[port];
+  numbers.reserve(wires.size());
+  for (const FlatWire& wire : wires) {
+    if (const auto scalar = scalar_of(wire)) {
+      numbers.push_back(*scalar);
+      continue;
+    }
     const std::vector<Number> all = numbers_of(wire);
     if (info.shape == PortInfo::Shape::vector || info.joins_vectors)
       numbers.insert(numbers.end(), all.begin(), all.end());

@@ -19,6 +19,7 @@ class Layout {
   std::vector<Number> numbers_of(const FlatWire& wire) const;
 
  private:
+  std::optional<Number> scalar_of(const FlatWire& wire) const;
   void add_blocks();
   void number_constants_and_states();
   void wire_inputs();

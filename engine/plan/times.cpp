@@ -21,11 +21,11 @@ class Times {
   }
 
  private:
-  std::optional<Fraction> fraction(double value, const Place& place, const std::string& pointer,
-                                   const std::string& block, std::string_view name, bool may_be_zero) {
+  std::optional<Fraction> fraction(double value, const Place& place, const std::string& block,
+                                   std::string_view name, bool may_be_zero) {
     const auto time = to_fraction(value);
     if (time && (may_be_zero || time->numerator > 0)) return time;
-    auto& p = problems_.error(place, pointer, block,
+    auto& p = problems_.error(place, place.pointer(), block,
                               fmt::format("{} cannot be kept exactly as a whole number of ticks", name));
     p.expected = fmt::format("a {} time in s that is a fraction of whole numbers below 2e9",
                              may_be_zero ? "non-negative" : "positive");
@@ -35,13 +35,13 @@ class Times {
   std::optional<Fraction> solver_time(const Setting<double>& setting, std::string_view name,
                                       bool may_be_zero = false) {
     if (!setting.is_given) return {};
-    return fraction(setting.value, setting.place, setting.pointer, "", name, may_be_zero);
+    return fraction(setting.value, setting.place, "", name, may_be_zero);
   }
 
   void check_tolerance(const Setting<double>& tolerance, std::string_view name, double least, double below) {
     if (!tolerance.is_given || (tolerance.value >= least && tolerance.value < below)) return;
-    auto& p =
-        problems_.error(tolerance.place, tolerance.pointer, "", fmt::format("\"{}\" is out of range", name));
+    auto& p = problems_.error(tolerance.place, tolerance.place.pointer(), "",
+                              fmt::format("\"{}\" is out of range", name));
     p.expected = fmt::format("a number of at least {}{}", least,
                              below < infinity ? fmt::format(" and below {}", below) : "");
     p.found = fmt::format("{}", tolerance.value);
@@ -54,8 +54,8 @@ class Times {
     else {
       std::vector<std::string> names;
       for (const MethodFacts& f : all_methods) names.emplace_back(f.name);
-      auto& p =
-          problems_.error(solver.method.place, solver.method.pointer, "", "there is no such solver method");
+      auto& p = problems_.error(solver.method.place, solver.method.place.pointer(), "",
+                                "there is no such solver method");
       p.expected = fmt::format("one of {}", fmt::join(names, ", "));
       p.found = "\"" + solver.method.value + "\"";
       if (const std::string near = nearest_name(solver.method.value, names); !near.empty())
@@ -64,7 +64,7 @@ class Times {
     const auto refuse = [&](const auto& setting, std::string_view name, std::string_view why) {
       if (setting.is_given)
         problems_
-            .error(setting.place, setting.pointer, "",
+            .error(setting.place, setting.place.pointer(), "",
                    fmt::format("\"{}\" has no meaning for the method \"{}\"", name, solver.method.value))
             .hint = why;
     };
@@ -95,10 +95,12 @@ class Times {
     step_ = solver_time(solver.step, "step");
     record_ = solver_time(solver.record_step, "record_step");
     if (!solver.stop.is_given) {
-      auto& p = problems_.error(solver.place, solver.pointer, "", "the solver does not say when to stop");
+      auto& p =
+          problems_.error(solver.place, solver.place.pointer(), "", "the solver does not say when to stop");
       p.expected = "\"solver\": {\"stop\": seconds}";
     } else if (stop_ && stop_->value() < start_.value()) {
-      problems_.error(solver.stop.place, solver.stop.pointer, "", "the stop time lies before the start")
+      problems_
+          .error(solver.stop.place, solver.stop.place.pointer(), "", "the stop time lies before the start")
           .found = fmt::format("{}", stop_->value());
     }
   }
@@ -111,32 +113,32 @@ class Times {
       const BlockEntry& entry = *block.entry;
       if (!entry.sample_time) {
         if (info.is_sampled) {
-          auto& p = problems_.error(entry.place, entry.pointer, block.path,
+          auto& p = problems_.error(entry.place, entry.place.pointer(), block.path,
                                     fmt::format("{} remembers samples: it needs a sample time", info.type));
           p.expected = "\"sample_time\": seconds";
         }
         if (entry.sample_offset)
-          problems_.error(entry.sample_offset->place, entry.sample_offset->pointer, block.path,
+          problems_.error(entry.sample_offset->place, entry.sample_offset->place.pointer(), block.path,
                           "a sample offset without a sample time");
         continue;
       }
       if (info.is_continuous) {
-        auto& p = problems_.error(entry.sample_time->place, entry.sample_time->pointer, block.path,
+        auto& p = problems_.error(entry.sample_time->place, entry.sample_time->place.pointer(), block.path,
                                   fmt::format("{} is continuous: it takes no sample time", info.type));
         p.hint = "leave it out; to sample its output, wire it to a ZeroOrderHold or a sampled block";
         continue;
       }
-      const auto period = fraction(entry.sample_time->number, entry.sample_time->place,
-                                   entry.sample_time->pointer, block.path, "the sample time", false);
+      const auto period =
+          fraction(entry.sample_time->number, entry.sample_time->place, block.path, "the sample time", false);
       if (!period) continue;
       Fraction offset{0, 1};
       if (entry.sample_offset) {
-        const auto given = fraction(entry.sample_offset->number, entry.sample_offset->place,
-                                    entry.sample_offset->pointer, block.path, "the sample offset", true);
+        const auto given = fraction(entry.sample_offset->number, entry.sample_offset->place, block.path,
+                                    "the sample offset", true);
         if (!given) continue;
         if (given->value() >= period->value()) {
-          auto& p = problems_.error(entry.sample_offset->place, entry.sample_offset->pointer, block.path,
-                                    "the sample offset is not shorter than the sample time");
+          auto& p = problems_.error(entry.sample_offset->place, entry.sample_offset->place.pointer(),
+                                    block.path, "the sample offset is not shorter than the sample time");
           p.expected = fmt::format("less than {} s", period->value()),
           p.found = fmt::format("{}", given->value());
         }
@@ -186,7 +188,7 @@ class Times {
     const double ticks = stop_->value() / base.value();
     if (ticks * double(base.numerator) < 9e15) return true;
     auto& p =
-        problems_.error(diagram_.solver.stop.place, diagram_.solver.stop.pointer, "",
+        problems_.error(diagram_.solver.stop.place, diagram_.solver.stop.place.pointer(), "",
                         fmt::format("the run has {:.3g} ticks of {:.3g} s, more than can be counted exactly",
                                     ticks, base.value()));
     p.hint = "sample times, step and record_step with a larger common divisor make longer ticks";
@@ -201,7 +203,7 @@ class Times {
       return true;
     }
     auto& p = problems_.error(
-        diagram_.solver.place, diagram_.solver.pointer, "",
+        diagram_.solver.place, diagram_.solver.place.pointer(), "",
         fmt::format("sample times, step and record_step have no common base period: {:.12g} s and {:.12g} s",
                     base.value(), time.value()));
     p.hint = "choose times with a simple ratio, such as 0.001 and 0.0025";

@@ -93,7 +93,6 @@ struct End {
 struct Equation {
   End left, right;
   const Place* place;
-  const std::string* pointer;
   const std::string* declared;  // the path of a subdiagram's port, if that is its left end
   bool is_wire() const { return left.block >= 0 && right.block >= 0; }
   bool is_parameter() const { return left.block >= 0 && right.block < 0; }
@@ -113,12 +112,12 @@ class Solver {
   PortUnits run() {
     propagate();
     for (const Equation& equation : equations_) check(equation);
-    PortUnits units(flat_.blocks.size());
+    PortUnits units;
+    units.first.reserve(flat_.blocks.size());
     for (size_t b = 0; b < flat_.blocks.size(); ++b) {
-      const size_t outputs = flat_.blocks[b].type->info.outputs.size();
-      units[b].reserve(outputs);
-      for (size_t o = 0; o < outputs; ++o)
-        units[b].push_back(value({int(b), &types_of_blocks_[b]->of_output(o), {}}));
+      units.first.push_back(units.outputs.size());
+      for (size_t o = 0; o < flat_.blocks[b].type->info.outputs.size(); ++o)
+        units.outputs.push_back(value({int(b), &types_of_blocks_[b]->of_output(o), {}}));
     }
     return units;
   }
@@ -158,8 +157,7 @@ class Solver {
         if (!wire.is_resolved() || info.inputs[i].unit == any_unit) continue;
         equations_.push_back({{b, &types_of_blocks_[size_t(b)]->of_input(i), info.inputs[i].name},
                               output_end(wire),
-                              &wire.place,
-                              &wire.pointer,
+                              &wire.at->place,
                               nullptr});
       }
     for (const ParameterInfo& parameter : info.parameters)
@@ -180,7 +178,6 @@ class Solver {
       equations_.push_back({{b, &types_of_blocks_[size_t(b)]->of(info), name},
                             {-1, constant(*value.unit), value.text},
                             &value.place,
-                            &value.pointer,
                             nullptr});
     if (!info.element.empty())
       for (const Value& item : value.items) add_parameter(b, info.element[0], name, item);
@@ -191,8 +188,7 @@ class Solver {
 
   /// Inputs and outputs that subdiagrams declare with a unit.
   void add_declarations(const Diagram& diagram, const std::string& prefix) {
-    const auto declare = [&](const std::string& name, const std::string& unit_text, const Place& place,
-                             const std::string& pointer) {
+    const auto declare = [&](const std::string& name, const std::string& unit_text, const Place& place) {
       if (unit_text.empty()) return;
       const auto unit = parse_unit(unit_text);
       const FlatWire* const wire = declared(prefix + name);
@@ -200,14 +196,11 @@ class Solver {
       equations_.push_back({{-1, constant(*unit), {}},
                             output_end(*wire),
                             &place,
-                            &pointer,
                             &declared_paths_.emplace_back(prefix + name)});
     };
     if (!prefix.empty()) {
-      for (const DiagramInput& input : diagram.inputs)
-        declare(input.name, input.unit, input.place, input.pointer);
-      for (const DiagramOutput& output : diagram.outputs)
-        declare(output.name, output.unit, output.place, output.pointer);
+      for (const DiagramInput& input : diagram.inputs) declare(input.name, input.unit, input.place);
+      for (const DiagramOutput& output : diagram.outputs) declare(output.name, output.unit, output.place);
     }
     for (const BlockEntry& block : diagram.blocks)
       if (block.subdiagram) add_declarations(*block.subdiagram, prefix + block.name + ".");
@@ -300,7 +293,7 @@ class Solver {
     const std::string& block =
         equation.left.block >= 0 ? flat_.blocks[size_t(equation.left.block)].path : *equation.declared;
     const auto report = [&](std::string message, std::string_view what, std::string found) {
-      auto& p = problems_.error(*equation.place, *equation.pointer, block, std::move(message));
+      auto& p = problems_.error(*equation.place, equation.place->pointer(), block, std::move(message));
       p.expected = fmt::format("a {} in {}", what, left_unit);
       p.found = std::move(found);
     };

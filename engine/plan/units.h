@@ -5,7 +5,13 @@
 namespace loopwright {
 
 /// The unit of every output port, by flat block and output; nothing where it could not be worked out.
-using PortUnits = std::vector<std::vector<std::optional<Unit>>>;
+struct PortUnits {
+  std::vector<std::optional<Unit>> outputs;
+  std::vector<size_t> first;  ///< output of each block
+  const std::optional<Unit>& of(int block, int output) const {
+    return outputs[first[size_t(block)] + size_t(output)];
+  }
+};
 
 PortUnits check_units(const FlatDiagram& flat, const Diagram& diagram, Problems& problems);
 

@@ -52,7 +52,7 @@ class DeviceReader {
       KnownNames(drivers_).explain(p, to.driver);
     }
     to.driver_settings.kind = Value::Kind::object;
-    to.driver_settings.place = file.place, to.driver_settings.pointer = file.pointer;
+    to.driver_settings.place = file.place;
     const Value::Member* settings = to.driver.empty() ? nullptr : file.find(to.driver);
     if (settings && reader_.expect(settings->value, Value::Kind::object, fmt::format("\"{}\"", to.driver),
                                    "an object: the settings of the driver"))
@@ -86,7 +86,7 @@ class DeviceReader {
   Problem& error(const Value& object, std::string_view key, const std::string& name, std::string message) {
     const Value::Member* member = object.find(key);
     const Value& at = member ? member->value : object;
-    return problems_.error(at.place, at.pointer, name, std::move(message));
+    return problems_.error(at.place, at.place.pointer(), name, std::move(message));
   }
 
   template <class Channel> void check_common(const Channel& channel, const Value& object) {

@@ -344,7 +344,7 @@ std::unique_ptr<Driver> make_driver(std::shared_ptr<const DeviceDescription> dev
   if (!load_library(settings.library, library, why)) {
     const Value::Member* named = device->driver_settings.find("library");
     const Value& at = named ? named->value : device->driver_settings;
-    auto& p = problems.error(at.place, at.pointer, "", why.message);
+    auto& p = problems.error(at.place, at.place.pointer(), "", why.message);
     p.found = why.found;
     p.hint = why.hint;
     return nullptr;

@@ -31,11 +31,12 @@ void check_options(const Settings& settings, const Value& section, Problems& pro
     rest = end == rest.npos ? std::string_view{} : rest.substr(end + 1);
     const std::string name(option.substr(0, option.find('=')));
     if (option.find('=') == option.npos) {
-      auto& p = problems.error(member->value.place, member->value.pointer, "", "an option has no value");
+      auto& p =
+          problems.error(member->value.place, member->value.place.pointer(), "", "an option has no value");
       p.found = fmt::format("\"{}\"", option);
       p.expected = "name=value, separated by semicolons";
     } else if (std::ranges::find(names, name) == names.end()) {
-      auto& p = problems.error(member->value.place, member->value.pointer, "",
+      auto& p = problems.error(member->value.place, member->value.place.pointer(), "",
                                fmt::format("the {} has no option \"{}\"", settings.board, name));
       known.explain(p, name);
     }
@@ -47,7 +48,8 @@ void check_channels(const std::vector<Channel>& channels, int most, const Settin
                     const Value& section, Problems& problems) {
   for (const Channel& channel : channels)
     if (channel.channel >= most) {
-      auto& p = problems.error(section.place, section.pointer, channel.name, "the card has no such channel");
+      auto& p = problems.error(section.place, section.place.pointer(), channel.name,
+                               "the card has no such channel");
       p.found = fmt::format("channel {}", channel.channel);
       p.expected = fmt::format("0 to {} on a {}", most - 1, settings.board);
     }
@@ -67,11 +69,12 @@ Settings read_settings(const DeviceDescription& device, Problems& problems) {
     check_channels(device.outputs, 8, settings, section, problems);
   }
   if (settings.clock == 1 && settings.board == "qpid_e")
-    problems.error(section.place, section.pointer, "", "hardware clock 1 of the QPIDe is its watchdog")
+    problems
+        .error(section.place, section.place.pointer(), "", "hardware clock 1 of the QPIDe is its watchdog")
         .expected = "\"clock\": 0";
   if (device.watchdog.timeout > 0.419 && settings.board == "qpid_e") {
-    auto& p =
-        problems.error(section.place, section.pointer, "", "the watchdog of the QPIDe does not count so far");
+    auto& p = problems.error(section.place, section.place.pointer(), "",
+                             "the watchdog of the QPIDe does not count so far");
     p.expected = "a timeout of at most 0.419 s";
     p.found = fmt::format("{:g} s", device.watchdog.timeout);
   }

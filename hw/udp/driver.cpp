@@ -169,15 +169,16 @@ Settings read_settings(const DeviceDescription& device, Problems& problems) {
   read_fields(settings, section, device.driver, problems);
   in_addr ignored{};
   if (inet_pton(AF_INET, settings.address.c_str(), &ignored) != 1) {
-    auto& p = problems.error(section.place, section.pointer, "", "the address cannot be read");
+    auto& p = problems.error(section.place, section.place.pointer(), "", "the address cannot be read");
     p.found = "\"" + settings.address + "\"";
     p.expected = "four numbers with dots, as in \"192.168.1.20\"";
   }
   if (device.inputs.size() > most_channels || device.outputs.size() > most_channels)
-    problems.error(section.place, section.pointer, "", "a packet has no room for so many channels").expected =
-        fmt::format("at most {} inputs and outputs", most_channels);
+    problems.error(section.place, section.place.pointer(), "", "a packet has no room for so many channels")
+        .expected = fmt::format("at most {} inputs and outputs", most_channels);
   if (device.clock.source == ClockSource::host)
-    problems.error(section.place, section.pointer, "", "a device that speaks UDP takes its own samples")
+    problems
+        .error(section.place, section.place.pointer(), "", "a device that speaks UDP takes its own samples")
         .expected = "\"clock\": {\"source\": \"device\"}";
   return settings;
 }

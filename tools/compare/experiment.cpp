@@ -77,7 +77,7 @@ class Loader {
       else
         reader_.reject_unknown(entry.value, {"column", "unit", "resolution"}, "a compared port");
       RecordedSignal signal;
-      signal.port = entry.name, signal.place = entry.place, signal.pointer = entry.value.pointer;
+      signal.port = entry.name, signal.place = entry.place, signal.pointer = entry.value.place.pointer();
       signal.column = reader_.text(entry.value, "column");
       signal.unit = reader_.text(entry.value, "unit");
       if (signal.column.empty())
@@ -218,7 +218,7 @@ LoadOptions follow(const Experiment& experiment, LoadOptions options) {
     add("time", experiment.time_column);
     add("unit", signal.unit);
     add("interpolation", experiment.drive_is_linear[i] ? "linear" : "hold");
-    drive.settings.place = signal.place, drive.settings.pointer = signal.pointer;
+    drive.settings.place = signal.place;
     options.drives.push_back(std::move(drive));
   }
   const std::vector<double>& time = experiment.data.columns.front().values;

@@ -29,7 +29,7 @@ bool extend(BlockEntry& sum) {
   if (signs && !signs->value.text.empty())
     set_member(sum.settings, "signs", text_value(signs->value.text + "+"));
   terms->is_list = true;
-  terms->wires.push_back({std::string(injected_force) + ".y", terms->place, terms->pointer});
+  terms->wires.push_back({std::string(injected_force) + ".y", terms->place});
   return true;
 }
 
@@ -53,7 +53,7 @@ std::shared_ptr<Diagram> inject(const Diagram& diagram, const std::string& port,
   if (!extend(*entry)) return nullptr;
   BlockEntry constant;
   constant.name = injected_force, constant.type = "Constant";
-  constant.place = constant.type_place = entry->place, constant.pointer = entry->pointer;
+  constant.place = constant.type_place = entry->place;
   Value zero;
   zero.kind = Value::Kind::number;
   constant.settings.place = entry->place;

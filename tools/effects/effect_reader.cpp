@@ -193,12 +193,12 @@ class FormReader {
     std::vector<Quantity> quantities;
     for (const NamedSize& size : record_sizes)
       quantities.push_back({sizes.*size.value, parse_unit(unit_in(size.unit, {}))});
-    ExpressionSite site{value.place, value.pointer, "", {}};
+    ExpressionSite site{value.place, "", {}};
     site.lookup = [&](const NameUse& use, const Place& place) -> const Quantity* {
       for (size_t i = 0; i < record_sizes.size(); ++i)
         if (record_sizes[i].name == use.name) return &quantities[i];
-      auto& p =
-          reader_.problems.error(place, value.pointer, "", fmt::format("there is no size \"{}\"", use.name));
+      auto& p = reader_.problems.error(place, value.place.pointer(), "",
+                                       fmt::format("there is no size \"{}\"", use.name));
       KnownNames names;
       for (const NamedSize& size : record_sizes) names.add(std::string(size.name));
       names.explain(p, use.name);
@@ -231,7 +231,7 @@ class FormReader {
   }
   bool is_role(const Wire& wire) {
     if (std::ranges::find(effect_roles, wire.source) != effect_roles.end()) return true;
-    auto& p = reader_.problems.error(wire.place, wire.pointer, "",
+    auto& p = reader_.problems.error(wire.place, wire.place.pointer(), "",
                                      fmt::format("there is no signal \"{}\" to read", wire.source));
     KnownNames(effect_roles).explain(p, wire.source);
     return false;

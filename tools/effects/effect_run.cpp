@@ -173,7 +173,7 @@ void check_bindings(const EffectPlan& result, Problems& problems) {
   Run<double> run(result.plan);
   for (const EffectPlan::Binding& binding : result.bindings)
     if (!run.parameter(binding.path))
-      problems.error(binding.value.place, binding.value.pointer, binding.path,
+      problems.error(binding.value.place, binding.value.place.pointer(), binding.path,
                      "this setting of the block is fixed when the diagram is compiled: no parameter of an "
                      "effect can reach it");
 }

@@ -20,7 +20,7 @@ double EffectValues::evaluate(const Value& value) const {
   const std::string_view formula = std::string_view(value.text).substr(1);
   if (const auto plain = numbers_.find(formula); plain != numbers_.end()) return plain->second;
   Quantity quantity;
-  ExpressionSite site{value.place, value.pointer, "", {}};
+  ExpressionSite site{value.place, "", {}};
   site.lookup = [&](const NameUse& use, const Place&) -> const Quantity* {
     const auto found = numbers_.find(use.name);
     quantity.number = found == numbers_.end() ? unknown : found->second;

@@ -60,7 +60,7 @@ std::string with_fitted_values(const std::string& path, const Fit& fit, Problems
     if (const auto* inner = value->find("value")) value = &inner->value;
     if (value->kind != Kind::number) {
       auto& problem =
-          problems.error(value->place, value->pointer, "",
+          problems.error(value->place, value->place.pointer(), "",
                          fmt::format("\"{}\" is an expression: it has no number of its own", p.path));
       problem.found = shown(*value), problem.hint = "fit the parameters that it is made of";
       continue;

@@ -62,7 +62,8 @@ void meet_uses(const Diagram& diagram, const std::string& name, Limits& limits) 
 std::optional<DiagramNumber> number_of(const Value& value, const std::optional<Unit>& unit,
                                        const Limits& limits) {
   if (value.kind != Value::Kind::number) return {};
-  DiagramNumber number{value.number, unit ? unit : value.unit, limits.least, limits.most};
+  DiagramNumber number{value.number, unit ? unit : std::optional<Unit>(value.unit), limits.least,
+                       limits.most};
   if (number.unit) number.unit->scale = 1;
   return number;
 }
@@ -115,7 +116,7 @@ std::optional<DiagramNumber> find_number(const Diagram& diagram, const std::stri
       if (auto number = in_settings(*entry, path, i + 1)) return number;
       for (names = {}; const Value::Member& member : entry->settings.members) names.add(member.name);
       if (i + 1 < path.size()) {
-        names.explain(problems.error(entry->place, entry->pointer, entry->name,
+        names.explain(problems.error(entry->place, entry->place.pointer(), entry->name,
                                      fmt::format("\"{}\" is no number of the diagram", text)),
                       path[i + 1]);
         return {};

@@ -87,7 +87,7 @@ class SineExperiment {
     const double stop = std::ceil(test_.settle / test_.sample_time) * test_.sample_time + window;
     tested.solver.stop.value = stop, tested.solver.stop.is_given = true;
     tested.solver.record_step.value = test_.sample_time, tested.solver.record_step.is_given = true;
-    tested.log = {{test_.to, {}, ""}};
+    tested.log = {{test_.to, {}}};
     const auto plan = problems.has_errors() ? nullptr : compile(tested, problems);
     if (!plan) throw InputError(std::move(problems));
     const RunResult result = simulate(*plan, options_);
@@ -115,13 +115,12 @@ Diagram with_added_signal(const Diagram& diagram, const std::string& port, const
   if (!wire) return result;
   BlockEntry added = source, sum;
   added.name = unused_name(source.name, result);
-  added.place = added.type_place = wire->place, added.pointer = wire->pointer;
+  added.place = added.type_place = wire->place;
   sum.name = unused_name(added.name + "_sum", result);
   sum.type = "Sum";
-  sum.place = sum.type_place = wire->place, sum.pointer = wire->pointer;
+  sum.place = sum.type_place = wire->place;
   sum.settings.kind = Value::Kind::object;
-  sum.in = {
-      {"terms", wire->place, wire->pointer, true, {*wire, {added.name + ".y", wire->place, wire->pointer}}}};
+  sum.in = {{"terms", wire->place, true, {*wire, {added.name + ".y", wire->place}}}};
   wire->source = sum.name + ".sum";
   result.blocks.push_back(std::move(added));
   result.blocks.push_back(std::move(sum));

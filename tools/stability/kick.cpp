@@ -16,7 +16,7 @@ Value number(double x) {
 
 std::vector<double> positions(Diagram diagram, const std::string& position, const RunOptions& options,
                               Problems& problems, std::vector<double>& time) {
-  diagram.log = {{position, {}, ""}};
+  diagram.log = {{position, {}}};
   const auto plan = problems.has_errors() ? nullptr : compile(diagram, problems);
   if (!plan) throw InputError(std::move(problems));
   RunResult result = simulate(*plan, options);

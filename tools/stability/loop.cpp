@@ -53,7 +53,7 @@ std::string plant_input(const Plan& plan, const Diagram& diagram, const LoopRole
     return "";
   }
   if (plant->in.size() == 1 && plant->in[0].wires.size() == 1) return plant->name + "." + plant->in[0].port;
-  auto& problem = problems.error(plant->place, plant->pointer, plant->name,
+  auto& problem = problems.error(plant->place, plant->place.pointer(), plant->name,
                                  "the plant has several inputs: which one is the command?");
   for (const PortWires& port : plant->in)
     problem.expected += (problem.expected.empty() ? "" : ", ") + plant->name + "." + port.port;

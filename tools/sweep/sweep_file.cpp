@@ -131,7 +131,7 @@ class Loader {
   }
   void read_axis(const Value::Member& member) {
     Axis& axis = sweep_->axes.emplace_back();
-    axis.name = member.name, axis.place = member.place, axis.pointer = member.value.pointer;
+    axis.name = member.name, axis.place = member.place, axis.pointer = member.value.place.pointer();
     const Value& body = member.value;
     if (!reader_.expect(body, Value::Kind::object, "an axis", "{\"values\": […]} or {\"uniform\": {…}}"))
       return;
@@ -301,7 +301,7 @@ class Loader {
   }
   void read_metric(const Value::Member& member) {
     Metric metric;
-    metric.name = member.name, metric.place = member.place, metric.pointer = member.value.pointer;
+    metric.name = member.name, metric.place = member.place, metric.pointer = member.value.place.pointer();
     reader_.check_name(member, "a metric");
     const Value& body = member.value;
     if (!reader_.expect(body, Value::Kind::object, "a metric", "{\"rms\": \"error.sum\"}")) return;
@@ -355,7 +355,7 @@ class Loader {
     const Value::Member* member = file.find("keep");
     if (!member) return;
     Keep& keep = sweep_->keep;
-    keep.place = member->place, keep.pointer = member->value.pointer;
+    keep.place = member->place, keep.pointer = member->value.place.pointer();
     const std::string expected =
         "\"all\", \"failed\", {\"worst\": 5, \"of\": \"tracking\"} or {\"runs\": [0, 7]}";
     const Value& value = member->value;

@@ -49,7 +49,7 @@ TEST(Diagram, KeepsTitleBlocksWiresAndPlaces) {
   ASSERT_EQ(diagram->blocks.size(), 4u);
   const BlockEntry& feedback = block_of(*diagram, "feedback");
   EXPECT_EQ(feedback.type, "PdController");
-  EXPECT_EQ(feedback.pointer, "/blocks/feedback");
+  EXPECT_EQ(feedback.place.pointer(), "/blocks/feedback");
   EXPECT_EQ(line_column(feedback.place).line, 15);
   EXPECT_EQ(line_column(feedback.type_place).column, 26);
   EXPECT_EQ(feedback.sample_time->number, 0.001);
@@ -60,7 +60,7 @@ TEST(Diagram, KeepsTitleBlocksWiresAndPlaces) {
   const BlockEntry& command = block_of(*diagram, "command");
   EXPECT_TRUE(command.in[0].is_list);
   EXPECT_EQ(source_of(command, "terms", 1), "gain.y[2]");
-  EXPECT_EQ(command.in[0].wires[1].pointer, "/blocks/command/in/terms/1");
+  EXPECT_EQ(command.in[0].wires[1].place.pointer(), "/blocks/command/in/terms/1");
   EXPECT_FALSE(feedback.in[0].is_list);
   EXPECT_EQ(diagram->log[2].source, "stage.*");
 }
@@ -87,7 +87,7 @@ TEST(Diagram, EvaluatesExpressionsAnywhereInSettings) {
   EXPECT_DOUBLE_EQ(distance.number, 0.025);
   EXPECT_EQ(to_string(*distance.unit), "m");
   EXPECT_EQ(distance.text, "=travel");
-  EXPECT_EQ(distance.pointer, "/blocks/reference/distance");
+  EXPECT_EQ(distance.place.pointer(), "/blocks/reference/distance");
   EXPECT_EQ(setting_of(*diagram, "reference", "nested").items[0].find("amplitude")->value.number, 1.0);
   EXPECT_EQ(setting_of(*diagram, "reference", "nested").items[0].find("name")->value.text, "first");
   EXPECT_EQ(setting_of(*diagram, "reference", "file").text, "measured.csv");
@@ -105,7 +105,7 @@ TEST(Diagram, ReadsSolverSettings) {
   EXPECT_EQ(solver.method.value, "dopri5");
   EXPECT_EQ(solver.start.value, 0.5);
   EXPECT_EQ(solver.stop.value, 2.0);
-  EXPECT_EQ(solver.stop.pointer, "/solver/stop");
+  EXPECT_EQ(solver.stop.place.pointer(), "/solver/stop");
   EXPECT_EQ(solver.relative_tolerance.value, 1e-8);
   EXPECT_EQ(solver.seed.value, 7u);
   EXPECT_FALSE(solver.step.is_given);

@@ -30,13 +30,12 @@ Outcome result_of(std::string_view expression) {
   Problems problems;
   const auto file =
       std::make_shared<SourceFile>(SourceFile{"f.json", "{\"k\": \"=" + std::string(expression) + "\"}"});
-  ExpressionSite site{
-      {file, 6}, "/k", "stage", [&](const NameUse& use, const Place& place) -> const Quantity* {
-        const auto found = parameters.find(std::string(use.name));
-        if (found != parameters.end()) return &found->second;
-        problems.error(place, "/k", "stage", "unknown " + std::string(use.name));
-        return nullptr;
-      }};
+  ExpressionSite site{{file, 6}, "stage", [&](const NameUse& use, const Place& place) -> const Quantity* {
+                        const auto found = parameters.find(std::string(use.name));
+                        if (found != parameters.end()) return &found->second;
+                        problems.error(place, "/k", "stage", "unknown " + std::string(use.name));
+                        return nullptr;
+                      }};
   Outcome outcome{evaluate(expression, site, problems), {}};
   outcome.problems = problems.text();
   return outcome;
