@@ -163,7 +163,7 @@ template <class Real> class Run {
   CallsByRate<Real> outputs_, updates_;
   std::vector<std::pair<const void*, double (*)(const void*, double)>> stops_;
   Instant now_;
-  int64_t none_due_before_ = INT64_MIN;  // no rate from now on; a tick
+  int64_t none_due_before_ = INT64_MIN;  // a tick that is not passed yet: until then due() need not look
   uint64_t failed_ = 0;
   std::vector<FaultReport> reports_;  // one a lane
 };
