@@ -63,13 +63,17 @@ template <class Real> struct CoggingForce {
     is_sloped = any(velocity_slope != 0.0), is_modulated = any(modulation.depth != 0.0);
   }
   void outputs(const In& in, Out& out) const {
-    Real scale = 1.0;  // while the sines are on their way
-    if (is_sloped) scale = maximum(1.0 - velocity_slope * absolute(in.velocity), Real(0.0));
-    if (is_modulated)
-      scale *= 1.0 + modulation.depth * sine(modulation_wave_number * in.position + modulation.phase);
+    const auto term = [&](const Harmonic& h) __attribute__((always_inline)) {
+      return h.amplitude * sine(h.wave_number * in.position + h.phase);
+    };
     Real sum = 0.0;
-    for (const Harmonic& h : harmonics) sum += h.amplitude * sine(h.wave_number * in.position + h.phase);
-    out.force = scale * sum;
+    if (!harmonics.empty())
+      sum += term(harmonics.front());  // alone it stays in registers; a loop would store it
+    for (size_t i = 1; i < harmonics.size(); ++i) sum += term(harmonics[i]);
+    if (is_sloped) sum *= maximum(1.0 - velocity_slope * absolute(in.velocity), Real(0.0));
+    if (is_modulated)
+      sum *= 1.0 + modulation.depth * sine(modulation_wave_number * in.position + modulation.phase);
+    out.force = sum;
   }
 };
 LOOPWRIGHT_BLOCK(CoggingForce)

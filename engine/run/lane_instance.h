@@ -140,6 +140,78 @@ template <class Real> class LaneByLane {
   std::vector<double> mode_;  // its bytes travel as doubles; nothing is computed with them
 };
 
+/// A block that nothing but the time has an effect on, such as a reference: as long as nobody has asked for a
+/// parameter of one lane, the scalar block works its outputs out once for all lanes.
+template <class Real> class OnceForAll {
+ public:
+  static bool suits(const Plan::Block& block) {
+    const Kernels<double>& kernels = block.type->kernels;
+    return block.type->info.inputs.empty() && block.states == 0 && kernels.memory_size == 0 && !kernels.jump;
+  }
+  OnceForAll(const Plan::Block& block, const Kernels<Real>& lane_kernels, const void* lanes)
+      : kernels_(block.type->kernels),
+        lane_kernels_(lane_kernels),
+        lanes_(lanes),
+        scalar_(block, 1),
+        mode_(kernels_.mode_size / sizeof(double) + 1) {
+    for (const int length : block.output_lengths) {
+      Port<double> port{};
+      port.data = values_.emplace_back(std::make_unique<double[]>(size_t(length))).get();
+      port.length = length;
+      out_.push_back(port);
+    }
+  }
+  /// From now on every lane has parameters of its own, from the next start.
+  void part() { lanes_part_ = true; }
+  void start(const Call<Real>& call, const Setup& setup) {
+    is_once_ = !lanes_part_;
+    FaultReport none;
+    scalar_.start(scalar_call(call, none), setup);
+  }
+  static uint64_t decide(const Call<Real>& call) {
+    return of(call).step(call, of(call).kernels_.decide, of(call).lane_kernels_.decide);
+  }
+  template <int group> static uint64_t outputs(const Call<Real>& call) {
+    return of(call).step(call, of(call).kernels_.outputs[group], of(call).lane_kernels_.outputs[group]);
+  }
+
+ private:
+  static OnceForAll& of(const Call<Real>& call) {
+    return *const_cast<OnceForAll*>(static_cast<const OnceForAll*>(call.block));
+  }
+  Call<double> scalar_call(const Call<Real>& call, FaultReport& report) {
+    Call<double> scalar;
+    scalar.block = scalar_.block(), scalar.index = call.index, scalar.now = call.now;
+    scalar.report = &report, scalar.out = out_.data(), scalar.mode = mode_.data();
+    return scalar;
+  }
+  uint64_t step(const Call<Real>& call, Step<double> once, Step<Real> in_lanes) {
+    if (!is_once_) {
+      Call<Real> own = call;
+      own.block = lanes_;
+      return in_lanes(own);
+    }
+    FaultReport report;
+    const uint64_t fault = once(scalar_call(call, report));
+    for (int r = 0; r < call.registers; ++r)
+      for (size_t p = 0; p < out_.size(); ++p)
+        for (int i = 0; i < out_[p].length; ++i) call.out[p].data[r * call.stride + i] = out_[p].data[i];
+    if (!fault) [[likely]]
+      return 0;
+    const uint64_t all = ~uint64_t(0) >> (64 - lanes_of<Real> * call.registers);
+    return report_fault(call.report, call.index, {all, report.reason});
+  }
+
+  const Kernels<double>& kernels_;
+  const Kernels<Real>& lane_kernels_;
+  const void* lanes_;  // the blocks of the lane kernels
+  BlockInstance<double> scalar_;
+  std::vector<std::unique_ptr<double[]>> values_;
+  std::vector<Port<double>> out_;
+  std::vector<double> mode_;  // its bytes; nothing is computed with them
+  bool lanes_part_ = false, is_once_ = false;
+};
+
 /// A block of the plan for a group of lanes.
 template <class Real> class BlockInstance {
  public:
@@ -158,8 +230,13 @@ template <class Real> class BlockInstance {
       kernels_->construct(at(r));
       kernels_->copy(at(r), block.value.get());
     }
+    if (OnceForAll<Real>::suits(block))
+      once_for_all_ = std::make_unique<OnceForAll<Real>>(block, *kernels_, blocks_.get());
   }
-  void* block() { return kernels_ ? static_cast<void*>(blocks_.get()) : lane_by_lane_.get(); }
+  void* block() {
+    if (once_for_all_) return once_for_all_.get();
+    return kernels_ ? static_cast<void*>(blocks_.get()) : lane_by_lane_.get();
+  }
   bool is_lane_wise() const { return kernels_ != nullptr; }
   size_t memory_bytes() const { return kernels_ ? kernels_->memory_size : lane_by_lane_->memory_bytes(); }
   size_t mode_bytes() const { return kernels_ ? kernels_->mode_size : lane_by_lane_->mode_bytes(); }
@@ -167,10 +244,12 @@ template <class Real> class BlockInstance {
   double* tunable(std::string_view path, int lane) {
     if (!kernels_) return lane_by_lane_->tunable(path, lane);
     Real* found = kernels_->tunable(at(lane / width), path);
+    if (found && once_for_all_) once_for_all_->part();
     return found ? reinterpret_cast<double*>(found) + lane % width : nullptr;
   }
   void start(const Call<Real>& call, const Setup& setup) {
     if (!kernels_) return lane_by_lane_->start(call, setup);
+    if (once_for_all_) once_for_all_->start(call, setup);
     for (int r = 0; r < call.registers; ++r) {
       Setup own = setup;
       own.run += r * width;
@@ -182,12 +261,17 @@ template <class Real> class BlockInstance {
   }
   Step<Real> outputs(int group) const {
     static constexpr auto by_group = []<int... g>(std::integer_sequence<int, g...>) {
-      return std::array<Step<Real>, sizeof...(g)>{&LaneByLane<Real>::template step_outputs<g>...};
+      return std::array<std::pair<Step<Real>, Step<Real>>, sizeof...(g)>{
+          std::pair{&LaneByLane<Real>::template step_outputs<g>, &OnceForAll<Real>::template outputs<g>}...};
     }
     (std::make_integer_sequence<int, 8>{});
-    return kernels_ ? kernels_->outputs[group] : by_group[size_t(group)];
+    const auto& [lane_by_lane, once_for_all] = by_group[size_t(group)];
+    return once_for_all_ ? once_for_all : kernels_ ? kernels_->outputs[group] : lane_by_lane;
   }
-  Step<Real> decide() const { return step<&Kernels<Real>::decide, &Kernels<double>::decide>(); }
+  Step<Real> decide() const {
+    if (once_for_all_) return kernels_->decide ? &OnceForAll<Real>::decide : nullptr;
+    return step<&Kernels<Real>::decide, &Kernels<double>::decide>();
+  }
   Step<Real> derivatives() const {
     return step<&Kernels<Real>::derivatives, &Kernels<double>::derivatives>();
   }
@@ -214,6 +298,7 @@ template <class Real> class BlockInstance {
   const Kernels<Real>* kernels_ = nullptr;  // null: lane by lane
   std::unique_ptr<char, Destroy> blocks_;   // one a register, side by side
   std::unique_ptr<LaneByLane<Real>> lane_by_lane_;
+  std::unique_ptr<OnceForAll<Real>> once_for_all_;  // beside the lane kernels
 };
 
 }  // namespace loopwright

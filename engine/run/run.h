@@ -10,6 +10,7 @@
 ///   held
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <memory>
 #include <new>
@@ -51,15 +52,18 @@ template <class Real> class Run {
   template <class After> void evaluate_watched(uint64_t due_rates, After&& after) {
     const auto& calls = outputs_.at(due_rates);
     for (const Call<Real>& c : calls) failed_ |= c.step(c), after(c.index);
-    repeat_after_jumps(calls);
+    if (!jumps_.empty()) repeat_after_jumps(calls);
   }
   void accept() { run(accepts_); }
   void update(uint64_t due_rates) { run(updates_.at(due_rates)); }
   /// The next tick after now at which a rate is due.
-  int64_t next_due() const;
+  int64_t next_due();
   /// Part 5 by the plan's fixed-step method.
   void integrate(int64_t ticks);
-  void move_to(int64_t tick) { now_ = {plan_.clock.time(tick), tick}; }
+  void move_to(int64_t tick) {
+    if (tick < now_.tick) none_due_before_ = INT64_MIN;
+    now_ = {plan_.clock.time(tick), tick};
+  }
 
   /// One whole step, at most to `limit`; `record()` is called where part 3 says, if `everything`. Without
   /// states nothing happens between samples: the step then reaches to the next of them.
@@ -135,14 +139,14 @@ template <class Real> class Run {
   void euler(double h);
   void heun(double h);
   void rk4(double h);
+  void leave(double h);
 
   const Plan& plan_;
   const int registers_;
   ptrdiff_t stride_ = 0;
   size_t bytes_ = 0;
   std::unique_ptr<char, FreeArena> arena_;
-  Real *numbers_ = nullptr, *x_ = nullptr, *rate_ = nullptr, *start_ = nullptr, *sum_ = nullptr,
-       *crossing_ = nullptr, *buffers_ = nullptr;
+  Real *numbers_ = nullptr, *x_ = nullptr, *start_ = nullptr, *crossing_ = nullptr, *buffers_ = nullptr;
   std::vector<size_t> memory_at_, mode_at_;  // bytes from the start of the arena
   size_t evaluated_ = 0;                     // Reals from the start of the arena that an evaluation may write
   std::vector<double> kept_;                 // those of the lanes that did not jump
@@ -151,11 +155,15 @@ template <class Real> class Run {
   std::vector<const Real*> many_;
   std::vector<Call<Real>> base_;  // a block each, without a step
   std::vector<std::unique_ptr<RingSolver<Real>>> rings_;
-  std::vector<Call<Real>> constants_, between_, stage_, for_events_, held_, derivatives_, accepts_, jumps_,
-      crossings_;
+  std::vector<Call<Real>> constants_, between_, stage_, for_events_, held_, accepts_, jumps_, crossings_;
+  // The derivatives at each stage of a step have a place of their own: a step reads and writes less than one
+  // that sums them up.
+  std::array<Real*, 4> slope_{};
+  std::array<std::vector<Call<Real>>, 4> slopes_;
   CallsByRate<Real> outputs_, updates_;
   std::vector<std::pair<const void*, double (*)(const void*, double)>> stops_;
   Instant now_;
+  int64_t none_due_before_ = INT64_MIN;  // a tick that is not passed yet: until then due() need not look
   uint64_t failed_ = 0;
   std::vector<FaultReport> reports_;  // one a lane
 };

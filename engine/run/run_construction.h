@@ -13,7 +13,7 @@ Run<Real>::Run(const Plan& plan, int registers)
   reset({plan.seed, 0});
 }
 
-/// signals | x | modes | rate | start | sum | crossings | buffers | memories, in every register's arena.
+/// signals | x | modes | slopes | start | crossings | buffers | memories, in every register's arena.
 template <class Real> void Run<Real>::lay_out() {
   const size_t align = std::max<size_t>(64, sizeof(Real));
   const auto reals = [](size_t bytes) { return (bytes + sizeof(Real) - 1) / sizeof(Real); };
@@ -25,7 +25,8 @@ template <class Real> void Run<Real>::lay_out() {
     end += reals(instances_.back().mode_bytes());
   }
   evaluated_ = end;
-  const size_t rate = end, crossings = rate + 3 * states, buffers = crossings + plan_.crossings.size();
+  const size_t slopes = end, start = slopes + slope_.size() * states, crossings = start + states,
+               buffers = crossings + plan_.crossings.size();
   end = buffers + size_t(plan_.buffer_numbers);
   for (const BlockInstance<Real>& instance : instances_) {
     memory_at_.push_back(end * sizeof(Real));
@@ -38,7 +39,8 @@ template <class Real> void Run<Real>::lay_out() {
   std::memset(arena_.get(), 0, bytes_);
   numbers_ = reinterpret_cast<Real*>(arena_.get());
   x_ = numbers_ + plan_.signals;
-  rate_ = numbers_ + rate, start_ = rate_ + states, sum_ = start_ + states;
+  for (size_t k = 0; k < slope_.size(); ++k) slope_[k] = numbers_ + slopes + k * states;
+  start_ = numbers_ + start;
   crossing_ = numbers_ + crossings, buffers_ = numbers_ + buffers;
 }
 
@@ -54,7 +56,7 @@ template <class Real> void Run<Real>::connect() {
     Call<Real> call;
     call.block = instances_[b].block(), call.index = int(b), call.now = &now_, call.report = reports_.data();
     call.registers = registers_, call.stride = stride_;
-    call.state = x_ + block.first_state, call.rate = rate_ + block.first_state,
+    call.state = x_ + block.first_state, call.rate = slope_[0] + block.first_state,
     call.crossing = crossing_ + block.first_crossing;
     call.memory = arena_.get() + memory_at_[b], call.mode = arena_.get() + mode_at_[b];
     call.in = wires_.data() + wires_.size();
@@ -134,7 +136,11 @@ template <class Real> void Run<Real>::schedule() {
     const Plan::Block& block = plan_.blocks[b];
     const BlockInstance<Real>& instance = instances_[b];
     Call<Real> call = base_[b];
-    if ((call.step = instance.derivatives())) derivatives_.push_back(call);
+    if ((call.step = instance.derivatives()))
+      for (size_t k = 0; k < slopes_.size(); ++k) {
+        slopes_[k].push_back(call);
+        slopes_[k].back().rate = slope_[k] + block.first_state;
+      }
     if ((call.step = instance.accept())) accepts_.push_back(call);
     if ((call.step = instance.jump())) jumps_.push_back(call);
     if ((call.step = instance.update()))

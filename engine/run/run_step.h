@@ -5,6 +5,7 @@
 namespace loopwright {
 
 template <class Real> uint64_t Run<Real>::due() const {
+  if (now_.tick < none_due_before_) return 0;
   uint64_t mask = 0;
   for (size_t r = 0; r < plan_.rates.size(); ++r) {
     const Rate& rate = plan_.rates[r];
@@ -13,24 +14,25 @@ template <class Real> uint64_t Run<Real>::due() const {
   return mask;
 }
 
-template <class Real> int64_t Run<Real>::next_due() const {
+template <class Real> int64_t Run<Real>::next_due() {
+  if (now_.tick < none_due_before_) return none_due_before_;
   int64_t next = INT64_MAX;
   for (const Rate& rate : plan_.rates) {
     const int64_t since = now_.tick - rate.offset;
     next = std::min(next, since < 0 ? rate.offset : rate.offset + (since / rate.period + 1) * rate.period);
   }
-  return next;
+  return none_due_before_ = next;
 }
 
 template <class Real> void Run<Real>::evaluate(uint64_t due_rates, bool everything) {
   const auto& calls = everything ? outputs_.at(due_rates) : between_;
   run(calls);
-  repeat_after_jumps(calls);
+  if (!jumps_.empty()) repeat_after_jumps(calls);
 }
 
 /// A jump changes states that others have read: all signals again, until no state jumps any more.
 template <class Real> void Run<Real>::repeat_after_jumps(const std::vector<Call<Real>>& calls) {
-  for (int i = 0; i < 10 && !jumps_.empty(); ++i) {
+  for (int i = 0; i < 10; ++i) {
     uint64_t changed = 0;
     for (const Call<Real>& c : jumps_) changed |= c.step(c);
     if (!changed) break;
@@ -74,51 +76,47 @@ template <class Real> void Run<Real>::integrate(int64_t ticks) {
 }
 
 template <class Real> void Run<Real>::euler(double h) {
-  run(derivatives_);
-  each_state([&](auto i) __attribute__((always_inline)) { x_[i] = x_[i] + Real(h) * rate_[i]; });
+  run(slopes_[0]);
+  each_state([&](auto i) __attribute__((always_inline)) { x_[i] = x_[i] + Real(h) * slope_[0][i]; });
 }
 
 template <class Real> void Run<Real>::heun(double h) {
-  run(derivatives_);
-  each_state([&](auto i) __attribute__((always_inline)) {
-    start_[i] = x_[i];
-    sum_[i] = rate_[i];
-    x_[i] = x_[i] + Real(h) * rate_[i];
-  });
+  const auto [k1, k2, k3, k4] = slope_;
+  leave(h);
   now_.time += h;
   run(stage_);
-  run(derivatives_);
-  each_state([&](auto i) __attribute__((always_inline)) {
-    x_[i] = start_[i] + Real(0.5 * h) * (sum_[i] + rate_[i]);
-  });
+  run(slopes_[1]);
+  each_state([&](auto i)
+                 __attribute__((always_inline)) { x_[i] = start_[i] + Real(0.5 * h) * (k1[i] + k2[i]); });
 }
 
 template <class Real> void Run<Real>::rk4(double h) {
   const double half = 0.5 * h, sixth = h / 6, start = now_.time;
-  run(derivatives_);
-  each_state([&](auto i) __attribute__((always_inline)) {
-    start_[i] = x_[i];
-    sum_[i] = rate_[i];
-    x_[i] = start_[i] + Real(half) * rate_[i];
-  });
+  const auto [k1, k2, k3, k4] = slope_;
+  leave(half);
   now_.time = start + half;
   run(stage_);
-  run(derivatives_);
-  each_state([&](auto i) __attribute__((always_inline)) {
-    sum_[i] = sum_[i] + Real(2.0) * rate_[i];
-    x_[i] = start_[i] + Real(half) * rate_[i];
-  });
+  run(slopes_[1]);
+  each_state([&](auto i) __attribute__((always_inline)) { x_[i] = start_[i] + Real(half) * k2[i]; });
   run(stage_);
-  run(derivatives_);
-  each_state([&](auto i) __attribute__((always_inline)) {
-    sum_[i] = sum_[i] + Real(2.0) * rate_[i];
-    x_[i] = start_[i] + Real(h) * rate_[i];
-  });
+  run(slopes_[2]);
+  each_state([&](auto i) __attribute__((always_inline)) { x_[i] = start_[i] + Real(h) * k3[i]; });
   now_.time = start + h;
   run(stage_);
-  run(derivatives_);
-  each_state([&](auto i)
-                 __attribute__((always_inline)) { x_[i] = start_[i] + Real(sixth) * (sum_[i] + rate_[i]); });
+  run(slopes_[3]);
+  each_state([&](auto i) __attribute__((always_inline)) {
+    x_[i] = start_[i] + Real(sixth) * (((k1[i] + Real(2.0) * k2[i]) + Real(2.0) * k3[i]) + k4[i]);
+  });
+}
+
+/// The first stage of a step: the states are kept, and go `h` along their slope.
+template <class Real> void Run<Real>::leave(double h) {
+  run(slopes_[0]);
+  each_state([&](auto i) __attribute__((always_inline)) {
+    const Real here = by_register(x_[i]);
+    start_[i] = by_register(here);
+    x_[i] = here + Real(h) * slope_[0][i];
+  });
 }
 
 // Between discontinuities, for variable-step solvers.
@@ -128,8 +126,8 @@ template <class Real> bool Run<Real>::derivatives_at(double time, const double* 
   now_.time = time;
   uint64_t bad = 0;
   for (const Call<Real>& c : stage_) bad |= c.step(c);
-  for (const Call<Real>& c : derivatives_) bad |= c.step(c);
-  std::copy_n(rate_, plan_.states, rate);
+  for (const Call<Real>& c : slopes_[0]) bad |= c.step(c);
+  std::copy_n(slope_[0], plan_.states, rate);
   return bad == 0;
 }
 

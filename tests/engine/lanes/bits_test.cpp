@@ -109,6 +109,36 @@ TEST_P(EverySet, RunsEveryBlockButPlainStructsOnItsOwnKernels) {
       EXPECT_EQ(run->is_lane_wise(int(b)), plan->blocks[b].type->info.lane_wise) << plan->blocks[b].path;
   }
 }
+const char* const sources = R"({
+  "loopwright": 1, "solver": {"method": "rk4", "step": 0.001, "stop": 1},
+  "blocks": {
+    "chirp":  {"type": "Chirp", "amplitude": 2, "from": 1, "to": 9, "duration": 0.4, "repeats": true},
+    "many":   {"type": "Multisine", "band": {"from": 1, "to": 20, "count": 5, "amplitude": 0.3}},
+    "motion": {"type": "MotionProfile", "start": 0.1, "segments": [{"duration": 0.3, "velocity": 1},
+                                                                   {"duration": 0.3, "velocity": 0}]},
+    "noise":  {"type": "Noise", "sample_time": 0.01, "standard_deviation": 1},
+    "pulses": {"type": "PulseTrain", "period": 0.13, "width": 0.05},
+    "ramp":   {"type": "Ramp", "slope": 3, "start": 0.2, "stop": 0.7},
+    "sine":   {"type": "Sine", "amplitude": 2, "frequency": 3},
+    "step":   {"type": "Step", "time": 0.5},
+    "sum":    {"type": "Sum", "in": {"terms": ["chirp.y", "many.y", "motion.velocity", "noise.y", "pulses.y",
+                                               "ramp.y", "sine.y", "step.y"]}},
+    "area":   {"type": "Integrator", "in": {"u": "sum.sum"}}
+  }
+})";
+
+TEST_P(EverySet, GivesTheSameBitsWhereNobodyAskedForAParameterOfASource) {
+  SKIP_WITHOUT_LANES(GetParam());
+  const auto plan = plan_of(sources);
+  const auto untouched = lane_rows(*plan, {}, GetParam(), 2);
+  auto parameters = tunable_parameters(*plan);
+  std::erase_if(parameters, [](const TunedParameter& p) { return !p.path.starts_with("ramp."); });
+  const auto touched = lane_rows(*plan, parameters, GetParam(), 2);
+  for (const int lane : {0, 13, 31, 32, 63}) {
+    EXPECT_EQ(difference(*plan, scalar_rows(*plan, {}, lane), untouched[size_t(lane)]), "");
+    EXPECT_EQ(difference(*plan, scalar_rows(*plan, parameters, lane), touched[size_t(lane)]), "");
+  }
+}
 INSTANTIATE_TEST_SUITE_P(Sets, EverySet, ::testing::ValuesIn(simd_sets), set_name);
 
 }  // namespace
