@@ -111,7 +111,10 @@ class Search {
     note(proposals);
     const double single = proposals.empty() ? 0 : proposals.front().gain;
     if (proposals.size() > tried_extensions) proposals.resize(tried_extensions);
-    if (const Proposal pair = evidence().best_pair(); pair.gain > single + 10) proposals.push_back(pair);
+    if (const Proposal pair = evidence().best_pair(); pair.gain > single + 10) {
+      if (pair.gain > 2 * single) proposals.resize(std::min<size_t>(proposals.size(), 2));
+      proposals.push_back(pair);
+    }
     const double before = score(best_), least = std::max(10.0, 0.002 * double(fitted_numbers(trials_)));
     std::vector<Estimate> tried;
     for (const Proposal& proposal : proposals) {

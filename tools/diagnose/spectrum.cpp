@@ -1,6 +1,7 @@
 #include "tools/diagnose/spectrum.h"
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <unsupported/Eigen/FFT>
 
@@ -96,9 +97,12 @@ Column::Numbers envelope(const Candidate& candidate, const Path& path, double st
   return std::ranges::max_element(columns, {}, size)->mean;
 }
 
+/// Of every record.
+using Weights = std::vector<std::vector<double>>;
+
 /// Explained squares at every spatial frequency, over all records.
 std::vector<double> spectrum(const Trials& trials, const Estimate& estimate, const Candidate& candidate,
-                             const SpatialGrid& grid, double stroke) {
+                             const Weights& weights, const SpatialGrid& grid, double stroke) {
   std::vector<Complex> density(grid.samples);
   constexpr size_t speeds = 64;
   std::vector<double> by_speed(speeds, 0.0);
@@ -108,7 +112,7 @@ std::vector<double> spectrum(const Trials& trials, const Estimate& estimate, con
       if (!candidate.repeats_in_time) top = std::max(top, std::abs(v));
   for (size_t t = 0; t < trials.list.size(); ++t) {
     const Path& path = *estimate.motion.paths[t];
-    const std::vector<double> weight = adjoint(trials.list[t], estimate.fitted[t], candidate.acts);
+    const std::vector<double>& weight = weights[t];
     const Column::Numbers envelope_now = envelope(candidate, path, stroke);
     const std::vector<float>& swell = *envelope_now;
     const double T = path.sample_time;
@@ -182,13 +186,17 @@ std::vector<Shape> periodic_shapes(const Trials& trials, const Estimate& estimat
   const double stroke = highest - lowest;
   std::vector<Shape> shapes;
   if (!(stroke > 0)) return shapes;
+  std::map<Acts, Weights> weights;
   for (const Candidate& candidate : candidates) {
     if (!candidate.is_periodic) continue;
     const double low = candidate.nonlinear[0].low, high = candidate.nonlinear[0].high;
     const SpatialGrid grid =
         candidate.repeats_in_time ? SpatialGrid(0, longest, low) : SpatialGrid(lowest, highest, low);
+    Weights& weight = weights[candidate.acts];
+    for (size_t t = weight.size(); t < trials.list.size(); ++t)
+      weight.push_back(adjoint(trials.list[t], estimate.fitted[t], candidate.acts));
     std::vector<double> pitches =
-        peaks(spectrum(trials, estimate, candidate, grid, stroke), grid, low, high, lines);
+        peaks(spectrum(trials, estimate, candidate, weight, grid, stroke), grid, low, high, lines);
     for (const Member& member : estimate.members)
       if (member.candidate->is_periodic && !candidate.repeats_in_time && !member.candidate->repeats_in_time &&
           member.candidate != &candidate && member.nonlinear[0] > low && member.nonlinear[0] < high)
