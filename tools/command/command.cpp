@@ -5,6 +5,7 @@
 #include <csignal>
 #include <filesystem>
 #include "engine/block/registry.h"
+#include "engine/record/atomic_file.h"
 
 namespace loopwright {
 
@@ -87,6 +88,15 @@ void Progress::show(double done, double total) {
 
 void Progress::finish() {
   if (drawn_) fmt::print(stderr, "\r\033[K");
+}
+
+void give_answer(const std::string& text, const std::string& json_path,
+                 const std::function<std::string()>& json) {
+  if (json_path == "-")
+    fmt::print("{}", json());
+  else if (!json_path.empty())
+    write_file(json_path, json());
+  fmt::print(stderr, "{}", text);
 }
 
 void require_writable(const std::string& path, std::string_view option) {

@@ -56,6 +56,10 @@ class Progress {
   double started_, last_;
 };
 
+/// An answer as text on stderr, and as JSON where it is wanted: in a file, or on stdout for "-".
+void give_answer(const std::string& text, const std::string& json_path,
+                 const std::function<std::string()>& json);
+
 /// A path that can be written later: refused before hours of computing. Throws InputError.
 void require_writable(const std::string& path, std::string_view option);
 

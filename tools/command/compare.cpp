@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <filesystem>
-#include "engine/record/atomic_file.h"
 #include "tools/command/command.h"
 #include "tools/compare/compare.h"
 
@@ -22,14 +21,10 @@ int run(const Arguments& a) {
   const Comparison comparison = compare(a.diagram.path, a.experiment, a.diagram.options(), options);
   progress.finish();
   for (const std::string& warning : comparison.warnings) fmt::print(stderr, "warning: {}\n", warning);
-  if (a.json == "-")
-    fmt::print("{}", to_json(comparison));
-  else if (!a.json.empty())
-    write_file(a.json, to_json(comparison));
   const std::string title = std::filesystem::path(a.experiment).filename().string();
   if (!a.report.empty())
     report::write_html(a.report, comparison_page(comparison, comparison.plan->title + " — " + title));
-  fmt::print(stderr, "{}", to_text(comparison));
+  give_answer(to_text(comparison), a.json, [&] { return to_json(comparison); });
   if (comparison.run.status == RunStatus::finished) return done;
   fmt::print(stderr, "{}: {}\n", a.diagram.path, comparison.run.message);
   return comparison.run.status == RunStatus::interrupted ? interrupted : run_failed;

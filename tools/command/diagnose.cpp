@@ -1,6 +1,5 @@
 #include "tools/diagnose/diagnose.h"
 #include <fmt/format.h>
-#include "engine/record/atomic_file.h"
 #include "tools/command/command.h"
 
 namespace loopwright {
@@ -27,12 +26,8 @@ int run(const Arguments& a) {
   if (diagnosis.was_interrupted) return interrupted;
   if (a.trail)
     for (const std::string& line : diagnosis.trail) fmt::print(stderr, "{}\n", line);
-  if (a.json == "-")
-    fmt::print("{}", to_json(diagnosis));
-  else if (!a.json.empty())
-    write_file(a.json, to_json(diagnosis));
   if (!a.report.empty()) report::write_html(a.report, diagnosis_page(diagnosis));
-  fmt::print(stderr, "{}", to_text(diagnosis));
+  give_answer(to_text(diagnosis), a.json, [&] { return to_json(diagnosis); });
   return done;
 }
 

@@ -1,5 +1,4 @@
 #include "tools/fit/fit.h"
-#include <fmt/format.h>
 #include <filesystem>
 #include "engine/record/atomic_file.h"
 #include "tools/command/command.h"
@@ -37,11 +36,7 @@ int run(const Arguments& a) {
     if (problems.has_errors()) throw InputError(std::move(problems));
     write_fitted(a, text);
   }
-  if (a.json == "-")
-    fmt::print("{}", to_json(result));
-  else if (!a.json.empty())
-    write_file(a.json, to_json(result));
-  fmt::print(stderr, "{}", to_text(result));
+  give_answer(to_text(result), a.json, [&] { return to_json(result); });
   return result.was_interrupted ? interrupted : done;
 }
 

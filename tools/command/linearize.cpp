@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <cmath>
 #include <numbers>
-#include "engine/record/atomic_file.h"
 #include "engine/record/csv.h"
 #include "tools/command/command.h"
 #include "tools/linearize/analysis.h"
@@ -59,16 +58,12 @@ int run(const Arguments& a) {
   if (a.at >= 0) request.at = a.at;
   LinearAnalysis analysis = analyse(*plan, request, options);
   if (a.measure > 0) measure(a, analysis.system, analysis, options);
-  if (a.json == "-")
-    fmt::print("{}", to_json(analysis));
-  else if (!a.json.empty())
-    write_file(a.json, to_json(analysis));
   if (a.csv == "-")
     print_csv(stdout, to_recording(analysis));
   else if (!a.csv.empty())
     write_csv(a.csv, to_recording(analysis));
   if (!a.report.empty()) report::write_html(a.report, linear_page(analysis));
-  fmt::print(stderr, "{}", to_text(analysis));
+  give_answer(to_text(analysis), a.json, [&] { return to_json(analysis); });
   return done;
 }
 

@@ -1,6 +1,4 @@
 #include "tools/stability/stability.h"
-#include <fmt/format.h>
-#include "engine/record/atomic_file.h"
 #include "tools/command/command.h"
 
 namespace loopwright {
@@ -24,12 +22,8 @@ int run(const Arguments& a) {
   options.progress = [&](double time, double stop) { progress.show(time, stop); };
   const StabilityReport result = assess_stability(a.diagram.path, a.diagram.options(), request, options);
   progress.finish();
-  if (a.json == "-")
-    fmt::print("{}", to_json(result));
-  else if (!a.json.empty())
-    write_file(a.json, to_json(result));
   if (!a.report.empty()) report::write_html(a.report, stability_page(result));
-  fmt::print(stderr, "{}", to_text(result));
+  give_answer(to_text(result), a.json, [&] { return to_json(result); });
   return done;
 }
 

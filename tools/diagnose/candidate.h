@@ -13,6 +13,12 @@ struct CandidateParameter {
   bool logarithmic = false;  ///< how it is stepped through, when nonlinear
   std::vector<double> grid;  ///< where the search looks first, when nonlinear
   double span = 0;  ///< of a period: the stroke or time over which it repeats; decides how sharp it is
+
+  /// The range ends at this value: a warning, not a result.
+  bool ends_at(double value) const {
+    const double edge = 1e-6 * (high - low);
+    return value <= low + edge || value >= high - edge;
+  }
 };
 
 struct Member;

@@ -169,6 +169,32 @@ std::vector<OtherSet> other_sets(Trials& trials, const Estimate& estimate,
   return list;
 }
 
+bool is_at_limit(const Member& member) {
+  const Candidate& candidate = *member.candidate;
+  for (size_t i = 0; i < member.linear.size() && !candidate.amplitude_is_one; ++i)
+    if (candidate.linear[i].ends_at(member.linear[i])) return true;
+  for (size_t i = 0; i < member.nonlinear.size(); ++i)
+    if (candidate.nonlinear[i].ends_at(member.nonlinear[i])) return true;
+  return false;
+}
+
+/// A parameter at the end of its range says that something simpler would do: what has fewer parameters, and is not
+/// worse by `reach`.
+std::optional<Estimate> simplified(Trials& trials, const Estimate& estimate,
+                                   const std::vector<Proposal>& exchanges, size_t catalogue, double reach) {
+  for (size_t m = 0; m < estimate.members.size(); ++m) {
+    const Member& member = estimate.members[m];
+    if (!is_at_limit(member)) continue;
+    for (const Proposal& proposal : exchanges) {
+      const bool is_simpler = proposal.removed == std::vector<size_t>{m} && proposal.added.size() == 1 &&
+                              parameters_of(*proposal.added[0].candidate) < parameters_of(*member.candidate);
+      if (is_simpler && proposal.gain > -10 * reach && loss_of(trials, estimate, proposal, catalogue, reach))
+        return fit_members(trials, applied(proposal, estimate.members), estimate.noise, estimate.motion, 4);
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 double material(const Trials& trials, const Estimate& estimate, const Weight& weight) {
@@ -245,6 +271,11 @@ Conclusion conclude(Trials& trials, const std::vector<Candidate>& candidates,
   // What a linearisation promises far from where it was made may be a hundred off.
   const double reach = std::max({10.0, 0.002 * n, unexplained(result.portmanteau)});
   const double far = std::max(100.0, 3 * reach);
+  if (auto simpler = simplified(trials, estimate, exchanges, candidates.size(), reach)) {
+    Conclusion simple = conclude(trials, candidates, shapes, std::move(*simpler));
+    simple.trail.insert(simple.trail.begin(), result.trail.begin(), result.trail.end());
+    return simple;
+  }
   const std::vector<Proposal> swaps = shape_swaps(estimate.members, candidates);
   std::vector<Proposal> several = evidence.exchanges_for_pairs();
   std::ranges::copy(exchanges, std::back_inserter(several));

@@ -81,9 +81,8 @@ std::vector<DiagnosedParameter> parameters_of_member(const Conclusion& conclusio
     const double value = value_of(members, free[i]);
     const double half =
         1.96 * std::sqrt(std::max(0.0, estimate.covariance(Eigen::Index(i), Eigen::Index(i))));
-    const double edge = 1e-6 * (range.high - range.low);
     list.push_back({range.name, without_idle_brackets(unit_in(range.unit, units)), value, value - half,
-                    value + half, value <= range.low + edge || value >= range.high - edge});
+                    value + half, range.ends_at(value)});
   }
   return list;
 }

@@ -86,8 +86,14 @@ Trials prepare(const std::string& diagram, const std::vector<std::string>& exper
   for (size_t t = 0; t < trials.list.size(); ++t) mark_usable(trials.list[t], nominal[t].prediction.path);
   trials.noise = fit_noise(trials, nominal, trials.noise, FreeNoise::with_random_walk);
   nominal = run_members(trials, {}, {}, trials.noise);
+  trials.lowest_position = 1e300, trials.highest_position = -1e300;
   for (size_t t = 0; t < trials.list.size(); ++t) {
-    mark_usable(trials.list[t], nominal[t].prediction.path);
+    const Path& path = nominal[t].prediction.path;
+    const auto [low, high] = std::ranges::minmax(path.predicted_position);
+    trials.lowest_position = std::min(trials.lowest_position, low);
+    trials.highest_position = std::max(trials.highest_position, high);
+    trials.longest_s = std::max(trials.longest_s, double(path.samples()) * path.sample_time);
+    mark_usable(trials.list[t], path);
     motion.paths.push_back(std::make_shared<const Path>(std::move(nominal[t].prediction.path)));
   }
   return trials;

@@ -176,14 +176,7 @@ std::vector<double> peaks(const std::vector<double>& explained, const SpatialGri
 
 std::vector<Shape> periodic_shapes(const Trials& trials, const Estimate& estimate,
                                    const std::vector<Candidate>& candidates, size_t lines) {
-  double lowest = 1e300, highest = -1e300, longest = 0;
-  for (const Fitted& fitted : estimate.fitted) {
-    const auto [low, high] = std::ranges::minmax(fitted.prediction.path.predicted_position);
-    lowest = std::min(lowest, low), highest = std::max(highest, high);
-    longest =
-        std::max(longest, double(fitted.prediction.path.samples()) * fitted.prediction.path.sample_time);
-  }
-  const double stroke = highest - lowest;
+  const double lowest = trials.lowest_position, highest = trials.highest_position, stroke = highest - lowest;
   std::vector<Shape> shapes;
   if (!(stroke > 0)) return shapes;
   std::map<Acts, Weights> weights;
@@ -191,7 +184,7 @@ std::vector<Shape> periodic_shapes(const Trials& trials, const Estimate& estimat
     if (!candidate.is_periodic) continue;
     const double low = candidate.nonlinear[0].low, high = candidate.nonlinear[0].high;
     const SpatialGrid grid =
-        candidate.repeats_in_time ? SpatialGrid(0, longest, low) : SpatialGrid(lowest, highest, low);
+        candidate.repeats_in_time ? SpatialGrid(0, trials.longest_s, low) : SpatialGrid(lowest, highest, low);
     Weights& weight = weights[candidate.acts];
     for (size_t t = weight.size(); t < trials.list.size(); ++t)
       weight.push_back(adjoint(trials.list[t], estimate.fitted[t], candidate.acts));

@@ -57,7 +57,7 @@ TEST(Predictor, AForceChangesTheErrorsAsItsFilterSays) {
   std::vector<float> mean, slope;
   for (size_t k = 0; k < p.drives.force.size(); ++k) {
     mean.push_back(float(0.01 * std::sin(0.02 * double(k))));
-    slope.push_back(float(0.3 * std::cos(0.03 * double(k))));
+    slope.push_back(float(0.05 * std::cos(0.03 * double(k))));
     p.drives.force[k] = double(mean.back());
     p.drives.force_slope.push_back(double(slope.back()));
   }
