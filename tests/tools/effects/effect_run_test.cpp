@@ -248,7 +248,7 @@ template <class F> double slope_of(F&& f) {
 TEST(EffectRun, GivesTheSlopeOfAForceThatSwingsWithinASample) {
   EffectRun cogging(compiled(effect_named("cogging")));
   const double pitch = 0.005, speed = 1, step = 1e-3 * speed / pitch * 2 * M_PI;  // rad a sample
-  cogging.set(0, 0.3), cogging.set(1, 0), cogging.set(2, pitch);
+  cogging.set(0, pitch), cogging.set(1, 0.3), cogging.set(2, 0);
   std::vector<double> position, velocity(200, speed), none(200, 0.0);
   for (int k = 0; k < 200; ++k) position.push_back(0.1 + 1e-3 * speed * k);
   EffectRun::Output output;
@@ -260,16 +260,18 @@ TEST(EffectRun, GivesTheSlopeOfAForceThatSwingsWithinASample) {
   }
 }
 
-TEST(EffectRun, ACommandThatComesWithinASampleHasASlope) {
-  EffectRun delay(compiled(effect_named("input_delay")));
-  delay.set(0, 0.0014);
+TEST(EffectRun, AnEffectWithStatesHasItsSlopeFromTheIntegral) {
+  EffectRun lag(compiled(effect_named("actuator_lag")));
+  const double time_constant = 0.002, step = 1e-3 / time_constant;
+  lag.set(0, time_constant);
   std::vector<double> input(50, 0.0), none(50, 0.0);
   for (size_t k = 20; k < 50; ++k) input[k] = 2;
   EffectRun::Output output;
-  delay.run({none, none, none, input, input}, 50, {&output, 1});
-  // The delayed step comes at 0.4 of row 21, and is missing before it.
-  EXPECT_NEAR(double(output.mean[20]), -2, 1e-6);
-  EXPECT_NEAR(double(output.mean[21]), -2 * 0.4, 0.05);
-  EXPECT_NEAR(double(output.slope[21]), slope_of([](double u) { return u < 0.4 ? -2.0 : 0.0; }), 0.3);
-  for (size_t k : {size_t(10), size_t(20), size_t(30)}) EXPECT_NEAR(double(output.slope[k]), 0, 1e-5) << k;
+  lag.run({none, none, none, input, input}, 50, {&output, 1});
+  for (int k = 20; k < 50; ++k) {
+    const double missing = -2 * std::exp(-step * (k - 20));
+    const double slope = slope_of([&](double u) { return missing * std::exp(-step * u); });
+    EXPECT_NEAR(double(output.slope[size_t(k)]), slope, 0.08 * slope) << k;
+  }
+  EXPECT_EQ(output.slope[19], 0);
 }
