@@ -1,6 +1,7 @@
 #include "engine/plan/flatten.h"
 #include <fmt/format.h>
 #include <algorithm>
+#include <bit>
 #include <deque>
 #include <optional>
 #include <unordered_map>
@@ -9,6 +10,44 @@
 namespace loopwright {
 namespace {
 
+/// The ordinary blocks of one diagram by name. A search looks at one spot of a small table, then at the block
+/// that it found: std::unordered_map leads through a list of nodes, and among 100,000 each step waits for
+/// memory.
+class BlockNames {
+ public:
+  /// For at most so many of `blocks`, whose paths begin with `prefix` letters that are not of the name.
+  BlockNames(const std::vector<FlatBlock>& blocks, size_t prefix, size_t most)
+      : blocks_(blocks), prefix_(prefix), slots_(std::bit_ceil(most + most / 4 + 1)) {}
+  void add(int block) {
+    const std::string_view name = name_of(block);
+    const uint32_t hash = hash_of(name);
+    slots_[slot_of(name, hash)] = {hash, block};
+  }
+  /// -1: there is none.
+  int find(std::string_view name) const { return slots_[slot_of(name, hash_of(name))].block; }
+
+ private:
+  struct Slot {
+    uint32_t hash = 0;
+    int block = -1;  // free
+  };
+  static uint32_t hash_of(std::string_view name) { return uint32_t(std::hash<std::string_view>()(name)); }
+  std::string_view name_of(int block) const {
+    return std::string_view(blocks_[size_t(block)].path).substr(prefix_);
+  }
+  /// Where the name stands, or the free slot that it would take: the first such from its hash on.
+  size_t slot_of(std::string_view name, uint32_t hash) const {
+    size_t at = hash & (slots_.size() - 1);
+    while (slots_[at].block >= 0 && (slots_[at].hash != hash || name_of(slots_[at].block) != name))
+      at = (at + 1) & (slots_.size() - 1);
+    return at;
+  }
+
+  const std::vector<FlatBlock>& blocks_;
+  size_t prefix_;
+  std::vector<Slot> slots_;  // a power of two of them, never full
+};
+
 /// One diagram in the nest: where its names lead.
 struct Scope {
   const Diagram* diagram;
@@ -16,7 +55,7 @@ struct Scope {
   const BlockEntry* entry;  // in the parent; null at the top
   Scope* parent;
   std::vector<int> flat_blocks;                        // ordinary blocks: index in the flat list
-  std::unordered_map<std::string_view, int> blocks;    // of the same, by name
+  BlockNames blocks;                                   // of the same
   std::unordered_map<std::string_view, Scope*> inner;  // subdiagrams
 };
 
@@ -57,8 +96,10 @@ class Flattener {
 
  private:
   Scope& add_scope(const Diagram& diagram, std::string prefix, const BlockEntry* entry, Scope* parent) {
-    Scope& scope = scopes_.emplace_back(Scope{&diagram, std::move(prefix), entry, parent, {}, {}, {}});
-    scope.blocks.reserve(diagram.blocks.size());
+    BlockNames names(flat_.blocks, prefix.size(), diagram.blocks.size());
+    Scope& scope =
+        scopes_.emplace_back(Scope{&diagram, std::move(prefix), entry, parent, {}, std::move(names), {}});
+    scope.flat_blocks.reserve(diagram.blocks.size());
     for (const BlockEntry& block : diagram.blocks) {
       if (block.subdiagram)
         scope.inner[block.name] =
@@ -91,8 +132,8 @@ class Flattener {
     flat.inputs.resize(flat.type->info.inputs.size());
     flat.output_lengths.assign(flat.type->info.outputs.size(), 1);
     scope.flat_blocks.push_back(int(flat_.blocks.size()));
-    scope.blocks[entry.name] = int(flat_.blocks.size());
     flat_.blocks.push_back(std::move(flat));
+    scope.blocks.add(scope.flat_blocks.back());
     scope_of_block_.push_back(&scope);
   }
 
@@ -165,8 +206,8 @@ class Flattener {
     const std::string_view rest = text.substr(dot + 1);
     if (const auto inner = scope.inner.find(head); inner != scope.inner.end())
       return resolve_inside(*inner->second, rest, at, reader, depth);
-    if (const auto found = scope.blocks.find(head); found != scope.blocks.end())
-      return resolve_port(found->second, rest, at, reader, depth);
+    if (const int block = scope.blocks.find(head); block >= 0)
+      return resolve_port(block, rest, at, reader, depth);
     for (const auto& [broken_scope, name] : broken_)
       if (broken_scope == &scope && name == head) return unresolved(at);  // already told
     std::vector<std::string> names;
