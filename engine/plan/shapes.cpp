@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <span>
+#include "engine/plan/groups.h"
 
 namespace loopwright {
 
@@ -127,17 +129,17 @@ static void check_size(const FlatDiagram& flat, Problems& problems) {
   p.expected = fmt::format("at most {:.3g} GB", 8e-9 * double(most_numbers));
 }
 
-static std::vector<std::vector<int>> readers_of_blocks(const FlatDiagram& flat) {
-  std::vector<std::vector<int>> readers(flat.blocks.size());
-  for (size_t b = 0; b < flat.blocks.size(); ++b)
-    for (const auto& wires : flat.blocks[b].inputs)
-      for (const FlatWire& wire : wires)
-        if (wire.is_resolved()) readers[size_t(wire.block)].push_back(int(b));
-  return readers;
+static Groups readers_of_blocks(const FlatDiagram& flat) {
+  return Groups(flat.blocks.size(), [&](const auto& tell) {
+    for (size_t b = 0; b < flat.blocks.size(); ++b)
+      for (const auto& wires : flat.blocks[b].inputs)
+        for (const FlatWire& wire : wires)
+          if (wire.is_resolved()) tell(size_t(wire.block), int(b));
+  });
 }
 
 void find_shapes(FlatDiagram& flat, Problems& problems) {
-  std::vector<std::vector<int>> readers;  // listed once a vector is found
+  std::optional<Groups> readers;  // listed once a vector is found
   std::vector<int> todo(flat.blocks.size());
   std::iota(todo.rbegin(), todo.rend(), 0);
   std::vector<int> visits(flat.blocks.size(), 0);
@@ -159,8 +161,9 @@ void find_shapes(FlatDiagram& flat, Problems& problems) {
                      "its vectors grow round a ring of wires without end");
       return;
     }
-    if (readers.empty()) readers = readers_of_blocks(flat);
-    todo.insert(todo.end(), readers[size_t(b)].begin(), readers[size_t(b)].end());
+    if (!readers) readers = readers_of_blocks(flat);
+    const auto those = (*readers)[size_t(b)];
+    todo.insert(todo.end(), those.begin(), those.end());
   }
   std::set<std::string> told;
   for (const FlatBlock& block : flat.blocks) {
