@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <set>
+#include <span>
 #include <unordered_map>
 #include "engine/diagram/diagram.h"
 #include "engine/diagram/drive.h"
@@ -122,14 +123,15 @@ class DiagramReader {
     if (!blocks || !reader_.expect(blocks->value, Value::Kind::object, "\"blocks\"",
                                    "an object: {\"name\": {\"type\": …}}"))
       return;
-    diagram_->blocks.reserve(blocks->value.members.size());
-    for (const Value::Member& member : blocks->value.members) {
+    const std::span members(blocks->value.members);
+    diagram_->blocks.reserve(members.size());
+    for (const Value::Member& member : members) {
       if (++nest_.blocks > most_blocks) {
         if (nest_.blocks == most_blocks + 1)
           reader_.error(member, fmt::format("the diagram has more than {} blocks", most_blocks));
         return;
       }
-      block_names_.add(member.name);
+      blocks_read_ = members.first(blocks_read_.size() + 1);
       read_block(member);
     }
   }
@@ -330,12 +332,15 @@ class DiagramReader {
   // ---- Options that nothing used ----
 
   void report_unused_options() {
+    if (instance_.edits.empty() && instance_.variants.empty()) return;
+    KnownNames block_names;
+    for (const Value::Member& block : blocks_read_) block_names.add(block.name);
     for (const Edit& edit : instance_.edits) {
       const bool is_solver = is_top() && edit.head() == "solver";
       Problem& problem = reader_.error(
           edit.value, is_solver ? "\"solver\" cannot be set as a whole"
                                 : fmt::format("there is no parameter or block \"{}\"", edit.head()));
-      KnownNames names = block_names_;
+      KnownNames names = block_names;
       for (const std::string& name : scope_.names()) names.add(name);
       if (!is_solver) names.explain(problem, edit.head());
     }
@@ -343,7 +348,7 @@ class DiagramReader {
       const std::string& name = choice.path[choice.depth];
       Problem& problem = reader_.problems.error(choice.place, {}, reader_.block,
                                                 fmt::format("there is no block \"{}\"", name));
-      block_names_.explain(problem, name);
+      block_names.explain(problem, name);
     }
   }
 
@@ -352,7 +357,7 @@ class DiagramReader {
   std::string path_;
   Reader reader_;
   ParameterScope scope_;
-  KnownNames block_names_;
+  std::span<const Value::Member> blocks_read_;  // so far; in the values read
   std::shared_ptr<Diagram> diagram_ = std::make_shared<Diagram>();
 };
 

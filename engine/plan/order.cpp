@@ -1,14 +1,15 @@
 #include "engine/plan/order.h"
 #include <fmt/format.h>
 #include <algorithm>
-#include <boost/graph/adjacency_list.hpp>
+#include <boost/graph/compressed_sparse_row_graph.hpp>
 #include <boost/graph/strong_components.hpp>
 #include <numeric>
+#include "engine/plan/groups.h"
 
 namespace loopwright {
 namespace {
 
-using Graph = boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS>;
+using Graph = boost::compressed_sparse_row_graph<boost::directedS>;
 using Kind = Plan::Entry::Kind;
 
 /// A vertex is what one call computes: a group of outputs of a block, or its decision. An edge means "needs".
@@ -26,16 +27,20 @@ class Order {
     add_vertices();
     add_edges();
     std::vector<int> component(vertices_.size());
-    const int components = boost::strong_components(graph_, component.data());
+    const int components = boost::strong_components(
+        graph_, boost::make_iterator_property_map(component.begin(), get(boost::vertex_index, graph_)));
     // Tarjan numbers a component only after all that it needs: the numbers are the order.
-    std::vector<std::vector<int>> members(static_cast<size_t>(components));
-    for (size_t v = 0; v < vertices_.size(); ++v) members[size_t(component[v])].push_back(int(v));
+    const Groups members(size_t(components), [&](const auto& tell) {
+      for (size_t v = 0; v < vertices_.size(); ++v) tell(size_t(component[v]), int(v));
+    });
     rate_of_.resize(vertices_.size());
-    for (const auto& group : members) {
+    plan_.order.reserve(size_t(components)), entry_of_vertex_.assign(vertices_.size(), -1);
+    for (size_t c = 0; c < members.size(); ++c) {
+      const auto group = members[c];
       if (group.size() == 1 && !needs_itself(group[0]))
         add_entry(group[0]);
       else
-        add_ring(group, component);
+        add_ring({group.begin(), group.end()}, component);
     }
     collect_rates();
     mark_needed();
@@ -69,7 +74,6 @@ class Order {
         vertices_.push_back({int(b), -1});
       }
     }
-    graph_ = Graph(vertices_.size());
   }
 
   template <class F> void for_each_need(int v, F&& f) const {
@@ -81,17 +85,20 @@ class Order {
         for (Number n : inputs[i]) f(int(i), n);
   }
   void add_edges() {
+    std::vector<std::pair<size_t, size_t>> edges;  // sorted by the vertex that needs
+    edges.reserve(vertices_.size() * 2);
     for (size_t v = 0; v < vertices_.size(); ++v) {
       for_each_need(int(v), [&](int, Number n) {
         if (n < plan_.signals && vertex_of_number_[size_t(n)] >= 0)
-          boost::add_edge(v, size_t(vertex_of_number_[size_t(n)]), graph_);
+          edges.emplace_back(v, size_t(vertex_of_number_[size_t(n)]));
       });
       // What depends on the inputs reads the mode decided from them; what does not was settled before.
       const Vertex& vertex = vertices_[v];
       const int decision = decision_[size_t(vertex.block)];
       if (vertex.group >= 0 && decision >= 0 && (mask(vertex) != 0 || info(vertex.block).inputs.empty()))
-        boost::add_edge(v, size_t(decision), graph_);
+        edges.emplace_back(v, size_t(decision));
     }
+    graph_ = Graph(boost::edges_are_sorted, edges.begin(), edges.end(), vertices_.size());
   }
   bool needs_itself(int v) const {
     const auto [begin, end] = boost::out_edges(size_t(v), graph_);
@@ -128,7 +135,7 @@ class Order {
   }
   void add_entry(int v) {
     rate_of_[size_t(v)] = own_rate(v);
-    entry_vertices_.push_back({v});
+    entry_of_vertex_[size_t(v)] = int(plan_.order.size());
     plan_.order.push_back(entry_of(v));
   }
 
@@ -156,7 +163,7 @@ class Order {
     for (int v : sorted) ring.entries.push_back(entry_of(v));
     for (Number n = 0; n < plan_.signals; ++n)
       if (const int v = vertex_of_number_[size_t(n)]; v >= 0 && torn[size_t(v)]) ring.tears.push_back(n);
-    entry_vertices_.push_back(members);
+    for (int v : members) entry_of_vertex_[size_t(v)] = int(plan_.order.size());
     plan_.order.push_back({Kind::ring, int(plan_.rings.size()), 0, rate});
     plan_.rings.push_back(std::move(ring));
   }
@@ -264,11 +271,11 @@ class Order {
         need_inputs(int(b), for_events);
       if (decision_[b] >= 0 && plan_.blocks[b].period == 0) for_events[size_t(decision_[b])] = true;
     }
-    for (size_t e = 0; e < plan_.order.size(); ++e) {
-      Plan::Entry& entry = plan_.order[e];
+    for (size_t v = 0; v < vertices_.size(); ++v) {
+      if (entry_of_vertex_[v] < 0) continue;
+      Plan::Entry& entry = plan_.order[size_t(entry_of_vertex_[v])];
       if (entry.rate.kind != Rate::Kind::continuous) continue;
-      for (int v : entry_vertices_[e])
-        entry.in_stages |= for_stages[size_t(v)], entry.for_events |= for_events[size_t(v)];
+      entry.in_stages |= for_stages[v], entry.for_events |= for_events[v];
     }
   }
   void need_inputs(int block, std::vector<bool>& needed) {
@@ -293,7 +300,7 @@ class Order {
   std::vector<Vertex> vertices_;
   std::vector<int> first_vertex_, decision_, vertex_of_number_;
   std::vector<Rate> rate_of_;
-  std::vector<std::vector<int>> entry_vertices_;
+  std::vector<int> entry_of_vertex_;  // -1: of a ring that is an error
 };
 
 }  // namespace

@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <span>
+#include "engine/plan/groups.h"
 
 namespace loopwright {
 
@@ -127,17 +129,17 @@ static void check_size(const FlatDiagram& flat, Problems& problems) {
   p.expected = fmt::format("at most {:.3g} GB", 8e-9 * double(most_numbers));
 }
 
-static std::vector<std::vector<int>> readers_of_blocks(const FlatDiagram& flat) {
-  std::vector<std::vector<int>> readers(flat.blocks.size());
-  for (size_t b = 0; b < flat.blocks.size(); ++b)
-    for (const auto& wires : flat.blocks[b].inputs)
-      for (const FlatWire& wire : wires)
-        if (wire.is_resolved()) readers[size_t(wire.block)].push_back(int(b));
-  return readers;
+static Groups readers_of_blocks(const FlatDiagram& flat) {
+  return Groups(flat.blocks.size(), [&](const auto& tell) {
+    for (size_t b = 0; b < flat.blocks.size(); ++b)
+      for (const auto& wires : flat.blocks[b].inputs)
+        for (const FlatWire& wire : wires)
+          if (wire.is_resolved()) tell(size_t(wire.block), int(b));
+  });
 }
 
 void find_shapes(FlatDiagram& flat, Problems& problems) {
-  std::vector<std::vector<int>> readers;  // listed once a vector is found
+  std::optional<Groups> readers;  // listed once a vector is found
   std::vector<int> todo(flat.blocks.size());
   std::iota(todo.rbegin(), todo.rend(), 0);
   std::vector<int> visits(flat.blocks.size(), 0);
@@ -159,8 +161,9 @@ void find_shapes(FlatDiagram& flat, Problems& problems) {
                      "its vectors grow round a ring of wires without end");
       return;
     }
-    if (readers.empty()) readers = readers_of_blocks(flat);
-    todo.insert(todo.end(), readers[size_t(b)].begin(), readers[size_t(b)].end());
+    if (!readers) readers = readers_of_blocks(flat);
+    const auto those = (*readers)[size_t(b)];
+    todo.insert(todo.end(), those.begin(), those.end());
   }
   std::set<std::string> told;
   for (const FlatBlock& block : flat.blocks) {
@@ -176,6 +179,7 @@ void find_shapes(FlatDiagram& flat, Problems& problems) {
 Layout::Layout(const FlatDiagram& flat, Plan& plan) : flat_(flat), plan_(plan) {
   add_blocks();
   number_constants_and_states();
+  list_scalars();
   wire_inputs();
 }
 
@@ -228,13 +232,21 @@ void Layout::number_constants_and_states() {
         block.outputs[o] = -1 - (block.first_state + state);
 }
 
-/// The number of a scalar port of a block that stands once, which most are.
+void Layout::list_scalars() {
+  for (size_t f = 0; f < flat_.blocks.size(); ++f) {
+    const FlatBlock& flat = flat_.blocks[f];
+    const auto& outputs = plan_.blocks[size_t(first_instance_[f])].outputs;
+    first_scalar_.push_back(scalars_.size());
+    for (size_t o = 0; o < outputs.size(); ++o) {
+      const bool is_scalar = flat.width == 1 && flat.type->info.outputs[o].shape != PortInfo::Shape::vector;
+      scalars_.push_back(is_scalar ? std::optional(outputs[o]) : std::nullopt);
+    }
+  }
+}
+
 std::optional<Number> Layout::scalar_of(const FlatWire& wire) const {
   if (!wire.is_resolved() || wire.element > 0) return {};
-  const FlatBlock& flat = flat_.blocks[size_t(wire.block)];
-  const size_t output = size_t(wire.output);
-  if (flat.width != 1 || flat.type->info.outputs[output].shape == PortInfo::Shape::vector) return {};
-  return plan_.blocks[size_t(first_instance_[size_t(wire.block)])].outputs[output];
+  return scalars_[first_scalar_[size_t(wire.block)] + size_t(wire.output)];
 }
 
 std::vector<Number> Layout::numbers_of(const FlatWire& wire) const {
@@ -319,13 +331,15 @@ void Layout::wire_inputs() {
       plan_.blocks[b].inputs[i] = std::move(numbers);
     }
   // States come after the signals: -1-k becomes signals+k, now that the number of signals is known.
+  const auto settle = [this](Number& n) {
+    if (n < 0) n = plan_.signals + (-1 - n);
+  };
   for (Plan::Block& block : plan_.blocks) {
-    for (auto& port : block.inputs)
-      for (Number& n : port)
-        if (n < 0) n = plan_.signals + (-1 - n);
-    for (Number& n : block.outputs)
-      if (n < 0) n = plan_.signals + (-1 - n);
+    for (auto& port : block.inputs) std::ranges::for_each(port, settle);
+    std::ranges::for_each(block.outputs, settle);
   }
+  for (auto& scalar : scalars_)
+    if (scalar) settle(*scalar);
 }
 
 }  // namespace loopwright

@@ -22,12 +22,17 @@ class Layout {
   std::optional<Number> scalar_of(const FlatWire& wire) const;
   void add_blocks();
   void number_constants_and_states();
+  void list_scalars();
   void wire_inputs();
   void wire_port(Plan::Block& block, const FlatBlock& flat, size_t port, int element);
   std::vector<Number> contiguous(std::vector<Number> numbers, const std::string& reader);
   const FlatDiagram& flat_;
   Plan& plan_;
   std::vector<int> first_instance_;  ///< of each flat block
+  /// Of scalar ports of blocks that stand once, which most are: every wire asks for its number, and finds it
+  /// here sooner than in the blocks.
+  std::vector<std::optional<Number>> scalars_;
+  std::vector<size_t> first_scalar_;  ///< of each flat block
 };
 
 }  // namespace loopwright

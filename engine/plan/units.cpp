@@ -4,6 +4,7 @@
 #include <charconv>
 #include <deque>
 #include <unordered_map>
+#include "engine/plan/groups.h"
 
 namespace loopwright {
 namespace {
@@ -106,7 +107,7 @@ class Solver {
     equations_.reserve(most_equations());
     for (size_t b = 0; b < flat.blocks.size(); ++b) add_block(int(b));
     add_declarations(diagram, "");
-    list_readers();
+    readers_ = Groups(variables_.size(), [this](const auto& tell) { each_occurrence(tell); });
   }
 
   PortUnits run() {
@@ -214,19 +215,11 @@ class Solver {
     return found == declared_.end() ? nullptr : found->second;
   }
 
-  /// For every variable the equations that it occurs in, one after the other in one list.
-  void list_readers() {
-    first_reader_.assign(variables_.size() + 1, 0);
-    each_occurrence([&](size_t variable, size_t) { ++first_reader_[variable + 1]; });
-    for (size_t v = 0; v < variables_.size(); ++v) first_reader_[v + 1] += first_reader_[v];
-    readers_.resize(first_reader_.back());
-    std::vector<size_t> next(first_reader_.begin(), first_reader_.end() - 1);
-    each_occurrence([&](size_t variable, size_t equation) { readers_[next[variable]++] = equation; });
-  }
-  template <class F> void each_occurrence(F&& f) const {
+  /// Variables, and the equations that they occur in.
+  template <class F> void each_occurrence(const F& f) const {
     for (size_t i = 0; i < equations_.size(); ++i)
       for (const End* end : {&equations_[i].left, &equations_[i].right})
-        for (const UnitFactor& factor : end->expression->factors) f(variable_of(end->block, factor), i);
+        for (const UnitFactor& factor : end->expression->factors) f(variable_of(end->block, factor), int(i));
   }
 
   std::optional<Unit> value(const End& end) const {
@@ -264,17 +257,17 @@ class Solver {
       sign = -1;
     }
     variables_[*unknown] = power(rest, -1 / exponent);
-    todo_.insert(todo_.end(), readers_.begin() + ptrdiff_t(first_reader_[*unknown]),
-                 readers_.begin() + ptrdiff_t(first_reader_[*unknown + 1]));
+    const auto readers = readers_[*unknown];
+    todo_.insert(todo_.end(), readers.begin(), readers.end());
   }
 
   /// First what is written down at blocks and borders, then along the wires: a clash shows at the wire that
   /// joins its ends.
   void propagate() {
     for (const bool with_wires : {false, true}) {
-      for (size_t i = equations_.size(); i-- > 0;) todo_.push_back(i);
+      for (size_t i = equations_.size(); i-- > 0;) todo_.push_back(int(i));
       while (!todo_.empty()) {
-        const size_t i = todo_.back();
+        const size_t i = size_t(todo_.back());
         todo_.pop_back();
         if (with_wires || !equations_[i].is_wire()) solve(equations_[i]);
       }
@@ -316,8 +309,8 @@ class Solver {
   std::vector<Equation> equations_;
   std::vector<size_t> first_variable_;          // of each block
   std::vector<std::optional<Unit>> variables_;  // of all blocks
-  std::vector<size_t> first_reader_, readers_;  // of each variable, and the end; equations
-  std::vector<size_t> todo_;
+  Groups readers_;                              // of each variable; equations
+  std::vector<int> todo_;
 };
 
 }  // namespace
