@@ -5,7 +5,6 @@
 #include <optional>
 #include <unordered_map>
 #include <unordered_set>
-#include "engine/plan/block_names.h"
 
 namespace loopwright {
 namespace {
@@ -17,7 +16,7 @@ struct Scope {
   const BlockEntry* entry;  // in the parent; null at the top
   Scope* parent;
   std::vector<int> flat_blocks;                        // ordinary blocks: index in the flat list
-  BlockNames blocks;                                   // of the same
+  std::unordered_map<std::string_view, int> blocks;    // of the same, by name
   std::unordered_map<std::string_view, Scope*> inner;  // subdiagrams
 };
 
@@ -58,10 +57,8 @@ class Flattener {
 
  private:
   Scope& add_scope(const Diagram& diagram, std::string prefix, const BlockEntry* entry, Scope* parent) {
-    BlockNames names(flat_.blocks, prefix.size(), diagram.blocks.size());
-    Scope& scope =
-        scopes_.emplace_back(Scope{&diagram, std::move(prefix), entry, parent, {}, std::move(names), {}});
-    scope.flat_blocks.reserve(diagram.blocks.size());
+    Scope& scope = scopes_.emplace_back(Scope{&diagram, std::move(prefix), entry, parent, {}, {}, {}});
+    scope.flat_blocks.reserve(diagram.blocks.size()), scope.blocks.reserve(diagram.blocks.size());
     for (const BlockEntry& block : diagram.blocks) {
       if (block.subdiagram)
         scope.inner[block.name] =
@@ -94,8 +91,8 @@ class Flattener {
     flat.inputs.resize(flat.type->info.inputs.size());
     flat.output_lengths.assign(flat.type->info.outputs.size(), 1);
     scope.flat_blocks.push_back(int(flat_.blocks.size()));
+    scope.blocks[entry.name] = int(flat_.blocks.size());
     flat_.blocks.push_back(std::move(flat));
-    scope.blocks.add(scope.flat_blocks.back());
     scope_of_block_.push_back(&scope);
   }
 
@@ -168,8 +165,8 @@ class Flattener {
     const std::string_view rest = text.substr(dot + 1);
     if (const auto inner = scope.inner.find(head); inner != scope.inner.end())
       return resolve_inside(*inner->second, rest, at, reader, depth);
-    if (const int block = scope.blocks.find(head); block >= 0)
-      return resolve_port(block, rest, at, reader, depth);
+    if (const auto found = scope.blocks.find(head); found != scope.blocks.end())
+      return resolve_port(found->second, rest, at, reader, depth);
     for (const auto& [broken_scope, name] : broken_)
       if (broken_scope == &scope && name == head) return unresolved(at);  // already told
     std::vector<std::string> names;

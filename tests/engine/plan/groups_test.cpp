@@ -1,8 +1,6 @@
-// Small tables of the plan: numbers in groups, blocks by name.
+// Numbers in groups.
 #include "engine/plan/groups.h"
-#include <fmt/format.h>
 #include <gtest/gtest.h>
-#include "engine/plan/block_names.h"
 
 namespace loopwright {
 namespace {
@@ -14,20 +12,6 @@ TEST(Groups, KeepTheOrderInWhichNumbersAreTold) {
   EXPECT_TRUE(groups[1].empty());
   EXPECT_EQ(std::vector<int>(groups[2].begin(), groups[2].end()), (std::vector{5, 4}));
   EXPECT_EQ(Groups().size(), 0u);
-}
-
-TEST(BlockNames, LeadToTheirBlocksAndOthersNowhere) {
-  for (const int count : {0, 1, 5, 1000}) {
-    std::vector<FlatBlock> blocks(static_cast<size_t>(count));
-    BlockNames names(blocks, std::string_view("stage.").size(), blocks.size());
-    for (int b = 0; b < count; ++b) {
-      blocks[size_t(b)].path = fmt::format("stage.gain_{}", b);
-      names.add(b);
-    }
-    for (int b = 0; b < count; ++b) EXPECT_EQ(names.find(fmt::format("gain_{}", b)), b);
-    EXPECT_EQ(names.find(fmt::format("gain_{}", count)), -1);
-    EXPECT_EQ(names.find(""), -1);
-  }
 }
 
 }  // namespace
