@@ -3,31 +3,9 @@
 #include <memory>
 #include <span>
 #include "engine/lanes/lane_run.h"
-#include "tools/effects/effect_values.h"
+#include "tools/effects/effect_plan.h"
 
 namespace loopwright {
-
-/// An effect compiled for a machine and a record; shared by runs and threads.
-struct EffectPlan {
-  /// A number of a block that follows the effect's parameters.
-  struct Binding {
-    std::string path;  ///< in the plan, "effect.friction.level"
-    Value value;       ///< as written: "=level"
-  };
-  Effect effect;
-  RecordSizes sizes;
-  std::vector<std::string> fitted;  ///< the parameters that `EffectRun::set` sets, in their order
-  std::vector<Binding> bindings;
-  Plan plan;
-  Number output = 0;     ///< what the effect does, at an instant
-  Number integral = -1;  ///< the same, integrated; -1: nothing in it has states or rates of its own
-  bool acts_on_sensor = false;
-  bool remembers = true;  ///< else a sample depends on nothing but itself, not even on time
-};
-
-/// Null after a problem: blocks that are not there, units that do not fit the machine's.
-std::shared_ptr<const EffectPlan> compile_effect(const Effect& effect, const MachineUnits& units,
-                                                 const RecordSizes& sizes, Problems& problems);
 
 /// What the effect may read at one sample; roles that it does not read are of no matter.
 struct RoleSample {
@@ -105,10 +83,8 @@ class EffectRun {
   void mean_from(double now);
   void integrate_sample();
   /// Each value and slope goes to take(lane, row, value, slope).
-  template <class Take>
-  void run_lanes(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take);
-  template <class Take>
-  void run_in_turn(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take);
+  template <class Take> void run_lanes(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take);
+  template <class Take> void run_in_turn(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take);
   template <class Take> void run_side_by_side(const RoleSignals& signals, size_t rows, Take&& take);
   /// To the lanes from `from` up to `to`.
   void give(const RoleSample& sample, double now, size_t from, size_t to);

@@ -1,0 +1,213 @@
+#include "tools/effects/effect_plan.h"
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include "engine/diagram/in_memory.h"
+#include "engine/diagram/reader.h"
+#include "engine/run/run.h"
+
+namespace loopwright {
+namespace {
+
+using Kind = Value::Kind;
+
+/// Steps of the solver within a sample, for blocks with states of their own.
+constexpr int steps_per_sample = 4;
+
+Value text(std::string words, const Place& place = {}) {
+  Value value;
+  value.kind = Kind::text, value.text = std::move(words), value.place = place;
+  return value;
+}
+Value number(double n, const Place& place = {}) {
+  Value value;
+  value.kind = Kind::number, value.number = n, value.place = place;
+  return value;
+}
+Value object(std::vector<Value::Member> members, const Place& place = {}) {
+  Value value;
+  value.kind = Kind::object, value.members = std::move(members), value.place = place;
+  return value;
+}
+Value list(std::vector<Value> items) {
+  Value value;
+  value.kind = Kind::list, value.items = std::move(items);
+  return value;
+}
+
+std::string_view unit_of_role(std::string_view role) {
+  if (role == "position") return "$position";
+  if (role == "velocity") return "$position/s";
+  if (role == "acceleration") return "$position/s^2";
+  return "$force";
+}
+
+/// The diagram in which an effect runs alone: signals → effect → integrator.
+class Bench {
+ public:
+  Bench(const Effect& effect, const MachineUnits& units, const RecordSizes& sizes)
+      : effect_(effect), units_(units), sizes_(sizes), values_(values_of(effect, sizes, starts())) {}
+
+  /// Without `steps`: no integrator.
+  Value diagram(std::optional<int> steps) {
+    std::vector<Value::Member> blocks, in;
+    for (const std::string& role : roles()) {
+      blocks.push_back({"given_" + role, {}, object({{"type", {}, text("ExternalSignal")}})});
+      in.push_back({role, {}, text("given_" + role + ".y")});
+    }
+    blocks.push_back({"effect", {}, object({{"diagram", {}, inside()}, {"in", {}, object(std::move(in))}})});
+    if (steps)
+      blocks.push_back({"integral",
+                        {},
+                        object({{"type", {}, text("Integrator")},
+                                {"in", {}, object({{"u", {}, text("effect.value")}})}})});
+    const double step = sizes_.sample_time / steps.value_or(1);
+    Value solver =
+        object({{"method", {}, text("rk4")}, {"step", {}, number(step)}, {"stop", {}, number(1e6)}});
+    return object({{"loopwright", {}, number(1)}, {"solver", {}, solver}, {"blocks", {}, object(blocks)}});
+  }
+
+  std::vector<double> starts() const {
+    std::vector<double> starts;
+    for (const EffectParameter& p : effect_.parameters)
+      if (p.is_fitted) starts.push_back(range_of(p, sizes_).start);
+    return starts;
+  }
+
+ private:
+  using To = Attachment::To;
+  bool is(To to) const {
+    return std::ranges::any_of(effect_.attachments, [&](const Attachment& a) { return a.to == to; });
+  }
+  /// What is read, and what the effect takes the place of.
+  std::vector<std::string> roles() const {
+    std::vector<std::string> roles = effect_.reads;
+    const auto add = [&](const char* role) {
+      if (std::ranges::find(roles, role) == roles.end()) roles.push_back(role);
+    };
+    if (is(To::input)) add("input");
+    if (is(To::sensor)) add("position");
+    return roles;
+  }
+
+  /// The effect's own blocks, and the sum of what they do.
+  Value inside() {
+    std::vector<Value::Member> inputs;
+    for (const std::string& role : roles())
+      inputs.push_back({role, {}, text(unit_in(unit_of_role(role), units_))});
+    std::vector<Value> terms;
+    std::string signs;
+    for (const Attachment& a : effect_.attachments) terms.push_back(text(a.from, a.place)), signs += '+';
+    if (is(To::input)) terms.push_back(text("input")), signs += '-';
+    if (is(To::sensor)) terms.push_back(text("position")), signs += '-';
+    Value blocks = effect_.blocks;
+    blocks.members.push_back({"value_of_effect",
+                              {},
+                              object({{"type", {}, text("Sum")},
+                                      {"signs", {}, text(signs)},
+                                      {"in", {}, object({{"terms", {}, list(std::move(terms))}})}})});
+    Value outputs = object({{"value", {}, object({{"source", {}, text("value_of_effect.sum")}})}});
+    return object({{"parameters", {}, parameters()},
+                   {"inputs", {}, object(std::move(inputs))},
+                   {"outputs", {}, std::move(outputs)},
+                   {"blocks", {}, std::move(blocks)}});
+  }
+  Value parameters() const {
+    std::vector<Value::Member> list;
+    for (const NamedSize& size : record_sizes)
+      list.push_back({std::string(size.name), {}, quantity(sizes_.*size.value, size.unit, {})});
+    for (const EffectParameter& p : effect_.parameters)
+      list.push_back({p.name, p.place, quantity(values_.at(p.name), p.unit, p.place)});
+    return object(std::move(list));
+  }
+  Value quantity(double value, std::string_view unit, const Place& place) const {
+    return object(
+        {{"value", place, number(value, place)}, {"unit", place, text(unit_in(unit, units_), place)}}, place);
+  }
+
+  const Effect& effect_;
+  const MachineUnits& units_;
+  const RecordSizes& sizes_;
+  EffectValues values_;
+};
+
+/// Every expression among the settings of a block, with its path in the plan.
+void find_bindings(const Value& value, const std::string& path, std::vector<EffectPlan::Binding>& bindings) {
+  if (value.kind == Kind::text && value.text.starts_with('=')) bindings.push_back({path, value});
+  if (value.kind == Kind::object) {
+    if (const auto* quantity = value.find("value"); quantity && value.find("unit"))
+      return;  // a number with a unit is no expression of the effect's
+    for (const Value::Member& member : value.members)
+      find_bindings(member.value, path + "." + member.name, bindings);
+  }
+  if (value.kind == Kind::list)
+    for (size_t i = 0; i < value.items.size(); ++i)
+      find_bindings(value.items[i], fmt::format("{}.{}", path, i), bindings);
+}
+
+std::vector<EffectPlan::Binding> bindings_of(const Effect& effect) {
+  std::vector<EffectPlan::Binding> bindings;
+  for (const Value::Member& block : effect.blocks.members)
+    for (const Value::Member& setting : block.value.members)
+      if (setting.name != "in" && setting.name != "sample_time")
+        find_bindings(setting.value, "effect." + block.name + "." + setting.name, bindings);
+  return bindings;
+}
+
+/// Whether anything in it keeps more than what its parameters and inputs say. The given signals count their
+/// time from the sample.
+bool remembers(const Plan& plan) {
+  const bool decides = std::ranges::any_of(
+      plan.order, [](const Plan::Entry& e) { return e.kind != Plan::Entry::Kind::outputs; });
+  return decides || std::ranges::any_of(plan.blocks, [](const Plan::Block& block) {
+           const BlockInfo& info = block.type->info;
+           if (info.type == "ExternalSignal") return false;
+           return info.uses_time || info.is_sampled || info.is_continuous || info.buffers > 0 ||
+                  !info.memory_numbers.empty();
+         });
+}
+
+/// Parameters that change between runs must reach numbers that a run can change.
+void check_bindings(const EffectPlan& result, Problems& problems) {
+  Run<double> run(result.plan);
+  for (const EffectPlan::Binding& binding : result.bindings)
+    if (!run.parameter(binding.path))
+      problems.error(binding.value.place, binding.value.place.pointer(), binding.path,
+                     "this setting of the block is fixed when the diagram is compiled: no parameter of an "
+                     "effect can reach it");
+}
+
+}  // namespace
+
+std::shared_ptr<const EffectPlan> compile_effect(const Effect& effect, const MachineUnits& units,
+                                                 const RecordSizes& sizes, Problems& problems) {
+  Problems own;
+  auto result = std::make_shared<EffectPlan>();
+  result->effect = effect, result->sizes = sizes;
+  for (const EffectParameter& p : effect.parameters)
+    if (p.is_fitted) result->fitted.push_back(p.name);
+  result->bindings = bindings_of(effect);
+  Bench bench(effect, units, sizes);
+  std::shared_ptr<const Plan> plan;
+  // First without an integrator: an effect that has neither states nor rates needs none.
+  for (std::optional<int> steps :
+       {std::optional<int>(), std::optional<int>(1), std::optional<int>(steps_per_sample)}) {
+    const auto diagram = read_diagram(bench.diagram(steps), effect.path, {}, own);
+    if (!own.has_errors() && diagram) plan = compile(*diagram, own);
+    if (!plan || (!steps && plan->states == 0 && plan->rates.empty()) || (steps && plan->states == 1)) break;
+  }
+  if (plan && !own.has_errors()) {
+    result->plan = *plan;
+    result->output = plan->find("effect.value_of_effect.sum").at(0);
+    if (const auto integral = plan->find("integral.y"); !integral.empty()) result->integral = integral[0];
+    result->acts_on_sensor = std::ranges::any_of(
+        effect.attachments, [](const Attachment& a) { return a.to == Attachment::To::sensor; });
+    result->remembers = result->integral >= 0 || remembers(*plan);
+    check_bindings(*result, own);
+  }
+  for (const Problem& problem : own.list()) problems.add(problem);
+  if (!plan || own.has_errors()) return nullptr;
+  return result;
+}
+
+}  // namespace loopwright

@@ -1,0 +1,31 @@
+/// An effect's blocks compiled for a machine and a record.
+#pragma once
+#include <memory>
+#include "engine/plan/plan.h"
+#include "tools/effects/effect_values.h"
+
+namespace loopwright {
+
+/// An effect compiled for a machine and a record; shared by runs and threads.
+struct EffectPlan {
+  /// A number of a block that follows the effect's parameters.
+  struct Binding {
+    std::string path;  ///< in the plan, "effect.friction.level"
+    Value value;       ///< as written: "=level"
+  };
+  Effect effect;
+  RecordSizes sizes;
+  std::vector<std::string> fitted;  ///< the parameters that `EffectRun::set` sets, in their order
+  std::vector<Binding> bindings;
+  Plan plan;
+  Number output = 0;     ///< what the effect does, at an instant
+  Number integral = -1;  ///< the same, integrated; -1: nothing in it has states or rates of its own
+  bool acts_on_sensor = false;
+  bool remembers = true;  ///< else a sample depends on nothing but itself, not even on time
+};
+
+/// Null after a problem: blocks that are not there, units that do not fit the machine's.
+std::shared_ptr<const EffectPlan> compile_effect(const Effect& effect, const MachineUnits& units,
+                                                 const RecordSizes& sizes, Problems& problems);
+
+}  // namespace loopwright
