@@ -3,6 +3,7 @@
 #include "engine/record/atomic_file.h"
 #include "tools/command/command.h"
 #include "tools/effects/insert.h"
+#include "tools/effects/nest.h"
 
 namespace loopwright {
 namespace {

@@ -1,208 +1,21 @@
 #include "tools/effects/insert.h"
 #include <algorithm>
-#include <filesystem>
 #include <fmt/format.h>
 #include <set>
 #include "engine/block/registry.h"
 #include "engine/diagram/json.h"
 #include "engine/diagram/reader.h"
 #include "tools/effects/effect_values.h"
-#include "tools/effects/json_text.h"
+#include "tools/effects/nest.h"
 
 namespace loopwright {
 namespace {
 
-namespace fs = std::filesystem;
 using Kind = Value::Kind;
 using To = Attachment::To;
-
-/// A file that takes part: the outermost diagram, and those of the subdiagrams on the way.
-struct Document {
-  std::shared_ptr<const SourceFile> file;
-  Value root;
-  TextEdits edits;
-  Document* parent = nullptr;
-  const Value* named_at = nullptr;  // "diagram": "…" in the parent
-  const std::string& text() const { return file->text; }
-};
-
-/// A diagram in the nest.
-struct Level {
-  Document* document = nullptr;
-  const Value* diagram = nullptr;
-  std::string prefix;  // path of its block, empty at the top
-
-  const Value::Member* block(std::string_view name) const {
-    const Value::Member* blocks = diagram->find("blocks");
-    return blocks ? blocks->value.find(name) : nullptr;
-  }
-};
-
-/// A port that was followed down to a block, or to an input of the diagram in which it is read.
-struct Port {
-  Level level;
-  std::string block, port;                // no block: an input of the level's diagram
-  const Value::Member* output = nullptr;  // the last "outputs" entry of a subdiagram on the way
-  Level output_level{};
-  std::string path() const { return joined(joined(level.prefix, block), port); }
-};
-
-std::string wire_text(const Value& wire) { return wire.kind == Kind::text ? wire.text : ""; }
-
-std::string type_of(const Value& block) {
-  const Value::Member* type = block.find("type");
-  return type ? type->value.text : "";
-}
-
-/// Calls `f(wire)` for every wire into a block.
-template <class F> void each_wire(const Value& block, F&& f) {
-  const Value::Member* in = block.find("in");
-  if (!in) return;
-  for (const Value::Member& port : in->value.members) {
-    if (port.value.kind == Kind::text) f(port.value);
-    for (const Value& item : port.value.items)
-      if (item.kind == Kind::text) f(item);
-  }
-}
-
-/// Files and diagrams, opened as ports are followed.
-class Nest {
- public:
-  Nest(std::shared_ptr<const SourceFile> file, const InsertionSite& site, Problems& problems)
-      : site_(site), problems_(problems) {
-    open(std::move(file), nullptr, nullptr);
-  }
-  bool is_readable() const { return documents_.front()->root.kind == Kind::object; }
-  Level top() const { return {documents_.front().get(), &documents_.front()->root, ""}; }
-
-  /// The body of a block: of its active variant, if it has several.
-  const Value* body(const Level& level, const Value::Member& block) const {
-    const Value::Member* variants = block.value.find("variants");
-    if (!variants || variants->value.members.empty()) return &block.value;
-    std::string name = variants->value.members.front().name;
-    if (const auto* chosen = block.value.find("variant")) name = chosen->value.text;
-    const auto option = site_.variants.find(joined(level.prefix, block.name));
-    if (option != site_.variants.end()) name = option->second;
-    const Value::Member* variant = variants->value.find(name);
-    return variant ? &variant->value : &variants->value.members.front().value;
-  }
-
-  /// The diagram inside a block; nothing when it is an ordinary block or cannot be read.
-  std::optional<Level> inside(const Level& level, const Value::Member& block) {
-    const Value* body = this->body(level, block);
-    const Value::Member* diagram = body->find("diagram");
-    if (!diagram) return {};
-    const std::string prefix = joined(level.prefix, block.name);
-    if (diagram->value.kind == Kind::object) return Level{level.document, &diagram->value, prefix};
-    for (const auto& document : documents_)
-      if (document->named_at == &diagram->value) return Level{document.get(), &document->root, prefix};
-    const std::string path = resolve_relative(diagram->value.place, diagram->value.text);
-    auto file = read_source(path, diagram->value.place, problems_);
-    if (!file) return {};
-    Document* opened = open(std::move(file), level.document, &diagram->value);
-    if (opened->root.kind != Kind::object) return {};
-    return Level{opened, &opened->root, prefix};
-  }
-
-  /// Follows a port, "axis.position", through outputs of subdiagrams to the block behind it, or to the input
-  /// that it is. Nothing when there is no such port.
-  std::optional<Port> follow(const Level& start, const std::string& text) {
-    std::vector<std::string> path = split_path(text);
-    Port port{start, "", "", nullptr, {}};
-    for (size_t i = 0; i < path.size(); ++i) {
-      const std::string name = path[i].substr(0, path[i].find('['));
-      if (i + 1 == path.size()) return last_step(std::move(port), name);
-      const Value::Member* block = port.level.block(name);
-      if (!block) return {};
-      if (auto inner = inside(port.level, *block)) {
-        port.level = std::move(*inner);
-        continue;
-      }
-      if (i + 2 != path.size()) return {};
-      port.block = name, port.port = path[i + 1];
-      return port;
-    }
-    return {};
-  }
-
-  /// The changed text, with changed files written out where they were named.
-  std::string text() {
-    for (size_t i = documents_.size(); i-- > 1;) {
-      Document& document = *documents_[i];
-      if (document.edits.empty()) continue;
-      rebase(document);
-      if (const auto* version = document.root.find("loopwright")) remove_member(document, *version);
-      std::string inner = document.edits.apply(document.text());
-      while (!inner.empty() && inner.back() == '\n') inner.pop_back();
-      const std::string& outer = document.parent->text();
-      const size_t at = document.named_at->place.offset;
-      const std::string moved = indented(inner, indentation_at(outer, at) + "  ");
-      document.parent->edits.replace(at, end_of_value(outer, at), moved);
-    }
-    return documents_.front()->edits.apply(documents_.front()->text());
-  }
-
- private:
-  Document* open(std::shared_ptr<const SourceFile> file, Document* parent, const Value* named_at) {
-    auto document = std::make_unique<Document>();
-    document->file = std::move(file), document->parent = parent, document->named_at = named_at;
-    document->root = parse_json(document->file, problems_);
-    documents_.push_back(std::move(document));
-    return documents_.back().get();
-  }
-
-  std::optional<Port> last_step(Port port, const std::string& name) {
-    const auto* outputs = port.level.diagram->find("outputs");
-    if (const auto* output = outputs ? outputs->value.find(name) : nullptr) {
-      const Value* source = &output->value;
-      if (source->kind == Kind::object && source->find("source")) source = &source->find("source")->value;
-      const Level level = port.level;
-      auto behind = follow(level, wire_text(*source));
-      if (behind && !behind->output) behind->output = output, behind->output_level = level;
-      return behind;
-    }
-    const auto* inputs = port.level.diagram->find("inputs");
-    if (!inputs || !inputs->value.find(name)) return {};
-    port.port = name;
-    return port;
-  }
-
-  static void remove_member(Document& document, const Value::Member& member) {
-    const std::string& text = document.text();
-    size_t end = end_of_value(text, member.value.place.offset);
-    if (end < text.size() && text[end] == ',')
-      end = std::min(text.find_first_not_of(" \t\r\n", end + 1), text.size());
-    document.edits.replace(member.place.offset, end, "");
-  }
-
-  /// Paths in a file that is written out elsewhere.
-  void rebase(Document& document) const {
-    const fs::path folder = fs::path(documents_.front()->file->name).parent_path();
-    rebase_paths(document.root, folder, document.edits);
-  }
-
- public:
-  /// Every text that leads to a file, so that it still does from `folder`. Texts of further files are not
-  /// touched: they keep their own places.
-  static void rebase_paths(const Value& value, const fs::path& folder, TextEdits& edits) {
-    for (const Value::Member& member : value.members) rebase_paths(member.value, folder, edits);
-    for (const Value& item : value.items) rebase_paths(item, folder, edits);
-    if (value.kind != Kind::text || value.text.empty() || fs::path(value.text).is_absolute()) return;
-    std::error_code code;
-    const std::string now = resolve_relative(value.place, value.text);
-    if (!fs::is_regular_file(now, code)) return;
-    const fs::path absolute = fs::weakly_canonical(now, code),
-                   base = fs::weakly_canonical(fs::absolute(folder), code);
-    const std::string moved = absolute.lexically_relative(base).string();
-    const size_t at = value.place.offset;
-    if (moved != value.text) edits.replace(at, end_of_value(value.place.file->text, at), "\"" + moved + "\"");
-  }
-
- private:
-  const InsertionSite& site_;
-  Problems& problems_;
-  std::vector<std::unique_ptr<Document>> documents_;
-};
+using Document = Nest::Document;
+using Level = Nest::Level;
+using Port = Nest::Port;
 
 class Inserter {
  public:
@@ -643,14 +456,6 @@ std::optional<Insertion> insert_effect(std::shared_ptr<const SourceFile> file, c
                                        const Effect& effect, const std::vector<double>& fitted,
                                        const RecordSizes& sizes, Problems& problems) {
   return Inserter(std::move(file), site, effect, fitted, sizes, problems).run();
-}
-
-std::string moved_to_folder(const SourceFile& file, const std::string& folder) {
-  Problems problems;
-  const Value root = parse_json(std::make_shared<SourceFile>(file), problems);
-  TextEdits edits;
-  Nest::rebase_paths(root, folder, edits);
-  return edits.apply(file.text);
 }
 
 }  // namespace loopwright

@@ -35,7 +35,4 @@ std::optional<Insertion> insert_effect(std::shared_ptr<const SourceFile> file, c
                                        const Effect& effect, const std::vector<double>& fitted,
                                        const RecordSizes& sizes, Problems& problems);
 
-/// The text of a diagram file for another folder: relative paths still lead to the same files.
-std::string moved_to_folder(const SourceFile& file, const std::string& folder);
-
 }  // namespace loopwright

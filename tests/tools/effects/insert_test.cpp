@@ -1,4 +1,5 @@
 #include "tools/effects/insert.h"
+#include "tools/effects/nest.h"
 #include <gtest/gtest.h>
 #include <cmath>
 #include <numeric>
