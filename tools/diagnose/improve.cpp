@@ -4,6 +4,7 @@
 #include "engine/diagram/json.h"
 #include "engine/record/atomic_file.h"
 #include "tools/compare/experiment.h"
+#include "tools/effects/nest.h"
 
 namespace loopwright::diagnosis {
 namespace {
