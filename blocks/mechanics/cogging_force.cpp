@@ -70,10 +70,11 @@ template <class Real> struct CoggingForce {
     if (!harmonics.empty())
       sum += term(harmonics.front());  // alone it stays in registers; a loop would store it
     for (size_t i = 1; i < harmonics.size(); ++i) sum += term(harmonics[i]);
-    if (is_sloped) sum *= maximum(1.0 - velocity_slope * absolute(in.velocity), Real(0.0));
+    Real scale = 1.0;
+    if (is_sloped) scale = maximum(1.0 - velocity_slope * absolute(in.velocity), Real(0.0));
     if (is_modulated)
-      sum *= 1.0 + modulation.depth * sine(modulation_wave_number * in.position + modulation.phase);
-    out.force = sum;
+      scale *= 1.0 + modulation.depth * sine(modulation_wave_number * in.position + modulation.phase);
+    out.force = scale * sum;
   }
 };
 LOOPWRIGHT_BLOCK(CoggingForce)

@@ -132,9 +132,14 @@ void effect_write(FILE* file, Effect effect, const Physics* p) {
     case END_STOP:
       fprintf(file, "{\"stiffness\": %.9g, \"place\": %.9g}", p->stop_n_per_m, p->stop_m);
       break;
-    case BACKLASH:
-      fprintf(file, "{\"load_mass\": %.9g, \"gap\": %.9g}", p->load_kg, p->gap_m);
+    case BACKLASH: {
+      const double frequency = sqrt(p->coupling_n_per_m / p->load_kg);
+      fprintf(file,
+              "{\"load_mass\": %.9g, \"gap\": %.9g, \"contact_frequency\": %.9g, \"contact_damping\": %.9g}",
+              p->load_kg, p->gap_m, frequency / two_pi,
+              p->coupling_n_s_per_m / (2 * frequency * p->load_kg));
       break;
+    }
     case FLEXIBLE_MODE: {
       const double frequency = sqrt(p->coupling_n_per_m / p->load_kg);
       fprintf(file, "{\"load_mass\": %.9g, \"frequency\": %.9g, \"damping_ratio\": %.9g}", p->load_kg,
