@@ -183,6 +183,7 @@ template <class Real> class OnceForAll {
     Call<double> scalar;
     scalar.block = scalar_.block(), scalar.index = call.index, scalar.now = call.now;
     scalar.report = &report, scalar.out = out_.data(), scalar.mode = mode_.data();
+    scalar.memory = mode_.data();  // an empty struct is bound there, as kernels bind what they do not use
     return scalar;
   }
   uint64_t step(const Call<Real>& call, Step<double> once, Step<Real> in_lanes) {
