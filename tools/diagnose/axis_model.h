@@ -23,9 +23,9 @@ struct LinearAxis {
   /// n; what a force that grows by one unit within the sample, of mean zero, moves: this much of the push.
   /// ∫ (T - τ)(τ/T - ½) dτ = -T²/12 is a sixth of ∫ (T - τ) dτ: so far the position falls back.
   Eigen::VectorXd slope_share;
-  Eigen::MatrixXd C;           ///< measured ports × n
-  double inertia = 0;          ///< force per acceleration, of what the force moves
-  double damping = 0;          ///< force per speed
+  Eigen::MatrixXd C;   ///< measured ports × n
+  double inertia = 0;  ///< force per acceleration, of what the force moves
+  double damping = 0;  ///< force per speed
 };
 
 class AxisModel {

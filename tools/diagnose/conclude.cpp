@@ -75,8 +75,7 @@ double force_rms(const Trials& trials, const Estimate& estimate, size_t index) {
     if (member.candidate->acts == Acts::sensor) {
       const Column feigned(whole);
       const Column* const one = &feigned;
-      seen =
-          responses(fitted.axis, fitted.gains, fitted.prediction.path, Acts::sensor, {&one, 1}).front();
+      seen = responses(fitted.axis, fitted.gains, fitted.prediction.path, Acts::sensor, {&one, 1}).front();
       for (double& e : seen) e *= estimate.noise.white;
     }
     for (size_t k = 0; k < trial.held_out_from; ++k)
@@ -178,8 +177,8 @@ bool is_at_limit(const Member& member) {
   return false;
 }
 
-/// A parameter at the end of its range says that something simpler would do: what has fewer parameters, and is not
-/// worse by `reach`.
+/// A parameter at the end of its range says that something simpler would do: what has fewer parameters, and
+/// is not worse by `reach`.
 std::optional<Estimate> simplified(Trials& trials, const Estimate& estimate,
                                    const std::vector<Proposal>& exchanges, size_t catalogue, double reach) {
   for (size_t m = 0; m < estimate.members.size(); ++m) {

@@ -6,7 +6,7 @@
 namespace loopwright::diagnosis {
 namespace {
 
-constexpr double least_gain = 0.01;  // of an iteration, in twice the log-likelihood
+constexpr double least_gain = 0.01;   // of an iteration, in twice the log-likelihood
 constexpr double same_motion = 0.01;  // two models that differ less in ln(mean square) see the same motion
 
 struct NormalEquations {

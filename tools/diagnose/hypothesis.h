@@ -23,7 +23,7 @@ struct Trials {
   std::vector<Trial> list;
   Noise noise;
   double rest_speed = 0;
-  double input_rms = 0;  ///< while moving
+  double input_rms = 0;                                             ///< while moving
   double lowest_position = 0, highest_position = 0, longest_s = 0;  ///< as the first prediction saw them
   const std::atomic<bool>* interrupt =
       nullptr;  ///< once true, the next run along the records throws Interrupted

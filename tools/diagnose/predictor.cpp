@@ -8,9 +8,9 @@
 namespace loopwright::diagnosis {
 namespace {
 
-/// Columns that go through the filter side by side, so that none waits for its own last sample. Vectors of the
-/// compiler, as they become wider instructions in a function that may use them: the same bits, as nothing is
-/// contracted.
+/// Columns that go through the filter side by side, so that none waits for its own last sample. Vectors of
+/// the compiler, as they become wider instructions in a function that may use them: the same bits, as nothing
+/// is contracted.
 constexpr int side_by_side = 8;
 struct Side {
   using Half = double __attribute__((vector_size(side_by_side * sizeof(double) / 2)));
@@ -79,7 +79,8 @@ template <int States, int Ports> class ErrorFilter {
   static constexpr int most_ = States > 0 ? States + 1 : 24;
   const int n_, ports_;
   const double memory_;
-  double A_[most_][most_], push_[most_], enters_[most_], bends_[most_], C_[2][most_], K_[most_][2], whiten_[2][2];
+  double A_[most_][most_], push_[most_], enters_[most_], bends_[most_], C_[2][most_], K_[most_][2],
+      whiten_[2][2];
   Side x_[most_], d_;
 };
 
@@ -175,7 +176,8 @@ std::vector<std::vector<double>> responses(const LinearAxis& axis, const Gains& 
                                            Acts acts, std::span<const Column* const> columns) {
   std::vector<size_t> rows(path.samples());
   std::iota(rows.begin(), rows.end(), size_t(0));
-  std::vector<std::vector<double>> out(columns.size(), std::vector<double>(rows.size() * size_t(axis.C.rows())));
+  std::vector<std::vector<double>> out(columns.size(),
+                                       std::vector<double>(rows.size() * size_t(axis.C.rows())));
   std::vector<double*> to;
   for (std::vector<double>& column : out) to.push_back(column.data());
   responses(axis, gains, path, acts, columns, rows, to);

@@ -57,7 +57,8 @@ enum class Acts {
 };
 
 /// What is consumed, or added to the measured position: a mean over each sample, and how much more at its end
-/// than at its start, as far as that moves the axis (see EffectRun). No slope: null. Copies share the numbers.
+/// than at its start, as far as that moves the axis (see EffectRun). No slope: null. Copies share the
+/// numbers.
 struct Column {
   using Numbers = std::shared_ptr<const std::vector<float>>;
   Numbers mean, slope;

@@ -119,7 +119,8 @@ class Search {
     std::vector<Estimate> tried;
     for (const Proposal& proposal : proposals) {
       Estimate trial = refined(applied(proposal, best_.members), 2);
-      trail_.push_back(fmt::format("tried {}: criterion {:+.1f}", names_of(proposal.added), score(trial) - before));
+      trail_.push_back(
+          fmt::format("tried {}: criterion {:+.1f}", names_of(proposal.added), score(trial) - before));
       if (trial.is_valid && score(trial) < before - least) tried.push_back(std::move(trial));
     }
     std::ranges::stable_sort(tried, {}, [&](const Estimate& e) { return score(e); });
