@@ -7,6 +7,7 @@
 #pragma once
 #include <memory>
 #include "models/gp/statistics.h"
+#include "models/gp/term_features.h"
 
 namespace loopwright::gp {
 
@@ -21,17 +22,6 @@ class StructuredEvidence {
  private:
   struct Workspace;
   std::unique_ptr<Workspace> workspace_;
-};
-
-/// One term of a posterior: the mean is σ_t² Σ β_ab c_a(x) c_b(v) over the functions of its bases.
-struct TermFeatures {
-  double variance = 1;  ///< σ_t²
-  std::array<Shape, 2> along;
-  std::array<std::vector<double>, 2> nodes;    ///< of squared exponentials
-  std::array<std::vector<double>, 2> weights;  ///< of Fourier series
-  std::vector<double> coefficients;            ///< β: what the samples ask of each function
-  double norm = 0;                             ///< ‖f_t‖ σ_t, see derivative_bound()
-  size_t size(size_t input) const;
 };
 
 class StructuredPosterior {
@@ -54,10 +44,5 @@ class StructuredPosterior {
   size_t functions_ = 0;
   std::vector<double> precision_;  ///< Φᵀ(K + σ_n² I)⁻¹Φ, symmetric
 };
-
-/// Correlations of a point with the functions of a term's basis along one input: `term.size(input)` numbers.
-void correlations(const TermFeatures& term, size_t input, double value, double* out);
-/// Their derivatives by the value.
-void correlation_slopes(const TermFeatures& term, size_t input, double value, double* out);
 
 }  // namespace loopwright::gp

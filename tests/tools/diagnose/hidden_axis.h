@@ -45,6 +45,15 @@ struct WantedMotion {
   }
 };
 
+/// There and back at three speeds.
+inline WantedMotion there_and_back(double way, double top_speed) {
+  WantedMotion motion;
+  motion.rest(0.2);
+  for (double share : {1.0, 0.25, 0.6})
+    for (double sign : {1.0, -1.0}) motion.stroke(sign * way, share * top_speed, 0.1).rest(0.1);
+  return motion;
+}
+
 /// What the diagram says of the axis, and with what noise it is measured.
 struct HiddenMachine {
   double mass = 0.2621, damping = 3;

@@ -9,15 +9,6 @@ namespace {
 
 using testing::ElementsAre;
 
-/// There and back at three speeds.
-WantedMotion there_and_back(double way, double top_speed) {
-  WantedMotion motion;
-  motion.rest(0.2);
-  for (double share : {1.0, 0.25, 0.6})
-    for (double sign : {1.0, -1.0}) motion.stroke(sign * way, share * top_speed, 0.1).rest(0.1);
-  return motion;
-}
-
 HiddenMachine with_velocity(bool position) {
   HiddenMachine machine;
   machine.velocity_noise = 2e-4, machine.measures_position = position;

@@ -7,14 +7,6 @@ namespace {
 
 using ::testing::Contains;
 
-WantedMotion there_and_back(double way, double top_speed) {
-  WantedMotion motion;
-  motion.rest(0.2);
-  for (double share : {1.0, 0.25, 0.6})
-    for (double sign : {1.0, -1.0}) motion.stroke(sign * way, share * top_speed, 0.1).rest(0.1);
-  return motion;
-}
-
 /// Without damping a gain and a mass are the same thing; both fit to 1e-5 of the criterion.
 TEST(Substitute, WithoutDampingAGainAndAMassAreDeclaredAlike) {
   HiddenMachine machine;
