@@ -100,12 +100,15 @@ void maximise(Trials& trials, Estimate& estimate) {
   }
 }
 
+/// The set with a proposal carried out and all parameters fitted.
+Estimate exchanged(Trials& trials, const Estimate& estimate, const Proposal& proposal) {
+  return fit_members(trials, applied(proposal, estimate.members), estimate.noise, estimate.motion, 4);
+}
+
 /// How much worse the criterion is when another set has been fitted; nothing: out of reach. A richer set that
 /// has this one as a special case always comes near: it must explain more to be a rival.
-std::optional<double> loss_of(Trials& trials, const Estimate& estimate, const Proposal& proposal,
-                              size_t catalogue, double reach) {
-  const Estimate other =
-      fit_members(trials, applied(proposal, estimate.members), estimate.noise, estimate.motion, 4);
+std::optional<double> loss_of(const Trials& trials, const Estimate& estimate, const Estimate& other,
+                              const Proposal& proposal, size_t catalogue, double reach) {
   if (!other.is_valid) return {};
   size_t before = 0, now = 0;
   for (size_t m : proposal.removed) before += parameters_of(*estimate.members[m].candidate);
@@ -136,7 +139,8 @@ std::vector<Substitute> substitutes_of(Trials& trials, const Estimate& estimate,
   std::vector<Substitute> list;
   for (const Proposal& proposal : exchanges) {
     if (proposal.removed != std::vector<size_t>{member} || list.size() >= 3) continue;
-    if (const auto loss = loss_of(trials, estimate, proposal, catalogue, reach))
+    if (const auto loss =
+            loss_of(trials, estimate, exchanged(trials, estimate, proposal), proposal, catalogue, reach))
       list.push_back({proposal.added.front().candidate, *loss});
   }
   std::ranges::stable_sort(list, {}, &Substitute::loss);
@@ -160,7 +164,8 @@ std::vector<OtherSet> other_sets(Trials& trials, const Estimate& estimate,
         other.replaced, [&](const Candidate* c) { return names.contains(c->name) || c->is_unknown; });
     for (const Candidate* c : other.replaced) names.insert("without " + c->name);
     if (is_one_for_one || comes_back || !tried.insert(names).second) continue;
-    if (const auto loss = loss_of(trials, estimate, proposal, catalogue, reach))
+    if (const auto loss =
+            loss_of(trials, estimate, exchanged(trials, estimate, proposal), proposal, catalogue, reach))
       other.loss = *loss, list.push_back(std::move(other));
   }
   std::ranges::stable_sort(list, {}, &OtherSet::loss);
@@ -187,8 +192,9 @@ std::optional<Estimate> simplified(Trials& trials, const Estimate& estimate,
     for (const Proposal& proposal : exchanges) {
       const bool is_simpler = proposal.removed == std::vector<size_t>{m} && proposal.added.size() == 1 &&
                               parameters_of(*proposal.added[0].candidate) < parameters_of(*member.candidate);
-      if (is_simpler && proposal.gain > -10 * reach && loss_of(trials, estimate, proposal, catalogue, reach))
-        return fit_members(trials, applied(proposal, estimate.members), estimate.noise, estimate.motion, 4);
+      if (!is_simpler || proposal.gain <= -10 * reach) continue;
+      Estimate other = exchanged(trials, estimate, proposal);
+      if (loss_of(trials, estimate, other, proposal, catalogue, reach)) return other;
     }
   }
   return {};
