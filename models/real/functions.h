@@ -55,7 +55,7 @@ template <class Real> LW_INLINE Real sine_of_remainder(const Real& x, const Real
   const Real r = ((x - k * 0x1.921fb544p1) - k * 0x1.0b4611a6p-33) - k * 0x1.3198a2e037073p-68;
   const Real z = r * r;
   const Real y = r + r * z * polynomial<sine_series>(z);
-  return select(y > 1.0, Real(1.0), select(y < -1.0, Real(-1.0), y));  // never rounded beyond ±1
+  return lesser(Real(1.0), greater(Real(-1.0), y));  // never rounded beyond ±1
 }
 // Static, as they are not inlined: see LW_INLINE.
 template <class Real> [[gnu::noinline, gnu::cold]] static Real sine_far(Real x, Real y) {
@@ -79,7 +79,7 @@ template <Scalar Real> LW_INLINE Real sine(const Real& x) {
   const Real half_turns = detail::nearest_integer(magnitude * 0x1.45f306dc9c883p-2);
   const Real y = negate_if_odd(detail::sine_of_remainder(magnitude, half_turns), half_turns);
   if (any(magnitude > detail::sine_limit)) [[unlikely]]
-    return detail::sine_far(x, flip_sign(y, x));
+    return register_by_register([](auto a, auto b) { return detail::sine_far(a, b); }, x, flip_sign(y, x));
   return flip_sign(y, x);
 }
 
@@ -89,7 +89,7 @@ template <Scalar Real> LW_INLINE Real cosine(const Real& x) {
   const Real half_turns = detail::nearest_integer(magnitude * 0x1.45f306dc9c883p-2 + 0.5);
   const Real y = negate_if_odd(detail::sine_of_remainder(magnitude, half_turns - 0.5), half_turns);
   if (any(magnitude > detail::sine_limit)) [[unlikely]]
-    return detail::cosine_far(x, y);
+    return register_by_register([](auto a, auto b) { return detail::cosine_far(a, b); }, x, y);
   return y;
 }
 
@@ -113,7 +113,7 @@ inline constexpr double ln2_high = 0x1.62e42fefap-1, ln2_low = 0x1.cf79abc9e3b3a
 /// e^(x + low) for |low| far below 1, such as the rounding error of x.
 template <class Real> LW_INLINE Real exponential_of_sum(const Real& x, const Real& low) {
   // Beyond these limits the result is 0 or infinite; comparisons let NaN pass.
-  const Real limited = select(x > 710.0, Real(710.0), select(x < -746.0, Real(-746.0), x));
+  const Real limited = lesser(Real(710.0), greater(Real(-746.0), x));
   const Real n = nearest_integer(limited * per_ln2);
   const Real r = (limited - n * ln2_high) - (n * ln2_low - low);
   const Real y = 1.0 + (r + r * r * polynomial<exponential_series>(r));
@@ -131,7 +131,7 @@ template <Scalar Real> LW_INLINE Real exponential(const Real& x) {
 /// tanh x = (e^{2|x|} - 1) / (e^{2|x|} + 1) with the sign of x. Error ≤ 2.5 ulp.
 template <Scalar Real> LW_INLINE Real hyperbolic_tangent(const Real& x) {
   const Real twice = 2.0 * absolute(x);
-  const Real t = select(twice > 44.0, Real(44.0), twice);  // tanh 22 rounds to 1
+  const Real t = lesser(Real(44.0), twice);  // tanh 22 rounds to 1
   const Real n = detail::nearest_integer(t * detail::per_ln2);
   const Real high = t - n * detail::ln2_high, low = n * detail::ln2_low;
   const Real r = high - low, lost = (high - r) - low;  // `lost` keeps the error below 2.5 ulp around t = ½

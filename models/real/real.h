@@ -9,6 +9,9 @@
 #pragma once
 #include <concepts>
 #include <cstdint>
+#ifdef __AVX__
+#include <immintrin.h>  // where GCC does not find the one instruction by itself
+#endif
 
 /// All of this is inlined, also without optimisation: no function compiled for one instruction set is left
 /// over for the linker to hand to code that must run on another.
@@ -16,22 +19,47 @@
 
 namespace loopwright {
 
-/// Arithmetic on the bits of IEEE doubles: `Register` is double or a vector of doubles, `Bits` the unsigned
-/// integers of the same size. Written once for both; what each does stands at the function of its name below.
+/// Arithmetic on the bits of IEEE doubles: `Register` is a vector of doubles, `Bits` one of unsigned integers
+/// of the same size. What each does stands at the function of its name below.
 namespace bits {
 inline constexpr std::uint64_t sign_bit = std::uint64_t(1) << 63;
 /// Adding 1.5·2⁵² to |x| < 2⁵¹ rounds x half to even and leaves the integer in the low bits of the sum.
 inline constexpr double integer_shift = 0x1.8p52;
 
+/// The bits that a and b have in common, and those in which they differ. On registers that GCC 12 would store
+/// to memory for a cast to integers, by the machine's instructions for doubles.
+template <class Bits, class Register> LW_INLINE Register common(Register a, Register b) {
+#ifdef __AVX512DQ__
+  if constexpr (sizeof(Register) == 64) return _mm512_and_pd(a, b);
+#endif
+#ifdef __AVX__
+  if constexpr (sizeof(Register) == 32) return _mm256_and_pd(a, b);
+#endif
+  return __builtin_bit_cast(Register, __builtin_bit_cast(Bits, a) & __builtin_bit_cast(Bits, b));
+}
+template <class Bits, class Register> LW_INLINE Register differing(Register a, Register b) {
+#ifdef __AVX512DQ__
+  if constexpr (sizeof(Register) == 64) return _mm512_xor_pd(a, b);
+#endif
+#ifdef __AVX__
+  if constexpr (sizeof(Register) == 32) return _mm256_xor_pd(a, b);
+#endif
+  return __builtin_bit_cast(Register, __builtin_bit_cast(Bits, a) ^ __builtin_bit_cast(Bits, b));
+}
+/// The same bits in every lane.
+template <class Bits, class Register> LW_INLINE Register pattern(std::uint64_t bits) {
+  return __builtin_bit_cast(Register, Bits{} + bits);
+}
+
 template <class Bits, class Register> LW_INLINE Register absolute(Register x) {
-  return __builtin_bit_cast(Register, __builtin_bit_cast(Bits, x) & ~sign_bit);
+  return common<Bits>(x, pattern<Bits, Register>(~sign_bit));
 }
 template <class Bits, class Register> LW_INLINE Register flip_sign(Register x, Register y) {
-  return __builtin_bit_cast(Register, __builtin_bit_cast(Bits, x) ^ (__builtin_bit_cast(Bits, y) & sign_bit));
+  return differing<Bits>(x, common<Bits>(y, pattern<Bits, Register>(sign_bit)));
 }
 template <class Bits, class Register> LW_INLINE Register negate_if_odd(Register x, Register n) {
   const Bits odd = __builtin_bit_cast(Bits, n + integer_shift) << 63;
-  return __builtin_bit_cast(Register, __builtin_bit_cast(Bits, x) ^ odd);
+  return differing<Bits>(x, __builtin_bit_cast(Register, odd));
 }
 template <class Bits, class Register> LW_INLINE Register power_of_two(Register n) {
   return __builtin_bit_cast(Register, (__builtin_bit_cast(Bits, n + integer_shift) + 1023) << 52);
@@ -63,8 +91,15 @@ LW_VECTORS(4)
 LW_VECTORS(8)
 #undef LW_VECTORS
 
-/// True if any lane of a register of truths is set: its halves are folded onto each other.
+/// True if any lane of a register of truths is set. Without an instruction for it, the halves are folded onto
+/// each other.
 template <int lanes> LW_INLINE bool any_of(typename VectorsOf<lanes>::Truths truths) {
+#ifdef __AVX512DQ__
+  if constexpr (lanes == 8) return _mm512_movepi64_mask(__m512i(truths)) != 0;
+#endif
+#ifdef __AVX__
+  if constexpr (lanes == 4) return _mm256_movemask_pd(__m256d(truths)) != 0;
+#endif
   if constexpr (lanes == 2) {
     return (truths[0] | truths[1]) != 0;
   } else {
@@ -74,6 +109,26 @@ template <int lanes> LW_INLINE bool any_of(typename VectorsOf<lanes>::Truths tru
     const Halves halves = __builtin_bit_cast(Halves, truths);
     return any_of<lanes / 2>(halves.low | halves.high);
   }
+}
+
+/// a < b ? a : b and a > b ? a : b in each lane, which GCC takes apart when one of them is constant.
+template <int lanes, class Register> LW_INLINE Register lesser_of(Register a, Register b) {
+#ifdef __AVX512F__
+  if constexpr (lanes == 8) return _mm512_mask_min_pd(a, 0xff, a, b);
+#endif
+#ifdef __AVX__
+  if constexpr (lanes == 4) return _mm256_min_pd(a, b);
+#endif
+  return a < b ? a : b;
+}
+template <int lanes, class Register> LW_INLINE Register greater_of(Register a, Register b) {
+#ifdef __AVX512F__
+  if constexpr (lanes == 8) return _mm512_mask_max_pd(a, 0xff, a, b);
+#endif
+#ifdef __AVX__
+  if constexpr (lanes == 4) return _mm256_max_pd(a, b);
+#endif
+  return a > b ? a : b;
 }
 
 // R is a small constant: without the pragma GCC keeps the loop at -O2 and the registers go through memory.
@@ -205,8 +260,27 @@ template <int N, int R = 1> struct Lanes {
     LW_EACH_REGISTER for (int l = 0; l < N; ++l) y.registers[i][l] = __builtin_sqrt(x.registers[i][l]);
     return y;
   }
-  LW_INLINE friend Lanes maximum(const Lanes& a, const Lanes& b) { return select((a > b) | (a != a), a, b); }
-  LW_INLINE friend Lanes minimum(const Lanes& a, const Lanes& b) { return select((a < b) | (a != a), a, b); }
+  LW_INLINE friend Lanes lesser(const Lanes& a, const Lanes& b) {
+    Lanes c;
+    LW_EACH_REGISTER c.registers[i] = lesser_of<N>(a.registers[i], b.registers[i]);
+    return c;
+  }
+  LW_INLINE friend Lanes greater(const Lanes& a, const Lanes& b) {
+    Lanes c;
+    LW_EACH_REGISTER c.registers[i] = greater_of<N>(a.registers[i], b.registers[i]);
+    return c;
+  }
+  LW_INLINE friend Lanes maximum(const Lanes& a, const Lanes& b) { return select(a != a, a, greater(a, b)); }
+  LW_INLINE friend Lanes minimum(const Lanes& a, const Lanes& b) { return select(a != a, a, lesser(a, b)); }
+  template <class F> LW_INLINE friend Lanes register_by_register(F&& f, const Lanes& a, const Lanes& b) {
+    Lanes c;
+    LW_EACH_REGISTER {
+      Lanes<N, 1> x, y;
+      x.registers[0] = a.registers[i], y.registers[0] = b.registers[i];
+      c.registers[i] = f(x, y).registers[0];
+    }
+    return c;
+  }
   /// One condition for all lanes, for example on time.
   LW_INLINE friend Lanes select(bool condition, const Lanes& yes, const Lanes& no) {
     return condition ? yes : no;
@@ -222,6 +296,11 @@ template <int N, int R = 1> struct Lanes {
   }
 };
 #undef LW_EACH_REGISTER
+
+/// A double in the lower half of a register of two: for its bits to be worked on where it lies. Cast to an
+/// integer, it would go through the registers of integers and back.
+using Two = VectorsOf<2>;
+LW_INLINE Two::Doubles in_register(double x) { return Two::Doubles{x}; }
 
 /// Runs side by side in one Real: 1 for double, 0 for what is no scalar of a simulation.
 template <class Real> inline constexpr int lanes_of = 0;
@@ -244,27 +323,37 @@ LW_INLINE bool lane(const bool& condition, int) { return condition; }
 LW_INLINE void set_lane(double& x, int, double value) { x = value; }
 LW_INLINE void set_lane(bool& condition, int, bool value) { condition = value; }
 
+/// f(a, b); for lanes register by register, so that what is called and not inlined gets them in registers.
+template <class F> LW_INLINE double register_by_register(F&& f, double a, double b) { return f(a, b); }
 /// x, copied register by register. A plain copy of lanes is one of memory, for which GCC keeps x in memory.
 LW_INLINE double by_register(double x) { return x; }
 /// |x|.
-LW_INLINE double absolute(double x) { return bits::absolute<std::uint64_t>(x); }
+LW_INLINE double absolute(double x) { return bits::absolute<Two::Bits>(in_register(x))[0]; }
+/// a < b ? a : b, hence b where either is NaN.
+LW_INLINE double lesser(double a, double b) { return a < b ? a : b; }
+/// a > b ? a : b, hence b where either is NaN.
+LW_INLINE double greater(double a, double b) { return a > b ? a : b; }
 /// The greater of two; NaN if either is NaN, so that a limit does not hide a NaN.
-LW_INLINE double maximum(double a, double b) { return (a > b) | (a != a) ? a : b; }
+LW_INLINE double maximum(double a, double b) { return a != a ? a : greater(a, b); }
 /// The lesser of two; NaN if either is NaN.
-LW_INLINE double minimum(double a, double b) { return (a < b) | (a != a) ? a : b; }
+LW_INLINE double minimum(double a, double b) { return a != a ? a : lesser(a, b); }
 /// √x, correctly rounded; NaN for x < 0.
 LW_INLINE double square_root(double x) { return __builtin_sqrt(x); }
 
 /// x, negated where the sign bit of y is set: |x| takes the sign of y by flip_sign(absolute(x), y).
-LW_INLINE double flip_sign(double x, double y) { return bits::flip_sign<std::uint64_t>(x, y); }
+LW_INLINE double flip_sign(double x, double y) {
+  return bits::flip_sign<Two::Bits>(in_register(x), in_register(y))[0];
+}
 /// (-1)ⁿ x for integral |n| < 2⁵¹.
-LW_INLINE double negate_if_odd(double x, double n) { return bits::negate_if_odd<std::uint64_t>(x, n); }
+LW_INLINE double negate_if_odd(double x, double n) {
+  return bits::negate_if_odd<Two::Bits>(in_register(x), in_register(n))[0];
+}
 /// 2ⁿ for integral n in [-1022, 1023].
-LW_INLINE double power_of_two(double n) { return bits::power_of_two<std::uint64_t>(n); }
+LW_INLINE double power_of_two(double n) { return bits::power_of_two<Two::Bits>(in_register(n))[0]; }
 /// The exponent k that puts x·2⁻ᵏ into [√½, √2); x normal and positive.
-LW_INLINE double exponent(double x) { return bits::exponent<std::uint64_t>(x); }
+LW_INLINE double exponent(double x) { return bits::exponent<Two::Bits>(in_register(x))[0]; }
 /// x cut to its upper 26 significant bits, so that products of halves are exact.
-LW_INLINE double upper_half(double x) { return bits::upper_half<std::uint64_t>(x); }
+LW_INLINE double upper_half(double x) { return bits::upper_half<Two::Bits>(in_register(x))[0]; }
 
 /// -1, 0 or 1; zeros and NaN as they are.
 template <Scalar Real> LW_INLINE Real sign_of(const Real& x) {
