@@ -26,12 +26,31 @@ template <class Real> struct Sum {
     p.found = "\"" + signs + "\"";
   }
   void outputs(const In& in, Out& out) const {
+    switch (in.terms.size()) {
+      case 2:
+        return add<2>(in.terms, out);
+      case 3:
+        return add<3>(in.terms, out);
+      case 4:
+        return add<4>(in.terms, out);
+      default:
+        Real sum = 0.0;
+        for (int i = 0; i < in.terms.size(); ++i) sum = is_added(i) ? sum + in.terms[i] : sum - in.terms[i];
+        out.sum = sum;
+    }
+  }
+
+ private:
+  bool is_added(int term) const { return signs.empty() || signs[size_t(term)] == '+'; }
+  /// Few terms, added without a loop.
+  template <int count> LW_INLINE void add(const Many<Real>& terms, Out& out) const {
     Real sum = 0.0;
-    for (int i = 0; i < in.terms.size(); ++i)
-      if (signs.empty() || signs[size_t(i)] == '+')
-        sum = sum + in.terms[i];
+#pragma GCC unroll 4
+    for (int i = 0; i < count; ++i)
+      if (is_added(i))
+        sum = sum + terms[i];
       else
-        sum = sum - in.terms[i];
+        sum = sum - terms[i];
     out.sum = sum;
   }
 };
