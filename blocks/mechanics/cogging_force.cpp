@@ -63,18 +63,25 @@ template <class Real> struct CoggingForce {
     is_sloped = any(velocity_slope != 0.0), is_modulated = any(modulation.depth != 0.0);
   }
   void outputs(const In& in, Out& out) const {
-    const auto term = [&](const Harmonic& h) __attribute__((always_inline)) {
-      return h.amplitude * sine(h.wave_number * in.position + h.phase);
-    };
+    if (harmonics.size() == 1 && !is_sloped && !is_modulated)
+      out.force = term(harmonics.front(), in.position);
+    else
+      out.force = series(in.position, in.velocity);
+  }
+
+ private:
+  LW_INLINE Real term(const Harmonic& h, const Real& position) const {
+    return h.amplitude * sine(h.wave_number * position + h.phase);
+  }
+  /// Not inlined: it would take the registers of the single harmonic.
+  [[gnu::noinline]] Real series(Real position, Real velocity) const {
     Real sum = 0.0;
-    if (!harmonics.empty())
-      sum += term(harmonics.front());  // alone it stays in registers; a loop would store it
-    for (size_t i = 1; i < harmonics.size(); ++i) sum += term(harmonics[i]);
+    for (const Harmonic& h : harmonics) sum += term(h, position);
     Real scale = 1.0;
-    if (is_sloped) scale = maximum(1.0 - velocity_slope * absolute(in.velocity), Real(0.0));
+    if (is_sloped) scale = maximum(1.0 - velocity_slope * absolute(velocity), Real(0.0));
     if (is_modulated)
-      scale *= 1.0 + modulation.depth * sine(modulation_wave_number * in.position + modulation.phase);
-    out.force = scale * sum;
+      scale *= 1.0 + modulation.depth * sine(modulation_wave_number * position + modulation.phase);
+    return scale * sum;
   }
 };
 LOOPWRIGHT_BLOCK(CoggingForce)
