@@ -1,55 +1,10 @@
-/// What the step calls: a block's methods behind plain function pointers, for one scalar type.
+/// A block's methods as the step calls them, made from its description, for one scalar type.
 #pragma once
 #include <cstring>
 #include <new>
-#include "engine/block/parameters.h"
+#include "engine/block/call.h"
 
 namespace loopwright {
-
-/// Where a port's numbers are in the arena of the run.
-template <class Real> struct Port {
-  union {
-    Real* data;
-    const Real* const* many;
-  };
-  int length = 1;
-};
-
-/// First fault of a lane: which block stopped it and why.
-struct FaultReport {
-  int block = -1;
-  const char* reason = "";
-};
-
-/// One call of one method of one block. A lane group is `registers` arenas, `stride` Reals apart; block[r]
-/// acts on the r-th.
-template <class Real> struct Call {
-  uint64_t (*step)(const Call&) = nullptr;  ///< lanes that faulted; for a jump: lanes whose state changed
-  const void* block = nullptr;
-  const Port<Real>*in = nullptr, *out = nullptr;
-  Real *state = nullptr, *rate = nullptr, *crossing = nullptr;
-  void *memory = nullptr, *mode = nullptr;
-  const Port<Real>* buffers = nullptr;
-  const Instant* now = nullptr;
-  FaultReport* report = nullptr;  ///< of the first lane; the others follow
-  int index = 0, registers = 1;
-  ptrdiff_t stride = 0;
-};
-template <class Real> using Step = uint64_t (*)(const Call<Real>&);
-
-/// The methods of a block type for one scalar type; null where the block has no such method.
-template <class Real> struct Kernels {
-  size_t size, align, memory_size, memory_align, mode_size;
-  void (*construct)(void* block);
-  void (*destroy)(void* block);
-  void (*copy)(void* to, const void* scalar_block);  ///< parameters of the scalar block into every lane
-  Real* (*tunable)(void* block, std::string_view path);
-  void (*prepare)(void* block, const Setup& setup);
-  void (*start)(const void* block, Real* state, void* memory, const Port<Real>* buffers, ptrdiff_t at,
-                void* mode);
-  Step<Real> outputs[8];
-  Step<Real> derivatives, update, accept, decide, jump, crossings;
-};
 
 template <class R> LW_INLINE void attach(R& to, const Port<R>& w, ptrdiff_t at) {
   to = by_register(w.data[at]);
@@ -93,6 +48,13 @@ template <class B, class Real> LW_INLINE decltype(auto) view_state(const B& bloc
   } else {
     return *reinterpret_cast<State<B>*>(data);
   }
+}
+/// f(index, number) for every Real of a struct of Reals.
+template <class Real, class T, class F> LW_INLINE void for_each_real(const T& reals, F&& f) {
+  [&]<size_t... i>(std::index_sequence<i...>) __attribute__((always_inline)) {
+    (f(i, reinterpret_cast<const Real*>(&reals)[i]), ...);
+  }
+  (std::make_index_sequence<sizeof(T) / sizeof(Real)>{});
 }
 template <class B, class Real> LW_INLINE Memory<B>& stored_memory(const Call<Real>& c, ptrdiff_t at) {
   return *reinterpret_cast<Memory<B>*>(static_cast<Real*>(c.memory) + at);
@@ -206,18 +168,31 @@ template <class B, class Real, int group> [[gnu::flatten]] uint64_t step_outputs
         return fault;
       });
 }
-template <class B, class Real> [[gnu::flatten]] uint64_t step_derivatives(const Call<Real>& c) {
+template <class B, class Real, class After> [[gnu::flatten]] uint64_t step_derivatives(const Call<Real>& c) {
   return each_register<B>(
       c, [&](const B& block, ptrdiff_t at) __attribute__((always_inline)) {
         const auto in = gather<B>(c, at, AllInputs{});
         const auto& state = view_state(block, c.state + at);
-        auto&& rate = view_state(block, c.rate + at);
         Fault fault;
-        with_memory<B>(
-            c, at, false, [&](const Memory<B>& memory) __attribute__((always_inline)) {
-              fault = invoke(&B::derivatives, block, *c.now, in, state, memory, stored_mode<B>(c, at), rate);
-              return uint64_t(0);
-            });
+        const auto derive = [&](auto& rate) __attribute__((always_inline)) {
+          with_memory<B>(
+              c, at, false, [&](const Memory<B>& memory) __attribute__((always_inline)) {
+                fault =
+                    invoke(&B::derivatives, block, *c.now, in, state, memory, stored_mode<B>(c, at), rate);
+                return uint64_t(0);
+              });
+        };
+        if constexpr (count_of<B, is_state_vector> == 0) {
+          State<B> rate{};
+          derive(rate);
+          for_each_real<Real>(
+              rate, [&](size_t i, const Real& slope)
+                        __attribute__((always_inline)) { After::take(c, at + ptrdiff_t(i), slope); });
+        } else {
+          auto rate = view_state(block, c.rate + at);
+          derive(rate);
+          for (ptrdiff_t i = at; i < at + c.states; ++i) After::take(c, i, c.rate[i]);
+        }
         return fault;
       });
 }
@@ -346,7 +321,11 @@ template <class B, class Real> Kernels<Real> kernels_of() {
   k.start = &start_block<B, Real>;
   [&]<size_t... G>(std::index_sequence<G...>) { ((k.outputs[G] = &step_outputs<B, Real, int(G)>), ...); }
   (std::make_index_sequence<size_t(group_count<B>)>{});
-  if constexpr (requires { &B::derivatives; }) k.derivatives = &step_derivatives<B, Real>;
+  if constexpr (requires { &B::derivatives; }) {
+    k.derivatives = &step_derivatives<B, Real, KeepSlope>;
+    k.to_next_stage = &step_derivatives<B, Real, ToNextStage>;
+    k.to_next_step = &step_derivatives<B, Real, ToNextStep>;
+  }
   if constexpr (requires { &B::update; }) k.update = &step_memory<B, Real, &B::update>;
   if constexpr (requires { &B::accept; }) k.accept = &step_memory<B, Real, &B::accept>;
   if constexpr (requires { &B::decide; }) k.decide = &step_decide<B, Real>;

@@ -34,6 +34,8 @@ template <> class BlockInstance<double> {
   Step<double> outputs(int group) const { return kernels_->outputs[group]; }
   Step<double> decide() const { return kernels_->decide; }
   Step<double> derivatives() const { return kernels_->derivatives; }
+  Step<double> to_next_stage() const { return kernels_->to_next_stage; }
+  Step<double> to_next_step() const { return kernels_->to_next_step; }
   Step<double> update() const { return kernels_->update; }
   Step<double> accept() const { return kernels_->accept; }
   Step<double> jump() const { return kernels_->jump; }

@@ -66,6 +66,13 @@ template <class Real> class LaneByLane {
   template <int group> static uint64_t step_outputs(const Call<Real>& call) {
     return of(call).each_lane(call, of(call).kernels_.outputs[group]);
   }
+  template <class After> static uint64_t step_derivatives(const Call<Real>& call) {
+    const uint64_t faults = step<&Kernels<double>::derivatives>(call);
+    for (int r = 0; r < call.registers; ++r)
+      for (int i = 0; i < call.states; ++i)
+        After::take(call, r * call.stride + i, call.rate[r * call.stride + i]);
+    return faults;
+  }
 
  private:
   static size_t whole(size_t bytes, size_t unit) { return (bytes + unit - 1) / unit * unit; }
@@ -276,6 +283,8 @@ template <class Real> class BlockInstance {
   Step<Real> derivatives() const {
     return step<&Kernels<Real>::derivatives, &Kernels<double>::derivatives>();
   }
+  Step<Real> to_next_stage() const { return slope_step<&Kernels<Real>::to_next_stage, ToNextStage>(); }
+  Step<Real> to_next_step() const { return slope_step<&Kernels<Real>::to_next_step, ToNextStep>(); }
   Step<Real> update() const { return step<&Kernels<Real>::update, &Kernels<double>::update>(); }
   Step<Real> accept() const { return step<&Kernels<Real>::accept, &Kernels<double>::accept>(); }
   Step<Real> jump() const { return step<&Kernels<Real>::jump, &Kernels<double>::jump>(); }
@@ -287,6 +296,10 @@ template <class Real> class BlockInstance {
   template <Step<Real> Kernels<Real>::*own, Step<double> Kernels<double>::*scalar> Step<Real> step() const {
     if (kernels_) return kernels_->*own;
     return lane_by_lane_->template has<scalar>() ? &LaneByLane<Real>::template step<scalar> : nullptr;
+  }
+  template <Step<Real> Kernels<Real>::*own, class After> Step<Real> slope_step() const {
+    if (kernels_) return kernels_->*own;
+    return derivatives() ? &LaneByLane<Real>::template step_derivatives<After> : nullptr;
   }
   struct Destroy {
     const Kernels<Real>* kernels = nullptr;

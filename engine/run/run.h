@@ -115,9 +115,18 @@ template <class Real> class Run {
     void operator()(char* p) const { ::operator delete(p, std::align_val_t(64)); }
   };
 
+  /// The ports of blocks; calls point into them.
+  struct Wires {
+    std::vector<Port<Real>> ports;
+    std::vector<const Real*> many;
+  };
+
   void lay_out();
-  void connect();
+  template <class Wanted> std::vector<Call<Real>> connect(Wires& wires, Real* states, Wanted&& wanted);
   void schedule();
+  void schedule_stages();
+  std::vector<bool> blocks_in_stages() const;
+  Call<Real> slope_call(Call<Real> call, size_t stage, bool is_last);
   void forget_faults() {
     failed_ = 0;
     std::fill(reports_.begin(), reports_.end(), FaultReport{});
@@ -125,7 +134,7 @@ template <class Real> class Run {
   /// Computes the signals again where states have jumped; the other lanes keep theirs.
   void repeat_after_jumps(const std::vector<Call<Real>>& calls);
   void evaluate_again(uint64_t jumped, const std::vector<Call<Real>>& calls);
-  Call<Real> call_of(const Plan::Entry& entry);
+  Call<Real> call_of(const Plan::Entry& entry, const std::vector<Call<Real>>& base);
   uint64_t mask_of(const Rate& rate) const;
   LW_INLINE void run(const std::vector<Call<Real>>& calls) {
     uint64_t bad = 0;
@@ -139,27 +148,29 @@ template <class Real> class Run {
   void euler(double h);
   void heun(double h);
   void rk4(double h);
-  void leave(double h);
 
   const Plan& plan_;
   const int registers_;
   ptrdiff_t stride_ = 0;
   size_t bytes_ = 0;
   std::unique_ptr<char, FreeArena> arena_;
-  Real *numbers_ = nullptr, *x_ = nullptr, *start_ = nullptr, *crossing_ = nullptr, *buffers_ = nullptr;
+  Real *numbers_ = nullptr, *x_ = nullptr, *crossing_ = nullptr, *buffers_ = nullptr;
   std::vector<size_t> memory_at_, mode_at_;  // bytes from the start of the arena
   size_t evaluated_ = 0;                     // Reals from the start of the arena that an evaluation may write
   std::vector<double> kept_;                 // those of the lanes that did not jump
   std::vector<BlockInstance<Real>> instances_;
-  std::vector<Port<Real>> wires_;
-  std::vector<const Real*> many_;
+  Wires wires_;
   std::vector<Call<Real>> base_;  // a block each, without a step
   std::vector<std::unique_ptr<RingSolver<Real>>> rings_;
   std::vector<Call<Real>> constants_, between_, stage_, for_events_, held_, accepts_, jumps_, crossings_;
-  // The derivatives at each stage of a step have a place of their own: a step reads and writes less than one
-  // that sums them up.
-  std::array<Real*, 4> slope_{};
-  std::array<std::vector<Call<Real>>, 4> slopes_;
+  std::vector<Call<Real>> slopes_;
+  // Of fixed-step methods, for each stage; see run_stages.h.
+  std::array<Real*, 4> slope_{};    // kept to the end of the step: summed up on the way they would cost more
+  std::array<Real*, 2> stage_x_{};  // states of the second and fourth stage, of the third
+  std::array<Wires, 2> stage_wires_;
+  std::array<double, 4> weight_{};  // [s] how far to go along the slope
+  std::vector<Stage<Real>> stage_of_;
+  std::array<std::vector<Call<Real>>, 4> stages_;
   CallsByRate<Real> outputs_, updates_;
   std::vector<std::pair<const void*, double (*)(const void*, double)>> stops_;
   Instant now_;
@@ -171,4 +182,5 @@ template <class Real> class Run {
 }  // namespace loopwright
 
 #include "engine/run/run_construction.h"
+#include "engine/run/run_stages.h"
 #include "engine/run/run_step.h"

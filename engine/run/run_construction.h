@@ -8,12 +8,13 @@ template <class Real>
 Run<Real>::Run(const Plan& plan, int registers)
     : plan_(plan), registers_(registers), reports_(size_t(registers * width)) {
   lay_out();
-  connect();
+  base_ = connect(wires_, x_, [](size_t) { return true; });
   schedule();
+  if (is_fixed_step(plan.method) && plan.states > 0) schedule_stages();
   reset({plan.seed, 0});
 }
 
-/// signals | x | modes | slopes | start | crossings | buffers | memories, in every register's arena.
+/// signals | x | modes | slopes | x of stages | crossings | buffers | memories, in every register's arena.
 template <class Real> void Run<Real>::lay_out() {
   const size_t align = std::max<size_t>(64, sizeof(Real));
   const auto reals = [](size_t bytes) { return (bytes + sizeof(Real) - 1) / sizeof(Real); };
@@ -25,8 +26,8 @@ template <class Real> void Run<Real>::lay_out() {
     end += reals(instances_.back().mode_bytes());
   }
   evaluated_ = end;
-  const size_t slopes = end, start = slopes + slope_.size() * states, crossings = start + states,
-               buffers = crossings + plan_.crossings.size();
+  const size_t slopes = end, stages = slopes + slope_.size() * states,
+               crossings = stages + stage_x_.size() * states, buffers = crossings + plan_.crossings.size();
   end = buffers + size_t(plan_.buffer_numbers);
   for (const BlockInstance<Real>& instance : instances_) {
     memory_at_.push_back(end * sizeof(Real));
@@ -40,54 +41,64 @@ template <class Real> void Run<Real>::lay_out() {
   numbers_ = reinterpret_cast<Real*>(arena_.get());
   x_ = numbers_ + plan_.signals;
   for (size_t k = 0; k < slope_.size(); ++k) slope_[k] = numbers_ + slopes + k * states;
-  start_ = numbers_ + start;
+  for (size_t k = 0; k < stage_x_.size(); ++k) stage_x_[k] = numbers_ + stages + k * states;
   crossing_ = numbers_ + crossings, buffers_ = numbers_ + buffers;
 }
 
-template <class Real> void Run<Real>::connect() {
-  size_t wires = 0, many = 0;
-  for (const Plan::Block& block : plan_.blocks) {
-    wires += block.inputs.size() + block.outputs.size() + block.buffer_lengths.size();
+/// Calls of the blocks that are wanted, which read their own states and those of others at `states`.
+template <class Real>
+template <class Wanted>
+std::vector<Call<Real>> Run<Real>::connect(Wires& wires, Real* states, Wanted&& wanted) {
+  size_t ports = 0, many = 0;
+  for (size_t b = 0; b < plan_.blocks.size(); ++b) {
+    if (!wanted(b)) continue;
+    const Plan::Block& block = plan_.blocks[b];
+    ports += block.inputs.size() + block.outputs.size() + block.buffer_lengths.size();
     for (const auto& port : block.inputs) many += port.size();
   }
-  wires_.reserve(wires), many_.reserve(many);  // calls point into both
+  wires.ports.reserve(ports), wires.many.reserve(many);  // calls point into both
+  const auto place = [&](Number n) {
+    return n < plan_.signals ? numbers_ + n : states + (n - plan_.signals);
+  };
+  std::vector<Call<Real>> calls(plan_.blocks.size());
   for (size_t b = 0; b < plan_.blocks.size(); ++b) {
+    if (!wanted(b)) continue;
     const Plan::Block& block = plan_.blocks[b];
-    Call<Real> call;
+    Call<Real>& call = calls[b];
     call.block = instances_[b].block(), call.index = int(b), call.now = &now_, call.report = reports_.data();
-    call.registers = registers_, call.stride = stride_;
-    call.state = x_ + block.first_state, call.rate = slope_[0] + block.first_state,
+    call.registers = registers_, call.stride = stride_, call.states = block.states;
+    call.state = states + block.first_state, call.rate = slope_[0] + block.first_state,
     call.crossing = crossing_ + block.first_crossing;
     call.memory = arena_.get() + memory_at_[b], call.mode = arena_.get() + mode_at_[b];
-    call.in = wires_.data() + wires_.size();
+    call.in = wires.ports.data() + wires.ports.size();
     for (size_t i = 0; i < block.inputs.size(); ++i) {
       Port<Real> wire{};
       wire.length = int(block.inputs[i].size());
       if (block.type->info.inputs[i].shape == PortInfo::Shape::many) {
-        wire.many = many_.data() + many_.size();
-        for (Number n : block.inputs[i]) many_.push_back(numbers_ + n);
+        wire.many = wires.many.data() + wires.many.size();
+        for (Number n : block.inputs[i]) wires.many.push_back(place(n));
       } else {
-        wire.data = block.inputs[i].empty() ? numbers_ : numbers_ + block.inputs[i][0];
+        wire.data = block.inputs[i].empty() ? numbers_ : place(block.inputs[i][0]);
       }
-      wires_.push_back(wire);
+      wires.ports.push_back(wire);
     }
-    call.out = wires_.data() + wires_.size();
+    call.out = wires.ports.data() + wires.ports.size();
     for (size_t o = 0; o < block.outputs.size(); ++o) {
       Port<Real> wire{};
-      wire.data = numbers_ + block.outputs[o];
+      wire.data = place(block.outputs[o]);
       wire.length = block.output_lengths[o];
-      wires_.push_back(wire);
+      wires.ports.push_back(wire);
     }
-    call.buffers = wires_.data() + wires_.size();
+    call.buffers = wires.ports.data() + wires.ports.size();
     Real* buffer = buffers_ + block.first_buffer;
     for (int length : block.buffer_lengths) {
       Port<Real> wire{};
       wire.data = buffer, wire.length = length;
-      wires_.push_back(wire);
+      wires.ports.push_back(wire);
       buffer += length;
     }
-    base_.push_back(call);
   }
+  return calls;
 }
 
 template <class Real> uint64_t Run<Real>::mask_of(const Rate& rate) const {
@@ -98,19 +109,20 @@ template <class Real> uint64_t Run<Real>::mask_of(const Rate& rate) const {
   return mask;
 }
 
-template <class Real> Call<Real> Run<Real>::call_of(const Plan::Entry& entry) {
+template <class Real>
+Call<Real> Run<Real>::call_of(const Plan::Entry& entry, const std::vector<Call<Real>>& base) {
   if (entry.kind == Plan::Entry::Kind::ring) {
     auto& ring = rings_.emplace_back(std::make_unique<RingSolver<Real>>());
     const Plan::Ring& plan_ring = plan_.rings[size_t(entry.block)];
     std::vector<Call<Real>> calls;
-    for (const Plan::Entry& inner : plan_ring.entries) calls.push_back(call_of(inner));
+    for (const Plan::Entry& inner : plan_ring.entries) calls.push_back(call_of(inner, base));
     ring->build(std::move(calls), numbers_, plan_ring.tears, registers_, stride_);
-    Call<Real> call = base_[size_t(plan_ring.entries.front().block)];
+    Call<Real> call = base[size_t(plan_ring.entries.front().block)];
     call.block = ring.get();
     call.step = &RingSolver<Real>::step;
     return call;
   }
-  Call<Real> call = base_[size_t(entry.block)];
+  Call<Real> call = base[size_t(entry.block)];
   const BlockInstance<Real>& instance = instances_[size_t(entry.block)];
   call.step = entry.kind == Plan::Entry::Kind::decide ? instance.decide() : instance.outputs(entry.group);
   return call;
@@ -119,7 +131,7 @@ template <class Real> Call<Real> Run<Real>::call_of(const Plan::Entry& entry) {
 template <class Real> void Run<Real>::schedule() {
   using Kind = Plan::Entry::Kind;
   for (const Plan::Entry& entry : plan_.order) {
-    const Call<Real> call = call_of(entry);
+    const Call<Real> call = call_of(entry, base_);
     if (entry.rate.kind == Rate::Kind::constant) {
       constants_.push_back(call);
       continue;
@@ -136,11 +148,7 @@ template <class Real> void Run<Real>::schedule() {
     const Plan::Block& block = plan_.blocks[b];
     const BlockInstance<Real>& instance = instances_[b];
     Call<Real> call = base_[b];
-    if ((call.step = instance.derivatives()))
-      for (size_t k = 0; k < slopes_.size(); ++k) {
-        slopes_[k].push_back(call);
-        slopes_[k].back().rate = slope_[k] + block.first_state;
-      }
+    if ((call.step = instance.derivatives())) slopes_.push_back(call);
     if ((call.step = instance.accept())) accepts_.push_back(call);
     if ((call.step = instance.jump())) jumps_.push_back(call);
     if ((call.step = instance.update()))

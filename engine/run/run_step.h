@@ -1,4 +1,4 @@
-/// What a run does in a step: signals in order, fixed-step methods, and what a variable-step solver asks for.
+/// What a run does in a step: signals in order, and what a variable-step solver asks for.
 #pragma once
 #include "engine/run/run.h"
 
@@ -56,69 +56,6 @@ template <class Real> void Run<Real>::evaluate_again(uint64_t jumped, const std:
         std::memcpy(numbers_of(r) + i, &kept_[size_t(r) * count + i], sizeof(double));
 }
 
-template <class Real> void Run<Real>::integrate(int64_t ticks) {
-  const int64_t next = now_.tick + ticks;
-  if (plan_.states > 0) {
-    const double h = plan_.clock.time(ticks);
-    switch (plan_.method) {
-      case Method::euler:
-        euler(h);
-        break;
-      case Method::heun:
-        heun(h);
-        break;
-      default:
-        rk4(h);
-        break;
-    }
-  }
-  move_to(next);
-}
-
-template <class Real> void Run<Real>::euler(double h) {
-  run(slopes_[0]);
-  each_state([&](auto i) __attribute__((always_inline)) { x_[i] = x_[i] + Real(h) * slope_[0][i]; });
-}
-
-template <class Real> void Run<Real>::heun(double h) {
-  const auto [k1, k2, k3, k4] = slope_;
-  leave(h);
-  now_.time += h;
-  run(stage_);
-  run(slopes_[1]);
-  each_state([&](auto i)
-                 __attribute__((always_inline)) { x_[i] = start_[i] + Real(0.5 * h) * (k1[i] + k2[i]); });
-}
-
-template <class Real> void Run<Real>::rk4(double h) {
-  const double half = 0.5 * h, sixth = h / 6, start = now_.time;
-  const auto [k1, k2, k3, k4] = slope_;
-  leave(half);
-  now_.time = start + half;
-  run(stage_);
-  run(slopes_[1]);
-  each_state([&](auto i) __attribute__((always_inline)) { x_[i] = start_[i] + Real(half) * k2[i]; });
-  run(stage_);
-  run(slopes_[2]);
-  each_state([&](auto i) __attribute__((always_inline)) { x_[i] = start_[i] + Real(h) * k3[i]; });
-  now_.time = start + h;
-  run(stage_);
-  run(slopes_[3]);
-  each_state([&](auto i) __attribute__((always_inline)) {
-    x_[i] = start_[i] + Real(sixth) * (((k1[i] + Real(2.0) * k2[i]) + Real(2.0) * k3[i]) + k4[i]);
-  });
-}
-
-/// The first stage of a step: the states are kept, and go `h` along their slope.
-template <class Real> void Run<Real>::leave(double h) {
-  run(slopes_[0]);
-  each_state([&](auto i) __attribute__((always_inline)) {
-    const Real here = by_register(x_[i]);
-    start_[i] = by_register(here);
-    x_[i] = here + Real(h) * slope_[0][i];
-  });
-}
-
 // Between discontinuities, for variable-step solvers.
 
 template <class Real> bool Run<Real>::derivatives_at(double time, const double* x, double* rate) {
@@ -126,7 +63,7 @@ template <class Real> bool Run<Real>::derivatives_at(double time, const double* 
   now_.time = time;
   uint64_t bad = 0;
   for (const Call<Real>& c : stage_) bad |= c.step(c);
-  for (const Call<Real>& c : slopes_[0]) bad |= c.step(c);
+  for (const Call<Real>& c : slopes_) bad |= c.step(c);
   std::copy_n(slope_[0], plan_.states, rate);
   return bad == 0;
 }

@@ -1,0 +1,88 @@
+/// What the step calls: plain function pointers, and where in the arena of a run they find their numbers.
+#pragma once
+#include "engine/block/parameters.h"
+
+namespace loopwright {
+
+/// Where a port's numbers are in the arena of the run.
+template <class Real> struct Port {
+  union {
+    Real* data;
+    const Real* const* many;
+  };
+  int length = 1;
+};
+
+/// First fault of a lane: which block stopped it and why.
+struct FaultReport {
+  int block = -1;
+  const char* reason = "";
+};
+
+/// A stage of a Runge-Kutta step, for the states of one block.
+template <class Real> struct Stage {
+  const Real* start;       ///< states at the start of the step
+  Real* next;              ///< states of the next stage, or of the next step
+  const Real* earlier[3];  ///< slopes of the stages before
+  const double* weight;    ///< [s] how far to go along the slope
+};
+
+/// One call of one method of one block. A lane group is `registers` arenas, `stride` Reals apart; block[r]
+/// acts on the r-th.
+template <class Real> struct Call {
+  uint64_t (*step)(const Call&) = nullptr;  ///< lanes that faulted; for a jump: lanes whose state changed
+  const void* block = nullptr;
+  const Port<Real>*in = nullptr, *out = nullptr;
+  Real *state = nullptr, *rate = nullptr, *crossing = nullptr;
+  void *memory = nullptr, *mode = nullptr;
+  const Port<Real>* buffers = nullptr;
+  const Stage<Real>* stage = nullptr;
+  const Instant* now = nullptr;
+  FaultReport* report = nullptr;  ///< of the first lane; the others follow
+  int index = 0, registers = 1, states = 0;
+  ptrdiff_t stride = 0;
+};
+template <class Real> using Step = uint64_t (*)(const Call<Real>&);
+
+/// The methods of a block type for one scalar type; null where the block has no such method.
+template <class Real> struct Kernels {
+  size_t size, align, memory_size, memory_align, mode_size;
+  void (*construct)(void* block);
+  void (*destroy)(void* block);
+  void (*copy)(void* to, const void* scalar_block);  ///< parameters of the scalar block into every lane
+  Real* (*tunable)(void* block, std::string_view path);
+  void (*prepare)(void* block, const Setup& setup);
+  void (*start)(const void* block, Real* state, void* memory, const Port<Real>* buffers, ptrdiff_t at,
+                void* mode);
+  Step<Real> outputs[8];
+  Step<Real> derivatives, to_next_stage, to_next_step, update, accept, decide, jump, crossings;
+};
+
+// What becomes of the slope of the i-th state of a block, at i in the arena of its register.
+
+/// The slope is kept, and nothing else.
+struct KeepSlope {
+  template <class Real> LW_INLINE static void take(const Call<Real>& c, ptrdiff_t i, const Real& slope) {
+    c.rate[i] = by_register(slope);
+  }
+};
+/// x = x₀ + weight · slope.
+struct ToNextStage {
+  template <class Real> LW_INLINE static void take(const Call<Real>& c, ptrdiff_t i, const Real& slope) {
+    const Stage<Real>& stage = *c.stage;
+    c.rate[i] = by_register(slope);
+    stage.next[i] = by_register(stage.start[i] + Real(*stage.weight) * slope);
+  }
+};
+/// x = x₀ + weight · (k₁ + 2 k₂ + 2 k₃ + slope).
+struct ToNextStep {
+  template <class Real> LW_INLINE static void take(const Call<Real>& c, ptrdiff_t i, const Real& slope) {
+    const Stage<Real>& stage = *c.stage;
+    const auto& k = stage.earlier;
+    stage.next[i] =
+        by_register(stage.start[i] +
+                    Real(*stage.weight) * (((k[0][i] + Real(2.0) * k[1][i]) + Real(2.0) * k[2][i]) + slope));
+  }
+};
+
+}  // namespace loopwright
