@@ -34,7 +34,8 @@ void LaneGroup::enter(int64_t world) {
   const World& here = plan_.world(world);
   run_.reset(), metrics_.reset(), parameters_.clear();
   if (!here.lanes_forbidden.empty()) return;
-  run_ = make_lane_run(*here.plan, set_, 1);
+  const int lanes = lanes_in_arena(set_);
+  run_ = make_lane_run(*here.plan, set_, lanes == 1 ? 1 : int(runs_in_block(plan_.design())) / lanes);
   metrics_ = std::make_unique<MetricBank>(plan_.sweep(), here.observed, run_->lanes());
   for (const std::string& path : here.tuned)
     for (int lane = 0; lane < run_->lanes(); ++lane) parameters_.push_back(run_->parameter(path, lane));

@@ -22,14 +22,15 @@ constexpr const char* name_of_sweep_file = "sweep_file.txt";  // holds the path 
 /// Blocks of all worlds, one after the other; a block never reaches from one world into the next.
 struct Blocks {
   explicit Blocks(const Design& design)
-      : in_world((design.runs_in_world() + runs_in_block - 1) / runs_in_block),
+      : in_block(runs_in_block(design)),
+        in_world((design.runs_in_world() + in_block - 1) / in_block),
         runs_in_world(design.runs_in_world()),
         count(in_world * design.worlds()) {}
   std::pair<int64_t, int64_t> runs(int64_t block) const {
-    const int64_t world = block / in_world * runs_in_world, inside = block % in_world * runs_in_block;
-    return {world + inside, world + std::min(inside + runs_in_block, runs_in_world)};
+    const int64_t world = block / in_world * runs_in_world, inside = block % in_world * in_block;
+    return {world + inside, world + std::min(inside + in_block, runs_in_world)};
   }
-  int64_t in_world, runs_in_world, count;
+  int64_t in_block, in_world, runs_in_world, count;
 };
 
 std::vector<bool> runs_in_folder(const SweepPlan& plan, const std::string& folder,

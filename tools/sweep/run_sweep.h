@@ -12,8 +12,9 @@
 
 namespace loopwright {
 
-/// Runs are handed out in blocks; each is made by one thread.
-inline constexpr int64_t runs_in_block = 32;
+/// Runs are handed out in blocks; each is made by one thread. Lanes of two arenas in turn wait less for each
+/// other's results than those of one; but with few runs, large blocks would leave threads without work.
+inline int64_t runs_in_block(const Design& design) { return design.runs_in_world() < 1024 ? 32 : 64; }
 
 struct SweepOptions {
   int threads = 1;
@@ -42,7 +43,7 @@ struct SweepOutcome {
 /// holds other results, is in use or cannot be written; what was appended by then stays.
 SweepOutcome run_sweep(const SweepPlan& plan, const std::string& folder, const SweepOptions& options);
 
-/// One group of runs [first, end) of one world, at most runs_in_block.
+/// One group of runs [first, end) of one world, at most a block.
 std::vector<RunRecord> make_runs(const SweepPlan& plan, int64_t first, int64_t end,
                                  std::optional<InstructionSet> set = {});
 
