@@ -211,7 +211,7 @@ std::vector<RecordFault> faults_of(const Machine& machine, const ForceResidual& 
                       "shares and noise floor are rough; no effect should be named from this record", true});
   if (c.directions < 2)
     faults.push_back({"one_direction", "all motion goes one way",
-                      "Coulomb friction, a constant force and direction-dependent friction look alike"});
+                      "while it moves, Coulomb friction, a constant force and direction-dependent friction look alike"});
   if (c.speeds < 2)
     faults.push_back({"one_speed", "nearly all motion is at one speed",
                       "friction of any kind, drag and periodic errors of force or encoder look alike"});

@@ -183,4 +183,9 @@ double AxisModel::net_force(double input, double force) {
   return numbers_[force_];
 }
 
+bool AxisModel::holds_at_rest(double small_force) {
+  start(record_.measured.front().value[0], 0);
+  return net_force(0, small_force) - net_force(0, -small_force) < small_force;
+}
+
 }  // namespace loopwright::diagnosis

@@ -62,6 +62,8 @@ class AxisModel {
   /// The mean force on the moving part at the present state, the added force included.
   double net_force(double input, double force);
   void place(double position, double velocity);
+  /// Whether a force as small as this moves nothing at rest: something in the diagram holds.
+  bool holds_at_rest(double small_force);
 
   /// Linearised around the recorded motion.
   LinearAxis linearise();

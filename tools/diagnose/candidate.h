@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 #include "tools/diagnose/predictor.h"
+#include "tools/effects/effect.h"
 
 namespace loopwright::diagnosis {
 
@@ -26,13 +27,14 @@ struct Member;
 struct Candidate {
   std::string name, form;  ///< form: of an effect with several
   Acts acts = Acts::force;
-  int place_in_chain = 0;  ///< of Acts::input: what comes first along the signal path has the lowest number
-  std::vector<CandidateParameter> linear;     ///< amplitudes
-  std::vector<CandidateParameter> nonlinear;  ///< shapes
+  Attachment::Stage stage = Attachment::Stage::command;  ///< of Acts::input
+  std::vector<CandidateParameter> linear;                ///< amplitudes
+  std::vector<CandidateParameter> nonlinear;             ///< shapes
   /// Pure shape (a delay, a lag): the amplitude stands for the step from 0 to the shape and must be near one.
   bool amplitude_is_one = false;
   /// Scans every pitch: the first nonlinear parameter is one, the columns are its sine and cosine.
   bool is_periodic = false;
+  AtRest at_rest = AtRest::free;
   bool is_repeatable = false;    ///< may be there more than once
   bool repeats_in_time = false;  ///< its period is one of time, not of position
   bool is_unknown = false;       ///< no effect of the catalogue but any function of the variables in `form`

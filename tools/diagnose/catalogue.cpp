@@ -18,12 +18,9 @@ Acts acts(const Effect& effect) {
   return Acts::force;
 }
 
-/// What comes first on the way from command to force: late, then slow, then at its limit, then what the
-/// magnets make of the current.
-int place_in_chain(const Effect& effect) {
-  if (effect.name == "input_delay") return 0;
-  if (effect.name == "actuator_lag") return 1;
-  return effect.name == "force_saturation" ? 2 : 3;
+Attachment::Stage stage(const Effect& effect) {
+  const auto at_input = std::ranges::find(effect.attachments, To::input, &Attachment::to);
+  return at_input == effect.attachments.end() ? Attachment::Stage::command : at_input->stage;
 }
 
 bool adds_inertia(const Attachment& attachment) {
@@ -144,7 +141,7 @@ Candidate candidate_of(const Effect& effect, std::shared_ptr<const EffectPlan> p
   compiled->plan = std::move(plan), compiled->acts = acts(effect);
   Candidate candidate;
   candidate.name = effect.name, candidate.form = effect.form, candidate.acts = compiled->acts;
-  if (candidate.acts == Acts::input) candidate.place_in_chain = place_in_chain(effect);
+  candidate.stage = stage(effect);
   for (const EffectParameter& p : effect.parameters) {
     if (!p.is_fitted) continue;
     const FitRange range = range_of(p, compiled->plan->sizes);
@@ -173,7 +170,7 @@ Candidate candidate_of(const Effect& effect, std::shared_ptr<const EffectPlan> p
     grid.clear();
     for (double value = high / 60; value < high; value *= 1.5) grid.push_back(value);
   }
-  candidate.is_repeatable = effect.is_repeatable;
+  candidate.is_repeatable = effect.is_repeatable, candidate.at_rest = effect.at_rest;
   candidate.columns_at = [compiled](const Path& path, const std::vector<std::vector<double>>& shapes) {
     return compiled->columns(path, shapes);
   };

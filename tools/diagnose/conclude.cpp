@@ -299,7 +299,6 @@ Conclusion conclude(Trials& trials, const std::vector<Candidate>& candidates,
   }
   const Noise free = fit_noise(trials, estimate.fitted, estimate.noise, FreeNoise::all);
   result.is_remainder_noise = free.slow() <= most_slow_noise * free.white;
-  result.held_out_mean_square = mean_square(trials, estimate.fitted, true);
   return result;
 }
 

@@ -40,8 +40,7 @@ struct Conclusion {
   std::vector<OtherSet> other_sets;                  ///< within reach, best first
   std::vector<double> inclusion;                     ///< probability that the effect is there, calibrated
   bool is_remainder_noise = true;                    ///< else a slow force is left that is more than noise
-  double portmanteau = 0;  ///< n Σ ρ², 40 lags of the whitened errors; 40 when white
-  double held_out_mean_square = 0;
+  double portmanteau = 0;          ///< n Σ ρ², 40 lags of the whitened errors; 40 when white
   std::vector<std::string> trail;  ///< what was taken out, and why
 
   /// Whether nothing is left in the errors.

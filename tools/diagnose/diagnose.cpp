@@ -48,9 +48,6 @@ std::string without_idle_brackets(const std::string& unit) {
   return text;
 }
 
-/// The held-out rows are explained worse than this, over the fitted ones: they hold something else.
-constexpr double most_held_out = 1.5;
-
 /// Whether what was found explains everything, a motion that runs ahead of its input too: only a load that
 /// swings or rattles makes an axis look so.
 bool explains_lead(const Conclusion& conclusion) {
@@ -96,67 +93,96 @@ std::string_view name_of(Verdict verdict) {
 
 namespace {
 
-Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std::string>& experiments,
-                              const DiagnoseOptions& options) {
-  const auto progress = [&](const char* stage, double done) {
-    if (options.progress) options.progress(stage, done);
-  };
-  progress("reading the records", 0);
-  Motion motion;
-  Trials trials = prepare(diagram, experiments, options.load, motion);
-  trials.interrupt = options.interrupt;
-  std::vector<const AxisModel*> models;
-  for (const Trial& trial : trials.list) models.push_back(trial.model.get());
-  const MachineUnits units = units_of(*models.front());
-  const RecordSizes sizes = sizes_of(motion.paths, models);
-  const std::vector<std::string> folders =
-      options.catalogues.empty() ? std::vector<std::string>{catalogue_folder()} : options.catalogues;
-  progress("running every effect's blocks on the records", 0.1);
-  const Catalogue catalogue = make_catalogue(
-      folders, units, sizes, attachable(diagram, experiments.front(), options.load, units, sizes));
-  const std::vector<Shape> shapes = shapes_of(catalogue.candidates, motion);
-  progress("searching", 0.4);
-  const std::vector<Candidate> unknown = unknown_forces(sizes);
-  std::vector<InverseDynamics> inverse;
-  for (Trial& trial : trials.list) inverse.push_back(inverse_dynamics(trial, trials.rest_speed));
-  Diagnosis result;
-  result.findings = look_at_records(trials, inverse), result.not_looked_for = catalogue.left_out;
-  const auto find_names = [&] {
-    SearchResult searched = search(trials, catalogue.candidates, shapes, unknown, motion);
-    progress("fitting effects and noise together", 0.7);
-    Conclusion conclusion = conclude(trials, catalogue.candidates, shapes, std::move(searched.estimate));
+/// The records of one axis, and what can be concluded from them with the names of a catalogue.
+class Inquiry {
+ public:
+  Inquiry(Trials& trials, const Motion& motion, const Catalogue& catalogue, const RecordSizes& sizes,
+          const std::function<void(const char*, double)>& progress)
+      : trials_(trials),
+        motion_(motion),
+        catalogue_(catalogue),
+        unknown_(unknown_forces(sizes)),
+        progress_(progress) {}
+
+  /// From the rows that are fitted.
+  Conclusion with_names() {
+    const std::vector<Shape> shapes = shapes_along_fitted_rows();
+    progress_("searching", 0.4);
+    SearchResult searched = search(trials_, catalogue_.candidates, shapes, unknown_, fitted_motion_);
+    progress_("fitting effects and noise together", 0.7);
+    Conclusion conclusion = conclude(trials_, catalogue_.candidates, shapes, std::move(searched.estimate));
     std::ranges::move(conclusion.trail, std::back_inserter(searched.trail));
     conclusion.trail = std::move(searched.trail);
+    look_at_all_rows(conclusion);
     return conclusion;
-  };
+  }
+  Conclusion without_names() {
+    const std::vector<Shape> shapes = shapes_along_fitted_rows();
+    Conclusion conclusion = conclude(trials_, catalogue_.candidates, shapes,
+                                     fit_members(trials_, {}, search_noise(trials_), fitted_motion_, 0));
+    look_at_all_rows(conclusion);
+    return conclusion;
+  }
+  /// Whether the rows that are held out are explained much worse than those that were fitted.
+  bool holds_out_something_else(const Conclusion& conclusion) const {
+    constexpr double most_held_out = 1.5;
+    return held_out_mean_square() > most_held_out * std::max(1.0, conclusion.estimate.mean_square);
+  }
+  void fit_all_rows() {
+    for (Trial& trial : trials_.list) trial.held_out_from = trial.usable.size();
+  }
+  double held_out_mean_square() const { return mean_square(trials_, on_all_rows_.fitted, true); }
+  /// That the last conclusion saw, held-out rows too.
+  const Motion& motion_of_all_rows() const { return on_all_rows_.motion; }
+
+ private:
+  std::vector<Shape> shapes_along_fitted_rows() {
+    progress_("running every effect's blocks on the records", 0.1);
+    trials_.run_along(Trials::Rows::fitted);
+    fitted_motion_ = cut(motion_, trials_);
+    return shapes_of(catalogue_.candidates, fitted_motion_);
+  }
+  void look_at_all_rows(const Conclusion& conclusion) {
+    const Estimate& e = conclusion.estimate;
+    trials_.run_along(Trials::Rows::all);
+    on_all_rows_ = on_own_motion(trials_, fit_members(trials_, e.members, e.noise, motion_, 0));
+    trials_.run_along(Trials::Rows::fitted);
+  }
+
+  Trials& trials_;
+  const Motion& motion_;
+  const Catalogue& catalogue_;
+  const std::vector<Candidate> unknown_;
+  const std::function<void(const char*, double)>& progress_;
+  Motion fitted_motion_;
+  Estimate on_all_rows_;
+};
+
+/// What can be concluded as far as the records can bear it; what was found to be wrong with them is
+/// corrected.
+Conclusion conclusion_from(Inquiry& inquiry, std::vector<RecordFinding>& findings) {
   const auto is_certain = [](const RecordFinding& f) { return f.is_fatal && !f.may_be_physics; };
   const auto is_doubtful = [](const RecordFinding& f) { return f.is_fatal && f.may_be_physics; };
-  const bool is_fatal = std::ranges::any_of(result.findings, is_certain);
-  Conclusion conclusion;
-  if (!is_fatal) conclusion = find_names();
+  if (std::ranges::any_of(findings, is_certain)) return inquiry.without_names();
+  Conclusion conclusion = inquiry.with_names();
   // What is not explained anyway shows there as well.
-  if (!is_fatal && conclusion.is_white() &&
-      conclusion.held_out_mean_square > most_held_out * std::max(1.0, conclusion.estimate.mean_square)) {
-    for (Trial& trial : trials.list) trial.held_out_from = trial.usable.size();
-    result.findings.push_back(
-        {"the part that was to be held out shows something that the other part does not",
-         "it was used for the fit too, and no error is held out"});
-    conclusion = find_names();
+  if (conclusion.is_white() && inquiry.holds_out_something_else(conclusion)) {
+    inquiry.fit_all_rows();
+    findings.push_back({"the part that was to be held out shows something that the other part does not",
+                        "it was used for the fit too, and no error is held out"});
+    conclusion = inquiry.with_names();
   }
-  if (!is_fatal && explains_lead(conclusion))
-    std::erase_if(result.findings, is_doubtful);
-  else if (is_fatal || std::ranges::any_of(result.findings, is_doubtful))
-    // Names from a record that cannot bear them would be guesses.
-    conclusion = conclude(trials, catalogue.candidates, shapes,
-                          fit_members(trials, {}, search_noise(trials), motion, 0));
-  result.diagram = diagram, result.experiments = experiments, result.trail = conclusion.trail;
-  result.title = models.front()->plan().title;
-  result.force_unit = units.force, result.position_unit = units.position;
-  result.measured_unit = models.front()->record().measured.front().unit;
-  progress("the staircase of the error", 0.85);
-  const Staircase staircase = climb(trials, conclusion, inverse, catalogue.candidates.size());
-  result.steps = staircase.steps;
-  for (size_t index : staircase.order) {
+  if (explains_lead(conclusion))
+    std::erase_if(findings, is_doubtful);
+  else if (std::ranges::any_of(findings, is_doubtful))
+    return inquiry.without_names();  // names from a record that cannot bear them would be guesses
+  return conclusion;
+}
+
+/// Effects in the order of the staircase, what else would do, and the experiments that would decide.
+void tell_effects(const Conclusion& conclusion, const std::vector<size_t>& order, const Catalogue& catalogue,
+                  const MachineUnits& units, Diagnosis& result) {
+  for (size_t index : order) {
     const Member& member = conclusion.estimate.members[index];
     if (member.candidate->is_unknown) continue;
     const Effect& effect = effect_of(catalogue, member.candidate);
@@ -184,6 +210,10 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
     suggest(result.suggested,
             separating_experiment(effect_of(catalogue, other.replaced.front()), other.by.front()->name));
   }
+}
+
+void tell_errors(const Trials& trials, const Conclusion& conclusion, const Inquiry& inquiry,
+                 Diagnosis& result) {
   const bool holds_out = result.steps.front().held_out_force_rmse > 0;
   const auto error = [&](const DiagnosisStep& step) {
     return holds_out ? step.held_out_force_rmse : step.force_rmse;
@@ -192,23 +222,64 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   const Noise& noise = conclusion.estimate.noise;
   result.noise_floor = residual_floor(trials, noise);
   result.mean_square = conclusion.estimate.mean_square;
-  result.held_out_mean_square = conclusion.held_out_mean_square;
+  result.held_out_mean_square = inquiry.held_out_mean_square();
   result.portmanteau = conclusion.portmanteau;
   result.white_force = noise.white, result.slow_force = noise.slow();
-  result.slow_force_time_s = -models.front()->record().sample_time / std::log(noise.memory);
+  result.slow_force_time_s = -trials.list.front().model->record().sample_time / std::log(noise.memory);
   result.measurement_noise = noise.measurement;
-  judge(trials, conclusion, search_noise(trials), result);
+}
+
+/// Of the first record.
+Diagnosis::Curves residual_curves(const Trials& trials, const InverseDynamics& inverse,
+                                  const Conclusion& conclusion) {
+  Diagnosis::Curves curves;
+  curves.position = inverse.path.position, curves.velocity = inverse.path.velocity;
+  curves.before = residual_with(trials.list.front(), inverse, {});
+  curves.after = residual_with(trials.list.front(), inverse, conclusion.estimate.members);
+  curves.time = inverse.motion.time;
+  for (size_t k = 0; k < inverse.motion.rows(); ++k)
+    if (!inverse.motion.counts[k]) curves.before[k] = curves.after[k] = std::nan("");
+  return curves;
+}
+
+Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std::string>& experiments,
+                              const DiagnoseOptions& options) {
+  const std::function<void(const char*, double)> progress = [&](const char* stage, double done) {
+    if (options.progress) options.progress(stage, done);
+  };
+  progress("reading the records", 0);
+  Motion motion;
+  Trials trials = prepare(diagram, experiments, options.load, motion);
+  trials.interrupt = options.interrupt;
+  std::vector<const AxisModel*> models;
+  for (const Trial& trial : trials.list) models.push_back(trial.model.get());
+  const MachineUnits units = units_of(*models.front());
+  const RecordSizes sizes = sizes_of(motion.paths, models);
+  const std::vector<std::string> folders =
+      options.catalogues.empty() ? std::vector<std::string>{catalogue_folder()} : options.catalogues;
+  const Catalogue catalogue = make_catalogue(
+      folders, units, sizes, attachable(diagram, experiments.front(), options.load, units, sizes));
+  std::vector<InverseDynamics> inverse;
+  for (Trial& trial : trials.list) inverse.push_back(inverse_dynamics(trial, trials.rest_speed));
+  Diagnosis result;
+  result.findings = look_at_records(trials, inverse), result.not_looked_for = catalogue.left_out;
+  Inquiry inquiry(trials, motion, catalogue, sizes, progress);
+  const Conclusion conclusion = conclusion_from(inquiry, result.findings);
+  result.diagram = diagram, result.experiments = experiments, result.trail = conclusion.trail;
+  result.title = models.front()->plan().title;
+  result.force_unit = units.force, result.position_unit = units.position;
+  result.measured_unit = models.front()->record().measured.front().unit;
+  progress("the staircase of the error", 0.85);
+  const Staircase staircase = climb(trials, conclusion, inverse, catalogue.candidates.size());
+  result.steps = staircase.steps;
+  tell_effects(conclusion, staircase.order, catalogue, units, result);
+  tell_errors(trials, conclusion, inquiry, result);
+  trials.run_along(Trials::Rows::all);
+  judge(trials, conclusion, inquiry.motion_of_all_rows(), search_noise(trials), result);
   if (!options.improved_diagram.empty())
     result.improved = write_improved(diagram, experiments.front(), options.load, catalogue,
                                      conclusion.estimate, units, sizes, options.improved_diagram);
-  const InverseDynamics& first = inverse.front();
-  result.curves.position = first.path.position, result.curves.velocity = first.path.velocity;
-  result.curves.before = residual_with(trials.list.front(), first, {});
-  result.curves.after = residual_with(trials.list.front(), first, conclusion.estimate.members);
-  result.curves.time = first.motion.time;
-  for (size_t k = 0; k < first.motion.rows(); ++k) {
-    if (!first.motion.counts[k]) result.curves.before[k] = result.curves.after[k] = std::nan("");
-  }
+  result.curves = residual_curves(trials, inverse.front(), conclusion);
   return result;
 }
 

@@ -127,7 +127,7 @@ Evidence::Evidence(const Trials& trials, const Estimate& estimate, const std::ve
       for (size_t k : rows[t])
         for (size_t p = 0; p < ports; ++p) X_(r++, column) = values[k * ports + p];
     };
-    const Sensitivity own = sensitivity(estimate.members, path, fitted, trials.list[t].model->record().input);
+    const Sensitivity own = sensitivity(estimate.members, path, fitted, trials.list[t].input);
     for (size_t c = 0; c < own.columns.size(); ++c) fill(Eigen::Index(c), own.columns[c]);
     for (const Acts acts : {Acts::force, Acts::input, Acts::sensor}) {
       std::vector<const Column*> columns;

@@ -1,4 +1,5 @@
 #include "tools/diagnose/fit.h"
+#include "tools/diagnose/rest.h"
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -22,7 +23,7 @@ NormalEquations normal_equations(const Trials& trials, const std::vector<Member>
   const size_t ports = trials.ports();
   for (size_t t = 0; t < trials.list.size(); ++t) {
     const Trial& trial = trials.list[t];
-    const Sensitivity s = sensitivity(members, *motion.paths[t], fitted[t], trial.model->record().input);
+    const Sensitivity s = sensitivity(members, *motion.paths[t], fitted[t], trial.input);
     constexpr size_t chunk = 1024;
     Eigen::MatrixXd rows(Eigen::Index(chunk * ports), n + 1);
     for (size_t start = 0; start < trial.held_out_from; start += chunk) {
@@ -96,19 +97,19 @@ Estimate evaluated(Trials& trials, std::vector<Member> members, const Noise& noi
   estimate.fitted = run_members(trials, estimate.members, motion, noise);
   estimate.mean_square = mean_square(trials, estimate.fitted);
   estimate.profile = profile(trials, estimate.fitted);
+  estimate.against_at_rest = against_at_rest(trials, estimate.members, estimate.fitted, noise);
   estimate.is_valid = std::isfinite(estimate.mean_square);
   return estimate;
 }
 
-/// On the motion that it saw itself.
+}  // namespace
+
 Estimate on_own_motion(Trials& trials, Estimate estimate) {
   Motion motion{{}, estimate.profile};
   for (Fitted& fitted : estimate.fitted)
     motion.paths.push_back(std::make_shared<const Path>(std::move(fitted.prediction.path)));
   return evaluated(trials, std::move(estimate.members), estimate.noise, motion);
 }
-
-}  // namespace
 
 Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& noise, const Motion& motion,
                      int iterations) {
@@ -141,7 +142,7 @@ void widen_by_blocks(const Trials& trials, Estimate& estimate) {
     const Trial& trial = trials.list[t];
     const Fitted& fitted = estimate.fitted[t];
     const Path& path = *estimate.motion.paths[t];
-    const Sensitivity s = sensitivity(estimate.members, path, fitted, trial.model->record().input);
+    const Sensitivity s = sensitivity(estimate.members, path, fitted, trial.input);
     const size_t block = std::max<size_t>(1, size_t(block_s / path.sample_time));
     Eigen::VectorXd sum(n), score(n);
     for (size_t start = 0; start < trial.held_out_from; start += block) {

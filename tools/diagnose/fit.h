@@ -11,6 +11,7 @@ struct Estimate {
   std::vector<Fitted> fitted;
   double mean_square = 0;      ///< of the whitened errors; 1 when model and noise are right
   double profile = 0;          ///< see profile(): smaller is better
+  double against_at_rest = 0;  ///< see against_at_rest()
   Eigen::MatrixXd covariance;  ///< of the free parameters, times max(1, mean_square)
   bool is_valid = false;
 };
@@ -20,6 +21,9 @@ struct Estimate {
 /// the place of the motion given as soon as the two may differ.
 Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& noise, const Motion& motion,
                      int iterations);
+
+/// The same on the motion that it saw itself.
+Estimate on_own_motion(Trials& trials, Estimate estimate);
 
 /// Which of its numbers the likelihood may change.
 enum class FreeNoise { with_random_walk, white_and_slow, all };

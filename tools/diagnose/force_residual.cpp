@@ -129,11 +129,11 @@ double short_horizon_error(Trials& trials, const Estimate& estimate, double hori
     AxisModel& model = *trials.list[t].model;
     const AxisRecord& record = model.record();
     const Path& path = estimate.fitted[t].prediction.path;
-    const Drives drives = drives_of(estimate.members, *estimate.motion.paths[t], record.input);
+    const Drives drives = drives_of(estimate.members, *estimate.motion.paths[t], trials.list[t].input);
     model.set_added_inertia(inertia);
     model.start(path.position[0], path.velocity[0]);
     const size_t horizon = std::max<size_t>(2, size_t(horizon_s / record.sample_time));
-    for (size_t start = 0; start + horizon < record.rows(); start += horizon) {
+    for (size_t start = 0; start + horizon < path.samples(); start += horizon) {
       if (!trials.list[t].usable[start] || !trials.list[t].usable[start + horizon]) continue;
       model.place(path.position[start], path.velocity[start]);
       for (size_t k = start; k < start + horizon; ++k) model.step(drives.input[k], -drives.force[k]);

@@ -17,7 +17,7 @@ std::vector<const Member*> chain_of(const std::vector<Member>& members) {
   std::vector<const Member*> chain;
   for (const Member& member : members)
     if (member.candidate->acts == Acts::input) chain.push_back(&member);
-  std::ranges::stable_sort(chain, {}, [](const Member* m) { return m->candidate->place_in_chain; });
+  std::ranges::stable_sort(chain, {}, [](const Member* m) { return m->candidate->stage; });
   return chain;
 }
 
@@ -112,6 +112,22 @@ void for_counted_rows(const Trials& trials, const std::vector<Fitted>& fitted, b
 
 }  // namespace
 
+void Trials::run_along(Rows rows) {
+  for (Trial& trial : list) {
+    const std::vector<double>& whole = trial.model->record().input;
+    const size_t end = rows == Rows::all ? whole.size() : trial.held_out_from;
+    trial.input.assign(whole.begin(), whole.begin() + std::ptrdiff_t(end));
+  }
+}
+
+Motion cut(const Motion& motion, const Trials& trials) {
+  Motion shorter{{}, motion.profile};
+  for (size_t t = 0; t < trials.list.size(); ++t)
+    shorter.paths.push_back(
+        std::make_shared<const Path>(motion.paths[t]->first_samples(trials.list[t].rows())));
+  return shorter;
+}
+
 std::vector<FreeParameter> free_parameters(const std::vector<Member>& members) {
   std::vector<FreeParameter> free;
   for (size_t m = 0; m < members.size(); ++m) {
@@ -163,7 +179,7 @@ std::vector<Fitted> run_members(Trials& trials, const std::vector<Member>& membe
     model.set_added_inertia(inertia);
     fitted.axis = model.linearise();
     fitted.gains = gains_of(fitted.axis, noise, model.nominal_inertia());
-    const std::vector<double>& raw = model.record().input;
+    const std::vector<double>& raw = trials.list[t].input;
     Drives drives;
     if (motion.paths.empty())
       drives = {raw, std::vector<double>(raw.size(), 0.0), {}, {}, {}};

@@ -14,8 +14,12 @@ struct Interrupted {};
 /// One record with the model that follows it.
 struct Trial {
   std::unique_ptr<AxisModel> model;
-  std::vector<char> usable;  ///< rows that count: moving for a while, past the start, not damaged
-  size_t held_out_from = 0;  ///< rows from here on are not fitted
+  std::vector<char> usable;   ///< rows that count: moving for a while, past the start, not damaged
+  std::vector<char> at_rest;  ///< rows at rest, past the start
+  size_t held_out_from = 0;   ///< rows from here on are not fitted
+  std::vector<double> input;  ///< as recorded, over the rows that a model is run along: see run_along
+
+  size_t rows() const { return input.size(); }
 };
 
 /// The records of one axis, and what is known about their noise.
@@ -23,11 +27,16 @@ struct Trials {
   std::vector<Trial> list;
   Noise noise;
   double rest_speed = 0;
-  double input_rms = 0;                                             ///< while moving
+  bool nominal_holds = false;  ///< the user's diagram has dry friction that holds the axis
+  double input_rms = 0;        ///< while moving
   double lowest_position = 0, highest_position = 0, longest_s = 0;  ///< as the first prediction saw them
   const std::atomic<bool>* interrupt =
       nullptr;  ///< once true, the next run along the records throws Interrupted
   size_t ports() const { return list.front().model->record().measured.size(); }
+
+  /// What is not fitted need not be run along while a set is searched for.
+  enum class Rows { fitted, all };
+  void run_along(Rows rows);
 };
 
 /// What the blocks of effects run on: the motion that one prediction saw. Two sets of effects can be held
@@ -37,6 +46,9 @@ struct Motion {
   double profile = std::numeric_limits<double>::infinity();  ///< of the prediction that saw it
 };
 
+/// The rows of a motion that the trials are run along; it must have as many.
+Motion cut(const Motion& motion, const Trials& trials);
+
 /// What the members make of one record.
 struct Fitted {
   LinearAxis axis;
@@ -45,7 +57,8 @@ struct Fitted {
   std::vector<double> white;  ///< whitened errors
 };
 
-/// Runs the nominal diagram with the members along each record; without members no motion is needed.
+/// Runs the nominal diagram with the members along each record, as far as the trials say; without members no
+/// motion is needed.
 std::vector<Fitted> run_members(Trials& trials, const std::vector<Member>& members, const Motion& motion,
                                 const Noise& noise);
 

@@ -8,6 +8,11 @@
 namespace loopwright::diagnosis {
 namespace {
 
+uint64_t next_identity() {
+  static std::atomic<uint64_t> last = 0;
+  return ++last;
+}
+
 /// Columns that go through the filter side by side, so that none waits for its own last sample. Vectors of
 /// the compiler, as they become wider instructions in a function that may use them: the same bits, as nothing
 /// is contracted.
@@ -148,6 +153,16 @@ void run_on_this_machine(const Filter& filter, const Path& path, Acts acts,
 
 }  // namespace
 
+Path Path::first_samples(size_t count) const {
+  Path shorter = *this;
+  shorter.identity = next_identity();
+  for (auto* list : {&shorter.position, &shorter.velocity, &shorter.acceleration, &shorter.input,
+                     &shorter.predicted_position})
+    list->resize(count);
+  shorter.rests.resize(count);
+  return shorter;
+}
+
 std::vector<const Column*> pointers(const Columns& columns) {
   std::vector<const Column*> list;
   for (const Column& column : columns) list.push_back(&column);
@@ -187,13 +202,12 @@ std::vector<std::vector<double>> responses(const LinearAxis& axis, const Gains& 
 Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains, const Drives& drives,
                    double rest_speed) {
   const AxisRecord& record = model.record();
-  const size_t rows = record.rows(), ports = record.measured.size();
+  const size_t rows = drives.input.size(), ports = record.measured.size();
   const std::span<const int> states = model.states();
   Prediction result;
   result.error.resize(rows * ports), result.slow.resize(rows);
   Path& path = result.path;
-  static std::atomic<uint64_t> paths = 0;
-  path.identity = ++paths, path.sample_time = record.sample_time, path.rest_speed = rest_speed;
+  path.identity = next_identity(), path.sample_time = record.sample_time, path.rest_speed = rest_speed;
   for (auto* list : {&path.position, &path.velocity, &path.acceleration}) list->resize(rows);
   path.input = drives.input;
   path.predicted_position.resize(rows), path.rests.resize(rows);

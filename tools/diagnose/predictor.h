@@ -30,6 +30,8 @@ struct Path {
   std::vector<char> rests;                 ///< slower than `rest_speed`
   double rest_speed = 0;
   size_t samples() const { return rests.size(); }
+  /// Another path, as far as the first has been followed.
+  Path first_samples(size_t count) const;
 };
 
 struct Prediction {
@@ -38,7 +40,8 @@ struct Prediction {
   Path path;
 };
 
-/// Steps the diagram along the record: correct with what was measured, predict the next sample.
+/// Steps the diagram along the record, as far as the drives go: correct with what was measured, predict the
+/// next sample.
 Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains, const Drives& drives,
                    double rest_speed);
 

@@ -49,15 +49,16 @@ Noise first_guess(const Trials& trials) {
   return noise;
 }
 
-/// Rows while moving, some time after the last rest.
+/// Rows while moving, some time after the last rest; and rows at rest.
 void mark_usable(Trial& trial, const Path& path) {
   const size_t rows = path.samples();
-  trial.usable.assign(rows, 1);
+  trial.usable.assign(rows, 1), trial.at_rest.assign(rows, 0);
   int since_rest = memory_of_rest;
   const int start = int(std::ceil(settling_s / path.sample_time));
   for (size_t k = 0; k < rows; ++k) {
     since_rest = path.rests[k] ? 0 : since_rest + 1;
     trial.usable[k] = since_rest > memory_of_rest && int(k) >= start;
+    trial.at_rest[k] = path.rests[k] && int(k) >= start;
   }
 }
 
@@ -79,9 +80,11 @@ Trials prepare(const std::string& diagram, const std::vector<std::string>& exper
     for (double u : record.input) square += u * u, ++n;
     trials.list.push_back(std::move(trial));
   }
+  trials.run_along(Trials::Rows::all);
   trials.rest_speed = 0.005 * quantile(speed, 0.99);
   trials.input_rms = std::sqrt(square / double(std::max<size_t>(n, 1)));
   trials.noise = first_guess(trials);
+  trials.nominal_holds = trials.list.front().model->holds_at_rest(1e-3 * trials.input_rms);
   std::vector<Fitted> nominal = run_members(trials, {}, {}, trials.noise);
   for (size_t t = 0; t < trials.list.size(); ++t) mark_usable(trials.list[t], nominal[t].prediction.path);
   trials.noise = fit_noise(trials, nominal, trials.noise, FreeNoise::with_random_walk);

@@ -340,7 +340,8 @@ double criterion(const Trials& trials, const Estimate& estimate, size_t catalogu
   const double n = double(fitted_numbers(trials));
   size_t parameters = 0;
   for (const Member& member : estimate.members) parameters += parameters_of(*member.candidate);
-  return profile(trials, estimate.fitted) + price(parameters, estimate.members.size(), n, catalogue);
+  return estimate.profile + estimate.against_at_rest +
+         price(parameters, estimate.members.size(), n, catalogue);
 }
 
 SearchResult search(Trials& trials, const std::vector<Candidate>& candidates,

@@ -44,7 +44,8 @@ Variable direction_of(double transition_distance) {
 Candidate spline(std::string variables, size_t levels, double low, double high, Variable variable,
                  Variable factor) {
   Candidate candidate;
-  candidate.name = "unknown", candidate.form = std::move(variables), candidate.is_unknown = true;
+  candidate.name = "unknown", candidate.form = std::move(variables), candidate.is_unknown = true,
+  candidate.at_rest = AtRest::gives;
   for (size_t i = 0; i < levels; ++i) candidate.linear.push_back({"level", "", -1e300, 1e300, false, {}});
   candidate.columns_at = [=](const Path& path, const std::vector<std::vector<double>>& shapes) {
     std::vector<std::vector<float>> values(levels, std::vector<float>(path.samples()));
@@ -76,7 +77,8 @@ Candidate mass_along(Candidate candidate) {
 
 Candidate tone(const RecordSizes& sizes) {
   Candidate candidate;
-  candidate.name = "unknown", candidate.form = "time", candidate.is_unknown = true;
+  candidate.name = "unknown", candidate.form = "time", candidate.is_unknown = true,
+  candidate.at_rest = AtRest::gives;
   candidate.is_periodic = candidate.repeats_in_time = true;
   candidate.linear = {{"sine", "", -1e300, 1e300, false, {}}, {"cosine", "", -1e300, 1e300, false, {}}};
   const double shortest = 10 * sizes.sample_time, longest = sizes.duration / 4;

@@ -27,7 +27,8 @@ void add_variables(std::vector<std::string>& list, std::string_view joined) {
 
 }  // namespace
 
-void judge(Trials& trials, const Conclusion& conclusion, const Noise& tight, Diagnosis& diagnosis) {
+void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, const Noise& tight,
+           Diagnosis& diagnosis) {
   const Estimate& e = conclusion.estimate;
   for (const Member& member : e.members)
     if (member.candidate->is_unknown) add_variables(diagnosis.remainder_variables, member.candidate->form);
@@ -37,7 +38,7 @@ void judge(Trials& trials, const Conclusion& conclusion, const Noise& tight, Dia
     std::vector<Member> named;
     std::ranges::copy_if(e.members, std::back_inserter(named),
                          [](const Member& m) { return !m.candidate->is_unknown; });
-    const Estimate seen = fit_members(trials, named, tight, e.motion, 0);
+    const Estimate seen = fit_members(trials, named, tight, motion, 0);
     diagnosis.dependence = dependence_of(trials, seen.fitted);
     if (!has_unknown && !diagnosis.dependence.empty() && diagnosis.dependence.front().share > 0.05)
       add_variables(diagnosis.remainder_variables, diagnosis.dependence.front().variable);

@@ -10,9 +10,10 @@ namespace loopwright::diagnosis {
 /// What is wrong with the records, or missing in them, and what it costs.
 std::vector<RecordFinding> look_at_records(const Trials& trials, const std::vector<InverseDynamics>& inverse);
 
-/// Verdict, remainder and its variables. `tight` is the noise of the search: with the final one the slow
-/// force has taken over what is left.
-void judge(Trials& trials, const Conclusion& conclusion, const Noise& tight, Diagnosis& diagnosis);
+/// Verdict, remainder and its variables, the latter along `motion`. `tight` is the noise of the search: with
+/// the final one the slow force has taken over what is left.
+void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, const Noise& tight,
+           Diagnosis& diagnosis);
 
 /// The experiment of the catalogue that tells the two apart.
 SuggestedExperiment separating_experiment(const Effect& effect, const std::string& other);

@@ -61,7 +61,11 @@ struct EffectParameter {
 /// Where an effect acts on the machine.
 struct Attachment {
   enum class To { force, input, sensor, parameter };
+  /// Where on the way from command to force: on its way to the amplifier, in the amplifier's current loop, in
+  /// the iron that saturates, in the field of the magnets.
+  enum class Stage { command, amplifier, iron, magnets };
   To to = To::force;
+  Stage stage = Stage::magnets;  ///< to the input
   std::string from;  ///< "friction.force": what is subtracted in the sum of forces, or takes the place of the
                      ///< input or of the measured position
   std::vector<std::string> targets;  ///< to a parameter: "Mass.mass", the first that the machine has
@@ -69,6 +73,10 @@ struct Attachment {
   bool is_optional = false;          ///< to a parameter: a machine without it is left as it is
   Place place;
 };
+
+/// Whether an axis with the effect stays where it is against a force: not at all, by as much as it can hold,
+/// or with a give that noise would be seen to move.
+enum class AtRest { free, holds, gives };
 
 /// What a record must contain for the effect to be found in it. 0 and 1 ask for nothing.
 struct Excitation {
@@ -110,7 +118,8 @@ struct Effect {
   Excitation needs;
   std::vector<ConfusableEffect> confusable;
   bool is_repeatable = false;  ///< may be there more than once, with other parameters
-  Value blocks;                ///< as written
+  AtRest at_rest = AtRest::free;
+  Value blocks;  ///< as written
 
   const EffectParameter* find(std::string_view parameter) const;
 };

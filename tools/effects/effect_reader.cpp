@@ -77,6 +77,20 @@ class FormReader {
     return found;
   }
 
+  /// One word of a list; false, and a problem, if it is none of them.
+  template <class Meaning>
+  bool read_word(const Value& item, const char* key, std::string_view what, const char* problem,
+                 const std::vector<std::pair<std::string, Meaning>>& known, Meaning& meaning) {
+    const std::string word = text(item, key, what);
+    const auto found = std::ranges::find(known, word, [](const auto& k) { return k.first; });
+    if (found != known.end()) return meaning = found->second, true;
+    if (!item.find(key)) return false;
+    KnownNames names;
+    for (const auto& [name, unused] : known) names.add(name);
+    names.explain(reader_.error(*item.find(key), problem), word);
+    return false;
+  }
+
   void read_words() {
     effect_.name = text(file_, "effect", "the file");
     effect_.title = text(file_, "title", "the effect");
@@ -86,6 +100,10 @@ class FormReader {
       text(file_, "physics", "the effect");
     if (const auto* list = member("equivalents")) effect_.equivalents = texts(list->value, "\"equivalents\"");
     effect_.is_repeatable = flag(file_, "repeatable");
+    if (const Value& owner = form_ && form_->find("at_rest") ? *form_ : file_; owner.find("at_rest"))
+      read_word(owner, "at_rest", "the effect", "an axis at rest is not so",
+                {{"free", AtRest::free}, {"holds", AtRest::holds}, {"gives", AtRest::gives}},
+                effect_.at_rest);
   }
 
   // ---- Parameters ----
@@ -252,21 +270,23 @@ class FormReader {
   }
   void read_attachment(const Value& item) {
     using To = Attachment::To;
-    reader_.reject_unknown(item, {"to", "from", "parameter", "add", "optional"}, "an attachment");
+    using Stage = Attachment::Stage;
+    reader_.reject_unknown(item, {"to", "from", "stage", "parameter", "add", "optional"}, "an attachment");
     Attachment attachment;
     attachment.place = item.place;
     attachment.from = text(item, "from", "the attachment");
-    const std::vector<std::pair<std::string, To>> known = {
-        {"force", To::force}, {"input", To::input}, {"sensor", To::sensor}, {"parameter", To::parameter}};
-    const std::string to = text(item, "to", "the attachment");
-    const auto found = std::ranges::find(known, to, [](const auto& k) { return k.first; });
-    if (found == known.end()) {
-      if (item.find("to"))
-        KnownNames({"force", "input", "sensor", "parameter"})
-            .explain(reader_.error(*item.find("to"), "an effect cannot be attached there"), to);
-      return;
-    }
-    attachment.to = found->second;
+    const bool is_known = read_word(
+        item, "to", "the attachment", "an effect cannot be attached there",
+        {{"force", To::force}, {"input", To::input}, {"sensor", To::sensor}, {"parameter", To::parameter}},
+        attachment.to);
+    if (!is_known) return;
+    if (item.find("stage"))
+      read_word(item, "stage", "the attachment", "the way of the input has no such stage",
+                {{"command", Stage::command},
+                 {"amplifier", Stage::amplifier},
+                 {"iron", Stage::iron},
+                 {"magnets", Stage::magnets}},
+                attachment.stage);
     check_source(item, attachment.from);
     if (attachment.to == To::parameter) {
       if (const auto* targets = item.find("parameter"))
@@ -356,34 +376,6 @@ class FormReader {
   Effect effect_;
 };
 
-std::vector<std::string> effect_files(const std::string& folder, Problems& problems) {
-  std::vector<std::string> files;
-  std::error_code code;
-  if (!fs::is_directory(folder, code)) {
-    problems.error({}, "", "", fmt::format("the folder of effects \"{}\" is not there", folder)).hint =
-        "the environment variable LOOPWRIGHT_EFFECTS may name it";
-    return files;
-  }
-  for (const auto& entry : fs::directory_iterator(folder, code))
-    if (entry.path().extension() == ".json") files.push_back(entry.path().string());
-  std::ranges::sort(files);
-  return files;
-}
-
-/// Effects name each other; a name that is not there is a slip of the pen.
-void check_names(const std::vector<Effect>& effects, Problems& problems) {
-  std::vector<std::string> names;
-  for (const Effect& effect : effects) names.push_back(effect.name);
-  for (const Effect& effect : effects)
-    for (const ConfusableEffect& other : effect.confusable)
-      if (std::ranges::find(names, other.with) == names.end()) {
-        auto& p = problems.error(
-            effect.blocks.place, "/confusable", "",
-            fmt::format("\"{}\" is confusable with \"{}\", which is no effect", effect.name, other.with));
-        KnownNames(names).explain(p, other.with);
-      }
-}
-
 }  // namespace
 
 std::vector<Effect> load_effect(const std::string& path, Problems& problems) {
@@ -395,7 +387,7 @@ std::vector<Effect> load_effect(const std::string& path, Problems& problems) {
   if (!own.has_errors() && reader.expect(file, Kind::object, "an effect", "an object in braces")) {
     reader.reject_unknown(file,
                           {"loopwright", "effect", "title", "physics", "parameters", "blocks", "attach",
-                           "equivalents", "needs", "confusable", "repeatable", "forms"},
+                           "equivalents", "needs", "confusable", "repeatable", "at_rest", "forms"},
                           "an effect");
     const Value::Member* version = file.find("loopwright");
     if (!version || version->value.kind != Kind::number || version->value.number != 1)
@@ -407,7 +399,8 @@ std::vector<Effect> load_effect(const std::string& path, Problems& problems) {
       for (const Value::Member& form : forms->value.members) {
         if (!reader.expect(form.value, Kind::object, "a form", "an object")) continue;
         reader.reject_unknown(
-            form.value, {"physics", "parameters", "blocks", "attach", "equivalents", "needs", "confusable"},
+            form.value,
+            {"physics", "parameters", "blocks", "attach", "equivalents", "needs", "confusable", "at_rest"},
             "a form of an effect");
         effects.push_back(FormReader(file, &form.value, own).read());
         effects.back().form = form.name;
@@ -422,20 +415,6 @@ std::vector<Effect> load_effect(const std::string& path, Problems& problems) {
   for (const Problem& problem : own.list()) problems.add(problem);
   if (own.has_errors()) effects.clear();
   return effects;
-}
-
-std::vector<Effect> load_catalogue(const std::vector<std::string>& folders, Problems& problems) {
-  std::vector<Effect> catalogue;
-  for (const std::string& folder : folders)
-    for (const std::string& file : effect_files(folder, problems)) {
-      std::vector<Effect> effects = load_effect(file, problems);
-      if (effects.empty()) continue;
-      std::erase_if(catalogue, [&](const Effect& e) { return e.name == effects.front().name; });
-      std::ranges::move(effects, std::back_inserter(catalogue));
-    }
-  std::ranges::stable_sort(catalogue, {}, [](const Effect& e) { return e.name; });
-  if (!problems.has_errors()) check_names(catalogue, problems);
-  return catalogue;
 }
 
 }  // namespace loopwright

@@ -70,18 +70,6 @@ TEST(Diagnose, AForceThatNoEffectExplainsGetsNoNameButItsVariable) {
   EXPECT_THAT(d.remainder_variables, ElementsAre("position"));
 }
 
-TEST(Diagnose, TwoDirectionsAreAskedForWhereThereIsOne) {
-  Truth truth;
-  truth.returns = false, truth.duration_s = 8;
-  truth.force = [](double, double v, double) { return 0.12 * sign(v); };
-  const Diagnosis d = diagnosis_of(RecordedAxis(truth));
-  ASSERT_FALSE(d.findings.empty());
-  EXPECT_EQ(d.findings[0].what, "all motion goes one way");
-  ASSERT_EQ(d.effects.size(), 1u) << to_text(d);
-  EXPECT_THAT(to_text(d), HasSubstr("these two cannot be told apart by this record"));
-  EXPECT_FALSE(d.suggested.empty());
-}
-
 TEST(Diagnose, JsonHasTheKeysThatOthersReadAndTheTextSaysTheSame) {
   Truth truth;
   truth.damping = 5;

@@ -54,6 +54,30 @@ inline WantedMotion there_and_back(double way, double top_speed) {
   return motion;
 }
 
+/// Several speeds in one direction (1 or -1), with a rest after each.
+inline WantedMotion one_way(double direction) {
+  WantedMotion motion;
+  motion.rest(0.2);
+  for (double speed : {0.2, 0.4, 0.1, 0.3}) motion.stroke(direction * 0.15, speed, 0.1).rest(0.2);
+  return motion;
+}
+
+/// The same speeds from the first sample to the last: nowhere would friction hold.
+inline WantedMotion one_way_without_rest(double direction) {
+  WantedMotion motion;
+  constexpr double ramp_s = 0.1, cruise_s = 0.5, end_s = 3 * (ramp_s + cruise_s) + cruise_s;
+  const double speeds[] = {0.2, 0.4, 0.1, 0.3, 0.3};
+  motion.initial_speed = direction * speeds[0];
+  for (double t = 0; t < end_s; t += hidden_sample_time) {
+    const size_t i = size_t(t / (ramp_s + cruise_s));
+    const double into_ramp = std::clamp((t - double(i) * (ramp_s + cruise_s) - cruise_s) / ramp_s, 0.0, 1.0);
+    const double risen = 0.5 - 0.5 * std::cos(std::numbers::pi * into_ramp);
+    const double speed = direction * (speeds[i] + risen * (speeds[i + 1] - speeds[i]));
+    motion.position.push_back(motion.position.back() + speed * hidden_sample_time);
+  }
+  return motion;
+}
+
 /// What the diagram says of the axis, and with what noise it is measured.
 struct HiddenMachine {
   double mass = 0.2621, damping = 3;

@@ -10,19 +10,12 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Not;
 
-WantedMotion one_way(double direction) {
-  WantedMotion motion;
-  motion.rest(0.2);
-  for (double speed : {0.2, 0.4, 0.1, 0.3}) motion.stroke(direction * 0.15, speed, 0.1).rest(0.2);
-  return motion;
-}
-
 TEST(SeveralRecords, OneForwardAndOneBackwardNameCoulombFriction) {
   HiddenAxis axis;
   Physics truth = axis.nominal();
   truth.coulomb_n = 0.15;
-  const std::string forward = axis.record("forward", truth, one_way(1));
-  const std::string backward = axis.record("backward", truth, one_way(-1));
+  const std::string forward = axis.record("forward", truth, one_way_without_rest(1));
+  const std::string backward = axis.record("backward", truth, one_way_without_rest(-1));
   for (const std::string& alone : {forward, backward}) {
     const Diagnosis d = diagnose(axis.diagram(), {alone});
     ASSERT_EQ(d.effects.size(), 1u) << to_text(d);

@@ -11,6 +11,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 /// The motion that the catalogue means by a suggestion, in sizes of the record.
 WantedMotion suggested_motion(const SuggestedExperiment& suggestion, const WantedMotion& record,
@@ -67,40 +68,58 @@ void expect_told_apart(HiddenAxis& axis, const Physics& truth, const WantedMotio
   EXPECT_THAT(after.effects.front().alternatives, IsEmpty()) << to_text(after);
 }
 
-/// Several speeds, but forward alone.
-WantedMotion forward() {
-  WantedMotion motion;
-  motion.rest(0.2);
-  for (double speed : {0.2, 0.4, 0.1, 0.3}) motion.stroke(0.15, speed, 0.1).rest(0.2);
-  return motion;
+TEST(SuggestedExperiment, TwoDirectionsAreAskedForWhereThereIsOne) {
+  HiddenAxis axis;
+  Physics truth = axis.nominal();
+  truth.coulomb_n = 0.12;
+  const Diagnosis d = diagnose(axis.diagram(), {axis.record("forward", truth, one_way_without_rest(1))});
+  ASSERT_FALSE(d.findings.empty());
+  EXPECT_EQ(d.findings[0].what, "all motion goes one way");
+  ASSERT_EQ(d.effects.size(), 1u) << to_text(d);
+  EXPECT_THAT(to_text(d), HasSubstr("these two cannot be told apart by this record"));
+  EXPECT_FALSE(d.suggested.empty());
 }
 
 TEST(SuggestedExperiment, TellsCoulombFrictionFromAConstantForce) {
   HiddenAxis axis;
   Physics truth = axis.nominal();
   truth.coulomb_n = 0.15;
-  expect_told_apart(axis, truth, forward(), "coulomb_friction", "constant_force");
+  expect_told_apart(axis, truth, one_way_without_rest(1), "coulomb_friction", "constant_force");
+}
+
+TEST(AtRest, FrictionHoldsAndAConstantForceDoesNotThoughAllMotionGoesOneWay) {
+  HiddenAxis axis;
+  Physics friction = axis.nominal(), force = axis.nominal();
+  friction.coulomb_n = 0.15, force.offset_n = 0.15;
+  const Diagnosis with_friction = diagnose(axis.diagram(), {axis.record("friction", friction, one_way(1))});
+  EXPECT_THAT(names(with_friction), ElementsAre("coulomb_friction"));
+  ASSERT_FALSE(with_friction.effects.empty());
+  EXPECT_THAT(with_friction.effects[0].alternatives, Not(testing::Contains("constant_force")));
+  const Diagnosis with_force = diagnose(axis.diagram(), {axis.record("force", force, one_way(1))});
+  EXPECT_THAT(names(with_force), ElementsAre("constant_force"));
+  ASSERT_FALSE(with_force.effects.empty());
+  EXPECT_THAT(with_force.effects[0].alternatives, Not(testing::Contains("coulomb_friction")));
 }
 
 TEST(SuggestedExperiment, TellsAConstantForceFromCoulombFriction) {
   HiddenAxis axis;
   Physics truth = axis.nominal();
   truth.offset_n = 0.15;
-  expect_told_apart(axis, truth, forward(), "constant_force", "coulomb_friction");
+  expect_told_apart(axis, truth, one_way_without_rest(1), "constant_force", "coulomb_friction");
 }
 
 TEST(SuggestedExperiment, TellsDampingFromFrictionThatDiffersWithTheDirection) {
   HiddenAxis axis;
   Physics truth = axis.nominal();
   truth.added_damping_n_s_per_m = 1.2;
-  expect_told_apart(axis, truth, forward(), "viscous_friction", "direction_dependent_friction");
+  expect_told_apart(axis, truth, one_way(1), "viscous_friction", "direction_dependent_friction");
 }
 
 TEST(SuggestedExperiment, TellsFrictionThatDiffersWithTheDirectionFromDamping) {
   HiddenAxis axis;
   Physics truth = axis.nominal();
   truth.direction_damping_n_s_per_m = 1.2;
-  expect_told_apart(axis, truth, forward(), "direction_dependent_friction", "viscous_friction");
+  expect_told_apart(axis, truth, one_way(1), "direction_dependent_friction", "viscous_friction");
 }
 
 /// Without a controller and below 3 Hz the command is so smooth that a delay and a lag of 3 ms differ by

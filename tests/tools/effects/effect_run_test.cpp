@@ -201,7 +201,8 @@ TEST(EffectFile, EveryMistakeIsToldAtItsPlace) {
     "width": {"unit": "$position", "range": [2, 1], "start": 1}
   },
   "blocks": {"drag": {"type": "QuadraticDrag", "drag": "=level", "in": {"velocity": "velocty"}}},
-  "attach": [{"to": "forse", "from": "drag.force"}, {"to": "force", "from": "darg.force"}],
+  "attach": [{"to": "forse", "from": "drag.force"}, {"to": "force", "from": "darg.force"},
+             {"to": "input", "stage": "comand", "from": "drag.force"}],
   "needs": {"text": "", "direction": 2},
   "extra": 1
 })");
@@ -211,7 +212,7 @@ TEST(EffectFile, EveryMistakeIsToldAtItsPlace) {
   for (const char* part : {"4:62: error: the expression has another unit", "there is no size \"top_sped\"",
                            "did you mean \"top_speed\"?", "the range is empty", "did you mean \"velocity\"?",
                            "did you mean \"force\"?", "did you mean \"drag\"?",
-                           "did you mean \"directions\"?", "/extra", "8 errors"})
+                           "did you mean \"directions\"?", "did you mean \"command\"?", "/extra", "9 errors"})
     EXPECT_TRUE(has(text, part)) << part << "\n" << text;
 }
 

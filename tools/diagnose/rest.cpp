@@ -1,0 +1,82 @@
+#include "tools/diagnose/rest.h"
+#include <algorithm>
+#include <cmath>
+
+namespace loopwright::diagnosis {
+namespace {
+
+constexpr double worse_at_rest = 4;    // than in motion: whatever the set does not explain is there too
+constexpr double least_freedom = 0.4;  // of what noise makes of a free axis; the controller takes some of it
+constexpr double most_freedom = 3;     // more is motion
+constexpr size_t apart = 6;            // samples: enough to swerve, too few for the controller to correct all
+
+AtRest at_rest(const std::vector<Member>& members) {
+  AtRest result = AtRest::free;
+  for (const Member& member : members) {
+    if (member.candidate->at_rest == AtRest::gives) return AtRest::gives;
+    if (member.candidate->at_rest == AtRest::holds) result = AtRest::holds;
+  }
+  return result;
+}
+
+/// Something held what the members let go.
+double against_free(const Trials& trials, const std::vector<Fitted>& fitted) {
+  double sum = 0, count = 0;
+  const size_t ports = trials.ports();
+  for (size_t t = 0; t < trials.list.size(); ++t)
+    for (size_t k = 0; k < trials.list[t].held_out_from; ++k)
+      for (size_t p = 0; p < ports && trials.list[t].at_rest[k]; ++p)
+        sum += std::pow(fitted[t].white[k * ports + p], 2), count += 1;
+  const double in_motion = mean_square(trials, fitted);
+  return count > 0 ? count * std::log(std::max(1.0, sum / count / (worse_at_rest * in_motion))) : 0;
+}
+
+/// Squares of how much farther the axis at rest moved in some samples than in as many before: a creep at one
+/// speed is none of it.
+std::vector<double> swerves_at_rest(const Trials& trials) {
+  std::vector<double> squares;
+  for (const Trial& trial : trials.list) {
+    const MeasuredPort* position = trial.model->record().find("position");
+    size_t resting = 0;
+    for (size_t k = 0; position && k < trial.held_out_from; ++k) {
+      resting = trial.at_rest[k] ? resting + 1 : 0;
+      const double* x = position->value.data() + k;
+      if (resting > 2 * apart) squares.push_back(std::pow(*x - 2 * *(x - apart) + *(x - 2 * apart), 2));
+    }
+  }
+  return squares;
+}
+
+/// The axis moves as if nothing held it.
+double against_held(const Trials& trials, const Noise& noise) {
+  constexpr double median_of_normal = 0.455;  // of the square, over its mean
+  std::vector<double> squares = swerves_at_rest(trials);
+  if (squares.empty()) return 0;
+  // The median: what is held slips now and then.
+  const auto middle = squares.begin() + std::ptrdiff_t(squares.size() / 2);
+  std::ranges::nth_element(squares, middle);
+  const AxisModel& model = *trials.list.front().model;
+  const double T = model.record().sample_time, kick = noise.white / model.nominal_inertia() * T * T;
+  const double sensor = 6 * noise.measurement[0] * noise.measurement[0];
+  const double free = kick * kick * 2 * std::pow(double(apart), 3) / 3,
+               seen = *middle / median_of_normal - sensor;
+  if (seen < least_freedom * free || seen > most_freedom * free || seen < sensor) return 0;
+  return double(squares.size()) / double(2 * apart) * std::log1p(seen / sensor);
+}
+
+}  // namespace
+
+double against_at_rest(const Trials& trials, const std::vector<Member>& members,
+                       const std::vector<Fitted>& fitted, const Noise& noise) {
+  if (trials.nominal_holds) return 0;
+  switch (at_rest(members)) {
+    case AtRest::free:
+      return against_free(trials, fitted);
+    case AtRest::holds:
+      return against_held(trials, noise);
+    default:
+      return 0;
+  }
+}
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,56 @@
+#include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
+#include "engine/diagram/reader.h"
+#include "tools/effects/effect.h"
+
+namespace loopwright {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> effect_files(const std::string& folder, Problems& problems) {
+  std::vector<std::string> files;
+  std::error_code code;
+  if (!fs::is_directory(folder, code)) {
+    problems.error({}, "", "", fmt::format("the folder of effects \"{}\" is not there", folder)).hint =
+        "the environment variable LOOPWRIGHT_EFFECTS may name it";
+    return files;
+  }
+  for (const auto& entry : fs::directory_iterator(folder, code))
+    if (entry.path().extension() == ".json") files.push_back(entry.path().string());
+  std::ranges::sort(files);
+  return files;
+}
+
+/// Effects name each other; a name that is not there is a slip of the pen.
+void check_names(const std::vector<Effect>& effects, Problems& problems) {
+  std::vector<std::string> names;
+  for (const Effect& effect : effects) names.push_back(effect.name);
+  for (const Effect& effect : effects)
+    for (const ConfusableEffect& other : effect.confusable)
+      if (std::ranges::find(names, other.with) == names.end()) {
+        auto& p = problems.error(
+            effect.blocks.place, "/confusable", "",
+            fmt::format("\"{}\" is confusable with \"{}\", which is no effect", effect.name, other.with));
+        KnownNames(names).explain(p, other.with);
+      }
+}
+
+}  // namespace
+
+std::vector<Effect> load_catalogue(const std::vector<std::string>& folders, Problems& problems) {
+  std::vector<Effect> catalogue;
+  for (const std::string& folder : folders)
+    for (const std::string& file : effect_files(folder, problems)) {
+      std::vector<Effect> effects = load_effect(file, problems);
+      if (effects.empty()) continue;
+      std::erase_if(catalogue, [&](const Effect& e) { return e.name == effects.front().name; });
+      std::ranges::move(effects, std::back_inserter(catalogue));
+    }
+  std::ranges::stable_sort(catalogue, {}, [](const Effect& e) { return e.name; });
+  if (!problems.has_errors()) check_names(catalogue, problems);
+  return catalogue;
+}
+
+}  // namespace loopwright
