@@ -104,12 +104,13 @@ struct Diagram {
       files;  ///< outermost diagram: every diagram file that was read, in order of reading
 };
 
-/// Replaces what feeds an input port by the output "value" of a new block of type RecordedColumn at the top.
+/// Replaces what feeds an input port by the output of a new block at the top.
 struct Drive {
   /// "axis.force", also nested, "stage.mass.force"; "command.terms[1]" for one wire of a list;
   /// "force" for an input of the outermost diagram.
   std::string port;
   Value settings;  ///< object: the settings of the new block
+  std::string type = "RecordedColumn", output = "value";
 };
 
 struct LoadOptions {

@@ -32,9 +32,9 @@ class Driver {
         column.name, [](char c) { return c == '.' || c == '[' || c == ']'; }, '_');
     column.name = unused_name("recorded_" + column.name, top.blocks);
     column.place = column.type_place = drive_.settings.place;
-    column.type = "RecordedColumn";
+    column.type = drive_.type;
     column.settings = drive_.settings;
-    const Wire wire = wire_from(column.name + ".value");
+    const Wire wire = wire_from(column.name + "." + drive_.output);
 
     const std::vector<std::string> path = split_path(drive_.port);
     const bool is_led =

@@ -215,7 +215,8 @@ Comparison compare(const std::string& diagram_path, const std::string& experimen
                    const LoadOptions& options, const RunOptions& run_options) {
   Problems problems;
   const auto experiment = load_experiment(experiment_path, problems);
-  if (!experiment) {
+  if (experiment) reject_map(*experiment, problems);
+  if (!experiment || problems.has_errors()) {
     if (const auto diagram = load_diagram(diagram_path, options, problems))
       compile(*diagram, problems);  // its problems too
     throw InputError(std::move(problems));

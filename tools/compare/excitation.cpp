@@ -210,8 +210,9 @@ std::vector<RecordFault> faults_of(const Machine& machine, const ForceResidual& 
     faults.push_back({"too_short", fmt::format("the machine moves for {:.2g} s in all", moving),
                       "shares and noise floor are rough; no effect should be named from this record", true});
   if (c.directions < 2)
-    faults.push_back({"one_direction", "all motion goes one way",
-                      "while it moves, Coulomb friction, a constant force and direction-dependent friction look alike"});
+    faults.push_back(
+        {"one_direction", "all motion goes one way",
+         "while it moves, Coulomb friction, a constant force and direction-dependent friction look alike"});
   if (c.speeds < 2)
     faults.push_back({"one_speed", "nearly all motion is at one speed",
                       "friction of any kind, drag and periodic errors of force or encoder look alike"});

@@ -4,6 +4,7 @@
 #include "engine/diagram/json.h"
 #include "engine/diagram/reader.h"
 #include "engine/record/recording_file.h"
+#include "tools/compare/balances.h"
 #include "tools/compare/data_file.h"
 
 namespace loopwright {
@@ -22,16 +23,20 @@ class Loader {
     if (problems_.has_errors() ||
         !reader_.expect(file, Value::Kind::object, "an experiment", "an object in braces"))
       return nullptr;
-    reader_.reject_unknown(
-        file, {"loopwright", "title", "description", "data", "time", "drive", "compare", "roles", "hold_out"},
-        "an experiment");
+    reader_.reject_unknown(file,
+                           {"loopwright", "title", "description", "data", "time", "drive", "compare", "roles",
+                            "hold_out", "rows"},
+                           "an experiment");
     check_version(file);
     result_->title = reader_.text(file, "title");
     read_signals(file, "drive", result_->drives);
     read_signals(file, "compare", result_->compared);
     read_roles(file);
     read_hold_out(file);
+    read_kind_of_rows(file);
     read_data(file);
+    if (problems_.has_errors()) return nullptr;
+    if (result_->is_map) gather_balances(*result_, problems_);
     if (problems_.has_errors()) return nullptr;
     return result_;
   }
@@ -122,6 +127,16 @@ class Loader {
     result_->hold_out_fraction = number(hold_out->value, "fraction", 0, 0, 0.9);
   }
 
+  void read_kind_of_rows(const Value& file) {
+    const Value::Member* rows = file.find("rows");
+    if (!rows) return;
+    const std::string text = reader_.text(file, "rows");
+    result_->is_map = text == "balances", result_->map_place = rows->place;
+    if (text == "balances" || text == "samples") return;
+    reader_.error(*rows, "rows of such a kind are not known").expected =
+        "\"samples\" in time, or \"balances\": places where the axis stood still";
+  }
+
   void read_data(const Value& file) {
     const std::string name = reader_.text(file, "data");
     const Value::Member* member = file.find("data");
@@ -144,7 +159,9 @@ class Loader {
     result_->time_column = file.find("time") ? reader_.text(file, "time") : data.columns.front().name;
     const Column* time = column(data, result_->time_column,
                                 file.find("time") ? file.find("time")->place : member->place, "/time");
-    if (time) {
+    if (time && result_->is_map) {
+      result_->data.columns.push_back({"time", "s", time->values});
+    } else if (time) {
       result_->time = check_time(*time, problems_, {}, member->place);
       check_start(*time, *member);
       result_->data.columns.push_back({"time", "s", time->values});
@@ -205,14 +222,29 @@ std::shared_ptr<const Experiment> load_experiment(const std::string& path, Probl
   return Loader(path, problems).run();
 }
 
+void reject_map(const Experiment& experiment, Problems& problems) {
+  if (!experiment.is_map) return;
+  auto& p = problems.error(experiment.map_place, "/rows", "",
+                           "a map of balances has no time that a run could follow");
+  p.expected = "\"rows\": \"samples\"";
+  p.hint = "`loopwright diagnose` reads maps";
+}
+
 LoadOptions follow(const Experiment& experiment, LoadOptions options) {
   for (size_t i = 0; i < experiment.drives.size(); ++i) {
     const RecordedSignal& signal = experiment.drives[i];
-    Drive drive{signal.port, {}};
+    Drive drive;
+    drive.port = signal.port;
     drive.settings.kind = Value::Kind::object;
     const auto add = [&](std::string name, std::string text) {
       drive.settings.members.push_back({std::move(name), signal.place, text_value(std::move(text))});
     };
+    if (experiment.is_map) {  // what balances is set row by row
+      drive.type = "ExternalSignal", drive.output = "y";
+      drive.settings.place = signal.place;
+      options.drives.push_back(std::move(drive));
+      continue;
+    }
     add("file", experiment.data_path);
     add("column", signal.column);
     add("time", experiment.time_column);

@@ -34,11 +34,17 @@ struct Experiment {
   std::vector<bool> drive_is_linear;  ///< joined by straight lines; else held
   Roles roles;
   double hold_out_fraction = 0;  ///< of the rows, at the end, kept out of any fit
+  /// Every row is a place where the axis stood in balance, a map of holding forces: see gather_balances.
+  bool is_map = false;
+  Place map_place;
 };
 
 /// Reads the experiment and its data. Data files are looked for beside the experiment, then below
 /// $LOOPWRIGHT_DATA. Null when there are errors.
 std::shared_ptr<const Experiment> load_experiment(const std::string& path, Problems& problems);
+
+/// A problem when the experiment is a map of balances, which no run in time can follow.
+void reject_map(const Experiment& experiment, Problems& problems);
 
 /// Load options that make a diagram follow the experiment: its drives, and the run's stop and rows.
 LoadOptions follow(const Experiment& experiment, LoadOptions options);

@@ -116,7 +116,7 @@ AxisModel::AxisModel(const std::string& path, const std::string& experiment_path
   inertia_parameter_ = inertia_parameter(*plan_, *run_, force_);
   if (!inertia_parameter_.empty()) own_inertia_ = *run_->parameter(inertia_parameter_);
   for (int i = 0; i < plan_->states; ++i) seen_.push_back(i);
-  LinearAxis linear = linearise();
+  const LinearAxis linear = linearise_motion();
   keep_seen_states(linear);
   nominal_inertia_ = linear.inertia, nominal_damping_ = linear.damping;
   if (std::isfinite(nominal_inertia_) && nominal_inertia_ > 0) return;
@@ -181,6 +181,13 @@ double AxisModel::net_force(double input, double force) {
   numbers_[injected_] = force;
   run_->evaluate(0, true);
   return numbers_[force_];
+}
+
+double AxisModel::net_force_along(double position, double velocity, double input, double force) {
+  place(position, velocity);
+  const double net = net_force(input, force);
+  run_->accept();
+  return net;
 }
 
 bool AxisModel::holds_at_rest(double small_force) {

@@ -62,13 +62,16 @@ class AxisModel {
   /// The mean force on the moving part at the present state, the added force included.
   double net_force(double input, double force);
   void place(double position, double velocity);
+  /// The same where a path leads, place by place: dry friction remembers from where it came.
+  double net_force_along(double position, double velocity, double input, double force);
   /// Whether a force as small as this moves nothing at rest: something in the diagram holds.
   bool holds_at_rest(double small_force);
 
-  /// Linearised around the recorded motion.
+  /// Linearised around the recorded motion. Of a map: what is left over of the forces, see balance_of.
   LinearAxis linearise();
 
  private:
+  LinearAxis linearise_motion();
   void keep_seen_states(const LinearAxis& linear);
   Eigen::VectorXd sample_from(const Eigen::VectorXd& states, double input, double force);
 

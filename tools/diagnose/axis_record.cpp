@@ -111,6 +111,7 @@ AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Prob
   const Column& input = *experiment.data.find(experiment.drives.front().port);
   record.input = on_grid(input.values, grid, false);
   record.input_unit = input.unit;
+  record.is_map = experiment.is_map;
   for (const char* role : {"position", "velocity"}) {
     const Number wanted = number_of_role(experiment, plan, role, problems);
     if (wanted < 0) continue;

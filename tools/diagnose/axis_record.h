@@ -26,6 +26,7 @@ struct AxisRecord {
   std::vector<double> input;          ///< SI; held from its sample to the next
   std::string input_unit;
   std::vector<MeasuredPort> measured;  ///< position first; at least one
+  bool is_map = false;                 ///< rows are balances, each by itself: see gather_balances
   size_t held_out_from = 0;            ///< first row kept out of the identification; rows() without hold-out
 
   size_t rows() const { return input.size(); }

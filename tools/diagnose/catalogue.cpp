@@ -196,6 +196,13 @@ std::string unknown_number(const Effect& effect, const RecordSizes& sizes) {
   return {};
 }
 
+/// Effects of one reason together, each once.
+void leave_out(std::vector<NotLookedFor>& list, const std::string& effect, std::string why) {
+  auto same = std::ranges::find(list, why, &NotLookedFor::why);
+  if (same == list.end()) same = list.insert(same, {{}, std::move(why)});
+  if (std::ranges::find(same->effects, effect) == same->effects.end()) same->effects.push_back(effect);
+}
+
 }  // namespace
 
 RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
@@ -208,7 +215,8 @@ RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
     for (size_t k = 0; k < path.samples(); ++k) {
       low = std::min(low, path.predicted_position[k]), high = std::max(high, path.predicted_position[k]);
       if (k < 10) continue;
-      speeds.push_back(std::abs(path.velocity[k]));
+      const double step = path.position[k] - path.position[k - 1];
+      speeds.push_back(std::abs(models[i]->record().is_map ? step / path.sample_time : path.velocity[k]));
       if (!path.rests[k]) square += path.input[k] * path.input[k], count += 1;
     }
     for (size_t k = 20; k + 20 < path.samples(); k += 5)
@@ -232,6 +240,13 @@ RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
   return sizes;
 }
 
+std::string not_in_a_map(const Effect& effect) {
+  const Excitation& needs = effect.needs;
+  const bool needs_motion = needs.speeds > 1 || needs.accelerations > 0 || needs.passes > 1 ||
+                            needs.reversals > 0 || needs.varied_force;
+  return needs_motion ? "a map of balances has neither speeds nor times" : "";
+}
+
 Catalogue make_catalogue(const std::vector<std::string>& folders, const MachineUnits& units,
                          const RecordSizes& sizes, const WhyNot& why_not) {
   Problems problems;
@@ -240,7 +255,7 @@ Catalogue make_catalogue(const std::vector<std::string>& folders, const MachineU
     std::string why = unknown_number(effect, sizes);
     if (why.empty()) why = why_not(effect);
     if (!why.empty()) {
-      catalogue.left_out.push_back({effect.name, std::move(why)});
+      leave_out(catalogue.left_out, effect.name, std::move(why));
     } else if (auto plan = compile_effect(effect, units, sizes, problems)) {
       catalogue.candidates.push_back(candidate_of(effect, std::move(plan)));
       catalogue.effects.push_back(std::move(effect));

@@ -20,6 +20,9 @@ RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
 /// Why an effect cannot be added to the diagram; empty: it can.
 using WhyNot = std::function<std::string(const Effect&)>;
 
+/// Why a map of balances says nothing about an effect; empty: it does.
+std::string not_in_a_map(const Effect& effect);
+
 /// Effects that cannot be added, and those whose numbers cannot be worked out for these records, are left
 /// out. Throws InputError with every problem of the effect files.
 Catalogue make_catalogue(const std::vector<std::string>& folders, const MachineUnits& units,

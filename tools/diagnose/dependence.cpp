@@ -93,10 +93,12 @@ std::vector<RemainderShare> dependence_of(const Trials& trials, const std::vecto
   if (r.force.size() < 200) return {};
   std::vector<RemainderShare> list;
   list.push_back({"position", explained(r.force, r.position, 40, nullptr)});
-  list.push_back({"velocity", explained(r.force, r.velocity, 20, nullptr)});
-  list.push_back({"acceleration", explained(r.force, r.acceleration, 12, nullptr)});
-  list.push_back({"input", explained(r.force, r.input, 12, nullptr)});
-  list.push_back({"time", explained(r.force, r.time, 40, nullptr)});
+  if (!trials.has_map()) {
+    list.push_back({"velocity", explained(r.force, r.velocity, 20, nullptr)});
+    list.push_back({"acceleration", explained(r.force, r.acceleration, 12, nullptr)});
+    list.push_back({"input", explained(r.force, r.input, 12, nullptr)});
+    list.push_back({"time", explained(r.force, r.time, 40, nullptr)});
+  }
   const double direction = explained(r.force, r.position, 40, &r.velocity);
   if (direction > list.front().share + 0.05) list.push_back({"position,direction", direction});
   std::ranges::stable_sort(list, std::ranges::greater{}, &RemainderShare::share);

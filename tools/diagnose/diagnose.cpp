@@ -101,7 +101,7 @@ class Inquiry {
       : trials_(trials),
         motion_(motion),
         catalogue_(catalogue),
-        unknown_(unknown_forces(sizes)),
+        unknown_(unknown_forces(sizes, trials.has_map())),
         progress_(progress) {}
 
   /// From the rows that are fitted.
@@ -257,8 +257,12 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   const RecordSizes sizes = sizes_of(motion.paths, models);
   const std::vector<std::string> folders =
       options.catalogues.empty() ? std::vector<std::string>{catalogue_folder()} : options.catalogues;
-  const Catalogue catalogue = make_catalogue(
-      folders, units, sizes, attachable(diagram, experiments.front(), options.load, units, sizes));
+  const WhyNot cannot_be_added = attachable(diagram, experiments.front(), options.load, units, sizes);
+  const auto why_not = [&](const Effect& effect) {
+    std::string why = trials.has_map() ? not_in_a_map(effect) : std::string();
+    return why.empty() ? cannot_be_added(effect) : why;
+  };
+  const Catalogue catalogue = make_catalogue(folders, units, sizes, why_not);
   std::vector<InverseDynamics> inverse;
   for (Trial& trial : trials.list) inverse.push_back(inverse_dynamics(trial, trials.rest_speed));
   Diagnosis result;

@@ -58,7 +58,8 @@ struct RecordFinding {
 
 /// An effect of the catalogue that the diagram or the records leave no room for.
 struct NotLookedFor {
-  std::string effect, why;
+  std::vector<std::string> effects;
+  std::string why;
 };
 
 /// A share of the remaining error that a variable explains.

@@ -43,7 +43,8 @@ std::string to_json(const Diagnosis& d) {
   for (const RecordFinding& f : d.findings) json["record"].push_back({{"finding", f.what}, {"cost", f.cost}});
   json["not_looked_for"] = nlohmann::ordered_json::array();
   for (const NotLookedFor& n : d.not_looked_for)
-    json["not_looked_for"].push_back({{"effect", n.effect}, {"why", n.why}});
+    for (const std::string& effect : n.effects)
+      json["not_looked_for"].push_back({{"effect", effect}, {"why", n.why}});
   json["prediction_errors"] = {{"mean_square", d.mean_square},
                                {"held_out_mean_square", d.held_out_mean_square},
                                {"portmanteau_40", d.portmanteau}};

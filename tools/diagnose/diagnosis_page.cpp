@@ -158,9 +158,10 @@ report::Section what_next(const Diagnosis& d) {
         report::Notice{f.is_fatal ? report::Notice::Severity::error : report::Notice::Severity::warning,
                        fmt::format("The record: {}. What it costs: {}.", f.what, f.cost)});
   for (const NotLookedFor& n : d.not_looked_for)
-    section.items.push_back(report::Notice{
-        report::Notice::Severity::warning,
-        fmt::format("Not looked for: {}; {}. If that is missing, it is not named.", words(n.effect), n.why)});
+    section.items.push_back(
+        report::Notice{report::Notice::Severity::warning,
+                       fmt::format("Not looked for: {}; {}. If that is missing, it is not named.",
+                                   words(joined(n.effects, ", ")), n.why)});
   if (section.items.empty())
     section.items.push_back(report::Paragraph{"Nothing: this record answers what was asked of it."});
   return section;

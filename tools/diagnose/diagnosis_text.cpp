@@ -63,7 +63,7 @@ std::string to_text(const Diagnosis& d) {
     line(fmt::format("To tell {} from {}: {}", e.between, e.and_effect, e.text));
   for (const RecordFinding& f : d.findings) line(fmt::format("The record: {}; {}.", f.what, f.cost));
   for (const NotLookedFor& n : d.not_looked_for)
-    line(fmt::format("Not looked for: {}; {}.", n.effect, n.why));
+    line(fmt::format("Not looked for: {}; {}.", joined(n.effects, ", "), n.why));
   return text;
 }
 

@@ -18,8 +18,10 @@ double gain_of_filter(double frequency, double cutoff, double sample_time) {
   return 1 / (1 + std::pow(ratio, 8));
 }
 
-/// A value held from its sample on, as the samples around it see it: the mean of before and after.
-std::vector<double> at_samples(const std::vector<double>& held) {
+/// A value held from its sample on, as the samples around it see it: the mean of before and after. In a map
+/// it belongs to its own balance.
+std::vector<double> at_samples(const std::vector<double>& held, const AxisRecord& record) {
+  if (record.is_map) return held;
   std::vector<double> mean = held;
   for (size_t k = held.size(); k-- > 1;) mean[k] = (held[k - 1] + held[k]) / 2;
   return mean;
@@ -46,17 +48,22 @@ InverseDynamics inverse_dynamics(Trial& trial, double rest_speed) {
   InverseDynamics result;
   result.motion = motion_of(record);
   Path& path = result.path;
-  path.sample_time = record.sample_time, path.rest_speed = rest_speed;
-  path.position = path.predicted_position = result.motion.position;
-  path.velocity = result.motion.velocity, path.acceleration = result.motion.acceleration;
-  path.input = record.input;
-  const std::vector<double> input = at_samples(record.input);
+  if (record.is_map) {
+    path = creep_along(record, record.rows());
+  } else {
+    path.sample_time = record.sample_time, path.rest_speed = rest_speed;
+    path.position = path.predicted_position = result.motion.position;
+    path.velocity = result.motion.velocity, path.acceleration = result.motion.acceleration;
+    path.input = record.input;
+    path.rests.resize(record.rows());
+    for (size_t k = 0; k < record.rows(); ++k) path.rests[k] = std::abs(path.velocity[k]) < rest_speed;
+  }
+  const std::vector<double> input = at_samples(record.input, record);
   model.set_added_inertia(0);
   model.start(path.position[0], path.velocity[0]);
   for (size_t k = 0; k < record.rows(); ++k) {
-    model.place(path.position[k], path.velocity[k]);
-    result.residual.push_back(model.net_force(input[k], 0) - model.nominal_inertia() * path.acceleration[k]);
-    path.rests.push_back(std::abs(path.velocity[k]) < rest_speed);
+    const double net = model.net_force_along(path.position[k], path.velocity[k], input[k], 0);
+    result.residual.push_back(net - model.nominal_inertia() * path.acceleration[k]);
   }
   return result;
 }
@@ -80,7 +87,7 @@ std::vector<double> residual_with(const Trial& trial, const InverseDynamics& inv
   }
   const Drives changed = drives_of(others, inverse.path, record.input);
   for (size_t k = 0; k < residual.size(); ++k) consumed.force[k] += record.input[k] - changed.input[k];
-  const std::vector<double> force = at_samples(consumed.force);
+  const std::vector<double> force = at_samples(consumed.force, record);
   for (size_t k = 0; k < residual.size(); ++k) residual[k] -= force[k];
   if (!changed.sensor.empty())
     for (size_t k = 1; k + 1 < residual.size(); ++k)
@@ -121,6 +128,7 @@ double residual_floor(const Trials& trials, const Noise& noise) {
 }
 
 double short_horizon_error(Trials& trials, const Estimate& estimate, double horizon_s) {
+  if (trials.has_map()) return std::nan("");  // no motion to predict
   double sum = 0, n = 0;
   double inertia = 0;
   for (const Member& member : estimate.members)

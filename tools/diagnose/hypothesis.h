@@ -33,6 +33,8 @@ struct Trials {
   const std::atomic<bool>* interrupt =
       nullptr;  ///< once true, the next run along the records throws Interrupted
   size_t ports() const { return list.front().model->record().measured.size(); }
+  /// All records are maps of balances, or none.
+  bool has_map() const { return list.front().model->record().is_map; }
 
   /// What is not fitted need not be run along while a set is searched for.
   enum class Rows { fitted, all };

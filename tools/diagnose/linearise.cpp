@@ -24,6 +24,17 @@ std::vector<size_t> operating_rows(const AxisRecord& record) {
   return rows;
 }
 
+/// Of a map each row stands alone: one state, the force that the model has left over, and that is measured to
+/// be none.
+LinearAxis balance_of(const LinearAxis& moving) {
+  LinearAxis linear;
+  linear.inertia = moving.inertia, linear.damping = moving.damping;
+  linear.A = Eigen::MatrixXd::Zero(1, 1), linear.C = Eigen::MatrixXd::Ones(1, 1);
+  linear.push = linear.input_push = Eigen::VectorXd::Ones(1);
+  linear.slope_share = Eigen::VectorXd::Zero(1);
+  return linear;
+}
+
 }  // namespace
 
 Eigen::VectorXd AxisModel::sample_from(const Eigen::VectorXd& states, double input, double force) {
@@ -35,6 +46,10 @@ Eigen::VectorXd AxisModel::sample_from(const Eigen::VectorXd& states, double inp
 }
 
 LinearAxis AxisModel::linearise() {
+  return record_.is_map ? balance_of(linearise_motion()) : linearise_motion();
+}
+
+LinearAxis AxisModel::linearise_motion() {
   const Eigen::Index n = Eigen::Index(seen_.size());
   LinearAxis linear;
   linear.A = Eigen::MatrixXd::Zero(n, n);

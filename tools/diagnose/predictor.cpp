@@ -163,6 +163,20 @@ Path Path::first_samples(size_t count) const {
   return shorter;
 }
 
+Path creep_along(const AxisRecord& map, size_t rows) {
+  constexpr double creep = 1e-9;  // of the way to the next balance
+  const std::vector<double>& position = map.find("position")->value;
+  Path path;
+  path.identity = next_identity(), path.sample_time = map.sample_time;
+  path.position = {position.begin(), position.begin() + std::ptrdiff_t(rows)};
+  path.predicted_position = path.position, path.input = map.input;
+  path.velocity.resize(rows), path.acceleration.resize(rows), path.rests.resize(rows);
+  for (size_t k = 0; k < rows; ++k)
+    if (k + 1 < position.size())
+      path.velocity[k] = creep * (position[k + 1] - position[k]) / path.sample_time;
+  return path;
+}
+
 std::vector<const Column*> pointers(const Columns& columns) {
   std::vector<const Column*> list;
   for (const Column& column : columns) list.push_back(&column);
@@ -199,9 +213,33 @@ std::vector<std::vector<double>> responses(const LinearAxis& axis, const Gains& 
   return out;
 }
 
+namespace {
+
+/// At the balances of a map the force that the model has left over is the error.
+Prediction balance(AxisModel& model, const Gains& gains, const Drives& drives) {
+  Prediction result;
+  Path& path = result.path = creep_along(model.record(), drives.input.size());
+  path.input = drives.input;
+  result.error.resize(path.samples()), result.slow.resize(path.samples());
+  model.start(path.position[0], 0);
+  double d = 0, expected = 0;
+  for (size_t k = 0; k < path.samples(); ++k) {
+    result.error[k] = -expected;
+    d -= gains.K(1, 0) * expected;
+    result.slow[k] = d;
+    expected =
+        model.net_force_along(path.position[k], path.velocity[k], drives.input[k], d - drives.force[k]);
+    d *= gains.memory;
+  }
+  return result;
+}
+
+}  // namespace
+
 Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains, const Drives& drives,
                    double rest_speed) {
   const AxisRecord& record = model.record();
+  if (record.is_map) return balance(model, gains, drives);
   const size_t rows = drives.input.size(), ports = record.measured.size();
   const std::span<const int> states = model.states();
   Prediction result;

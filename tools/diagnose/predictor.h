@@ -34,6 +34,10 @@ struct Path {
   Path first_samples(size_t count) const;
 };
 
+/// The balances of a map, as far as wanted. From each the axis creeps on toward the next, so slowly that only
+/// the direction counts.
+Path creep_along(const AxisRecord& map, size_t rows);
+
 struct Prediction {
   std::vector<double> error;  ///< samples × ports: measured minus predicted
   std::vector<double> slow;   ///< of each sample: the disturbing force believed after measuring

@@ -45,21 +45,34 @@ Noise first_guess(const Trials& trials) {
   noise.white = 0.01 * trials.input_rms;
   noise.step = 0.3 * noise.white;
   for (const MeasuredPort& port : trials.list.front().model->record().measured)
-    noise.measurement.push_back(measurement_noise(port));
+    noise.measurement.push_back(trials.has_map() ? noise.white : measurement_noise(port));
   return noise;
 }
 
 /// Rows while moving, some time after the last rest; and rows at rest.
-void mark_usable(Trial& trial, const Path& path) {
+void mark_usable(Trial& trial, const Path& path, bool is_map) {
   const size_t rows = path.samples();
   trial.usable.assign(rows, 1), trial.at_rest.assign(rows, 0);
   int since_rest = memory_of_rest;
-  const int start = int(std::ceil(settling_s / path.sample_time));
+  const int start = is_map ? 1 : int(std::ceil(settling_s / path.sample_time));
   for (size_t k = 0; k < rows; ++k) {
     since_rest = path.rests[k] ? 0 : since_rest + 1;
     trial.usable[k] = since_rest > memory_of_rest && int(k) >= start;
     trial.at_rest[k] = path.rests[k] && int(k) >= start;
   }
+}
+
+/// The noise of a motion and that of a map have nothing in common.
+void reject_mixed(const Trials& trials) {
+  Problems problems;
+  for (const Trial& trial : trials.list) {
+    const AxisRecord& record = trial.model->record();
+    if (record.is_map == trials.has_map()) continue;
+    auto& p =
+        problems.error({}, "/rows", "", record.path + ": maps of balances and records of motion are mixed");
+    p.expected = "one kind at a time";
+  }
+  if (problems.has_errors()) throw InputError(std::move(problems));
 }
 
 }  // namespace
@@ -80,13 +93,15 @@ Trials prepare(const std::string& diagram, const std::vector<std::string>& exper
     for (double u : record.input) square += u * u, ++n;
     trials.list.push_back(std::move(trial));
   }
+  reject_mixed(trials);
   trials.run_along(Trials::Rows::all);
   trials.rest_speed = 0.005 * quantile(speed, 0.99);
   trials.input_rms = std::sqrt(square / double(std::max<size_t>(n, 1)));
   trials.noise = first_guess(trials);
   trials.nominal_holds = trials.list.front().model->holds_at_rest(1e-3 * trials.input_rms);
   std::vector<Fitted> nominal = run_members(trials, {}, {}, trials.noise);
-  for (size_t t = 0; t < trials.list.size(); ++t) mark_usable(trials.list[t], nominal[t].prediction.path);
+  for (size_t t = 0; t < trials.list.size(); ++t)
+    mark_usable(trials.list[t], nominal[t].prediction.path, trials.has_map());
   trials.noise = fit_noise(trials, nominal, trials.noise, FreeNoise::with_random_walk);
   nominal = run_members(trials, {}, {}, trials.noise);
   trials.lowest_position = 1e300, trials.highest_position = -1e300;
@@ -96,7 +111,7 @@ Trials prepare(const std::string& diagram, const std::vector<std::string>& exper
     trials.lowest_position = std::min(trials.lowest_position, low);
     trials.highest_position = std::max(trials.highest_position, high);
     trials.longest_s = std::max(trials.longest_s, double(path.samples()) * path.sample_time);
-    mark_usable(trials.list[t], path);
+    mark_usable(trials.list[t], path, trials.has_map());
     motion.paths.push_back(std::make_shared<const Path>(std::move(nominal[t].prediction.path)));
   }
   return trials;

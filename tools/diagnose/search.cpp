@@ -29,6 +29,7 @@ class Search {
 
   SearchResult run() {
     bool goes_on = grow(4);
+    if (goes_on && is_much_left()) goes_on = grow(2);  // as many as a start without a name will have
     if (is_much_left() || explain_without_name()) {
       start_from_what_has_no_name();
       goes_on = true;

@@ -31,8 +31,8 @@ Variable direction_of(double transition_distance) {
   return [=](const Path& path) {
     std::vector<double> values(path.samples());
     double fraction = 0;
-    for (size_t k = 0; k < values.size(); ++k) {
-      const double way = path.sample_time * middle_velocity(path, k), sign = way < 0 ? -1 : 1;
+    for (size_t k = 1; k < values.size(); ++k) {
+      const double way = middle_position(path, k) - middle_position(path, k - 1), sign = way < 0 ? -1 : 1;
       const double left = std::exp(-std::abs(way) / transition_distance);
       fraction = sign + (fraction - sign) * left, values[k] = fraction;
     }
@@ -101,17 +101,20 @@ Candidate tone(const RecordSizes& sizes) {
 
 }  // namespace
 
-std::vector<Candidate> unknown_forces(const RecordSizes& sizes) {
+std::vector<Candidate> unknown_forces(const RecordSizes& sizes, bool is_map) {
   const double low = sizes.lowest_position, high = sizes.highest_position, top = sizes.top_speed;
   const Variable one = each_sample([](const Path&, size_t) { return 1.0; });
   const Variable acceleration = each_sample([](const Path& path, size_t k) { return path.acceleration[k]; });
   const Variable time = each_sample([](const Path& path, size_t k) { return double(k) * path.sample_time; });
   const Variable position = each_sample(middle_position), velocity = each_sample(middle_velocity);
   const Variable direction = direction_of(std::max(1e-6 * sizes.stroke, sizes.resolution));
-  return {spline("position", 60, low, high, position, one),
+  const Candidate of_position = spline("position", 60, low, high, position, one),
+                  of_direction = spline("position,direction", 24, low, high, position, direction);
+  if (is_map) return {of_position, of_direction};
+  return {of_position,
           spline("velocity", 24, -top, top, velocity, one),
           spline("time", 40, 0, sizes.duration, time, one),
-          spline("position,direction", 24, low, high, position, direction),
+          of_direction,
           spline("position,velocity", 24, low, high, position, velocity),
           mass_along(spline("position,acceleration", 24, low, high, position, acceleration)),
           tone(sizes)};

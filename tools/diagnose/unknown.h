@@ -8,6 +8,7 @@ namespace loopwright::diagnosis {
 /// Functions of position, of velocity, of time, of position with the direction (an uneven dry friction), with
 /// the velocity (an uneven damping) or with the acceleration (an uneven mass), and a tone in time. `form`
 /// lists the variables, separated by commas.
-std::vector<Candidate> unknown_forces(const RecordSizes& sizes);
+/// A map of balances has position and direction alone.
+std::vector<Candidate> unknown_forces(const RecordSizes& sizes, bool is_map);
 
 }  // namespace loopwright::diagnosis

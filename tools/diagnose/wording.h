@@ -1,6 +1,7 @@
 /// How text and page of a diagnosis write quantities and lists.
 #pragma once
 #include <fmt/format.h>
+#include <cmath>
 #include <string>
 #include <vector>
 #include "tools/report/typography.h"
@@ -9,6 +10,7 @@ namespace loopwright {
 
 /// "3.2 mN"
 inline std::string shown(double value, const std::string& unit) {
+  if (!std::isfinite(value)) return "–";
   const report::Quantity q = report::engineering(value, unit);
   return q.unit.empty() ? q.value : fmt::format("{} {}", q.value, q.unit);
 }

@@ -250,6 +250,7 @@ Fit fit(const std::string& diagram, const std::string& experiment_path, const st
         const LoadOptions& options, const FitOptions& fit_options) {
   Problems problems;
   const auto experiment = load_experiment(experiment_path, problems);
+  if (experiment) reject_map(*experiment, problems);
   if (paths.empty())
     problems.error({}, "", "", "no parameters are named").expected = "--parameters mass,damping";
   if (!experiment || problems.has_errors()) throw InputError(std::move(problems));

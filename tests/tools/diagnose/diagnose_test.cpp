@@ -17,15 +17,6 @@ const DiagnosedParameter& parameter(const DiagnosedEffect& effect, std::string_v
   return *std::ranges::find(effect.parameters, name, &DiagnosedParameter::name);
 }
 
-double sign(double v) { return v > 0 ? 1 : -1; }
-
-TEST(Diagnose, NothingIsMissingInADiagramThatIsRight) {
-  const Diagnosis d = diagnosis_of(RecordedAxis(Truth{}));
-  EXPECT_EQ(d.verdict, Verdict::nothing_missing);
-  EXPECT_THAT(names(d), ElementsAre());
-  EXPECT_NEAR(d.mean_square, 1, 0.05) << "errors as large as the noise says";
-}
-
 TEST(Diagnose, CoulombFrictionIsFoundWithItsLevelInsideTheInterval) {
   Truth truth;
   truth.force = [](double, double v, double) { return 0.12 * std::clamp(v / 1e-4, -1.0, 1.0); };
@@ -94,6 +85,18 @@ TEST(Diagnose, JsonHasTheKeysThatOthersReadAndTheTextSaysTheSame) {
   EXPECT_THAT(to_text(d), HasSubstr("viscous_friction"));
   Problems problems;
   EXPECT_TRUE(load_diagram(axis.file("improved.json"), {}, problems)) << problems.text();
+}
+
+TEST(Diagnose, FrictionThatWasAddedIsNotMissingAnyMoreNorInTheTableOfErrors) {
+  Truth truth;
+  truth.force = [](double, double v, double) { return 0.12 * std::clamp(v / 1e-4, -1.0, 1.0); };
+  const RecordedAxis axis(truth);
+  DiagnoseOptions options;
+  options.improved_diagram = axis.file("improved.json");
+  const Diagnosis before = diagnose(axis.diagram(), {axis.experiment()}, options);
+  const Diagnosis after = diagnose(axis.file("improved.json"), {axis.experiment()});
+  EXPECT_EQ(after.verdict, Verdict::nothing_missing) << to_text(after);
+  EXPECT_NEAR(after.error_before, before.error_after, 0.1 * before.error_after);
 }
 
 TEST(Diagnose, WritesNothingWhenItIsInterrupted) {

@@ -47,5 +47,17 @@ TEST(MeasuredAxes, ABrushlessMotorCogs72TimesARevolution) {
   EXPECT_LT(d.error_after, d.error_before / 3) << "held out";
 }
 
+TEST(MeasuredAxes, TheSameMotorHeldStepByStepCogs72TimesAndHasDryFriction) {
+  if (!has_data("bldc_cogging_laas/holding_current_map.csv"))
+    GTEST_SKIP() << "no bldc_cogging_laas/holding_current_map.csv below $LOOPWRIGHT_DATA";
+  const Diagnosis d = diagnosed("bldc", "map");
+  ASSERT_GE(d.effects.size(), 2u);
+  EXPECT_EQ(d.effects[0].name, "cogging");
+  EXPECT_EQ(d.effects[1].name, "coulomb_friction");
+  const auto pitch = std::ranges::find(d.effects[0].parameters, "pitch", &DiagnosedParameter::name);
+  EXPECT_NEAR(2 * std::numbers::pi / pitch->value, 72, 0.1);
+  EXPECT_GT(d.error_before / d.error_after, 5) << "held out";
+}
+
 }  // namespace
 }  // namespace loopwright

@@ -26,7 +26,7 @@ WantedMotion there_and_back() {
 
 std::vector<std::string> not_looked_for(const Diagnosis& d) {
   std::vector<std::string> list;
-  for (const NotLookedFor& n : d.not_looked_for) list.push_back(n.effect);
+  for (const NotLookedFor& n : d.not_looked_for) list.insert(list.end(), n.effects.begin(), n.effects.end());
   return list;
 }
 
@@ -54,7 +54,7 @@ TEST(Room, WithoutAMassAndADampingTheirCorrectionsAreNotLookedForAndTheReasonIsT
   EXPECT_THAT(not_looked_for(d),
               UnorderedElementsAre("inertia", "viscous_friction", "flexible_mode", "backlash"));
   for (const NotLookedFor& n : d.not_looked_for)
-    EXPECT_THAT(n.why, HasSubstr("no block with the parameter that it changes")) << n.effect;
+    EXPECT_THAT(n.why, HasSubstr("no block with the parameter that it changes")) << n.effects.front();
   EXPECT_THAT(
       to_text(d),
       HasSubstr("Not looked for: inertia; the effect \"inertia\" cannot be added: the machine has no block"));
