@@ -233,10 +233,10 @@ void tell_errors(const Trials& trials, const Conclusion& conclusion, const Inqui
 Diagnosis::Curves residual_curves(const Trials& trials, const InverseDynamics& inverse,
                                   const Conclusion& conclusion) {
   Diagnosis::Curves curves;
-  curves.position = inverse.path.position, curves.velocity = inverse.path.velocity;
+  curves.position = inverse.path.position;
   curves.before = residual_with(trials.list.front(), inverse, {});
   curves.after = residual_with(trials.list.front(), inverse, conclusion.estimate.members);
-  curves.time = inverse.motion.time;
+  if (!trials.has_map()) curves.velocity = inverse.path.velocity, curves.time = inverse.motion.time;
   for (size_t k = 0; k < inverse.motion.rows(); ++k)
     if (!inverse.motion.counts[k]) curves.before[k] = curves.after[k] = std::nan("");
   return curves;

@@ -93,7 +93,7 @@ struct Diagnosis {
   std::vector<std::string> trail;
   struct Curves {
     std::vector<double> time, position, velocity, before, after;
-  } curves;  ///< force residuals of the first record
+  } curves;  ///< force residuals of the first record; a map has neither times nor speeds
 };
 
 /// Throws InputError with every problem of diagram, experiments and effects.

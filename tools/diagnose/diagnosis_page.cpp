@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <algorithm>
 #include <cmath>
 #include "tools/diagnose/diagnose.h"
 #include "tools/diagnose/wording.h"
@@ -13,14 +14,28 @@ std::string words(std::string name) {
   return name;
 }
 
-report::Notice verdict(const Diagnosis& d) {
-  using Severity = report::Notice::Severity;
+bool is_first_of_its_name(const Diagnosis& d, size_t effect) {
+  const auto first = std::ranges::find(d.effects, d.effects[effect].name, &DiagnosedEffect::name);
+  return size_t(first - d.effects.begin()) == effect;
+}
+
+/// Each name once, strongest first: "cogging (7 of them)".
+std::vector<std::string> effect_names(const Diagnosis& d) {
   std::vector<std::string> names;
-  for (const DiagnosedEffect& effect : d.effects) {
-    std::string name = words(effect.name);
-    for (const std::string& other : effect.alternatives) name += " (or " + words(other) + ")";
+  for (size_t i = 0; i < d.effects.size(); ++i) {
+    if (!is_first_of_its_name(d, i)) continue;
+    std::string name = words(d.effects[i].name);
+    const auto times = std::ranges::count(d.effects, d.effects[i].name, &DiagnosedEffect::name);
+    if (times > 1) name += fmt::format(" ({} of them)", times);
+    for (const std::string& other : d.effects[i].alternatives) name += " (or " + words(other) + ")";
     names.push_back(name);
   }
+  return names;
+}
+
+report::Notice verdict(const Diagnosis& d) {
+  using Severity = report::Notice::Severity;
+  const std::vector<std::string> names = effect_names(d);
   const std::string fall =
       fmt::format("The residual force falls from {} to {}; noise alone would leave {}.",
                   shown(d.error_before, d.force_unit), shown(d.error_after, d.force_unit),
@@ -63,11 +78,13 @@ report::Section where_it_fails(const Diagnosis& d) {
       "The force that the diagram leaves unexplained: net force of the diagram at the measured motion less "
       "mass times "
       "acceleration, filtered without delay. Gaps are rests, where dry friction may take any value."});
-  section.items.push_back(overlay(d, "Residual force over time", "s", d.curves.time, "Time", false));
+  if (!d.curves.time.empty())
+    section.items.push_back(overlay(d, "Residual force over time", "s", d.curves.time, "Time", false));
   section.items.push_back(
       overlay(d, "Residual force over position", d.position_unit, d.curves.position, "Position", true));
-  section.items.push_back(overlay(d, "Residual force over velocity", d.position_unit + "/s",
-                                  d.curves.velocity, "Velocity", true));
+  if (!d.curves.velocity.empty())
+    section.items.push_back(overlay(d, "Residual force over velocity", d.position_unit + "/s",
+                                    d.curves.velocity, "Velocity", true));
   return section;
 }
 
@@ -81,10 +98,12 @@ report::Section what_is_missing(const Diagnosis& d) {
   report::Section section{"What is missing", {}};
   if (d.effects.empty())
     section.items.push_back(report::Paragraph{"No effect of the catalogue is called for by this record."});
-  for (const DiagnosedEffect& effect : d.effects) {
-    std::string text =
-        fmt::format("{}. {} Its force is {} rms. Probability that it is there: {:.2f}.", effect.title,
-                    effect.physics, shown(effect.force_rms, d.force_unit), effect.inclusion);
+  for (size_t i = 0; i < d.effects.size(); ++i) {
+    const DiagnosedEffect& effect = d.effects[i];
+    std::string text = is_first_of_its_name(d, i) ? effect.title + ". " + effect.physics
+                                                  : "Once more " + words(effect.name) + ".";
+    text += fmt::format(" Its force is {} rms. Probability that it is there: {:.2f}.",
+                        shown(effect.force_rms, d.force_unit), effect.inclusion);
     for (const std::string& other : effect.alternatives)
       text += fmt::format(" It might as well be {}: these two cannot be told apart by this record.",
                           words(other));
