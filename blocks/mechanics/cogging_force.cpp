@@ -65,8 +65,8 @@ template <class Real> struct CoggingForce {
   void outputs(const In& in, Out& out) const {
     if (harmonics.size() == 1 && !is_sloped && !is_modulated)
       out.force = term(harmonics.front(), in.position);
-    else
-      out.force = series(in.position, in.velocity);
+    else  // in copies of their own: the single harmonic would store both inputs for this call too
+      out.force = series(by_register(in.position), by_register(in.velocity));
   }
 
  private:
