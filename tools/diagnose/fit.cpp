@@ -42,25 +42,6 @@ NormalEquations normal_equations(const Trials& trials, const std::vector<Member>
   return equations;
 }
 
-/// Levels of a function without a name go to nothing where next to no fitted row sees them, as beyond the
-/// fitted positions: there they would be anything.
-void calm_unseen_levels(const std::vector<Member>& members, NormalEquations& equations) {
-  constexpr double next_to_none = 1e-4;  // of what the best seen level weighs
-  const std::vector<FreeParameter> free = free_parameters(members);
-  for (size_t m = 0; m < members.size(); ++m) {
-    if (!members[m].candidate->is_unknown) continue;
-    double most = 0;
-    for (size_t i = 0; i < free.size(); ++i)
-      if (free[i].member == m && free[i].is_linear)
-        most = std::max(most, equations.G(Eigen::Index(i), Eigen::Index(i)));
-    for (size_t i = 0; i < free.size(); ++i) {
-      if (free[i].member != m || !free[i].is_linear) continue;
-      equations.G(Eigen::Index(i), Eigen::Index(i)) += next_to_none * most;
-      equations.b[Eigen::Index(i)] -= next_to_none * most * members[m].linear[free[i].index];
-    }
-  }
-}
-
 /// Solves with columns scaled to one and a ridge that only dependent columns feel.
 Eigen::VectorXd solve(const Eigen::MatrixXd& G, const Eigen::VectorXd& b) {
   const Eigen::VectorXd scale = G.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
@@ -136,8 +117,7 @@ Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& n
   const std::vector<FreeParameter> free = free_parameters(best.members);
   const double far = same_motion * double(fitted_numbers(trials));
   for (int i = 0; i < iterations && best.is_valid && !free.empty(); ++i) {
-    NormalEquations equations = normal_equations(trials, best.members, best.fitted, best.motion);
-    calm_unseen_levels(best.members, equations);
+    const NormalEquations equations = normal_equations(trials, best.members, best.fitted, best.motion);
     const Eigen::VectorXd step = step_in_range(equations, best.members, free);
     if (step.dot(equations.b) < least_gain * best.mean_square) break;  // what the step promises
     const double before = best.profile;

@@ -29,7 +29,8 @@ class Search {
 
   SearchResult run() {
     bool goes_on = grow(4);
-    if (goes_on && is_much_left()) goes_on = grow(2);  // as many as a start without a name will have
+    // Cogging has many lines, and a map shows little else: as many as a start without a name will have.
+    if (goes_on && is_much_left() && trials_.has_map()) goes_on = grow(2);
     if (is_much_left() || explain_without_name()) {
       start_from_what_has_no_name();
       goes_on = true;
