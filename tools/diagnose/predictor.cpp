@@ -272,7 +272,8 @@ Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains,
     }
     const double velocity_now = model.velocity();
     path.position[k] = model.position(), path.velocity[k] = velocity_now;
-    path.rests[k] = std::abs(velocity_now) < rest_speed;
+    const bool turned = k > 0 && (velocity_now > 0) != (path.velocity[k - 1] > 0);
+    path.rests[k] = turned || std::abs(velocity_now) < rest_speed;
     if (path.rests[k]) d = 0;
     result.slow[k] = d;
     model.step(drives.input[k], d - drives.force[k]);

@@ -27,7 +27,7 @@ struct Path {
   double sample_time = 0;
   std::vector<double> position, velocity, acceleration, input;
   std::vector<double> predicted_position;  ///< before the sample itself was measured
-  std::vector<char> rests;                 ///< slower than `rest_speed`
+  std::vector<char> rests;                 ///< slower than `rest_speed`, or turned since the sample before
   double rest_speed = 0;
   size_t samples() const { return rests.size(); }
   /// Another path, as far as the first has been followed.
