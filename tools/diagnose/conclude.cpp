@@ -200,6 +200,39 @@ std::optional<Estimate> simplified(Trials& trials, const Estimate& estimate,
   return {};
 }
 
+/// Fits all parameters and the noise together, and takes out the members that do not matter: one by one, the
+/// weakest first. The search judged them by noise that it knew in part; one that barely matters must do
+/// better than noise that is fitted without it.
+void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
+  constexpr double barely = 2;
+  Estimate& estimate = result.estimate;
+  for (;;) {
+    maximise(trials, estimate);
+    result.weights = weigh_all(trials, estimate);
+    if (estimate.members.empty()) return;
+    std::vector<double> sizes;
+    for (const Weight& weight : result.weights) sizes.push_back(material(trials, estimate, weight));
+    const auto least = std::ranges::min_element(sizes);
+    if (*least >= barely) return;
+    const size_t weakest = size_t(least - sizes.begin());
+    std::vector<Member> members = estimate.members;
+    members.erase(members.begin() + std::ptrdiff_t(weakest));
+    Estimate without = fit_members(trials, members, estimate.noise, estimate.motion, 4);
+    if (*least >= 1) {
+      maximise(trials, without);
+      if (criterion(trials, without, catalogue) > criterion(trials, estimate, catalogue)) return;
+    }
+    const Weight& weight = result.weights[weakest];
+    result.trail.push_back(
+        fmt::format("{}: {}, χ² {:.0f}, force {:.3g}, unique {:.3g} beside an input of {:.3g} and "
+                    "noise of {:.3g} and {:.3g}",
+                    *least < 1 ? "not material" : "other noise does as well",
+                    estimate.members[weakest].candidate->name, weight.wald, weight.force_rms,
+                    weight.unique_force, trials.input_rms, estimate.noise.white, estimate.noise.slow()));
+    estimate = std::move(without);
+  }
+}
+
 }  // namespace
 
 double material(const Trials& trials, const Estimate& estimate, const Weight& weight) {
@@ -244,26 +277,7 @@ Conclusion conclude(Trials& trials, const std::vector<Candidate>& candidates,
   Conclusion result;
   Estimate& estimate = result.estimate;
   estimate = std::move(found);
-  for (;;) {
-    maximise(trials, estimate);
-    result.weights = weigh_all(trials, estimate);
-    size_t weakest = 0;
-    double least = 1e300;
-    for (size_t m = 0; m < estimate.members.size(); ++m) {
-      if (const double size = material(trials, estimate, result.weights[m]); size < least)
-        least = size, weakest = m;
-    }
-    if (estimate.members.empty() || least >= 1) break;
-    const Weight& weight = result.weights[weakest];
-    result.trail.push_back(
-        fmt::format("not material: {}, χ² {:.0f}, force {:.3g}, unique {:.3g} beside an input of {:.3g} and "
-                    "noise of {:.3g} and {:.3g}",
-                    estimate.members[weakest].candidate->name, weight.wald, weight.force_rms,
-                    weight.unique_force, trials.input_rms, estimate.noise.white, estimate.noise.slow()));
-    std::vector<Member> members = estimate.members;
-    members.erase(members.begin() + std::ptrdiff_t(weakest));
-    estimate = fit_members(trials, members, estimate.noise, estimate.motion, 4);
-  }
+  keep_material(trials, result, candidates.size());
   result.portmanteau = portmanteau(trials, estimate.fitted);
   const double n = double(fitted_numbers(trials));
   const std::vector<Shape> periodic = periodic_shapes(trials, estimate, candidates, 1);

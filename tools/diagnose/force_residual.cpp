@@ -55,7 +55,7 @@ InverseDynamics inverse_dynamics(Trial& trial, double rest_speed) {
     path.position = path.predicted_position = result.motion.position;
     path.velocity = result.motion.velocity, path.acceleration = result.motion.acceleration;
     path.input = record.input;
-    path.rests.resize(record.rows());
+    path.rests.resize(record.rows()), path.turns.resize(record.rows());
     for (size_t k = 0; k < record.rows(); ++k) path.rests[k] = std::abs(path.velocity[k]) < rest_speed;
   }
   const std::vector<double> input = at_samples(record.input, record);

@@ -8,6 +8,9 @@
 namespace loopwright::diagnosis {
 namespace {
 
+/// As long as the predictor takes to correct what friction on the wrong side has done.
+constexpr int samples_of_a_reversal = 15;
+
 uint64_t next_identity() {
   static std::atomic<uint64_t> last = 0;
   return ++last;
@@ -58,12 +61,12 @@ template <int States, int Ports> class ErrorFilter {
     }
   }
   /// The predictor corrects itself by what it saw, the truth goes on with the forces that are consumed.
-  [[gnu::always_inline]] void step(const Side* e, const Side& force, const Side& slope, bool rests) {
+  [[gnu::always_inline]] void step(const Side* e, const Side& force, const Side& slope, bool forgets) {
     for (int p = 0; p < ports(); ++p) {
       for (int i = 0; i < n(); ++i) x_[i] = x_[i] - K_[i][p] * e[p];
       d_ = d_ - K_[n()][p] * e[p];
     }
-    if (rests) d_ = Side{};
+    if (forgets) d_ = Side{};
     Side next[most_];
     for (int i = 0; i < n(); ++i) {
       next[i] = push_[i] * d_ - enters_[i] * force - bends_[i] * slope;
@@ -125,7 +128,7 @@ template <class Filter>
       filter.seen(e);
       if (acts == Acts::sensor) e[0] = e[0] + drive[r];
       for (size_t p = 0; p < ports; ++p) white[p][r] = filter.white(e, int(p));
-      filter.step(e, acts == Acts::sensor ? Side{} : drive[r], slope[r], path.rests[first + r]);
+      filter.step(e, acts == Acts::sensor ? Side{} : drive[r], slope[r], path.forgets(first + r));
     }
     const size_t begin = next;
     while (next < rows.wanted.size() && rows.wanted[next] < first + count) ++next;
@@ -159,7 +162,7 @@ Path Path::first_samples(size_t count) const {
   for (auto* list : {&shorter.position, &shorter.velocity, &shorter.acceleration, &shorter.input,
                      &shorter.predicted_position})
     list->resize(count);
-  shorter.rests.resize(count);
+  shorter.rests.resize(count), shorter.turns.resize(count);
   return shorter;
 }
 
@@ -170,7 +173,8 @@ Path creep_along(const AxisRecord& map, size_t rows) {
   path.identity = next_identity(), path.sample_time = map.sample_time;
   path.position = {position.begin(), position.begin() + std::ptrdiff_t(rows)};
   path.predicted_position = path.position, path.input = map.input;
-  path.velocity.resize(rows), path.acceleration.resize(rows), path.rests.resize(rows);
+  path.velocity.resize(rows), path.acceleration.resize(rows), path.rests.resize(rows),
+      path.turns.resize(rows);
   for (size_t k = 0; k < rows; ++k)
     if (k + 1 < position.size())
       path.velocity[k] = creep * (position[k + 1] - position[k]) / path.sample_time;
@@ -248,7 +252,7 @@ Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains,
   path.identity = next_identity(), path.sample_time = record.sample_time, path.rest_speed = rest_speed;
   for (auto* list : {&path.position, &path.velocity, &path.acceleration}) list->resize(rows);
   path.input = drives.input;
-  path.predicted_position.resize(rows), path.rests.resize(rows);
+  path.predicted_position.resize(rows), path.rests.resize(rows), path.turns.resize(rows);
   const MeasuredPort* position = record.find("position");
   const MeasuredPort* velocity = record.find("velocity");
   const auto& first = record.measured.front().value;
@@ -256,6 +260,7 @@ Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains,
       position ? position->value[0] : 0,
       velocity ? velocity->value[0] : (first[std::min<size_t>(rows - 1, 1)] - first[0]) / record.sample_time);
   double d = 0;
+  int turning = 0;
   std::array<double, 2> e{};
   for (size_t k = 0; k < rows; ++k) {
     const double sensor = drives.sensor.empty() ? 0 : drives.sensor[k];
@@ -272,9 +277,11 @@ Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains,
     }
     const double velocity_now = model.velocity();
     path.position[k] = model.position(), path.velocity[k] = velocity_now;
+    path.rests[k] = std::abs(velocity_now) < rest_speed;
     const bool turned = k > 0 && (velocity_now > 0) != (path.velocity[k - 1] > 0);
-    path.rests[k] = turned || std::abs(velocity_now) < rest_speed;
-    if (path.rests[k]) d = 0;
+    turning = turned ? samples_of_a_reversal : std::max(0, turning - 1);
+    path.turns[k] = turning > 0;
+    if (path.forgets(k)) d = 0;
     result.slow[k] = d;
     model.step(drives.input[k], d - drives.force[k]);
     for (size_t i = 0; i < states.size(); ++i) {
@@ -314,7 +321,7 @@ void change_gains(const LinearAxis& axis, const Prediction& prediction, const Ga
     Eigen::Map<Port>(error.data() + k * size_t(p), p) = e;
     difference.noalias() += K * e - before_K * before;
     d += slow_K.dot(e);
-    if (prediction.path.rests[k]) d = 0;
+    if (prediction.path.forgets(k)) d = 0;
     next.noalias() = A * difference + push * (d - prediction.slow[k]);
     difference = next;
     d *= to.memory;

@@ -27,9 +27,14 @@ struct Path {
   double sample_time = 0;
   std::vector<double> position, velocity, acceleration, input;
   std::vector<double> predicted_position;  ///< before the sample itself was measured
-  std::vector<char> rests;                 ///< slower than `rest_speed`, or turned since the sample before
+  std::vector<char> rests;                 ///< slower than `rest_speed`
+  /// For some samples after a reversal. Dry friction turns there, at a moment that is known to a sample or
+  /// two, and what it does meanwhile is no slow force.
+  std::vector<char> turns;
   double rest_speed = 0;
   size_t samples() const { return rests.size(); }
+  /// No slow force is believed.
+  bool forgets(size_t sample) const { return rests[sample] || turns[sample]; }
   /// Another path, as far as the first has been followed.
   Path first_samples(size_t count) const;
 };

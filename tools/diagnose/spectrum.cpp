@@ -44,7 +44,7 @@ std::vector<double> adjoint(const Trial& trial, const Fitted& fitted, Acts acts)
       r = fitted.gains.whiten.transpose() *
           Eigen::Map<const Eigen::VectorXd>(fitted.white.data() + k * size_t(ports), ports);
     back.noalias() = system.onward.transpose() * lambda;
-    if (path.rests[k]) back[back.size() - 1] = 0;
+    if (path.forgets(k)) back[back.size() - 1] = 0;
     const Eigen::VectorXd through = system.correct.transpose() * back;
     weight[k] = acts == Acts::sensor ? r[0] - through[0] : -system.enter.dot(lambda);
     lambda = back + seen * (r - through);

@@ -1,0 +1,43 @@
+"""A few scenarios of the judge, fixed: every kind of motion, nothing hidden and several effects at once."""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import score
+
+GENERATOR, LOOPWRIGHT = sys.argv[1:3]
+
+SCENARIOS = [
+    (5, "constant_speeds", []),  # coarse counts, which look like a lag to whom takes the noise for too small
+    (6, "constant_speeds", ["eddy_current_drag", "thermal_drift"]),
+    (8, "many_speeds", ["presliding_hysteresis", "input_delay"]),
+    (3, "many_speeds", ["backlash"]),
+    (4, "multisine", ["coulomb_friction", "force_gain"]),
+    (9, "multisine", ["flexible_mode", "spring"]),
+    (10, "forward", ["cogging", "constant_force"]),
+    (11, "paper", ["encoder_periodic_error", "direction_dependent_friction"]),
+    (12, "paper", ["force_saturation", "end_stop"]),
+]
+
+
+class Diagnosis(unittest.TestCase):
+    def test_names_what_is_hidden_and_nothing_else(self):
+        for seed, trajectory, effects in SCENARIOS:
+            with self.subTest(seed=seed, trajectory=trajectory), tempfile.TemporaryDirectory() as name:
+                folder = pathlib.Path(name)
+                subprocess.run([GENERATOR, str(seed), folder, trajectory, *effects], check=True, stdout=subprocess.DEVNULL)
+                subprocess.run([LOOPWRIGHT, "diagnose", folder / "nominal.json", folder / "train.experiment.json",
+                                "--json", folder / "answer.json"], check=True, capture_output=True)
+                result = {"truth": json.loads((folder / "truth.json").read_text()),
+                          "answer": json.loads((folder / "answer.json").read_text())}
+                self.assertEqual(sorted(score.true_names(result)), sorted(effects))
+                self.assertTrue(score.exact(result), f"{effects} hidden, {score.found_names(result)} named")
+                self.assertEqual(result["answer"]["verdict"], "explained" if effects else "nothing_missing")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
