@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <deque>
 #include <optional>
-#include <unordered_map>
 #include <unordered_set>
+#include "engine/plan/block_table.h"
 
 namespace loopwright {
 namespace {
@@ -15,9 +15,13 @@ struct Scope {
   std::string prefix;       // "" or "stage."
   const BlockEntry* entry;  // in the parent; null at the top
   Scope* parent;
-  std::vector<int> flat_blocks;                        // ordinary blocks: index in the flat list
-  std::unordered_map<std::string_view, int> blocks;    // of the same, by name
-  std::unordered_map<std::string_view, Scope*> inner;  // subdiagrams
+  /// What became of a block: one in the flat list, a subdiagram, or, with errors, nothing.
+  struct Part {
+    int flat_block = -1;
+    Scope* inner = nullptr;
+  };
+  std::vector<Part> parts{};  // of each block
+  BlockTable blocks{diagram->blocks};
 };
 
 /// The scalar blocks of a diagram, one after the other in memory. They live as long as any of them is held.
@@ -57,21 +61,22 @@ class Flattener {
 
  private:
   Scope& add_scope(const Diagram& diagram, std::string prefix, const BlockEntry* entry, Scope* parent) {
-    Scope& scope = scopes_.emplace_back(Scope{&diagram, std::move(prefix), entry, parent, {}, {}, {}});
-    scope.flat_blocks.reserve(diagram.blocks.size()), scope.blocks.reserve(diagram.blocks.size());
+    Scope& scope = scopes_.emplace_back(Scope{&diagram, std::move(prefix), entry, parent});
+    scope.parts.reserve(diagram.blocks.size());
     for (const BlockEntry& block : diagram.blocks) {
+      scope.blocks.add(scope.parts.size());
+      Scope::Part part;
       if (block.subdiagram)
-        scope.inner[block.name] =
-            &add_scope(*block.subdiagram, scope.prefix + block.name + ".", &block, &scope);
-      else if (!block.type.empty())
-        add_block(scope, block);
-      else
-        broken_.push_back({&scope, block.name});  // told when it was loaded
+        part.inner = &add_scope(*block.subdiagram, scope.prefix + block.name + ".", &block, &scope);
+      else if (!block.type.empty())  // else told when it was loaded
+        part.flat_block = add_block(scope, block);
+      scope.parts.push_back(part);
     }
     return scope;
   }
 
-  void add_block(Scope& scope, const BlockEntry& entry) {
+  /// Its index in the flat list; -1 after a problem.
+  int add_block(Scope& scope, const BlockEntry& entry) {
     FlatBlock flat{.path = scope.prefix + entry.name,
                    .entry = &entry,
                    .type = find_block(entry.type),
@@ -80,8 +85,7 @@ class Flattener {
                    .output_lengths = std::pmr::vector<int>(flat_.memory.get())};
     if (!flat.type) {
       unknown_type(flat.path, entry);
-      broken_.push_back({&scope, entry.name});
-      return;
+      return -1;
     }
     flat.value = {values_, values_->add(flat.type->kernels)};
     const size_t before = problems_.list().size();
@@ -90,10 +94,9 @@ class Flattener {
       flat.type->info.check(flat.value.get(), Checker(entry.settings, flat.path, problems_));
     flat.inputs.resize(flat.type->info.inputs.size());
     flat.output_lengths.assign(flat.type->info.outputs.size(), 1);
-    scope.flat_blocks.push_back(int(flat_.blocks.size()));
-    scope.blocks[entry.name] = int(flat_.blocks.size());
     flat_.blocks.push_back(std::move(flat));
     scope_of_block_.push_back(&scope);
+    return int(flat_.blocks.size()) - 1;
   }
 
   void unknown_type(const std::string& path, const BlockEntry& entry) {
@@ -106,7 +109,8 @@ class Flattener {
   }
 
   void wire_blocks(Scope& scope) {
-    for (const int block : scope.flat_blocks) wire_block(scope, flat_.blocks[size_t(block)]);
+    for (const Scope::Part& part : scope.parts)
+      if (part.flat_block >= 0) wire_block(scope, flat_.blocks[size_t(part.flat_block)]);
   }
 
   void wire_block(Scope& scope, FlatBlock& flat) {
@@ -163,12 +167,12 @@ class Flattener {
                            std::string(bracket == head.npos ? "" : head.substr(bracket)), at, reader, depth);
     }
     const std::string_view rest = text.substr(dot + 1);
-    if (const auto inner = scope.inner.find(head); inner != scope.inner.end())
-      return resolve_inside(*inner->second, rest, at, reader, depth);
-    if (const auto found = scope.blocks.find(head); found != scope.blocks.end())
-      return resolve_port(found->second, rest, at, reader, depth);
-    for (const auto& [broken_scope, name] : broken_)
-      if (broken_scope == &scope && name == head) return unresolved(at);  // already told
+    if (const int block = scope.blocks.find(head); block >= 0) {
+      const auto& [flat_block, inner] = scope.parts[size_t(block)];
+      if (inner) return resolve_inside(*inner, rest, at, reader, depth);
+      if (flat_block >= 0) return resolve_port(flat_block, rest, at, reader, depth);
+      return unresolved(at);  // already told
+    }
     std::vector<std::string> names;
     for (const BlockEntry& entry : scope.diagram->blocks) names.push_back(entry.name);
     return fail(at, reader, fmt::format("there is no block \"{}{}\"", scope.prefix, head), names,
@@ -359,7 +363,6 @@ class Flattener {
   std::shared_ptr<BlockValues> values_ = std::make_shared<BlockValues>();
   std::deque<Scope> scopes_;
   std::vector<Scope*> scope_of_block_;
-  std::vector<std::pair<const Scope*, std::string>> broken_;
   std::unordered_set<std::string> told_;
 };
 

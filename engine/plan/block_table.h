@@ -1,0 +1,46 @@
+/// The blocks of one diagram by name.
+#pragma once
+#include <bit>
+#include <cstdint>
+#include <functional>
+#include <string_view>
+#include <vector>
+#include "engine/diagram/diagram.h"
+
+namespace loopwright {
+
+/// A slot is a block and what its name's hash begins with, eight bytes in all: of a hundred thousand blocks
+/// the table still fits into a cache, and names are compared where they stand anyway.
+class BlockTable {
+ public:
+  explicit BlockTable(const std::vector<BlockEntry>& blocks)
+      : blocks_(blocks), slots_(std::bit_ceil(2 * blocks.size() + 1)) {}
+
+  void add(size_t block) {
+    const std::string_view name = blocks_[block].name;
+    slots_[slot_of(name)] = {hash_of(name), int32_t(block)};
+  }
+  /// Its index in the diagram; -1: there is none.
+  int find(std::string_view name) const { return slots_[slot_of(name)].block; }
+
+ private:
+  struct Slot {
+    uint32_t hash = 0;
+    int32_t block = -1;  // none
+  };
+  static uint32_t hash_of(std::string_view name) { return uint32_t(std::hash<std::string_view>()(name)); }
+  /// Where the name stands, or would stand.
+  size_t slot_of(std::string_view name) const {
+    const uint32_t hash = hash_of(name);
+    for (size_t i = hash;; ++i) {
+      const Slot& slot = slots_[i & (slots_.size() - 1)];
+      if (slot.block < 0 || (slot.hash == hash && blocks_[size_t(slot.block)].name == name))
+        return i & (slots_.size() - 1);
+    }
+  }
+
+  const std::vector<BlockEntry>& blocks_;
+  std::vector<Slot> slots_;  // a power of two, of which half are free
+};
+
+}  // namespace loopwright
