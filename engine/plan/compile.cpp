@@ -3,6 +3,7 @@
 #include <charconv>
 #include <span>
 #include "engine/diagram/json.h"
+#include "engine/plan/layout.h"
 #include "engine/plan/order.h"
 #include "engine/plan/shapes.h"
 #include "engine/plan/times.h"
@@ -32,9 +33,11 @@ Rate rate_of_number(const Plan& plan, Number number, const std::vector<Rate>& ra
 void add_log(const FlatDiagram& flat, const Layout& layout, const PortUnits& units, Plan& plan,
              Problems& problems) {
   std::vector<std::string> names;
+  std::vector<Number> numbers;
   for (const FlatLog& log : flat.log) {
     if (!log.wire.is_resolved()) continue;
-    const auto numbers = layout.numbers_of(log.wire);
+    numbers.clear();
+    layout.append_numbers(log.wire, numbers);
     const auto& unit = units.of(log.wire.block, log.wire.output);
     for (size_t i = 0; i < numbers.size(); ++i) {
       Plan::Logged logged;
@@ -73,17 +76,19 @@ void add_rates_to_log(Plan& plan) {
 }
 
 /// Who computes each number, and in which unit.
-void add_sources(const PortUnits& units, const std::vector<int>& flat_of_block, Plan& plan) {
+void add_sources(const PortUnits& units, const std::vector<int>& flat_of_block, Plan& plan,
+                 Plan::Lists& lists) {
+  lists.output_units.reserve(lists.outputs.size());  // the blocks point into it while it grows
   plan.sources.assign(size_t(plan.signals + plan.states), {-1, -1});
   for (size_t b = 0; b < plan.blocks.size(); ++b) {
     Plan::Block& block = plan.blocks[b];
-    block.output_units.reserve(block.outputs.size());
     for (size_t o = 0; o < block.outputs.size(); ++o) {
       const int length =
           block.type->info.outputs[o].shape == PortInfo::Shape::vector ? block.output_lengths[o] : 1;
       for (int i = 0; i < length; ++i) plan.sources[size_t(block.outputs[o] + i)] = {int(b), int(o)};
-      block.output_units.push_back(flat_of_block[b] < 0 ? std::nullopt : units.of(flat_of_block[b], int(o)));
+      lists.output_units.push_back(flat_of_block[b] < 0 ? std::nullopt : units.of(flat_of_block[b], int(o)));
     }
+    block.output_units = std::span(lists.output_units).last(block.outputs.size());
   }
 }
 
@@ -91,11 +96,13 @@ void add_sources(const PortUnits& units, const std::vector<int>& flat_of_block, 
 /// compare and to build them all over memory takes the longer the more there are.
 class PortList {
  public:
-  void add(std::string_view path, std::string_view dot, std::string_view port,
-           std::span<const Number> numbers) {
-    ports_.push_back({text_.size(), path.size() + dot.size() + port.size(), numbers_.size(), numbers.size()});
+  explicit PortList(const Layout& layout) : layout_(layout) {}
+
+  void add(std::string_view path, std::string_view dot, std::string_view port, const FlatWire& wire) {
+    const size_t first = numbers_.size();
+    layout_.append_numbers(wire, numbers_);
+    ports_.push_back({text_.size(), path.size() + dot.size() + port.size(), first, numbers_.size() - first});
     text_.append(path).append(dot).append(port);
-    numbers_.insert(numbers_.end(), numbers.begin(), numbers.end());
   }
   /// The ports since the last end are neighbours in the order of names: so many letters at their beginning
   /// are the same, and tell where they stand among the others.
@@ -106,17 +113,19 @@ class PortList {
                      [this](const Port& a, const Port& b) { return name(a) < name(b); });
     groups_.push_back({first, ports_.size(), ports_[first].name, same_letters});
   }
-  std::vector<std::pair<std::string, std::vector<Number>>> sorted() {
+  std::vector<Plan::Port> sorted(Plan::Lists& lists) {
     std::ranges::stable_sort(groups_, {}, [this](const Group& group) {
       return std::string_view(text_).substr(group.name, group.same_letters);
     });
-    std::vector<std::pair<std::string, std::vector<Number>>> list;
+    lists.port_names = std::move(text_), lists.port_numbers = std::move(numbers_);
+    const std::string_view names = lists.port_names;
+    const std::span<const Number> numbers = lists.port_numbers;
+    std::vector<Plan::Port> list;
     list.reserve(ports_.size());
     for (const Group& group : groups_)
-      for (size_t p = group.first; p < group.end; ++p) {
-        const auto first = numbers_.begin() + ptrdiff_t(ports_[p].first_number);
-        list.emplace_back(name(ports_[p]), std::vector<Number>(first, first + ptrdiff_t(ports_[p].numbers)));
-      }
+      for (size_t p = group.first; p < group.end; ++p)
+        list.push_back({names.substr(ports_[p].name, ports_[p].name_length),
+                        numbers.subspan(ports_[p].first_number, ports_[p].numbers)});
     return list;
   }
 
@@ -133,6 +142,7 @@ class PortList {
     return std::string_view(text_).substr(port.name, port.name_length);
   }
 
+  const Layout& layout_;
   std::string text_;
   std::vector<Number> numbers_;
   std::vector<Port> ports_;
@@ -140,26 +150,26 @@ class PortList {
 };
 
 /// Outputs and inputs of blocks and subdiagrams by full path.
-void add_ports(const FlatDiagram& flat, const Layout& layout, Plan& plan) {
-  PortList list;
+void add_ports(const FlatDiagram& flat, const Layout& layout, Plan& plan, Plan::Lists& lists) {
+  PortList list(layout);
   for (size_t b = 0; b < flat.blocks.size(); ++b) {
     const FlatBlock& block = flat.blocks[b];
     const BlockInfo& info = block.type->info;
     FlatWire own;
     own.block = int(b);
     for (own.output = 0; own.output < int(info.outputs.size()); ++own.output)
-      list.add(block.path, ".", info.outputs[size_t(own.output)].name, layout.numbers_of(own));
+      list.add(block.path, ".", info.outputs[size_t(own.output)].name, own);
     for (size_t i = 0; i < info.inputs.size(); ++i)
       if (block.inputs[i].size() == 1 && block.inputs[i][0].is_resolved())
-        list.add(block.path, ".", info.inputs[i].name, layout.numbers_of(block.inputs[i][0]));
+        list.add(block.path, ".", info.inputs[i].name, block.inputs[i][0]);
     list.end_group(block.path.size() + 1);
   }
   for (const FlatName& name : flat.names)
     if (name.wire.is_resolved()) {
-      list.add(name.name, "", "", layout.numbers_of(name.wire));
+      list.add(name.name, "", "", name.wire);
       list.end_group(name.name.size());
     }
-  plan.ports = list.sorted();
+  plan.ports = list.sorted(lists);
 }
 
 void add_crossings(Plan& plan) {
@@ -234,15 +244,17 @@ std::shared_ptr<const Plan> compile(const Diagram& diagram, Problems& problems) 
     find_times(diagram, flat, {}, *plan, problems);
     return nullptr;
   }
-  const Layout layout(flat, *plan);
+  const auto lists = std::make_shared<Plan::Lists>();
+  plan->lists = lists;
+  const Layout layout(flat, *plan, *lists);
   std::vector<int> flat_of_block;
   for (size_t f = 0; f < flat.blocks.size(); ++f)
     flat_of_block.insert(flat_of_block.end(), size_t(flat.blocks[f].width), int(f));
   flat_of_block.resize(plan->blocks.size(), -1);
   find_times(diagram, flat, flat_of_block, *plan, problems);
-  add_sources(units, flat_of_block, *plan);
+  add_sources(units, flat_of_block, *plan, *lists);
   add_log(flat, layout, units, *plan, problems);
-  add_ports(flat, layout, *plan);
+  add_ports(flat, layout, *plan, *lists);
   for (size_t b = 0; b < plan->blocks.size(); ++b)
     plan->block_of_state.insert(plan->block_of_state.end(), size_t(plan->blocks[b].states), int(b));
   find_order(*plan, diagram.solver.algebraic_loops.value == "solve", problems);
@@ -273,15 +285,15 @@ std::shared_ptr<const Plan> load_plan(const std::string& path, const LoadOptions
 std::vector<Number> Plan::find(std::string_view port) const {
   const size_t bracket = port.find('[');
   const std::string_view name = port.substr(0, bracket);
-  const auto found =
-      std::ranges::lower_bound(ports, name, {}, [](const auto& p) { return std::string_view(p.first); });
-  if (found == ports.end() || found->first != name) return {};
-  if (bracket == port.npos) return found->second;
+  const auto found = std::ranges::lower_bound(ports, name, {}, &Port::name);
+  if (found == ports.end() || found->name != name) return {};
+  const auto numbers = found->numbers;
+  if (bracket == port.npos) return {numbers.begin(), numbers.end()};
   const char *first = port.data() + bracket + 1, *last = port.data() + port.size() - 1;
   size_t index = 0;
   const auto [end, code] = std::from_chars(first, last, index);
-  if (code != std::errc() || end != last || *last != ']' || index >= found->second.size()) return {};
-  return {found->second[index]};
+  if (code != std::errc() || end != last || *last != ']' || index >= numbers.size()) return {};
+  return {numbers[index]};
 }
 
 std::pair<int, int> Plan::source_of(Number number) const {

@@ -26,22 +26,32 @@ struct Rate {
 };
 
 struct Plan {
+  /// What blocks and ports point into: list after list. Thousands of small vectors would lie all over memory.
+  struct Lists {
+    std::vector<Number> inputs, outputs;               ///< of all blocks
+    std::vector<std::span<const Number>> input_ports;  ///< of all blocks, in the inputs
+    std::vector<int> output_lengths, buffer_lengths;   ///< of all blocks
+    std::vector<std::optional<Unit>> output_units;     ///< of all blocks
+    std::string port_names;
+    std::vector<Number> port_numbers;
+  };
+
   /// One block on scalars; a block wired with vectors of n elements stands n times.
   struct Block {
     std::string path;  ///< "stage.friction", "gain[2]"
     const BlockType* type = nullptr;
-    std::shared_ptr<const void> value;        ///< the scalar block with the parameters of the file
-    Place place;                              ///< of its name in the file
-    int64_t period = 0, offset = 0;           ///< ticks; period 0: not sampled
-    double sample_time = 0;                   ///< s; 0: not sampled
-    std::vector<std::vector<Number>> inputs;  ///< a port each
-    std::vector<Number> outputs;              ///< first number of each port
-    std::vector<int> output_lengths;
-    std::vector<std::optional<Unit>> output_units;  ///< nothing: could not be worked out
+    std::shared_ptr<const void> value;                ///< the scalar block with the parameters of the file
+    Place place;                                      ///< of its name in the file
+    int64_t period = 0, offset = 0;                   ///< ticks; period 0: not sampled
+    double sample_time = 0;                           ///< s; 0: not sampled
+    std::span<const std::span<const Number>> inputs;  ///< a port each
+    std::span<const Number> outputs;                  ///< first number of each port
+    std::span<const int> output_lengths;
+    std::span<const std::optional<Unit>> output_units;  ///< nothing: could not be worked out
     int first_state = 0, states = 0;
     int first_crossing = 0;
     int first_buffer = 0;  ///< in numbers from the start of the buffers
-    std::vector<int> buffer_lengths;
+    std::span<const int> buffer_lengths;
   };
 
   /// One entry of the order: a group of outputs of a block, its decision, or a ring to be solved.
@@ -76,7 +86,14 @@ struct Plan {
     Rate rate;
   };
 
+  /// A port of a block or a subdiagram under its full path.
+  struct Port {
+    std::string_view name;
+    std::span<const Number> numbers;
+  };
+
   std::string title;
+  std::shared_ptr<const Lists> lists;  ///< shared by copies of the plan
   std::vector<Block> blocks;
   std::vector<Entry> order;  ///< every output and decision, sorted once
   std::vector<Ring> rings;
@@ -107,8 +124,8 @@ struct Plan {
   std::string name_of(Number number) const;
   /// Which block and output computes a number; {-1, -1} for a constant.
   std::pair<int, int> source_of(Number number) const;
-  std::vector<std::pair<int, int>> sources;                        ///< block and output of every number
-  std::vector<std::pair<std::string, std::vector<Number>>> ports;  ///< every port by path, sorted by name
+  std::vector<std::pair<int, int>> sources;  ///< block and output of every number
+  std::vector<Port> ports;                   ///< sorted by name
 };
 
 /// Compiles a loaded diagram. Null when there are errors (all of them are in `problems`).

@@ -18,7 +18,7 @@ std::optional<Number> find_port(const Plan& plan, const std::string& port,
                                              : fmt::format("\"{}\" has {} elements: name one, \"{}[0]\"",
                                                            port, numbers.size(), port));
     std::vector<std::string> names;
-    for (const auto& [name, list] : plan.ports) names.push_back(name);
+    for (const Plan::Port& known : plan.ports) names.emplace_back(known.name);
     if (numbers.empty()) KnownNames(names).explain(p, port);
     return {};
   }

@@ -27,7 +27,7 @@ Number number_of_role(const Experiment& experiment, const Plan& plan, std::strin
                            fmt::format("the role \"{}\" names no single signal", role));
   p.found = *port;
   std::vector<std::string> names;
-  for (const auto& [name, list] : plan.ports) names.push_back(name);
+  for (const Plan::Port& known : plan.ports) names.emplace_back(known.name);
   const std::string near = nearest_name(*port, names);
   if (!near.empty()) p.hint = "did you mean \"" + near + "\"?";
   return -1;

@@ -78,7 +78,7 @@ std::vector<PortNumber> find_port(const Plan& plan, const std::string& port, Pro
   if (bracket != port.npos) std::erase_if(found, [&](const PortNumber& p) { return p.name != port; });
   if (!found.empty()) return found;
   KnownNames names;
-  for (const auto& known : plan.ports) names.add(known.first);
+  for (const Plan::Port& known : plan.ports) names.add(std::string(known.name));
   names.explain(problems.error({}, "", "", fmt::format("there is no port \"{}\"", port)), port);
   return {};
 }

@@ -51,7 +51,7 @@ Observed observe(const Sweep& sweep, const Plan& plan, Problems& problems) {
                                          : fmt::format("\"{}\" is a vector of {}", port, numbers.size()));
       if (!numbers.empty()) p.hint = fmt::format("name one element, as in \"{}[0]\"", port);
       KnownNames known;
-      for (const auto& [name, all] : plan.ports) known.add(name);
+      for (const Plan::Port& other : plan.ports) known.add(std::string(other.name));
       if (numbers.empty()) known.explain(p, port);
     }
     if (metric.is_time()) unit = parse_unit("s");
