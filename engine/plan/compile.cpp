@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <charconv>
 #include <span>
-#include "engine/diagram/json.h"
 #include "engine/plan/layout.h"
 #include "engine/plan/order.h"
 #include "engine/plan/shapes.h"
@@ -191,26 +190,6 @@ void add_crossings(Plan& plan) {
   }
 }
 
-/// Effective parameters: every setting as evaluated, and the defaults of what was left out.
-void add_parameters(const Diagram& diagram, const FlatDiagram& flat, Plan& plan) {
-  size_t count = diagram.parameters.size();
-  for (const FlatBlock& block : flat.blocks) count += block.type->info.parameters.size();
-  plan.parameters.reserve(count);
-  for (const Parameter& parameter : diagram.parameters)
-    plan.parameters.emplace_back(
-        parameter.name,
-        to_json(parameter.value) + (parameter.value.unit ? " " + to_string(*parameter.value.unit) : ""));
-  for (const FlatBlock& block : flat.blocks)
-    for (const ParameterInfo& info : block.type->info.parameters) {
-      const Value::Member* given = block.entry->settings.find(info.name);
-      std::string text = given ? to_json(given->value) : info.default_text;
-      if (!info.unit.empty() && info.unit.find('$') == info.unit.npos) text.append(" ").append(info.unit);
-      auto& entry = plan.parameters.emplace_back(std::string{}, std::move(text));
-      entry.first.reserve(block.path.size() + 1 + info.name.size());
-      entry.first.append(block.path).append(".").append(info.name);
-    }
-}
-
 std::string hash_of(const Plan& plan) {
   ContentHash hash;
   const auto add = [&](const auto& number) {
@@ -261,7 +240,7 @@ std::shared_ptr<const Plan> compile(const Diagram& diagram, Problems& problems) 
   if (problems.has_errors()) return nullptr;
   add_crossings(*plan);
   add_rates_to_log(*plan);
-  add_parameters(diagram, flat, *plan);
+  plan->parameters = std::move(flat.settings.effective);
   plan->hash = hash_of(*plan);
   for (const Problem& problem : problems.list()) plan->warnings.push_back(problem);
   return plan;

@@ -51,6 +51,7 @@ class Flattener {
 
   FlatDiagram run(const Diagram& diagram) {
     flat_.blocks.reserve(diagram.blocks.size());
+    flat_.settings.add(diagram.parameters);
     Scope& top = add_scope(diagram, "", nullptr, nullptr);
     for (size_t i = 0; i < scopes_.size(); ++i) wire_blocks(scopes_[i]);  // the deque does not grow any more
     for (size_t i = 0; i < scopes_.size(); ++i) check_subdiagram_wires(scopes_[i]);
@@ -92,6 +93,7 @@ class Flattener {
     flat.type->info.read(flat.value.get(), entry.settings, flat.path, problems_);
     if (problems_.list().size() == before)
       flat.type->info.check(flat.value.get(), Checker(entry.settings, flat.path, problems_));
+    flat_.settings.add(int(flat_.blocks.size()), *flat.type, entry, flat.path);
     flat.inputs.resize(flat.type->info.inputs.size());
     flat.output_lengths.assign(flat.type->info.outputs.size(), 1);
     flat_.blocks.push_back(std::move(flat));

@@ -3,6 +3,7 @@
 #include <memory_resource>
 #include "engine/block/registry.h"
 #include "engine/diagram/diagram.h"
+#include "engine/plan/settings.h"
 
 namespace loopwright {
 
@@ -43,6 +44,7 @@ struct FlatDiagram {
   std::unique_ptr<std::pmr::monotonic_buffer_resource> memory =
       std::make_unique<std::pmr::monotonic_buffer_resource>();
   std::vector<FlatBlock> blocks;
+  Settings settings;  ///< of the blocks, in their order
   std::vector<FlatLog> log;
   std::vector<FlatName> names;  ///< those of blocks are plain: path.port
 };

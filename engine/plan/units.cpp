@@ -134,14 +134,12 @@ class Solver {
     }
     variables_.resize(variables);
   }
-  /// Where no subdiagram declares a unit, and no list holds numbers with units.
+  /// Where no subdiagram declares a unit.
   size_t most_equations() const {
     size_t count = 0;
-    for (const FlatBlock& block : flat_.blocks) {
+    for (const FlatBlock& block : flat_.blocks)
       for (const auto& wires : block.inputs) count += wires.size();
-      count += block.entry->settings.members.size();
-    }
-    return count;
+    return count + flat_.settings.with_units.size();
   }
   size_t variable_of(int block, const UnitFactor& factor) const {
     return first_variable_[size_t(block)] + size_t(factor.variable);
@@ -161,30 +159,22 @@ class Solver {
                               &wire.at->place,
                               nullptr});
       }
-    for (const ParameterInfo& parameter : info.parameters)
-      if (const Value::Member* member = block.entry->settings.find(parameter.name))
-        add_parameter(b, parameter, member->value);
+    const auto& numbers = flat_.settings.with_units;
+    for (; next_number_ < numbers.size() && numbers[next_number_].block == b; ++next_number_)
+      add_number(numbers[next_number_]);
+  }
+
+  void add_number(const NumberWithUnit& number) {
+    equations_.push_back(
+        {{number.block, &types_of_blocks_[size_t(number.block)]->of(*number.info), number.name},
+         {-1, constant(*number.value->unit), number.value->text},
+         &number.value->place,
+         nullptr});
   }
 
   End output_end(const FlatWire& wire) const {
     const PortInfo& output = flat_.blocks[size_t(wire.block)].type->info.outputs[size_t(wire.output)];
     return {wire.block, &types_of_blocks_[size_t(wire.block)]->of_output(size_t(wire.output)), output.name};
-  }
-
-  void add_parameter(int b, const ParameterInfo& info, const Value& value) {
-    add_parameter(b, info, info.name, value);
-  }
-  void add_parameter(int b, const ParameterInfo& info, std::string_view name, const Value& value) {
-    if (value.kind == Value::Kind::number && value.unit)
-      equations_.push_back({{b, &types_of_blocks_[size_t(b)]->of(info), name},
-                            {-1, constant(*value.unit), value.text},
-                            &value.place,
-                            nullptr});
-    if (!info.element.empty())
-      for (const Value& item : value.items) add_parameter(b, info.element[0], name, item);
-    for (const Value::Member& member : value.members)
-      for (const ParameterInfo& field : info.fields)
-        if (field.name == member.name) add_parameter(b, field, member.value);
   }
 
   /// Inputs and outputs that subdiagrams declare with a unit.
@@ -307,6 +297,7 @@ class Solver {
   std::deque<std::string> declared_paths_;
   std::unordered_map<std::string_view, const FlatWire*> declared_;
   std::vector<Equation> equations_;
+  size_t next_number_ = 0;                      // of those with units, whose block comes next
   std::vector<size_t> first_variable_;          // of each block
   std::vector<std::optional<Unit>> variables_;  // of all blocks
   Groups readers_;                              // of each variable; equations
