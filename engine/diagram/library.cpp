@@ -27,11 +27,23 @@ const DiagramFile& DiagramLibrary::open(const std::string& path, const Place& re
   file.source = read_source(path, reference, problems_);
   if (!file.source) return file;
   names_.push_back(path);
-  Problems syntax;
-  Value root = parse_json(file.source, syntax);
-  for (const Problem& problem : syntax.list()) problems_.add(problem);
-  if (!syntax.has_errors()) file.root = in_current_version(std::move(root));
+  read(file);
   return file;
+}
+
+void DiagramLibrary::read(DiagramFile& file) {
+  auto tokens = read_tokens(file.source, problems_);
+  if (!tokens) return;
+  Value root = tokens->value_without_members("blocks");
+  const auto version = version_of(root);
+  if (!version) return;
+  if (*version == current_version) {
+    file.root = std::move(root), file.tokens = std::move(tokens);
+    return;
+  }
+  file.root = tokens->value(0);
+  for (auto v = static_cast<size_t>(*version); v < current_version; ++v)
+    file.root = migrations[v - 1](std::move(file.root));
 }
 
 const std::string& DiagramLibrary::identity(const std::string& path) {
@@ -44,8 +56,8 @@ const std::string& DiagramLibrary::identity(const std::string& path) {
   return entry->second;
 }
 
-/// Null after a problem that makes the rest meaningless.
-Value DiagramLibrary::in_current_version(Value root) {
+/// The current one where none is told; nothing after a problem that makes the rest meaningless.
+std::optional<int> DiagramLibrary::version_of(const Value& root) {
   const Reader reader{problems_, {}};
   if (!reader.expect(root, Value::Kind::object, "the diagram", "an object: { \"loopwright\": 1, … }"))
     return {};
@@ -53,23 +65,19 @@ Value DiagramLibrary::in_current_version(Value root) {
   const Value::Member* version = root.find("loopwright");
   if (!version) {
     reader.error(root, "the key \"loopwright\" is missing: the version of the format").expected = expected;
-    return root;
+    return current_version;
   }
   const Value& number = version->value;
   if (!reader.expect(number, Value::Kind::number, "\"loopwright\"",
                      fmt::format("the number {}", current_version)))
-    return root;
+    return current_version;
   const bool is_known = number.whole && number.number >= 1 && number.number <= current_version;
-  if (!is_known) {
-    Problem& problem = reader.error(number, "the version of the format is not known");
-    problem.expected = expected;
-    problem.found = shown(number);
-    if (number.number > current_version) problem.hint = "a newer Loopwright wrote this file";
-    return {};
-  }
-  for (auto v = static_cast<size_t>(number.number); v < current_version; ++v)
-    root = migrations[v - 1](std::move(root));
-  return root;
+  if (is_known) return static_cast<int>(number.number);
+  Problem& problem = reader.error(number, "the version of the format is not known");
+  problem.expected = expected;
+  problem.found = shown(number);
+  if (number.number > current_version) problem.hint = "a newer Loopwright wrote this file";
+  return {};
 }
 
 }  // namespace loopwright

@@ -1,9 +1,12 @@
 /// The diagram files of one load, each read once, however many blocks name it.
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
+#include "engine/diagram/block_list.h"
+#include "engine/diagram/json_tokens.h"
 #include "engine/diagram/problem.h"
 #include "engine/diagram/value.h"
 
@@ -11,7 +14,10 @@ namespace loopwright {
 
 struct DiagramFile {
   std::shared_ptr<const SourceFile> source;  ///< null: cannot be read
-  Value root;                                ///< no object: has errors, which are reported
+  std::optional<JsonTokens> tokens;          ///< nothing: has errors, or is of an older version
+  Value root;  ///< no object: has errors, which are reported; where there are tokens, it lacks the blocks
+
+  BlockList blocks() const { return tokens ? BlockList(*tokens) : BlockList(root.find("blocks")); }
 };
 
 class DiagramLibrary {
@@ -26,7 +32,8 @@ class DiagramLibrary {
   std::vector<std::string> take_names() { return std::move(names_); }
 
  private:
-  Value in_current_version(Value root);
+  void read(DiagramFile& file);
+  std::optional<int> version_of(const Value& root);
 
   Problems& problems_;
   std::unordered_map<std::string, DiagramFile> files_;       // by identity

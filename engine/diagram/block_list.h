@@ -1,0 +1,47 @@
+/// The blocks as a diagram's file has them.
+#pragma once
+#include "engine/diagram/json_tokens.h"
+#include "engine/diagram/value.h"
+
+namespace loopwright {
+
+/// Their values are there already, or made one by one and given back when they are read: those of a large
+/// diagram at once would not fit into the caches.
+class BlockList {
+ public:
+  /// Of the object "blocks"; null: it is absent.
+  explicit BlockList(const Value::Member* blocks) : values_(blocks ? &blocks->value : nullptr) {}
+  explicit BlockList(const JsonTokens& tokens)
+      : tokens_(&tokens), token_(tokens.find("blocks").value_or(0)) {}
+
+  size_t size() const { return tokens_ ? object().values : values_ ? values_->members.size() : 0; }
+
+  /// Calls read(member) for every block until it answers false.
+  template <class Read> void each(Read&& read) const {
+    if (tokens_) {
+      for (size_t i = token_ + 1; i < end(); i = tokens_->list[i].next)
+        if (!read(tokens_->member(i))) return;
+    } else if (values_) {
+      for (const Value::Member& member : values_->members)
+        if (!read(member)) return;
+    }
+  }
+  /// Calls read(name) for every block.
+  template <class Read> void each_name(Read&& read) const {
+    if (tokens_)
+      for (size_t i = token_ + 1; i < end(); i = tokens_->list[i].next)
+        read(tokens_->text(tokens_->list[i].name));
+    else if (values_)
+      for (const Value::Member& member : values_->members) read(std::string_view(member.name));
+  }
+
+ private:
+  const JsonToken& object() const { return tokens_->list[token_]; }
+  size_t end() const { return token_ == 0 ? 0 : object().next; }
+
+  const Value* values_ = nullptr;
+  const JsonTokens* tokens_ = nullptr;
+  size_t token_ = 0;  // of the object "blocks"; 0: it is absent
+};
+
+}  // namespace loopwright
