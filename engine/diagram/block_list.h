@@ -14,12 +14,15 @@ class BlockList {
   explicit BlockList(const JsonTokens& tokens)
       : tokens_(&tokens), token_(tokens.find("blocks").value_or(0)) {}
 
-  size_t size() const { return tokens_ ? object().values : values_ ? values_->members.size() : 0; }
+  size_t size() const {
+    if (tokens_) return is_there() ? inside().values : 0;
+    return values_ ? values_->members.size() : 0;
+  }
 
   /// Calls read(member) for every block until it answers false.
   template <class Read> void each(Read&& read) const {
     if (tokens_) {
-      for (size_t i = token_ + 1; i < end(); i = tokens_->list[i].next)
+      for (size_t i = token_ + 1; i < end(); i = tokens_->after(i))
         if (!read(tokens_->member(i))) return;
     } else if (values_) {
       for (const Value::Member& member : values_->members)
@@ -29,15 +32,16 @@ class BlockList {
   /// Calls read(name) for every block.
   template <class Read> void each_name(Read&& read) const {
     if (tokens_)
-      for (size_t i = token_ + 1; i < end(); i = tokens_->list[i].next)
+      for (size_t i = token_ + 1; i < end(); i = tokens_->after(i))
         read(tokens_->text(tokens_->list[i].name));
     else if (values_)
       for (const Value::Member& member : values_->members) read(std::string_view(member.name));
   }
 
  private:
-  const JsonToken& object() const { return tokens_->list[token_]; }
-  size_t end() const { return token_ == 0 ? 0 : object().next; }
+  bool is_there() const { return token_ > 0 && tokens_->list[token_].kind == Value::Kind::object; }
+  const JsonToken::Inside& inside() const { return tokens_->list[token_].inside; }
+  size_t end() const { return is_there() ? inside().end : 0; }
 
   const Value* values_ = nullptr;
   const JsonTokens* tokens_ = nullptr;

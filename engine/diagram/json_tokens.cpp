@@ -61,7 +61,7 @@ class Tokenizer {
     return true;
   }
   bool end_object() {
-    reject_duplicates(list_[open_.back()]);
+    reject_duplicates(open_.back());
     return close();
   }
   bool end_array() { return close(); }
@@ -102,7 +102,7 @@ class Tokenizer {
     for (size_t i = 0; i < open_.size(); ++i) {
       const bool is_last = i + 1 == open_.size();
       if (list_[open_[i]].kind == Value::Kind::list)
-        pointer += fmt::format("/{}", list_[open_[i]].values);
+        pointer += fmt::format("/{}", list_[open_[i]].inside.values);
       else if (!is_last)
         pointer += pointer_token(tokens_.text(list_[open_[i + 1]].name));
       else if (awaited_ == Awaited::colon)
@@ -126,7 +126,9 @@ class Tokenizer {
   }
 
   bool open(Value::Kind kind, Awaited awaited) {
-    const Place place = place_of(begin(kind));
+    JsonToken& token = begin(kind);
+    token.inside = {};
+    const Place place = place_of(token);
     ++cursor_;
     awaited_ = awaited;
     if (open_.size() == deepest_nesting) {
@@ -142,11 +144,11 @@ class Tokenizer {
     ++cursor_;
     JsonToken& closed = list_[open_.back()];
     open_.pop_back();
+    closed.inside.end = static_cast<uint32_t>(list_.size());
     return end(closed);
   }
 
   bool end(JsonToken& token) {
-    token.next = static_cast<uint32_t>(list_.size());
     if (memory_ > largest_memory) {
       problems_.error(place_of(token), place_of(token).pointer(), {},
                       "the file holds too many values to fit into 512 MB of memory");
@@ -157,36 +159,36 @@ class Tokenizer {
       return true;
     }
     JsonToken& around = list_[open_.back()];
-    ++around.values;
+    ++around.inside.values;
     awaited_ = around.kind == Value::Kind::list ? Awaited::comma_in_list : Awaited::comma_in_object;
     return true;
   }
 
-  bool has_duplicates(const JsonToken& object) const {
-    const size_t first = tokens_.first_in(object);
-    for (size_t i = first; i < list_.size(); i = list_[i].next)
-      for (size_t j = first; j < i; j = list_[j].next)
+  bool has_duplicates(size_t object) const {
+    for (size_t i = object + 1; i < list_.size(); i = tokens_.after(i))
+      for (size_t j = object + 1; j < i; j = tokens_.after(j))
         if (tokens_.text(list_[j].name) == tokens_.text(list_[i].name)) return true;
     return false;
   }
   /// No two names share a hash: then none is there twice. Numbers in a row are sooner sorted than a table is
   /// filled.
-  bool have_own_hashes(const JsonToken& object) const {
+  bool have_own_hashes(size_t object) const {
     std::vector<size_t> hashes;
-    hashes.reserve(object.values);
-    for (size_t i = tokens_.first_in(object); i < list_.size(); i = list_[i].next)
+    hashes.reserve(list_[object].inside.values);
+    for (size_t i = object + 1; i < list_.size(); i = tokens_.after(i))
       hashes.push_back(std::hash<std::string_view>()(tokens_.text(list_[i].name)));
     std::ranges::sort(hashes);
     return std::ranges::adjacent_find(hashes) == hashes.end();
   }
 
   /// At the end of the object, whose values are the last in the list.
-  void reject_duplicates(const JsonToken& object) {
+  void reject_duplicates(size_t object) {
     constexpr size_t few = 8;  // sooner compared each with each
-    if (object.values <= few ? !has_duplicates(object) : have_own_hashes(object)) return;
+    const size_t values = list_[object].inside.values;
+    if (values <= few ? !has_duplicates(object) : have_own_hashes(object)) return;
     std::unordered_map<std::string_view, const JsonToken*> first;
-    first.reserve(object.values);
-    for (size_t i = tokens_.first_in(object); i < list_.size(); i = list_[i].next) {
+    first.reserve(values);
+    for (size_t i = object + 1; i < list_.size(); i = tokens_.after(i)) {
       const std::string_view name = tokens_.text(list_[i].name);
       const auto [found, is_new] = first.try_emplace(name, &list_[i]);
       if (is_new || ++duplicates_ > most_duplicates) continue;
@@ -202,11 +204,11 @@ class Tokenizer {
   std::string_view text_;
   Problems& problems_;
   JsonTokens& tokens_;
-  std::vector<JsonToken>& list_;
+  std::deque<JsonToken>& list_;
   size_t cursor_ = 0;
   Awaited awaited_ = Awaited::value;
   std::vector<size_t> open_;  // brackets, outer ones first
-  JsonToken::Piece name_;     // of the member whose value comes next
+  JsonToken::Piece name_{};   // of the member whose value comes next
   uint32_t name_offset_ = 0;
   size_t memory_ = 0;
   int duplicates_ = 0;
@@ -237,25 +239,25 @@ bool reject_text(const std::shared_ptr<const SourceFile>& file, Problems& proble
 
 Value JsonTokens::value(size_t token) const {
   Value value;
-  make(list[token], value, {});
+  make(token, value, {});
   return value;
 }
 
 Value JsonTokens::value_without_members(std::string_view left_out) const {
   Value value;
-  make(list[0], value, left_out);
+  make(0, value, left_out);
   return value;
 }
 
 Value::Member JsonTokens::member(size_t token) const {
   Value::Member member;
-  make(list[token], member);
+  make(token, member);
   return member;
 }
 
 std::optional<size_t> JsonTokens::find(std::string_view name) const {
   if (list[0].kind == Value::Kind::object)
-    for (size_t i = 1; i < list.size(); i = list[i].next)
+    for (size_t i = 1; i < list.size(); i = after(i))
       if (text(list[i].name) == name) return i;
   return {};
 }
@@ -266,37 +268,46 @@ std::string_view JsonTokens::text(const JsonToken::Piece& piece) const {
                             : std::string_view(unescaped).substr(piece.at - in_file, piece.size);
 }
 
-void JsonTokens::make(const JsonToken& token, Value::Member& member) const {
-  member.name = text(token.name);
-  member.place = {file, token.name_offset};
-  make(token, member.value, {});
+void JsonTokens::make(size_t at, Value::Member& member) const {
+  member.name = text(list[at].name);
+  member.place = {file, list[at].name_offset};
+  make(at, member.value, {});
 }
 
-void JsonTokens::make(const JsonToken& token, Value& value, std::string_view left_out) const {
+void JsonTokens::make(size_t at, Value& value, std::string_view left_out) const {
+  const JsonToken& token = list[at];
   value.kind = token.kind;
   value.place = {file, token.offset};
-  value.boolean = token.boolean;
-  value.whole = token.whole;
-  value.number = token.number;
-  if (token.kind == Value::Kind::text) value.text = text(token.text);
-  if (token.kind == Value::Kind::list) {
-    value.items.reserve(token.values);
-    for (size_t i = first_in(token); i < token.next; i = list[i].next)
-      make(list[i], value.items.emplace_back(), {});
-  }
-  if (token.kind == Value::Kind::object) {
-    value.members.reserve(token.values);
-    for (size_t i = first_in(token); i < token.next; i = list[i].next) {
-      Value::Member& member = value.members.emplace_back();
-      const bool is_left_out = !left_out.empty() && text(list[i].name) == left_out;
-      if (is_left_out && list[i].kind == Value::Kind::object) {
-        member = {std::string(left_out), {file, list[i].name_offset}, {}};
-        member.value.kind = Value::Kind::object;
-        member.value.place = {file, list[i].offset};
-      } else {
-        make(list[i], member);
+  switch (token.kind) {
+    case Value::Kind::null:
+      break;
+    case Value::Kind::boolean:
+      value.boolean = token.boolean;
+      break;
+    case Value::Kind::number:
+      value.number = token.number, value.whole = token.whole;
+      break;
+    case Value::Kind::text:
+      value.text = text(token.text);
+      break;
+    case Value::Kind::list:
+      value.items.reserve(token.inside.values);
+      for (size_t i = at + 1; i < token.inside.end; i = after(i)) make(i, value.items.emplace_back(), {});
+      break;
+    case Value::Kind::object:
+      value.members.reserve(token.inside.values);
+      for (size_t i = at + 1; i < token.inside.end; i = after(i)) {
+        Value::Member& member = value.members.emplace_back();
+        if (list[i].kind == Value::Kind::object && !left_out.empty() && text(list[i].name) == left_out) {
+          member.name = left_out;
+          member.place = {file, list[i].name_offset};
+          member.value.kind = Value::Kind::object;
+          member.value.place = {file, list[i].offset};
+        } else {
+          make(i, member);
+        }
       }
-    }
+      break;
   }
 }
 
