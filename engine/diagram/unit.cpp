@@ -328,6 +328,7 @@ Unit operator*(const Unit& a, const Unit& b) {
 }
 
 Unit power(const Unit& a, double exponent) {
+  if (exponent == 1) return a;
   Unit result{std::pow(a.scale, exponent), {}};
   for (size_t i = 0; i < result.exponents.size(); ++i)
     result.exponents[i] = exact_exponent(a.exponents[i] * exponent);

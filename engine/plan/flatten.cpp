@@ -51,6 +51,7 @@ class Flattener {
 
   FlatDiagram run(const Diagram& diagram) {
     flat_.blocks.reserve(diagram.blocks.size());
+    flat_.settings.effective.reserve(diagram.parameters.size() + 2 * diagram.blocks.size());
     flat_.settings.add(diagram.parameters);
     Scope& top = add_scope(diagram, "", nullptr, nullptr);
     for (size_t i = 0; i < scopes_.size(); ++i) wire_blocks(scopes_[i]);  // the deque does not grow any more

@@ -97,6 +97,11 @@ struct Equation {
   const std::string* declared;  // the path of a subdiagram's port, if that is its left end
   bool is_wire() const { return left.block >= 0 && right.block >= 0; }
   bool is_parameter() const { return left.block >= 0 && right.block < 0; }
+  /// Nothing to be solved, and nothing wrong.
+  bool is_settled() const {
+    return left.expression->factors.empty() && right.expression->factors.empty() &&
+           left.expression->constant.same_dimension(right.expression->constant);
+  }
 };
 
 class Solver {
@@ -104,7 +109,6 @@ class Solver {
   Solver(const FlatDiagram& flat, const Diagram& diagram, Problems& problems)
       : flat_(flat), problems_(problems) {
     number_variables();
-    equations_.reserve(most_equations());
     for (size_t b = 0; b < flat.blocks.size(); ++b) add_block(int(b));
     add_declarations(diagram, "");
     readers_ = Groups(variables_.size(), [this](const auto& tell) { each_occurrence(tell); });
@@ -134,13 +138,6 @@ class Solver {
     }
     variables_.resize(variables);
   }
-  /// Where no subdiagram declares a unit.
-  size_t most_equations() const {
-    size_t count = 0;
-    for (const FlatBlock& block : flat_.blocks)
-      for (const auto& wires : block.inputs) count += wires.size();
-    return count + flat_.settings.with_units.size();
-  }
   size_t variable_of(int block, const UnitFactor& factor) const {
     return first_variable_[size_t(block)] + size_t(factor.variable);
   }
@@ -154,22 +151,30 @@ class Solver {
     for (size_t i = 0; i < info.inputs.size(); ++i)
       for (const FlatWire& wire : block.inputs[i]) {
         if (!wire.is_resolved() || info.inputs[i].unit == any_unit) continue;
-        equations_.push_back({{b, &types_of_blocks_[size_t(b)]->of_input(i), info.inputs[i].name},
-                              output_end(wire),
-                              &wire.at->place,
-                              nullptr});
+        add_equation({{b, &types_of_blocks_[size_t(b)]->of_input(i), info.inputs[i].name},
+                      output_end(wire),
+                      &wire.at->place,
+                      nullptr});
       }
     const auto& numbers = flat_.settings.with_units;
     for (; next_number_ < numbers.size() && numbers[next_number_].block == b; ++next_number_)
       add_number(numbers[next_number_]);
   }
 
+  /// Most of them are settled already; they would only fill memory.
+  void add_equation(const Equation& equation) {
+    if (!equation.is_settled()) equations_.push_back(equation);
+  }
+
   void add_number(const NumberWithUnit& number) {
-    equations_.push_back(
-        {{number.block, &types_of_blocks_[size_t(number.block)]->of(*number.info), number.name},
-         {-1, constant(*number.value->unit), number.value->text},
-         &number.value->place,
-         nullptr});
+    const UnitExpression unit{*number.value->unit, {}};
+    Equation equation{{number.block, &types_of_blocks_[size_t(number.block)]->of(*number.info), number.name},
+                      {-1, &unit, number.value->text},
+                      &number.value->place,
+                      nullptr};
+    if (equation.is_settled()) return;
+    equation.right.expression = &constants_.emplace_back(unit);
+    equations_.push_back(equation);
   }
 
   End output_end(const FlatWire& wire) const {
