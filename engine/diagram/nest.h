@@ -26,7 +26,7 @@ struct Nest {
   DiagramLibrary library{problems};
   std::vector<std::string> opened{};      // the files being read, outermost first
   std::vector<std::string> identities{};  // of the same
-  size_t block_count = 0;  // of all diagrams
+  size_t block_count = 0;                 // of all diagrams
 
   std::shared_ptr<Diagram> load(const std::string& path, const Place& reference, Instance instance);
   /// A diagram that stands in the file at `path` where others name a file.
