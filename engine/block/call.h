@@ -27,8 +27,7 @@ template <class Real> struct Stage {
   const double* weight;    ///< [s] how far to go along the slope
 };
 
-/// One call of one method of one block. A lane group is `registers` arenas, `stride` Reals apart; block[r]
-/// acts on the r-th.
+/// One call of one method of one block, in one arena.
 template <class Real> struct Call {
   uint64_t (*step)(const Call&) = nullptr;  ///< lanes that faulted; for a jump: lanes whose state changed
   const void* block = nullptr;
@@ -38,9 +37,9 @@ template <class Real> struct Call {
   const Port<Real>* buffers = nullptr;
   const Stage<Real>* stage = nullptr;
   const Instant* now = nullptr;
-  FaultReport* report = nullptr;  ///< of the first lane; the others follow
-  int index = 0, registers = 1, states = 0;
-  ptrdiff_t stride = 0;
+  FaultReport* report = nullptr;  ///< of the first lane of the run; the others follow
+  int index = 0, states = 0;
+  int first_lane = 0;  ///< of the arena
 };
 template <class Real> using Step = uint64_t (*)(const Call<Real>&);
 
@@ -52,23 +51,22 @@ template <class Real> struct Kernels {
   void (*copy)(void* to, const void* scalar_block);  ///< parameters of the scalar block into every lane
   Real* (*tunable)(void* block, std::string_view path);
   void (*prepare)(void* block, const Setup& setup);
-  void (*start)(const void* block, Real* state, void* memory, const Port<Real>* buffers, ptrdiff_t at,
-                void* mode);
+  void (*start)(const void* block, Real* state, void* memory, const Port<Real>* buffers, void* mode);
   Step<Real> outputs[8];
   Step<Real> derivatives, to_next_stage, to_next_step, update, accept, decide, jump, crossings;
 };
 
-// What becomes of the slope of the i-th state of a block, at i in the arena of its register.
+// What becomes of the slope of the i-th state of a block.
 
 /// The slope is kept, and nothing else.
 struct KeepSlope {
-  template <class Real> LW_INLINE static void take(const Call<Real>& c, ptrdiff_t i, const Real& slope) {
+  template <class Real> LW_INLINE static void take(const Call<Real>& c, int i, const Real& slope) {
     c.rate[i] = by_register(slope);
   }
 };
 /// x = x₀ + weight · slope.
 struct ToNextStage {
-  template <class Real> LW_INLINE static void take(const Call<Real>& c, ptrdiff_t i, const Real& slope) {
+  template <class Real> LW_INLINE static void take(const Call<Real>& c, int i, const Real& slope) {
     const Stage<Real>& stage = *c.stage;
     c.rate[i] = by_register(slope);
     stage.next[i] = by_register(stage.start[i] + Real(*stage.weight) * slope);
@@ -76,7 +74,7 @@ struct ToNextStage {
 };
 /// x = x₀ + weight · (k₁ + 2 k₂ + 2 k₃ + slope).
 struct ToNextStep {
-  template <class Real> LW_INLINE static void take(const Call<Real>& c, ptrdiff_t i, const Real& slope) {
+  template <class Real> LW_INLINE static void take(const Call<Real>& c, int i, const Real& slope) {
     const Stage<Real>& stage = *c.stage;
     const auto& k = stage.earlier;
     stage.next[i] =

@@ -32,9 +32,8 @@ template <class Real> using Vector = std::span<Real>;
 template <class Real> struct Many {
   const Real* const* wire = nullptr;
   int count = 0;
-  ptrdiff_t at = 0;
   LW_INLINE int size() const { return count; }
-  LW_INLINE const Real& operator[](int i) const { return wire[i][at]; }
+  LW_INLINE const Real& operator[](int i) const { return *wire[i]; }
 };
 
 /// What a method may answer: `return fault_if(in.x <= 0.0, "the logarithm of …");` stops those lanes, others

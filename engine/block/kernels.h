@@ -6,25 +6,19 @@
 
 namespace loopwright {
 
-template <class R> LW_INLINE void attach(R& to, const Port<R>& w, ptrdiff_t at) {
-  to = by_register(w.data[at]);
+template <class R> LW_INLINE void attach(R& to, const Port<R>& w) { to = by_register(*w.data); }
+template <class R> LW_INLINE void attach(Vector<const R>& to, const Port<R>& w) {
+  to = {w.data, size_t(w.length)};
 }
-template <class R> LW_INLINE void attach(Vector<const R>& to, const Port<R>& w, ptrdiff_t at) {
-  to = {w.data + at, size_t(w.length)};
-}
-template <class R> LW_INLINE void attach(Vector<R>& to, const Port<R>& w, ptrdiff_t at) {
-  to = {w.data + at, size_t(w.length)};
-}
-template <class R> LW_INLINE void attach(Many<R>& to, const Port<R>& w, ptrdiff_t at) {
-  to = {w.many, w.length, at};
-}
+template <class R> LW_INLINE void attach(Vector<R>& to, const Port<R>& w) { to = {w.data, size_t(w.length)}; }
+template <class R> LW_INLINE void attach(Many<R>& to, const Port<R>& w) { to = {w.many, w.length}; }
 
 /// The inputs in the mask; any other scalar reads NaN, so that an undeclared feedthrough shows at once.
-template <class B, class Real> LW_INLINE In<B> gather(const Call<Real>& c, ptrdiff_t at, auto mask) {
+template <class B, class Real> LW_INLINE In<B> gather(const Call<Real>& c, auto mask) {
   In<B> in;
   for_each<B, is_input>([&](auto i, const auto& entry) {
     if constexpr ((mask() >> i) & 1)
-      attach(in.*entry.member, c.in[i], at);
+      attach(in.*entry.member, c.in[i]);
     else if constexpr (std::is_same_v<std::remove_cvref_t<decltype(in.*entry.member)>, Real>)
       in.*entry.member = Real(std::numeric_limits<double>::quiet_NaN());
   });
@@ -56,25 +50,23 @@ template <class Real, class T, class F> LW_INLINE void for_each_real(const T& re
   }
   (std::make_index_sequence<sizeof(T) / sizeof(Real)>{});
 }
-template <class B, class Real> LW_INLINE Memory<B>& stored_memory(const Call<Real>& c, ptrdiff_t at) {
-  return *reinterpret_cast<Memory<B>*>(static_cast<Real*>(c.memory) + at);
+template <class B, class Real> LW_INLINE Memory<B>& stored_memory(const Call<Real>& c) {
+  return *static_cast<Memory<B>*>(c.memory);
 }
-template <class B, class Real> LW_INLINE Mode<B>& stored_mode(const Call<Real>& c, ptrdiff_t at) {
-  return *reinterpret_cast<Mode<B>*>(static_cast<Real*>(c.mode) + at);
+template <class B, class Real> LW_INLINE Mode<B>& stored_mode(const Call<Real>& c) {
+  return *static_cast<Mode<B>*>(c.mode);
 }
 /// f(memory): in place, or on a copy with its buffers attached, so that the arena never holds a pointer.
-template <class B, class Real>
-LW_INLINE auto with_memory(const Call<Real>& c, ptrdiff_t at, bool writes, auto&& f) {
+template <class B, class Real> LW_INLINE auto with_memory(const Call<Real>& c, bool writes, auto&& f) {
   if constexpr (count_of<B, is_buffer> == 0) {
-    return f(stored_memory<B>(c, at));
+    return f(stored_memory<B>(c));
   } else {
-    Memory<B> memory = stored_memory<B>(c, at);
-    for_each<B, is_buffer>(
-        [&](auto i, const auto& entry) { attach(memory.*entry.member, c.buffers[i], at); });
+    Memory<B> memory = stored_memory<B>(c);
+    for_each<B, is_buffer>([&](auto i, const auto& entry) { attach(memory.*entry.member, c.buffers[i]); });
     const uint64_t answer = f(memory);
     if (writes) {
       for_each<B, is_buffer>([&](auto, const auto& entry) { memory.*entry.member = {}; });
-      stored_memory<B>(c, at) = memory;
+      stored_memory<B>(c) = memory;
     }
     return answer;
   }
@@ -121,64 +113,51 @@ LW_INLINE Fault invoke(Answer (B::*method)(Argument...) const, const B& block, c
   return fault.lanes;
 }
 
-/// f(block, offset of its arena) for each register of the group.
-template <class B, class Real> LW_INLINE uint64_t each_register(const Call<Real>& c, auto&& f) {
-  const B* block = static_cast<const B*>(c.block);
-  if constexpr (std::is_same_v<Real, double>) {
-    const Fault fault = f(*block, ptrdiff_t(0));
-    if (fault.lanes) [[unlikely]]
-      return report_fault(c.report, c.index, fault);
+/// f(block): the lanes that faulted, after their report.
+template <class B, class Real> LW_INLINE uint64_t guard(const Call<Real>& c, auto&& f) {
+  Fault fault = f(*static_cast<const B*>(c.block));
+  if (!fault.lanes) [[likely]]
     return 0;
-  } else {
-    uint64_t bad = 0;
-    for (int r = 0; r < c.registers; ++r) {
-      Fault fault = f(block[r], r * c.stride);
-      if (fault.lanes) [[unlikely]] {
-        fault.lanes <<= r * lanes_of<Real>;
-        bad |= report_fault(c.report, c.index, fault);
-      }
-    }
-    return bad;
-  }
+  fault.lanes <<= c.first_lane;
+  return report_fault(c.report, c.index, fault);
 }
 
 /// Flattened: what the method calls is inlined too, else inputs and outputs go through memory on their way.
 template <class B, class Real, int group> [[gnu::flatten]] uint64_t step_outputs(const Call<Real>& c) {
-  return each_register<B>(
-      c, [&](const B& block, ptrdiff_t at) __attribute__((always_inline)) {
-        const auto in = gather<B>(c, at, std::integral_constant<uint64_t, mask_of_group<B>(group)>{});
-        const auto& state = view_state(block, c.state + at);
+  return guard<B>(
+      c, [&](const B& block) __attribute__((always_inline)) {
+        const auto in = gather<B>(c, std::integral_constant<uint64_t, mask_of_group<B>(group)>{});
+        const auto& state = view_state(block, c.state);
         Fault fault;
         Out<B> out;
         for_each<B, is_output>([&](auto o, const auto& entry) {
           if constexpr (group_of_output<B>[o] >= 0)
             if constexpr (!std::is_same_v<std::remove_cvref_t<decltype(out.*entry.member)>, Real>)
-              attach(out.*entry.member, c.out[o], at);
+              attach(out.*entry.member, c.out[o]);
         });
         with_memory<B>(
-            c, at, false, [&](const Memory<B>& memory) __attribute__((always_inline)) {
-              fault = invoke(&B::outputs, block, *c.now, in, state, memory, stored_mode<B>(c, at), out);
+            c, false, [&](const Memory<B>& memory) __attribute__((always_inline)) {
+              fault = invoke(&B::outputs, block, *c.now, in, state, memory, stored_mode<B>(c), out);
               return uint64_t(0);
             });
         for_each<B, is_output>([&](auto o, const auto& entry) {
           if constexpr (group_of_output<B>[o] == group)
             if constexpr (std::is_same_v<std::remove_cvref_t<decltype(out.*entry.member)>, Real>)
-              c.out[o].data[at] = by_register(out.*entry.member);
+              *c.out[o].data = by_register(out.*entry.member);
         });
         return fault;
       });
 }
 template <class B, class Real, class After> [[gnu::flatten]] uint64_t step_derivatives(const Call<Real>& c) {
-  return each_register<B>(
-      c, [&](const B& block, ptrdiff_t at) __attribute__((always_inline)) {
-        const auto in = gather<B>(c, at, AllInputs{});
-        const auto& state = view_state(block, c.state + at);
+  return guard<B>(
+      c, [&](const B& block) __attribute__((always_inline)) {
+        const auto in = gather<B>(c, AllInputs{});
+        const auto& state = view_state(block, c.state);
         Fault fault;
         const auto derive = [&](auto& rate) __attribute__((always_inline)) {
           with_memory<B>(
-              c, at, false, [&](const Memory<B>& memory) __attribute__((always_inline)) {
-                fault =
-                    invoke(&B::derivatives, block, *c.now, in, state, memory, stored_mode<B>(c, at), rate);
+              c, false, [&](const Memory<B>& memory) __attribute__((always_inline)) {
+                fault = invoke(&B::derivatives, block, *c.now, in, state, memory, stored_mode<B>(c), rate);
                 return uint64_t(0);
               });
         };
@@ -187,39 +166,39 @@ template <class B, class Real, class After> [[gnu::flatten]] uint64_t step_deriv
           derive(rate);
           for_each_real<Real>(
               rate, [&](size_t i, const Real& slope)
-                        __attribute__((always_inline)) { After::take(c, at + ptrdiff_t(i), slope); });
+                        __attribute__((always_inline)) { After::take(c, int(i), slope); });
         } else {
-          auto rate = view_state(block, c.rate + at);
+          auto rate = view_state(block, c.rate);
           derive(rate);
-          for (ptrdiff_t i = at; i < at + c.states; ++i) After::take(c, i, c.rate[i]);
+          for (int i = 0; i < c.states; ++i) After::take(c, i, c.rate[i]);
         }
         return fault;
       });
 }
 /// update and accept: the next memory, from frozen inputs.
 template <class B, class Real, auto method> uint64_t step_memory(const Call<Real>& c) {
-  return each_register<B>(
-      c, [&](const B& block, ptrdiff_t at) __attribute__((always_inline)) {
-        const auto in = gather<B>(c, at, AllInputs{});
-        const auto& state = view_state(block, c.state + at);
+  return guard<B>(
+      c, [&](const B& block) __attribute__((always_inline)) {
+        const auto in = gather<B>(c, AllInputs{});
+        const auto& state = view_state(block, c.state);
         Fault fault;
         with_memory<B>(
-            c, at, true, [&](Memory<B> & memory) __attribute__((always_inline)) {
-              fault = invoke(method, block, *c.now, in, state, memory, stored_mode<B>(c, at), memory);
+            c, true, [&](Memory<B> & memory) __attribute__((always_inline)) {
+              fault = invoke(method, block, *c.now, in, state, memory, stored_mode<B>(c), memory);
               return uint64_t(0);
             });
         return fault;
       });
 }
 template <class B, class Real> uint64_t step_decide(const Call<Real>& c) {
-  return each_register<B>(
-      c, [&](const B& block, ptrdiff_t at) __attribute__((always_inline)) {
-        const auto in = gather<B>(c, at, AllInputs{});
-        const auto& state = view_state(block, c.state + at);
+  return guard<B>(
+      c, [&](const B& block) __attribute__((always_inline)) {
+        const auto in = gather<B>(c, AllInputs{});
+        const auto& state = view_state(block, c.state);
         Fault fault;
         with_memory<B>(
-            c, at, false, [&](const Memory<B>& memory) __attribute__((always_inline)) {
-              auto& mode = stored_mode<B>(c, at);
+            c, false, [&](const Memory<B>& memory) __attribute__((always_inline)) {
+              auto& mode = stored_mode<B>(c);
               fault = invoke(&B::decide, block, *c.now, in, state, memory, mode, mode);
               return uint64_t(0);
             });
@@ -240,30 +219,25 @@ template <class Real, class T> uint64_t differing_lanes(const T& a, const T& b) 
 }
 /// The answer is not a fault but the lanes whose states changed: their signals must then be computed again.
 template <class B, class Real> uint64_t step_jump(const Call<Real>& c) {
-  const B* block = static_cast<const B*>(c.block);
-  uint64_t changed = 0;
-  for (int r = 0; r < c.registers; ++r) {
-    const ptrdiff_t at = r * c.stride;
-    const auto in = gather<B>(c, at, AllInputs{});
-    State<B>& state = view_state(block[r], c.state + at);
-    const State<B> before = state;
-    with_memory<B>(c, at, false, [&](const Memory<B>& memory) {
-      invoke(&B::jump, block[r], *c.now, in, before, memory, stored_mode<B>(c, at), state);
-      return uint64_t(0);
-    });
-    changed |= differing_lanes<Real>(before, state) << r * lanes_of<Real>;
-  }
-  return changed;
+  const B& block = *static_cast<const B*>(c.block);
+  const auto in = gather<B>(c, AllInputs{});
+  State<B>& state = view_state(block, c.state);
+  const State<B> before = state;
+  with_memory<B>(c, false, [&](const Memory<B>& memory) {
+    invoke(&B::jump, block, *c.now, in, before, memory, stored_mode<B>(c), state);
+    return uint64_t(0);
+  });
+  return differing_lanes<Real>(before, state) << c.first_lane;
 }
 template <class B, class Real> uint64_t step_crossings(const Call<Real>& c) {
-  return each_register<B>(
-      c, [&](const B& block, ptrdiff_t at) __attribute__((always_inline)) {
-        const auto in = gather<B>(c, at, AllInputs{});
-        const auto& state = view_state(block, c.state + at);
-        auto& crossings = *reinterpret_cast<Crossings<B>*>(c.crossing + at);
+  return guard<B>(
+      c, [&](const B& block) __attribute__((always_inline)) {
+        const auto in = gather<B>(c, AllInputs{});
+        const auto& state = view_state(block, c.state);
+        auto& crossings = *reinterpret_cast<Crossings<B>*>(c.crossing);
         Fault fault;
-        with_memory<B>(c, at, false, [&](const Memory<B>& memory) {
-          fault = invoke(&B::crossings, block, *c.now, in, state, memory, stored_mode<B>(c, at), crossings);
+        with_memory<B>(c, false, [&](const Memory<B>& memory) {
+          fault = invoke(&B::crossings, block, *c.now, in, state, memory, stored_mode<B>(c), crossings);
           return uint64_t(0);
         });
         return fault;
@@ -278,7 +252,7 @@ template <class B> void prepare_block(B& block, const Setup& setup) {
 }
 
 template <class B, class Real>
-void start_block(const void* p, Real* state_data, void* memory_data, const Port<Real>* buffers, ptrdiff_t at,
+void start_block(const void* p, Real* state_data, void* memory_data, const Port<Real>* buffers,
                  void* mode_data) {
   const B& block = *static_cast<const B*>(p);
   if constexpr (!std::is_same_v<State<B>, None>) {
@@ -288,7 +262,7 @@ void start_block(const void* p, Real* state_data, void* memory_data, const Port<
   }
   if constexpr (!std::is_same_v<Memory<B>, None>) {
     auto& stored = *new (memory_data) Memory<B>{};
-    for_each<B, is_buffer>([&](auto i, const auto& entry) { attach(stored.*entry.member, buffers[i], at); });
+    for_each<B, is_buffer>([&](auto i, const auto& entry) { attach(stored.*entry.member, buffers[i]); });
     if constexpr (requires { block.start(stored); }) block.start(stored);
     for_each<B, is_buffer>([&](auto, const auto& entry) { stored.*entry.member = {}; });
   }

@@ -15,7 +15,7 @@ template <class Real> class BlockInstance;
 /// One simulation: the block itself.
 template <> class BlockInstance<double> {
  public:
-  BlockInstance(const Plan::Block& block, int)
+  explicit BlockInstance(const Plan::Block& block)
       : kernels_(&block.type->kernels),
         memory_(static_cast<char*>(::operator new(kernels_->size, std::align_val_t(64))),
                 Destroy{kernels_->destroy}) {
@@ -29,7 +29,7 @@ template <> class BlockInstance<double> {
   double* tunable(std::string_view path, int) { return kernels_->tunable(memory_.get(), path); }
   void start(const Call<double>& call, const Setup& setup) {
     kernels_->prepare(memory_.get(), setup);
-    kernels_->start(memory_.get(), call.state, call.memory, call.buffers, 0, call.mode);
+    kernels_->start(memory_.get(), call.state, call.memory, call.buffers, call.mode);
   }
   Step<double> outputs(int group) const { return kernels_->outputs[group]; }
   Step<double> decide() const { return kernels_->decide; }

@@ -14,7 +14,7 @@ template <class Real> class LaneByLane {
  public:
   static constexpr int width = lanes_of<Real>;
 
-  LaneByLane(const Plan::Block& block, int registers)
+  explicit LaneByLane(const Plan::Block& block)
       : info_(block.type->info),
         kernels_(block.type->kernels),
         memory_stride_(whole(kernels_.memory_size, 64)),
@@ -22,8 +22,7 @@ template <class Real> class LaneByLane {
         rate_(state_.size()),
         mode_(whole(kernels_.mode_size, sizeof(double)) / sizeof(double)) {
     mode_.reserve(1);  // a block without modes binds a reference to their place all the same
-    for (int l = 0; l < width * registers; ++l)
-      lanes_.push_back(std::make_unique<BlockInstance<double>>(block, 1));
+    for (int l = 0; l < width; ++l) lanes_.push_back(std::make_unique<BlockInstance<double>>(block));
     for (const auto& wires : block.inputs) {
       const auto& values = in_values_.emplace_back(std::make_unique<double[]>(wires.size()));
       auto& places = in_places_.emplace_back();
@@ -50,7 +49,7 @@ template <class Real> class LaneByLane {
   double* tunable(std::string_view path, int lane) { return lanes_[size_t(lane)]->tunable(path, 0); }
 
   void start(const Call<Real>& call, const Setup& setup) {
-    for (int lane = 0; lane < width * call.registers; ++lane) {
+    for (int lane = 0; lane < width; ++lane) {
       Setup own = setup;
       own.run += lane;
       lanes_[size_t(lane)]->start(scalar_call(call, lane), own);
@@ -68,9 +67,7 @@ template <class Real> class LaneByLane {
   }
   template <class After> static uint64_t step_derivatives(const Call<Real>& call) {
     const uint64_t faults = step<&Kernels<double>::derivatives>(call);
-    for (int r = 0; r < call.registers; ++r)
-      for (int i = 0; i < call.states; ++i)
-        After::take(call, r * call.stride + i, call.rate[r * call.stride + i]);
+    for (int i = 0; i < call.states; ++i) After::take(call, i, call.rate[i]);
     return faults;
   }
 
@@ -83,57 +80,50 @@ template <class Real> class LaneByLane {
 
   uint64_t each_lane(const Call<Real>& call, Step<double> method) {
     uint64_t answer = 0;
-    for (int lane = 0; lane < width * call.registers; ++lane) {
-      if (call.report[lane].block >= 0) continue;  // nothing counts any more in a lane that has failed
+    for (int lane = 0; lane < width; ++lane) {
+      if (call.report[call.first_lane + lane].block >= 0)
+        continue;  // nothing counts any more in a lane that has failed
       take(call, lane);
-      answer |= uint64_t(method(scalar_call(call, lane)) != 0) << lane;
+      answer |= uint64_t(method(scalar_call(call, lane)) != 0) << (call.first_lane + lane);
       put(call, lane);
     }
     return answer;
   }
   Call<double> scalar_call(const Call<Real>& call, int lane) {
-    const ptrdiff_t at = lane / width * call.stride, l = lane % width;
     for (size_t b = 0; b < buffers_.size(); ++b) {
       buffers_[b].length = call.buffers[b].length;
-      buffers_[b].data = reinterpret_cast<double*>(call.buffers[b].data + at) + l * buffers_[b].length;
+      buffers_[b].data = reinterpret_cast<double*>(call.buffers[b].data) + lane * buffers_[b].length;
     }
     Call<double> scalar;
     scalar.block = lanes_[size_t(lane)]->block(), scalar.index = call.index, scalar.now = call.now;
-    scalar.report = call.report + lane;
+    scalar.report = call.report + call.first_lane + lane;
     scalar.in = in_.data(), scalar.out = out_.data(), scalar.buffers = buffers_.data();
     scalar.state = state_.data(), scalar.rate = rate_.data(), scalar.mode = mode_.data();
-    scalar.memory =
-        reinterpret_cast<char*>(static_cast<Real*>(call.memory) + at) + l * ptrdiff_t(memory_stride_);
+    scalar.memory = static_cast<char*>(call.memory) + lane * ptrdiff_t(memory_stride_);
     return scalar;
   }
 
   /// What the scalar block reads, from the lane.
-  void take(const Call<Real>& call, int number) {
-    const ptrdiff_t at = number / width * call.stride;
-    const int l = number % width;
+  void take(const Call<Real>& call, int l) {
     for (size_t p = 0; p < in_.size(); ++p)
       for (int i = 0; i < in_[p].length; ++i)
-        in_values_[p][size_t(i)] = lane(is_many(p) ? call.in[p].many[i][at] : call.in[p].data[at + i], l);
-    for (size_t i = 0; i < state_.size(); ++i) state_[i] = lane(call.state[ptrdiff_t(i) + at], l);
-    for (size_t i = 0; i < mode_.size(); ++i)
-      mode_[i] = lane(static_cast<const Real*>(call.mode)[ptrdiff_t(i) + at], l);
-    each_computed(call, at, [&](double& mine, Real& theirs) { mine = lane(theirs, l); });
+        in_values_[p][size_t(i)] = lane(is_many(p) ? *call.in[p].many[i] : call.in[p].data[i], l);
+    for (size_t i = 0; i < state_.size(); ++i) state_[i] = lane(call.state[i], l);
+    for (size_t i = 0; i < mode_.size(); ++i) mode_[i] = lane(static_cast<const Real*>(call.mode)[i], l);
+    each_computed(call, [&](double& mine, Real& theirs) { mine = lane(theirs, l); });
   }
   /// What it may have written, to the lane.
-  void put(const Call<Real>& call, int number) {
-    const ptrdiff_t at = number / width * call.stride;
-    const int l = number % width;
-    for (size_t i = 0; i < state_.size(); ++i) set_lane(call.state[ptrdiff_t(i) + at], l, state_[i]);
-    for (size_t i = 0; i < mode_.size(); ++i)
-      set_lane(static_cast<Real*>(call.mode)[ptrdiff_t(i) + at], l, mode_[i]);
-    each_computed(call, at, [&](double& mine, Real& theirs) { set_lane(theirs, l, mine); });
+  void put(const Call<Real>& call, int l) {
+    for (size_t i = 0; i < state_.size(); ++i) set_lane(call.state[i], l, state_[i]);
+    for (size_t i = 0; i < mode_.size(); ++i) set_lane(static_cast<Real*>(call.mode)[i], l, mode_[i]);
+    each_computed(call, [&](double& mine, Real& theirs) { set_lane(theirs, l, mine); });
   }
   /// Outputs that are not states, and rates: what one method writes the others must find again.
-  template <class F> void each_computed(const Call<Real>& call, ptrdiff_t at, F&& f) {
+  template <class F> void each_computed(const Call<Real>& call, F&& f) {
     for (size_t p = 0; p < out_.size(); ++p)
       for (int i = 0; i < out_[p].length && info_.outputs[p].group >= 0; ++i)
-        f(out_values_[p][size_t(i)], call.out[p].data[at + i]);
-    for (size_t i = 0; i < rate_.size(); ++i) f(rate_[i], call.rate[ptrdiff_t(i) + at]);
+        f(out_values_[p][size_t(i)], call.out[p].data[i]);
+    for (size_t i = 0; i < rate_.size(); ++i) f(rate_[i], call.rate[i]);
   }
 
   const BlockInfo& info_;
@@ -159,7 +149,7 @@ template <class Real> class OnceForAll {
       : kernels_(block.type->kernels),
         lane_kernels_(lane_kernels),
         lanes_(lanes),
-        scalar_(block, 1),
+        scalar_(block),
         mode_(kernels_.mode_size / sizeof(double) + 1) {
     for (const int length : block.output_lengths) {
       Port<double> port{};
@@ -201,12 +191,11 @@ template <class Real> class OnceForAll {
     }
     FaultReport report;
     const uint64_t fault = once(scalar_call(call, report));
-    for (int r = 0; r < call.registers; ++r)
-      for (size_t p = 0; p < out_.size(); ++p)
-        for (int i = 0; i < out_[p].length; ++i) call.out[p].data[r * call.stride + i] = out_[p].data[i];
+    for (size_t p = 0; p < out_.size(); ++p)
+      for (int i = 0; i < out_[p].length; ++i) call.out[p].data[i] = out_[p].data[i];
     if (!fault) [[likely]]
       return 0;
-    const uint64_t all = ~uint64_t(0) >> (64 - lanes_of<Real> * call.registers);
+    const uint64_t all = (~uint64_t(0) >> (64 - lanes_of<Real>)) << call.first_lane;
     return report_fault(call.report, call.index, {all, report.reason});
   }
 
@@ -220,30 +209,28 @@ template <class Real> class OnceForAll {
   bool lanes_part_ = false, is_once_ = false;
 };
 
-/// A block of the plan for a group of lanes.
+/// A block of the plan for the lanes of an arena.
 template <class Real> class BlockInstance {
  public:
   static constexpr int width = lanes_of<Real>;
 
-  BlockInstance(const Plan::Block& block, int registers) {
+  explicit BlockInstance(const Plan::Block& block) {
     const auto found = lane_kernels<Real>().find(block.type->info.type);
     if (found == lane_kernels<Real>().end()) {
-      lane_by_lane_ = std::make_unique<LaneByLane<Real>>(block, registers);
+      lane_by_lane_ = std::make_unique<LaneByLane<Real>>(block);
       return;
     }
     kernels_ = &found->second;
-    const size_t bytes = kernels_->size * size_t(registers);
-    blocks_ = {static_cast<char*>(::operator new(bytes, std::align_val_t(64))), Destroy{kernels_, registers}};
-    for (int r = 0; r < registers; ++r) {
-      kernels_->construct(at(r));
-      kernels_->copy(at(r), block.value.get());
-    }
+    block_ = {static_cast<char*>(::operator new(kernels_->size, std::align_val_t(64))),
+              Destroy{kernels_->destroy}};
+    kernels_->construct(block_.get());
+    kernels_->copy(block_.get(), block.value.get());
     if (OnceForAll<Real>::suits(block))
-      once_for_all_ = std::make_unique<OnceForAll<Real>>(block, *kernels_, blocks_.get());
+      once_for_all_ = std::make_unique<OnceForAll<Real>>(block, *kernels_, block_.get());
   }
   void* block() {
     if (once_for_all_) return once_for_all_.get();
-    return kernels_ ? static_cast<void*>(blocks_.get()) : lane_by_lane_.get();
+    return kernels_ ? static_cast<void*>(block_.get()) : lane_by_lane_.get();
   }
   bool is_lane_wise() const { return kernels_ != nullptr; }
   size_t memory_bytes() const { return kernels_ ? kernels_->memory_size : lane_by_lane_->memory_bytes(); }
@@ -251,21 +238,15 @@ template <class Real> class BlockInstance {
   /// A tunable number of one lane; null: no such, or structural.
   double* tunable(std::string_view path, int lane) {
     if (!kernels_) return lane_by_lane_->tunable(path, lane);
-    Real* found = kernels_->tunable(at(lane / width), path);
+    Real* found = kernels_->tunable(block_.get(), path);
     if (found && once_for_all_) once_for_all_->part();
-    return found ? reinterpret_cast<double*>(found) + lane % width : nullptr;
+    return found ? reinterpret_cast<double*>(found) + lane : nullptr;
   }
   void start(const Call<Real>& call, const Setup& setup) {
     if (!kernels_) return lane_by_lane_->start(call, setup);
     if (once_for_all_) once_for_all_->start(call, setup);
-    for (int r = 0; r < call.registers; ++r) {
-      Setup own = setup;
-      own.run += r * width;
-      const ptrdiff_t offset = r * call.stride;
-      kernels_->prepare(at(r), own);
-      kernels_->start(at(r), call.state + offset, static_cast<Real*>(call.memory) + offset, call.buffers,
-                      offset, static_cast<Real*>(call.mode) + offset);
-    }
+    kernels_->prepare(block_.get(), setup);
+    kernels_->start(block_.get(), call.state, call.memory, call.buffers, call.mode);
   }
   Step<Real> outputs(int group) const {
     static constexpr auto by_group = []<int... g>(std::integer_sequence<int, g...>) {
@@ -292,7 +273,6 @@ template <class Real> class BlockInstance {
   Step<Real> crossings() const { return nullptr; }
 
  private:
-  void* at(int r) { return blocks_.get() + size_t(r) * kernels_->size; }
   template <Step<Real> Kernels<Real>::*own, Step<double> Kernels<double>::*scalar> Step<Real> step() const {
     if (kernels_) return kernels_->*own;
     return lane_by_lane_->template has<scalar>() ? &LaneByLane<Real>::template step<scalar> : nullptr;
@@ -302,15 +282,14 @@ template <class Real> class BlockInstance {
     return derivatives() ? &LaneByLane<Real>::template step_derivatives<After> : nullptr;
   }
   struct Destroy {
-    const Kernels<Real>* kernels = nullptr;
-    int registers = 0;
+    void (*destroy)(void*) = nullptr;
     void operator()(char* p) const {
-      for (int r = 0; r < registers; ++r) kernels->destroy(p + size_t(r) * kernels->size);
+      destroy(p);
       ::operator delete(p, std::align_val_t(64));
     }
   };
   const Kernels<Real>* kernels_ = nullptr;  // null: lane by lane
-  std::unique_ptr<char, Destroy> blocks_;   // one a register, side by side
+  std::unique_ptr<char, Destroy> block_;
   std::unique_ptr<LaneByLane<Real>> lane_by_lane_;
   std::unique_ptr<OnceForAll<Real>> once_for_all_;  // beside the lane kernels
 };

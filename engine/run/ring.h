@@ -14,14 +14,14 @@ namespace loopwright {
 /// its own.
 template <class Real> class RingSolver {
  public:
-  void build(std::vector<Call<Real>> calls, Real* numbers, const std::vector<Number>& tears, int registers,
-             ptrdiff_t stride) {
+  /// `numbers`: of the arena.
+  void build(std::vector<Call<Real>> calls, Real* numbers, const std::vector<Number>& tears, int first_lane) {
     calls_ = std::move(calls);
-    faults_.resize(size_t(registers * width));
+    first_lane_ = first_lane;
+    faults_.resize(size_t(first_lane + width));
     for (Call<Real>& call : calls_) call.report = faults_.data();
     for (Number n : tears) tears_.push_back(numbers + n);
-    stride_ = stride;
-    y_.resize(tears_.size() * faults_.size());
+    y_.resize(tears_.size() * width);
     newton_ =
         std::make_unique<NewtonSolver>(NewtonOptions{}, AlgebraicSystem{this, int(tears_.size()), &residual});
   }
@@ -31,23 +31,23 @@ template <class Real> class RingSolver {
     const uint64_t unsolved = ring.solve();
     constexpr const char* reason =
         "the ring of direct feedthrough that it stands in has no solution that Newton's method can find";
-    return unsolved ? report_fault(call.report, call.index, {unsolved, reason}) : 0;
+    return unsolved ? report_fault(call.report, call.index, {unsolved << call.first_lane, reason}) : 0;
   }
 
  private:
   static constexpr int width = lanes_of<Real>;
 
-  Real& tear(size_t i) { return tears_[i][lane_ / width * stride_]; }
+  Real& tear(size_t i) { return *tears_[i]; }
   std::span<double> guess() { return {&y_[size_t(lane_) * tears_.size()], tears_.size()}; }
   template <class F> void each_lane(F&& f) {
-    for (lane_ = 0; lane_ < int(faults_.size()); ++lane_) f();
+    for (lane_ = 0; lane_ < width; ++lane_) f();
   }
 
   /// The lanes without a solution; in the others the tears and all that hangs on them hold it.
   uint64_t solve() {
     each_lane([&] {
       for (size_t i = 0; i < tears_.size(); ++i) {
-        const double last = lane(tear(i), lane_ % width);
+        const double last = lane(tear(i), lane_);
         guess()[i] = std::isfinite(last) ? last : 0.0;
       }
     });
@@ -67,23 +67,22 @@ template <class Real> class RingSolver {
     return bad;
   }
   void take(const double* y) {
-    for (size_t i = 0; i < tears_.size(); ++i) set_lane(tear(i), lane_ % width, y[i]);
+    for (size_t i = 0; i < tears_.size(); ++i) set_lane(tear(i), lane_, y[i]);
   }
   static bool residual(void* self, const double* y, double* r) {
     auto& ring = *static_cast<RingSolver*>(self);
     ring.take(y);
     const uint64_t bad = ring.evaluate();
-    for (size_t i = 0; i < ring.tears_.size(); ++i) r[i] = lane(ring.tear(i), ring.lane_ % width) - y[i];
-    return !(bad >> ring.lane_ & 1);
+    for (size_t i = 0; i < ring.tears_.size(); ++i) r[i] = lane(ring.tear(i), ring.lane_) - y[i];
+    return !(bad >> (ring.first_lane_ + ring.lane_) & 1);
   }
 
   std::vector<Call<Real>> calls_;
-  std::vector<Real*> tears_;  // in the first register
-  ptrdiff_t stride_ = 0;      // from register to register
-  std::vector<FaultReport> faults_;
-  std::vector<double> y_;  // by lane
+  std::vector<Real*> tears_;
+  std::vector<FaultReport> faults_;  // of all lanes up to the last
+  std::vector<double> y_;            // by lane of the arena
   std::unique_ptr<NewtonSolver> newton_;
-  int lane_ = 0;
+  int first_lane_ = 0, lane_ = 0;
 };
 
 }  // namespace loopwright

@@ -32,8 +32,8 @@ template <class Real> class Run {
  public:
   static constexpr int width = lanes_of<Real>;  ///< simulations in one register
 
-  /// The plan must outlive the run. `registers` arenas stand side by side.
-  explicit Run(const Plan& plan, int registers = 1);
+  /// The plan must outlive the run. `arenas` of `width` simulations stand side by side.
+  explicit Run(const Plan& plan, int arenas = 1);
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
 
@@ -92,14 +92,14 @@ template <class Real> class Run {
   /// The next discontinuity in time that a block declares, strictly after `time`.
   double next_stop(double time) const;
 
-  const Real& number(Number n, int lane_register = 0) const { return numbers_[n + lane_register * stride_]; }
-  /// Where the parameters, ports, states, memory and mode of a block lie; it has no step.
-  const Call<Real>& call(int block) const { return base_[size_t(block)]; }
+  const Real& number(Number n, int arena = 0) const { return numbers_[n + arena * stride_]; }
+  /// Where the parameters, ports, states, memory and mode of a block lie in the first arena; it has no step.
+  const Call<Real>& call(int block) const { return base_[0][size_t(block)]; }
   std::span<Real> states() { return {numbers_ + plan_.signals, size_t(plan_.states)}; }
   const Instant& now() const { return now_; }
   const Plan& plan() const { return plan_; }
   /// Whether a block runs on the lanes of Real at once, not lane by lane.
-  bool is_lane_wise(int block) const { return instances_[size_t(block)].is_lane_wise(); }
+  bool is_lane_wise(int block) const { return instances_[0][size_t(block)].is_lane_wise(); }
   uint64_t failed() const { return failed_; }  ///< lanes in which a block faulted
   const FaultReport& fault(int lane = 0) const { return reports_[size_t(lane)]; }
   /// Every mutable number: copying it is snapshot, checkpoint and return.
@@ -122,9 +122,13 @@ template <class Real> class Run {
   };
 
   void lay_out();
-  template <class Wanted> std::vector<Call<Real>> connect(Wires& wires, Real* states, Wanted&& wanted);
+  template <class Wanted>
+  std::vector<Call<Real>> connect(size_t arena, Wires& wires, Real* states, Wanted&& wanted);
   void schedule();
+  void schedule_arena(const std::vector<Call<Real>>& base);
+  template <class T> void take_turns(std::vector<T>& calls) const;
   void schedule_stages();
+  void schedule_stage(size_t stage, size_t stages, std::vector<Call<Real>> base);
   std::vector<bool> blocks_in_stages() const;
   Call<Real> slope_call(Call<Real> call, size_t stage, bool is_last);
   void forget_faults() {
@@ -142,15 +146,16 @@ template <class Real> class Run {
     failed_ |= bad;
   }
   template <class F> LW_INLINE void each_state(F&& f) {
-    for (int r = 0; r < registers_; ++r)
-      for (int i = 0; i < plan_.states; ++i) f(r * stride_ + i);
+    for (int a = 0; a < arenas_; ++a)
+      for (int i = 0; i < plan_.states; ++i) f(a * stride_ + i);
   }
+  Instant after(double h) const { return {now_.time + h, now_.tick}; }
   void euler(double h);
   void heun(double h);
   void rk4(double h);
 
   const Plan& plan_;
-  const int registers_;
+  const int arenas_;
   ptrdiff_t stride_ = 0;
   size_t bytes_ = 0;
   std::unique_ptr<char, FreeArena> arena_;
@@ -158,19 +163,20 @@ template <class Real> class Run {
   std::vector<size_t> memory_at_, mode_at_;  // bytes from the start of the arena
   size_t evaluated_ = 0;                     // Reals from the start of the arena that an evaluation may write
   std::vector<double> kept_;                 // those of the lanes that did not jump
-  std::vector<BlockInstance<Real>> instances_;
-  Wires wires_;
-  std::vector<Call<Real>> base_;  // a block each, without a step
+  std::vector<std::vector<BlockInstance<Real>>> instances_;  // in each arena, as all that follow
+  std::vector<Wires> wires_;
+  std::vector<std::vector<Call<Real>>> base_;  // a block each, without a step
   std::vector<std::unique_ptr<RingSolver<Real>>> rings_;
-  std::vector<Call<Real>> constants_, between_, stage_, for_events_, held_, accepts_, jumps_, crossings_;
-  std::vector<Call<Real>> slopes_;
+  std::vector<Call<Real>> constants_, between_, stage_, for_events_, held_, accepts_, jumps_, crossings_,
+      slopes_;
   // Of fixed-step methods, for each stage; see run_stages.h.
   std::array<Real*, 4> slope_{};    // kept to the end of the step: summed up on the way they would cost more
   std::array<Real*, 2> stage_x_{};  // states of the second and fourth stage, of the third
-  std::array<Wires, 2> stage_wires_;
+  std::vector<std::array<Wires, 2>> stage_wires_;
   std::array<double, 4> weight_{};  // [s] how far to go along the slope
+  std::array<Instant, 4> stage_now_;
   std::vector<Stage<Real>> stage_of_;
-  std::array<std::vector<Call<Real>>, 4> stages_;
+  std::vector<Call<Real>> stages_;
   CallsByRate<Real> outputs_, updates_;
   std::vector<std::pair<const void*, double (*)(const void*, double)>> stops_;
   Instant now_;

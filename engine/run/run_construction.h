@@ -5,37 +5,40 @@
 namespace loopwright {
 
 template <class Real>
-Run<Real>::Run(const Plan& plan, int registers)
-    : plan_(plan), registers_(registers), reports_(size_t(registers * width)) {
+Run<Real>::Run(const Plan& plan, int arenas)
+    : plan_(plan), arenas_(arenas), wires_(size_t(arenas)), reports_(size_t(arenas * width)) {
   lay_out();
-  base_ = connect(wires_, x_, [](size_t) { return true; });
+  for (size_t a = 0; a < wires_.size(); ++a)
+    base_.push_back(connect(a, wires_[a], x_, [](size_t) { return true; }));
   schedule();
   if (is_fixed_step(plan.method) && plan.states > 0) schedule_stages();
   reset({plan.seed, 0});
 }
 
-/// signals | x | modes | slopes | x of stages | crossings | buffers | memories, in every register's arena.
+/// signals | x | modes | slopes | x of stages | crossings | buffers | memories, in every arena.
 template <class Real> void Run<Real>::lay_out() {
   const size_t align = std::max<size_t>(64, sizeof(Real));
   const auto reals = [](size_t bytes) { return (bytes + sizeof(Real) - 1) / sizeof(Real); };
   const size_t states = size_t(plan_.states);
   size_t end = size_t(plan_.signals) + states;  // in Reals
-  for (const Plan::Block& block : plan_.blocks) {
-    instances_.emplace_back(block, registers_);
+  instances_.resize(size_t(arenas_));
+  for (auto& instances : instances_)
+    for (const Plan::Block& block : plan_.blocks) instances.emplace_back(block);
+  for (const BlockInstance<Real>& instance : instances_[0]) {
     mode_at_.push_back(end * sizeof(Real));
-    end += reals(instances_.back().mode_bytes());
+    end += reals(instance.mode_bytes());
   }
   evaluated_ = end;
   const size_t slopes = end, stages = slopes + slope_.size() * states,
                crossings = stages + stage_x_.size() * states, buffers = crossings + plan_.crossings.size();
   end = buffers + size_t(plan_.buffer_numbers);
-  for (const BlockInstance<Real>& instance : instances_) {
+  for (const BlockInstance<Real>& instance : instances_[0]) {
     memory_at_.push_back(end * sizeof(Real));
     end += reals(instance.memory_bytes());
   }
   const size_t bytes = (end * sizeof(Real) + align - 1) / align * align;
   stride_ = ptrdiff_t(bytes / sizeof(Real));
-  bytes_ = bytes * size_t(registers_);
+  bytes_ = bytes * size_t(arenas_);
   arena_.reset(static_cast<char*>(::operator new(std::max(bytes_, align), std::align_val_t(64))));
   std::memset(arena_.get(), 0, bytes_);
   numbers_ = reinterpret_cast<Real*>(arena_.get());
@@ -45,10 +48,11 @@ template <class Real> void Run<Real>::lay_out() {
   crossing_ = numbers_ + crossings, buffers_ = numbers_ + buffers;
 }
 
-/// Calls of the blocks that are wanted, which read their own states and those of others at `states`.
+/// Calls of the blocks that are wanted, which read their own states and those of others at `states`, a place
+/// in the first arena.
 template <class Real>
 template <class Wanted>
-std::vector<Call<Real>> Run<Real>::connect(Wires& wires, Real* states, Wanted&& wanted) {
+std::vector<Call<Real>> Run<Real>::connect(size_t arena, Wires& wires, Real* states, Wanted&& wanted) {
   size_t ports = 0, many = 0;
   for (size_t b = 0; b < plan_.blocks.size(); ++b) {
     if (!wanted(b)) continue;
@@ -57,19 +61,23 @@ std::vector<Call<Real>> Run<Real>::connect(Wires& wires, Real* states, Wanted&& 
     for (const auto& port : block.inputs) many += port.size();
   }
   wires.ports.reserve(ports), wires.many.reserve(many);  // calls point into both
+  const ptrdiff_t offset = ptrdiff_t(arena) * stride_;
+  char* const bytes = arena_.get() + arena * bytes_ / size_t(arenas_);
+  states += offset;
   const auto place = [&](Number n) {
-    return n < plan_.signals ? numbers_ + n : states + (n - plan_.signals);
+    return n < plan_.signals ? numbers_ + offset + n : states + (n - plan_.signals);
   };
   std::vector<Call<Real>> calls(plan_.blocks.size());
   for (size_t b = 0; b < plan_.blocks.size(); ++b) {
     if (!wanted(b)) continue;
     const Plan::Block& block = plan_.blocks[b];
     Call<Real>& call = calls[b];
-    call.block = instances_[b].block(), call.index = int(b), call.now = &now_, call.report = reports_.data();
-    call.registers = registers_, call.stride = stride_, call.states = block.states;
-    call.state = states + block.first_state, call.rate = slope_[0] + block.first_state,
-    call.crossing = crossing_ + block.first_crossing;
-    call.memory = arena_.get() + memory_at_[b], call.mode = arena_.get() + mode_at_[b];
+    call.block = instances_[arena][b].block(), call.index = int(b), call.now = &now_;
+    call.report = reports_.data(), call.first_lane = int(arena) * width;
+    call.states = block.states, call.state = states + block.first_state,
+    call.rate = slope_[0] + offset + block.first_state,
+    call.crossing = crossing_ + offset + block.first_crossing;
+    call.memory = bytes + memory_at_[b], call.mode = bytes + mode_at_[b];
     call.in = wires.ports.data() + wires.ports.size();
     for (size_t i = 0; i < block.inputs.size(); ++i) {
       Port<Real> wire{};
@@ -78,7 +86,7 @@ std::vector<Call<Real>> Run<Real>::connect(Wires& wires, Real* states, Wanted&& 
         wire.many = wires.many.data() + wires.many.size();
         for (Number n : block.inputs[i]) wires.many.push_back(place(n));
       } else {
-        wire.data = block.inputs[i].empty() ? numbers_ : place(block.inputs[i][0]);
+        wire.data = block.inputs[i].empty() ? numbers_ + offset : place(block.inputs[i][0]);
       }
       wires.ports.push_back(wire);
     }
@@ -90,7 +98,7 @@ std::vector<Call<Real>> Run<Real>::connect(Wires& wires, Real* states, Wanted&& 
       wires.ports.push_back(wire);
     }
     call.buffers = wires.ports.data() + wires.ports.size();
-    Real* buffer = buffers_ + block.first_buffer;
+    Real* buffer = buffers_ + offset + block.first_buffer;
     for (int length : block.buffer_lengths) {
       Port<Real> wire{};
       wire.data = buffer, wire.length = length;
@@ -116,22 +124,45 @@ Call<Real> Run<Real>::call_of(const Plan::Entry& entry, const std::vector<Call<R
     const Plan::Ring& plan_ring = plan_.rings[size_t(entry.block)];
     std::vector<Call<Real>> calls;
     for (const Plan::Entry& inner : plan_ring.entries) calls.push_back(call_of(inner, base));
-    ring->build(std::move(calls), numbers_, plan_ring.tears, registers_, stride_);
     Call<Real> call = base[size_t(plan_ring.entries.front().block)];
+    const int arena = call.first_lane / width;
+    ring->build(std::move(calls), numbers_ + arena * stride_, plan_ring.tears, call.first_lane);
     call.block = ring.get();
     call.step = &RingSolver<Real>::step;
     return call;
   }
   Call<Real> call = base[size_t(entry.block)];
-  const BlockInstance<Real>& instance = instances_[size_t(entry.block)];
+  const BlockInstance<Real>& instance = instances_[0][size_t(entry.block)];
   call.step = entry.kind == Plan::Entry::Kind::decide ? instance.decide() : instance.outputs(entry.group);
   return call;
 }
 
+/// Arenas take turns, call by call, each two calls behind the one before it: so the short blocks of one,
+/// which wait for memory, stand among the long ones of another, which wait for arithmetic.
+template <class Real> template <class T> void Run<Real>::take_turns(std::vector<T>& calls) const {
+  constexpr size_t behind = 2;
+  const size_t arenas = size_t(arenas_), each = calls.size() / arenas;  // one arena after the other
+  std::vector<T> turns;
+  turns.reserve(calls.size());
+  for (size_t turn = 0; turn < each + behind * (arenas - 1); ++turn)
+    for (size_t a = 0; a < arenas; ++a)
+      if (const size_t i = turn - behind * a; behind * a <= turn && i < each)
+        turns.push_back(calls[a * each + i]);
+  calls = std::move(turns);
+}
+
 template <class Real> void Run<Real>::schedule() {
+  for (const auto& base : base_) schedule_arena(base);
+  if (width > 1 && !jumps_.empty()) kept_.resize(evaluated_ * width * size_t(arenas_));
+  take_turns(outputs_.all), take_turns(updates_.all), take_turns(between_);
+  outputs_.make(plan_.rates.size());
+  updates_.make(plan_.rates.size());
+}
+
+template <class Real> void Run<Real>::schedule_arena(const std::vector<Call<Real>>& base) {
   using Kind = Plan::Entry::Kind;
   for (const Plan::Entry& entry : plan_.order) {
-    const Call<Real> call = call_of(entry, base_);
+    const Call<Real> call = call_of(entry, base);
     if (entry.rate.kind == Rate::Kind::constant) {
       constants_.push_back(call);
       continue;
@@ -146,8 +177,8 @@ template <class Real> void Run<Real>::schedule() {
   }
   for (size_t b = 0; b < plan_.blocks.size(); ++b) {
     const Plan::Block& block = plan_.blocks[b];
-    const BlockInstance<Real>& instance = instances_[b];
-    Call<Real> call = base_[b];
+    const BlockInstance<Real>& instance = instances_[0][b];
+    Call<Real> call = base[b];
     if ((call.step = instance.derivatives())) slopes_.push_back(call);
     if ((call.step = instance.accept())) accepts_.push_back(call);
     if ((call.step = instance.jump())) jumps_.push_back(call);
@@ -158,16 +189,15 @@ template <class Real> void Run<Real>::schedule() {
       if (block.type->info.next_stop && block.period == 0)
         stops_.emplace_back(call.block, block.type->info.next_stop);
   }
-  if (width > 1 && !jumps_.empty()) kept_.resize(evaluated_ * width * size_t(registers_));
-  outputs_.make(plan_.rates.size());
-  updates_.make(plan_.rates.size());
 }
 
 template <class Real> double* Run<Real>::parameter(std::string_view path, int lane) {
   for (size_t b = 0; b < plan_.blocks.size(); ++b) {
     const std::string& block = plan_.blocks[b].path;
     if (path.size() > block.size() && path.starts_with(block) && path[block.size()] == '.')
-      if (double* found = instances_[b].tunable(path.substr(block.size() + 1), lane)) return found;
+      if (double* found =
+              instances_[size_t(lane / width)][b].tunable(path.substr(block.size() + 1), lane % width))
+        return found;
   }
   return nullptr;
 }
@@ -176,12 +206,13 @@ template <class Real> void Run<Real>::reset(const RunIdentity& identity) {
   std::memset(arena_.get(), 0, bytes_);
   move_to(plan_.start_tick);
   forget_faults();
-  for (int r = 0; r < registers_; ++r)
-    for (const auto& [number, value] : plan_.unwired) numbers_[number + r * stride_] = value;
-  for (size_t b = 0; b < plan_.blocks.size(); ++b) {
-    const Setup setup{plan_.blocks[b].sample_time, identity.seed, identity.run,
-                      hash_of_path(plan_.blocks[b].path)};
-    instances_[b].start(base_[b], setup);
+  for (size_t a = 0; a < base_.size(); ++a) {
+    for (const auto& [number, value] : plan_.unwired) numbers_[number + ptrdiff_t(a) * stride_] = value;
+    for (size_t b = 0; b < plan_.blocks.size(); ++b) {
+      const Setup setup{plan_.blocks[b].sample_time, identity.seed, identity.run + int64_t(a) * width,
+                        hash_of_path(plan_.blocks[b].path)};
+      instances_[a][b].start(base_[a][b], setup);
+    }
   }
   run(constants_);
 }

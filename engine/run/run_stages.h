@@ -26,23 +26,31 @@ template <class Real> std::vector<bool> Run<Real>::blocks_in_stages() const {
 template <class Real> void Run<Real>::schedule_stages() {
   const size_t stages = plan_.method == Method::rk4 ? 4 : plan_.method == Method::heun ? 2 : 1;
   const std::vector<bool> is_in_stages = blocks_in_stages();
-  stage_of_.reserve(stages * size_t(plan_.states));  // calls point into it
-  std::array<std::vector<Call<Real>>, 2> moved;
-  for (size_t k = 0; k < moved.size() && k + 1 < stages; ++k)
-    moved[k] = connect(stage_wires_[k], stage_x_[k], [&](size_t b) { return is_in_stages[b]; });
-  for (size_t k = 0; k < stages; ++k) {
-    const auto& base = k == 0 ? base_ : moved[(k - 1) % 2];
-    for (const Plan::Entry& entry : plan_.order)
-      if (k > 0 && entry.in_stages && entry.kind != Plan::Entry::Kind::decide)
-        stages_[k].push_back(call_of(entry, base));
-    for (size_t b = 0; b < plan_.blocks.size(); ++b)
-      if (instances_[b].derivatives()) stages_[k].push_back(slope_call(base[b], k, k + 1 == stages));
+  stage_of_.reserve(stages * size_t(plan_.states) * base_.size());  // calls point into it
+  stage_wires_.resize(base_.size());
+  for (size_t a = 0; a < base_.size(); ++a) {
+    std::array<std::vector<Call<Real>>, 2> moved;
+    for (size_t k = 0; k < moved.size() && k + 1 < stages; ++k)
+      moved[k] = connect(a, stage_wires_[a][k], stage_x_[k], [&](size_t b) { return is_in_stages[b]; });
+    for (size_t k = 0; k < stages; ++k) schedule_stage(k, stages, k == 0 ? base_[a] : moved[(k - 1) % 2]);
   }
+  take_turns(stages_);
+}
+
+/// Each stage has a time of its own, as arenas are not all in the same.
+template <class Real>
+void Run<Real>::schedule_stage(size_t stage, size_t stages, std::vector<Call<Real>> base) {
+  for (Call<Real>& call : base) call.now = &stage_now_[stage];
+  for (const Plan::Entry& entry : plan_.order)
+    if (stage > 0 && entry.in_stages && entry.kind != Plan::Entry::Kind::decide)
+      stages_.push_back(call_of(entry, base));
+  for (size_t b = 0; b < plan_.blocks.size(); ++b)
+    if (instances_[0][b].derivatives()) stages_.push_back(slope_call(base[b], stage, stage + 1 == stages));
 }
 
 template <class Real> Call<Real> Run<Real>::slope_call(Call<Real> call, size_t stage, bool is_last) {
-  const int first = plan_.blocks[size_t(call.index)].first_state;
-  const BlockInstance<Real>& instance = instances_[size_t(call.index)];
+  const ptrdiff_t first = call.first_lane / width * stride_ + plan_.blocks[size_t(call.index)].first_state;
+  const BlockInstance<Real>& instance = instances_[0][size_t(call.index)];
   call.rate = slope_[stage] + first;
   if (is_last && plan_.method != Method::rk4) {
     call.step = instance.derivatives();
@@ -79,7 +87,8 @@ template <class Real> void Run<Real>::integrate(int64_t ticks) {
 
 /// x + h k.
 template <class Real> void Run<Real>::euler(double h) {
-  run(stages_[0]);
+  stage_now_ = {now_};
+  run(stages_);
   each_state([&](auto i) __attribute__((always_inline)) { x_[i] = x_[i] + Real(h) * slope_[0][i]; });
 }
 
@@ -87,22 +96,16 @@ template <class Real> void Run<Real>::euler(double h) {
 template <class Real> void Run<Real>::heun(double h) {
   const auto [k1, k2, k3, k4] = slope_;
   weight_ = {h};
-  run(stages_[0]);
-  now_.time += h;
-  run(stages_[1]);
+  stage_now_ = {now_, after(h)};
+  run(stages_);
   each_state([&](auto i) __attribute__((always_inline)) { x_[i] = x_[i] + Real(0.5 * h) * (k1[i] + k2[i]); });
 }
 
 /// k₂ at x + h/2 k₁, k₃ at x + h/2 k₂, k₄ at x + h k₃; x + h/6 (k₁ + 2 k₂ + 2 k₃ + k₄).
 template <class Real> void Run<Real>::rk4(double h) {
-  const double start = now_.time;
   weight_ = {0.5 * h, 0.5 * h, h, h / 6};
-  run(stages_[0]);
-  now_.time = start + 0.5 * h;
-  run(stages_[1]);
-  run(stages_[2]);
-  now_.time = start + h;
-  run(stages_[3]);
+  stage_now_ = {now_, after(0.5 * h), after(0.5 * h), after(h)};
+  run(stages_);
 }
 
 }  // namespace loopwright

@@ -46,14 +46,14 @@ template <class Real> void Run<Real>::repeat_after_jumps(const std::vector<Call<
 template <class Real> void Run<Real>::evaluate_again(uint64_t jumped, const std::vector<Call<Real>>& calls) {
   // A lane without a jump must not decide twice: its modes and signals are put back.
   const size_t count = evaluated_ * width;
-  const auto numbers_of = [&](int r) { return reinterpret_cast<double*>(numbers_ + r * stride_); };
-  for (int r = 0; r < registers_; ++r)
-    std::memcpy(&kept_[size_t(r) * count], numbers_of(r), count * sizeof(double));
+  const auto numbers_of = [&](int a) { return reinterpret_cast<double*>(numbers_ + a * stride_); };
+  for (int a = 0; a < arenas_; ++a)
+    std::memcpy(&kept_[size_t(a) * count], numbers_of(a), count * sizeof(double));
   run(calls);
-  for (int r = 0; r < registers_; ++r)
+  for (int a = 0; a < arenas_; ++a)
     for (size_t i = 0; i < count; ++i)
-      if (!(jumped >> (size_t(r) * width + i % width) & 1))
-        std::memcpy(numbers_of(r) + i, &kept_[size_t(r) * count + i], sizeof(double));
+      if (!(jumped >> (size_t(a) * width + i % width) & 1))
+        std::memcpy(numbers_of(a) + i, &kept_[size_t(a) * count + i], sizeof(double));
 }
 
 // Between discontinuities, for variable-step solvers.
