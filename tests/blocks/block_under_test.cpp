@@ -63,7 +63,7 @@ void BlockUnderTest::restart() {
   now_ = {};
   fault_ = {};
   connect();
-  type_.kernels.start(block_, states_.data(), memory_.data(), buffer_wires_.data(), 0, mode_.data());
+  type_.kernels.start(block_, states_.data(), memory_.data(), buffer_wires_.data(), mode_.data());
 }
 
 void BlockUnderTest::tune(std::string_view path, double value) {
