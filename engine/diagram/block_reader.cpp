@@ -155,7 +155,7 @@ class BlockReader {
     if (is_inline) {
       entry.type_place = path.place;
       entry.subdiagram =
-          around_.nest.read(path, BlockList(path.find("blocks")), around_.path, std::move(inner));
+          around_.load.read(path, BlockList(path.find("blocks")), around_.path, std::move(inner));
       return;
     }
     if (path.text.empty()) {
@@ -164,7 +164,7 @@ class BlockReader {
     }
     entry.type_place = path.place;
     const std::string resolved = resolve_relative(path.place, path.text);
-    entry.subdiagram = around_.nest.load(resolved, path.place, std::move(inner));
+    entry.subdiagram = around_.load.load(resolved, path.place, std::move(inner));
   }
 
   std::vector<Override> overrides(const Value& parameters) {

@@ -2,14 +2,14 @@
 #pragma once
 #include <string>
 #include <vector>
-#include "engine/diagram/nest.h"
+#include "engine/diagram/diagram_load.h"
 #include "engine/diagram/reader.h"
 
 namespace loopwright {
 
 /// The diagram in which a block stands.
 struct Surroundings {
-  Nest& nest;
+  DiagramLoad& load;
   ParameterScope& scope;
   const std::string& path;  ///< of the diagram's file
 };

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include "engine/diagram/block_reader.h"
-#include "engine/diagram/nest.h"
+#include "engine/diagram/diagram_load.h"
 #include "engine/diagram/ports.h"
 #include "engine/diagram/reader.h"
 #include "engine/diagram/solver_settings.h"
@@ -15,13 +15,13 @@ constexpr size_t most_blocks = 200'000;  // a few small files can name each othe
 /// Reads one use of a diagram file.
 class DiagramReader {
  public:
-  DiagramReader(Nest& nest, Instance instance, std::string path, const BlockList& blocks)
-      : nest_(nest),
+  DiagramReader(DiagramLoad& load, Instance instance, std::string path, const BlockList& blocks)
+      : load_(load),
         instance_(std::move(instance)),
         path_(std::move(path)),
         blocks_(blocks),
-        reader_{nest.problems, instance_.block},
-        scope_(instance_.block, nest.problems) {}
+        reader_{load.problems, instance_.block},
+        scope_(instance_.block, load.problems) {}
 
   std::shared_ptr<Diagram> read(const Value& root) {
     diagram_->path = path_;
@@ -96,8 +96,8 @@ class DiagramReader {
       return;
     diagram_->blocks.reserve(blocks_.size());
     blocks_.each([&](const Value::Member& member) {
-      if (++nest_.block_count > most_blocks) {
-        if (nest_.block_count == most_blocks + 1)
+      if (++load_.block_count > most_blocks) {
+        if (load_.block_count == most_blocks + 1)
           reader_.error(member, fmt::format("the diagram has more than {} blocks", most_blocks));
         return false;
       }
@@ -115,10 +115,10 @@ class DiagramReader {
     entry.settings.kind = Value::Kind::object;
     entry.settings.place = member.value.place;
 
-    const Reader reader{nest_.problems, joined(instance_.block, member.name)};
+    const Reader reader{load_.problems, joined(instance_.block, member.name)};
     auto edits = take_options(instance_.edits, member.name);
     auto variants = take_options(instance_.variants, member.name);
-    read_block(member, std::move(edits), std::move(variants), {nest_, scope_, path_}, reader, entry);
+    read_block(member, std::move(edits), std::move(variants), {load_, scope_, path_}, reader, entry);
   }
 
   /// The options whose path leads through a block, as they look from inside it.
@@ -159,7 +159,7 @@ class DiagramReader {
     }
   }
 
-  Nest& nest_;
+  DiagramLoad& load_;
   Instance instance_;
   const std::string path_;
   const BlockList& blocks_;
@@ -171,8 +171,8 @@ class DiagramReader {
 
 }  // namespace
 
-std::shared_ptr<Diagram> Nest::read(const Value& root, const BlockList& blocks, const std::string& path,
-                                    Instance instance) {
+std::shared_ptr<Diagram> DiagramLoad::read(const Value& root, const BlockList& blocks,
+                                           const std::string& path, Instance instance) {
   return DiagramReader(*this, std::move(instance), path, blocks).read(root);
 }
 

@@ -5,13 +5,14 @@
 #include "engine/diagram/diagram.h"
 #include "engine/diagram/drive.h"
 #include "engine/diagram/in_memory.h"
-#include "engine/diagram/nest.h"
+#include "engine/diagram/diagram_load.h"
 
 namespace loopwright {
 
 constexpr size_t deepest_nesting = 32;  // subdiagrams in subdiagrams
 
-std::shared_ptr<Diagram> Nest::load(const std::string& path, const Place& reference, Instance instance) {
+std::shared_ptr<Diagram> DiagramLoad::load(const std::string& path, const Place& reference,
+                                           Instance instance) {
   const auto fail = [&](std::string message) -> Problem& {
     return problems.error(reference, reference.pointer(), instance.block, std::move(message));
   };
@@ -63,11 +64,11 @@ template <class Read>
 std::shared_ptr<const Diagram> with_options(const LoadOptions& options, Problems& problems, Read&& read) {
   Problems found;
   Instance top = top_instance(options, found);
-  Nest nest{found};
-  const std::shared_ptr<Diagram> diagram = read(nest, std::move(top));
+  DiagramLoad load{found};
+  const std::shared_ptr<Diagram> diagram = read(load, std::move(top));
   if (diagram) {
     apply_drives(*diagram, options.drives, found);
-    diagram->files = nest.library.take_names();
+    diagram->files = load.library.take_names();
   }
   add_without_repetition(found, problems);
   return diagram;
@@ -78,13 +79,13 @@ std::shared_ptr<const Diagram> with_options(const LoadOptions& options, Problems
 std::shared_ptr<const Diagram> load_diagram(const std::string& path, const LoadOptions& options,
                                             Problems& problems) {
   return with_options(options, problems,
-                      [&](Nest& nest, Instance top) { return nest.load(path, {}, std::move(top)); });
+                      [&](DiagramLoad& load, Instance top) { return load.load(path, {}, std::move(top)); });
 }
 
 std::shared_ptr<const Diagram> read_diagram(const Value& root, const std::string& path,
                                             const LoadOptions& options, Problems& problems) {
-  return with_options(options, problems, [&](Nest& nest, Instance top) {
-    return nest.read(root, BlockList(root.find("blocks")), path, std::move(top));
+  return with_options(options, problems, [&](DiagramLoad& load, Instance top) {
+    return load.read(root, BlockList(root.find("blocks")), path, std::move(top));
   });
 }
 

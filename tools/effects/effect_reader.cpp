@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <set>
-#include "engine/diagram/expression.h"
 #include "engine/diagram/json.h"
 #include "engine/diagram/reader.h"
 #include "engine/diagram/wires.h"
+#include "tools/effects/bound.h"
 #include "tools/effects/effect.h"
 
 namespace loopwright {
@@ -160,11 +160,10 @@ class FormReader {
           "\"start\": a number or an expression within the range";
     if (const Value::Member* scale = body.find("scale")) parameter.scale = read_scale(*scale);
     if (const Value::Member* points = body.find("points")) parameter.points = read_points(*points);
-    const RecordSizes example = example_sizes();
     const size_t problems_before = reader_.problems.list().size();
-    const double low = size_value(parameter.low, parameter.unit, example),
-                 high = size_value(parameter.high, parameter.unit, example),
-                 first = start ? size_value(parameter.start, parameter.unit, example) : low;
+    const double low = example_of_bound(parameter.low, parameter.unit, reader_),
+                 high = example_of_bound(parameter.high, parameter.unit, reader_),
+                 first = start ? example_of_bound(parameter.start, parameter.unit, reader_) : low;
     if (reader_.problems.list().size() != problems_before) return;
     if (!(low < high))
       reader_.error(*range, "the range is empty").found = shown(range->value);
@@ -190,46 +189,6 @@ class FormReader {
     KnownNames({"linear", "logarithmic", "reciprocal"})
         .explain(reader_.error(member, "there is no such scale"), name);
     return Scale::linear;
-  }
-  /// Sizes that a machine might have, to see whether ranges make sense.
-  static RecordSizes example_sizes() {
-    RecordSizes sizes;
-    for (const NamedSize& size : record_sizes) sizes.*size.value = 1;
-    sizes.lowest_position = -0.4, sizes.highest_position = 0.6, sizes.resolution = 1e-6, sizes.duration = 10,
-    sizes.sample_time = 1e-3;
-    return sizes;
-  }
-  /// A number, or an expression over sizes whose unit must be that of the parameter.
-  double size_value(const Value& value, const std::string& unit, const RecordSizes& sizes) {
-    if (value.kind == Kind::number) return value.number;
-    if (!reader_.expect(value, Kind::text, "a bound", "a number, or an expression such as \"=0.1*stroke\""))
-      return 0;
-    if (!value.text.starts_with('=')) {
-      reader_.error(value, "this is no expression").expected = "a number, or \"=\" and an expression";
-      return 0;
-    }
-    std::vector<Quantity> quantities;
-    for (const NamedSize& size : record_sizes)
-      quantities.push_back({sizes.*size.value, parse_unit(unit_in(size.unit, {}))});
-    ExpressionSite site{value.place, "", {}};
-    site.lookup = [&](const NameUse& use, const Place& place) -> const Quantity* {
-      for (size_t i = 0; i < record_sizes.size(); ++i)
-        if (record_sizes[i].name == use.name) return &quantities[i];
-      auto& p = reader_.problems.error(place, value.place.pointer(), "",
-                                       fmt::format("there is no size \"{}\"", use.name));
-      KnownNames names;
-      for (const NamedSize& size : record_sizes) names.add(std::string(size.name));
-      names.explain(p, use.name);
-      return nullptr;
-    };
-    const auto result = evaluate(std::string_view(value.text).substr(1), site, reader_.problems);
-    if (!result) return 0;
-    const auto wanted = parse_unit(unit_in(unit, {}));
-    if (result->unit && wanted && !result->unit->same_dimension(*wanted)) {
-      auto& p = reader_.error(value, "the expression has another unit than its parameter");
-      p.expected = to_string(*wanted), p.found = to_string(*result->unit);
-    }
-    return result->number;
   }
 
   // ---- Blocks and where they act ----

@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <set>
-#include "engine/block/registry.h"
 #include "engine/diagram/json.h"
 #include "engine/diagram/reader.h"
 #include "tools/effects/effect_values.h"
 #include "tools/effects/nest.h"
+#include "tools/effects/wire_reader.h"
 
 namespace loopwright {
 namespace {
@@ -102,8 +102,6 @@ class Inserter {
   }
 
   // ---- The effect's blocks ----
-
-  static std::string block_of(const std::string& port) { return port.substr(0, port.find('.')); }
 
   /// Blocks that act themselves; those that only stand for a changed parameter are not needed.
   void need(const std::string& name) {
@@ -250,66 +248,35 @@ class Inserter {
     const Value::Member* block = found->block.empty() ? nullptr : found->level.block(found->block);
     const Value::Member* in = block ? block->value.find("in") : nullptr;
     const Value::Member* own = in ? in->value.find(found->port) : nullptr;
-    std::vector<std::pair<const Value::Member*, const Value*>> readers;
+    std::vector<WireReader> readers;
     if (own && own->value.kind == Kind::text) {  // an input port: the wire into it
       input_source_ = own->value.text;
-      readers.emplace_back(block, &own->value);
+      readers.push_back({block, &own->value});
     } else {  // an output, or an input of the diagram: who reads it
       input_source_ = block ? found->block + "." + found->port : found->port;
-      readers = readers_of(found->level, input_source_);
+      readers = nearest_readers(found->level, input_source_, block_with_sum(found->level));
       result_.input_behind = joined(found->level.prefix, new_port(attachment.from));
     }
     if (readers.empty()) {
       error("nothing reads the input").found = role;
       return;
     }
-    add_blocks(found->level, *readers.front().first);
+    add_blocks(found->level, *readers.front().block);
     redirect(found->level, readers, new_port(attachment.from));
   }
 
-  void redirect(const Level& level, const std::vector<std::pair<const Value::Member*, const Value*>>& readers,
-                const std::string& source) {
-    for (const auto& [block, wire] : readers) {
-      const size_t at = wire->place.offset;
+  void redirect(const Level& level, const std::vector<WireReader>& readers, const std::string& source) {
+    for (const WireReader& reader : readers) {
+      const size_t at = reader.wire->place.offset;
       level.document->edits.replace(at, end_of_value(level.document->text(), at), "\"" + source + "\"");
     }
   }
 
-  /// Wires from `source` into blocks that lead to the sum of forces by the shortest way: an observer that
-  /// reads the same command still reads the command.
-  std::vector<std::pair<const Value::Member*, const Value*>> readers_of(const Level& level,
-                                                                        const std::string& source) {
-    std::vector<std::pair<const Value::Member*, const Value*>> readers;
-    int best = 1 << 20;
-    for (const Value::Member& block : level.diagram->find("blocks")->value.members)
-      each_wire(block.value, [&](const Value& wire) {
-        if (wire.text != source) return;
-        const int distance = distance_to_sum(level, block.name);
-        if (distance > best) return;
-        if (distance < best) readers.clear(), best = distance;
-        readers.emplace_back(&block, &wire);
-      });
-    return readers;
-  }
-  /// Wires between a block and the sum of forces, or the subdiagram that holds it.
-  int distance_to_sum(const Level& level, const std::string& from) const {
-    std::string target = sum_->name;
-    if (sum_level_.prefix != level.prefix) {
-      const size_t skip = level.prefix.empty() ? 0 : level.prefix.size() + 1;
-      target = split_path(sum_level_.prefix.substr(skip)).front();
-    }
-    std::set<std::string> reached{from};
-    for (int distance = 0; distance < 100; ++distance) {
-      if (reached.contains(target)) return distance;
-      std::set<std::string> next = reached;
-      for (const Value::Member& block : level.diagram->find("blocks")->value.members)
-        each_wire(block.value, [&](const Value& wire) {
-          if (reached.contains(block_of(wire.text))) next.insert(block.name);
-        });
-      if (next == reached) break;
-      reached = std::move(next);
-    }
-    return 1 << 19;
+  /// The block of a level in which the sum of forces is: itself, or the subdiagram that holds it.
+  std::string block_with_sum(const Level& level) const {
+    if (sum_level_.prefix == level.prefix) return sum_->name;
+    const size_t skip = level.prefix.empty() ? 0 : level.prefix.size() + 1;
+    return split_path(sum_level_.prefix.substr(skip)).front();
   }
 
   void attach_to_sensor(const Attachment& attachment) {
@@ -329,23 +296,9 @@ class Inserter {
       return;
     }
     add_blocks(found->level, *block);
-    redirect(found->level, sensor_readers(found->level, source), new_port(attachment.from));
+    redirect(found->level, readers_but_mechanics(nest_, found->level, source), new_port(attachment.from));
     result_.moved_ports.emplace_back(role, joined(found->level.prefix, new_port(attachment.from)));
   }
-  /// All but the mechanics: a force depends on where the machine is, not on where it is seen.
-  std::vector<std::pair<const Value::Member*, const Value*>> sensor_readers(const Level& level,
-                                                                            const std::string& source) const {
-    std::vector<std::pair<const Value::Member*, const Value*>> readers;
-    for (const Value::Member& block : level.diagram->find("blocks")->value.members) {
-      const BlockType* type = find_block(type_of(*nest_.body(level, block)));
-      if (type && type->info.room == "mechanics") continue;
-      each_wire(block.value, [&](const Value& wire) {
-        if (wire.text == source) readers.emplace_back(&block, &wire);
-      });
-    }
-    return readers;
-  }
-
   void attach_to_parameter(const Attachment& attachment) {
     for (const std::string& target : attachment.targets) {
       const std::vector<std::string> path = split_path(target);

@@ -30,7 +30,7 @@ double explained(const std::vector<Moments>& bins, const Moments& all) {
 
 /// Jansen's estimators over the whole blocks of Saltelli's design, summed over the points of the grid.
 void add_saltelli(const SweepPlan& plan, const Recording& table, const std::vector<double>& y,
-                  std::vector<Effect>& effects) {
+                  std::vector<AxisEffect>& effects) {
   const auto& axes = plan.sweep().axes;
   const int64_t count = plan.sweep().samples.count,
                 sampled =
@@ -75,12 +75,12 @@ std::vector<int> bins_of(const Axis& axis, const std::vector<double>& values, in
   return bins;
 }
 
-std::vector<Effect> effects_of(const SweepPlan& plan, const Recording& table, size_t metric) {
+std::vector<AxisEffect> effects_of(const SweepPlan& plan, const Recording& table, size_t metric) {
   const auto& axes = plan.sweep().axes;
   const std::vector<double>& y = table.columns[1 + axes.size() + metric].values;
-  std::vector<Effect> effects;
+  std::vector<AxisEffect> effects;
   for (size_t a = 0; a < axes.size(); ++a) {
-    Effect& effect = effects.emplace_back();
+    AxisEffect& effect = effects.emplace_back();
     effect.axis = axes[a].name;
     const std::vector<double>& x = table.columns[1 + a].values;
     int count = 0;

@@ -12,7 +12,7 @@ struct Bin {
   int64_t runs = 0;
 };
 
-struct Effect {
+struct AxisEffect {
   std::string axis;
   std::vector<Bin> bins;  ///< main effect: the mean of the metric along the axis
   /// First-order Sobol index: the share of the variance that the axis explains by itself. From the bins,
@@ -24,7 +24,7 @@ struct Effect {
 };
 
 /// An effect each axis, for one metric. Runs whose metric is no finite number are left out.
-std::vector<Effect> effects_of(const SweepPlan& plan, const Recording& table, size_t metric);
+std::vector<AxisEffect> effects_of(const SweepPlan& plan, const Recording& table, size_t metric);
 
 /// The bin of each run on an axis.
 std::vector<int> bins_of(const Axis& axis, const std::vector<double>& values, int most, int& count);

@@ -105,12 +105,12 @@ report::Plot distribution(const SweepPlan& plan, const Recording& table, size_t 
 }
 
 /// Means along each axis, from its least (0) to its greatest value (1).
-report::Plot main_effects(const SweepPlan& plan, const std::vector<Effect>& effects, size_t metric) {
+report::Plot main_effects(const SweepPlan& plan, const std::vector<AxisEffect>& effects, size_t metric) {
   report::Plot plot;
   plot.title = "Main effects on " + plan.sweep().metrics[metric].name;
   plot.x = {"Place on the axis, from least to greatest value", "", false};
   plot.y = {"Mean of " + plan.sweep().metrics[metric].name, unit_of(plan, metric), false};
-  for (const Effect& effect : effects) {
+  for (const AxisEffect& effect : effects) {
     if (effect.bins.size() < 2) continue;
     report::Series series;
     series.name = effect.axis;
@@ -124,10 +124,10 @@ report::Plot main_effects(const SweepPlan& plan, const std::vector<Effect>& effe
   return plot;
 }
 
-report::Table indices(const SweepPlan& plan, const std::vector<Effect>& effects, size_t metric) {
+report::Table indices(const SweepPlan& plan, const std::vector<AxisEffect>& effects, size_t metric) {
   report::Table table;
   table.head = {"Axis", "First-order index", "Total index", "Mean at the least value", "at the greatest"};
-  for (const Effect& effect : effects)
+  for (const AxisEffect& effect : effects)
     table.rows.push_back({effect.axis, fmt::format("{:.3f}", effect.first_order),
                           effect.total ? fmt::format("{:.3f}", *effect.total) : "",
                           text(effect.bins.empty() ? std::nan("") : effect.bins.front().mean),

@@ -47,7 +47,7 @@ using svg::words;
 }  // namespace
 
 report::Picture heat_map(const SweepPlan& plan, const Recording& table, size_t metric,
-                         const std::vector<Effect>& effects) {
+                         const std::vector<AxisEffect>& effects) {
   const auto& axes = plan.sweep().axes;
   std::vector<size_t> order(axes.size());
   std::iota(order.begin(), order.end(), 0);

@@ -8,7 +8,7 @@ namespace loopwright {
 
 /// The mean of a metric over the two axes that it hangs on most.
 report::Picture heat_map(const SweepPlan& plan, const Recording& table, size_t metric,
-                         const std::vector<Effect>& effects);
+                         const std::vector<AxisEffect>& effects);
 
 /// A line through all axes for each run (300 of them at most), coloured by the rank of a metric.
 report::Picture parallel_coordinates(const SweepPlan& plan, const Recording& table, size_t metric);

@@ -21,7 +21,7 @@ struct Instance {
 };
 
 /// What all diagrams of one load share.
-struct Nest {
+struct DiagramLoad {
   Problems& problems;
   DiagramLibrary library{problems};
   std::vector<std::string> opened{};      // the files being read, outermost first

@@ -1,0 +1,62 @@
+#include "tools/effects/wire_reader.h"
+#include <limits>
+#include <set>
+#include "engine/block/registry.h"
+
+namespace loopwright {
+namespace {
+
+constexpr int out_of_reach = std::numeric_limits<int>::max();
+
+const std::vector<Value::Member>& blocks_of(const Nest::Level& level) {
+  return level.diagram->find("blocks")->value.members;
+}
+
+/// Wires between two blocks, along their direction.
+int distance(const Nest::Level& level, const std::string& from, const std::string& target) {
+  std::set<std::string> reached{from};
+  for (int wires = 0;; ++wires) {
+    if (reached.contains(target)) return wires;
+    std::set<std::string> next = reached;
+    for (const Value::Member& block : blocks_of(level))
+      each_wire(block.value, [&](const Value& wire) {
+        if (reached.contains(block_of(wire.text))) next.insert(block.name);
+      });
+    if (next == reached) return out_of_reach;
+    reached = std::move(next);
+  }
+}
+
+}  // namespace
+
+std::string block_of(const std::string& port) { return port.substr(0, port.find('.')); }
+
+std::vector<WireReader> nearest_readers(const Nest::Level& level, const std::string& source,
+                                        const std::string& target) {
+  std::vector<WireReader> readers;
+  int nearest = out_of_reach;
+  for (const Value::Member& block : blocks_of(level))
+    each_wire(block.value, [&](const Value& wire) {
+      if (wire.text != source) return;
+      const int wires = distance(level, block.name, target);
+      if (wires > nearest) return;
+      if (wires < nearest) readers.clear(), nearest = wires;
+      readers.push_back({&block, &wire});
+    });
+  return readers;
+}
+
+std::vector<WireReader> readers_but_mechanics(const Nest& nest, const Nest::Level& level,
+                                              const std::string& source) {
+  std::vector<WireReader> readers;
+  for (const Value::Member& block : blocks_of(level)) {
+    const BlockType* type = find_block(type_of(*nest.body(level, block)));
+    if (type && type->info.room == "mechanics") continue;
+    each_wire(block.value, [&](const Value& wire) {
+      if (wire.text == source) readers.push_back({&block, &wire});
+    });
+  }
+  return readers;
+}
+
+}  // namespace loopwright

@@ -1,0 +1,27 @@
+/// Who reads a signal, so that something can be put in between.
+#pragma once
+#include <string>
+#include <vector>
+#include "tools/effects/nest.h"
+
+namespace loopwright {
+
+struct WireReader {
+  const Value::Member* block;
+  const Value* wire;  ///< into it
+};
+
+/// "mass" of "mass.position".
+std::string block_of(const std::string& port);
+
+/// Wires from `source` into blocks that lead to the block `target` by the shortest way: an observer that
+/// reads the same command still reads the command.
+std::vector<WireReader> nearest_readers(const Nest::Level& level, const std::string& source,
+                                        const std::string& target);
+
+/// Wires from `source` into all blocks but the mechanics: a force depends on where the machine is, not on
+/// where it is seen.
+std::vector<WireReader> readers_but_mechanics(const Nest& nest, const Nest::Level& level,
+                                              const std::string& source);
+
+}  // namespace loopwright
