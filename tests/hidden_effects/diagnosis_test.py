@@ -14,6 +14,7 @@ GENERATOR, LOOPWRIGHT = sys.argv[1:3]
 SCENARIOS = [
     (5, "constant_speeds", []),  # coarse counts, which look like a lag to whom takes the noise for too small
     (6, "constant_speeds", ["eddy_current_drag", "thermal_drift"]),
+    (13, "constant_speeds", ["spring"]),  # a slow force that a shift of the input by a tenth of a second would half explain
     (8, "many_speeds", ["presliding_hysteresis", "input_delay"]),
     (3, "many_speeds", ["backlash"]),
     (4, "multisine", ["coulomb_friction", "force_gain"]),

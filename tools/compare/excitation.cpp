@@ -105,6 +105,8 @@ struct InputMatch {
   double slope = 0, correlation = 0;
   int late_samples = 0;
   double gained = 0;  ///< part of the squared difference that shifting takes away
+  bool is_at_end =
+      false;  ///< further still might fit better: no shift in time, but a slow force that is missing
 };
 InputMatch match_input(const MeasuredMotion& m, const ForceResidual& residual) {
   std::vector<double> needed(m.rows());
@@ -128,6 +130,7 @@ InputMatch match_input(const MeasuredMotion& m, const ForceResidual& residual) {
     if (left < best) best = left, match.late_samples = lag;
   }
   match.gained = at_zero > 0 ? 1 - best / at_zero : 0;
+  match.is_at_end = std::abs(match.late_samples) == most;
   return match;
 }
 
@@ -145,7 +148,7 @@ void check_input(const MeasuredMotion& m, const ForceResidual& residual, std::ve
          "the residual is mostly this factor: check the unit of the input, or the mass of the model",
          size > 20 || size < 0.05});
   const double late_s = match.late_samples * m.sample_time;
-  if (std::abs(match.late_samples) >= 8 && match.gained > 0.3 && match.slope > 0)
+  if (std::abs(match.late_samples) >= 8 && match.gained > 0.6 && match.slope > 0 && !match.is_at_end)
     faults.push_back(
         {"unsynchronised", fmt::format("input and motion fit best when shifted by {:.3g} ms", 1e3 * late_s),
          "effects that depend on acceleration or on fast changes of the input cannot be told from this "
