@@ -105,8 +105,8 @@ struct InputMatch {
   double slope = 0, correlation = 0;
   int late_samples = 0;
   double gained = 0;  ///< part of the squared difference that shifting takes away
-  bool is_at_end =
-      false;  ///< further still might fit better: no shift in time, but a slow force that is missing
+  /// Further still might fit better: no shift in time, but a slow force that is missing.
+  bool is_at_end = false;
 };
 InputMatch match_input(const MeasuredMotion& m, const ForceResidual& residual) {
   std::vector<double> needed(m.rows());

@@ -265,13 +265,6 @@ class Inserter {
     redirect(found->level, readers, new_port(attachment.from));
   }
 
-  void redirect(const Level& level, const std::vector<WireReader>& readers, const std::string& source) {
-    for (const WireReader& reader : readers) {
-      const size_t at = reader.wire->place.offset;
-      level.document->edits.replace(at, end_of_value(level.document->text(), at), "\"" + source + "\"");
-    }
-  }
-
   /// The block of a level in which the sum of forces is: itself, or the subdiagram that holds it.
   std::string block_with_sum(const Level& level) const {
     if (sum_level_.prefix == level.prefix) return sum_->name;
@@ -315,15 +308,7 @@ class Inserter {
   /// The mass of the machine, or a block that feeds the sum of forces.
   const Value::Member* block_of_type(const std::string& type) const {
     if (mass_ && type_of(mass_->value) == type) return mass_;
-    const Value::Member* found = nullptr;
-    each_wire(sum_->value, [&](const Value& wire) {
-      const Value::Member* block = sum_level_.block(block_of(wire.text));
-      if (!found && block && type_of(block->value) == type) found = block;
-    });
-    if (found) return found;
-    for (const Value::Member& block : sum_level_.diagram->find("blocks")->value.members)
-      if (type_of(block.value) == type) return &block;
-    return nullptr;
+    return block_before(sum_level_, *sum_, type);
   }
 
   void change(const Value::Member& setting, const Attachment& attachment, const std::string& parameter,

@@ -59,4 +59,24 @@ std::vector<WireReader> readers_but_mechanics(const Nest& nest, const Nest::Leve
   return readers;
 }
 
+void redirect(const Nest::Level& level, const std::vector<WireReader>& readers, const std::string& source) {
+  for (const WireReader& reader : readers) {
+    const size_t at = reader.wire->place.offset;
+    level.document->edits.replace(at, end_of_value(level.document->text(), at), "\"" + source + "\"");
+  }
+}
+
+const Value::Member* block_before(const Nest::Level& level, const Value::Member& reader,
+                                  const std::string& type) {
+  const Value::Member* found = nullptr;
+  each_wire(reader.value, [&](const Value& wire) {
+    const Value::Member* block = level.block(block_of(wire.text));
+    if (!found && block && type_of(block->value) == type) found = block;
+  });
+  if (found) return found;
+  for (const Value::Member& block : blocks_of(level))
+    if (type_of(block.value) == type) return &block;
+  return nullptr;
+}
+
 }  // namespace loopwright

@@ -24,4 +24,11 @@ std::vector<WireReader> nearest_readers(const Nest::Level& level, const std::str
 std::vector<WireReader> readers_but_mechanics(const Nest& nest, const Nest::Level& level,
                                               const std::string& source);
 
+/// The readers read `source` from now on.
+void redirect(const Nest::Level& level, const std::vector<WireReader>& readers, const std::string& source);
+
+/// A block of this type that a block reads, else any in its diagram; null: there is none.
+const Value::Member* block_before(const Nest::Level& level, const Value::Member& reader,
+                                  const std::string& type);
+
 }  // namespace loopwright
