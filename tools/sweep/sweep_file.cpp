@@ -25,6 +25,8 @@ constexpr std::array<std::pair<std::string_view, Metric::Kind>, 10> metric_kinds
 
 constexpr double most_runs = 1e9;
 
+/// Reads the whole format in one place, key by key: what a key may hold, and what is said when it does not,
+/// stand together, hence the length of this file.
 class Loader {
  public:
   Loader(std::string path, Problems& problems) : problems_(problems), reader_{problems, ""} {
