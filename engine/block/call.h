@@ -46,6 +46,7 @@ template <class Real> using Step = uint64_t (*)(const Call<Real>&);
 /// The methods of a block type for one scalar type; null where the block has no such method.
 template <class Real> struct Kernels {
   size_t size, align, memory_size, memory_align, mode_size;
+  bool memory_has_gaps;  ///< bytes of memory or mode that belong to no member, so hold anything
   void (*construct)(void* block);
   void (*destroy)(void* block);
   void (*copy)(void* to, const void* scalar_block);  ///< parameters of the scalar block into every lane

@@ -1,5 +1,6 @@
 /// A block's methods as the step calls them, made from its description, for one scalar type.
 #pragma once
+#include <algorithm>
 #include <cstring>
 #include <new>
 #include "engine/block/call.h"
@@ -272,6 +273,15 @@ void start_block(const void* p, Real* state_data, void* memory_data, const Port<
   }
 }
 
+/// Whether T has bytes between its members or after them, which assigning to it leaves undetermined.
+template <class T> bool has_gaps() {
+  if (std::is_empty_v<T>) return false;
+  alignas(T) unsigned char bytes[sizeof(T)];
+  std::memset(bytes, 1, sizeof bytes);
+  __builtin_clear_padding(reinterpret_cast<T*>(bytes));
+  return std::count(bytes, bytes + sizeof bytes, 1) < std::ptrdiff_t(sizeof bytes);
+}
+
 template <class B, class Real> Kernels<Real> kernels_of() {
   static_assert(group_count<B> <= 8, "at most eight groups of outputs with different feedthrough");
   static_assert(!(
@@ -282,6 +292,7 @@ template <class B, class Real> Kernels<Real> kernels_of() {
   k.memory_size = std::is_same_v<Memory<B>, None> ? 0 : sizeof(Memory<B>),
   k.memory_align = alignof(Memory<B>);
   k.mode_size = std::is_same_v<Mode<B>, None> ? 0 : sizeof(Mode<B>);
+  k.memory_has_gaps = has_gaps<Memory<B>>() || has_gaps<Mode<B>>();
   k.construct = [](void* p) { new (p) B(); };
   k.destroy = [](void* p) { static_cast<B*>(p)->~B(); };
   k.copy = [](void* to, const void* from) {

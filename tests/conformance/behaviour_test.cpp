@@ -20,6 +20,10 @@ TEST_P(Behaviour, HasAnExample) {
   EXPECT_FALSE(specimens().empty()) << "no diagram in diagrams/ uses this block";
 }
 
+TEST_P(Behaviour, EveryByteOfItsMemoryIsDetermined) {
+  EXPECT_FALSE(kernels().memory_has_gaps) << "equal memories would differ in bits: make a flag a number";
+}
+
 TEST_P(Behaviour, OutputsFollowTheDeclaredInputsAndNoOthers) {
   std::vector<uint64_t> seen(info().outputs.size(), 0);
   for (const Specimen& specimen : specimens()) {

@@ -20,8 +20,7 @@ struct HardwareIo {
     double position, velocity;
   };
   struct Memory {
-    double position;
-    bool is_known;
+    double position, is_known;
   };
   static constexpr auto describe() {
     return block(
@@ -48,11 +47,11 @@ struct HardwareIo {
   void check(const Checker& checker);
   void prepare(double sample_time) { period = sample_time; }
   void outputs(const Memory& memory, Out& out) const {
-    const bool by_difference = velocity_channel < 0 && memory.is_known;
+    const bool by_difference = velocity_channel < 0 && memory.is_known > 0;
     out.position = position;
     out.velocity = by_difference ? (position - memory.position) / period : velocity;
   }
-  void update(const In&, Memory& memory) const { memory = {position, true}; }
+  void update(const In&, Memory& memory) const { memory = {position, 1}; }
 };
 
 }  // namespace loopwright::blocks
