@@ -28,7 +28,7 @@ template <class Real> struct VelocityEstimator {
   struct Memory {
     Vector<Real> positions;
     Real velocity;
-    int oldest;
+    int64_t oldest;
   };
   static constexpr auto describe() {
     using B = VelocityEstimator;

@@ -14,7 +14,7 @@ template <class Real> struct Delay {
   };
   struct Memory {
     Vector<Real> line;
-    int oldest;
+    int64_t oldest;
   };
   static constexpr auto describe() {
     return block(

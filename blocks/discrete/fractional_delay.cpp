@@ -1,11 +1,12 @@
-/// y[k] = (1 - f) u[k-n] + f u[k-n-1],  delay = (n + f) T
+/// y[k] = (1 - f) u[k-n] + f u[k-n-1],  slope[k] = 6 f (1 - f) (u[k-n] - u[k-n-1]),  delay = (n + f) T
 #include "engine/block.h"
 
 namespace loopwright::blocks {
 
 /// Between samples y holds the mean of what the late staircase would have been: what an integrating plant
-/// feels of a held command that comes late by any time, at every sample. TransportDelay delays a continuous
-/// signal.
+/// feels of a held command that comes late by any time, at every sample. What it also feels is the slope: how
+/// much the straight line with the same first moment changes over a sample. TransportDelay delays a
+/// continuous signal.
 struct FractionalDelay {
   double delay = 0, initial = 0;
   int samples = 100;
@@ -14,11 +15,11 @@ struct FractionalDelay {
     double u;
   };
   struct Out {
-    double y;
+    double y, slope;
   };
   struct Memory {
     Vector<double> line;  // a ring
-    int newest;
+    int64_t newest;
   };
   static constexpr auto describe() {
     return block(
@@ -31,6 +32,8 @@ struct FractionalDelay {
             .between(1, 10000000)
             .optional(),
         input(&In::u, "u", "$u", "Signal"), output(&Out::y, "y", "$u", "The signal, one delay ago"),
+        output(&Out::slope, "slope", "$u",
+               "Change over a sample of the straight line with the same first moment"),
         buffer(&Memory::line, &FractionalDelay::capacity));
   }
   int capacity() const { return samples + 1; }
@@ -43,7 +46,10 @@ struct FractionalDelay {
     const double late = delay / period;
     const int whole = int(std::min(late, double(samples)));
     const double f = std::min(late - whole, 1.0);
-    out.y = (1 - f) * ago(in.u, memory, whole) + (f > 0 ? f * ago(in.u, memory, whole + 1) : 0.0);
+    const double late_u = ago(in.u, memory, whole),
+                 change = f > 0 ? late_u - ago(in.u, memory, whole + 1) : 0.0;
+    out.y = late_u - f * change;
+    out.slope = 6 * f * (1 - f) * change;
     return fault_if(late > samples,
                     "the delay is longer than there is room for: give the block more samples");
   }

@@ -21,7 +21,7 @@ template <class Real> struct MovingAverage {
     Vector<Real> line;  // up to `place` the samples of this round; from there on, sums from the end of the
                         // round before
     Real sum;           // of this round
-    int place;
+    int64_t place;
   };
   static constexpr auto describe() {
     return block("The mean of the last samples of a signal, the present one included.",

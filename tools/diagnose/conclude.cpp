@@ -100,23 +100,51 @@ void maximise(Trials& trials, Estimate& estimate) {
   }
 }
 
-/// The set with a proposal carried out and all parameters fitted.
-Estimate exchanged(Trials& trials, const Estimate& estimate, const Proposal& proposal) {
-  return fit_members(trials, applied(proposal, estimate.members), estimate.noise, estimate.motion, 4);
-}
+/// What came out, and the sets that may do as well.
+class Rivals {
+ public:
+  /// `reach`: a loss of the criterion that a rival may have.
+  Rivals(Trials& trials, const Estimate& estimate, size_t catalogue, double reach)
+      : trials_(trials), estimate_(estimate), catalogue_(catalogue), reach_(reach) {}
 
-/// How much worse the criterion is when another set has been fitted; nothing: out of reach. A richer set that
-/// has this one as a special case always comes near: it must explain more to be a rival.
-std::optional<double> loss_of(const Trials& trials, const Estimate& estimate, const Estimate& other,
-                              const Proposal& proposal, size_t catalogue, double reach) {
-  if (!other.is_valid) return {};
-  size_t before = 0, now = 0;
-  for (size_t m : proposal.removed) before += parameters_of(*estimate.members[m].candidate);
-  for (const Member& m : proposal.added) now += parameters_of(*m.candidate);
-  if (now > before && other.profile > estimate.profile - 4) return {};
-  const double loss = criterion(trials, other, catalogue) - criterion(trials, estimate, catalogue);
-  return loss < reach ? std::optional(loss) : std::nullopt;
-}
+  /// With a proposal carried out and all parameters fitted.
+  Estimate fitted(const Proposal& proposal) {
+    return fit_members(trials_, applied(proposal, estimate_.members), estimate_.noise, estimate_.motion, 4);
+  }
+  /// How much worse its criterion is; nothing: out of reach. A richer set that has this one as a special case
+  /// always comes near: it must explain more to be a rival.
+  std::optional<double> loss_of(const Proposal& proposal, const Estimate& other) const {
+    if (!other.is_valid) return {};
+    size_t before = 0, now = 0;
+    for (size_t m : proposal.removed) before += parameters_of(*estimate_.members[m].candidate);
+    for (const Member& m : proposal.added) now += parameters_of(*m.candidate);
+    if (now > before && other.profile > estimate_.profile - 4) return {};
+    const double loss = criterion(trials_, other, catalogue_) - criterion(trials_, estimate_, catalogue_);
+    return loss < reach_ ? std::optional(loss) : std::nullopt;
+  }
+  std::optional<double> loss_of(const Proposal& proposal) {
+    Estimate other = fitted(proposal);
+    const std::optional<double> loss = loss_of(proposal, other);
+    if (loss && *loss < best_loss_) best_loss_ = *loss, best_ = std::move(other);
+    return loss;
+  }
+  /// The best that a loss was asked of, if it does better with noise of its own, too. The search compared
+  /// them under the noise that it knew then.
+  std::optional<Estimate> better() {
+    if (!best_.is_valid) return {};
+    maximise(trials_, best_);
+    const double gain = criterion(trials_, estimate_, catalogue_) - criterion(trials_, best_, catalogue_);
+    return gain > clearly ? std::optional(std::move(best_)) : std::nullopt;
+  }
+
+ private:
+  static constexpr double clearly = 3;
+  Trials& trials_;
+  const Estimate& estimate_;
+  size_t catalogue_;
+  double reach_, best_loss_ = -clearly;
+  Estimate best_;
+};
 
 /// What a set leaves unexplained, in twice the log-likelihood: about what a model of the errors' own
 /// correlation would gain. A set that is worse by less cannot be ruled out. Beyond what counts as white there
@@ -133,23 +161,20 @@ bool contains(const std::vector<Proposal>& list, const Proposal& proposal) {
 }
 
 /// What else would do: every other candidate in the place of a member, its shape and all parameters fitted.
-std::vector<Substitute> substitutes_of(Trials& trials, const Estimate& estimate, size_t member,
-                                       const std::vector<Proposal>& exchanges, size_t catalogue,
-                                       double reach) {
+std::vector<Substitute> substitutes_of(Rivals& rivals, size_t member,
+                                       const std::vector<Proposal>& exchanges) {
   std::vector<Substitute> list;
   for (const Proposal& proposal : exchanges) {
     if (proposal.removed != std::vector<size_t>{member} || list.size() >= 3) continue;
-    if (const auto loss =
-            loss_of(trials, estimate, exchanged(trials, estimate, proposal), proposal, catalogue, reach))
-      list.push_back({proposal.added.front().candidate, *loss});
+    if (const auto loss = rivals.loss_of(proposal)) list.push_back({proposal.added.front().candidate, *loss});
   }
   std::ranges::stable_sort(list, {}, &Substitute::loss);
   return list;
 }
 
 /// The same for several at a time; the most promising are tried.
-std::vector<OtherSet> other_sets(Trials& trials, const Estimate& estimate,
-                                 const std::vector<Proposal>& proposals, size_t catalogue, double reach) {
+std::vector<OtherSet> other_sets(Rivals& rivals, const std::vector<Member>& members,
+                                 const std::vector<Proposal>& proposals) {
   constexpr size_t most_tried = 5, most_told = 3;
   std::vector<OtherSet> list;
   std::set<std::multiset<std::string>> tried;
@@ -157,16 +182,14 @@ std::vector<OtherSet> other_sets(Trials& trials, const Estimate& estimate,
     if (tried.size() >= most_tried) break;
     OtherSet other;
     std::multiset<std::string> names;
-    for (size_t m : proposal.removed) other.replaced.push_back(estimate.members[m].candidate);
+    for (size_t m : proposal.removed) other.replaced.push_back(members[m].candidate);
     for (const Member& m : proposal.added) other.by.push_back(m.candidate), names.insert(m.candidate->name);
     const bool is_one_for_one = other.replaced.size() == 1 && other.by.size() == 1;
     const bool comes_back = std::ranges::any_of(
         other.replaced, [&](const Candidate* c) { return names.contains(c->name) || c->is_unknown; });
     for (const Candidate* c : other.replaced) names.insert("without " + c->name);
     if (is_one_for_one || comes_back || !tried.insert(names).second) continue;
-    if (const auto loss =
-            loss_of(trials, estimate, exchanged(trials, estimate, proposal), proposal, catalogue, reach))
-      other.loss = *loss, list.push_back(std::move(other));
+    if (const auto loss = rivals.loss_of(proposal)) other.loss = *loss, list.push_back(std::move(other));
   }
   std::ranges::stable_sort(list, {}, &OtherSet::loss);
   if (list.size() > most_told) list.resize(most_told);
@@ -184,17 +207,17 @@ bool is_at_limit(const Member& member) {
 
 /// A parameter at the end of its range says that something simpler would do: what has fewer parameters, and
 /// is not worse by `reach`.
-std::optional<Estimate> simplified(Trials& trials, const Estimate& estimate,
-                                   const std::vector<Proposal>& exchanges, size_t catalogue, double reach) {
-  for (size_t m = 0; m < estimate.members.size(); ++m) {
-    const Member& member = estimate.members[m];
+std::optional<Estimate> simplified(Rivals& rivals, const std::vector<Member>& members,
+                                   const std::vector<Proposal>& exchanges, double reach) {
+  for (size_t m = 0; m < members.size(); ++m) {
+    const Member& member = members[m];
     if (!is_at_limit(member)) continue;
     for (const Proposal& proposal : exchanges) {
       const bool is_simpler = proposal.removed == std::vector<size_t>{m} && proposal.added.size() == 1 &&
                               parameters_of(*proposal.added[0].candidate) < parameters_of(*member.candidate);
       if (!is_simpler || proposal.gain <= -10 * reach) continue;
-      Estimate other = exchanged(trials, estimate, proposal);
-      if (loss_of(trials, estimate, other, proposal, catalogue, reach)) return other;
+      Estimate other = rivals.fitted(proposal);
+      if (rivals.loss_of(proposal, other)) return other;
     }
   }
   return {};
@@ -232,6 +255,11 @@ void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
     estimate = std::move(without);
   }
 }
+
+/// Joint maximum likelihood, what would do instead, and so on with that as long as it does better: at most
+/// `rounds` times.
+Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
+                     const std::vector<Shape>& shapes, Estimate found, int rounds);
 
 }  // namespace
 
@@ -274,6 +302,14 @@ double portmanteau(const Trials& trials, const std::vector<Fitted>& fitted) {
 
 Conclusion conclude(Trials& trials, const std::vector<Candidate>& candidates,
                     const std::vector<Shape>& shapes, Estimate found) {
+  constexpr int rounds = 4;
+  return concluded(trials, candidates, shapes, std::move(found), rounds);
+}
+
+namespace {
+
+Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
+                     const std::vector<Shape>& shapes, Estimate found, int rounds) {
   Conclusion result;
   Estimate& estimate = result.estimate;
   estimate = std::move(found);
@@ -290,30 +326,41 @@ Conclusion conclude(Trials& trials, const std::vector<Candidate>& candidates,
   // What a linearisation promises far from where it was made may be a hundred off.
   const double reach = std::max({10.0, 0.002 * n, unexplained(result.portmanteau)});
   const double far = std::max(100.0, 3 * reach);
-  if (auto simpler = simplified(trials, estimate, exchanges, candidates.size(), reach)) {
-    Conclusion simple = conclude(trials, candidates, shapes, std::move(*simpler));
-    simple.trail.insert(simple.trail.begin(), result.trail.begin(), result.trail.end());
-    return simple;
-  }
+  Rivals rivals(trials, estimate, candidates.size(), reach);
+  const auto instead = [&](Estimate other) {
+    Conclusion next = concluded(trials, candidates, shapes, std::move(other), rounds - 1);
+    next.trail.insert(next.trail.begin(), result.trail.begin(), result.trail.end());
+    return next;
+  };
+  if (rounds > 0)
+    if (auto simpler = simplified(rivals, estimate.members, exchanges, reach))
+      return instead(std::move(*simpler));
   const std::vector<Proposal> swaps = shape_swaps(estimate.members, candidates);
   std::vector<Proposal> several = evidence.exchanges_for_pairs();
   std::ranges::copy(exchanges, std::back_inserter(several));
   std::erase_if(several, [&](const Proposal& p) { return p.gain < -std::max(30.0, reach); });
   std::ranges::stable_sort(several, std::ranges::greater{}, &Proposal::gain);
-  result.other_sets = other_sets(trials, estimate, several, candidates.size(), reach);
+  result.other_sets = other_sets(rivals, estimate.members, several);
   for (size_t m = 0; m < estimate.members.size(); ++m) {
     result.weights[m].loss = -removal[m] * n / evidence.rows();
     std::vector<Proposal> near = swaps;
     for (const Proposal& p : exchanges)
       if (p.gain > -far && !contains(swaps, p)) near.push_back(p);
-    result.substitutes.push_back(substitutes_of(trials, estimate, m, near, candidates.size(), reach));
+    result.substitutes.push_back(substitutes_of(rivals, m, near));
     double others = std::exp(-std::min(result.weights[m].loss, 600.0) / 2);
     for (const Substitute& s : result.substitutes[m]) others += std::exp(-std::max(s.loss, 0.0) / 4);
     result.inclusion.push_back(0.995 / (1 + others));
   }
+  if (rounds > 0)
+    if (auto better = rivals.better()) {
+      result.trail.push_back("with noise of its own another set does better");
+      return instead(std::move(*better));
+    }
   const Noise free = fit_noise(trials, estimate.fitted, estimate.noise, FreeNoise::all);
   result.is_remainder_noise = free.slow() <= most_slow_noise * free.white;
   return result;
 }
+
+}  // namespace
 
 }  // namespace loopwright::diagnosis

@@ -88,14 +88,17 @@ Columns derivatives(const Member& member, const Path& path) {
 Column input_derivative(std::vector<Member> members, const FreeParameter& parameter, const Path& path,
                         const std::vector<double>& raw_input) {
   double& value = value_of(members, parameter);
-  const double step = parameter.is_linear ? 1e-3 : difference_step(range_of(members, parameter), value);
-  value += step;
+  const CandidateParameter& range = range_of(members, parameter);
+  const double at = value, step = parameter.is_linear ? 1e-3 : difference_step(range, value);
+  const double before = parameter.is_linear ? at - step : std::clamp(at - step, range.low, range.high);
+  value = at + step;
   ChangedInput change = through(chain_of(members), path, raw_input);
-  value -= 2 * step;
+  value = before;
   const ChangedInput low = through(chain_of(members), path, raw_input);
+  change.slope.resize(std::max(change.slope.size(), low.slope.size()), 0.0);
   for (size_t k = 0; k < change.mean.size(); ++k) change.mean[k] -= low.mean[k];
-  for (size_t k = 0; k < change.slope.size(); ++k) change.slope[k] -= low.slope[k];
-  return Column(divided(change.mean, -2 * step), divided(change.slope, -2 * step));
+  for (size_t k = 0; k < low.slope.size(); ++k) change.slope[k] -= low.slope[k];
+  return Column(divided(change.mean, before - at - step), divided(change.slope, before - at - step));
 }
 
 template <class F>

@@ -1,6 +1,7 @@
 #include "tools/diagnose/rest.h"
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace loopwright::diagnosis {
 namespace {
@@ -9,6 +10,7 @@ constexpr double worse_at_rest = 4;    // than in motion: whatever the set does 
 constexpr double least_freedom = 0.4;  // of what noise makes of a free axis; the controller takes some of it
 constexpr double most_freedom = 3;     // more is motion
 constexpr size_t apart = 6;            // samples: enough to swerve, too few for the controller to correct all
+constexpr size_t glance = 36;          // samples: so many that steps of the encoder are averaged out
 
 AtRest at_rest(const std::vector<Member>& members) {
   AtRest result = AtRest::free;
@@ -31,25 +33,37 @@ double against_free(const Trials& trials, const std::vector<Fitted>& fitted) {
   return count > 0 ? count * std::log(std::max(1.0, sum / count / (worse_at_rest * in_motion))) : 0;
 }
 
-/// Squares of how much farther the axis at rest moved in some samples than in as many before: a creep at one
-/// speed is none of it.
+/// Mean squares, over a glance each, of how much farther the axis at rest moved in some samples than in as
+/// many before: a creep at one speed is none of it.
 std::vector<double> swerves_at_rest(const Trials& trials) {
-  std::vector<double> squares;
+  std::vector<double> glances;
   for (const Trial& trial : trials.list) {
     const MeasuredPort* position = trial.model->record().find("position");
-    size_t resting = 0;
-    for (size_t k = 0; position && k < trial.held_out_from; ++k) {
+    double sum = 0;
+    for (size_t k = 0, resting = 0; position && k < trial.held_out_from; ++k) {
       resting = trial.at_rest[k] ? resting + 1 : 0;
+      if (resting <= 2 * apart) {
+        sum = 0;
+        continue;
+      }
       const double* x = position->value.data() + k;
-      if (resting > 2 * apart) squares.push_back(std::pow(*x - 2 * *(x - apart) + *(x - 2 * apart), 2));
+      sum += std::pow(*x - 2 * *(x - apart) + *(x - 2 * apart), 2) / double(glance);
+      if ((resting - 2 * apart) % glance == 0) glances.push_back(std::exchange(sum, 0));
     }
   }
-  return squares;
+  return glances;
+}
+
+/// Noise of a sensor that stands still: where it stands between two of its steps, noise may show as half of
+/// one.
+double noise_at_rest(const Trials& trials, const Noise& noise) {
+  const MeasuredPort* position = trials.list.front().model->record().find("position");
+  return std::max(noise.measurement[0], position ? 0.5 * position->resolution : 0.0);
 }
 
 /// The axis moves as if nothing held it.
 double against_held(const Trials& trials, const Noise& noise) {
-  constexpr double median_of_normal = 0.455;  // of the square, over its mean
+  constexpr double median_to_mean = 0.9;  // of a square averaged over a glance
   std::vector<double> squares = swerves_at_rest(trials);
   if (squares.empty()) return 0;
   // The median: what is held slips now and then.
@@ -57,11 +71,11 @@ double against_held(const Trials& trials, const Noise& noise) {
   std::ranges::nth_element(squares, middle);
   const AxisModel& model = *trials.list.front().model;
   const double T = model.record().sample_time, kick = noise.white / model.nominal_inertia() * T * T;
-  const double sensor = 6 * noise.measurement[0] * noise.measurement[0];
+  const double sensor = 6 * std::pow(noise_at_rest(trials, noise), 2);
   const double free = kick * kick * 2 * std::pow(double(apart), 3) / 3,
-               seen = *middle / median_of_normal - sensor;
+               seen = *middle / median_to_mean - sensor;
   if (seen < least_freedom * free || seen > most_freedom * free || seen < sensor) return 0;
-  return double(squares.size()) / double(2 * apart) * std::log1p(seen / sensor);
+  return double(squares.size() * glance) / double(2 * apart) * std::log1p(seen / sensor);
 }
 
 }  // namespace

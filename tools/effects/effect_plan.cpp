@@ -177,6 +177,17 @@ void check_bindings(const EffectPlan& result, Problems& problems) {
                      "effect can reach it");
 }
 
+void find_slopes(EffectPlan& result, Problems& problems) {
+  for (const Attachment& a : result.effect.attachments) {
+    if (a.slope.empty()) continue;
+    const std::vector<Number> found = result.plan.find("effect." + a.slope);
+    if (found.size() == 1)
+      result.slopes.push_back(found[0]);
+    else
+      problems.error(a.place, a.place.pointer(), a.slope, "the slope of an attachment is one number");
+  }
+}
+
 }  // namespace
 
 std::shared_ptr<const EffectPlan> compile_effect(const Effect& effect, const MachineUnits& units,
@@ -199,6 +210,7 @@ std::shared_ptr<const EffectPlan> compile_effect(const Effect& effect, const Mac
   if (plan && !own.has_errors()) {
     result->plan = *plan;
     result->output = plan->find("effect.value_of_effect.sum").at(0);
+    find_slopes(*result, own);
     if (const auto integral = plan->find("integral.y"); !integral.empty()) result->integral = integral[0];
     result->acts_on_sensor = std::ranges::any_of(
         effect.attachments, [](const Attachment& a) { return a.to == Attachment::To::sensor; });

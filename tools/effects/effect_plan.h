@@ -18,8 +18,9 @@ struct EffectPlan {
   std::vector<std::string> fitted;  ///< the parameters that `EffectRun::set` sets, in their order
   std::vector<Binding> bindings;
   Plan plan;
-  Number output = 0;     ///< what the effect does, at an instant
-  Number integral = -1;  ///< the same, integrated; -1: nothing in it has states or rates of its own
+  Number output = 0;           ///< what the effect does, at an instant
+  std::vector<Number> slopes;  ///< those that its blocks state, to be added to what is seen of `output`
+  Number integral = -1;        ///< the same, integrated; -1: nothing in it has states or rates of its own
   bool acts_on_sensor = false;
   bool remembers = true;  ///< else a sample depends on nothing but itself, not even on time
 };

@@ -230,7 +230,8 @@ class FormReader {
   void read_attachment(const Value& item) {
     using To = Attachment::To;
     using Stage = Attachment::Stage;
-    reader_.reject_unknown(item, {"to", "from", "stage", "parameter", "add", "optional"}, "an attachment");
+    reader_.reject_unknown(item, {"to", "from", "slope", "stage", "parameter", "add", "optional"},
+                           "an attachment");
     Attachment attachment;
     attachment.place = item.place;
     attachment.from = text(item, "from", "the attachment");
@@ -246,7 +247,11 @@ class FormReader {
                  {"iron", Stage::iron},
                  {"magnets", Stage::magnets}},
                 attachment.stage);
-    check_source(item, attachment.from);
+    check_source(item, "from", attachment.from);
+    if (item.find("slope")) {
+      attachment.slope = text(item, "slope", "the attachment");
+      check_source(item, "slope", attachment.slope);
+    }
     if (attachment.to == To::parameter) {
       if (const auto* targets = item.find("parameter"))
         attachment.targets = texts(targets->value, "\"parameter\"");
@@ -260,10 +265,10 @@ class FormReader {
     }
     effect_.attachments.push_back(std::move(attachment));
   }
-  void check_source(const Value& item, const std::string& from) {
+  void check_source(const Value& item, const char* key, const std::string& from) {
     const std::vector<std::string> path = split_path(from);
     if (path.size() == 2 && effect_.blocks.find(path[0])) return;
-    const Value::Member* member = item.find("from");
+    const Value::Member* member = item.find(key);
     if (!member) return;
     KnownNames names;
     for (const Value::Member& block : effect_.blocks.members) names.add(block.name);

@@ -39,7 +39,8 @@ EffectRun::EffectRun(std::shared_ptr<const EffectPlan> plan, int lanes) : plan_(
   position_ = wire("position"), velocity_ = wire("velocity"), acceleration_ = wire("acceleration");
   input_ = wire("input"), force_ = wire("force");
   sample_ticks_ = std::llround(plan_->sizes.sample_time / plan_->plan.clock.time(1));
-  for (auto* list : {&value_, &slope_, &integral_, &second_, &area_}) list->resize(size_t(run_->lanes()));
+  for (auto* list : {&value_, &slope_, &stated_slope_, &integral_, &second_, &area_})
+    list->resize(size_t(run_->lanes()));
 }
 
 EffectRun::Wire EffectRun::wire(const char* role) {
@@ -100,16 +101,25 @@ void EffectRun::start(const RoleSample& first) {
   std::ranges::fill(integral_, 0.0);
 }
 
+void EffectRun::read_held() {
+  std::ranges::fill(stated_slope_, 0.0);
+  for (const Number slope : plan_->slopes) {
+    read(slope, value_);
+    for (size_t i = 0; i < value_.size(); ++i) stated_slope_[i] += value_[i];
+  }
+  read(plan_->output, value_);
+}
+
 void EffectRun::mean_from(double now) {
   constexpr double gauss_point = 0.21132486540518712;  // (1 - 1/√3) / 2
   const double period = plan_->sizes.sample_time;
   run_->evaluate(plan_->acts_on_sensor ? now : now + gauss_point * period);
-  read(plan_->output, value_);
+  read_held();
   if (plan_->acts_on_sensor) return;
   run_->evaluate(now + (1 - gauss_point) * period);
   read(plan_->output, second_);
   for (size_t i = 0; i < value_.size(); ++i) {
-    slope_[i] = std::numbers::sqrt3 * (second_[i] - value_[i]);
+    slope_[i] = std::numbers::sqrt3 * (second_[i] - value_[i]) + stated_slope_[i];
     value_[i] = 0.5 * (value_[i] + second_[i]);
   }
 }
@@ -122,7 +132,7 @@ void EffectRun::integrate_sample() {
   std::ranges::fill(area_, 0.0);
   for (int64_t left = sample_ticks_; left > 0;) {
     run_->evaluate(run_->time());
-    if (left == sample_ticks_) read(plan_->output, value_);
+    if (left == sample_ticks_) read_held();
     slope_ = integral_;
     const int64_t passed = run_->integrate(left);  // a step of the solver
     left -= passed;
@@ -133,7 +143,7 @@ void EffectRun::integrate_sample() {
   if (plan_->acts_on_sensor) return;
   for (size_t i = 0; i < value_.size(); ++i) {
     const double whole = integral_[i] - at_start[i];
-    value_[i] = whole / period, slope_[i] = 12 * (0.5 * whole - area_[i]) / period;
+    value_[i] = whole / period, slope_[i] = 12 * (0.5 * whole - area_[i]) / period + stated_slope_[i];
   }
 }
 

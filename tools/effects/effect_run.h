@@ -82,6 +82,8 @@ class EffectRun {
   /// The same over samples that were given, at the two points of Gauss from `now` on.
   void mean_from(double now);
   void integrate_sample();
+  /// Of what its blocks give now: the value, and the slope that they state.
+  void read_held();
   /// Each value and slope goes to take(lane, row, value, slope).
   template <class Take> void run_lanes(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take);
   template <class Take> void run_in_turn(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take);
@@ -96,7 +98,7 @@ class EffectRun {
   std::vector<std::vector<double*>> bound_;
   Wire position_, velocity_, acceleration_, input_, force_;
   int64_t sample_ticks_ = 1;
-  std::vector<double> value_, slope_, integral_, second_, area_;  // a lane each
+  std::vector<double> value_, slope_, stated_slope_, integral_, second_, area_;  // a lane each
 };
 
 }  // namespace loopwright

@@ -11,6 +11,23 @@ TEST(FractionalDelay, HoldsTheMeanOfTheLateStaircase) {
     EXPECT_NEAR(late.sample("u", given[k], "y"), expected[k], 1e-12) << k;
 }
 
+TEST(FractionalDelay, TheSlopeHasTheFirstMomentOfTheLateStaircase) {
+  BlockUnderTest late("FractionalDelay", R"({"delay": 0.0225})", 0.01);
+  double given[] = {1, 2, 4, 8, 16}, from = 0;
+  for (size_t k = 0; k < std::size(given); ++k) {
+    late.sample("u", given[k], "y");
+    const double to = k < 2 ? 0 : given[k - 2];
+    double moment = 0;  // ∫ (t - ½) u dt, a change at a quarter of the sample
+    constexpr int parts = 100000;
+    for (int i = 0; i < parts; ++i) {
+      const double t = (i + 0.5) / parts;
+      moment += (t - 0.5) * (t < 0.25 ? from : to) / parts;
+    }
+    EXPECT_NEAR(late.output("slope"), 12 * moment, 1e-8) << k;  // slope · (t - ½) has slope / 12
+    from = to;
+  }
+}
+
 TEST(FractionalDelay, WithoutDelayItIsAWire) {
   BlockUnderTest late("FractionalDelay", R"({"delay": 0})", 0.01);
   for (double u : {3.0, -1.0, 2.0}) EXPECT_EQ(late.sample("u", u, "y"), u);
