@@ -119,11 +119,13 @@ class Rivals {
     for (size_t m : proposal.removed) before += parameters_of(*estimate_.members[m].candidate);
     for (const Member& m : proposal.added) now += parameters_of(*m.candidate);
     if (now > before && other.profile > estimate_.profile - 4) return {};
-    const double loss = criterion(trials_, other, catalogue_) - criterion(trials_, estimate_, catalogue_);
+    const double loss = criterion_of(other) - criterion_of(estimate_);
     return loss < reach_ ? std::optional(loss) : std::nullopt;
   }
   std::optional<double> loss_of(const Proposal& proposal) {
     Estimate other = fitted(proposal);
+    if (const double loss = criterion_of(other) - criterion_of(estimate_); loss > reach_ && loss < 4 * reach_)
+      maximise(trials_, other);
     const std::optional<double> loss = loss_of(proposal, other);
     if (loss && *loss < best_loss_) best_loss_ = *loss, best_ = std::move(other);
     return loss;
@@ -133,11 +135,13 @@ class Rivals {
   std::optional<Estimate> better() {
     if (!best_.is_valid) return {};
     maximise(trials_, best_);
-    const double gain = criterion(trials_, estimate_, catalogue_) - criterion(trials_, best_, catalogue_);
-    return gain > clearly ? std::optional(std::move(best_)) : std::nullopt;
+    return criterion_of(estimate_) - criterion_of(best_) > clearly ? std::optional(std::move(best_))
+                                                                   : std::nullopt;
   }
 
  private:
+  double criterion_of(const Estimate& estimate) const { return criterion(trials_, estimate, catalogue_); }
+
   static constexpr double clearly = 3;
   Trials& trials_;
   const Estimate& estimate_;
