@@ -31,6 +31,8 @@ enum class FreeNoise { with_random_walk, white_and_slow, all };
 /// around the start.
 Noise fit_noise(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& start, FreeNoise free);
 
+/// The slow force of an amplifier, as a part of the white one.
+constexpr double usual_slow_noise = 0.3;
 /// A slow force above this part of the white one is no noise but something that the model lacks.
 constexpr double most_slow_noise = 0.8;
 

@@ -87,7 +87,10 @@ Noise fit_noise(const Trials& trials, const std::vector<Fitted>& fitted, const N
 Noise fit_noise_alone(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& start,
                       FreeNoise free) {
   constexpr double next_to_nothing = 0.01;
-  Noise noise = fit_noise(trials, fitted, start, free);
+  // Where little of it is left, or all was put aside, the likelihood is too flat to find it again.
+  Noise from = start;
+  from.step = std::max(from.step, usual_slow_noise * from.white * std::sqrt(1 - from.memory * from.memory));
+  Noise noise = fit_noise(trials, fitted, from, free);
   if (noise.slow() <= most_slow_noise * noise.white) return noise;
   noise.white = std::hypot(noise.white, noise.slow());
   noise.step = next_to_nothing * noise.white * std::sqrt(1 - noise.memory * noise.memory);

@@ -334,7 +334,7 @@ Noise search_noise(const Trials& trials) {
   noise.white = std::clamp(noise.white, 0.005 * trials.input_rms, 0.02 * trials.input_rms);
   const double sample_time = trials.list.front().model->record().sample_time;
   noise.memory = std::exp(-sample_time / memory_s);
-  noise.step = 0.3 * noise.white * std::sqrt(1 - noise.memory * noise.memory);
+  noise.step = usual_slow_noise * noise.white * std::sqrt(1 - noise.memory * noise.memory);
   return noise;
 }
 
