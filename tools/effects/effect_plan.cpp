@@ -184,7 +184,9 @@ void find_slopes(EffectPlan& result, Problems& problems) {
     if (found.size() == 1)
       result.slopes.push_back(found[0]);
     else
-      problems.error(a.place, a.place.pointer(), a.slope, "the slope of an attachment is one number");
+      problems.error(
+          a.place, a.place.pointer(), "",
+          fmt::format("the slope \"{}\" of the attachment is no output, or not a number", a.slope));
   }
 }
 

@@ -202,17 +202,19 @@ TEST(EffectFile, EveryMistakeIsToldAtItsPlace) {
   },
   "blocks": {"drag": {"type": "QuadraticDrag", "drag": "=level", "in": {"velocity": "velocty"}}},
   "attach": [{"to": "forse", "from": "drag.force"}, {"to": "force", "from": "darg.force"},
-             {"to": "input", "stage": "comand", "from": "drag.force"}],
+             {"to": "input", "stage": "comand", "from": "drag.force"},
+             {"to": "force", "from": "drag.force", "slope": "drga.slope"}],
   "needs": {"text": "", "direction": 2},
   "extra": 1
 })");
   Problems problems;
   EXPECT_TRUE(load_effect(folder.path("wrong.json"), problems).empty());
   const std::string text = problems.text();
-  for (const char* part : {"4:62: error: the expression has another unit", "there is no size \"top_sped\"",
-                           "did you mean \"top_speed\"?", "the range is empty", "did you mean \"velocity\"?",
-                           "did you mean \"force\"?", "did you mean \"drag\"?",
-                           "did you mean \"directions\"?", "did you mean \"command\"?", "/extra", "9 errors"})
+  for (const char* part :
+       {"4:62: error: the expression has another unit", "there is no size \"top_sped\"",
+        "did you mean \"top_speed\"?", "the range is empty", "did you mean \"velocity\"?",
+        "did you mean \"force\"?", "did you mean \"drag\"?", "did you mean \"directions\"?",
+        "did you mean \"command\"?", "\"drga.slope\" is no output", "/extra", "10 errors"})
     EXPECT_TRUE(has(text, part)) << part << "\n" << text;
 }
 
@@ -230,6 +232,22 @@ TEST(EffectFile, BlocksAreCheckedAsThoseOfADiagram) {
   EXPECT_FALSE(compile_effect(effects[0], {}, axis_sizes(), problems));
   EXPECT_TRUE(has(problems.text(), "wrong.json:4:31")) << problems.text();
   EXPECT_TRUE(has(problems.text(), "did you mean \"QuadraticDrag\"?")) << problems.text();
+}
+
+TEST(EffectFile, ASlopeIsAnOutputThatIsThere) {
+  DiagramFolder folder;
+  folder.with("late.json", R"({
+  "loopwright": 1, "effect": "late", "title": "Late", "physics": "A detour.",
+  "parameters": {"delay": {"unit": "s", "range": [0, "=3*sample_time"], "start": "=sample_time"}},
+  "blocks": {"late": {"type": "FractionalDelay", "delay": "=delay", "sample_time": "=sample_time", "in": {"u": "input"}}},
+  "attach": [{"to": "input", "from": "late.y", "slope": "late.slop"}], "needs": {"text": ""}
+})");
+  Problems problems;
+  const auto effects = load_effect(folder.path("late.json"), problems);
+  ASSERT_EQ(effects.size(), 1u) << problems.text();
+  EXPECT_FALSE(compile_effect(effects[0], {}, axis_sizes(), problems));
+  EXPECT_TRUE(has(problems.text(), "late.json:5:14")) << problems.text();
+  EXPECT_TRUE(has(problems.text(), "\"late.slop\"")) << problems.text();
 }
 
 TEST(EffectFile, AFixedPitchIsNoLongerFitted) {
@@ -275,4 +293,17 @@ TEST(EffectRun, AnEffectWithStatesHasItsSlopeFromTheIntegral) {
     EXPECT_NEAR(double(output.slope[size_t(k)]), slope, 0.08 * slope) << k;
   }
   EXPECT_EQ(output.slope[19], 0);
+}
+
+TEST(EffectRun, ADelayByPartOfASampleHasTheSlopeOfItsLateStaircase) {
+  EffectRun delay(compiled(effect_named("input_delay")));
+  delay.set(0, 0.00225);
+  std::vector<double> input(50, 0.0), none(50, 0.0);
+  for (size_t k = 20; k < 50; ++k) input[k] = 2;
+  EffectRun::Output output;
+  delay.run({none, none, none, input, input}, 50, {&output, 1});
+  for (size_t k = 0; k < 50; ++k) {
+    const double slope = k == 22 ? slope_of([](double u) { return u < 0.25 ? 0.0 : 2.0; }) : 0;
+    EXPECT_NEAR(double(output.slope[k]), slope, 1e-5) << k;
+  }
 }
