@@ -107,6 +107,7 @@ class Rivals {
   Rivals(Trials& trials, const Estimate& estimate, size_t catalogue, double reach)
       : trials_(trials), estimate_(estimate), catalogue_(catalogue), reach_(reach) {}
 
+  double reach() const { return reach_; }
   /// With a proposal carried out and all parameters fitted.
   Estimate fitted(const Proposal& proposal) {
     return fit_members(trials_, applied(proposal, estimate_.members), estimate_.noise, estimate_.motion, 4);
@@ -210,16 +211,16 @@ bool is_at_limit(const Member& member) {
 }
 
 /// A parameter at the end of its range says that something simpler would do: what has fewer parameters, and
-/// is not worse by `reach`.
+/// is not out of reach.
 std::optional<Estimate> simplified(Rivals& rivals, const std::vector<Member>& members,
-                                   const std::vector<Proposal>& exchanges, double reach) {
+                                   const std::vector<Proposal>& exchanges) {
   for (size_t m = 0; m < members.size(); ++m) {
     const Member& member = members[m];
     if (!is_at_limit(member)) continue;
     for (const Proposal& proposal : exchanges) {
       const bool is_simpler = proposal.removed == std::vector<size_t>{m} && proposal.added.size() == 1 &&
                               parameters_of(*proposal.added[0].candidate) < parameters_of(*member.candidate);
-      if (!is_simpler || proposal.gain <= -10 * reach) continue;
+      if (!is_simpler || proposal.gain <= -10 * rivals.reach()) continue;
       Estimate other = rivals.fitted(proposal);
       if (rivals.loss_of(proposal, other)) return other;
     }
@@ -260,10 +261,66 @@ void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
   }
 }
 
-/// Joint maximum likelihood, what would do instead, and so on with that as long as it does better: at most
-/// `rounds` times.
+/// Fills what else would do, and from it how probable each member is.
+void ask_rivals(Conclusion& result, Evidence& evidence, const std::vector<Proposal>& exchanges,
+                const std::vector<Candidate>& candidates, Rivals& rivals, double n) {
+  const double reach = rivals.reach();
+  // What a linearisation promises far from where it was made may be a hundred off.
+  const double far = std::max(100.0, 3 * reach);
+  const std::vector<Member>& members = result.estimate.members;
+  std::vector<Proposal> several = evidence.exchanges_for_pairs();
+  std::ranges::copy(exchanges, std::back_inserter(several));
+  std::erase_if(several, [&](const Proposal& p) { return p.gain < -std::max(30.0, reach); });
+  std::ranges::stable_sort(several, std::ranges::greater{}, &Proposal::gain);
+  result.other_sets = other_sets(rivals, members, several);
+  const std::vector<Proposal> swaps = shape_swaps(members, candidates);
+  std::vector<Proposal> near = swaps;
+  for (const Proposal& p : exchanges)
+    if (p.gain > -far && !contains(swaps, p)) near.push_back(p);
+  const std::vector<double> removal = evidence.gains_of_removal();
+  for (size_t m = 0; m < members.size(); ++m) {
+    result.weights[m].loss = -removal[m] * n / evidence.rows();
+    result.substitutes.push_back(substitutes_of(rivals, m, near));
+    double others = std::exp(-std::min(result.weights[m].loss, 600.0) / 2);
+    for (const Substitute& s : result.substitutes[m]) others += std::exp(-std::max(s.loss, 0.0) / 4);
+    result.inclusion.push_back(0.995 / (1 + others));
+  }
+}
+
+/// Joint maximum likelihood, and so on with a set that does as well with less, or better: at most `rounds`
+/// times.
 Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
-                     const std::vector<Shape>& shapes, Estimate found, int rounds);
+                     const std::vector<Shape>& shapes, Estimate found, int rounds) {
+  Conclusion result;
+  Estimate& estimate = result.estimate;
+  estimate = std::move(found);
+  keep_material(trials, result, candidates.size());
+  result.portmanteau = portmanteau(trials, estimate.fitted);
+  const double n = double(fitted_numbers(trials));
+  const std::vector<Shape> periodic = periodic_shapes(trials, estimate, candidates, 1);
+  std::vector<const Shape*> all;
+  for (const auto* list : {&shapes, &periodic})
+    for (const Shape& shape : *list) all.push_back(&shape);
+  Evidence evidence(trials, estimate, all, candidates.size());
+  const std::vector<Proposal> exchanges = evidence.exchanges();
+  Rivals rivals(trials, estimate, candidates.size(),
+                std::max({10.0, 0.002 * n, unexplained(result.portmanteau)}));
+  std::optional<Estimate> instead;
+  if (rounds > 0) instead = simplified(rivals, estimate.members, exchanges);
+  if (!instead) {
+    ask_rivals(result, evidence, exchanges, candidates, rivals, n);
+    if (rounds > 0 && (instead = rivals.better()))
+      result.trail.push_back("with noise of its own another set does better");
+  }
+  if (instead) {
+    Conclusion next = concluded(trials, candidates, shapes, std::move(*instead), rounds - 1);
+    next.trail.insert(next.trail.begin(), result.trail.begin(), result.trail.end());
+    return next;
+  }
+  const Noise free = fit_noise(trials, estimate.fitted, estimate.noise, FreeNoise::all);
+  result.is_remainder_noise = free.slow() <= most_slow_noise * free.white;
+  return result;
+}
 
 }  // namespace
 
@@ -309,62 +366,5 @@ Conclusion conclude(Trials& trials, const std::vector<Candidate>& candidates,
   constexpr int rounds = 4;
   return concluded(trials, candidates, shapes, std::move(found), rounds);
 }
-
-namespace {
-
-Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
-                     const std::vector<Shape>& shapes, Estimate found, int rounds) {
-  Conclusion result;
-  Estimate& estimate = result.estimate;
-  estimate = std::move(found);
-  keep_material(trials, result, candidates.size());
-  result.portmanteau = portmanteau(trials, estimate.fitted);
-  const double n = double(fitted_numbers(trials));
-  const std::vector<Shape> periodic = periodic_shapes(trials, estimate, candidates, 1);
-  std::vector<const Shape*> all;
-  for (const auto* list : {&shapes, &periodic})
-    for (const Shape& shape : *list) all.push_back(&shape);
-  Evidence evidence(trials, estimate, all, candidates.size());
-  const std::vector<double> removal = evidence.gains_of_removal();
-  const std::vector<Proposal> exchanges = evidence.exchanges();
-  // What a linearisation promises far from where it was made may be a hundred off.
-  const double reach = std::max({10.0, 0.002 * n, unexplained(result.portmanteau)});
-  const double far = std::max(100.0, 3 * reach);
-  Rivals rivals(trials, estimate, candidates.size(), reach);
-  const auto instead = [&](Estimate other) {
-    Conclusion next = concluded(trials, candidates, shapes, std::move(other), rounds - 1);
-    next.trail.insert(next.trail.begin(), result.trail.begin(), result.trail.end());
-    return next;
-  };
-  if (rounds > 0)
-    if (auto simpler = simplified(rivals, estimate.members, exchanges, reach))
-      return instead(std::move(*simpler));
-  const std::vector<Proposal> swaps = shape_swaps(estimate.members, candidates);
-  std::vector<Proposal> several = evidence.exchanges_for_pairs();
-  std::ranges::copy(exchanges, std::back_inserter(several));
-  std::erase_if(several, [&](const Proposal& p) { return p.gain < -std::max(30.0, reach); });
-  std::ranges::stable_sort(several, std::ranges::greater{}, &Proposal::gain);
-  result.other_sets = other_sets(rivals, estimate.members, several);
-  for (size_t m = 0; m < estimate.members.size(); ++m) {
-    result.weights[m].loss = -removal[m] * n / evidence.rows();
-    std::vector<Proposal> near = swaps;
-    for (const Proposal& p : exchanges)
-      if (p.gain > -far && !contains(swaps, p)) near.push_back(p);
-    result.substitutes.push_back(substitutes_of(rivals, m, near));
-    double others = std::exp(-std::min(result.weights[m].loss, 600.0) / 2);
-    for (const Substitute& s : result.substitutes[m]) others += std::exp(-std::max(s.loss, 0.0) / 4);
-    result.inclusion.push_back(0.995 / (1 + others));
-  }
-  if (rounds > 0)
-    if (auto better = rivals.better()) {
-      result.trail.push_back("with noise of its own another set does better");
-      return instead(std::move(*better));
-    }
-  const Noise free = fit_noise(trials, estimate.fitted, estimate.noise, FreeNoise::all);
-  result.is_remainder_noise = free.slow() <= most_slow_noise * free.white;
-  return result;
-}
-
-}  // namespace
 
 }  // namespace loopwright::diagnosis
