@@ -35,6 +35,7 @@ struct Candidate {
   /// Scans every pitch: the first nonlinear parameter is one, the columns are its sine and cosine.
   bool is_periodic = false;
   AtRest at_rest = AtRest::free;
+  bool flies = false;            ///< its force is nothing for a while and comes back with a blow
   bool is_repeatable = false;    ///< may be there more than once
   bool repeats_in_time = false;  ///< its period is one of time, not of position
   bool is_unknown = false;       ///< no effect of the catalogue but any function of the variables in `form`

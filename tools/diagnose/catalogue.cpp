@@ -171,6 +171,7 @@ Candidate candidate_of(const Effect& effect, std::shared_ptr<const EffectPlan> p
     for (double value = high / 60; value < high; value *= 1.5) grid.push_back(value);
   }
   candidate.is_repeatable = effect.is_repeatable, candidate.at_rest = effect.at_rest;
+  candidate.flies = candidate.acts == Acts::force && compiled->plan->flies;
   candidate.columns_at = [compiled](const Path& path, const std::vector<std::vector<double>>& shapes) {
     return compiled->columns(path, shapes);
   };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <set>
+#include "tools/diagnose/doubt.h"
 #include "tools/diagnose/search.h"
 #include "tools/diagnose/spectrum.h"
 
@@ -294,7 +295,13 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
   Conclusion result;
   Estimate& estimate = result.estimate;
   estimate = std::move(found);
+  leave_out_doubtful(trials, estimate);
+  const bool was_doubtful = may_be_doubtful(estimate.members);
   keep_material(trials, result, candidates.size());
+  if (was_doubtful && !may_be_doubtful(estimate.members)) {  // all rows count again
+    leave_out_doubtful(trials, estimate);
+    keep_material(trials, result, candidates.size());
+  }
   result.portmanteau = portmanteau(trials, estimate.fitted);
   const double n = double(fitted_numbers(trials));
   const std::vector<Shape> periodic = periodic_shapes(trials, estimate, candidates, 1);

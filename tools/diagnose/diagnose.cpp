@@ -3,6 +3,7 @@
 #include <cmath>
 #include "tools/diagnose/catalogue.h"
 #include "tools/diagnose/conclude.h"
+#include "tools/diagnose/doubt.h"
 #include "tools/diagnose/force_residual.h"
 #include "tools/diagnose/improve.h"
 #include "tools/diagnose/prepare.h"
@@ -146,6 +147,7 @@ class Inquiry {
     const Estimate& e = conclusion.estimate;
     trials_.run_along(Trials::Rows::all);
     on_all_rows_ = on_own_motion(trials_, fit_members(trials_, e.members, e.noise, motion_, 0));
+    leave_out_doubtful(trials_, on_all_rows_);
     trials_.run_along(Trials::Rows::fitted);
   }
 

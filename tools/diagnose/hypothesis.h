@@ -14,7 +14,8 @@ struct Interrupted {};
 /// One record with the model that follows it.
 struct Trial {
   std::unique_ptr<AxisModel> model;
-  std::vector<char> usable;   ///< rows that count: moving for a while, past the start, not damaged
+  std::vector<char> moving;   ///< rows while moving for a while, past the start, not damaged
+  std::vector<char> usable;   ///< of these the ones that count: see leave_out_doubtful()
   std::vector<char> at_rest;  ///< rows at rest, past the start
   size_t held_out_from = 0;   ///< rows from here on are not fitted
   std::vector<double> input;  ///< as recorded, over the rows that a model is run along: see run_along

@@ -52,14 +52,15 @@ Noise first_guess(const Trials& trials) {
 /// Rows while moving, some time after the last rest or reversal; and rows at rest.
 void mark_usable(Trial& trial, const Path& path, bool is_map) {
   const size_t rows = path.samples();
-  trial.usable.assign(rows, 1), trial.at_rest.assign(rows, 0);
+  trial.moving.assign(rows, 1), trial.at_rest.assign(rows, 0);
   int since_rest = memory_of_rest;
   const int start = is_map ? 1 : int(std::ceil(settling_s / path.sample_time));
   for (size_t k = 0; k < rows; ++k) {
     since_rest = path.rests[k] ? 0 : since_rest + 1;
-    trial.usable[k] = since_rest > memory_of_rest && !path.turns[k] && int(k) >= start;
+    trial.moving[k] = since_rest > memory_of_rest && !path.turns[k] && int(k) >= start;
     trial.at_rest[k] = path.rests[k] && int(k) >= start;
   }
+  trial.usable = trial.moving;
 }
 
 /// The noise of a motion and that of a map have nothing in common.

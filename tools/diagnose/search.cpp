@@ -5,6 +5,7 @@
 #include <optional>
 #include <ranges>
 #include "tools/diagnose/conclude.h"
+#include "tools/diagnose/doubt.h"
 #include "tools/diagnose/spectrum.h"
 
 namespace loopwright::diagnosis {
@@ -24,7 +25,7 @@ class Search {
         shapes_(shapes),
         noise_(search_noise(trials)),
         motion_(motion) {
-    best_ = fit_members(trials_, {}, noise_, motion_, 0);
+    take(fit_members(trials_, {}, noise_, motion_, 0));
   }
 
   SearchResult run() {
@@ -78,8 +79,23 @@ class Search {
 
   void take(Estimate better) {
     best_ = std::move(better);
+    leave_out_doubtful(trials_, best_);
     evidence_.reset();
   }
+
+  /// How much lower the criterion of a trial is than that of the best set, on the same rows.
+  double gain_of(Estimate& trial) {
+    if (!trial.is_valid) return -1e300;
+    if (!may_be_doubtful(trial.members) || may_be_doubtful(best_.members)) return score(best_) - score(trial);
+    // Without the rows that the trial cannot know, both may come out otherwise.
+    leave_out_doubtful(trials_, trial);
+    trial = refined_further(trial), leave_out_doubtful(trials_, trial);
+    trial = refined_further(trial);
+    const double gain = score(refined_further(best_)) - score(trial);
+    leave_out_doubtful(trials_, best_);
+    return gain;
+  }
+  Estimate refined_further(const Estimate& e) { return fit_members(trials_, e.members, noise_, e.motion, 2); }
 
   /// Shapes on the grid, and the pitches that stand out now.
   std::vector<const Shape*> all_shapes() {
@@ -117,17 +133,17 @@ class Search {
       if (pair.gain > 2 * single) proposals.resize(std::min<size_t>(proposals.size(), 2));
       proposals.push_back(pair);
     }
-    const double before = score(best_), least = std::max(10.0, 0.002 * double(fitted_numbers(trials_)));
-    std::vector<Estimate> tried;
+    const double least = std::max(10.0, 0.002 * double(fitted_numbers(trials_)));
+    std::vector<std::pair<double, Estimate>> tried;
     for (const Proposal& proposal : proposals) {
       Estimate trial = refined(applied(proposal, best_.members), 2);
-      trail_.push_back(
-          fmt::format("tried {}: criterion {:+.1f}", names_of(proposal.added), score(trial) - before));
-      if (trial.is_valid && score(trial) < before - least) tried.push_back(std::move(trial));
+      const double gain = gain_of(trial);
+      trail_.push_back(fmt::format("tried {}: criterion {:+.1f}", names_of(proposal.added), -gain));
+      if (gain > least) tried.emplace_back(gain, std::move(trial));
     }
-    std::ranges::stable_sort(tried, {}, [&](const Estimate& e) { return score(e); });
+    std::ranges::stable_sort(tried, std::ranges::greater{}, [](const auto& t) { return t.first; });
     Estimate best;
-    for (Estimate& trial : tried)
+    for (auto& [gain, trial] : tried)
       if (!best.is_valid && adds_material(trial)) best = std::move(trial);
     if (!best.is_valid) return note("no extension"), false;
     take(fit_members(trials_, best.members, noise_, best.motion, 6));
@@ -137,7 +153,9 @@ class Search {
 
   /// What would be taken out at the end is not let in.
   bool adds_material(Estimate& trial) {
+    leave_out_doubtful(trials_, trial);
     const std::vector<Weight> weights = weigh_all(trials_, trial);
+    leave_out_doubtful(trials_, best_);
     for (size_t m = best_.members.size(); m < weights.size(); ++m) {
       const Weight& w = weights[m];
       if (material(trials_, trial, w) >= 1) continue;
@@ -268,14 +286,13 @@ class Search {
         others.push_back(applied(swap, best_.members));
       if (auto members = mass_for_gain(); !members.empty()) others.push_back(std::move(members));
       Estimate best;
-      const double before = score(best_);
-      double best_score = before - 3;
+      double best_gain = 3;
       for (const std::vector<Member>& members : others) {
         Estimate trial = pruned(refined(members, 4));
-        trail_.push_back(
-            fmt::format("tried instead {}: criterion {:+.1f}", names_of(members), score(trial) - before));
-        if (!trial.is_valid || score(trial) >= best_score) continue;
-        best_score = score(trial), best = std::move(trial);
+        const double gain = gain_of(trial);
+        trail_.push_back(fmt::format("tried instead {}: criterion {:+.1f}", names_of(members), -gain));
+        if (gain <= best_gain) continue;
+        best_gain = gain, best = std::move(trial);
       }
       if (!best.is_valid) return;
       take(std::move(best));

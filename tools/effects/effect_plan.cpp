@@ -217,6 +217,9 @@ std::shared_ptr<const EffectPlan> compile_effect(const Effect& effect, const Mac
     result->acts_on_sensor = std::ranges::any_of(
         effect.attachments, [](const Attachment& a) { return a.to == Attachment::To::sensor; });
     result->remembers = result->integral >= 0 || remembers(*plan);
+    result->flies = plan->states > 1 && std::ranges::any_of(plan->blocks, [](const Plan::Block& block) {
+                      return !block.type->info.crossings.empty();
+                    });
     check_bindings(*result, own);
   }
   for (const Problem& problem : own.list()) problems.add(problem);
