@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include "tools/diagnose/doubt.h"
+#include "tools/diagnose/law_swaps.h"
 #include "tools/diagnose/search.h"
 #include "tools/diagnose/spectrum.h"
 
@@ -129,7 +130,9 @@ class Rivals {
     if (const double loss = criterion_of(other) - criterion_of(estimate_); loss > reach_ && loss < 4 * reach_)
       maximise(trials_, other);
     const std::optional<double> loss = loss_of(proposal, other);
-    if (loss && *loss < best_loss_) best_loss_ = *loss, best_ = std::move(other);
+    if (!loss) return {};
+    const double disliked = *loss - preference(other.members, estimate_.members);
+    if (disliked < best_loss_) best_loss_ = disliked, best_ = std::move(other);
     return loss;
   }
   /// The best that a loss was asked of, if it does better with noise of its own, too. The search compared
@@ -137,14 +140,15 @@ class Rivals {
   std::optional<Estimate> better() {
     if (!best_.is_valid) return {};
     maximise(trials_, best_);
-    return criterion_of(estimate_) - criterion_of(best_) > clearly ? std::optional(std::move(best_))
-                                                                   : std::nullopt;
+    const double gain = criterion_of(estimate_) - criterion_of(best_);
+    return gain + preference(best_.members, estimate_.members) > clearly ? std::optional(std::move(best_))
+                                                                         : std::nullopt;
   }
 
  private:
   double criterion_of(const Estimate& estimate) const { return criterion(trials_, estimate, catalogue_); }
 
-  static constexpr double clearly = 3;
+  static constexpr double clearly = 10;
   Trials& trials_;
   const Estimate& estimate_;
   size_t catalogue_;
@@ -171,7 +175,8 @@ std::vector<Substitute> substitutes_of(Rivals& rivals, size_t member,
                                        const std::vector<Proposal>& exchanges) {
   std::vector<Substitute> list;
   for (const Proposal& proposal : exchanges) {
-    if (proposal.removed != std::vector<size_t>{member} || list.size() >= 3) continue;
+    const bool is_one_for_one = proposal.removed == std::vector<size_t>{member} && proposal.added.size() == 1;
+    if (!is_one_for_one || list.size() >= 3) continue;
     if (const auto loss = rivals.loss_of(proposal)) list.push_back({proposal.added.front().candidate, *loss});
   }
   std::ranges::stable_sort(list, {}, &Substitute::loss);
@@ -264,7 +269,7 @@ void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
 
 /// Fills what else would do, and from it how probable each member is.
 void ask_rivals(Conclusion& result, Evidence& evidence, const std::vector<Proposal>& exchanges,
-                const std::vector<Candidate>& candidates, Rivals& rivals, double n) {
+                const std::vector<Candidate>& candidates, const AxisModel& model, Rivals& rivals, double n) {
   const double reach = rivals.reach();
   // What a linearisation promises far from where it was made may be a hundred off.
   const double far = std::max(100.0, 3 * reach);
@@ -274,7 +279,8 @@ void ask_rivals(Conclusion& result, Evidence& evidence, const std::vector<Propos
   std::erase_if(several, [&](const Proposal& p) { return p.gain < -std::max(30.0, reach); });
   std::ranges::stable_sort(several, std::ranges::greater{}, &Proposal::gain);
   result.other_sets = other_sets(rivals, members, several);
-  const std::vector<Proposal> swaps = shape_swaps(members, candidates);
+  std::vector<Proposal> swaps = shape_swaps(members, candidates);
+  std::ranges::move(law_swaps(members, candidates, model), std::back_inserter(swaps));
   std::vector<Proposal> near = swaps;
   for (const Proposal& p : exchanges)
     if (p.gain > -far && !contains(swaps, p)) near.push_back(p);
@@ -315,7 +321,7 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
   std::optional<Estimate> instead;
   if (rounds > 0) instead = simplified(rivals, estimate.members, exchanges);
   if (!instead) {
-    ask_rivals(result, evidence, exchanges, candidates, rivals, n);
+    ask_rivals(result, evidence, exchanges, candidates, *trials.list.front().model, rivals, n);
     if (rounds > 0 && (instead = rivals.better()))
       result.trail.push_back("with noise of its own another set does better");
   }

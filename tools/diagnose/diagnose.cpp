@@ -181,7 +181,14 @@ Conclusion conclusion_from(Inquiry& inquiry, std::vector<RecordFinding>& finding
   return conclusion;
 }
 
-/// Effects in the order of the staircase, what else would do, and the experiments that would decide.
+/// In the order of the staircase, but what something else could stand for after what is sure.
+std::vector<size_t> ranked(const Conclusion& conclusion, std::vector<size_t> order) {
+  constexpr double sure = 0.9;
+  std::ranges::stable_partition(order, [&](size_t m) { return conclusion.inclusion[m] >= sure; });
+  return order;
+}
+
+/// Effects by rank, what else would do, and the experiments that would decide.
 void tell_effects(const Conclusion& conclusion, const std::vector<size_t>& order, const Catalogue& catalogue,
                   const MachineUnits& units, Diagnosis& result) {
   for (size_t index : order) {
@@ -278,7 +285,7 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   progress("the staircase of the error", 0.85);
   const Staircase staircase = climb(trials, conclusion, inverse, catalogue.candidates.size());
   result.steps = staircase.steps;
-  tell_effects(conclusion, staircase.order, catalogue, units, result);
+  tell_effects(conclusion, ranked(conclusion, staircase.order), catalogue, units, result);
   tell_errors(trials, conclusion, inquiry, result);
   trials.run_along(Trials::Rows::all);
   judge(trials, conclusion, inquiry.motion_of_all_rows(), search_noise(trials), result);

@@ -6,6 +6,7 @@
 #include <ranges>
 #include "tools/diagnose/conclude.h"
 #include "tools/diagnose/doubt.h"
+#include "tools/diagnose/law_swaps.h"
 #include "tools/diagnose/spectrum.h"
 
 namespace loopwright::diagnosis {
@@ -14,6 +15,7 @@ namespace {
 constexpr size_t most_effects = 8;
 constexpr size_t tried_extensions = 4;
 constexpr size_t tried_exchanges = 3;
+constexpr double clearly = 3;  // better, in the criterion
 
 class Search {
  public:
@@ -240,39 +242,6 @@ class Search {
     note("best of all");
   }
 
-  const Candidate* candidate(std::string_view name) const {
-    const auto found = std::ranges::find(candidates_, name, &Candidate::name);
-    return found == candidates_.end() ? nullptr : &*found;
-  }
-
-  /// The same law of motion, divided by the gain: (1 + g) u = M a + B v + … is also u = M / (1 + g) a + …,
-  /// so that mass and damping stand in the place of the gain. Too far for a linearisation to find. Empty
-  /// without a gain.
-  std::vector<Member> mass_for_gain() const {
-    const Candidate *gain = candidate("force_gain"), *inertia = candidate("inertia"),
-                    *damping = candidate("viscous_friction");
-    std::vector<Member> members = best_.members;
-    const auto place = std::ranges::find(members, gain, &Member::candidate);
-    const bool has_mass = std::ranges::find(members, inertia, &Member::candidate) != members.end();
-    if (!gain || !inertia || !damping || place == members.end() || has_mass) return {};
-    const double divided = 1 / (1 + place->linear[0]);
-    members.erase(place);
-    for (Member& member : members)
-      if (member.candidate->acts == Acts::force)
-        for (double& amplitude : member.linear) amplitude *= divided;
-    const AxisModel& model = *trials_.list.front().model;
-    members.push_back({inertia, {model.nominal_inertia() * (divided - 1)}, {}});
-    auto viscous = std::ranges::find(members, damping, &Member::candidate);
-    if (viscous == members.end()) viscous = members.insert(viscous, {damping, {0.0}, {}});
-    viscous->linear[0] += model.nominal_damping() * (divided - 1);
-    for (Member& member : members)
-      for (size_t i = 0; i < member.linear.size() && !member.candidate->amplitude_is_one; ++i) {
-        const CandidateParameter& range = member.candidate->linear[i];
-        member.linear[i] = std::clamp(member.linear[i], range.low, range.high);
-      }
-    return members;
-  }
-
   /// A member, or two, for another: also one as good, if then others are not needed any more.
   void exchange() {
     for (int round = 0; round < 4; ++round) {
@@ -284,15 +253,18 @@ class Search {
           others.push_back(applied(proposals[i], best_.members));
       for (const Proposal& swap : shape_swaps(best_.members, candidates_))
         others.push_back(applied(swap, best_.members));
-      if (auto members = mass_for_gain(); !members.empty()) others.push_back(std::move(members));
+      if (has_gain(best_.members))
+        for (const Proposal& swap : law_swaps(best_.members, candidates_, *trials_.list.front().model))
+          others.push_back(applied(swap, best_.members));
       Estimate best;
-      double best_gain = 3;
+      double best_gain = clearly;
       for (const std::vector<Member>& members : others) {
         Estimate trial = pruned(refined(members, 4));
         const double gain = gain_of(trial);
         trail_.push_back(fmt::format("tried instead {}: criterion {:+.1f}", names_of(members), -gain));
-        if (gain <= best_gain) continue;
-        best_gain = gain, best = std::move(trial);
+        const double preferred = gain + preference(trial.members, best_.members);
+        if (preferred <= best_gain) continue;
+        best_gain = preferred, best = std::move(trial);
       }
       if (!best.is_valid) return;
       take(std::move(best));
