@@ -148,7 +148,7 @@ class Rivals {
  private:
   double criterion_of(const Estimate& estimate) const { return criterion(trials_, estimate, catalogue_); }
 
-  static constexpr double clearly = 10;
+  static constexpr double clearly = 3;
   Trials& trials_;
   const Estimate& estimate_;
   size_t catalogue_;

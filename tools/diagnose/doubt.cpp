@@ -9,7 +9,7 @@ namespace {
 constexpr double kept_error = 0.9;     // of a velocity's error from sample to sample
 constexpr double deviations = 2;       // of the errors that are tried
 constexpr double most_change = 2;      // of the force by them, over the white noise
-constexpr double least_left = 0.5;     // of the moving rows
+constexpr double least_left = 0.2;     // of the moving rows
 constexpr double shifts_s[] = {1, 2};  // each gives other errors
 constexpr int samples_of_a_blow = 15;  // until the predictor has corrected it
 

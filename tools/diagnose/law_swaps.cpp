@@ -77,6 +77,7 @@ std::vector<Proposal> law_swaps(const std::vector<Member>& members, const std::v
 
 double preference(const std::vector<Member>& members, const std::vector<Member>& other) {
   constexpr double alike = 20;  // the same law under noise that is not quite the same
+  if (members.size() != other.size()) return 0;
   return alike * (int(has_gain(other)) - int(has_gain(members)));
 }
 

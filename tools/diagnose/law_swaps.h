@@ -13,8 +13,8 @@ std::vector<Proposal> law_swaps(const std::vector<Member>& members, const std::v
 /// Whether a gain is among the members.
 bool has_gain(const std::vector<Member>& members);
 
-/// What speaks for a set beside its criterion, against another one: of two that state the same law the one
-/// without a gain is preferred, as a mass and a friction are more often known badly than a motor.
+/// What speaks for a set beside its criterion, against another one: of two of a size that state the same law
+/// the one without a gain is preferred, as a mass and a friction are more often known badly than a motor.
 double preference(const std::vector<Member>& members, const std::vector<Member>& other);
 
 }  // namespace loopwright::diagnosis
