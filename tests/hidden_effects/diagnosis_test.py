@@ -15,12 +15,15 @@ SCENARIOS = [
     (5, "constant_speeds", []),  # coarse counts, which look like a lag to whom takes the noise for too small
     (6, "constant_speeds", ["eddy_current_drag", "thermal_drift"]),
     (13, "constant_speeds", ["spring"]),  # a slow force that a shift of the input by a tenth of a second would half explain
+    (33, "constant_speeds", ["input_delay", "encoder_periodic_error"]),  # a lag to whom takes the delayed staircase for its mean
     (8, "many_speeds", ["presliding_hysteresis", "input_delay"]),
     (3, "many_speeds", ["backlash"]),
     (4, "multisine", ["coulomb_friction", "force_gain"]),
     (9, "multisine", ["flexible_mode", "spring"]),
+    (25, "multisine", ["backlash"]),  # blows whose moments cannot be told
     (10, "forward", ["cogging", "constant_force"]),
     (11, "paper", ["encoder_periodic_error", "direction_dependent_friction"]),
+    (34, "paper", ["input_delay", "coulomb_friction"]),
     (12, "paper", ["force_saturation", "end_stop"]),
 ]
 
