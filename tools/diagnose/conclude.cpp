@@ -102,6 +102,15 @@ void maximise(Trials& trials, Estimate& estimate) {
   }
 }
 
+bool is_at_limit(const Member& member) {
+  const Candidate& candidate = *member.candidate;
+  for (size_t i = 0; i < member.linear.size() && !candidate.amplitude_is_one; ++i)
+    if (candidate.linear[i].ends_at(member.linear[i])) return true;
+  for (size_t i = 0; i < member.nonlinear.size(); ++i)
+    if (candidate.nonlinear[i].ends_at(member.nonlinear[i])) return true;
+  return false;
+}
+
 /// What came out, and the sets that may do as well.
 class Rivals {
  public:
@@ -135,10 +144,18 @@ class Rivals {
     if (disliked < best_loss_) best_loss_ = disliked, best_ = std::move(other);
     return loss;
   }
+  /// Whether it does as well on the same motion, and not much worse on its own: where the diagram itself
+  /// counts, as an encoder in it does, every run comes out otherwise.
+  bool is_promised(const Proposal& proposal, const Estimate& other) const {
+    constexpr double much = 20;  // times what is in reach
+    return proposal.gain > 0 && other.is_valid &&
+           criterion_of(other) - criterion_of(estimate_) < much * reach_;
+  }
   /// The best that a loss was asked of, if it does better with noise of its own, too. The search compared
   /// them under the noise that it knew then.
   std::optional<Estimate> better() {
-    if (!best_.is_valid) return {};
+    const auto at_limit = [](const Estimate& e) { return std::ranges::count_if(e.members, is_at_limit); };
+    if (!best_.is_valid || at_limit(best_) > at_limit(estimate_)) return {};
     maximise(trials_, best_);
     const double gain = criterion_of(estimate_) - criterion_of(best_);
     return gain + preference(best_.members, estimate_.members) > clearly ? std::optional(std::move(best_))
@@ -207,15 +224,6 @@ std::vector<OtherSet> other_sets(Rivals& rivals, const std::vector<Member>& memb
   return list;
 }
 
-bool is_at_limit(const Member& member) {
-  const Candidate& candidate = *member.candidate;
-  for (size_t i = 0; i < member.linear.size() && !candidate.amplitude_is_one; ++i)
-    if (candidate.linear[i].ends_at(member.linear[i])) return true;
-  for (size_t i = 0; i < member.nonlinear.size(); ++i)
-    if (candidate.nonlinear[i].ends_at(member.nonlinear[i])) return true;
-  return false;
-}
-
 /// A parameter at the end of its range says that something simpler would do: what has fewer parameters, and
 /// is not out of reach.
 std::optional<Estimate> simplified(Rivals& rivals, const std::vector<Member>& members,
@@ -228,7 +236,7 @@ std::optional<Estimate> simplified(Rivals& rivals, const std::vector<Member>& me
                               parameters_of(*proposal.added[0].candidate) < parameters_of(*member.candidate);
       if (!is_simpler || proposal.gain <= -10 * rivals.reach()) continue;
       Estimate other = rivals.fitted(proposal);
-      if (rivals.loss_of(proposal, other)) return other;
+      if (rivals.loss_of(proposal, other) || rivals.is_promised(proposal, other)) return other;
     }
   }
   return {};
@@ -376,7 +384,7 @@ double portmanteau(const Trials& trials, const std::vector<Fitted>& fitted) {
 
 Conclusion conclude(Trials& trials, const std::vector<Candidate>& candidates,
                     const std::vector<Shape>& shapes, Estimate found) {
-  constexpr int rounds = 4;
+  constexpr int rounds = 2;
   return concluded(trials, candidates, shapes, std::move(found), rounds);
 }
 

@@ -33,49 +33,46 @@ double against_free(const Trials& trials, const std::vector<Fitted>& fitted) {
   return count > 0 ? count * std::log(std::max(1.0, sum / count / (worse_at_rest * in_motion))) : 0;
 }
 
-/// Mean squares, over a glance each, of how much farther the axis at rest moved in some samples than in as
-/// many before: a creep at one speed is none of it.
-std::vector<double> swerves_at_rest(const Trials& trials) {
+/// Mean square of how much farther the axis at rest moved in `lag` samples than in as many before: a creep
+/// at one speed is none of it. The median of means over a glance each, as what is held slips now and then.
+struct Swerve {
+  double square = 0;
+  size_t glances = 0;
+};
+Swerve swerve_at_rest(const Trials& trials, size_t lag) {
+  constexpr double median_to_mean = 0.9;
   std::vector<double> glances;
   for (const Trial& trial : trials.list) {
     const MeasuredPort* position = trial.model->record().find("position");
     double sum = 0;
     for (size_t k = 0, resting = 0; position && k < trial.held_out_from; ++k) {
       resting = trial.at_rest[k] ? resting + 1 : 0;
-      if (resting <= 2 * apart) {
+      if (resting <= 2 * lag) {
         sum = 0;
         continue;
       }
       const double* x = position->value.data() + k;
-      sum += std::pow(*x - 2 * *(x - apart) + *(x - 2 * apart), 2) / double(glance);
-      if ((resting - 2 * apart) % glance == 0) glances.push_back(std::exchange(sum, 0));
+      sum += std::pow(*x - 2 * *(x - lag) + *(x - 2 * lag), 2) / double(glance);
+      if ((resting - 2 * lag) % glance == 0) glances.push_back(std::exchange(sum, 0));
     }
   }
-  return glances;
-}
-
-/// Noise of a sensor that stands still: where it stands between two of its steps, noise may show as half of
-/// one.
-double noise_at_rest(const Trials& trials, const Noise& noise) {
-  const MeasuredPort* position = trials.list.front().model->record().find("position");
-  return std::max(noise.measurement[0], position ? 0.5 * position->resolution : 0.0);
+  if (glances.empty()) return {};
+  const auto middle = glances.begin() + std::ptrdiff_t(glances.size() / 2);
+  std::ranges::nth_element(glances, middle);
+  return {*middle / median_to_mean, glances.size()};
 }
 
 /// The axis moves as if nothing held it.
 double against_held(const Trials& trials, const Noise& noise) {
-  constexpr double median_to_mean = 0.9;  // of a square averaged over a glance
-  std::vector<double> squares = swerves_at_rest(trials);
-  if (squares.empty()) return 0;
-  // The median: what is held slips now and then.
-  const auto middle = squares.begin() + std::ptrdiff_t(squares.size() / 2);
-  std::ranges::nth_element(squares, middle);
+  const Swerve swerve = swerve_at_rest(trials, apart);
+  if (swerve.glances == 0) return 0;
   const AxisModel& model = *trials.list.front().model;
   const double T = model.record().sample_time, kick = noise.white / model.nominal_inertia() * T * T;
-  const double sensor = 6 * std::pow(noise_at_rest(trials, noise), 2);
-  const double free = kick * kick * 2 * std::pow(double(apart), 3) / 3,
-               seen = *middle / median_to_mean - sensor;
+  // From sample to sample next to nothing but the sensor changes, its steps included.
+  const double sensor = std::max(swerve_at_rest(trials, 1).square, 6 * std::pow(noise.measurement[0], 2));
+  const double free = kick * kick * 2 * std::pow(double(apart), 3) / 3, seen = swerve.square - sensor;
   if (seen < least_freedom * free || seen > most_freedom * free || seen < sensor) return 0;
-  return double(squares.size() * glance) / double(2 * apart) * std::log1p(seen / sensor);
+  return double(swerve.glances * glance) / double(2 * apart) * std::log1p(seen / sensor);
 }
 
 }  // namespace

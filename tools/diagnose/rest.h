@@ -10,8 +10,9 @@ namespace loopwright::diagnosis {
 ///   nothing in the set holds:  n ln(m / 4) where the mean square m of the whitened errors at rest is more
 ///                              than four times that in motion: a force was there and moved nothing
 ///   something in it holds:     n/12 ln(1 + d / s) where the position x swerves, x(k) - 2 x(k-6) + x(k-12),
-///                              by the square d + s (median of means over 36), s the sensor's, and d is about
-///                              what noise alone makes of a free axis: nothing held it
+///                              by the square d + s (median of means over 36), s the sensor's (the same from
+///                              sample to sample), and d is about what noise alone makes of a free axis:
+///                              nothing held it
 /// What gives at rest, in the set or in the user's own diagram, leaves both open: 0.
 double against_at_rest(const Trials& trials, const std::vector<Member>& members,
                        const std::vector<Fitted>& fitted, const Noise& noise);
