@@ -22,7 +22,7 @@ struct EffectPlan {
   std::vector<Number> slopes;  ///< those that its blocks state, to be added to what is seen of `output`
   Number integral = -1;        ///< the same, integrated; -1: nothing in it has states or rates of its own
   bool acts_on_sensor = false;
-  bool flies = false;  ///< has states of its own and touches or lets go of them
+  bool flies = false;     ///< has states of its own and touches or lets go of them
   bool remembers = true;  ///< else a sample depends on nothing but itself, not even on time
 };
 
