@@ -153,13 +153,15 @@ class Rivals {
   }
   /// The best that a loss was asked of, if it does better with noise of its own, too. The search compared
   /// them under the noise that it knew then.
-  std::optional<Estimate> better() {
+  /// `doubt`: what a gain must exceed where the errors are not white.
+  std::optional<Estimate> better(double doubt) {
     const auto at_limit = [](const Estimate& e) { return std::ranges::count_if(e.members, is_at_limit); };
     if (!best_.is_valid || at_limit(best_) > at_limit(estimate_)) return {};
     maximise(trials_, best_);
     const double gain = criterion_of(estimate_) - criterion_of(best_);
-    return gain + preference(best_.members, estimate_.members) > clearly ? std::optional(std::move(best_))
-                                                                         : std::nullopt;
+    return gain + preference(best_.members, estimate_.members) > std::max(clearly, doubt)
+               ? std::optional(std::move(best_))
+               : std::nullopt;
   }
 
  private:
@@ -330,7 +332,7 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
   if (rounds > 0) instead = simplified(rivals, estimate.members, exchanges);
   if (!instead) {
     ask_rivals(result, evidence, exchanges, candidates, *trials.list.front().model, rivals, n);
-    if (rounds > 0 && (instead = rivals.better()))
+    if (rounds > 0 && (instead = rivals.better(unexplained(result.portmanteau))))
       result.trail.push_back("with noise of its own another set does better");
   }
   if (instead) {

@@ -181,10 +181,16 @@ Conclusion conclusion_from(Inquiry& inquiry, std::vector<RecordFinding>& finding
   return conclusion;
 }
 
-/// In the order of the staircase, but what something else could stand for after what is sure.
-std::vector<size_t> ranked(const Conclusion& conclusion, std::vector<size_t> order) {
+/// In the order of the staircase, but before what is optional what something else could stand for comes after
+/// what is sure.
+std::vector<size_t> ranked(const Conclusion& conclusion, const Staircase& staircase) {
   constexpr double sure = 0.9;
-  std::ranges::stable_partition(order, [&](size_t m) { return conclusion.inclusion[m] >= sure; });
+  size_t needed = 0;
+  for (const DiagnosisStep& step : staircase.steps)
+    if (!step.is_optional) needed += step.added.size();
+  std::vector<size_t> order = staircase.order;
+  std::stable_partition(order.begin(), order.begin() + std::ptrdiff_t(needed),
+                        [&](size_t m) { return conclusion.inclusion[m] >= sure; });
   return order;
 }
 
@@ -285,7 +291,7 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   progress("the staircase of the error", 0.85);
   const Staircase staircase = climb(trials, conclusion, inverse, catalogue.candidates.size());
   result.steps = staircase.steps;
-  tell_effects(conclusion, ranked(conclusion, staircase.order), catalogue, units, result);
+  tell_effects(conclusion, ranked(conclusion, staircase), catalogue, units, result);
   tell_errors(trials, conclusion, inquiry, result);
   trials.run_along(Trials::Rows::all);
   judge(trials, conclusion, inquiry.motion_of_all_rows(), search_noise(trials), result);
