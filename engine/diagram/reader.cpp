@@ -81,11 +81,36 @@ bool Reader::expect(const Value& value, Value::Kind kind, std::string_view what,
   return false;
 }
 
+double Reader::number(const Value& value, std::string_view what, double low, double high) const {
+  const double nearest = std::clamp(0.0, low, high);
+  if (!expect(value, Value::Kind::number, what, "a number")) return nearest;
+  if (value.number >= low && value.number <= high) return value.number;
+  Problem& problem = error(value, fmt::format("{} is out of range", what));
+  problem.expected = high == infinity ? fmt::format("at least {:g}", low)
+                                      : fmt::format("a number from {:g} to {:g}", low, high);
+  problem.found = shown(value);
+  return nearest;
+}
+
+double Reader::optional_number(const Value& object, std::string_view key, double otherwise, double low,
+                               double high) const {
+  const Value::Member* member = object.find(key);
+  return member ? number(member->value, fmt::format("\"{}\"", key), low, high) : otherwise;
+}
+
 std::string Reader::text(const Value& object, std::string_view key) const {
   const Value::Member* member = object.find(key);
   if (!member || !expect(member->value, Value::Kind::text, fmt::format("\"{}\"", key), "a text in quotes"))
     return {};
   return member->value.text;
+}
+
+void Reader::check_version(const Value& file) const {
+  const Value::Member* version = file.find("loopwright");
+  if (version && version->value.kind == Value::Kind::number && version->value.number == 1) return;
+  Problem& problem = version ? error(*version, "this version of the format is not known")
+                             : error(file, "the version of the format is missing");
+  problem.expected = "\"loopwright\": 1";
 }
 
 void Reader::reject_unknown(const Value& object, std::initializer_list<std::string_view> known,

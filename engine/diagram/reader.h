@@ -2,6 +2,7 @@
 /// diagram.
 #pragma once
 #include <initializer_list>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,8 +49,16 @@ struct Reader {
 
   /// True when the value is of the kind; else a problem that says what is expected.
   bool expect(const Value& value, Value::Kind kind, std::string_view what, std::string_view expected) const;
+  /// The number within its limits; after a problem the nearest of them to nothing.
+  double number(const Value& value, std::string_view what, double low = -infinity,
+                double high = infinity) const;
+  /// That of an optional member; `otherwise` when it is absent.
+  double optional_number(const Value& object, std::string_view key, double otherwise, double low = -infinity,
+                         double high = infinity) const;
   /// The text of an optional member; empty when it is absent or no text.
   std::string text(const Value& object, std::string_view key) const;
+  /// A problem unless the file states the version of the format that this build knows.
+  void check_version(const Value& file) const;
   /// A problem for every member that is not among `known`.
   void reject_unknown(const Value& object, std::initializer_list<std::string_view> known,
                       std::string_view owner) const;
@@ -57,6 +66,8 @@ struct Reader {
   bool check_name(const Value::Member& member, std::string_view what) const;
   /// The unit that a text names; nothing after a problem.
   std::optional<Unit> unit(const Value& text) const;
+
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace loopwright

@@ -15,7 +15,7 @@ class DeviceReader {
       : drivers_(drivers.begin(), drivers.end()), problems_(problems), reader_{problems, ""} {}
 
   void read(const Value& file, DeviceDescription& to) {
-    check_version(file);
+    reader_.check_version(file);
     to.title = reader_.text(file, "title");
     read_driver(file, to);
     Value without_drivers = file;  // each of which has a key of its own
@@ -32,14 +32,6 @@ class DeviceReader {
   }
 
  private:
-  void check_version(const Value& file) {
-    const Value::Member* version = file.find("loopwright");
-    if (version && version->value.kind == Value::Kind::number && version->value.number == 1) return;
-    auto& p = version ? reader_.error(*version, "this version of the format is not known")
-                      : reader_.error(file, "the version of the format is missing");
-    p.expected = "\"loopwright\": 1";
-  }
-
   bool is_driver(std::string_view name) const { return std::ranges::find(drivers_, name) != drivers_.end(); }
 
   void read_driver(const Value& file, DeviceDescription& to) {

@@ -27,7 +27,7 @@ class Loader {
                            {"loopwright", "title", "description", "data", "time", "drive", "compare", "roles",
                             "hold_out", "rows"},
                            "an experiment");
-    check_version(file);
+    reader_.check_version(file);
     result_->title = reader_.text(file, "title");
     read_signals(file, "drive", result_->drives);
     read_signals(file, "compare", result_->compared);
@@ -42,26 +42,6 @@ class Loader {
   }
 
  private:
-  void check_version(const Value& file) {
-    const Value::Member* version = file.find("loopwright");
-    if (version && version->value.kind == Value::Kind::number && version->value.number == 1) return;
-    auto& p = version ? reader_.error(*version, "this version of the format is not known")
-                      : reader_.error(file, "the version of the format is missing");
-    p.expected = "\"loopwright\": 1";
-  }
-
-  double number(const Value& object, std::string_view key, double otherwise, double low, double high) {
-    const Value::Member* member = object.find(key);
-    if (!member) return otherwise;
-    if (member->value.kind == Value::Kind::number && member->value.number >= low &&
-        member->value.number <= high)
-      return member->value.number;
-    auto& p = reader_.error(*member, fmt::format("\"{}\" is out of range", key));
-    p.expected = fmt::format("a number from {:g} to {:g}", low, high);
-    p.found = shown(member->value);
-    return otherwise;
-  }
-
   void read_signals(const Value& file, std::string_view key, std::vector<RecordedSignal>& to) {
     const Value::Member* list = file.find(key);
     if (!list) {
@@ -91,7 +71,7 @@ class Loader {
       if (drives)
         result_->drive_is_linear.push_back(interpolation(entry.value));
       else
-        signal.resolution = number(entry.value, "resolution", 0, 0, 1e30);
+        signal.resolution = reader_.optional_number(entry.value, "resolution", 0, 0, 1e30);
       to.push_back(std::move(signal));
     }
     if (list->value.members.empty() && key == "compare")
@@ -124,7 +104,7 @@ class Loader {
         !reader_.expect(hold_out->value, Value::Kind::object, "\"hold_out\"", "{\"fraction\": 0.3}"))
       return;
     reader_.reject_unknown(hold_out->value, {"fraction"}, "\"hold_out\"");
-    result_->hold_out_fraction = number(hold_out->value, "fraction", 0, 0, 0.9);
+    result_->hold_out_fraction = reader_.optional_number(hold_out->value, "fraction", 0, 0, 0.9);
   }
 
   void read_kind_of_rows(const Value& file) {

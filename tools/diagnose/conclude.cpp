@@ -6,7 +6,6 @@
 #include <set>
 #include "tools/diagnose/doubt.h"
 #include "tools/diagnose/law_swaps.h"
-#include "tools/diagnose/search.h"
 #include "tools/diagnose/spectrum.h"
 
 namespace loopwright::diagnosis {
@@ -151,9 +150,9 @@ class Rivals {
     return proposal.gain > 0 && other.is_valid &&
            criterion_of(other) - criterion_of(estimate_) < much * reach_;
   }
-  /// The best that a loss was asked of, if it does better with noise of its own, too. The search compared
-  /// them under the noise that it knew then.
-  /// `doubt`: what a gain must exceed where the errors are not white.
+  /// The best that a loss was asked of, if it does better with noise of its own, too: the search compared
+  /// them under the noise that it knew then. `doubt`: what its gain must exceed where the errors are not
+  /// white.
   std::optional<Estimate> better(double doubt) {
     const auto at_limit = [](const Estimate& e) { return std::ranges::count_if(e.members, is_at_limit); };
     if (!best_.is_valid || at_limit(best_) > at_limit(estimate_)) return {};

@@ -1,7 +1,6 @@
 #include "tools/diagnose/doubt.h"
 #include <algorithm>
 #include <cmath>
-#include "tools/diagnose/search.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -11,7 +10,6 @@ constexpr double deviations = 2;       // of the errors that are tried
 constexpr double most_change = 2;      // of the force by them, over the white noise
 constexpr double least_left = 0.2;     // of the moving rows
 constexpr double shifts_s[] = {1, 2};  // each gives other errors
-constexpr int samples_of_a_blow = 15;  // until the predictor has corrected it
 
 /// The path as it might as well have been seen.
 Path seen_otherwise(const Path& path, double shift_s) {
@@ -30,15 +28,10 @@ Path seen_otherwise(const Path& path, double shift_s) {
   return other;
 }
 
-std::vector<double> force_along(const std::vector<Member>& members, const Path& path) {
-  std::vector<double> force(path.samples());
-  for (const Member& member : members) {
-    if (!member.candidate->flies) continue;
-    const Columns columns = member.candidate->columns(path, member.nonlinear);
-    for (size_t c = 0; c < columns.size(); ++c)
-      for (size_t k = 0; k < force.size(); ++k) force[k] += member.linear[c] * double((*columns[c].mean)[k]);
-  }
-  return force;
+/// What the members that may be doubtful consume.
+std::vector<double> force_along(std::vector<Member> members, const Path& path) {
+  std::erase_if(members, [](const Member& m) { return !m.candidate->flies; });
+  return drives_of(members, path, path.input).force;
 }
 
 }  // namespace
@@ -57,7 +50,7 @@ std::vector<std::vector<char>> doubtful_rows(const Trials& trials, const Estimat
       const std::vector<double> other = force_along(estimate.members, seen_otherwise(*path, shift));
       int left = 0;
       for (size_t k = 0; k < rows.size(); ++k) {
-        left = std::abs(other[k] - force[k]) > most ? samples_of_a_blow : std::max(0, left - 1);
+        left = std::abs(other[k] - force[k]) > most ? samples_to_correct : std::max(0, left - 1);
         if (left > 0) rows[k] = 1;
       }
     }

@@ -40,6 +40,14 @@ double price(size_t parameters, size_t effects, double n, size_t catalogue) {
   return double(parameters) * std::log(n) + 2 * double(effects) * std::log(double(catalogue));
 }
 
+double criterion(const Trials& trials, const Estimate& estimate, size_t catalogue) {
+  const double n = double(fitted_numbers(trials));
+  size_t parameters = 0;
+  for (const Member& member : estimate.members) parameters += parameters_of(*member.candidate);
+  return estimate.profile + estimate.against_at_rest +
+         price(parameters, estimate.members.size(), n, catalogue);
+}
+
 std::vector<Member> applied(const Proposal& proposal, std::vector<Member> members) {
   for (size_t i = proposal.removed.size(); i-- > 0;)
     members.erase(members.begin() + std::ptrdiff_t(proposal.removed[i]));

@@ -29,6 +29,8 @@ struct Proposal {
 /// Extended Bayesian information criterion (Chen and Chen 2008): what a set must save in n ln(mean square).
 double price(size_t parameters, size_t effects, double n, size_t catalogue);
 size_t parameters_of(const Candidate& candidate);
+/// n ln(mean square) + ln|S| + what the parameters cost; smaller is better.
+double criterion(const Trials& trials, const Estimate& estimate, size_t catalogue);
 
 /// The members with the proposal carried out.
 std::vector<Member> applied(const Proposal& proposal, std::vector<Member> members);

@@ -25,6 +25,9 @@ Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& n
 /// The same on the motion that it saw itself.
 Estimate on_own_motion(Trials& trials, Estimate estimate);
 
+/// Noise for the search: tight, so that a missing effect is not taken for noise.
+Noise search_noise(const Trials& trials);
+
 /// Which of its numbers the likelihood may change.
 enum class FreeNoise { with_random_walk, white_and_slow, all };
 /// Maximises the likelihood of the noise, the errors of the estimate given. Bounded: a factor of thirty

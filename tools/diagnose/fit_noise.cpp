@@ -64,6 +64,16 @@ double evaluate(unsigned, const double* x, double*, void* data) {
 
 }  // namespace
 
+Noise search_noise(const Trials& trials) {
+  constexpr double memory_s = 0.03;
+  Noise noise = trials.noise;
+  noise.white = std::clamp(noise.white, 0.005 * trials.input_rms, 0.02 * trials.input_rms);
+  const double sample_time = trials.list.front().model->record().sample_time;
+  noise.memory = std::exp(-sample_time / memory_s);
+  noise.step = usual_slow_noise * noise.white * std::sqrt(1 - noise.memory * noise.memory);
+  return noise;
+}
+
 Noise fit_noise(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& start, FreeNoise free) {
   Objective objective{trials, fitted, {free, start}};
   std::vector<double> x = objective.coordinates.of(start), low = x, high = x;

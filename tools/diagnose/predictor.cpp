@@ -8,9 +8,6 @@
 namespace loopwright::diagnosis {
 namespace {
 
-/// As long as the predictor takes to correct what friction on the wrong side has done.
-constexpr int samples_of_a_reversal = 15;
-
 uint64_t next_identity() {
   static std::atomic<uint64_t> last = 0;
   return ++last;
@@ -279,7 +276,7 @@ Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains,
     path.position[k] = model.position(), path.velocity[k] = velocity_now;
     path.rests[k] = std::abs(velocity_now) < rest_speed;
     const bool turned = k > 0 && (velocity_now > 0) != (path.velocity[k - 1] > 0);
-    turning = turned ? samples_of_a_reversal : std::max(0, turning - 1);
+    turning = turned ? samples_to_correct : std::max(0, turning - 1);
     path.turns[k] = turning > 0;
     if (path.forgets(k)) d = 0;
     result.slow[k] = d;

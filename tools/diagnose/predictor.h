@@ -49,6 +49,9 @@ struct Prediction {
   Path path;
 };
 
+/// As long as the predictor takes to correct a blow, or what friction on the wrong side has done.
+constexpr int samples_to_correct = 15;
+
 /// Steps the diagram along the record, as far as the drives go: correct with what was measured, predict the
 /// next sample.
 Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains, const Drives& drives,

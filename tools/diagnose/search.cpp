@@ -1,6 +1,7 @@
 #include "tools/diagnose/search.h"
 #include <fmt/format.h>
 #include <algorithm>
+#include <limits>
 #include <cmath>
 #include <optional>
 #include <ranges>
@@ -87,7 +88,7 @@ class Search {
 
   /// How much lower the criterion of a trial is than that of the best set, on the same rows.
   double gain_of(Estimate& trial) {
-    if (!trial.is_valid) return -1e300;
+    if (!trial.is_valid) return -std::numeric_limits<double>::infinity();
     if (!may_be_doubtful(trial.members) || may_be_doubtful(best_.members)) return score(best_) - score(trial);
     // Without the rows that the trial cannot know, both may come out otherwise.
     leave_out_doubtful(trials_, trial);
@@ -316,24 +317,6 @@ class Search {
 };
 
 }  // namespace
-
-Noise search_noise(const Trials& trials) {
-  constexpr double memory_s = 0.03;
-  Noise noise = trials.noise;
-  noise.white = std::clamp(noise.white, 0.005 * trials.input_rms, 0.02 * trials.input_rms);
-  const double sample_time = trials.list.front().model->record().sample_time;
-  noise.memory = std::exp(-sample_time / memory_s);
-  noise.step = usual_slow_noise * noise.white * std::sqrt(1 - noise.memory * noise.memory);
-  return noise;
-}
-
-double criterion(const Trials& trials, const Estimate& estimate, size_t catalogue) {
-  const double n = double(fitted_numbers(trials));
-  size_t parameters = 0;
-  for (const Member& member : estimate.members) parameters += parameters_of(*member.candidate);
-  return estimate.profile + estimate.against_at_rest +
-         price(parameters, estimate.members.size(), n, catalogue);
-}
 
 SearchResult search(Trials& trials, const std::vector<Candidate>& candidates,
                     const std::vector<Shape>& shapes, const std::vector<Candidate>& unknown,

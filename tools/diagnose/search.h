@@ -10,12 +10,6 @@ struct SearchResult {
   std::vector<std::string> trail;  ///< what was tried and taken, for people who want to know
 };
 
-/// Noise for the search: tight, so that a missing effect is not taken for noise.
-Noise search_noise(const Trials& trials);
-
-/// n ln(mean square) + ln|S| + what the parameters cost; smaller is better.
-double criterion(const Trials& trials, const Estimate& estimate, size_t catalogue);
-
 /// From the first prediction's motion, on which the shapes were computed.
 /// `unknown`: forces without a name, tried when no further effect helps; effects that they make worthless go.
 SearchResult search(Trials& trials, const std::vector<Candidate>& candidates,

@@ -1,6 +1,6 @@
 #include "tools/diagnose/staircase.h"
 #include <algorithm>
-#include "tools/diagnose/search.h"
+#include "tools/diagnose/evidence.h"
 
 namespace loopwright::diagnosis {
 namespace {

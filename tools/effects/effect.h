@@ -68,8 +68,7 @@ struct Attachment {
   Stage stage = Stage::magnets;  ///< to the input
   std::string from;  ///< "friction.force": what is subtracted in the sum of forces, or takes the place of the
                      ///< input or of the measured position
-  std::string
-      slope;  ///< "late.slope": change over a sample of a held `from`, where the block knows it; or empty
+  std::string slope;  ///< "late.slope": how much a held `from` should change over a sample; empty: not stated
   std::vector<std::string> targets;  ///< to a parameter: "Mass.mass", the first that the machine has
   Value add;                         ///< to a parameter: what is added to it
   bool is_optional = false;          ///< to a parameter: a machine without it is left as it is

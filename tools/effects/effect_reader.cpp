@@ -60,14 +60,7 @@ class FormReader {
            found->value.boolean;
   }
   double number(const Value& owner, std::string_view key, double otherwise) {
-    const Value::Member* found = owner.find(key);
-    if (!found || !reader_.expect(found->value, Kind::number, fmt::format("\"{}\"", key), "a number"))
-      return otherwise;
-    if (found->value.number < 0) {
-      reader_.error(*found, fmt::format("\"{}\" cannot be negative", key)).found = shown(found->value);
-      return otherwise;
-    }
-    return found->value.number;
+    return reader_.optional_number(owner, key, otherwise, 0);
   }
   std::vector<std::string> texts(const Value& list, std::string_view what) {
     std::vector<std::string> found;

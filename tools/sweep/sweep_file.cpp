@@ -1,32 +1,16 @@
 #include <fmt/format.h>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include "engine/diagram/json.h"
 #include "engine/diagram/reader.h"
-#include "tools/sweep/sweep.h"
+#include "tools/sweep/metric_reader.h"
 
 namespace loopwright {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, Metric::Kind>, 10> metric_kinds{{
-    {"rms", Metric::Kind::rms},
-    {"mean", Metric::Kind::mean},
-    {"maximum", Metric::Kind::maximum},
-    {"minimum", Metric::Kind::minimum},
-    {"peak", Metric::Kind::peak},
-    {"final", Metric::Kind::final},
-    {"settling_time", Metric::Kind::settling_time},
-    {"overshoot", Metric::Kind::overshoot},
-    {"percentile", Metric::Kind::percentile},
-    {"first_violation", Metric::Kind::first_violation},
-}};
-
 constexpr double most_runs = 1e9;
 
-/// Reads the whole format in one place, key by key: what a key may hold, and what is said when it does not,
-/// stand together, hence the length of this file.
+/// Key by key: what a key may hold, and what is said when it does not, stand together.
 class Loader {
  public:
   Loader(std::string path, Problems& problems) : problems_(problems), reader_{problems, ""} {
@@ -45,7 +29,7 @@ class Loader {
                            {"loopwright", "title", "description", "diagram", "set", "variants", "seed",
                             "axes", "paired", "samples", "metrics", "keep"},
                            "a sweep");
-    check_version(file);
+    reader_.check_version(file);
     sweep_->title = reader_.text(file, "title");
     reader_.text(file, "description");
     read_diagram(file);
@@ -55,7 +39,7 @@ class Loader {
     read_axes(file);
     read_pairs(file);
     read_samples(file);
-    read_metrics(file);
+    sweep_->metrics = read_metrics(reader_, file);
     read_keep(file);
     check_size(file);
     return problems_.has_errors() ? nullptr : sweep_;
@@ -63,30 +47,8 @@ class Loader {
 
  private:
   // ---- pieces of JSON ----
-  void check_version(const Value& file) {
-    const Value::Member* version = file.find("loopwright");
-    if (version && version->value.kind == Value::Kind::number && version->value.number == 1) return;
-    auto& p = version ? reader_.error(*version, "this version of the format is not known")
-                      : reader_.error(file, "the version of the format is missing");
-    p.expected = "\"loopwright\": 1";
-  }
-  double number(const Value& value, std::string_view what, double low = -Metric::infinity,
-                double high = Metric::infinity) {
-    if (!reader_.expect(value, Value::Kind::number, what, "a number")) return low > 0 ? low : 0;
-    if (value.number >= low && value.number <= high) return value.number;
-    auto& p = reader_.error(value, fmt::format("{} is out of range", what));
-    p.expected = high == Metric::infinity ? fmt::format("at least {:g}", low)
-                                          : fmt::format("a number from {:g} to {:g}", low, high);
-    p.found = shown(value);
-    return low > 0 ? low : 0;
-  }
-  double optional_number(const Value& object, std::string_view key, double otherwise,
-                         double low = -Metric::infinity, double high = Metric::infinity) {
-    const Value::Member* member = object.find(key);
-    return member ? number(member->value, fmt::format("\"{}\"", key), low, high) : otherwise;
-  }
   int64_t whole(const Value::Member& member, double low, double high) {
-    const double n = number(member.value, fmt::format("\"{}\"", member.name), low, high);
+    const double n = reader_.number(member.value, fmt::format("\"{}\"", member.name), low, high);
     if (n == std::floor(n)) return int64_t(n);
     reader_.error(member.value, fmt::format("\"{}\" is no whole number", member.name)).found =
         shown(member.value);
@@ -183,7 +145,7 @@ class Loader {
   }
   double required(const Value& object, std::string_view key, const std::string& expected) {
     if (const Value::Member* member = object.find(key))
-      return number(member->value, fmt::format("\"{}\"", key));
+      return reader_.number(member->value, fmt::format("\"{}\"", key));
     reader_.error(object, fmt::format("\"{}\" is missing", key)).expected = expected;
     return 1;
   }
@@ -202,7 +164,7 @@ class Loader {
   }
   void read_values(Axis& axis, const Value& list) {
     if (!reader_.expect(list, Value::Kind::list, "\"values\"", "a list of numbers")) return;
-    for (const Value& item : list.items) axis.values.push_back(number(item, "a value"));
+    for (const Value& item : list.items) axis.values.push_back(reader_.number(item, "a value"));
     if (list.items.empty()) reader_.error(list, "the list of values is empty");
   }
   void read_variants(Axis& axis, const Value& list) {
@@ -289,70 +251,6 @@ class Loader {
     }
   }
 
-  // ---- metrics ----
-  void read_metrics(const Value& file) {
-    const Value* metrics = object(file, "metrics", "an object: name → {\"rms\": \"error.sum\"}");
-    if (!metrics) {
-      if (!file.find("metrics"))
-        reader_.error(file, "the sweep measures nothing").expected =
-            "\"metrics\": {\"tracking\": {\"rms\": \"error.sum\"}}";
-      return;
-    }
-    for (const Value::Member& member : metrics->members) read_metric(member);
-    if (metrics->members.empty()) reader_.error(*metrics, "the sweep measures nothing");
-  }
-  void read_metric(const Value::Member& member) {
-    Metric metric;
-    metric.name = member.name, metric.place = member.place, metric.pointer = member.value.place.pointer();
-    reader_.check_name(member, "a metric");
-    const Value& body = member.value;
-    if (!reader_.expect(body, Value::Kind::object, "a metric", "{\"rms\": \"error.sum\"}")) return;
-    int kinds = 0;
-    for (const auto& [name, kind] : metric_kinds)
-      if (body.find(name)) {
-        ++kinds;
-        metric.kind = kind;
-        metric.signal = reader_.text(body, name);
-      }
-    if (kinds != 1) {
-      auto& p = reader_.error(member, kinds ? "a metric measures one thing" : "the metric measures nothing");
-      for (const auto& [name, kind] : metric_kinds)
-        p.expected += (p.expected.empty() ? "one of " : ", ") + std::string(name);
-      return;
-    }
-    reject_what_does_not_belong(metric, body);
-    if (body.find("unit") && reader_.unit(body.find("unit")->value)) metric.unit = reader_.text(body, "unit");
-    metric.from = optional_number(body, "from", 0);
-    metric.to = optional_number(body, "to", Metric::infinity);
-    if (metric.from >= metric.to) reader_.error(member, "\"from\" must lie before \"to\"");
-    metric.target = optional_number(body, "target", 0);
-    metric.band = optional_number(body, "band", 0, 0);
-    metric.threshold = optional_number(body, "threshold", 0, 0);
-    metric.percent = optional_number(body, "percent", 95, 0, 100);
-    metric.least = optional_number(body, "least", -Metric::infinity);
-    metric.most = optional_number(body, "most", Metric::infinity);
-    sweep_->metrics.push_back(std::move(metric));
-  }
-  void reject_what_does_not_belong(const Metric& metric, const Value& body) {
-    using Kind = Metric::Kind;
-    std::vector<std::string> known{"unit", "from", "to", "least", "most", std::string(to_name(metric.kind))};
-    std::vector<std::string> needed;
-    if (metric.kind == Kind::settling_time) needed = {"target", "band"};
-    if (metric.kind == Kind::overshoot) needed = {"target"};
-    if (metric.kind == Kind::percentile) known.push_back("percent");
-    if (metric.kind == Kind::first_violation) needed = {"threshold"};
-    for (const std::string& key : needed)
-      if (!body.find(key))
-        reader_.error(body, fmt::format("\"{}\" of \"{}\" is missing", key, to_name(metric.kind)));
-    known.insert(known.end(), needed.begin(), needed.end());
-    for (const Value::Member& member : body.members) {
-      if (std::find(known.begin(), known.end(), member.name) != known.end()) continue;
-      auto& p =
-          reader_.error(member, fmt::format("\"{}\" has no key \"{}\"", to_name(metric.kind), member.name));
-      KnownNames(known).explain(p, member.name);
-    }
-  }
-
   void read_keep(const Value& file) {
     const Value::Member* member = file.find("keep");
     if (!member) return;
@@ -381,7 +279,7 @@ class Loader {
       const Value& runs = value.find("runs")->value;
       if (reader_.expect(runs, Value::Kind::list, "\"runs\"", "a list of run numbers"))
         for (const Value& item : runs.items)
-          keep.runs.push_back(int64_t(number(item, "a run", 0, most_runs)));
+          keep.runs.push_back(int64_t(reader_.number(item, "a run", 0, most_runs)));
     } else {
       auto& p = reader_.error(value, "what shall be kept is not known");
       p.expected = expected, p.found = shown(value);
@@ -409,12 +307,6 @@ class Loader {
 
 std::shared_ptr<const Sweep> load_sweep(const std::string& path, Problems& problems) {
   return Loader(path, problems).run();
-}
-
-std::string_view to_name(Metric::Kind kind) {
-  for (const auto& [name, candidate] : metric_kinds)
-    if (candidate == kind) return name;
-  return "?";
 }
 
 }  // namespace loopwright

@@ -218,6 +218,15 @@ TEST(EffectFile, EveryMistakeIsToldAtItsPlace) {
     EXPECT_TRUE(has(text, part)) << part << "\n" << text;
 }
 
+/// Of an effect file that can be read, but does not compile.
+std::string compile_problems(const std::string& path) {
+  Problems problems;
+  const auto effects = load_effect(path, problems);
+  EXPECT_EQ(effects.size(), 1u) << problems.text();
+  for (const Effect& effect : effects) EXPECT_FALSE(compile_effect(effect, {}, axis_sizes(), problems));
+  return problems.text();
+}
+
 TEST(EffectFile, BlocksAreCheckedAsThoseOfADiagram) {
   DiagramFolder folder;
   folder.with("wrong.json", R"({
@@ -226,12 +235,9 @@ TEST(EffectFile, BlocksAreCheckedAsThoseOfADiagram) {
   "blocks": {"drag": {"type": "QuadraticDarg", "drag": "=level", "in": {"velocity": "velocity"}}},
   "attach": [{"to": "force", "from": "drag.force"}], "needs": {"text": ""}
 })");
-  Problems problems;
-  const auto effects = load_effect(folder.path("wrong.json"), problems);
-  ASSERT_EQ(effects.size(), 1u) << problems.text();
-  EXPECT_FALSE(compile_effect(effects[0], {}, axis_sizes(), problems));
-  EXPECT_TRUE(has(problems.text(), "wrong.json:4:31")) << problems.text();
-  EXPECT_TRUE(has(problems.text(), "did you mean \"QuadraticDrag\"?")) << problems.text();
+  const std::string text = compile_problems(folder.path("wrong.json"));
+  EXPECT_TRUE(has(text, "wrong.json:4:31")) << text;
+  EXPECT_TRUE(has(text, "did you mean \"QuadraticDrag\"?")) << text;
 }
 
 TEST(EffectFile, ASlopeIsAnOutputThatIsThere) {
@@ -242,12 +248,9 @@ TEST(EffectFile, ASlopeIsAnOutputThatIsThere) {
   "blocks": {"late": {"type": "FractionalDelay", "delay": "=delay", "sample_time": "=sample_time", "in": {"u": "input"}}},
   "attach": [{"to": "input", "from": "late.y", "slope": "late.slop"}], "needs": {"text": ""}
 })");
-  Problems problems;
-  const auto effects = load_effect(folder.path("late.json"), problems);
-  ASSERT_EQ(effects.size(), 1u) << problems.text();
-  EXPECT_FALSE(compile_effect(effects[0], {}, axis_sizes(), problems));
-  EXPECT_TRUE(has(problems.text(), "late.json:5:14")) << problems.text();
-  EXPECT_TRUE(has(problems.text(), "\"late.slop\"")) << problems.text();
+  const std::string text = compile_problems(folder.path("late.json"));
+  EXPECT_TRUE(has(text, "late.json:5:14")) << text;
+  EXPECT_TRUE(has(text, "\"late.slop\"")) << text;
 }
 
 TEST(EffectFile, AFixedPitchIsNoLongerFitted) {

@@ -1,0 +1,99 @@
+#include "tools/sweep/metric_reader.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+
+namespace loopwright {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, Metric::Kind>, 10> metric_kinds{{
+    {"rms", Metric::Kind::rms},
+    {"mean", Metric::Kind::mean},
+    {"maximum", Metric::Kind::maximum},
+    {"minimum", Metric::Kind::minimum},
+    {"peak", Metric::Kind::peak},
+    {"final", Metric::Kind::final},
+    {"settling_time", Metric::Kind::settling_time},
+    {"overshoot", Metric::Kind::overshoot},
+    {"percentile", Metric::Kind::percentile},
+    {"first_violation", Metric::Kind::first_violation},
+}};
+
+void reject_what_does_not_belong(const Reader& reader, const Metric& metric, const Value& body) {
+  using Kind = Metric::Kind;
+  std::vector<std::string> known{"unit", "from", "to", "least", "most", std::string(to_name(metric.kind))};
+  std::vector<std::string> needed;
+  if (metric.kind == Kind::settling_time) needed = {"target", "band"};
+  if (metric.kind == Kind::overshoot) needed = {"target"};
+  if (metric.kind == Kind::percentile) known.push_back("percent");
+  if (metric.kind == Kind::first_violation) needed = {"threshold"};
+  for (const std::string& key : needed)
+    if (!body.find(key))
+      reader.error(body, fmt::format("\"{}\" of \"{}\" is missing", key, to_name(metric.kind)));
+  known.insert(known.end(), needed.begin(), needed.end());
+  for (const Value::Member& member : body.members) {
+    if (std::find(known.begin(), known.end(), member.name) != known.end()) continue;
+    auto& p =
+        reader.error(member, fmt::format("\"{}\" has no key \"{}\"", to_name(metric.kind), member.name));
+    KnownNames(known).explain(p, member.name);
+  }
+}
+
+std::optional<Metric> read_metric(const Reader& reader, const Value::Member& member) {
+  Metric metric;
+  metric.name = member.name, metric.place = member.place, metric.pointer = member.value.place.pointer();
+  reader.check_name(member, "a metric");
+  const Value& body = member.value;
+  if (!reader.expect(body, Value::Kind::object, "a metric", "{\"rms\": \"error.sum\"}")) return {};
+  int kinds = 0;
+  for (const auto& [name, kind] : metric_kinds)
+    if (body.find(name)) {
+      ++kinds;
+      metric.kind = kind;
+      metric.signal = reader.text(body, name);
+    }
+  if (kinds != 1) {
+    auto& p = reader.error(member, kinds ? "a metric measures one thing" : "the metric measures nothing");
+    for (const auto& [name, kind] : metric_kinds)
+      p.expected += (p.expected.empty() ? "one of " : ", ") + std::string(name);
+    return {};
+  }
+  reject_what_does_not_belong(reader, metric, body);
+  if (body.find("unit") && reader.unit(body.find("unit")->value)) metric.unit = reader.text(body, "unit");
+  metric.from = reader.optional_number(body, "from", 0);
+  metric.to = reader.optional_number(body, "to", Metric::infinity);
+  if (metric.from >= metric.to) reader.error(member, "\"from\" must lie before \"to\"");
+  metric.target = reader.optional_number(body, "target", 0);
+  metric.band = reader.optional_number(body, "band", 0, 0);
+  metric.threshold = reader.optional_number(body, "threshold", 0, 0);
+  metric.percent = reader.optional_number(body, "percent", 95, 0, 100);
+  metric.least = reader.optional_number(body, "least", -Metric::infinity);
+  metric.most = reader.optional_number(body, "most", Metric::infinity);
+  return metric;
+}
+
+}  // namespace
+
+std::vector<Metric> read_metrics(const Reader& reader, const Value& file) {
+  const Value::Member* list = file.find("metrics");
+  if (!list) {
+    reader.error(file, "the sweep measures nothing").expected =
+        "\"metrics\": {\"tracking\": {\"rms\": \"error.sum\"}}";
+    return {};
+  }
+  const std::string expected = "an object: name → {\"rms\": \"error.sum\"}";
+  if (!reader.expect(list->value, Value::Kind::object, "\"metrics\"", expected)) return {};
+  if (list->value.members.empty()) reader.error(list->value, "the sweep measures nothing");
+  std::vector<Metric> metrics;
+  for (const Value::Member& member : list->value.members)
+    if (auto metric = read_metric(reader, member)) metrics.push_back(std::move(*metric));
+  return metrics;
+}
+
+std::string_view to_name(Metric::Kind kind) {
+  for (const auto& [name, candidate] : metric_kinds)
+    if (candidate == kind) return name;
+  return "?";
+}
+
+}  // namespace loopwright

@@ -1,0 +1,11 @@
+/// Reads the metrics of a sweep file.
+#pragma once
+#include "engine/diagram/reader.h"
+#include "tools/sweep/sweep.h"
+
+namespace loopwright {
+
+/// The member "metrics" of the file. A metric with a problem that leaves its kind open is left out.
+std::vector<Metric> read_metrics(const Reader& reader, const Value& file);
+
+}  // namespace loopwright
