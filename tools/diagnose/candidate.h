@@ -13,7 +13,8 @@ struct CandidateParameter {
   double low = 0, high = 0;
   bool logarithmic = false;  ///< how it is stepped through, when nonlinear
   std::vector<double> grid;  ///< where the search looks first, when nonlinear
-  double span = 0;  ///< of a period: the stroke or time over which it repeats; decides how sharp it is
+  double span = 0;   ///< of a period: the stroke or time over which it repeats; decides how sharp it is
+  double start = 0;  ///< a usual value
 
   /// The range ends at this value: a warning, not a result.
   bool ends_at(double value) const {

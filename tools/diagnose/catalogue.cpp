@@ -149,6 +149,7 @@ Candidate candidate_of(const Effect& effect, std::shared_ptr<const EffectPlan> p
         size_t(std::ranges::find(compiled->plan->fitted, p.name) - compiled->plan->fitted.begin());
     CandidateParameter parameter{
         p.name, p.unit, range.low, range.high, p.scale == EffectParameter::Scale::logarithmic, {}};
+    parameter.start = range.start;
     if (p.is_linear) {
       candidate.linear.push_back(parameter), compiled->linear.push_back(index);
       continue;

@@ -141,7 +141,9 @@ class Inquiry {
     progress_("running every effect's blocks on the records", 0.1);
     trials_.run_along(Trials::Rows::fitted);
     fitted_motion_ = cut(motion_, trials_);
-    return shapes_of(catalogue_.candidates, fitted_motion_);
+    std::vector<Shape> shapes = shapes_of(catalogue_.candidates, fitted_motion_);
+    add_without_doubt(trials_, fitted_motion_, shapes);
+    return shapes;
   }
   void look_at_all_rows(const Conclusion& conclusion) {
     const Estimate& e = conclusion.estimate;

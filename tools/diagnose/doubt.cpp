@@ -1,6 +1,7 @@
 #include "tools/diagnose/doubt.h"
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace loopwright::diagnosis {
 namespace {
@@ -34,6 +35,42 @@ std::vector<double> force_along(std::vector<Member> members, const Path& path) {
   return drives_of(members, path, path.input).force;
 }
 
+double most_change_of(const Trials& trials) { return most_change * search_noise(trials).white; }
+
+/// Marks the rows at which two forces differ by more than `most`, and those after it.
+void mark_where_they_differ(const std::vector<double>& one, const std::vector<double>& other, double most,
+                            std::vector<char>& rows) {
+  int left = 0;
+  for (size_t k = 0; k < rows.size(); ++k) {
+    left = std::abs(other[k] - one[k]) > most ? samples_to_correct : std::max(0, left - 1);
+    if (left > 0) rows[k] = 1;
+  }
+}
+
+/// What a candidate consumes at the start of its amplitudes.
+std::vector<double> force_at_start(const Candidate& candidate, const Columns& columns) {
+  std::vector<double> force(columns.front().mean->size());
+  for (size_t c = 0; c < columns.size(); ++c)
+    for (size_t k = 0; k < force.size(); ++k)
+      force[k] += candidate.linear[c].start * double((*columns[c].mean)[k]);
+  return force;
+}
+
+/// Of one candidate.
+void mark_doubtful(std::span<Shape> shapes, const Motion& motion, double most) {
+  const Candidate& candidate = *shapes.front().candidate;
+  std::vector<std::vector<double>> points;
+  for (const Shape& shape : shapes) points.push_back(shape.nonlinear);
+  for (size_t t = 0; t < motion.paths.size(); ++t) {
+    const Path& path = *motion.paths[t];
+    for (Shape& shape : shapes) shape.doubtful.emplace_back(path.samples(), char(0));
+    const std::vector<Columns> others = candidate.columns_at(seen_otherwise(path, shifts_s[0]), points);
+    for (size_t i = 0; i < shapes.size(); ++i)
+      mark_where_they_differ(force_at_start(candidate, shapes[i].columns[t]),
+                             force_at_start(candidate, others[i]), most, shapes[i].doubtful[t]);
+  }
+}
+
 }  // namespace
 
 bool may_be_doubtful(const std::vector<Member>& members) {
@@ -41,21 +78,27 @@ bool may_be_doubtful(const std::vector<Member>& members) {
 }
 
 std::vector<std::vector<char>> doubtful_rows(const Trials& trials, const Estimate& estimate) {
-  const double most = most_change * search_noise(trials).white;
+  const double most = most_change_of(trials);
   std::vector<std::vector<char>> doubtful;
   for (const std::shared_ptr<const Path>& path : estimate.motion.paths) {
     std::vector<char>& rows = doubtful.emplace_back(path->samples(), char(0));
     const std::vector<double> force = force_along(estimate.members, *path);
-    for (const double shift : shifts_s) {
-      const std::vector<double> other = force_along(estimate.members, seen_otherwise(*path, shift));
-      int left = 0;
-      for (size_t k = 0; k < rows.size(); ++k) {
-        left = std::abs(other[k] - force[k]) > most ? samples_to_correct : std::max(0, left - 1);
-        if (left > 0) rows[k] = 1;
-      }
-    }
+    for (const double shift : shifts_s)
+      mark_where_they_differ(force, force_along(estimate.members, seen_otherwise(*path, shift)), most, rows);
   }
   return doubtful;
+}
+
+void add_without_doubt(const Trials& trials, const Motion& motion, std::vector<Shape>& shapes) {
+  std::vector<Shape> flying;
+  std::ranges::copy_if(shapes, std::back_inserter(flying), [](const Shape& s) { return s.candidate->flies; });
+  for (auto first = flying.begin(); first != flying.end();) {
+    const auto is_other = [&](const Shape& shape) { return shape.candidate != first->candidate; };
+    const auto end = std::find_if(first, flying.end(), is_other);
+    mark_doubtful({first, end}, motion, most_change_of(trials));
+    first = end;
+  }
+  std::ranges::move(flying, std::back_inserter(shapes));
 }
 
 void leave_out_doubtful(Trials& trials, Estimate& estimate) {

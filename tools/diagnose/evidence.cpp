@@ -89,7 +89,7 @@ std::vector<Proposal> shape_swaps(const std::vector<Member>& members,
 void add_shapes(const Candidate& candidate, const std::vector<std::vector<double>>& points,
                 const Motion& motion, std::vector<Shape>& shapes) {
   const size_t first = shapes.size();
-  for (const auto& point : points) shapes.push_back({&candidate, point, {}});
+  for (const auto& point : points) shapes.push_back({&candidate, point, {}, {}});
   for (const auto& path : motion.paths) {
     std::vector<Columns> columns = candidate.columns_at(*path, points);
     for (size_t i = 0; i < points.size(); ++i) shapes[first + i].columns.push_back(std::move(columns[i]));
@@ -144,6 +144,13 @@ Evidence::Evidence(const Trials& trials, const Estimate& estimate, const std::ve
         for (size_t c = 0; shapes[s]->candidate->acts == acts && c < shapes[s]->columns[t].size(); ++c)
           columns.push_back(&shapes[s]->columns[t][c]), places.push_back(&X_(top, first_column_[s] + int(c)));
       responses(fitted.axis, fitted.gains, path, acts, columns, rows[t], places);
+    }
+    for (size_t s = 0; s < shapes.size(); ++s) {
+      if (shapes[s]->doubtful.empty()) continue;
+      for (size_t i = 0; i < rows[t].size(); ++i)
+        if (shapes[s]->doubtful[t][rows[t][i]])
+          X_.block(top + Eigen::Index(i * ports), first_column_[s], Eigen::Index(ports), width_of(s))
+              .setZero();
     }
     fill(width, fitted.white);
     top += Eigen::Index(rows[t].size() * ports);

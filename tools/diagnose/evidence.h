@@ -10,6 +10,8 @@ struct Shape {
   const Candidate* candidate = nullptr;
   std::vector<double> nonlinear;
   std::vector<Columns> columns;  ///< a record each
+  /// Rows of each record that say nothing about it; none, if all count: see add_without_doubt().
+  std::vector<std::vector<char>> doubtful;
 };
 
 /// A candidate at several points, side by side.
