@@ -140,18 +140,15 @@ Evidence::Evidence(const Trials& trials, const Estimate& estimate, const std::ve
     for (const Acts acts : {Acts::force, Acts::input, Acts::sensor}) {
       std::vector<const Column*> columns;
       std::vector<double*> places;
-      for (size_t s = 0; s < shapes.size(); ++s)
-        for (size_t c = 0; shapes[s]->candidate->acts == acts && c < shapes[s]->columns[t].size(); ++c)
+      for (size_t s = 0; s < shapes.size(); ++s) {
+        if (shapes[s]->candidate->acts != acts || without_doubt(s) != s) continue;
+        for (size_t c = 0; c < shapes[s]->columns[t].size(); ++c)
           columns.push_back(&shapes[s]->columns[t][c]), places.push_back(&X_(top, first_column_[s] + int(c)));
+      }
       responses(fitted.axis, fitted.gains, path, acts, columns, rows[t], places);
     }
-    for (size_t s = 0; s < shapes.size(); ++s) {
-      if (shapes[s]->doubtful.empty()) continue;
-      for (size_t i = 0; i < rows[t].size(); ++i)
-        if (shapes[s]->doubtful[t][rows[t][i]])
-          X_.block(top + Eigen::Index(i * ports), first_column_[s], Eigen::Index(ports), width_of(s))
-              .setZero();
-    }
+    for (size_t s = 0; s < shapes.size(); ++s)
+      if (!shapes[s]->doubtful.empty()) leave_out_doubtful(s, shapes[s]->doubtful[t], rows[t], top, ports);
     fill(width, fitted.white);
     top += Eigen::Index(rows[t].size() * ports);
   }
@@ -163,6 +160,26 @@ Evidence::Evidence(const Trials& trials, const Estimate& estimate, const std::ve
   b_ = X_.leftCols(width).transpose() * X_.col(width);
   squares_ = X_.col(width).squaredNorm();
   explained_ = solve(member_columns(), b_, squares_).squares;
+}
+
+/// The same shape with all its rows, which has the same responses; without one, itself.
+size_t Evidence::without_doubt(size_t shape) const {
+  const Shape& s = *shapes_[shape];
+  if (s.doubtful.empty()) return shape;
+  const auto original = std::ranges::find_if(shapes_, [&](const Shape* other) {
+    return other->candidate == s.candidate && other->doubtful.empty() && other->nonlinear == s.nonlinear;
+  });
+  return original == shapes_.end() ? shape : size_t(original - shapes_.begin());
+}
+
+void Evidence::leave_out_doubtful(size_t shape, const std::vector<char>& doubtful,
+                                  const std::vector<size_t>& rows, Eigen::Index top, size_t ports) {
+  const auto columns = [&](size_t s) {
+    return X_.block(top, first_column_[s], Eigen::Index(rows.size() * ports), width_of(s));
+  };
+  if (const size_t original = without_doubt(shape); original != shape) columns(shape) = columns(original);
+  for (size_t i = 0; i < rows.size(); ++i)
+    if (doubtful[rows[i]]) columns(shape).middleRows(Eigen::Index(i * ports), Eigen::Index(ports)).setZero();
 }
 
 void Evidence::multiply(size_t shape, size_t other) {

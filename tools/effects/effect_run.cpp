@@ -65,14 +65,18 @@ void EffectRun::give(const RoleSample& s, double now, size_t from, size_t to) {
   const double period = plan_->sizes.sample_time;
   const double gain = std::isnan(s.next_velocity) ? s.acceleration : (s.next_velocity - s.velocity) / period;
   const double jerk = std::isnan(s.next_acceleration) ? 0.0 : (s.next_acceleration - s.acceleration) / period;
-  const auto give_one = [&](const Wire& wire, double value, double slope, double bend) {
+  const auto give_line = [&](const Wire& wire, double value, double slope) {
     if (wire.value.lanes.empty()) return;
-    wire.value.set(value, from, to), wire.slope.set(slope, from, to);
-    wire.bend.set(bend, from, to), wire.since.set(now, from, to);
+    wire.value.set(value, from, to), wire.slope.set(slope, from, to), wire.since.set(now, from, to);
   };
-  give_one(position_, s.position, s.velocity, 0.5 * gain), give_one(velocity_, s.velocity, gain, 0);
-  give_one(acceleration_, s.acceleration, jerk, 0), give_one(input_, s.input, 0, 0);
-  give_one(force_, s.force, 0, 0);
+  const auto give_held = [&](const Wire& wire, double value) {
+    if (!wire.value.lanes.empty()) wire.value.set(value, from, to);
+  };
+  // What is not set here stays nothing.
+  give_line(position_, s.position, s.velocity);
+  if (!position_.bend.lanes.empty()) position_.bend.set(0.5 * gain, from, to);
+  give_line(velocity_, s.velocity, gain), give_line(acceleration_, s.acceleration, jerk);
+  give_held(input_, s.input), give_held(force_, s.force);
 }
 
 double EffectRun::isolate(size_t parameter, int lane) {
