@@ -56,7 +56,7 @@ std::vector<double> force_at_start(const Candidate& candidate, const Columns& co
   return force;
 }
 
-/// Of one candidate.
+/// Of one candidate. One shift is enough to ask which shape is promised most, and costs half of two.
 void mark_doubtful(std::span<Shape> shapes, const Motion& motion, double most) {
   const Candidate& candidate = *shapes.front().candidate;
   std::vector<std::vector<double>> points;

@@ -148,7 +148,7 @@ Evidence::Evidence(const Trials& trials, const Estimate& estimate, const std::ve
       responses(fitted.axis, fitted.gains, path, acts, columns, rows[t], places);
     }
     for (size_t s = 0; s < shapes.size(); ++s)
-      if (!shapes[s]->doubtful.empty()) leave_out_doubtful(s, shapes[s]->doubtful[t], rows[t], top, ports);
+      if (!shapes[s]->doubtful.empty()) clear_doubtful(s, shapes[s]->doubtful[t], rows[t], top, ports);
     fill(width, fitted.white);
     top += Eigen::Index(rows[t].size() * ports);
   }
@@ -172,8 +172,8 @@ size_t Evidence::without_doubt(size_t shape) const {
   return original == shapes_.end() ? shape : size_t(original - shapes_.begin());
 }
 
-void Evidence::leave_out_doubtful(size_t shape, const std::vector<char>& doubtful,
-                                  const std::vector<size_t>& rows, Eigen::Index top, size_t ports) {
+void Evidence::clear_doubtful(size_t shape, const std::vector<char>& doubtful,
+                              const std::vector<size_t>& rows, Eigen::Index top, size_t ports) {
   const auto columns = [&](size_t s) {
     return X_.block(top, first_column_[s], Eigen::Index(rows.size() * ports), width_of(s));
   };

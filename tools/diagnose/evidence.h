@@ -82,9 +82,9 @@ class Evidence {
   Errors errors_without(const std::vector<size_t>& removed) const;
   void multiply(size_t shape, size_t other);
   size_t without_doubt(size_t shape) const;
-  /// In a record's rows of X_, which begin at `top`.
-  void leave_out_doubtful(size_t shape, const std::vector<char>& doubtful, const std::vector<size_t>& rows,
-                          Eigen::Index top, size_t ports);
+  /// Nothing where the shape is doubtful, in a record's rows of X_, which begin at `top`.
+  void clear_doubtful(size_t shape, const std::vector<char>& doubtful, const std::vector<size_t>& rows,
+                      Eigen::Index top, size_t ports);
   int width_of(size_t shape) const { return int(shapes_[shape]->columns[0].size()); }
   std::optional<Proposal> with_shapes(const std::vector<size_t>& shapes, const Errors& errors) const;
   Proposal with_step(const std::vector<size_t>& shapes, const std::vector<size_t>& removed,
