@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 #include <cmath>
 #include "engine/block.h"
-#include "engine/diagram/json.h"
-#include "engine/diagram/reader.h"
+#include "engine/json/json.h"
+#include "engine/json/reader.h"
 #include "engine/record/atomic_file.h"
 #include "engine/record/hash.h"
 

@@ -2,8 +2,8 @@
 #pragma once
 #include <string>
 #include <vector>
-#include "engine/diagram/problem.h"
-#include "models/gp/fit.h"
+#include "engine/json/problem.h"
+#include "models/gp/hyperparameters.h"
 #include "models/gp/model.h"
 
 namespace loopwright {

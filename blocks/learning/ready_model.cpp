@@ -1,7 +1,7 @@
 #include "blocks/learning/ready_model.h"
 #include <map>
 #include <stdexcept>
-#include "engine/diagram/json.h"
+#include "engine/json/json.h"
 #include "engine/record/hash.h"
 
 namespace loopwright {

@@ -1,5 +1,5 @@
 /// Which words of a block's Memory are numbers, rather than indices or views of buffers: what a small
-/// deviation can be given to when a diagram is linearised.
+/// deviation can be given to when a diagram is linearized.
 ///
 /// C++20 cannot list the members of a struct. But a struct can be built with a value that converts to
 /// `double` alone in one place and with anything in the others; where that compiles, the place is a number,

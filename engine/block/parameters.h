@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 #include "engine/block/describe.h"
-#include "engine/diagram/value.h"
+#include "engine/json/value.h"
 
 namespace loopwright {
 

@@ -1,7 +1,7 @@
 /// The blocks as a diagram's file has them.
 #pragma once
-#include "engine/diagram/json_tokens.h"
-#include "engine/diagram/value.h"
+#include "engine/json/tokens.h"
+#include "engine/json/value.h"
 
 namespace loopwright {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 #include "engine/diagram/diagram_load.h"
-#include "engine/diagram/reader.h"
+#include "engine/json/reader.h"
 
 namespace loopwright {
 

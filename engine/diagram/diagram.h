@@ -14,9 +14,9 @@
 #include <string_view>
 #include <utility>
 #include <vector>
-#include "engine/diagram/problem.h"
-#include "engine/diagram/unit.h"
-#include "engine/diagram/value.h"
+#include "engine/json/problem.h"
+#include "engine/unit/unit.h"
+#include "engine/json/value.h"
 
 namespace loopwright {
 

@@ -5,9 +5,9 @@
 #include <vector>
 #include "engine/diagram/block_list.h"
 #include "engine/diagram/diagram.h"
-#include "engine/diagram/edit.h"
+#include "engine/json/edit.h"
 #include "engine/diagram/library.h"
-#include "engine/diagram/parameters.h"
+#include "engine/diagram/parameter_scope.h"
 #include "engine/diagram/variants.h"
 
 namespace loopwright {

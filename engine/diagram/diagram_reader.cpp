@@ -3,7 +3,7 @@
 #include "engine/diagram/block_reader.h"
 #include "engine/diagram/diagram_load.h"
 #include "engine/diagram/ports.h"
-#include "engine/diagram/reader.h"
+#include "engine/json/reader.h"
 #include "engine/diagram/solver_settings.h"
 #include "engine/diagram/wires.h"
 

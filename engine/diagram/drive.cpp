@@ -4,7 +4,7 @@
 #include <charconv>
 #include <span>
 #include <fmt/format.h>
-#include "engine/diagram/reader.h"
+#include "engine/json/reader.h"
 #include "engine/diagram/wires.h"
 
 namespace loopwright {

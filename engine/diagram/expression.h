@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 #include <vector>
-#include "engine/diagram/problem.h"
-#include "engine/diagram/unit.h"
+#include "engine/json/problem.h"
+#include "engine/unit/unit.h"
 
 namespace loopwright {
 

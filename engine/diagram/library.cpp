@@ -3,8 +3,8 @@
 #include <array>
 #include <filesystem>
 #include <fmt/format.h>
-#include "engine/diagram/json.h"
-#include "engine/diagram/reader.h"
+#include "engine/json/json.h"
+#include "engine/json/reader.h"
 
 namespace loopwright {
 namespace {

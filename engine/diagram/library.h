@@ -6,9 +6,9 @@
 #include <unordered_map>
 #include <vector>
 #include "engine/diagram/block_list.h"
-#include "engine/diagram/json_tokens.h"
-#include "engine/diagram/problem.h"
-#include "engine/diagram/value.h"
+#include "engine/json/tokens.h"
+#include "engine/json/problem.h"
+#include "engine/json/value.h"
 
 namespace loopwright {
 

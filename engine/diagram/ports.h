@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 #include "engine/diagram/diagram.h"
-#include "engine/diagram/reader.h"
+#include "engine/json/reader.h"
 
 namespace loopwright {
 

@@ -1,7 +1,7 @@
 /// The object "solver" of a diagram file.
 #pragma once
 #include "engine/diagram/diagram.h"
-#include "engine/diagram/parameters.h"
+#include "engine/diagram/parameter_scope.h"
 
 namespace loopwright {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 #include "engine/diagram/diagram.h"
-#include "engine/diagram/reader.h"
+#include "engine/json/reader.h"
 
 namespace loopwright {
 

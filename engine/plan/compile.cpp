@@ -66,8 +66,8 @@ void add_rates_to_log(Plan& plan) {
           rate_of_signal[size_t(block.outputs[o] + i)] = rate;
   };
   for (const Plan::Entry& entry : plan.order) {
-    if (entry.kind == Plan::Entry::Kind::ring)
-      for (const Plan::Entry& inner : plan.rings[size_t(entry.block)].entries) mark(inner, entry.rate);
+    if (entry.kind == Plan::Entry::Kind::algebraic_loop)
+      for (const Plan::Entry& inner : plan.algebraic_loops[size_t(entry.block)].entries) mark(inner, entry.rate);
     else
       mark(entry, entry.rate);
   }
@@ -174,7 +174,7 @@ void add_ports(const FlatDiagram& flat, const Layout& layout, Plan& plan, Plan::
 void add_crossings(Plan& plan) {
   std::vector<bool> is_continuous(plan.blocks.size(), false);
   for (const Plan::Entry& entry : plan.order)
-    if (entry.kind != Plan::Entry::Kind::ring && entry.rate.kind == Rate::Kind::continuous)
+    if (entry.kind != Plan::Entry::Kind::algebraic_loop && entry.rate.kind == Rate::Kind::continuous)
       is_continuous[size_t(entry.block)] = true;
   int next = 0;
   for (size_t b = 0; b < plan.blocks.size(); ++b) {

@@ -18,10 +18,10 @@ std::string rate_text(const Plan& plan, const Plan::Entry& entry) {
 }
 
 std::string entry_text(const Plan& plan, const Plan::Entry& entry) {
-  if (entry.kind == Plan::Entry::Kind::ring) {
-    const Plan::Ring& ring = plan.rings[size_t(entry.block)];
-    return fmt::format("ring of {} solved for {} numbers:{}", ring.entries.size(), ring.tears.size(),
-                       ring.text);
+  if (entry.kind == Plan::Entry::Kind::algebraic_loop) {
+    const Plan::AlgebraicLoop& loop = plan.algebraic_loops[size_t(entry.block)];
+    return fmt::format("algebraic loop of {} solved for {} numbers:{}", loop.entries.size(),
+                       loop.tears.size(), loop.text);
   }
   const Plan::Block& block = plan.blocks[size_t(entry.block)];
   if (entry.kind == Plan::Entry::Kind::decide) return fmt::format("{} decides", block.path);
@@ -36,9 +36,10 @@ std::string entry_text(const Plan& plan, const Plan::Entry& entry) {
 std::string describe(const Plan& plan) {
   const MethodFacts& method = facts(plan.method);
   std::string text = fmt::format("{}\n", plan.title.empty() ? "untitled" : plan.title);
-  text += fmt::format("  plan {}   {} blocks   {} signals   {} states   {} rates   {} crossings   {} rings\n",
-                      plan.hash, plan.blocks.size(), plan.signals, plan.states, plan.rates.size(),
-                      plan.crossings.size(), plan.rings.size());
+  text += fmt::format(
+      "  plan {}   {} blocks   {} signals   {} states   {} rates   {} crossings   {} algebraic loops\n",
+      plan.hash, plan.blocks.size(), plan.signals, plan.states, plan.rates.size(), plan.crossings.size(),
+      plan.algebraic_loops.size());
   text += fmt::format("  tick {}/{} s   from {:g} to {:g} s   {}", plan.clock.base.numerator,
                       plan.clock.base.denominator, plan.clock.time(plan.start_tick),
                       plan.clock.time(plan.stop_tick), method.name);

@@ -20,8 +20,8 @@ struct Vertex {
 
 class Order {
  public:
-  Order(Plan& plan, bool solve_rings, Problems& problems)
-      : plan_(plan), solve_rings_(solve_rings), problems_(problems) {}
+  Order(Plan& plan, bool solve_algebraic_loops, Problems& problems)
+      : plan_(plan), solve_algebraic_loops_(solve_algebraic_loops), problems_(problems) {}
 
   void run() {
     add_vertices();
@@ -141,13 +141,14 @@ class Order {
 
   void add_ring(const std::vector<int>& members, const std::vector<int>& component) {
     const std::string text = ring_text(members, component);
-    if (!solve_rings_) return tell_ring(members, text, "");
+    if (!solve_algebraic_loops_) return tell_algebraic_loop(members, text, "");
     for (int v : members)
       if (vertices_[size_t(v)].group < 0)
-        return tell_ring(members, text, "It holds a block that switches; such a ring cannot be solved.");
-    Plan::Ring ring;
-    ring.text = text;
-    // Tears: outputs taken out one by one, most wanted first, until what is left has no ring.
+        return tell_algebraic_loop(
+            members, text, "It holds a block that switches; such an algebraic loop cannot be solved.");
+    Plan::AlgebraicLoop loop;
+    loop.text = text;
+    // Tears: outputs taken out one by one, most wanted first, until what is left has no cycle.
     std::vector<int> left = members;
     std::vector<int> sorted;
     std::vector<bool> torn(vertices_.size(), false);
@@ -160,12 +161,12 @@ class Order {
     for (int pass = 0; pass < 2; ++pass)
       for (int v : members) rate_of_[size_t(v)] = rate = join(rate, own_rate(v));
     for (int v : members) rate_of_[size_t(v)] = rate;
-    for (int v : sorted) ring.entries.push_back(entry_of(v));
+    for (int v : sorted) loop.entries.push_back(entry_of(v));
     for (Number n = 0; n < plan_.signals; ++n)
-      if (const int v = vertex_of_number_[size_t(n)]; v >= 0 && torn[size_t(v)]) ring.tears.push_back(n);
+      if (const int v = vertex_of_number_[size_t(n)]; v >= 0 && torn[size_t(v)]) loop.tears.push_back(n);
     for (int v : members) entry_of_vertex_[size_t(v)] = int(plan_.order.size());
-    plan_.order.push_back({Kind::ring, int(plan_.rings.size()), 0, rate});
-    plan_.rings.push_back(std::move(ring));
+    plan_.order.push_back({Kind::algebraic_loop, int(plan_.algebraic_loops.size()), 0, rate});
+    plan_.algebraic_loops.push_back(std::move(loop));
   }
   int wanted_inside(int v, const std::vector<int>& component) const {
     int n = 0;
@@ -173,7 +174,7 @@ class Order {
       n += component[boost::target(*e, graph_)] == component[size_t(v)];
     return n;
   }
-  /// Members in order, edges to torn vertices ignored; false if a ring is left.
+  /// Members in order, edges to torn vertices ignored; false if a cycle is left.
   bool sort_acyclic(const std::vector<int>& members, const std::vector<int>& component,
                     const std::vector<bool>& torn, std::vector<int>& sorted) const {
     sorted.clear();
@@ -226,14 +227,13 @@ class Order {
     return text;
   }
 
-  void tell_ring(const std::vector<int>& members, const std::string& text, std::string_view why) {
+  void tell_algebraic_loop(const std::vector<int>& members, const std::string& text, std::string_view why) {
     const Plan::Block& block = plan_.blocks[size_t(vertices_[size_t(members[0])].block)];
     std::string breakers;
     auto& p = problems_.error(
         block.place, "", block.path,
-        fmt::format("a ring of direct feedthrough: each of these needs the next in the same instant{}",
-                    text));
-    p.expected = "a state or a delay somewhere in the ring";
+        fmt::format("algebraic loop: each of these needs the next in the same instant{}", text));
+    p.expected = "a state or a delay somewhere in the loop";
     p.hint = fmt::format(
         "a UnitDelay (sampled) or a LowPass (continuous) at one of these wires breaks it; "
         "\"algebraic_loops\": \"solve\" in \"solver\" solves it by Newton's method. {}",
@@ -294,19 +294,19 @@ class Order {
   }
 
   Plan& plan_;
-  const bool solve_rings_;
+  const bool solve_algebraic_loops_;
   Problems& problems_;
   Graph graph_;
   std::vector<Vertex> vertices_;
   std::vector<int> first_vertex_, decision_, vertex_of_number_;
   std::vector<Rate> rate_of_;
-  std::vector<int> entry_of_vertex_;  // -1: of a ring that is an error
+  std::vector<int> entry_of_vertex_;  // -1: of an algebraic loop that is an error
 };
 
 }  // namespace
 
-void find_order(Plan& plan, bool solve_rings, Problems& problems) {
-  Order(plan, solve_rings, problems).run();
+void find_order(Plan& plan, bool solve_algebraic_loops, Problems& problems) {
+  Order(plan, solve_algebraic_loops, problems).run();
 }
 
 }  // namespace loopwright

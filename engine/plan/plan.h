@@ -54,22 +54,22 @@ struct Plan {
     std::span<const int> buffer_lengths;
   };
 
-  /// One entry of the order: a group of outputs of a block, its decision, or a ring to be solved.
+  /// One entry of the order: a group of outputs of a block, its decision, or an algebraic loop to be solved.
   struct Entry {
-    enum class Kind : uint8_t { outputs, decide, ring };
+    enum class Kind : uint8_t { outputs, decide, algebraic_loop };
     Kind kind = Kind::outputs;
-    int block = -1;  ///< or the ring
+    int block = -1;  ///< or the algebraic loop
     int group = 0;
     Rate rate;
     bool in_stages = false;   ///< a derivative needs it
     bool for_events = false;  ///< a crossing function needs it
   };
 
-  /// A ring of direct feedthrough, solved by Newton's method on the tear numbers.
-  struct Ring {
+  /// An algebraic loop (blocks of direct feedthrough in a cycle), solved by Newton's method on the tear numbers.
+  struct AlgebraicLoop {
     std::vector<Entry> entries;  ///< in order, tears taken as known
     std::vector<Number> tears;
-    std::string text;  ///< the ring port by port, for messages
+    std::string text;  ///< the loop port by port, for messages
   };
 
   struct Crossing {
@@ -96,7 +96,7 @@ struct Plan {
   std::shared_ptr<const Lists> lists;  ///< shared by copies of the plan
   std::vector<Block> blocks;
   std::vector<Entry> order;  ///< every output and decision, sorted once
-  std::vector<Ring> rings;
+  std::vector<AlgebraicLoop> algebraic_loops;
   std::vector<Rate> rates;  ///< the distinct sampled rates
   std::vector<Crossing> crossings;
   std::vector<Logged> log;
@@ -137,7 +137,7 @@ void check_part(const Diagram& diagram, Problems& problems);
 /// Loads and compiles; throws InputError with every problem found. Warnings end in Plan::warnings.
 std::shared_ptr<const Plan> load_plan(const std::string& path, const LoadOptions& options = {});
 
-/// Order, rates, states and rings as text for a person.
+/// Order, rates, states and algebraic loops as text for a person.
 std::string describe(const Plan& plan);
 
 }  // namespace loopwright

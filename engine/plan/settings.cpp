@@ -1,5 +1,5 @@
 #include "engine/plan/settings.h"
-#include "engine/diagram/json.h"
+#include "engine/json/json.h"
 
 namespace loopwright {
 

@@ -158,7 +158,7 @@ void find_shapes(FlatDiagram& flat, Problems& problems) {
     }
     if (++visits[size_t(b)] > 50) {
       problems.error(block.entry->place, block.entry->place.pointer(), block.path,
-                     "its vectors grow round a ring of wires without end");
+                     "its vectors grow without end around a cycle of wires");
       return;
     }
     if (!readers) readers = readers_of_blocks(flat);

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "engine/diagram/problem.h"
+#include "engine/json/problem.h"
 #include "engine/record/recording.h"
 
 namespace loopwright {

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "engine/diagram/problem.h"
+#include "engine/json/problem.h"
 
 namespace loopwright {
 

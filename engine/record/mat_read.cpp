@@ -14,7 +14,7 @@
 #include "engine/record/mat_layout.h"
 #include "engine/record/mat_names.h"
 #include "engine/record/mat_variables.h"
-#include "engine/record/problem_limit.h"
+#include "engine/json/problem_limit.h"
 #include "engine/record/text.h"
 
 namespace loopwright {

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "engine/diagram/problem.h"
+#include "engine/json/problem.h"
 #include "engine/record/recording.h"
 
 namespace loopwright {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "engine/record/csv_syntax.h"
-#include "engine/record/problem_limit.h"
+#include "engine/json/problem_limit.h"
 #include "engine/record/text.h"
 
 namespace loopwright {

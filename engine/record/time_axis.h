@@ -1,6 +1,6 @@
 /// Is this column a time, and is it sampled evenly?
 #pragma once
-#include "engine/diagram/problem.h"
+#include "engine/json/problem.h"
 #include "engine/record/recording.h"
 
 namespace loopwright {

@@ -18,7 +18,7 @@
 #include "engine/plan/plan.h"
 #include "engine/run/block_instance.h"
 #include "engine/run/calls_by_rate.h"
-#include "engine/run/ring.h"
+#include "engine/run/algebraic_loop.h"
 
 namespace loopwright {
 
@@ -166,7 +166,7 @@ template <class Real> class Run {
   std::vector<std::vector<BlockInstance<Real>>> instances_;  // in each arena, as all that follow
   std::vector<Wires> wires_;
   std::vector<std::vector<Call<Real>>> base_;  // a block each, without a step
-  std::vector<std::unique_ptr<RingSolver<Real>>> rings_;
+  std::vector<std::unique_ptr<AlgebraicLoopSolver<Real>>> algebraic_loops_;
   std::vector<Call<Real>> constants_, between_, stage_, for_events_, held_, accepts_, jumps_, crossings_,
       slopes_;
   // Of fixed-step methods, for each stage; see run_stages.h.

@@ -119,16 +119,16 @@ template <class Real> uint64_t Run<Real>::mask_of(const Rate& rate) const {
 
 template <class Real>
 Call<Real> Run<Real>::call_of(const Plan::Entry& entry, const std::vector<Call<Real>>& base) {
-  if (entry.kind == Plan::Entry::Kind::ring) {
-    auto& ring = rings_.emplace_back(std::make_unique<RingSolver<Real>>());
-    const Plan::Ring& plan_ring = plan_.rings[size_t(entry.block)];
+  if (entry.kind == Plan::Entry::Kind::algebraic_loop) {
+    auto& loop = algebraic_loops_.emplace_back(std::make_unique<AlgebraicLoopSolver<Real>>());
+    const Plan::AlgebraicLoop& plan_loop = plan_.algebraic_loops[size_t(entry.block)];
     std::vector<Call<Real>> calls;
-    for (const Plan::Entry& inner : plan_ring.entries) calls.push_back(call_of(inner, base));
-    Call<Real> call = base[size_t(plan_ring.entries.front().block)];
+    for (const Plan::Entry& inner : plan_loop.entries) calls.push_back(call_of(inner, base));
+    Call<Real> call = base[size_t(plan_loop.entries.front().block)];
     const int arena = call.first_lane / width;
-    ring->build(std::move(calls), numbers_ + arena * stride_, plan_ring.tears, call.first_lane);
-    call.block = ring.get();
-    call.step = &RingSolver<Real>::step;
+    loop->build(std::move(calls), numbers_ + arena * stride_, plan_loop.tears, call.first_lane);
+    call.block = loop.get();
+    call.step = &AlgebraicLoopSolver<Real>::step;
     return call;
   }
   Call<Real> call = base[size_t(entry.block)];

@@ -11,10 +11,10 @@ template <class Real> std::vector<bool> Run<Real>::blocks_in_stages() const {
   std::vector<bool> found(plan_.blocks.size(), false);
   for (const Plan::Entry& entry : plan_.order) {
     if (!entry.in_stages) continue;
-    if (entry.kind != Plan::Entry::Kind::ring)
+    if (entry.kind != Plan::Entry::Kind::algebraic_loop)
       found[size_t(entry.block)] = true;
     else
-      for (const Plan::Entry& inner : plan_.rings[size_t(entry.block)].entries)
+      for (const Plan::Entry& inner : plan_.algebraic_loops[size_t(entry.block)].entries)
         found[size_t(inner.block)] = true;
   }
   for (size_t b = 0; b < found.size(); ++b)

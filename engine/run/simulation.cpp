@@ -6,7 +6,7 @@
 #include "engine/run/checkpoint.h"
 #include "engine/run/fixed_step.h"
 #include "engine/run/recorder.h"
-#include "engine/run/stability.h"
+#include "engine/run/pole_check.h"
 #include "engine/solve/solver.h"
 
 namespace loopwright {

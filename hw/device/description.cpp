@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include "engine/diagram/json.h"
-#include "engine/diagram/parameters.h"
-#include "engine/diagram/reader.h"
+#include "engine/json/json.h"
+#include "engine/diagram/parameter_scope.h"
+#include "engine/json/reader.h"
 
 namespace loopwright::hw {
 namespace {

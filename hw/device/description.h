@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 #include "engine/block/parameters.h"
-#include "engine/diagram/problem.h"
-#include "engine/diagram/value.h"
+#include "engine/json/problem.h"
+#include "engine/json/value.h"
 
 namespace loopwright::hw {
 

@@ -9,9 +9,9 @@ constexpr int most_glitches = 3;  // in a row: then it is no glitch but a broken
 }
 
 std::string_view to_name(Code code) {
-  static constexpr std::string_view names[] = {
-      "ok",           "stopped",     "late",         "stale",    "range", "watchdog", "device_fault",
-      "disconnected", "unsupported", "config_error", "not_open", "busy",  "no_driver"};
+  static constexpr std::string_view names[] = {"ok",           "stopped",      "late",         "range",
+                                               "watchdog",     "device_fault", "disconnected", "unsupported",
+                                               "config_error", "not_open",     "busy",         "no_driver"};
   return names[size_t(code)];
 }
 std::string_view to_name(OutputsSafe safe) {

@@ -10,7 +10,6 @@ enum class Code : uint8_t {
   ok,
   stopped,  ///< the device was asked to stop, or its task ended
   late,     ///< the sample is there, but its time is over
-  stale,    ///< the sample is an old one, or the newest was lost
   range,    ///< a number out of range was refused
   watchdog,
   device_fault,

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include "engine/diagram/diagram.h"
-#include "engine/diagram/reader.h"
+#include "engine/json/reader.h"
 #include "hw/quanser/quanser.h"
 
 namespace loopwright::hw::quanser {

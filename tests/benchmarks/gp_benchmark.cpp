@@ -4,7 +4,7 @@
 #include <numbers>
 #include <random>
 #include "models/gp/dense.h"
-#include "models/gp/fit.h"
+#include "models/gp/hyperparameters.h"
 #include "models/gp/table.h"
 #include "engine/run/simulation.h"
 #include "tests/benchmarks/diagram_file.h"

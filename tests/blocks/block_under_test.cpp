@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cstring>
 #include <stdexcept>
-#include "engine/diagram/json.h"
+#include "engine/json/json.h"
 
 namespace loopwright {
 

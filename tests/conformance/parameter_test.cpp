@@ -4,7 +4,7 @@
 #include <cctype>
 #include <cmath>
 #include <functional>
-#include "engine/diagram/json.h"
+#include "engine/json/json.h"
 #include "tests/conformance/registered.h"
 
 namespace loopwright {

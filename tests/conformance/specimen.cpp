@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <map>
 #include "engine/diagram/diagram.h"
-#include "engine/diagram/json.h"
+#include "engine/json/json.h"
 #include "where.h"
 
 namespace loopwright {

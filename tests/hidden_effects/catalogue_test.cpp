@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include "engine/diagram/in_memory.h"
-#include "engine/diagram/json.h"
+#include "engine/json/json.h"
 #include "tools/compare/compare.h"
 #include "tools/effects/insert.h"
 

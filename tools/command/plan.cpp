@@ -16,7 +16,7 @@ void write_picture(const Plan& plan, const std::string& path) {
 }  // namespace
 
 void add_plan(CLI::App& app, std::function<void(std::function<int()>)> choose) {
-  CLI::App* command = app.add_subcommand("plan", "Show order, rates, states and rings of a diagram");
+  CLI::App* command = app.add_subcommand("plan", "Show order, rates, states and algebraic loops of a diagram");
   struct Arguments {
     DiagramArguments diagram;
     std::string svg;

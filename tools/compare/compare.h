@@ -3,7 +3,7 @@
 #include "engine/run/simulation.h"
 #include "tools/compare/excitation.h"
 #include "tools/compare/experiment.h"
-#include "tools/compare/force_residual.h"
+#include "tools/compare/missing_force.h"
 #include "tools/report/report.h"
 
 namespace loopwright {

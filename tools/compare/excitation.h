@@ -1,6 +1,6 @@
 /// What a record contains, hence what can be found in it, and what is wrong with it.
 #pragma once
-#include "tools/compare/force_residual.h"
+#include "tools/compare/missing_force.h"
 #include "tools/effects/effect.h"
 
 namespace loopwright {

@@ -1,8 +1,8 @@
 #include "tools/compare/experiment.h"
 #include <fmt/format.h>
 #include <algorithm>
-#include "engine/diagram/json.h"
-#include "engine/diagram/reader.h"
+#include "engine/json/json.h"
+#include "engine/json/reader.h"
 #include "engine/record/recording_file.h"
 #include "tools/compare/balances.h"
 #include "tools/compare/data_file.h"

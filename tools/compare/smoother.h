@@ -1,6 +1,6 @@
 /// Functions of one variable fitted to a residual, judged on blocks of the record that they did not see.
 #pragma once
-#include "tools/compare/force_residual.h"
+#include "tools/compare/missing_force.h"
 
 namespace loopwright {
 

@@ -25,7 +25,7 @@ Number number_of(const Plan& plan, const std::string& port) {
 void silence(Plan& plan, Number number) {
   const int block = plan.source_of(number).first;
   std::erase_if(plan.order, [&](const Plan::Entry& entry) {
-    return entry.kind != Plan::Entry::Kind::ring && entry.block == block;
+    return entry.kind != Plan::Entry::Kind::algebraic_loop && entry.block == block;
   });
 }
 
@@ -45,7 +45,7 @@ void keep_only(Plan& plan, const std::vector<Number>& wanted) {
       for (Number n : port) want(n);
   }
   std::erase_if(plan.order, [&](const Plan::Entry& entry) {
-    return entry.kind != Plan::Entry::Kind::ring && !needed[size_t(entry.block)];
+    return entry.kind != Plan::Entry::Kind::algebraic_loop && !needed[size_t(entry.block)];
   });
 }
 
@@ -116,7 +116,7 @@ AxisModel::AxisModel(const std::string& path, const std::string& experiment_path
   inertia_parameter_ = inertia_parameter(*plan_, *run_, force_);
   if (!inertia_parameter_.empty()) own_inertia_ = *run_->parameter(inertia_parameter_);
   for (int i = 0; i < plan_->states; ++i) seen_.push_back(i);
-  const LinearAxis linear = linearise_motion();
+  const LinearAxis linear = linearize_motion();
   keep_seen_states(linear);
   nominal_inertia_ = linear.inertia, nominal_damping_ = linear.damping;
   if (std::isfinite(nominal_inertia_) && nominal_inertia_ > 0) return;

@@ -67,11 +67,11 @@ class AxisModel {
   /// Whether a force as small as this moves nothing at rest: something in the diagram holds.
   bool holds_at_rest(double small_force);
 
-  /// Linearised around the recorded motion. Of a map: what is left over of the forces, see balance_of.
-  LinearAxis linearise();
+  /// Linearized around the recorded motion. Of a map: what is left over of the forces, see balance_of.
+  LinearAxis linearize();
 
  private:
-  LinearAxis linearise_motion();
+  LinearAxis linearize_motion();
   void keep_seen_states(const LinearAxis& linear);
   Eigen::VectorXd sample_from(const Eigen::VectorXd& states, double input, double force);
 

@@ -280,7 +280,7 @@ void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
 void ask_rivals(Conclusion& result, Evidence& evidence, const std::vector<Proposal>& exchanges,
                 const std::vector<Candidate>& candidates, const AxisModel& model, Rivals& rivals, double n) {
   const double reach = rivals.reach();
-  // What a linearisation promises far from where it was made may be a hundred off.
+  // What a linearization promises far from where it was made may be a hundred off.
   const double far = std::max(100.0, 3 * reach);
   const std::vector<Member>& members = result.estimate.members;
   std::vector<Proposal> several = evidence.exchanges_for_pairs();

@@ -4,7 +4,7 @@
 #include "tools/diagnose/catalogue.h"
 #include "tools/diagnose/conclude.h"
 #include "tools/diagnose/doubt.h"
-#include "tools/diagnose/force_residual.h"
+#include "tools/diagnose/remaining_force.h"
 #include "tools/diagnose/improve.h"
 #include "tools/diagnose/prepare.h"
 #include "tools/diagnose/search.h"

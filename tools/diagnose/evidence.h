@@ -1,7 +1,7 @@
 /// Which further effects the prediction errors speak for: columns of every candidate on a coarse grid of
 /// shapes, and their sums of squares, so that a set of effects costs one small solve.
 #pragma once
-#include "tools/diagnose/fit.h"
+#include "tools/diagnose/maximum_likelihood.h"
 
 namespace loopwright::diagnosis {
 
@@ -20,7 +20,7 @@ void add_shapes(const Candidate& candidate, const std::vector<std::vector<double
 /// Every candidate at every point of its grid; those that scan pitches are not among them.
 std::vector<Shape> shapes_of(const std::vector<Candidate>& candidates, const Motion& motion);
 
-/// A set of effects that explains the errors, as the linearisation sees it.
+/// A set of effects that explains the errors, as the linearization sees it.
 struct Proposal {
   std::vector<size_t> removed;  ///< members taken out
   std::vector<Member> added;

@@ -2,7 +2,7 @@
 #include <nlopt.h>
 #include <algorithm>
 #include <cmath>
-#include "tools/diagnose/fit.h"
+#include "tools/diagnose/maximum_likelihood.h"
 
 namespace loopwright::diagnosis {
 namespace {

@@ -180,7 +180,7 @@ std::vector<Fitted> run_members(Trials& trials, const std::vector<Member>& membe
     AxisModel& model = *trials.list[t].model;
     Fitted fitted;
     model.set_added_inertia(inertia);
-    fitted.axis = model.linearise();
+    fitted.axis = model.linearize();
     fitted.gains = gains_of(fitted.axis, noise, model.nominal_inertia());
     const std::vector<double>& raw = trials.list[t].input;
     Drives drives;

@@ -1,7 +1,7 @@
 #include "tools/diagnose/improve.h"
 #include <algorithm>
 #include <filesystem>
-#include "engine/diagram/json.h"
+#include "engine/json/json.h"
 #include "engine/record/atomic_file.h"
 #include "tools/compare/experiment.h"
 #include "tools/effects/nest.h"

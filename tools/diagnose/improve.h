@@ -1,7 +1,7 @@
 /// "Add it": the user's diagram with the effects that were found.
 #pragma once
 #include "tools/diagnose/catalogue.h"
-#include "tools/diagnose/fit.h"
+#include "tools/diagnose/maximum_likelihood.h"
 #include "tools/effects/insert.h"
 
 namespace loopwright::diagnosis {

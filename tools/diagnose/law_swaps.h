@@ -6,7 +6,7 @@ namespace loopwright::diagnosis {
 
 /// (1 + g) u = (M + m) a + (B + b) v + F is the same law when all of it is divided by a number: a gain stands
 /// for mass and damping, mass and damping for a gain. One of g, m and b is taken out and another put in, and
-/// all forces are divided: too far for a linearisation to find.
+/// all forces are divided: too far for a linearization to find.
 std::vector<Proposal> law_swaps(const std::vector<Member>& members, const std::vector<Candidate>& candidates,
                                 const AxisModel& model);
 

@@ -1,6 +1,6 @@
 /// Records ready for the search: noise, rows that count, the motion.
 #pragma once
-#include "tools/diagnose/fit.h"
+#include "tools/diagnose/maximum_likelihood.h"
 
 namespace loopwright::diagnosis {
 

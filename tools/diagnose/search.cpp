@@ -64,7 +64,7 @@ class Search {
     trail_.push_back(std::move(line));
   }
 
-  /// What the linearisation promises, best first.
+  /// What the linearization promises, best first.
   void note(const std::vector<Proposal>& proposals) {
     std::string line = "promised:";
     for (const Proposal& proposal : proposals | std::views::take(8))

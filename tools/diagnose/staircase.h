@@ -3,7 +3,7 @@
 #pragma once
 #include "tools/diagnose/conclude.h"
 #include "tools/diagnose/diagnose.h"
-#include "tools/diagnose/force_residual.h"
+#include "tools/diagnose/remaining_force.h"
 
 namespace loopwright::diagnosis {
 

@@ -2,7 +2,7 @@
 #pragma once
 #include "tools/diagnose/conclude.h"
 #include "tools/diagnose/diagnose.h"
-#include "tools/diagnose/force_residual.h"
+#include "tools/diagnose/remaining_force.h"
 #include "tools/effects/effect.h"
 
 namespace loopwright::diagnosis {

@@ -1,6 +1,6 @@
 /// The ends of a parameter's range, which may depend on the sizes of a record.
 #pragma once
-#include "engine/diagram/reader.h"
+#include "engine/json/reader.h"
 #include "tools/effects/effect.h"
 
 namespace loopwright {

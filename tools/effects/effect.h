@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 #include <vector>
-#include "engine/diagram/value.h"
+#include "engine/json/value.h"
 
 namespace loopwright {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include "engine/diagram/in_memory.h"
-#include "engine/diagram/reader.h"
+#include "engine/json/reader.h"
 #include "engine/run/run.h"
 
 namespace loopwright {

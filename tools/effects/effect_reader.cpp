@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <set>
-#include "engine/diagram/json.h"
-#include "engine/diagram/reader.h"
+#include "engine/json/json.h"
+#include "engine/json/reader.h"
 #include "engine/diagram/wires.h"
 #include "tools/effects/bound.h"
 #include "tools/effects/effect.h"

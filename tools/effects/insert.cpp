@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <set>
-#include "engine/diagram/json.h"
-#include "engine/diagram/reader.h"
+#include "engine/json/json.h"
+#include "engine/json/reader.h"
 #include "tools/effects/effect_values.h"
 #include "tools/effects/nest.h"
 #include "tools/effects/wire_reader.h"

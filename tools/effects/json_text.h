@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 #include <vector>
-#include "engine/diagram/value.h"
+#include "engine/json/value.h"
 
 namespace loopwright {
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
-#include "engine/diagram/reader.h"
+#include "engine/json/reader.h"
 #include "tools/effects/effect.h"
 
 namespace loopwright {

@@ -1,7 +1,7 @@
 #include "tools/effects/nest.h"
 #include <algorithm>
 #include <filesystem>
-#include "engine/diagram/json.h"
+#include "engine/json/json.h"
 
 namespace loopwright {
 

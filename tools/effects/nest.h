@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 #include "engine/diagram/drive.h"
-#include "engine/diagram/reader.h"
+#include "engine/json/reader.h"
 #include "tools/effects/insert.h"
 #include "tools/effects/json_text.h"
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include "engine/diagram/json.h"
-#include "engine/diagram/reader.h"
+#include "engine/json/json.h"
+#include "engine/json/reader.h"
 #include "tools/fit/parameter.h"
 
 namespace loopwright {

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <charconv>
 #include <nlohmann/json.hpp>
-#include "engine/diagram/json.h"
-#include "engine/diagram/reader.h"
+#include "engine/json/json.h"
+#include "engine/json/reader.h"
 #include "tools/effects/json_text.h"
 #include "tools/fit/fit.h"
 #include "tools/report/typography.h"

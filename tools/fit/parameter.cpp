@@ -3,7 +3,7 @@
 #include <charconv>
 #include <fmt/format.h>
 #include "engine/block/registry.h"
-#include "engine/diagram/reader.h"
+#include "engine/json/reader.h"
 
 namespace loopwright {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include "engine/diagram/reader.h"
-#include "engine/diagram/unit.h"
+#include "engine/json/reader.h"
+#include "engine/unit/unit.h"
 #include "engine/record/hash.h"
 #include "engine/record/recording_file.h"
 #include "engine/record/time_axis.h"

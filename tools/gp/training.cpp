@@ -2,10 +2,10 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include "engine/block.h"
-#include "engine/diagram/edit.h"
-#include "engine/diagram/json.h"
-#include "engine/diagram/parameters.h"
-#include "engine/diagram/reader.h"
+#include "engine/json/edit.h"
+#include "engine/json/json.h"
+#include "engine/diagram/parameter_scope.h"
+#include "engine/json/reader.h"
 
 namespace loopwright {
 namespace {

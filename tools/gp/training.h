@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 #include <vector>
-#include "engine/diagram/problem.h"
-#include "models/gp/fit.h"
+#include "engine/json/problem.h"
+#include "models/gp/hyperparameters.h"
 
 namespace loopwright {
 

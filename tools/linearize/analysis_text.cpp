@@ -158,7 +158,7 @@ Recording to_recording(const LinearAnalysis& analysis) {
 
 std::string to_text(const LinearAnalysis& analysis) {
   std::string text = fmt::format(
-      "linearised at t = {:g} s, {}\n", analysis.time,
+      "linearized at t = {:g} s, {}\n", analysis.time,
       analysis.is_sampled()
           ? fmt::format("sampled every {:g} s{}", analysis.system.matrices.sample_time,
                         analysis.lifted > 1 ? fmt::format(", {} samples lifted", analysis.lifted) : "")

@@ -3,7 +3,7 @@
 #include <cmath>
 #include "tools/linearize/block_bench.h"
 #include "tools/linearize/slope.h"
-#include "tools/linearize/staircase.h"
+#include "tools/linearize/quantizer_slope.h"
 
 namespace loopwright {
 namespace {

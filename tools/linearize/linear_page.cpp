@@ -50,7 +50,7 @@ report::Section responses(const LinearAnalysis& analysis) {
       const std::string name = fmt::format("{} → {}", analysis.system.inputs[i], analysis.system.outputs[o]);
       Bode bode(gain_unit(analysis, i, o));
       bode.gain.title = name;
-      bode.add("linearised", analysis.frequency, channel_response(analysis, Index(i), Index(o)));
+      bode.add("linearized", analysis.frequency, channel_response(analysis, Index(i), Index(o)));
       if (i == 0 && o == 0 && !analysis.measured.empty()) {
         std::vector<double> frequency;
         std::vector<Complex> response;
@@ -164,8 +164,8 @@ report::Plot pole_plot(const LinearAnalysis& analysis) {
 
 report::Page linear_page(const LinearAnalysis& analysis) {
   report::Page page;
-  page.title = analysis.title.empty() ? "A linearised diagram" : analysis.title;
-  page.subtitle = fmt::format("Linearised at t = {:g} s", analysis.time);
+  page.title = analysis.title.empty() ? "A linearized diagram" : analysis.title;
+  page.subtitle = fmt::format("Linearized at t = {:g} s", analysis.time);
   page.facts = {
       {"Plan", analysis.plan},
       {"Time", analysis.is_sampled() ? fmt::format("sampled, {:g} s", analysis.system.matrices.sample_time)

@@ -85,7 +85,7 @@ MatrixXd LinearStep::next(int block) const {
 
 void LinearStep::evaluate_entry(const Plan::Entry& entry) {
   if (entry.kind == Plan::Entry::Kind::decide) return;
-  if (entry.kind == Plan::Entry::Kind::ring) return solve_ring(diagram_.plan->rings[size_t(entry.block)]);
+  if (entry.kind == Plan::Entry::Kind::algebraic_loop) return solve_algebraic_loop(diagram_.plan->algebraic_loops[size_t(entry.block)]);
   const LinearBlock& block = diagram_.blocks[size_t(entry.block)];
   if (block.kind == LinearBlock::Kind::delay) {
     numbers.row(block.outputs[0]) = delayed.row(delay_of_block_[size_t(entry.block)]);
@@ -101,8 +101,8 @@ void LinearStep::evaluate_entry(const Plan::Entry& entry) {
 }
 
 /// The tears t are coordinates for a while: t = P t + q has the solution (1 - P)⁻¹ q.
-void LinearStep::solve_ring(const Plan::Ring& ring) {
-  const Index width = numbers.cols(), tears = Index(ring.tears.size());
+void LinearStep::solve_algebraic_loop(const Plan::AlgebraicLoop& loop) {
+  const Index width = numbers.cols(), tears = Index(loop.tears.size());
   const auto widen = [&](MatrixXd& rows, Index by) {
     rows.conservativeResizeLike(MatrixXd::Zero(rows.rows(), width + by));
   };
@@ -112,12 +112,12 @@ void LinearStep::solve_ring(const Plan::Ring& ring) {
   };
   widen_all(tears);
   for (Index t = 0; t < tears; ++t)
-    numbers.row(ring.tears[size_t(t)]).setZero(), numbers(ring.tears[size_t(t)], width + t) = 1;
-  for (const Plan::Entry& entry : ring.entries) evaluate_entry(entry);
+    numbers.row(loop.tears[size_t(t)]).setZero(), numbers(loop.tears[size_t(t)], width + t) = 1;
+  for (const Plan::Entry& entry : loop.entries) evaluate_entry(entry);
   MatrixXd P(tears, tears), q(tears, width);
   for (Index t = 0; t < tears; ++t) {
-    P.row(t) = numbers.row(ring.tears[size_t(t)]).tail(tears);
-    q.row(t) = numbers.row(ring.tears[size_t(t)]).head(width);
+    P.row(t) = numbers.row(loop.tears[size_t(t)]).tail(tears);
+    q.row(t) = numbers.row(loop.tears[size_t(t)]).head(width);
   }
   const MatrixXd solution = (MatrixXd::Identity(tears, tears) - P).partialPivLu().solve(q);
   const MatrixXd shares = numbers.rightCols(tears);

@@ -1,4 +1,4 @@
-/// The step of a linearised diagram on rows instead of numbers.
+/// The step of a linearized diagram on rows instead of numbers.
 ///
 /// What a run does with numbers (docs/architecture.md, The step) is done here with rows: each number of the
 /// diagram is a linear form of some coordinates, states and added signals. Following a diagram through one
@@ -57,7 +57,7 @@ class LinearStep {
  private:
   void show_states();
   void evaluate_entry(const Plan::Entry& entry);
-  void solve_ring(const Plan::Ring& ring);
+  void solve_algebraic_loop(const Plan::AlgebraicLoop& loop);
   Eigen::MatrixXd inputs_of(int block) const;
 
   const LinearDiagram& diagram_;

@@ -69,8 +69,8 @@ std::vector<Number> sampled_numbers(const LinearDiagram& diagram) {
   for (const Plan::Entry& entry : diagram.plan->order) {
     if (entry.rate.kind != Rate::Kind::sampled) continue;
     if (entry.kind == Plan::Entry::Kind::outputs) add(entry);
-    if (entry.kind == Plan::Entry::Kind::ring)
-      for (const Plan::Entry& inner : diagram.plan->rings[size_t(entry.block)].entries)
+    if (entry.kind == Plan::Entry::Kind::algebraic_loop)
+      for (const Plan::Entry& inner : diagram.plan->algebraic_loops[size_t(entry.block)].entries)
         if (inner.kind == Plan::Entry::Kind::outputs) add(inner);
   }
   return {numbers.begin(), numbers.end()};
@@ -245,8 +245,8 @@ class Sampler {
         for (size_t o = 0; o < block.outputs.size(); ++o)
           if (block.group_of_output[o] == inner.group) is_new[size_t(block.outputs[o])] = true;
       };
-      if (entry.kind == Plan::Entry::Kind::ring)
-        for (const Plan::Entry& inner : plan_.rings[size_t(entry.block)].entries) mark(inner);
+      if (entry.kind == Plan::Entry::Kind::algebraic_loop)
+        for (const Plan::Entry& inner : plan_.algebraic_loops[size_t(entry.block)].entries) mark(inner);
       else
         mark(entry);
     }

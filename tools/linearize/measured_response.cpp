@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
-#include "engine/diagram/reader.h"
+#include "engine/json/reader.h"
 
 namespace loopwright {
 namespace {

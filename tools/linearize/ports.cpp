@@ -1,6 +1,6 @@
 #include "tools/linearize/ports.h"
 #include <fmt/format.h>
-#include "engine/diagram/reader.h"
+#include "engine/json/reader.h"
 
 namespace loopwright {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 #include "blocks/learning/model_file.h"
-#include "engine/diagram/reader.h"
+#include "engine/json/reader.h"
 #include "models/gp/table.h"
 
 namespace loopwright {

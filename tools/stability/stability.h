@@ -1,6 +1,6 @@
 /// Whether a loop with a learned compensation is stable, and how much compensation is certified.
 ///
-/// The diagram is linearised but for the learned block and every memoryless block whose slope changes over
+/// The diagram is linearized but for the learned block and every memoryless block whose slope changes over
 /// what a run visits, such as the plant's cogging: those are functions w = f(z) of bounded slope. What is
 /// left is linear, M: w → z, with all delays, holds and filters of the diagram.
 ///

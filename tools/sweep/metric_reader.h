@@ -1,6 +1,6 @@
 /// Reads the metrics of a sweep file.
 #pragma once
-#include "engine/diagram/reader.h"
+#include "engine/json/reader.h"
 #include "tools/sweep/sweep.h"
 
 namespace loopwright {

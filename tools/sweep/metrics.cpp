@@ -3,7 +3,7 @@
 #include <muParser.h>
 #include <algorithm>
 #include <cmath>
-#include "engine/diagram/reader.h"
+#include "engine/json/reader.h"
 
 namespace loopwright {
 namespace {

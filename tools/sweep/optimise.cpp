@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <cmath>
 #include <nlopt.hpp>
-#include "engine/diagram/reader.h"
+#include "engine/json/reader.h"
 #include "tools/sweep/lane_group.h"
 
 namespace loopwright {

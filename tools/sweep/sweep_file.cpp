@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include "engine/diagram/json.h"
-#include "engine/diagram/reader.h"
+#include "engine/json/json.h"
+#include "engine/json/reader.h"
 #include "tools/sweep/metric_reader.h"
 
 namespace loopwright {

@@ -1,7 +1,7 @@
 #include "tools/sweep/tunables.h"
 #include <fmt/format.h>
 #include <functional>
-#include "engine/diagram/json.h"
+#include "engine/json/json.h"
 
 namespace loopwright {
 namespace {

@@ -1,7 +1,7 @@
 /// position, velocity = device(command)
 #include "hw/blocks/io/hardware_io.h"
 #include <fmt/format.h>
-#include "engine/diagram/reader.h"
+#include "engine/json/reader.h"
 #include "hw/drivers.h"
 
 namespace loopwright::blocks {

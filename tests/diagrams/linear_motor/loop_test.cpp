@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 #include "engine/plan/plan.h"
-#include "tools/paper/runs.h"
+#include "tools/studies/linear_motor/runs.h"
 #include "where.h"
 
 namespace loopwright::paper {

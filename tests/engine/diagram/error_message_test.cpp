@@ -91,10 +91,10 @@ TEST(DiagramErrors, Parameters) {
        "top.json:2:36: error: there is no parameter \"mas\"\n  at: /parameters/a\n  hint: did you mean "
        "\"mass\"?\n1 error"},
       {R"("parameters": {"a": "=b+1", "b": "=2*c", "c": "=a", "d": "=a"})",
-       "top.json:2:16: error: parameters depend on each other in a ring\n  at: /parameters/a\n  found: a → b "
+       "top.json:2:16: error: parameters depend on each other in a cycle\n  at: /parameters/a\n  found: a → b "
        "→ c → a\n1 error"},
       {R"("parameters": {"a": "=a"})",
-       "top.json:2:16: error: parameters depend on each other in a ring\n  at: /parameters/a\n  found: a → "
+       "top.json:2:16: error: parameters depend on each other in a cycle\n  at: /parameters/a\n  found: a → "
        "a\n1 error"},
       {R"("parameters": {"m": {"value": 1, "unit": "kg"}, "a": {"value": "=2*m", "unit": "N"}})",
        "top.json:2:64: error: the unit does not fit the parameter \"a\"\n  at: /parameters/a/value\n  "

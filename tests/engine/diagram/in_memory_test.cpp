@@ -1,6 +1,6 @@
 #include "engine/diagram/in_memory.h"
 #include <gtest/gtest.h>
-#include "engine/diagram/json.h"
+#include "engine/json/json.h"
 #include "tests/engine/written_diagram.h"
 
 using namespace loopwright;

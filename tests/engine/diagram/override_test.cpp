@@ -1,6 +1,6 @@
 // --set and drives: what the caller changes about a diagram.
 #include <gtest/gtest.h>
-#include "engine/diagram/json.h"
+#include "engine/json/json.h"
 #include "tests/engine/diagram/diagram_folder.h"
 
 namespace loopwright {

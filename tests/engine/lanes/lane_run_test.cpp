@@ -130,7 +130,7 @@ TEST_P(LaneRunTest, SolvesRingsLaneByLane) {
     "soft":  {"type": "SmoothCoulombFriction", "level": 0.5, "transition_speed": 0.1, "in": {"velocity": "sum.sum"}})",
                                     R"("method": "rk4", "step": 0.01, "stop": 1, "algebraic_loops": "solve")",
                                     R"(, "log": ["sum.sum"])"));
-  ASSERT_FALSE(plan->rings.empty());
+  ASSERT_FALSE(plan->algebraic_loops.empty());
   const auto parameters = tunable_parameters(*plan);
   const auto lanes = lane_rows(*plan, parameters, GetParam(), 2);
   for (int lane = 0; lane < int(lanes.size()); ++lane)

@@ -116,7 +116,7 @@ TEST(Vectors, ThatGrowRoundARingAreAnErrorNotAHang) {
   const std::string text = problems_of(diagram(
       R"("a": {"type": "Constant", "value": 1}, "p": {"type": "Pack", "in": {"elements": ["a.y", "d.y"]}},
     "d": {"type": "UnitDelay", "sample_time": 0.1, "in": {"u": "p.y"}})"));
-  EXPECT_TRUE(has(text, "grow round a ring")) << text;
+  EXPECT_TRUE(has(text, "grow without end around a cycle")) << text;
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/diagram/problem.h"
+#include "engine/json/problem.h"
 #include "engine/record/recording.h"
 
 namespace loopwright {

@@ -23,7 +23,7 @@ struct Predicted {
   explicit Predicted(const Truth& truth)
       : files(truth),
         model(files.diagram(), files.experiment(), {}),
-        axis(model.linearise()),
+        axis(model.linearize()),
         gains(gains_of(axis, noise_of_record(), model.nominal_inertia())),
         drives{model.record().input, std::vector<double>(model.record().rows(), 0.0), {}, {}, {}} {}
   Prediction run() { return predict(model, axis, gains, drives, 0.002); }

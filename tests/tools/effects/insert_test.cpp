@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include "engine/diagram/in_memory.h"
-#include "engine/diagram/json.h"
+#include "engine/json/json.h"
 #include "tests/engine/written_diagram.h"
 #include "tests/tools/effects/axis_sizes.h"
 #include "where.h"

@@ -7,7 +7,7 @@
 #include <set>
 #include <sstream>
 #include "engine/block/registry.h"
-#include "engine/diagram/unit.h"
+#include "engine/unit/unit.h"
 #include "tools/reference/reference.h"
 #include "where.h"
 

@@ -1,0 +1,72 @@
+/// The parameters of one diagram, and the values in its file that are expressions over them.
+#pragma once
+#include <string>
+#include <unordered_map>
+#include <vector>
+#include "engine/diagram/diagram.h"
+#include "engine/diagram/expression.h"
+#include "engine/json/reader.h"
+
+namespace loopwright {
+
+/// A value that takes the place of a parameter's own.
+struct Override {
+  std::string name;
+  Place place;  ///< of the name
+  Value value;
+};
+
+class ParameterScope {
+ public:
+  /// `block`: path of the subdiagram whose parameters these are, empty at the top.
+  ParameterScope(std::string block, Problems& problems) : reader_{problems, std::move(block)} {}
+
+  /// Reads the object "parameters" of a diagram file. It must outlive the scope.
+  void declare(const Value& parameters);
+  /// Gives a declared parameter another value; expressions in it are over the names of this scope.
+  void override_with(Override replacement);
+  bool declares(std::string_view name) const { return index_.contains(std::string(name)); }
+  /// What a declared parameter is given so far, in the file or by an override; expressions are not worked
+  /// out.
+  const Value& given_value(std::string_view name) const;
+  /// Works out every parameter. Before this, `evaluate` knows no names.
+  void resolve();
+
+  /// The value with every expression in it replaced by its result. {"value": 25, "unit": "mm"} is the number
+  /// 0.025.
+  Value evaluate(const Value& value, const std::string& block);
+  std::vector<Parameter> take_parameters();
+  const std::vector<std::string>& names() const { return names_; }
+
+ private:
+  enum class Progress { untouched, in_work, done };
+  struct Entry {
+    Parameter parameter;
+    Value written;  // without its unit
+    std::optional<Override> replacement;
+    Progress progress = Progress::untouched;
+    std::vector<size_t> needs;  // other parameters, in work
+    size_t next_need = 0;
+    std::optional<Quantity> quantity;  // of a number, for expressions
+  };
+
+  void declare_one(const Value::Member& member);
+  void resolve_from(size_t first);
+  void collect_needs(const Value& value, std::vector<size_t>& needs) const;
+  void report_cycle(const std::vector<size_t>& stack, size_t again);
+  void work_out(Entry& entry);
+  bool fits(const Value& value, const Entry& entry);
+  void convert(Value& value, const std::optional<Unit>& unit, const std::string& name);
+
+  Value evaluate_text(const Value& text, const std::string& block);
+  Value number_with_unit(const Value& object, const std::string& block);
+  Entry* find(const NameUse& use, const Place& place, const Value& text, const std::string& block);
+
+  Reader reader_;
+  std::vector<Entry> entries_;
+  std::unordered_map<std::string, size_t> index_;
+  std::vector<std::string> names_;
+  KnownNames known_;
+};
+
+}  // namespace loopwright

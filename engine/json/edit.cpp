@@ -1,0 +1,107 @@
+#include "engine/json/edit.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fmt/format.h>
+#include "engine/json/json.h"
+
+namespace loopwright {
+namespace {
+
+std::optional<size_t> index_in(const std::string& text) {
+  size_t index = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+  if (error != std::errc() || end != text.data() + text.size()) return {};
+  return index;
+}
+
+/// "25 mm"
+std::optional<Value> number_with_unit(const std::string& text) {
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || !std::isfinite(number) || end == text.data() + text.size()) return {};
+  const auto unit = parse_unit(std::string_view(end, text.data() + text.size()));
+  if (!unit) return {};
+  Value value;
+  value.kind = Value::Kind::number;
+  value.number = number * unit->scale;
+  value.unit = Unit{1.0, unit->exponents};
+  return value;
+}
+
+Value read_value(const std::shared_ptr<const SourceFile>& source, Problems& problems) {
+  const std::string& text = source->text;
+  Value plain;
+  plain.kind = Value::Kind::text;
+  plain.text = text;
+  plain.place = {source, 0};
+  if (text.starts_with('=')) return plain;
+
+  Problems syntax;
+  Value json = parse_json(source, syntax);
+  if (!syntax.has_errors()) return json;
+  if (text.starts_with('{') || text.starts_with('[') || text.starts_with('"')) {
+    for (const Problem& problem : syntax.list()) problems.add(problem);
+    json.is_broken = true;
+    return json;
+  }
+  if (auto number = number_with_unit(text)) {
+    number->place = plain.place;
+    return *number;
+  }
+  return plain;
+}
+
+}  // namespace
+
+std::string Edit::text() const { return fmt::format("{}", fmt::join(path, ".")); }
+
+std::optional<Edit> read_edit(const std::pair<std::string, std::string>& option, Problems& problems) {
+  const auto& [path, text] = option;
+  const auto source = std::make_shared<SourceFile>(SourceFile{fmt::format("--set {}", path), text});
+  Edit edit{split_path(path), 0, {}};
+  const auto is_step = [](const std::string& step) { return is_name(step) || index_in(step); };
+  if (!std::ranges::all_of(edit.path, is_step)) {
+    Problem& problem = problems.error({source, 0}, {}, {}, fmt::format("\"{}\" is no path", path));
+    problem.expected = "names with dots between them, as in stage.payload=0.5";
+    return {};
+  }
+  edit.value = read_value(source, problems);
+  if (edit.value.is_broken) return {};
+  return edit;
+}
+
+void apply_edit(const Edit& edit, Value& value, const Reader& reader) {
+  const std::string what = fmt::format("\"{}\" cannot be set", edit.text());
+  Value* at = &value;
+  for (size_t i = edit.depth; i < edit.path.size(); ++i) {
+    const std::string& step = edit.path[i];
+    if (at->kind == Value::Kind::object) {
+      const auto member = std::ranges::find(at->members, step, &Value::Member::name);
+      const bool is_new = member == at->members.end();
+      at = is_new ? &at->members.emplace_back(Value::Member{step, edit.value.place, {}}).value
+                  : &member->value;
+      if (is_new && i + 1 < edit.path.size()) {
+        reader.error(edit.value, what).hint = fmt::format("there is no \"{}\" in the file", step);
+        return;
+      }
+    } else if (at->kind == Value::Kind::list) {
+      const auto index = index_in(step);
+      if (!index || *index >= at->items.size()) {
+        Problem& problem = reader.error(edit.value, what);
+        problem.expected = at->items.empty() ? "nothing: the list is empty"
+                                             : fmt::format("an index from 0 to {}", at->items.size() - 1);
+        problem.found = step;
+        return;
+      }
+      at = &at->items[*index];
+    } else {
+      reader.error(edit.value, what).hint = fmt::format("what stands before \"{}\" is {}", step, shown(*at));
+      return;
+    }
+  }
+  *at = edit.value;
+}
+
+}  // namespace loopwright

@@ -1,0 +1,118 @@
+#include "engine/json/json.h"
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <fmt/format.h>
+#include "engine/json/tokens.h"
+
+namespace loopwright {
+namespace {
+
+void write_text(std::string_view text, std::string& to) {
+  to += '"';
+  for (const char c : text) {
+    switch (c) {
+      case '"':
+        to += "\\\"";
+        break;
+      case '\\':
+        to += "\\\\";
+        break;
+      case '\n':
+        to += "\\n";
+        break;
+      case '\t':
+        to += "\\t";
+        break;
+      default:
+        if (static_cast<unsigned char>(c) < 0x20)
+          to += fmt::format("\\u{:04x}", c);
+        else
+          to += c;
+    }
+  }
+  to += '"';
+}
+
+void write(const Value& value, std::string& to) {
+  switch (value.kind) {
+    case Value::Kind::null:
+      to += "null";
+      break;
+    case Value::Kind::boolean:
+      to += value.boolean ? "true" : "false";
+      break;
+    case Value::Kind::number:
+      to += std::isfinite(value.number) ? fmt::format("{}", value.number) : "null";
+      break;
+    case Value::Kind::text:
+      write_text(value.text, to);
+      break;
+    case Value::Kind::list:
+      to += '[';
+      for (size_t i = 0; i < value.items.size(); ++i) {
+        if (i > 0) to += ',';
+        write(value.items[i], to);
+      }
+      to += ']';
+      break;
+    case Value::Kind::object:
+      to += '{';
+      for (size_t i = 0; i < value.members.size(); ++i) {
+        if (i > 0) to += ',';
+        write_text(value.members[i].name, to);
+        to += ':';
+        write(value.members[i].value, to);
+      }
+      to += '}';
+  }
+}
+
+}  // namespace
+
+std::shared_ptr<const SourceFile> read_source(const std::string& path, const Place& reference,
+                                              Problems& problems) {
+  const auto fail = [&](std::string reason) {
+    // A file named on the command line has no place of reference: then the message stands at its own name.
+    const Place place =
+        reference.file ? reference : Place{std::make_shared<SourceFile>(SourceFile{path, {}}), 0};
+    problems.error(place, {}, {}, fmt::format("the file \"{}\" cannot be read: {}", path, reason));
+    return nullptr;
+  };
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (path.empty() || !std::filesystem::exists(status)) return fail("there is no such file");
+  if (std::filesystem::is_directory(status)) return fail("it is a folder");
+  if (!std::filesystem::is_regular_file(status) && !std::filesystem::is_fifo(status))
+    return fail("it is not a file of text");
+  errno = 0;
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) return fail(std::strerror(errno));
+  auto file = std::make_shared<SourceFile>(SourceFile{path, {}});
+  constexpr size_t chunk = 1u << 16;
+  while (stream && file->text.size() <= largest_json_file) {
+    const size_t length = file->text.size();
+    file->text.resize(length + chunk);
+    stream.read(file->text.data() + length, chunk);
+    file->text.resize(length + static_cast<size_t>(stream.gcount()));
+  }
+  if (stream.bad()) return fail(std::strerror(errno));
+  if (file->text.size() > largest_json_file) return fail("it is larger than 64 MB");
+  return file;
+}
+
+Value parse_json(std::shared_ptr<const SourceFile> file, Problems& problems) {
+  const auto tokens = read_tokens(std::move(file), problems);
+  return tokens ? tokens->value(0) : Value{};
+}
+
+std::string to_json(const Value& value) {
+  std::string text;
+  write(value, text);
+  return text;
+}
+
+}  // namespace loopwright

@@ -1,0 +1,44 @@
+/// A parameter value as it stands in a file, with its place and unit. Light: block files do not pay for a
+/// JSON parser.
+#pragma once
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+#include "engine/json/boxed.h"
+#include "engine/json/problem.h"
+#include "engine/unit/unit.h"
+
+namespace loopwright {
+
+struct Value {
+  enum class Kind { null, boolean, number, text, list, object };
+  struct Member;
+  Kind kind = Kind::null;
+  bool is_broken =
+      false;  ///< a null in place of what could not be worked out: the problem is reported already
+  bool boolean = false;
+  bool whole = false;  ///< the number was written without fraction or exponent
+  double number = 0;
+  std::string text;  ///< of a text; for numbers from an expression, the expression
+  Boxed<Unit> unit;  ///< known for numbers that come from parameters with units
+  std::vector<Value> items;
+  std::vector<Member> members;
+  Place place;
+
+  const Member* find(std::string_view name) const;
+};
+
+struct Value::Member {
+  std::string name;
+  Place place;  ///< of the name
+  Value value;
+};
+
+inline const Value::Member* Value::find(std::string_view name) const {
+  for (const Member& member : members)
+    if (member.name == name) return &member;
+  return nullptr;
+}
+
+}  // namespace loopwright

@@ -1,0 +1,87 @@
+/// An algebraic loop at its place in the order: the tear numbers y that reproduce themselves,
+/// G(y) = y.
+#pragma once
+#include <cmath>
+#include <memory>
+#include <vector>
+#include "engine/block/kernels.h"
+#include "engine/plan/plan.h"
+#include "engine/solve/newton.h"
+
+namespace loopwright {
+
+/// Newton's method on y - G(y), from the values of the last solution; lane after lane, as each takes steps of
+/// its own.
+template <class Real> class AlgebraicLoopSolver {
+ public:
+  /// `numbers`: of the arena.
+  void build(std::vector<Call<Real>> calls, Real* numbers, const std::vector<Number>& tears, int first_lane) {
+    calls_ = std::move(calls);
+    first_lane_ = first_lane;
+    faults_.resize(size_t(first_lane + width));
+    for (Call<Real>& call : calls_) call.report = faults_.data();
+    for (Number n : tears) tears_.push_back(numbers + n);
+    y_.resize(tears_.size() * width);
+    newton_ =
+        std::make_unique<NewtonSolver>(NewtonOptions{}, AlgebraicSystem{this, int(tears_.size()), &residual});
+  }
+
+  static uint64_t step(const Call<Real>& call) {
+    auto& loop = *const_cast<AlgebraicLoopSolver*>(static_cast<const AlgebraicLoopSolver*>(call.block));
+    const uint64_t unsolved = loop.solve();
+    constexpr const char* reason = "Newton's method did not converge for its algebraic loop";
+    return unsolved ? report_fault(call.report, call.index, {unsolved << call.first_lane, reason}) : 0;
+  }
+
+ private:
+  static constexpr int width = lanes_of<Real>;
+
+  Real& tear(size_t i) { return *tears_[i]; }
+  std::span<double> guess() { return {&y_[size_t(lane_) * tears_.size()], tears_.size()}; }
+  template <class F> void each_lane(F&& f) {
+    for (lane_ = 0; lane_ < width; ++lane_) f();
+  }
+
+  /// The lanes without a solution; in the others the tears and all that hangs on them hold it.
+  uint64_t solve() {
+    each_lane([&] {
+      for (size_t i = 0; i < tears_.size(); ++i) {
+        const double last = lane(tear(i), lane_);
+        guess()[i] = std::isfinite(last) ? last : 0.0;
+      }
+    });
+    uint64_t unsolved = 0;
+    each_lane([&] {
+      if (newton_->solve(guess()).status != NewtonStatus::converged) unsolved |= uint64_t(1) << lane_;
+    });
+    each_lane([&] { take(guess().data()); });
+    evaluate();
+    return unsolved;
+  }
+  /// Lanes in which a block faulted. A step of the search may well lead to where one does.
+  uint64_t evaluate() {
+    std::fill(faults_.begin(), faults_.end(), FaultReport{});
+    uint64_t bad = 0;
+    for (const Call<Real>& c : calls_) bad |= c.step(c);
+    return bad;
+  }
+  void take(const double* y) {
+    for (size_t i = 0; i < tears_.size(); ++i) set_lane(tear(i), lane_, y[i]);
+  }
+  static bool residual(void* self, const double* y, double* r) {
+    auto& loop = *static_cast<AlgebraicLoopSolver*>(self);
+    loop.take(y);
+    const uint64_t bad = loop.evaluate();
+    for (size_t i = 0; i < loop.tears_.size(); ++i) r[i] = lane(loop.tear(i), loop.lane_) - y[i];
+    return !(bad >> (loop.first_lane_ + loop.lane_) & 1);
+  }
+
+  std::vector<Call<Real>> calls_;
+  std::vector<Real*> tears_;
+  std::vector<FaultReport> faults_;  // of all lanes up to the last
+  std::vector<double> y_;            // by lane of the arena
+  std::unique_ptr<NewtonSolver> newton_;
+  int first_lane_ = 0, lane_ = 0;
+};
+
+}  // namespace loopwright

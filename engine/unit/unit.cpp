@@ -1,0 +1,363 @@
+#include "engine/unit/unit.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <fmt/format.h>
+#include <mutex>
+#include <stdexcept>
+#include <unordered_map>
+#include <vector>
+#include <udunits2.h>
+
+namespace loopwright {
+namespace {
+
+constexpr std::array<std::string_view, 7> base_symbols = {"m", "kg", "s", "A", "K", "mol", "cd"};
+
+/// Sums of exponents land on a multiple of 1/12 again, so that equal dimensions compare equal.
+float exact_exponent(double exponent) { return static_cast<float>(std::round(exponent * 12) / 12); }
+
+// ---- udunits2
+// ------------------------------------------------------------------------------------------------
+
+/// Collects the powers of base units while udunits walks through a unit; refuses what is not scale · product.
+struct Collector {
+  Unit unit;
+
+  static int base_index(const ut_unit* base) {
+    const char* symbol = ut_get_symbol(base, UT_UTF8);
+    for (size_t i = 0; symbol && i < base_symbols.size(); ++i)
+      if (symbol == base_symbols[i]) return static_cast<int>(i);
+    return -1;  // the radian counts as 1
+  }
+
+  static ut_status multiply(const ut_unit* base, int power, void* self) {
+    const int i = base_index(base);
+    if (i >= 0) static_cast<Collector*>(self)->unit.exponents[i] += static_cast<float>(power);
+    return UT_SUCCESS;
+  }
+  static ut_status visit_base(const ut_unit* base, void* self) { return multiply(base, 1, self); }
+  static ut_status visit_product(const ut_unit*, int count, const ut_unit* const* bases, const int* powers,
+                                 void* self) {
+    for (int i = 0; i < count; ++i) multiply(bases[i], powers[i], self);
+    return UT_SUCCESS;
+  }
+  static ut_status visit_scaled(const ut_unit*, double scale, const ut_unit* underlying, double offset,
+                                void* self) {
+    if (offset != 0) return UT_MEANINGLESS;
+    static_cast<Collector*>(self)->unit.scale *= scale;
+    return ut_accept_visitor(underlying, &visitor, self);
+  }
+  static ut_status visit_timestamp(const ut_unit*, const ut_unit*, double, void*) { return UT_MEANINGLESS; }
+  static ut_status visit_logarithmic(const ut_unit*, double, const ut_unit*, void*) { return UT_MEANINGLESS; }
+
+  static constexpr ut_visitor visitor = {visit_base, visit_product, visit_scaled, visit_timestamp,
+                                         visit_logarithmic};
+};
+
+/// The unit database of udunits2, read once, with the spellings of motion control that it lacks.
+ut_system* unit_database() {
+  static ut_system* const database = [] {
+    ut_set_error_message_handler(ut_ignore);
+    ut_system* system = ut_read_xml(nullptr);
+    if (!system)
+      throw std::runtime_error("the unit database of udunits2 (package libudunits2-data) cannot be read");
+    const auto alias = [system](const char* name, const char* meaning) {
+      ut_unit* unit = ut_parse(system, meaning, UT_UTF8);
+      ut_map_name_to_unit(name, UT_UTF8, unit);
+      ut_free(unit);
+    };
+    alias("deg", "degree");
+    alias("rev", "revolution");
+    for (const char* counted : {"pulse", "pulses", "step", "steps", "sample", "samples", "LSB"})
+      alias(counted, "1");
+    return system;
+  }();
+  return database;
+}
+
+std::optional<Unit> read_by_udunits(const std::string& text) {
+  if (text.empty()) return Unit{};
+  ut_unit* parsed = ut_parse(unit_database(), text.c_str(), UT_UTF8);
+  if (!parsed) return {};
+  Collector collector;
+  const ut_status status = ut_accept_visitor(parsed, &Collector::visitor, &collector);
+  ut_free(parsed);
+  const bool positive = collector.unit.scale > 0 && std::isfinite(collector.unit.scale);
+  if (status != UT_SUCCESS || !positive) return {};
+  return collector.unit;
+}
+
+// ---- Roots, which udunits2 does not know
+// ------------------------------------------------------------------------
+
+/// unit = [scale] factor { ("*" | "/") factor },  factor = ("sqrt" "(" unit ")" | "(" unit ")" | name) [ "^"
+/// exponent
+/// ], exponent = number | "(" integer ["/" integer] ")"
+class RootReader {
+ public:
+  explicit RootReader(std::string_view text) : rest_(text) {}
+
+  std::optional<Unit> read() {
+    const auto unit = product();
+    return rest_.empty() ? unit : std::nullopt;
+  }
+
+ private:
+  bool take(std::string_view wanted) {
+    if (!rest_.starts_with(wanted)) return false;
+    rest_.remove_prefix(wanted.size());
+    return true;
+  }
+
+  std::optional<Unit> product() {
+    const bool has_scale =
+        !rest_.empty() && rest_[0] >= '0' && rest_[0] <= '9';  // "0.7 m^(1/2)": the root is of m alone
+    std::optional<Unit> result = has_scale ? scaled_factor() : factor();
+    while (result) {
+      const bool times = take("*") || take("·");
+      if (!times && !take("/")) break;
+      const auto next = factor();
+      if (!next) return {};
+      result = *result * (times ? *next : power(*next, -1));
+    }
+    return result;
+  }
+
+  std::optional<Unit> scaled_factor() {
+    double scale = 0;
+    const auto [end, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), scale);
+    if (error != std::errc() || !(scale > 0)) return {};
+    rest_.remove_prefix(static_cast<size_t>(end - rest_.data()));
+    const Unit number{scale, {}};
+    if (rest_.empty() || rest_[0] == '*' || rest_[0] == '/' || rest_[0] == ')') return number;
+    take(" ");
+    const auto unit = factor();
+    return unit ? std::optional(number * *unit) : std::nullopt;
+  }
+
+  std::optional<Unit> factor() {
+    std::optional<Unit> unit;
+    const bool root = take("sqrt(");
+    if (root || take("(")) {
+      unit = product();
+      if (!take(")")) return {};
+      if (unit && root) unit = power(*unit, 0.5);
+    } else {
+      const std::string_view name = rest_.substr(0, rest_.find_first_of("*/^()"));
+      rest_.remove_prefix(name.size());
+      if (!name.empty()) unit = read_by_udunits(std::string(name));
+    }
+    if (!unit || !take("^")) return unit;
+    const auto exponent = read_exponent();
+    if (!exponent) return {};
+    return power(*unit, *exponent);
+  }
+
+  std::optional<double> number() {
+    double value = 0;
+    const auto [end, error] =
+        std::from_chars(rest_.data(), rest_.data() + rest_.size(), value, std::chars_format::fixed);
+    if (error != std::errc() || std::abs(value) > 255) return {};
+    rest_.remove_prefix(static_cast<size_t>(end - rest_.data()));
+    return value;
+  }
+
+  std::optional<double> read_exponent() {
+    if (!take("(")) return number();
+    auto value = number();
+    if (value && take("/")) {
+      const auto divisor = number();
+      if (!divisor || *divisor == 0) return {};
+      *value /= *divisor;
+    }
+    if (!take(")")) return {};
+    return value;
+  }
+
+  std::string_view rest_;
+};
+
+/// udunits2 reads "Hz^0.5" as Hz^0 times 0.5, so that roots must be seen before it is asked.
+bool has_root(std::string_view text) {
+  if (text.find("sqrt(") != text.npos) return true;
+  for (size_t at = text.find('^'); at != text.npos; at = text.find('^', at + 1)) {
+    const size_t end = text.find_first_not_of("+-0123456789", at + 1);
+    if (end == text.npos) return false;
+    if (text[end] == '(' || (text[end] == '.' && end + 1 < text.size() && std::isdigit(text[end + 1])))
+      return true;
+  }
+  return false;
+}
+
+std::optional<Unit> read_unit(std::string_view text) {
+  constexpr size_t longest_unit = 200;  // bounds the work and the recursion on hostile input
+  if (text.size() > longest_unit || text.find('\0') != text.npos) return {};
+  const size_t first = text.find_first_not_of(' ');
+  if (first == text.npos) return Unit{};
+  text = text.substr(first, text.find_last_not_of(' ') + 1 - first);
+  auto unit = has_root(text) ? RootReader(text).read() : read_by_udunits(std::string(text));
+  if (unit)
+    for (float& exponent : unit->exponents) exponent = exact_exponent(exponent);
+  return unit;
+}
+
+// ---- Spelling
+// ----------------------------------------------------------------------------------------------
+
+/// Spellings that motion control is used to, where a shorter one exists (kg/s) or none is found by search.
+constexpr std::string_view customary_spellings[] = {"N*s/m", "V*s^2/m", "ohm", "H", "F", "T", "A", "C"};
+
+struct NamedUnit {
+  std::string_view symbol;
+  std::array<float, 7> exponents;  // of m kg s A K mol cd
+};
+
+/// Building blocks of the other spellings. Hz and J are none: 1/s is as often rad/s, N*m as often a torque.
+constexpr NamedUnit named_units[] = {
+    {"N", {1, 1, -2, 0, 0, 0, 0}},
+    {"V", {2, 1, -3, -1, 0, 0, 0}},
+    {"W", {2, 1, -3, 0, 0, 0, 0}},
+    {"Pa", {-1, 1, -2, 0, 0, 0, 0}},
+};
+
+struct Factor {
+  std::string_view symbol;
+  float exponent;
+};
+
+/// The length of a spelling as a reader feels it. Amperes cost extra: a gain of a voltage-driven motor reads
+/// V*s/m.
+float reading_cost(const std::vector<Factor>& factors) {
+  float cost = 0;
+  for (const Factor& factor : factors)
+    cost += std::abs(factor.exponent) * (factor.symbol == "A" ? 3.0f : 1.0f);
+  return cost;
+}
+
+std::vector<Factor> base_factors(const std::array<float, 7>& exponents) {
+  constexpr int reading_order[] = {1, 0, 2, 3, 4, 5, 6};  // kg*m/s, not m*kg/s
+  std::vector<Factor> factors;
+  for (const int i : reading_order)
+    if (exponents[i] != 0) factors.push_back({base_symbols[i], exponents[i]});
+  return factors;
+}
+
+std::vector<Factor> shortest_factors(const std::array<float, 7>& exponents) {
+  std::vector<Factor> best = base_factors(exponents);
+  const bool is_kinematic = exponents[1] == 0 && exponents[3] == 0;  // m/s^2, never N/kg
+  if (is_kinematic) return best;
+  for (const NamedUnit& named : named_units) {
+    for (const float times : {1.0f, -1.0f, 2.0f, -2.0f}) {
+      std::array<float, 7> remaining = exponents;
+      for (size_t i = 0; i < remaining.size(); ++i) remaining[i] -= times * named.exponents[i];
+      std::vector<Factor> factors = base_factors(remaining);
+      factors.insert(factors.begin(), {named.symbol, times});
+      if (reading_cost(factors) < reading_cost(best)) best = std::move(factors);
+    }
+  }
+  return best;
+}
+
+std::string spelled(std::string_view symbol, float exponent) {
+  if (exponent == 1) return std::string(symbol);
+  const double twelfths = std::round(double{exponent} * 12);
+  for (const int divisor : {1, 2, 3, 4, 6, 12}) {
+    const double numerator = twelfths * divisor / 12;
+    if (numerator != std::round(numerator)) continue;
+    if (divisor == 1) return fmt::format("{}^{:.0f}", symbol, numerator);
+    return fmt::format("{}^({:.0f}/{})", symbol, numerator, divisor);
+  }
+  return {};
+}
+
+/// "V*s^2/m", "J/(kg*K)", "1/s"
+std::string spelled(const std::vector<Factor>& factors) {
+  std::string above, below;
+  int count_below = 0;
+  for (const Factor& factor : factors) {
+    std::string& side = factor.exponent > 0 ? above : below;
+    if (!side.empty()) side += '*';
+    side += spelled(factor.symbol, std::abs(factor.exponent));
+    count_below += factor.exponent < 0;
+  }
+  if (above.empty()) above = "1";
+  if (below.empty()) return above;
+  return above + '/' + (count_below > 1 ? '(' + below + ')' : below);
+}
+
+/// The spelling of a unit whose scale is 1.
+std::string spelled(const std::array<float, 7>& exponents) {
+  struct Customary {
+    std::string_view spelling;
+    Unit unit;
+  };
+  static const std::vector<Customary> customary = [] {
+    std::vector<Customary> list;
+    for (const std::string_view spelling : customary_spellings)
+      list.push_back({spelling, parse_unit(spelling).value()});
+    return list;
+  }();
+  for (const auto& [spelling, unit] : customary)
+    if (unit.exponents == exponents) return std::string(spelling);
+  return spelled(shortest_factors(exponents));
+}
+
+/// The SI prefix for a scale; nothing when there is none.
+std::string_view prefix_of(double scale) {
+  struct Prefix {
+    double scale;
+    std::string_view symbol;
+  };
+  constexpr Prefix prefixes[] = {{1e-12, "p"}, {1e-9, "n"}, {1e-6, "u"}, {1e-3, "m"},
+                                 {1e3, "k"},   {1e6, "M"},  {1e9, "G"}};
+  for (const Prefix& prefix : prefixes)
+    if (std::abs(scale / prefix.scale - 1) < 4e-16) return prefix.symbol;
+  return {};
+}
+
+}  // namespace
+
+Unit operator*(const Unit& a, const Unit& b) {
+  Unit product{a.scale * b.scale, {}};
+  for (size_t i = 0; i < product.exponents.size(); ++i)
+    product.exponents[i] = exact_exponent(double{a.exponents[i]} + double{b.exponents[i]});
+  return product;
+}
+
+Unit power(const Unit& a, double exponent) {
+  if (exponent == 1) return a;
+  Unit result{std::pow(a.scale, exponent), {}};
+  for (size_t i = 0; i < result.exponents.size(); ++i)
+    result.exponents[i] = exact_exponent(a.exponents[i] * exponent);
+  return result;
+}
+
+std::optional<Unit> parse_unit(std::string_view text) {
+  // udunits2 parses with global state, and a diagram names the same few units thousands of times.
+  static std::mutex mutex;
+  static std::unordered_map<std::string, std::optional<Unit>> known;
+  const std::lock_guard lock(mutex);
+  const auto [entry, is_new] = known.try_emplace(std::string(text));
+  if (is_new) entry->second = read_unit(text);
+  return entry->second;
+}
+
+std::string to_string(const Unit& unit) {
+  const std::string spelling = spelled(unit.exponents);
+  if (unit.scale == 1) return spelling;
+  if (spelling == "1") {
+    if (unit.scale == 0.01) return "%";
+    if (unit.scale == std::acos(-1.0) / 180) return "deg";
+    return fmt::format("{}", unit.scale);
+  }
+  const bool takes_prefix = !spelling.starts_with("kg") && !spelling.starts_with('1') &&
+                            spelling[std::min(spelling.find_first_of("*/^"), spelling.size() - 1)] != '^';
+  const std::string_view prefix = takes_prefix ? prefix_of(unit.scale) : std::string_view();
+  if (!prefix.empty()) return fmt::format("{}{}", prefix, spelling);
+  return fmt::format("{} {}", unit.scale, spelling);
+}
+
+}  // namespace loopwright

@@ -1,0 +1,182 @@
+#include "tools/compare/missing_force.h"
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+#include "tools/compare/smoother.h"
+#include "tools/compare/zero_phase.h"
+
+namespace loopwright {
+namespace {
+
+double rms_where(const std::vector<double>& values, const std::vector<char>& counts) {
+  double sum = 0;
+  size_t n = 0;
+  for (size_t k = 0; k < values.size(); ++k)
+    if (counts[k]) sum += values[k] * values[k], ++n;
+  return n ? std::sqrt(sum / double(n)) : 0;
+}
+
+/// rms(x[k + lag] - x[k]) over all k.
+double difference_after(const std::vector<double>& x, size_t lag, size_t step) {
+  double sum = 0;
+  size_t n = 0;
+  for (size_t k = 0; k + lag < x.size(); k += step, ++n) sum += (x[k + lag] - x[k]) * (x[k + lag] - x[k]);
+  return n ? std::sqrt(sum / double(n)) : 1e300;
+}
+
+/// Rows after which the motion is the same again, at least a third of the record long; 0: none.
+size_t find_repeat(const MeasuredMotion& m) {
+  const size_t n = m.rows(), coarse = std::max<size_t>(1, size_t(0.02 / m.sample_time));
+  const double allowed = 0.003 * m.stroke();
+  bool has_left = false;  // the motion is like itself after a short time too
+  size_t best = 0;
+  double least = 1e300;
+  for (size_t lag = coarse; lag < 2 * n / 3; lag += coarse) {
+    const double d = difference_after(m.position, lag, coarse);
+    has_left |= d > 0.1 * m.stroke();
+    if (!has_left) continue;
+    if (d < least) least = d, best = lag;
+    if (least < 4 * allowed && d > 2 * least) break;  // the first of several repeats
+  }
+  if (best == 0) return 0;
+  size_t fine = best;
+  least = 1e300;
+  for (size_t lag = best - coarse; lag <= best + coarse && lag < n; ++lag)
+    if (const double d = difference_after(m.position, lag, 7); d < least) least = d, fine = lag;
+  return least < allowed ? fine : 0;
+}
+
+/// Half of the spread between repeats: needs no model at all.
+double floor_of_repeats(const MeasuredMotion& m, const std::vector<double>& r, size_t lag) {
+  double sum = 0;
+  size_t n = 0;
+  for (size_t k = 0; k + lag < r.size(); ++k)
+    if (m.counts[k] && m.counts[k + lag]) sum += 0.5 * (r[k + lag] - r[k]) * (r[k + lag] - r[k]), ++n;
+  return n ? std::sqrt(sum / double(n)) : 0;
+}
+
+std::array<std::vector<double>, 6> variables_of(const MeasuredMotion& m) {
+  std::vector<double> direction;
+  for (double v : m.velocity) direction.push_back(v > 0 ? 1 : -1);
+  return {m.position, m.velocity, m.acceleration, direction, m.input, m.time};
+}
+constexpr std::array<const char*, 6> variable_names = {"position",  "velocity", "acceleration",
+                                                       "direction", "input",    "time"};
+
+}  // namespace
+
+ForceResidual force_residual(const Machine& machine, const std::vector<double>& acceleration) {
+  const MeasuredMotion& m = machine.motion;
+  ForceResidual result;
+  result.cutoff = std::min(80.0, 0.08 / m.sample_time);
+  // The second difference of the position at k is the mean of the accelerations over the two samples beside
+  // it.
+  std::vector<double> model(m.rows());
+  for (size_t k = 0; k < m.rows(); ++k) model[k] = 0.5 * (acceleration[k ? k - 1 : 0] + acceleration[k]);
+  model = zero_phase_low_pass(model, m.cutoff, m.sample_time);
+  for (size_t k = 0; k < m.rows(); ++k) result.value.push_back(machine.mass * (model[k] - m.acceleration[k]));
+  result.value = zero_phase_low_pass(result.value, result.cutoff, m.sample_time);
+  result.rmse = rms_where(result.value, m.counts);
+  const double input = rms_where(m.input, m.counts);
+  result.relative_percent = input > 0 ? 100 * result.rmse / input : 0;
+  const size_t lag = find_repeat(m);
+  if (lag > 0) {
+    result.repeat_s = double(lag) * m.sample_time;
+    result.noise_floor = floor_of_repeats(m, result.value, lag);
+    result.floor_source =
+        fmt::format("the spread between repeats of the motion, {:.4g} s apart", result.repeat_s);
+  }
+  if (result.noise_floor == 0) {
+    result.noise_floor = floor_of_smooth_parts(thinned(m, result.value));
+    result.floor_source =
+        "what smooth functions of position, velocity, acceleration and time leave; a repeated "
+        "motion would tell it without a model";
+  }
+  return result;
+}
+
+std::vector<Segment> segments(const MeasuredMotion& m) {
+  double top = 0;
+  for (double a : zero_phase_low_pass(m.acceleration, std::min(20.0, 0.02 / m.sample_time), m.sample_time))
+    top = std::max(top, std::abs(a));
+  const std::vector<double> smooth =
+      zero_phase_low_pass(m.acceleration, std::min(20.0, 0.02 / m.sample_time), m.sample_time);
+  std::vector<Segment> result(m.rows());
+  for (size_t k = 0; k < m.rows(); ++k) {
+    const double v = m.velocity[k], a = smooth[k];
+    const bool is_slow = std::abs(v) <= m.rest_speed, is_steady = std::abs(a) < 0.05 * top;
+    result[k] = is_slow              ? (is_steady ? Segment::rest : Segment::reversal)
+                : is_steady          ? Segment::constant_speed
+                : (a > 0) == (v > 0) ? Segment::acceleration
+                                     : Segment::deceleration;
+  }
+  return result;
+}
+
+std::string_view name_of(Segment segment) {
+  constexpr std::array<std::string_view, 5> names = {"rest", "acceleration", "constant speed", "deceleration",
+                                                     "reversal"};
+  return names[size_t(segment)];
+}
+
+std::vector<ResidualShare> where_it_lies(const Machine& machine, const ForceResidual& residual) {
+  const MeasuredMotion& m = machine.motion;
+  std::vector<ResidualShare> shares;
+  double total = 0, rows = 0;
+  for (size_t k = 0; k < m.rows(); ++k)
+    if (m.counts[k]) total += residual.value[k] * residual.value[k], ++rows;
+  if (total == 0) return shares;
+  const std::vector<Segment> parts = segments(m);
+  double all = 0;
+  for (double r : residual.value) all += r * r;
+  for (int part = 0; part < 5; ++part) {  // segments are of the whole record: rest and reversal too
+    ResidualShare share{"segment", std::string(name_of(Segment(part)))};
+    for (size_t k = 0; k < m.rows(); ++k)
+      if (parts[k] == Segment(part))
+        share.share += residual.value[k] * residual.value[k] / all, share.of_rows += 1 / double(m.rows());
+    shares.push_back(share);
+  }
+  const auto variables = variables_of(m);
+  for (size_t v = 0; v < variables.size(); ++v) {
+    const bool is_direction = std::string_view(variable_names[v]) == "direction";
+    const int bins = is_direction ? 2 : 10;
+    double low = 1e300, high = -1e300;
+    for (size_t k = 0; k < m.rows(); ++k)
+      if (m.counts[k]) low = std::min(low, variables[v][k]), high = std::max(high, variables[v][k]);
+    if (!(low < high)) continue;
+    std::vector<ResidualShare> own;
+    for (int b = 0; b < bins; ++b) {
+      own.push_back({variable_names[v], is_direction ? (b ? "forward" : "backward") : "",
+                     low + (high - low) * b / bins, low + (high - low) * (b + 1) / bins});
+    }
+    for (size_t k = 0; k < m.rows(); ++k) {
+      if (!m.counts[k]) continue;
+      const int b = std::clamp(int((variables[v][k] - low) / (high - low) * bins), 0, bins - 1);
+      own[size_t(b)].share += residual.value[k] * residual.value[k] / total,
+          own[size_t(b)].of_rows += 1 / rows;
+    }
+    shares.insert(shares.end(), own.begin(), own.end());
+  }
+  return shares;
+}
+
+std::vector<Dependence> dependences(const Machine& machine, const ForceResidual& residual) {
+  const MeasuredMotion& m = machine.motion;
+  const auto variables = variables_of(m);
+  const Rows rows = thinned(m, residual.value);
+  std::vector<Dependence> result;
+  for (size_t v = 0; v < variables.size(); ++v) {
+    std::vector<double> column;
+    for (size_t k : rows.index) column.push_back(variables[v][k]);
+    result.push_back(explained_by(rows, variable_names[v], column));
+  }
+  const Dependence line = strongest_line(rows, "spatial_frequency", rows.position);
+  result.push_back(line);
+  if (line.share > result[0].share)
+    result[0].share = line.share;  // a fine pattern is a function of position too
+  result.push_back(strongest_line(rows, "temporal_frequency", rows.time));
+  return result;
+}
+
+}  // namespace loopwright
