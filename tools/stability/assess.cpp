@@ -32,7 +32,7 @@ class Assessment {
 
   StabilityReport assess() {
     name();
-    linearize();
+    linearize_loop();
     judge_linear_part();
     certify_functions();
     report_.paper = paper_condition(linear_, roles_, learned_, report_.alpha, unit_, sample_time_);
@@ -57,7 +57,7 @@ class Assessment {
     return unit ? to_string(*unit) : "";
   }
 
-  void linearize() {
+  void linearize_loop() {
     const VisitedRanges visited =
         visit(*plan_, options_, [&](Run<double>& run) { linear_ = linearize(run); });
     // That run is gone; blocks without memory are the same in a new one.
