@@ -13,12 +13,8 @@ static int show(const std::string& type) {
     fmt::print("{}", block_text(found->info));
     return done;
   }
-  std::vector<std::string> names;
-  for (const auto& [name, block] : all_blocks()) names.push_back(name);
   Problems problems;
-  auto& p = problems.error({}, "", "", fmt::format("there is no block type \"{}\"", type));
-  const std::string near = nearest_name(type, names);
-  p.hint = near.empty() ? "`loopwright blocks` lists all types" : fmt::format("did you mean \"{}\"?", near);
+  problems.error({}, "", "", fmt::format("there is no block type \"{}\"", type)).hint = block_type_hint(type);
   throw InputError(std::move(problems));
 }
 

@@ -1,6 +1,7 @@
 #include "tools/command/command.h"
 #include <fmt/format.h>
 #include <unistd.h>
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -38,15 +39,8 @@ LoadOptions DiagramArguments::options() const {
   Problems problems;
   for (const std::string& text : set) options.set.push_back(split(text, "--set", problems));
   for (const std::string& text : variants) options.variants.insert(split(text, "--variant", problems));
+  for (const std::string& library : libraries) load_block_library(library, problems);
   if (problems.has_errors()) throw InputError(std::move(problems));
-  for (const std::string& library : libraries) {
-    try {
-      load_block_library(library);
-    } catch (const std::exception& e) {
-      problems.error({}, "", "", e.what());
-      throw InputError(std::move(problems));
-    }
-  }
   return options;
 }
 
@@ -90,17 +84,41 @@ void Progress::finish() {
   if (drawn_) fmt::print(stderr, "\r\033[K");
 }
 
-void give_answer(const std::string& text, const std::string& json_path,
-                 const std::function<std::string()>& json) {
-  if (json_path == "-")
-    fmt::print("{}", json());
-  else if (!json_path.empty())
-    write_file(json_path, json());
-  fmt::print(stderr, "{}", text);
+std::FILE* summary_stream(std::initializer_list<std::string_view> results) {
+  return std::ranges::find(results, "-") == results.end() ? stdout : stderr;
 }
 
-void require_writable(const std::string& path, std::string_view option) {
-  if (path.empty() || path == "-") return;
+void write_json(const std::string& path, const std::function<std::string()>& json) {
+  if (path == "-")
+    fmt::print("{}", json());
+  else if (!path.empty())
+    write_file(path, json());
+}
+
+void give_answer(const std::string& text, const std::string& json_path,
+                 const std::function<std::string()>& json) {
+  write_json(json_path, json);
+  fmt::print(summary_stream({json_path}), "{}", text);
+}
+
+void reject_two_on_stdout(std::initializer_list<std::pair<std::string_view, std::string_view>> options) {
+  std::string names;
+  for (const auto& [option, path] : options)
+    if (path == "-") names += fmt::format("{}{} -", names.empty() ? "" : " and ", option);
+  if (names.find(" and ") == names.npos) return;
+  Problems problems;
+  problems.error({}, "", "", fmt::format("{} both write to stdout", names)).hint = "give one of them a file";
+  throw InputError(std::move(problems));
+}
+
+void require_writable_file(const std::string& path, std::string_view option) {
+  if (path.empty()) return;
+  if (path == "-") {
+    Problems problems;
+    problems.error({}, "", "", fmt::format("{} -: this is written to a file only", option)).expected =
+        "the name of a file; ./- for one of that name";
+    throw InputError(std::move(problems));
+  }
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   std::error_code code;
   const std::filesystem::path where = folder.empty() ? "." : folder;
@@ -113,6 +131,10 @@ void require_writable(const std::string& path, std::string_view option) {
   p.found = std::filesystem::is_directory(path, code) ? "a folder"
                                                       : fmt::format("the folder \"{}\"", where.string());
   throw InputError(std::move(problems));
+}
+
+void require_writable(const std::string& path, std::string_view option) {
+  if (path != "-") require_writable_file(path, option);
 }
 
 }  // namespace loopwright

@@ -56,11 +56,22 @@ class Progress {
   double started_, last_;
 };
 
-/// An answer as text on stderr, and as JSON where it is wanted: in a file, or on stdout for "-".
+/// Where the summary for people goes: stdout, or stderr when one of these results goes to stdout ("-").
+std::FILE* summary_stream(std::initializer_list<std::string_view> results);
+
+/// JSON where it is wanted: in a file, or on stdout for "-".
+void write_json(const std::string& path, const std::function<std::string()>& json);
+
+/// An answer as a summary, and as JSON where it is wanted.
 void give_answer(const std::string& text, const std::string& json_path,
                  const std::function<std::string()>& json);
 
+/// Two results on stdout could not be told apart. Throws InputError.
+void reject_two_on_stdout(std::initializer_list<std::pair<std::string_view, std::string_view>> options);
+
 /// A path that can be written later: refused before hours of computing. Throws InputError.
 void require_writable(const std::string& path, std::string_view option);
+/// The same for what is always a file, never stdout.
+void require_writable_file(const std::string& path, std::string_view option);
 
 }  // namespace loopwright

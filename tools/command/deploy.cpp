@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <unistd.h>
-#include "engine/record/atomic_file.h"
 #include "engine/record/recording_file.h"
 #include "hw/drivers.h"
 #include "tools/command/command.h"
@@ -17,8 +16,8 @@ struct Arguments {
 };
 
 void require_paths(const Arguments& a) {
-  require_writable(a.output, "-o");
-  require_writable(a.report, "--report");
+  require_writable_file(a.output, "-o");
+  require_writable_file(a.report, "--report");
   require_writable(a.json, "--json");
   Problems problems;
   if (!a.output.empty() && !is_recording_path(a.output))
@@ -70,11 +69,8 @@ int run(const Arguments& a) {
   if (!a.quiet && isatty(STDERR_FILENO)) fmt::print(stderr, "\r\033[K");
   if (!a.output.empty()) write_recording(a.output, result.recording);
   if (!a.report.empty()) report::write_html(a.report, deployment_page(*plan, result));
-  if (a.json == "-")
-    fmt::print("{}", to_json(result));
-  else if (!a.json.empty())
-    write_file(a.json, to_json(result));
-  if (!a.quiet) fmt::print(stderr, "{}", to_text(result));
+  write_json(a.json, [&] { return to_json(result); });
+  if (!a.quiet) fmt::print(summary_stream({a.json}), "{}", to_text(result));
   if (result.status == RunStatus::finished) return done;
   fmt::print(stderr, "{}: {}\n", a.diagram.path, result.message);
   return result.status == RunStatus::interrupted ? interrupted : run_failed;

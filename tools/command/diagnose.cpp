@@ -13,8 +13,9 @@ struct Arguments {
 };
 
 int run(const Arguments& a) {
-  for (const auto& [path, option] : {std::pair(a.json, "--json"), {a.report, "--report"}, {a.improved, "-o"}})
-    require_writable(path, option);
+  require_writable(a.json, "--json");
+  require_writable_file(a.report, "--report");
+  require_writable_file(a.improved, "-o");
   DiagnoseOptions options;
   options.load = a.diagram.options(), options.catalogues = a.catalogues,
   options.improved_diagram = a.improved;

@@ -1,4 +1,5 @@
 #include "tools/fit/fit.h"
+#include <fmt/format.h>
 #include <filesystem>
 #include "engine/record/atomic_file.h"
 #include "tools/command/command.h"
@@ -17,6 +18,10 @@ struct Arguments {
 
 /// The fitted text where it is wanted; relative paths in it still lead to their files.
 void write_fitted(const Arguments& a, const std::string& text) {
+  if (a.output == "-") {
+    fmt::print("{}", text);
+    return;
+  }
   const std::string folder = std::filesystem::path(a.output).parent_path().string();
   write_file(a.output, moved_to_folder({a.diagram.path, text}, folder.empty() ? "." : folder));
 }
@@ -24,6 +29,7 @@ void write_fitted(const Arguments& a, const std::string& text) {
 int run(const Arguments& a) {
   require_writable(a.json, "--json");
   require_writable(a.output, "--output");
+  reject_two_on_stdout({{"--json", a.json}, {"--output", a.output}});
   Progress progress("fit");
   FitOptions options;
   options.most_iterations = a.iterations;
@@ -37,7 +43,8 @@ int run(const Arguments& a) {
     if (problems.has_errors()) throw InputError(std::move(problems));
     write_fitted(a, text);
   }
-  give_answer(to_text(result), a.json, [&] { return to_json(result); });
+  write_json(a.json, [&] { return to_json(result); });
+  fmt::print(summary_stream({a.json, a.output}), "{}", to_text(result));
   return result.was_interrupted ? interrupted : done;
 }
 
@@ -51,7 +58,7 @@ void add_fit(CLI::App& app, std::function<void(std::function<int()>)> choose) {
   command->add_option("--parameters", a->parameters, "Paths as for --set: mass,axis.friction.level")
       ->required()
       ->delimiter(',');
-  command->add_option("-o,--output", a->output, "Write the diagram with the fitted values");
+  command->add_option("-o,--output", a->output, "Write the diagram with the fitted values; - for stdout");
   command->add_option("--json", a->json, "Write values and intervals as JSON; - for stdout");
   command->add_option("--iterations", a->iterations, "At most so many iterations")
       ->check(CLI::PositiveNumber);

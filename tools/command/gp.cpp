@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <filesystem>
-#include "engine/record/atomic_file.h"
 #include "tools/command/command.h"
 #include "tools/gp/gp_page.h"
 
@@ -40,17 +39,15 @@ void print_warnings(const Problems& problems) {
 void write_results(const LearnedModel& learned, const std::vector<ShownSamples>& shown,
                    const std::vector<std::string>& notes, const std::string& json,
                    const std::string& report) {
-  if (json == "-")
-    fmt::print("{}", model_json(learned, shown));
-  else if (!json.empty())
-    write_file(json, model_json(learned, shown));
   if (!report.empty()) report::write_html(report, model_page(learned, shown, notes));
-  fmt::print(stderr, "{}", model_summary(learned, shown));
+  std::string summary = model_summary(learned, shown);
+  for (const std::string& note : notes) summary += fmt::format("  {}\n", note);
+  give_answer(summary, json, [&] { return model_json(learned, shown); });
 }
 
 int run_train(const TrainArguments& a) {
-  require_writable(a.model, "--model");
-  require_writable(a.report, "--report");
+  require_writable_file(a.model, "--model");
+  require_writable_file(a.report, "--report");
   require_writable(a.json, "--json");
   Problems problems;
   const auto training = load_training(a.training, changes(a.set), problems);
@@ -69,12 +66,11 @@ int run_train(const TrainArguments& a) {
   const ShownSamples own{"training", trained->samples->samples,
                          score(trained->learned.model, trained->samples->samples)};
   write_results(trained->learned, {own}, trained->notes, a.json, a.report);
-  for (const std::string& note : trained->notes) fmt::print(stderr, "  {}\n", note);
   return done;
 }
 
 int run_show(const ShowArguments& a) {
-  require_writable(a.report, "--report");
+  require_writable_file(a.report, "--report");
   require_writable(a.json, "--json");
   Problems problems;
   const LearnedModel learned = read_model(a.model, {}, problems);

@@ -43,7 +43,8 @@ void measure(const Arguments& a, const LinearSystem& system, LinearAnalysis& ana
 int run(const Arguments& a) {
   require_writable(a.json, "--json");
   require_writable(a.csv, "--csv");
-  require_writable(a.report, "--report");
+  reject_two_on_stdout({{"--json", a.json}, {"--csv", a.csv}});
+  require_writable_file(a.report, "--report");
   const bool has_channel = !a.request.access.from.empty() && !a.request.access.to.empty();
   if (!has_channel && (!a.csv.empty() || a.measure > 0)) {
     Problems problems;
@@ -63,7 +64,8 @@ int run(const Arguments& a) {
   else if (!a.csv.empty())
     write_csv(a.csv, to_recording(analysis));
   if (!a.report.empty()) report::write_html(a.report, linear_page(analysis));
-  give_answer(to_text(analysis), a.json, [&] { return to_json(analysis); });
+  write_json(a.json, [&] { return to_json(analysis); });
+  fmt::print(summary_stream({a.json, a.csv}), "{}", to_text(analysis));
   return done;
 }
 

@@ -2,13 +2,18 @@
 #include <fmt/format.h>
 #include <exception>
 #include "tools/command/command.h"
+#include "tools/command/command_line.h"
 
 int main(int count, char** arguments) {
   using namespace loopwright;
   CLI::App app{"Loopwright simulates block diagrams of motion control, and holds them against measurements."};
   app.require_subcommand(1);
   app.set_version_flag("--version", "loopwright " LOOPWRIGHT_VERSION);
-  app.failure_message(CLI::FailureMessage::help);
+  app.footer(
+      "Exit codes: 0 done; 1 a run failed, or a check of a machine did; 2 wrong input, nothing was written;\n"
+      "130 interrupted, what was computed is kept. Results go to stdout or where -o, --json and --report "
+      "say;\n"
+      "summaries go to stdout, or to stderr where results take it; problems and progress go to stderr.");
   std::function<int()> action;
   const auto choose = [&](std::function<int()> chosen) { action = std::move(chosen); };
   add_check(app, choose);
@@ -29,7 +34,9 @@ int main(int count, char** arguments) {
     app.parse(count, arguments);
     return action();
   } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? done : input_wrong;
+    if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
+    fmt::print(stderr, "{}\n", explain(app, e).text());
+    return input_wrong;
   } catch (const InputError& e) {
     fmt::print(stderr, "{}\n", e.what());
     return input_wrong;

@@ -16,7 +16,8 @@ void write_picture(const Plan& plan, const std::string& path) {
 }  // namespace
 
 void add_plan(CLI::App& app, std::function<void(std::function<int()>)> choose) {
-  CLI::App* command = app.add_subcommand("plan", "Show order, rates, states and algebraic loops of a diagram");
+  CLI::App* command =
+      app.add_subcommand("plan", "Show order, rates, states and algebraic loops of a diagram");
   struct Arguments {
     DiagramArguments diagram;
     std::string svg;
@@ -26,7 +27,7 @@ void add_plan(CLI::App& app, std::function<void(std::function<int()>)> choose) {
   command->add_option("--svg", a->svg, "Draw the diagram into this file");
   command->callback([=] {
     choose([=]() -> int {
-      require_writable(a->svg, "--svg");
+      require_writable_file(a->svg, "--svg");
       const auto plan = load_plan(a->diagram.path, a->diagram.options());
       for (const Problem& warning : plan->warnings) fmt::print(stderr, "{}\n", to_string(warning));
       fmt::print("{}", describe(*plan));

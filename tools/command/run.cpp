@@ -18,8 +18,8 @@ struct Arguments {
 
 void require_paths(const Arguments& a) {
   require_writable(a.output, "-o");
-  require_writable(a.report, "--report");
-  require_writable(a.checkpoint, "--checkpoint");
+  require_writable_file(a.report, "--report");
+  require_writable_file(a.checkpoint, "--checkpoint");
   Problems problems;
   if (!a.output.empty() && a.output != "-" && !is_recording_path(a.output))
     problems.error({}, "", "", fmt::format("-o {}: recordings are written as .csv or .mat", a.output));
@@ -39,7 +39,7 @@ int replay_log(const Arguments& a, const Plan& plan) {
   if (problems.has_errors()) throw InputError(std::move(problems));
   const Replay result = replay(plan, hardware, log, problems);
   if (problems.has_errors()) throw InputError(std::move(problems));
-  fmt::print(stderr, "{}", to_text(result));
+  fmt::print("{}", to_text(result));
   return result.explains() ? done : run_failed;
 }
 
@@ -75,7 +75,7 @@ int run(const Arguments& a) {
   else if (!a.output.empty())
     write_recording(a.output, result.recording);
   if (!a.report.empty()) report::write_html(a.report, run_page(*plan, result));
-  if (!a.quiet) fmt::print(stderr, "{}", run_summary(*plan, result));
+  if (!a.quiet) fmt::print(summary_stream({a.output}), "{}", run_summary(*plan, result));
   if (result.status == RunStatus::finished) return done;
   fmt::print(stderr, "{}: {}\n", a.diagram.path, result.message);
   return result.status == RunStatus::interrupted ? interrupted : run_failed;

@@ -13,7 +13,7 @@ struct Arguments {
 
 int run(const Arguments& a) {
   require_writable(a.json, "--json");
-  require_writable(a.report, "--report");
+  require_writable_file(a.report, "--report");
   StabilityRequest request = a.request;
   request.kicks = !a.no_kicks;
   Progress progress("stability");

@@ -17,7 +17,7 @@ namespace {
 
 struct Arguments {
   std::string file, folder, shard, instruction_set, minimise, maximise;
-  std::vector<std::string> libraries;
+  DiagramArguments libraries;
   int threads = int(std::max(1u, std::thread::hardware_concurrency())), evaluations = 300;
   bool resume = false;
 };
@@ -78,7 +78,7 @@ void write_traces(const SweepPlan& plan, const std::string& folder, const SweepR
     if (i < most_trace_pages)
       report::write_html(trace_of(folder, runs[i], "html"), run_page(*diagram, result));
   }
-  fmt::print(stderr, "{} traces in {}/traces\n", runs.size(), folder);
+  fmt::print("{} traces in {}/traces\n", runs.size(), folder);
 }
 
 int write_tables(const SweepPlan& plan, const std::string& folder) {
@@ -89,7 +89,7 @@ int write_tables(const SweepPlan& plan, const std::string& folder) {
   std::string failures;
   for (const auto& [run, reason] : results.failures) failures += fmt::format("run {}: {}\n", run, reason);
   write_file(folder + "/failures.txt", failures);
-  fmt::print(stderr, "{} runs in {}/results.csv and .mat; {} failed{}\n", results.table.rows(), folder,
+  fmt::print("{} runs in {}/results.csv and .mat; {} failed{}\n", results.table.rows(), folder,
              results.failures.size(),
              results.missing ? fmt::format("; {} are missing", results.missing) : "");
   if (results.missing == 0) write_traces(plan, folder, results);
@@ -122,7 +122,7 @@ int optimise(const SweepPlan& plan, const Arguments& a) {
                                                  : fmt::format("{} {}", best.point[i], axis.unit));
   }
   fmt::print("{}\n", plan.command(plan.options_at(best.point), 0));
-  fmt::print(stderr, "{} runs, {} of them failed\n", best.evaluations, best.failed);
+  fmt::print("{} runs, {} of them failed\n", best.evaluations, best.failed);
   return best.interrupted ? interrupted : done;
 }
 
@@ -142,8 +142,8 @@ int make(const SweepPlan& plan, const Arguments& a) {
   ranks.wait();
   progress.finish();
   for (const std::string& note : outcome.notes) fmt::print(stderr, "{}\n", note);
-  fmt::print(stderr, "{}{} of {} runs done, {} now, {} of them failed\n", ranks.name(), outcome.done,
-             outcome.runs, outcome.made, outcome.failed);
+  fmt::print("{}{} of {} runs done, {} now, {} of them failed\n", ranks.name(), outcome.done, outcome.runs,
+             outcome.made, outcome.failed);
   if (options.shards == 1 && ranks.is_first()) write_tables(plan, a.folder);
   if (!outcome.interrupted) return done;
   fmt::print(stderr, "interrupted; --resume goes on\n");
@@ -151,7 +151,7 @@ int make(const SweepPlan& plan, const Arguments& a) {
 }
 
 int run(const Arguments& a) {
-  for (const std::string& library : a.libraries) load_block_library(library);
+  a.libraries.options();
   const SweepPlan plan = plan_of(a.file);
   return a.minimise.empty() && a.maximise.empty() ? make(plan, a) : optimise(plan, a);
 }
@@ -159,7 +159,7 @@ int run(const Arguments& a) {
 int write_report(const std::string& folder, const std::string& page) {
   const SweepPlan plan = plan_of(sweep_file_of(folder));
   const std::string path = page.empty() ? folder + "/report.html" : page;
-  require_writable(path, "-o");
+  require_writable_file(path, "-o");
   const SweepResults results = read_results(plan, folder);
   const auto home = std::filesystem::absolute(path).parent_path();
   TracePages traces;
@@ -167,7 +167,7 @@ int write_report(const std::string& folder, const std::string& page) {
     if (const std::string trace = trace_of(folder, run, "html"); std::filesystem::exists(trace))
       traces[run] = std::filesystem::absolute(trace).lexically_relative(home);
   report::write_html(path, sweep_page(plan, results, traces));
-  fmt::print(stderr, "{}\n", path);
+  fmt::print("{}\n", path);
   return done;
 }
 
@@ -183,7 +183,9 @@ void add_sweep(CLI::App& app, std::function<void(std::function<int()>)> choose) 
   command->add_option("--shard", a->shard, "This part of so many, i/n: for arrays of jobs");
   command->add_option("--lanes", a->instruction_set,
                       "scalar, avx2 or avx512; the widest there is when left out");
-  command->add_option("--blocks", a->libraries, "Shared libraries of further blocks");
+  command->add_option("--blocks", a->libraries.libraries, "Shared library with more blocks")
+      ->type_name("FILE.so")
+      ->allow_extra_args(false);
   auto* least =
       command->add_option("--minimize", a->minimise, "Look for the point at which this metric is least");
   command->add_option("--maximize", a->maximise, "… or greatest: the worst case")->excludes(least);
@@ -197,11 +199,21 @@ void add_sweep(CLI::App& app, std::function<void(std::function<int()>)> choose) 
   auto folder = std::make_shared<std::string>(), page = std::make_shared<std::string>();
   CLI::App* merged = command->add_subcommand("merge", "Tables from all results in a folder");
   merged->add_option("folder", *folder, "Folder of a sweep")->required();
-  merged->callback([=] { choose([=] { return write_tables(plan_of(sweep_file_of(*folder)), *folder); }); });
+  merged->callback([=] {
+    choose([=] {
+      a->libraries.options();
+      return write_tables(plan_of(sweep_file_of(*folder)), *folder);
+    });
+  });
   CLI::App* shown = command->add_subcommand("report", "A page on the results in a folder");
   shown->add_option("folder", *folder, "Folder of a sweep")->required();
   shown->add_option("-o,--output", *page, "The page; report.html in the folder when left out");
-  shown->callback([=] { choose([=] { return write_report(*folder, *page); }); });
+  shown->callback([=] {
+    choose([=] {
+      a->libraries.options();
+      return write_report(*folder, *page);
+    });
+  });
 }
 
 }  // namespace loopwright
