@@ -59,7 +59,7 @@ template <class B> bool register_scalar(std::string_view type, std::string_view 
   info.source = source_of(file);
   info.room = info.source.substr(7, info.source.find('/', 7) - 7);
   info.lane_wise = lane_wise;
-  add_block(std::move(info), kernels_of<B, double>());
+  add_block(block_layout, std::move(info), kernels_of<B, double>());
   return true;
 }
 template <template <class> class B> bool register_block(std::string_view type, std::string_view file) {

@@ -1,13 +1,34 @@
 #include "engine/block/registry.h"
 #include <dlfcn.h>
+#include <fmt/format.h>
+#include <algorithm>
+#include <set>
 #include <stdexcept>
 
 namespace loopwright {
+namespace {
 
-static std::map<std::string, BlockType, std::less<>>& registry() {
+std::map<std::string, BlockType, std::less<>>& registry() {
   static std::map<std::string, BlockType, std::less<>> types;
   return types;
 }
+
+/// What a library did while it was loaded: nothing may be thrown out of its initialisers.
+struct Loading {
+  std::string library;
+  std::vector<std::string> added, refused;
+};
+Loading* loading = nullptr;
+
+std::string origin_of(const BlockType& type) {
+  return type.library.empty() ? "built in, " + type.info.source : "of the library " + type.library;
+}
+
+Problem& cannot_load(const std::string& path, Problems& problems) {
+  return problems.error({}, "", "", fmt::format("the block library \"{}\" cannot be loaded", path));
+}
+
+}  // namespace
 
 const std::map<std::string, BlockType, std::less<>>& all_blocks() { return registry(); }
 
@@ -16,17 +37,49 @@ const BlockType* find_block(std::string_view type) {
   return found == registry().end() ? nullptr : &found->second;
 }
 
-void add_block(BlockInfo info, const Kernels<double>& kernels) {
-  std::string name = info.type;
-  if (!registry().emplace(name, BlockType{std::move(info), kernels}).second)
-    throw std::logic_error("two blocks are called " + name);
+void add_block(std::span<const size_t> layout, BlockInfo&& info, const Kernels<double>& kernels) {
+  if (!std::ranges::equal(layout, block_layout)) {  // nothing of the block can be read
+    if (!loading) throw std::logic_error("a block was compiled against other headers");
+    loading->refused.emplace_back();
+    return;
+  }
+  const std::string name = info.type;
+  const auto [entry, is_new] =
+      registry().try_emplace(name, BlockType{std::move(info), kernels, loading ? loading->library : ""});
+  if (!loading && !is_new) throw std::logic_error("two blocks are called " + name);
+  if (loading) (is_new ? loading->added : loading->refused).push_back(name);
 }
 
-void load_block_library(const std::string& path) {
+void load_block_library(const std::string& path, Problems& problems) {
+  static std::set<void*> loaded;
   // A bare file name would be searched for in the system's folders only.
   const std::string file = path.find('/') == path.npos ? "./" + path : path;
-  if (!dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL))
-    throw std::runtime_error("cannot load the block library " + path + ": " + dlerror());
+  Loading now{path, {}, {}};
+  loading = &now;
+  void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL);
+  loading = nullptr;
+  if (!library) {
+    const char* reason = dlerror();
+    cannot_load(path, problems).found = reason ? reason : "";
+    return;
+  }
+  if (!loaded.insert(library).second) return;  // named twice
+  if (now.added.empty() && now.refused.empty())
+    cannot_load(path, problems).found = "it has no block, LOOPWRIGHT_BLOCK(…)";
+  for (const std::string& name : now.refused) {
+    if (name.empty()) {
+      auto& p = cannot_load(path, problems);
+      p.found = "it was compiled against the headers of another version";
+      p.hint = "compile it again, -I naming the headers of this program";
+      break;
+    }
+    auto& p = problems.error({}, "", "", fmt::format("two blocks are called \"{}\"", name));
+    const BlockType* first = find_block(name);
+    p.found = fmt::format("one {}, and one of the library {}", first ? origin_of(*first) : "", path);
+    p.hint = "give the block of the library another name";
+  }
+  if (now.refused.empty()) return;
+  for (const std::string& name : now.added) registry().erase(name);
 }
 
 }  // namespace loopwright

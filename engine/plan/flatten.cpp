@@ -103,12 +103,10 @@ class Flattener {
   }
 
   void unknown_type(const std::string& path, const BlockEntry& entry) {
-    std::vector<std::string> types;
-    for (const auto& [name, type] : all_blocks()) types.push_back(name);
-    auto& p = problems_.error(entry.type_place, entry.place.pointer() + "/type", path,
-                              fmt::format("there is no block type \"{}\"", entry.type));
-    const std::string near = nearest_name(entry.type, types);
-    p.hint = near.empty() ? "`loopwright blocks` lists all types" : fmt::format("did you mean \"{}\"?", near);
+    problems_
+        .error(entry.type_place, entry.place.pointer() + "/type", path,
+               fmt::format("there is no block type \"{}\"", entry.type))
+        .hint = block_type_hint(entry.type);
   }
 
   void wire_blocks(Scope& scope) {
