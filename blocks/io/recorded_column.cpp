@@ -30,7 +30,7 @@ struct RecordedColumn {
   };  // -1: before the first sample
   static constexpr auto describe() {
     return block("Plays back a column of a recording.",
-                 parameter(&RecordedColumn::file, "file", "", "CSV or MAT file, relative to the diagram"),
+                 parameter(&RecordedColumn::file, "file", "", "CSV or MAT file, relative to the diagram").file(),
                  parameter(&RecordedColumn::column, "column", "", "Name of the column"),
                  parameter(&RecordedColumn::time_column, "time", "",
                            "Name of the column with the time in s; the first or \"time\" when left out")

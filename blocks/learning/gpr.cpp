@@ -29,7 +29,7 @@ struct Gpr {
   static constexpr auto describe() {
     return block(
         "Predicts a disturbance from position and velocity with a learned model.",
-        parameter(&Gpr::model, "model", "", "Model file, relative to the diagram"),
+        parameter(&Gpr::model, "model", "", "Model file, relative to the diagram").file(),
         parameter(&Gpr::lead, "lead", "s", "Predicts for where the part will be after this time").optional(),
         parameter(&Gpr::homing_shift, "homing_shift", "$position",
                   "How much more the position reads now than it did at training")

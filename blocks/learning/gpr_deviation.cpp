@@ -24,7 +24,7 @@ struct GprDeviation {
     using B = GprDeviation;
     return block(
         "Says how unsure a learned model is of its prediction.",
-        parameter(&B::model, "model", "", "Model file, relative to the diagram"),
+        parameter(&B::model, "model", "", "Model file, relative to the diagram").file(),
         parameter(&B::lead, "lead", "s", "Predicts for where the part will be after this time").optional(),
         parameter(&B::homing_shift, "homing_shift", "$position",
                   "How much more the position reads now than it did at training")

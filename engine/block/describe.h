@@ -69,7 +69,7 @@ template <class Owner, class T> struct ParameterEntry {
   T Owner::*member;
   std::string_view name, unit, sentence;
   double low = -infinity, high = infinity;
-  bool low_is_open = false, has_default = false;
+  bool low_is_open = false, has_default = false, is_file = false;
   constexpr ParameterEntry positive() const {
     auto p = *this;
     p.low = 0;
@@ -91,6 +91,12 @@ template <class Owner, class T> struct ParameterEntry {
   constexpr ParameterEntry optional() const {
     auto p = *this;
     p.has_default = true;
+    return p;
+  }
+  /// A text that names a file, relative to the file in which it stands; or a list of such texts.
+  constexpr ParameterEntry file() const {
+    auto p = *this;
+    p.is_file = true;
     return p;
   }
 };

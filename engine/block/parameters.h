@@ -34,7 +34,8 @@ class Checker {
   Problems& problems_;
 };
 
-enum class ParameterKind { number, whole, flag, text, choice, list, object };
+/// A `file` is a text that names a file, relative to the one in which it stands.
+enum class ParameterKind { number, whole, flag, text, file, choice, list, object };
 
 /// A parameter as the schema, the reference, error texts and sweeps see it.
 struct ParameterInfo {
@@ -231,6 +232,7 @@ template <class B> std::vector<ParameterInfo> parameters_of() {
     ParameterInfo info{p.name, p.unit, p.sentence};
     info.low = p.low, info.high = p.high, info.low_is_open = p.low_is_open, info.has_default = p.has_default;
     describe_type<T, double>(info);
+    if (p.is_file) (info.element.empty() ? info : info.element.front()).kind = ParameterKind::file;
     if (p.has_default) info.default_text = default_text(defaults.*p.member);
     list.push_back(std::move(info));
   });

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 #include "engine/json/json.h"
+#include "tools/effects/file_paths.h"
 
 namespace loopwright {
 
@@ -16,22 +17,6 @@ void remove_member(Nest::Document& document, const Value::Member& member) {
   if (end < text.size() && text[end] == ',')
     end = std::min(text.find_first_not_of(" \t\r\n", end + 1), text.size());
   document.edits.replace(member.place.offset, end, "");
-}
-
-/// Every text that leads to a file, so that it still does from `folder`. Texts of further files are not
-/// touched: they keep their own places.
-void rebase_paths(const Value& value, const fs::path& folder, TextEdits& edits) {
-  for (const Value::Member& member : value.members) rebase_paths(member.value, folder, edits);
-  for (const Value& item : value.items) rebase_paths(item, folder, edits);
-  if (value.kind != Kind::text || value.text.empty() || fs::path(value.text).is_absolute()) return;
-  std::error_code code;
-  const std::string now = resolve_relative(value.place, value.text);
-  if (!fs::is_regular_file(now, code)) return;
-  const fs::path absolute = fs::weakly_canonical(now, code),
-                 base = fs::weakly_canonical(fs::absolute(folder), code);
-  const std::string moved = absolute.lexically_relative(base).string();
-  const size_t at = value.place.offset;
-  if (moved != value.text) edits.replace(at, end_of_value(value.place.file->text, at), "\"" + moved + "\"");
 }
 
 }  // namespace
@@ -135,8 +120,8 @@ std::optional<Nest::Port> Nest::last_step(Port port, const std::string& name) {
 }
 
 void Nest::rebase(Document& document) const {
-  const fs::path folder = fs::path(documents_.front()->file->name).parent_path();
-  rebase_paths(document.root, folder, document.edits);
+  const fs::path outermost = documents_.front()->file->name;
+  rebase_paths(document.root, outermost.parent_path().string(), document.edits);
 }
 
 std::string moved_to_folder(const SourceFile& file, const std::string& folder) {

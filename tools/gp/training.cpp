@@ -88,7 +88,7 @@ struct TrainingEntry {
         parameter(&E::version, "loopwright", "", "Version of the format: 1").between(1, 1),
         parameter(&E::title, "title", "", "What is learned").optional(),
         parameter(&E::description, "description", "", "For readers").optional(),
-        parameter(&E::recordings, "recordings", "", "CSV or MAT files, relative to this file"),
+        parameter(&E::recordings, "recordings", "", "CSV or MAT files, relative to this file").file(),
         parameter(&E::time, "time", "", "Column with the time in s; the first when left out").optional(),
         parameter(&E::position, "position", "", "Position of the moving part"),
         parameter(&E::velocity, "velocity", "",

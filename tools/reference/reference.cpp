@@ -26,6 +26,8 @@ std::string kind_text(const ParameterInfo& p) {
       return "true or false";
     case ParameterKind::text:
       return "text";
+    case ParameterKind::file:
+      return "file";
     case ParameterKind::choice: {
       std::string all;
       for (std::string_view c : p.choices) all += fmt::format("{}\"{}\"", all.empty() ? "" : ", ", c);

@@ -47,6 +47,7 @@ Json type_schema(const ParameterInfo& p) {
       schema = {{"type", "boolean"}};
       break;
     case ParameterKind::text:
+    case ParameterKind::file:
       schema = {{"type", "string"}};
       break;
     case ParameterKind::choice:

@@ -25,7 +25,7 @@ struct HardwareIo {
   static constexpr auto describe() {
     return block(
         "An axis of a real device, in the place of a simulated plant; without the device it stands still.",
-        parameter(&HardwareIo::device_file, "device", "", "Device file, relative to the diagram"),
+        parameter(&HardwareIo::device_file, "device", "", "Device file, relative to the diagram").file(),
         parameter(&HardwareIo::position_input, "position_input", "",
                   "Input of the device that is the position; the first encoder when left out")
             .optional(),

@@ -67,7 +67,7 @@ TEST_F(DeployProgram, MovesTheStageAndWritesLogPageAndFigures) {
                                                "stage.device=" + folder_.path("device.json"), "--replay",
                                                folder_.path("log.csv")});
   EXPECT_EQ(replayed.code, 0) << replayed.err;
-  EXPECT_THAT(replayed.err, HasSubstr("explain each other"));
+  EXPECT_THAT(replayed.out, HasSubstr("explain each other"));
 }
 
 TEST_F(DeployProgram, ASignalEndsItWithTheOutputsSafe) {

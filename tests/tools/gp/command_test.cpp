@@ -25,7 +25,7 @@ TEST_F(GpCommand, TrainsAModelThatItCanShow) {
   const Outcome trained =
       gp({"train", "t.training.json", "--model", "stage.model.json", "--report", "t.html"});
   EXPECT_EQ(trained.code, 0) << trained.err;
-  EXPECT_NE(trained.err.find("terms.0.position.length"), trained.err.npos) << trained.err;
+  EXPECT_NE(trained.out.find("terms.0.position.length"), trained.out.npos) << trained.out;
   EXPECT_TRUE(exists("stage.model.json") && exists("t.html"));
   const Outcome shown = gp({"show", "stage.model.json", "--on", "t.training.json", "--json", "-"});
   EXPECT_EQ(shown.code, 0) << shown.err;
