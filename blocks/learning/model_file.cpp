@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <cmath>
 #include "engine/block.h"
+#include "engine/json/file_kind.h"
 #include "engine/json/json.h"
 #include "engine/json/reader.h"
 #include "engine/record/atomic_file.h"
@@ -329,7 +330,7 @@ LearnedModel read_model(const std::string& path, const Place& reference, Problem
   const Value file = parse_json(source, problems);
   const Reader reader{problems, ""};
   if (failed() || !reader.expect(file, Value::Kind::object, "a model", "an object in braces") ||
-      !is_intact(file, reader))
+      !expect_kind(file, FileKind::model, problems) || !is_intact(file, reader))
     return {};
   ModelEntry entry;
   read_fields(entry, file, "", problems);

@@ -49,10 +49,13 @@ struct Expression {
   }
   int arguments() const { return int(names.size()); }
   void check(const Checker& checker) const {
+    bool are_different = true;
     for (size_t i = 0; i < names.size(); ++i)
-      if (std::find(names.begin(), names.begin() + ptrdiff_t(i), names[i]) != names.begin() + ptrdiff_t(i))
+      if (std::find(names.begin(), names.begin() + ptrdiff_t(i), names[i]) != names.begin() + ptrdiff_t(i)) {
         checker.error("names", "two arguments have the same name").found = "\"" + names[i] + "\"";
-    if (checker.problems().has_errors()) return;
+        are_different = false;
+      }
+    if (!are_different) return;
     try {
       Formula().compile(formula, names);
     } catch (const mu::ParserError& error) {

@@ -25,12 +25,13 @@ class DiagramReader {
 
   std::shared_ptr<Diagram> read(const Value& root) {
     diagram_->path = path_;
+    reader_.text(root, "$schema");
     diagram_->title = reader_.text(root, "title");
     diagram_->description = reader_.text(root, "description");
-    reader_.reject_unknown(
-        root,
-        {"loopwright", "title", "description", "parameters", "solver", "blocks", "inputs", "outputs", "log"},
-        "a diagram");
+    reader_.reject_unknown(root,
+                           {"$schema", "loopwright", "title", "description", "parameters", "solver", "blocks",
+                            "inputs", "outputs", "log"},
+                           "a diagram");
     read_parameters(root);
     read_solver(root);
     read_blocks(root);

@@ -10,9 +10,12 @@
 namespace loopwright {
 namespace {
 
-template <class Entry> std::string unused_name(std::string name, const std::vector<Entry>& entries) {
-  const auto is_used = [&] { return std::ranges::find(entries, name, &Entry::name) != entries.end(); };
-  while (is_used()) name += '_';
+/// A name that none of the lists has.
+template <class... Entries> std::string unused_name(std::string name, const Entries&... lists) {
+  const auto is_in = [&](const auto& list) {
+    return std::ranges::any_of(list, [&](const auto& entry) { return entry.name == name; });
+  };
+  while ((is_in(lists) || ...)) name += '_';
   return name;
 }
 
@@ -20,7 +23,8 @@ class Driver {
  public:
   Driver(const Drive& drive, Problems& problems) : drive_(drive), problems_(problems) {}
 
-  void apply(Diagram& top) {
+  /// The block that plays the column goes to `columns`: nobody means it by a name.
+  void apply(Diagram& top, std::vector<BlockEntry>& columns) {
     if (!is_port(drive_.port)) {
       error("\"" + drive_.port + "\" names no input port", "").expected =
           "a port such as \"axis.force\" or \"command.terms[1]\"";
@@ -30,7 +34,7 @@ class Driver {
     column.name = drive_.port;
     std::ranges::replace_if(
         column.name, [](char c) { return c == '.' || c == '[' || c == ']'; }, '_');
-    column.name = unused_name("recorded_" + column.name, top.blocks);
+    column.name = unused_name("recorded_" + column.name, top.blocks, columns);
     column.place = column.type_place = drive_.settings.place;
     column.type = drive_.type;
     column.settings = drive_.settings;
@@ -39,7 +43,7 @@ class Driver {
     const std::vector<std::string> path = split_path(drive_.port);
     const bool is_led =
         path.size() == 1 ? replace_input(top, path[0], wire) : lead(top, path, "", column.name, wire);
-    if (is_led) top.blocks.push_back(std::move(column));
+    if (is_led) columns.push_back(std::move(column));
   }
 
  private:
@@ -140,7 +144,9 @@ class Driver {
 }  // namespace
 
 void apply_drives(Diagram& top, const std::vector<Drive>& drives, Problems& problems) {
-  for (const Drive& drive : drives) Driver(drive, problems).apply(top);
+  std::vector<BlockEntry> columns;
+  for (const Drive& drive : drives) Driver(drive, problems).apply(top, columns);
+  std::ranges::move(columns, std::back_inserter(top.blocks));
 }
 
 }  // namespace loopwright

@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 #include <fmt/format.h>
+#include "engine/json/file_kind.h"
 #include "engine/json/json.h"
 #include "engine/json/reader.h"
 
@@ -61,6 +62,7 @@ std::optional<int> DiagramLibrary::version_of(const Value& root) {
   const Reader reader{problems_, {}};
   if (!reader.expect(root, Value::Kind::object, "the diagram", "an object: { \"loopwright\": 1, … }"))
     return {};
+  if (!expect_kind(root, FileKind::diagram, problems_)) return {};
   const std::string expected = fmt::format("\"loopwright\": {}", current_version);
   const Value::Member* version = root.find("loopwright");
   if (!version) {

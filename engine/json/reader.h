@@ -57,7 +57,8 @@ struct Reader {
                          double high = infinity) const;
   /// The text of an optional member; empty when it is absent or no text.
   std::string text(const Value& object, std::string_view key) const;
-  /// A problem unless the file states the version of the format that this build knows.
+  /// A problem unless the file states the version of the format that this build knows, and its "$schema",
+  /// which is for editors, is a text.
   void check_version(const Value& file) const;
   /// A problem for every member that is not among `known`.
   void reject_unknown(const Value& object, std::initializer_list<std::string_view> known,

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include "engine/json/file_kind.h"
 #include "engine/json/json.h"
 #include "engine/diagram/parameter_scope.h"
 #include "engine/json/reader.h"
@@ -20,10 +21,10 @@ class DeviceReader {
     read_driver(file, to);
     Value without_drivers = file;  // each of which has a key of its own
     std::erase_if(without_drivers.members, [&](const Value::Member& m) { return is_driver(m.name); });
-    reader_.reject_unknown(
-        without_drivers,
-        {"loopwright", "title", "description", "driver", "inputs", "outputs", "clock", "watchdog", "policy"},
-        "a device");
+    reader_.reject_unknown(without_drivers,
+                           {"$schema", "loopwright", "title", "description", "driver", "inputs", "outputs",
+                            "clock", "watchdog", "policy"},
+                           "a device");
     read_channels(file, "inputs", to.inputs);
     read_channels(file, "outputs", to.outputs);
     section(file, "clock", to.clock);
@@ -163,7 +164,8 @@ std::shared_ptr<const DeviceDescription> read_device(const std::string& path, co
     ParameterScope expressions("", own);
     const Value file = expressions.evaluate(parse_json(source, own), "");
     if (!own.has_errors() &&
-        Reader{own, ""}.expect(file, Value::Kind::object, "a device", "an object in braces"))
+        Reader{own, ""}.expect(file, Value::Kind::object, "a device", "an object in braces") &&
+        expect_kind(file, FileKind::device, own))
       DeviceReader(drivers, own).read(file, *device);
   }
   for (const Problem& problem : own.list()) problems.add(problem);

@@ -2,58 +2,10 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include "engine/json/reader.h"
+#include "tools/compare/experiment_ports.h"
 
 namespace loopwright {
 namespace {
-
-/// The port's number; a problem when the diagram has no such port, or one of another dimension.
-std::optional<Number> find_port(const Plan& plan, const std::string& port,
-                                const std::optional<std::string>& unit, const Place& place,
-                                const std::string& pointer, Problems& problems) {
-  const std::vector<Number> numbers = plan.find(port);
-  if (numbers.size() != 1) {
-    auto& p = problems.error(place, pointer, "",
-                             numbers.empty() ? fmt::format("the diagram has no port \"{}\"", port)
-                                             : fmt::format("\"{}\" has {} elements: name one, \"{}[0]\"",
-                                                           port, numbers.size(), port));
-    std::vector<std::string> names;
-    for (const Plan::Port& known : plan.ports) names.emplace_back(known.name);
-    if (numbers.empty()) KnownNames(names).explain(p, port);
-    return {};
-  }
-  const auto of_port = plan.unit_of(numbers[0]), of_data = unit ? parse_unit(*unit) : std::nullopt;
-  if (of_port && of_data && !of_port->same_dimension(*of_data)) {
-    auto& p =
-        problems.error(place, pointer, "", fmt::format("\"{}\" is in another unit than its column", port));
-    p.expected = to_string(*of_port), p.found = *unit;
-  }
-  return numbers[0];
-}
-
-/// The plan with a log of what is compared and of the roles.
-Plan logging(const Plan& plan, const Experiment& experiment, Problems& problems) {
-  Plan changed = plan;
-  changed.log.clear();
-  const auto log = [&](const std::string& name, const std::optional<std::string>& unit, const Place& place,
-                       const std::string& pointer) {
-    const auto number = find_port(plan, name, unit, place, pointer, problems);
-    if (!number || std::ranges::any_of(changed.log, [&](const Plan::Logged& l) { return l.name == name; }))
-      return;
-    Plan::Logged logged;
-    logged.name = name, logged.number = *number;
-    if (const auto known = plan.unit_of(*number)) logged.unit = *known, logged.unit_is_known = true;
-    changed.log.push_back(std::move(logged));
-  };
-  for (const RecordedSignal& signal : experiment.compared)
-    log(signal.port, signal.unit, signal.place, signal.pointer);
-  for (const RecordedSignal& signal : experiment.drives)
-    find_port(plan, signal.port, signal.unit, signal.place, signal.pointer, problems);
-  for (size_t i = 0; i < experiment.roles.ports.size(); ++i)
-    log(experiment.roles.ports[i].second, std::nullopt, experiment.roles.places[i],
-        "/roles/" + experiment.roles.ports[i].first);
-  return changed;
-}
 
 /// Values of a simulated column at the recorded times: row by row where they coincide, else joined by
 /// straight lines.
@@ -188,7 +140,7 @@ Comparison compare_signals(const std::string& diagram_path, const Experiment& ex
   Problems problems;
   const auto diagram = load_diagram(diagram_path, follow(experiment, options), problems);
   const auto plan = diagram ? compile(*diagram, problems) : nullptr;
-  if (!plan) throw InputError(std::move(problems));
+  if (!plan) explain_failure(diagram_path, {experiment.path}, options, std::move(problems));
   Comparison comparison;
   comparison.plan = std::make_shared<Plan>(logging(*plan, experiment, problems));
   if (problems.has_errors()) throw InputError(std::move(problems));
@@ -216,11 +168,8 @@ Comparison compare(const std::string& diagram_path, const std::string& experimen
   Problems problems;
   const auto experiment = load_experiment(experiment_path, problems);
   if (experiment) reject_map(*experiment, problems);
-  if (!experiment || problems.has_errors()) {
-    if (const auto diagram = load_diagram(diagram_path, options, problems))
-      compile(*diagram, problems);  // its problems too
-    throw InputError(std::move(problems));
-  }
+  if (!experiment || problems.has_errors())
+    explain_failure(diagram_path, {experiment_path}, options, std::move(problems));
   Comparison comparison = compare_signals(diagram_path, *experiment, options, run_options);
   analyse_force(comparison, diagram_path, *experiment, options);
   return comparison;

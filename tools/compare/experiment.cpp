@@ -1,6 +1,7 @@
 #include "tools/compare/experiment.h"
 #include <fmt/format.h>
 #include <algorithm>
+#include "engine/json/file_kind.h"
 #include "engine/json/json.h"
 #include "engine/json/reader.h"
 #include "engine/record/recording_file.h"
@@ -21,11 +22,12 @@ class Loader {
     if (!source) return nullptr;
     const Value file = parse_json(source, problems_);
     if (problems_.has_errors() ||
-        !reader_.expect(file, Value::Kind::object, "an experiment", "an object in braces"))
+        !reader_.expect(file, Value::Kind::object, "an experiment", "an object in braces") ||
+        !expect_kind(file, FileKind::experiment, problems_))
       return nullptr;
     reader_.reject_unknown(file,
-                           {"loopwright", "title", "description", "data", "time", "drive", "compare", "roles",
-                            "hold_out", "rows"},
+                           {"$schema", "loopwright", "title", "description", "data", "time", "drive",
+                            "compare", "roles", "hold_out", "rows"},
                            "an experiment");
     reader_.check_version(file);
     result_->title = reader_.text(file, "title");
@@ -35,9 +37,7 @@ class Loader {
     read_hold_out(file);
     read_kind_of_rows(file);
     read_data(file);
-    if (problems_.has_errors()) return nullptr;
-    if (result_->is_map) gather_balances(*result_, problems_);
-    if (problems_.has_errors()) return nullptr;
+    if (!problems_.has_errors() && result_->is_map) gather_balances(*result_, problems_);
     return result_;
   }
 
@@ -134,8 +134,9 @@ class Loader {
                    : "the environment variable LOOPWRIGHT_DATA may name a folder of measurements";
       return;
     }
+    const size_t before = problems_.list().size();
     const Recording data = read_recording(result_->data_path, problems_);
-    if (problems_.has_errors()) return;
+    if (data.columns.empty() || has_errors_from(before)) return;
     result_->time_column = file.find("time") ? reader_.text(file, "time") : data.columns.front().name;
     const Column* time = column(data, result_->time_column,
                                 file.find("time") ? file.find("time")->place : member->place, "/time");
@@ -148,6 +149,11 @@ class Loader {
     }
     for (auto* list : {&result_->drives, &result_->compared})
       for (RecordedSignal& signal : *list) add_column(data, signal);
+  }
+  bool has_errors_from(size_t begin) const {
+    const auto& list = problems_.list();
+    return std::any_of(list.begin() + ptrdiff_t(begin), list.end(),
+                       [](const Problem& p) { return p.severity == Problem::Severity::error; });
   }
   void check_start(const Column& time, const Value::Member& member) {
     if (time.values.empty() || time.values.front() >= 0) return;
@@ -165,6 +171,7 @@ class Loader {
     return nullptr;
   }
   void add_column(const Recording& data, RecordedSignal& signal) {
+    if (signal.column.empty()) return;  // told already
     const Column* found = column(data, signal.column, signal.place, signal.pointer);
     if (!found) return;
     const std::string text = signal.unit.empty() ? found->unit : signal.unit;
@@ -198,8 +205,18 @@ Value text_value(std::string text) {
 
 }  // namespace
 
+std::shared_ptr<const Experiment> read_experiment(const std::string& path, Problems& problems) {
+  Problems own;
+  const auto experiment = Loader(path, own).run();
+  for (const Problem& problem : own.list()) problems.add(problem);
+  return experiment;
+}
+
 std::shared_ptr<const Experiment> load_experiment(const std::string& path, Problems& problems) {
-  return Loader(path, problems).run();
+  Problems own;
+  const auto experiment = read_experiment(path, own);
+  for (const Problem& problem : own.list()) problems.add(problem);
+  return own.has_errors() ? nullptr : experiment;
 }
 
 void reject_map(const Experiment& experiment, Problems& problems) {

@@ -42,6 +42,8 @@ struct Experiment {
 /// Reads the experiment and its data. Data files are looked for beside the experiment, then below
 /// $LOOPWRIGHT_DATA. Null when there are errors.
 std::shared_ptr<const Experiment> load_experiment(const std::string& path, Problems& problems);
+/// With errors the result is what could be read, ports without columns, or null when nothing could.
+std::shared_ptr<const Experiment> read_experiment(const std::string& path, Problems& problems);
 
 /// A problem when the experiment is a map of balances, which no run in time can follow.
 void reject_map(const Experiment& experiment, Problems& problems);

@@ -1,6 +1,7 @@
 #include "tools/diagnose/prepare.h"
 #include <algorithm>
 #include <cmath>
+#include "tools/compare/experiment_ports.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -86,7 +87,11 @@ Trials prepare(const std::string& diagram, const std::vector<std::string>& exper
   size_t n = 0;
   for (const std::string& experiment : experiments) {
     Trial trial;
-    trial.model = std::make_unique<AxisModel>(diagram, experiment, options);
+    try {
+      trial.model = std::make_unique<AxisModel>(diagram, experiment, options);
+    } catch (InputError& error) {
+      explain_failure(diagram, experiments, options, std::move(error.problems));
+    }
     const AxisRecord& record = trial.model->record();
     trial.held_out_from = record.held_out_from;
     const std::vector<double> own = speeds(record);

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <set>
+#include "engine/json/file_kind.h"
 #include "engine/json/json.h"
 #include "engine/json/reader.h"
 #include "engine/diagram/wires.h"
@@ -341,14 +342,13 @@ std::vector<Effect> load_effect(const std::string& path, Problems& problems) {
   const auto source = read_source(path, {}, own);
   const Value file = source ? parse_json(source, own) : Value{};
   const Reader reader{own, ""};
-  if (!own.has_errors() && reader.expect(file, Kind::object, "an effect", "an object in braces")) {
+  if (!own.has_errors() && reader.expect(file, Kind::object, "an effect", "an object in braces") &&
+      expect_kind(file, FileKind::effect, own)) {
     reader.reject_unknown(file,
-                          {"loopwright", "effect", "title", "physics", "parameters", "blocks", "attach",
-                           "equivalents", "needs", "confusable", "repeatable", "at_rest", "forms"},
+                          {"$schema", "loopwright", "effect", "title", "physics", "parameters", "blocks",
+                           "attach", "equivalents", "needs", "confusable", "repeatable", "at_rest", "forms"},
                           "an effect");
-    const Value::Member* version = file.find("loopwright");
-    if (!version || version->value.kind != Kind::number || version->value.number != 1)
-      reader.error(file, "the version of the format is missing or not known").expected = "\"loopwright\": 1";
+    reader.check_version(file);
     const Value::Member* forms = file.find("forms");
     if (!forms)
       effects.push_back(FormReader(file, nullptr, own).read());

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include "engine/json/json.h"
 #include "engine/json/reader.h"
+#include "tools/compare/experiment_ports.h"
 #include "tools/fit/parameter.h"
 
 namespace loopwright {
@@ -244,6 +245,13 @@ double rms(const std::vector<double>& values, size_t begin, size_t end) {
   return end > begin ? std::sqrt(sum / double(end - begin)) : 0;
 }
 
+void check_parameters(const std::string& diagram, const std::vector<std::string>& paths,
+                      const LoadOptions& options, Problems& problems) {
+  Problems of_diagram;  // told with those of the experiment
+  if (const auto loaded = load_diagram(diagram, options, of_diagram))
+    for (const std::string& path : paths) find_number(*loaded, path, problems);
+}
+
 }  // namespace
 
 Fit fit(const std::string& diagram, const std::string& experiment_path, const std::vector<std::string>& paths,
@@ -253,7 +261,9 @@ Fit fit(const std::string& diagram, const std::string& experiment_path, const st
   if (experiment) reject_map(*experiment, problems);
   if (paths.empty())
     problems.error({}, "", "", "no parameters are named").expected = "--parameters mass,damping";
-  if (!experiment || problems.has_errors()) throw InputError(std::move(problems));
+  check_parameters(diagram, paths, options, problems);
+  if (!experiment || problems.has_errors())
+    explain_failure(diagram, {experiment_path}, options, std::move(problems));
   Model model(diagram, experiment, paths, options, fit_options);
   std::vector<double> values = model.start();
   const Comparison before = model.simulate(values);

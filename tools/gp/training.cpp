@@ -3,6 +3,7 @@
 #include <algorithm>
 #include "engine/block.h"
 #include "engine/json/edit.h"
+#include "engine/json/file_kind.h"
 #include "engine/json/json.h"
 #include "engine/diagram/parameter_scope.h"
 #include "engine/json/reader.h"
@@ -69,7 +70,7 @@ struct PriorEntry {
 };
 struct TrainingEntry {
   int version = 1;
-  std::string title, description, time;
+  std::string schema, title, description, time;
   std::vector<std::string> recordings;
   ColumnEntry position, velocity;
   LabelEntry label;
@@ -86,6 +87,7 @@ struct TrainingEntry {
     using E = TrainingEntry;
     return fields(
         parameter(&E::version, "loopwright", "", "Version of the format: 1").between(1, 1),
+        parameter(&E::schema, "$schema", "", "For editors").optional(),
         parameter(&E::title, "title", "", "What is learned").optional(),
         parameter(&E::description, "description", "", "For readers").optional(),
         parameter(&E::recordings, "recordings", "", "CSV or MAT files, relative to this file").file(),
@@ -251,7 +253,8 @@ std::shared_ptr<const Training> load_training(const std::string& path,
   Value file = parse_json(source, problems);
   const Reader reader{problems, ""};
   if (problems.has_errors() ||
-      !reader.expect(file, Value::Kind::object, "a training file", "an object in braces"))
+      !reader.expect(file, Value::Kind::object, "a training file", "an object in braces") ||
+      !expect_kind(file, FileKind::training, problems))
     return nullptr;
   for (const auto& option : set)
     if (const auto edit = read_edit(option, problems)) apply_edit(*edit, file, reader);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include "engine/json/file_kind.h"
 #include "engine/json/json.h"
 #include "engine/json/reader.h"
 #include "tools/sweep/metric_reader.h"
@@ -23,11 +24,12 @@ class Loader {
     sweep_->text = source->text;
     const Value file = parse_json(source, problems_);
     if (problems_.has_errors() ||
-        !reader_.expect(file, Value::Kind::object, "a sweep", "an object in braces"))
+        !reader_.expect(file, Value::Kind::object, "a sweep", "an object in braces") ||
+        !expect_kind(file, FileKind::sweep, problems_))
       return nullptr;
     reader_.reject_unknown(file,
-                           {"loopwright", "title", "description", "diagram", "set", "variants", "seed",
-                            "axes", "paired", "samples", "metrics", "keep"},
+                           {"$schema", "loopwright", "title", "description", "diagram", "set", "variants",
+                            "seed", "axes", "paired", "samples", "metrics", "keep"},
                            "a sweep");
     reader_.check_version(file);
     sweep_->title = reader_.text(file, "title");

@@ -1,0 +1,67 @@
+#include "engine/json/file_kind.h"
+#include <array>
+#include <fmt/format.h>
+
+namespace loopwright {
+namespace {
+
+struct TellingKey {
+  std::string_view key;
+  FileKind kind;
+};
+/// The first that a file has decides: an effect has "blocks" too, a sweep a "diagram".
+constexpr TellingKey telling_keys[] = {
+    {"loopwright_gp_model", FileKind::model},
+    {"effect", FileKind::effect},
+    {"driver", FileKind::device},
+    {"blocks", FileKind::diagram},
+    {"axes", FileKind::sweep},
+    {"metrics", FileKind::sweep},
+    {"recordings", FileKind::training},
+    {"label", FileKind::training},
+    {"data", FileKind::experiment},
+    {"compare", FileKind::experiment},
+    {"drive", FileKind::experiment},
+};
+
+const Value::Member* telling_member(const Value& file, FileKind& kind) {
+  for (const TellingKey& telling : telling_keys)
+    if (const Value::Member* member = file.find(telling.key)) {
+      kind = telling.kind;
+      return member;
+    }
+  kind = FileKind::unknown;
+  return nullptr;
+}
+
+}  // namespace
+
+std::string_view with_article(FileKind kind) {
+  constexpr std::array<std::string_view, 8> names{"none of the files that are known here",
+                                                  "a diagram",
+                                                  "an experiment",
+                                                  "a sweep",
+                                                  "a training file",
+                                                  "an effect",
+                                                  "a device",
+                                                  "a learned model"};
+  return names[size_t(kind)];
+}
+
+FileKind kind_of(const Value& file) {
+  FileKind kind;
+  telling_member(file, kind);
+  return kind;
+}
+
+bool expect_kind(const Value& file, FileKind wanted, Problems& problems) {
+  FileKind kind;
+  const Value::Member* member = telling_member(file, kind);
+  if (kind == FileKind::unknown || kind == wanted) return true;
+  auto& p = problems.error(member->place, member->value.place.pointer(), "",
+                           fmt::format("this is {}, not {}", with_article(kind), with_article(wanted)));
+  p.found = fmt::format("the key \"{}\"", member->name);
+  return false;
+}
+
+}  // namespace loopwright
