@@ -1,6 +1,8 @@
 #include "engine/json/file_kind.h"
 #include <array>
 #include <fmt/format.h>
+#include "engine/json/json.h"
+#include "engine/json/tokens.h"
 
 namespace loopwright {
 namespace {
@@ -23,6 +25,29 @@ constexpr TellingKey telling_keys[] = {
     {"compare", FileKind::experiment},
     {"drive", FileKind::experiment},
 };
+
+/// Who takes a file of the kind.
+std::string_view user_of(FileKind kind) {
+  switch (kind) {
+    case FileKind::diagram:
+      return "`loopwright run` takes diagrams";
+    case FileKind::experiment:
+      return "`loopwright compare DIAGRAM EXPERIMENT` takes experiments, as fit and diagnose do";
+    case FileKind::sweep:
+      return "`loopwright sweep` takes sweeps";
+    case FileKind::training:
+      return "`loopwright gp train` takes training files";
+    case FileKind::effect:
+      return "`loopwright diagnose --effects FOLDER` takes folders of effects";
+    case FileKind::device:
+      return "the block HardwareIo names a device, `loopwright probe` asks it";
+    case FileKind::model:
+      return "the block Gpr names a learned model, `loopwright gp show` shows it";
+    case FileKind::unknown:
+      break;
+  }
+  return "";
+}
 
 const Value::Member* telling_member(const Value& file, FileKind& kind) {
   for (const TellingKey& telling : telling_keys)
@@ -54,6 +79,12 @@ FileKind kind_of(const Value& file) {
   return kind;
 }
 
+FileKind kind_of_file(const std::string& path, Problems& problems) {
+  const auto source = read_source(path, {}, problems);
+  const auto tokens = source ? read_tokens(source, problems) : std::nullopt;
+  return tokens ? kind_of(tokens->value_without_members("blocks")) : FileKind::unknown;
+}
+
 bool expect_kind(const Value& file, FileKind wanted, Problems& problems) {
   FileKind kind;
   const Value::Member* member = telling_member(file, kind);
@@ -61,6 +92,7 @@ bool expect_kind(const Value& file, FileKind wanted, Problems& problems) {
   auto& p = problems.error(member->place, member->value.place.pointer(), "",
                            fmt::format("this is {}, not {}", with_article(kind), with_article(wanted)));
   p.found = fmt::format("the key \"{}\"", member->name);
+  p.hint = user_of(kind);
   return false;
 }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <charconv>
 #include <span>
+#include <unordered_map>
 #include "engine/plan/layout.h"
 #include "engine/plan/order.h"
 #include "engine/plan/shapes.h"
@@ -12,18 +13,45 @@
 namespace loopwright {
 namespace {
 
-/// What a diagram without "log" records: all outputs of the outermost blocks.
-void log_everything(FlatDiagram& flat) {
-  for (size_t b = 0; b < flat.blocks.size(); ++b) {
-    if (flat.blocks[b].path.find('.') != std::string::npos) continue;
-    for (size_t o = 0; o < flat.blocks[b].type->info.outputs.size(); ++o) {
-      FlatWire wire;
-      wire.block = int(b), wire.output = int(o);
-      flat.log.push_back(
-          {fmt::format("{}.{}", flat.blocks[b].path, flat.blocks[b].type->info.outputs[o].name), wire});
+/// What a diagram without "log" records: all outputs of its blocks; of a subdiagram its outputs, or where it
+/// declares none, those of the blocks in it by the same rule.
+class LogOfEverything {
+ public:
+  explicit LogOfEverything(FlatDiagram& flat) : flat_(flat) {
+    for (const FlatName& name : flat.names) names_.emplace(name.name, &name.wire);
+  }
+
+  void add(const Diagram& diagram, const std::string& prefix = "", bool is_shown = true) {
+    for (const BlockEntry& entry : diagram.blocks) {
+      if (entry.subdiagram)
+        add_subdiagram(*entry.subdiagram, prefix + entry.name + ".", is_shown);
+      else if (next_ < flat_.blocks.size() && flat_.blocks[next_].entry == &entry)
+        add_block(next_++, is_shown);
     }
   }
-}
+
+ private:
+  void add_subdiagram(const Diagram& diagram, const std::string& prefix, bool is_shown) {
+    if (is_shown)
+      for (const DiagramOutput& output : diagram.outputs)
+        if (const auto found = names_.find(prefix + output.name); found != names_.end())
+          flat_.log.push_back({found->first, *found->second});
+    add(diagram, prefix, is_shown && diagram.outputs.empty());
+  }
+  void add_block(size_t index, bool is_shown) {
+    if (!is_shown) return;
+    const FlatBlock& block = flat_.blocks[index];
+    for (size_t o = 0; o < block.type->info.outputs.size(); ++o) {
+      FlatWire wire;
+      wire.block = int(index), wire.output = int(o);
+      flat_.log.push_back({fmt::format("{}.{}", block.path, block.type->info.outputs[o].name), wire});
+    }
+  }
+
+  FlatDiagram& flat_;
+  std::unordered_map<std::string, const FlatWire*> names_;
+  size_t next_ = 0;  // flat blocks stand in the order of the diagrams
+};
 
 Rate rate_of_number(const Plan& plan, Number number, const std::vector<Rate>& rate_of_signal) {
   return number < plan.signals ? rate_of_signal[size_t(number)] : Rate{Rate::Kind::continuous, 0, 0};
@@ -67,7 +95,8 @@ void add_rates_to_log(Plan& plan) {
   };
   for (const Plan::Entry& entry : plan.order) {
     if (entry.kind == Plan::Entry::Kind::algebraic_loop)
-      for (const Plan::Entry& inner : plan.algebraic_loops[size_t(entry.block)].entries) mark(inner, entry.rate);
+      for (const Plan::Entry& inner : plan.algebraic_loops[size_t(entry.block)].entries)
+        mark(inner, entry.rate);
     else
       mark(entry, entry.rate);
   }
@@ -214,7 +243,7 @@ std::string hash_of(const Plan& plan) {
 
 std::shared_ptr<const Plan> compile(const Diagram& diagram, Problems& problems) {
   FlatDiagram flat = flatten(diagram, problems);
-  if (flat.log.empty() && diagram.log.empty()) log_everything(flat);
+  if (flat.log.empty() && diagram.log.empty()) LogOfEverything(flat).add(diagram);
   find_shapes(flat, problems);
   const PortUnits units = check_units(flat, diagram, problems);
   auto plan = std::make_shared<Plan>();

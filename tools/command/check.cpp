@@ -1,40 +1,142 @@
 #include <fmt/format.h>
+#include <algorithm>
+#include "blocks/learning/model_file.h"
+#include "engine/json/file_kind.h"
+#include "engine/json/json.h"
 #include "engine/plan/plan.h"
+#include "hw/drivers.h"
 #include "tools/command/command.h"
+#include "tools/compare/experiment.h"
+#include "tools/effects/effect.h"
+#include "tools/gp/train.h"
+#include "tools/sweep/sweep_plan.h"
 
 namespace loopwright {
+namespace {
 
-/// Every problem of every diagram at once.
-static int check(const std::vector<std::string>& paths, const LoadOptions& options) {
+/// What there is to say of a file in which nothing is wrong; nothing after an error.
+using Verdict = std::optional<std::string>;
+
+Verdict check_diagram(const std::string& path, const LoadOptions& options, Problems& problems) {
+  const auto diagram = load_diagram(path, options, problems);
+  if (!diagram) return {};
+  if (!diagram->inputs.empty()) {
+    check_part(*diagram, problems);
+    return fmt::format("a subdiagram of {} blocks", diagram->blocks.size());
+  }
+  const auto plan = compile(*diagram, problems);
+  if (!plan) return {};
+  return fmt::format("{} blocks, {} states", plan->blocks.size(), plan->states);
+}
+
+Verdict check_experiment(const std::string& path, Problems& problems) {
+  const auto experiment = load_experiment(path, problems);
+  if (!experiment) return {};
+  return fmt::format("an experiment of {} rows, {} driven and {} compared", experiment->data.rows(),
+                     experiment->drives.size(), experiment->compared.size());
+}
+
+Verdict check_sweep(const std::string& path, Problems& problems) {
+  const auto sweep = load_sweep(path, problems);
+  if (!sweep) return {};
+  const SweepPlan plan(sweep);
+  for (const std::string& warning : plan.warnings()) problems.warning({}, "", "", warning);
+  return fmt::format("a sweep of {} runs over {} axes", plan.runs(), sweep->axes.size());
+}
+
+Verdict check_training(const std::string& path, const LoadOptions& options, Problems& problems) {
+  const auto training = load_training(path, options.set, problems);
+  const auto samples = training ? collect_samples(*training, problems) : nullptr;
+  if (!samples) return {};
+  return fmt::format("a training file of {} samples", samples->samples.labels.size());
+}
+
+Verdict check_effect(const std::string& path, Problems& problems) {
+  const std::vector<Effect> forms = load_effect(path, problems);
+  if (forms.empty()) return {};
+  return fmt::format("an effect in {} form{}", forms.size(), forms.size() == 1 ? "" : "s");
+}
+
+Verdict check_device(const std::string& path, Problems& problems) {
+  const auto device = hw::load_device(path, {}, problems);
+  if (!device) return {};
+  return fmt::format("a device of the driver {}, {} inputs and {} outputs", device->driver,
+                     device->inputs.size(), device->outputs.size());
+}
+
+Verdict check_model(const std::string& path, Problems& problems) {
+  const LearnedModel learned = read_model(path, {}, problems);
+  return fmt::format("a learned model of {} samples", learned.sample_count);
+}
+
+/// Options that change a diagram do nothing to other files: that is said rather than left out.
+void reject_options(FileKind kind, const std::string& path, const LoadOptions& options, Problems& problems) {
+  const bool takes_set = kind == FileKind::diagram || kind == FileKind::training;
+  const auto reject = [&](std::string_view option) {
+    problems.error({}, "", "", fmt::format("{} changes nothing in {}", option, path)).found =
+        with_article(kind);
+  };
+  if (!takes_set && !options.set.empty()) reject("--set");
+  if (kind != FileKind::diagram && !options.variants.empty()) reject("--variant");
+}
+
+Verdict check_file(const std::string& path, const LoadOptions& options, Problems& problems) {
+  const FileKind kind = kind_of_file(path, problems);
+  if (problems.has_errors()) return {};
+  if (kind != FileKind::unknown) reject_options(kind, path, options, problems);
+  switch (kind) {
+    case FileKind::experiment:
+      return check_experiment(path, problems);
+    case FileKind::sweep:
+      return check_sweep(path, problems);
+    case FileKind::training:
+      return check_training(path, options, problems);
+    case FileKind::effect:
+      return check_effect(path, problems);
+    case FileKind::device:
+      return check_device(path, problems);
+    case FileKind::model:
+      return check_model(path, problems);
+    case FileKind::diagram:
+    case FileKind::unknown:
+      break;
+  }
+  return check_diagram(path, options, problems);
+}
+
+/// Every problem of every file at once.
+int check(const std::vector<std::string>& paths, const LoadOptions& options) {
   int wrong = 0;
   for (const std::string& path : paths) {
     Problems problems;
-    const auto diagram = load_diagram(path, options, problems);
-    const bool is_part = diagram && !diagram->inputs.empty();
-    std::shared_ptr<const Plan> plan;
-    if (is_part)
-      check_part(*diagram, problems);
-    else if (diagram)
-      plan = compile(*diagram, problems);
+    Verdict verdict;
+    try {
+      verdict = check_file(path, options, problems);
+    } catch (const InputError& error) {
+      for (const Problem& problem : error.problems.list()) problems.add(problem);
+    }
     if (!problems.list().empty()) fmt::print(stderr, "{}\n", problems.text());
-    if (problems.has_errors() || !diagram)
+    if (problems.has_errors() || !verdict)
       ++wrong;
-    else if (is_part)
-      fmt::print(stderr, "{}: fine, a subdiagram of {} blocks\n", path, diagram->blocks.size());
     else
-      fmt::print(stderr, "{}: fine, {} blocks, {} states\n", path, plan->blocks.size(), plan->states);
+      fmt::print("{}: fine, {}\n", path, *verdict);
   }
   return wrong ? input_wrong : done;
 }
 
+}  // namespace
+
 void add_check(CLI::App& app, std::function<void(std::function<int()>)> choose) {
-  CLI::App* command = app.add_subcommand("check", "Say all that is wrong with diagrams");
+  CLI::App* command = app.add_subcommand(
+      "check",
+      "Say all that is wrong with files: diagrams, experiments, sweeps, training files, effects, "
+      "devices, models");
   struct Arguments {
     std::vector<std::string> paths;
     DiagramArguments diagram;
   };
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("diagrams", arguments->paths, "Diagram files (JSON)")->required();
+  command->add_option("files", arguments->paths, "Files (JSON); what each is, its keys tell")->required();
   command->add_option("--set", arguments->diagram.set, "Change a parameter or setting")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <filesystem>
 #include "engine/block/registry.h"
+#include "engine/json/file_kind.h"
 #include "engine/record/atomic_file.h"
 
 namespace loopwright {
@@ -42,6 +43,19 @@ LoadOptions DiagramArguments::options() const {
   for (const std::string& library : libraries) load_block_library(library, problems);
   if (problems.has_errors()) throw InputError(std::move(problems));
   return options;
+}
+
+void reject_swapped(const std::string& diagram, const std::vector<std::string>& experiments) {
+  Problems unheard;  // what is wrong with the files themselves is told when they are loaded
+  if (kind_of_file(diagram, unheard) != FileKind::experiment) return;
+  for (const std::string& experiment : experiments) {
+    if (kind_of_file(experiment, unheard) != FileKind::diagram) continue;
+    Problems problems;
+    auto& p = problems.error({}, "", "", "diagram and experiment stand in each other's place");
+    p.expected = fmt::format("{} {}", experiment, diagram);
+    p.found = fmt::format("{} is an experiment, {} a diagram", diagram, experiment);
+    throw InputError(std::move(problems));
+  }
 }
 
 const std::atomic<bool>& interruption() {

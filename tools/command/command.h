@@ -38,6 +38,10 @@ void add_probe(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_linearize(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_stability(CLI::App& app, std::function<void(std::function<int()>)> choose);
 
+/// Arguments in each other's place, `loopwright compare EXPERIMENT DIAGRAM`, are told as that. Throws
+/// InputError.
+void reject_swapped(const std::string& diagram, const std::vector<std::string>& experiments);
+
 /// Set by SIGINT and SIGTERM once this was called; the second signal ends the program at once.
 const std::atomic<bool>& interruption();
 

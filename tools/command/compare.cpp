@@ -14,6 +14,7 @@ struct Arguments {
 int run(const Arguments& a) {
   require_writable(a.json, "--json");
   require_writable_file(a.report, "--report");
+  reject_swapped(a.diagram.path, {a.experiment});
   Progress progress("compare");
   RunOptions options;
   options.interrupt = &interruption();

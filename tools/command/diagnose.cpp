@@ -16,6 +16,7 @@ int run(const Arguments& a) {
   require_writable(a.json, "--json");
   require_writable_file(a.report, "--report");
   require_writable_file(a.improved, "-o");
+  reject_swapped(a.diagram.path, a.experiments);
   DiagnoseOptions options;
   options.load = a.diagram.options(), options.catalogues = a.catalogues,
   options.improved_diagram = a.improved;

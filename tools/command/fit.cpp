@@ -30,6 +30,7 @@ int run(const Arguments& a) {
   require_writable(a.json, "--json");
   require_writable(a.output, "--output");
   reject_two_on_stdout({{"--json", a.json}, {"--output", a.output}});
+  reject_swapped(a.diagram.path, {a.experiment});
   Progress progress("fit");
   FitOptions options;
   options.most_iterations = a.iterations;
