@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include "engine/json/unit_hint.h"
 
 namespace loopwright {
 
@@ -135,6 +136,7 @@ std::optional<Unit> Reader::unit(const Value& text) const {
   const auto unit = parse_unit(text.text);
   if (unit) return unit;
   Problem& problem = error(text, fmt::format("there is no unit \"{}\"", text.text));
+  problem.hint = unit_hint(text.text);
   problem.expected = "an SI unit such as \"N*m\", \"V*s^2/m\", \"mm\", \"rad/s\", or \"1\"";
   return {};
 }

@@ -207,11 +207,25 @@ class Flattener {
       names.push_back(input.name);
     }
     for (const BlockEntry& entry : scope.diagram->blocks) names.push_back(entry.name + ".…");
-    auto wire = fail(
+    return fail(
         at, reader,
         fmt::format("\"{}\" is neither an input of this diagram nor of the form block.output", at.source),
-        names, name);
-    return wire;
+        names, name, outputs_of(scope, name));
+  }
+
+  /// Of a block whose name stands where one of its outputs is wanted.
+  static std::string outputs_of(const Scope& scope, const std::string& name) {
+    const int block = scope.blocks.find(name);
+    if (block < 0) return "";
+    std::vector<std::string> outputs;
+    const BlockEntry& entry = scope.diagram->blocks[size_t(block)];
+    if (entry.subdiagram)
+      for (const DiagramOutput& output : entry.subdiagram->outputs)
+        outputs.push_back(name + "." + output.name);
+    else if (const BlockType* type = find_block(entry.type))
+      for (const PortInfo& port : type->info.outputs)
+        outputs.push_back(fmt::format("{}.{}", name, port.name));
+    return outputs.empty() ? "" : fmt::format("did you mean \"{}\"?", fmt::join(outputs, "\" or \""));
   }
 
   FlatWire resolve_inside(Scope& inner, std::string_view rest, const Wire& at, const std::string& reader,
@@ -274,13 +288,15 @@ class Flattener {
   }
 
   FlatWire fail(const Wire& at, const std::string& reader, std::string message,
-                std::vector<std::string> names, const std::string& wrong) {
+                std::vector<std::string> names, const std::string& wrong, std::string hint = "") {
     if (!told_.insert(at.place.pointer() + message).second)
       return {};  // one wire into a subdiagram may have many readers
     auto& p = problems_.error(at.place, at.place.pointer(), reader, std::move(message));
     p.found = "\"" + at.source + "\"";
     const std::string near = wrong.empty() ? "" : nearest_name(wrong, names);
-    if (!near.empty())
+    if (!hint.empty())
+      p.hint = std::move(hint);
+    else if (!near.empty())
       p.hint = fmt::format("did you mean \"{}\"?", near);
     else if (!names.empty() && names.size() <= 12)
       p.expected = fmt::format("one of {}", fmt::join(names, ", "));

@@ -6,6 +6,7 @@
 #include <set>
 #include <span>
 #include "engine/plan/groups.h"
+#include "engine/json/json.h"
 
 namespace loopwright {
 
@@ -52,6 +53,18 @@ static bool update_shape(FlatDiagram& flat, FlatBlock& block) {
   return grew;
 }
 
+/// The setting that says how many wires there are: "signs" of a Sum, "names" of an Expression.
+static std::string who_asks_for(int wires, const Value& settings) {
+  for (const Value::Member& member : settings.members) {
+    const bool is_text = member.value.kind == Value::Kind::text;
+    const bool is_list = member.value.kind == Value::Kind::list;
+    const size_t length = is_text ? member.value.text.size() : member.value.items.size();
+    if ((is_text || is_list) && length == size_t(wires))
+      return fmt::format("\"{}\": {} asks for {} wires", member.name, to_json(member.value), wires);
+  }
+  return "";
+}
+
 static void check_port(const FlatDiagram& flat, const FlatBlock& block, size_t i, Problems& problems) {
   const PortInfo& port = block.type->info.inputs[i];
   const auto& wires = block.inputs[i];
@@ -66,15 +79,18 @@ static void check_port(const FlatDiagram& flat, const FlatBlock& block, size_t i
           .expected = wanted > 0 ? fmt::format("{} wires", wanted) : "at least one wire";
     return;
   }
-  const auto clash = [&](const FlatWire& wire, std::string expected, std::string found) {
+  const auto clash = [&](const FlatWire& wire, std::string expected, std::string found) -> Problem& {
     const Place& place = wire.at && wire.at->place.file ? wire.at->place : block.entry->place;
     auto& p = problems.error(place, place.pointer(), block.path,
                              fmt::format("the input \"{}\" has the wrong width", port.name));
     p.expected = std::move(expected), p.found = std::move(found);
+    return p;
   };
   if (port.shape == PortInfo::Shape::many && !port.joins_vectors) {
-    if (wanted >= 0 && int(wires.size()) != wanted)
-      clash(wires[0], fmt::format("{} wires", wanted), fmt::format("{}", wires.size()));
+    if (wanted >= 0 && int(wires.size()) != wanted) {
+      clash(wires[0], fmt::format("{} wires", wanted), fmt::format("{}", wires.size())).hint =
+          who_asks_for(wanted, block.entry->settings);
+    }
   } else if (port.shape != PortInfo::Shape::scalar) {
     const int n = total_length(flat, wires);
     if (wanted >= 0 && n != wanted) clash(wires[0], fmt::format("{} elements", wanted), fmt::format("{}", n));

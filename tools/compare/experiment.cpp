@@ -4,6 +4,7 @@
 #include "engine/json/file_kind.h"
 #include "engine/json/json.h"
 #include "engine/json/reader.h"
+#include "engine/json/unit_hint.h"
 #include "engine/record/recording_file.h"
 #include "tools/compare/balances.h"
 #include "tools/compare/data_file.h"
@@ -177,8 +178,10 @@ class Loader {
     const std::string text = signal.unit.empty() ? found->unit : signal.unit;
     const auto unit = parse_unit(text);
     if (!unit) {
-      problems_.error(signal.place, signal.pointer, "", fmt::format("the unit \"{}\" cannot be read", text))
-          .expected = "a unit such as N, m/s or V*s^2/m";
+      auto& p = problems_.error(signal.place, signal.pointer, "",
+                                fmt::format("the unit \"{}\" cannot be read", text));
+      p.expected = "a unit such as N, m/s or V*s^2/m";
+      p.hint = unit_hint(text);
       return;
     }
     signal.unit = text;
