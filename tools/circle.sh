@@ -8,8 +8,18 @@ out=${1:-$here/build/circle}
 mkdir -p "$out"
 out=$(cd "$out" && pwd)
 cd "$here"
+# Without a program and a library of the caller's: those of this tree, built where they are missing or old.
+if [ -z "${LOOPWRIGHT_PROGRAM-}" ] || [ -z "${HIL_LIBRARY-}" ]; then
+  tools/setup.sh
+  [ -f build/release/build.ninja ] || cmake --preset release >build/cmake_release.log 2>&1 || { cat build/cmake_release.log; exit 1; }
+  cmake --build build/release --target loopwright loopwright_lanes hil_emulator >build/build_release.log 2>&1 ||
+    { tail -n 40 build/build_release.log; exit 1; }
+fi
 loopwright=${LOOPWRIGHT_PROGRAM:-$here/build/release/bin/loopwright}
 export HIL_LIBRARY=${HIL_LIBRARY:-$here/build/release/lib/libhil_emulator.so}
+for needed in "$loopwright" "$HIL_LIBRARY"; do
+  [ -e "$needed" ] || { echo "circle: $needed is not there" >&2; exit 2; }
+done
 export HIL_EMU=$here/hw/emulator/hidden_friction.json
 export LOOPWRIGHT_DATA=$out
 device="--variant stage=quanser --set stage.device=$here/hw/devices/qpid_e_emulated.json"

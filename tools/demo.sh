@@ -10,7 +10,7 @@ tools/setup.sh
 mkdir -p build/demo
 echo 'Building (a few minutes the first time) …'
 cmake --preset release >build/cmake_release.log 2>&1 || { cat build/cmake_release.log; exit 1; }
-cmake --build --preset release --target loopwright loopwright_lanes hidden_effects >build/build_release.log 2>&1 || { tail -n 40 build/build_release.log; exit 1; }
+cmake --build --preset release --target loopwright loopwright_lanes hidden_effects hil_emulator >build/build_release.log 2>&1 || { tail -n 40 build/build_release.log; exit 1; }
 loopwright=build/release/bin/loopwright
 
 chapter() { printf '\n── %s\n' "$*"; }

@@ -1,10 +1,10 @@
 #include "engine/lanes/lane_run.h"
 #include <dlfcn.h>
 #include <fmt/format.h>
-#include <filesystem>
 #include <stdexcept>
 #include "engine/lanes/lane_run_of.h"
 #include "engine/lanes/module.h"
+#include "engine/record/installation.h"
 
 namespace loopwright {
 namespace {
@@ -26,16 +26,12 @@ struct LoadedModule {
   std::string problem;
 };
 
-/// Modules lie in the folder lib beside the folder of the program.
 LoadedModule load(InstructionSet set) {
   static const LaneModule in_program{
       lane_layout, [](const Plan& plan, int) -> LaneRun* { return new LaneRunOf<double>(plan, 1); }};
   if (set == InstructionSet::scalar) return {&in_program, ""};
   if (!machine_has(set)) return {nullptr, fmt::format("this processor does not have {}", to_name(set))};
-  std::error_code error;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  const std::string file =
-      program.parent_path().parent_path() / "lib" / fmt::format("loopwright_lanes_{}.so", to_name(set));
+  const std::string file = library_file(fmt::format("loopwright_lanes_{}.so", to_name(set)));
   void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!library) return {nullptr, dlerror()};
   const auto entry = reinterpret_cast<LaneModuleEntry*>(dlsym(library, lane_module_entry));

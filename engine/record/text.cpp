@@ -1,6 +1,7 @@
 #include "engine/record/text.h"
 
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <fmt/format.h>
@@ -143,8 +144,12 @@ std::string_view trim(std::string_view text) {
 }
 
 void append_number(std::string& text, double value) {
-  char digits[32];  // the longest is 24 characters: -2.2250738585072014e-308
-  const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value);
+  char digits[32];                        // the longest is 24 characters: -2.2250738585072014e-308
+  constexpr double longest_count = 1e15;  // beyond that nobody counts; all below are exact
+  const bool is_count = std::abs(value) < longest_count && value == std::trunc(value);
+  const auto [end, error] =
+      is_count ? std::to_chars(digits, digits + sizeof digits, value, std::chars_format::fixed)
+               : std::to_chars(digits, digits + sizeof digits, value);
   (void)error;  // cannot happen: there is room
   text.append(digits, end);
 }

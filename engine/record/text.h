@@ -23,7 +23,8 @@ std::string excerpt(std::string_view text);
 /// Without blanks and tabs at either end.
 std::string_view trim(std::string_view text);
 
-/// Appends the shortest decimal number that reads back as the same double.
+/// Appends the shortest decimal number that reads back as the same double; whole numbers below 1e15 are
+/// written out, 100000 rather than 1e+05.
 void append_number(std::string& text, double value);
 
 /// UTF-16 as MATLAB keeps its text. A byte b that is not UTF-8 becomes the lone surrogate 0xDC00 + b and

@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fmt/format.h>
+#include "engine/record/installation.h"
 #include "tools/effects/effect_values.h"
 
 namespace loopwright {
@@ -31,7 +32,7 @@ const EffectParameter* Effect::find(std::string_view parameter) const {
 std::string catalogue_folder() {
   const char* variable = std::getenv("LOOPWRIGHT_EFFECTS");
   if (variable && *variable) return variable;
-  return LOOPWRIGHT_EFFECTS_FOLDER;
+  return shared_file("diagrams/effects");
 }
 
 FitRange range_of(const EffectParameter& parameter, const RecordSizes& sizes) {

@@ -131,7 +131,7 @@ std::vector<Effect> load_effect(const std::string& path, Problems& problems);
 /// All effect files of the folders, sorted by name; a name that comes again replaces the former.
 std::vector<Effect> load_catalogue(const std::vector<std::string>& folders, Problems& problems);
 
-/// diagrams/effects of this installation, or the folder that LOOPWRIGHT_EFFECTS names.
+/// The catalogue that came with the program, see shared_file, or the folder that LOOPWRIGHT_EFFECTS names.
 std::string catalogue_folder();
 
 struct FitRange {

@@ -142,10 +142,18 @@ std::vector<std::string> shard_files(const std::string& folder) {
   return files;
 }
 
+/// Relative to the present folder where it lies below: commands and pages that name it shall serve elsewhere
+/// too.
+static std::string from_here(const std::string& path) {
+  std::error_code code;
+  const std::string relative = fs::path(path).lexically_relative(fs::current_path(code)).string();
+  return code || relative.empty() || relative.starts_with("..") ? path : relative;
+}
+
 std::string sweep_file_of(const std::string& folder) {
   std::ifstream file(folder + '/' + name_of_sweep_file);
   std::string path;
-  if (std::getline(file, path)) return path;
+  if (std::getline(file, path)) return from_here(path);
   Problems problems;
   problems.error({}, "", "", fmt::format("\"{}\" holds no results of a sweep", folder)).expected =
       "the folder that was given to `loopwright sweep … -o`";

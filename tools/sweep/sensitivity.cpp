@@ -14,6 +14,7 @@ struct Moments {
   double n = 0, sum = 0, squares = 0;
   void add(double y) { n += 1, sum += y, squares += y * y; }
   double mean() const { return n > 0 ? sum / n : std::nan(""); }
+  double error_of_mean() const { return n > 1 ? std::sqrt(deviations() / (n - 1) / n) : 0; }
   double deviations() const { return n > 0 ? std::max(0.0, squares - sum * sum / n) : 0; }
 };
 
@@ -41,21 +42,22 @@ void add_saltelli(const SweepPlan& plan, const Recording& table, const std::vect
   int64_t rank = 0;
   for (size_t a = 0; a < axes.size(); ++a) {
     if (!axes[a].is_sampled()) continue;
-    double total = 0, rest = 0, n = 0;
-    Moments both;
+    Moments total, rest, both;
     for (int64_t point = 0; point < plan.runs(); point += samples)
       for (int64_t s = 0; s < count; ++s) {
         const double in_a = of_run[size_t(point + s)], in_b = of_run[size_t(point + count + s)],
                      mixed = of_run[size_t(point + (rank + 2) * count + s)];
         if (!std::isfinite(in_a + in_b + mixed)) continue;
-        total += (in_a - mixed) * (in_a - mixed), rest += (in_b - mixed) * (in_b - mixed), n += 1;
+        total.add((in_a - mixed) * (in_a - mixed)), rest.add((in_b - mixed) * (in_b - mixed));
         both.add(in_a), both.add(in_b);
       }
     ++rank;
     const double variance = both.n > 1 ? both.deviations() / (both.n - 1) : 0;
     if (variance <= 0) continue;
-    effects[a].total = std::clamp(total / (2 * n * variance), 0.0, 1.0);
-    effects[a].first_order = std::clamp(1 - rest / (2 * n * variance), 0.0, 1.0);
+    effects[a].total = std::clamp(total.mean() / (2 * variance), 0.0, 1.0);
+    effects[a].total_error = total.error_of_mean() / (2 * variance);
+    effects[a].first_order = std::clamp(1 - rest.mean() / (2 * variance), 0.0, 1.0);
+    effects[a].first_order_error = rest.error_of_mean() / (2 * variance);
   }
 }
 
@@ -97,6 +99,8 @@ std::vector<AxisEffect> effects_of(const SweepPlan& plan, const Recording& table
     for (size_t b = 0; b < moments.size(); ++b)
       effect.bins[b].mean = moments[b].mean(), effect.bins[b].runs = int64_t(moments[b].n);
     effect.first_order = explained(moments, all);
+    // Without an effect the sum of squares between k bins is that of k - 1 normal numbers.
+    effect.first_order_error = all.n > 0 ? std::sqrt(2.0 * std::max(count - 1, 0)) / all.n : 0;
   }
   if (plan.sweep().samples.method == Sampling::saltelli) add_saltelli(plan, table, y, effects);
   return effects;

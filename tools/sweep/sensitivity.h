@@ -18,9 +18,11 @@ struct AxisEffect {
   /// First-order Sobol index: the share of the variance that the axis explains by itself. From the bins,
   /// (SSB - (k - 1) MSW) / SST, not below zero; of Saltelli's design by Jansen's estimator.
   double first_order = 0;
+  double first_order_error = 0;  ///< standard error of the estimate
   /// With all its interactions; of Saltelli's design only. Source: M. J. W. Jansen, Comput. Phys. Commun. 117
   /// (1999) 35.
   std::optional<double> total;
+  double total_error = 0;  ///< standard error of the estimate
 };
 
 /// An effect each axis, for one metric. Runs whose metric is no finite number are left out.

@@ -124,16 +124,24 @@ report::Plot main_effects(const SweepPlan& plan, const std::vector<AxisEffect>& 
   return plot;
 }
 
+/// An index with twice its standard error, or only a bound where the estimate is not above that.
+std::string index_text(double index, double error) {
+  const double margin = 2 * error;
+  if (index <= margin) return fmt::format("< {:.3f}", std::max(margin, 0.001));
+  return margin < 0.0005 ? fmt::format("{:.3f}", index) : fmt::format("{:.3f} ± {:.3f}", index, margin);
+}
+
 report::Table indices(const SweepPlan& plan, const std::vector<AxisEffect>& effects, size_t metric) {
   report::Table table;
   table.head = {"Axis", "First-order index", "Total index", "Mean at the least value", "at the greatest"};
   for (const AxisEffect& effect : effects)
-    table.rows.push_back({effect.axis, fmt::format("{:.3f}", effect.first_order),
-                          effect.total ? fmt::format("{:.3f}", *effect.total) : "",
+    table.rows.push_back({effect.axis, index_text(effect.first_order, effect.first_order_error),
+                          effect.total ? index_text(*effect.total, effect.total_error) : "",
                           text(effect.bins.empty() ? std::nan("") : effect.bins.front().mean),
                           text(effect.bins.empty() ? std::nan("") : effect.bins.back().mean)});
   table.caption = fmt::format(
-      "Share of the variance of {} that each axis explains by itself, and with all interactions{}.",
+      "Share of the variance of {} that each axis explains by itself, and with all interactions{}; ± is "
+      "twice the standard error of the estimate.",
       plan.sweep().metrics[metric].name,
       plan.sweep().samples.method == Sampling::saltelli ? ""
                                                         : " (total indices need the sampling \"saltelli\")");

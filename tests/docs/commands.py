@@ -1,0 +1,234 @@
+#!/usr/bin/env python3
+"""Runs what README and docs tell a reader to type, in order, as on a fresh clone.
+
+    tests/docs/commands.py            every command; the slow ones shortened as SHORTENED says
+    tests/docs/commands.py --quick    without the slow ones: a part of tools/test.sh
+    tests/docs/commands.py --list     what would be done with each command, and why
+
+Blocks marked ```sh are run, one shell a page, in a folder that looks like the root of a clone. A block whose line before it
+ends with "`NAME`:" is the file NAME and is there before the page's first command. JSON that is a whole file (it has a key
+"loopwright") goes through `loopwright check`. Every block must say what it is; those that are neither are ```text.
+Exit code 0: all ran; 1: one failed.
+"""
+import argparse
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+KINDS = ("sh", "json", "cpp", "text", "diff")
+# In the order in which a reader meets them: the README's demo makes what other pages use.
+FIRST = ["README.md", "docs/diagram_format.md", "docs/hardware.md", "docs/paper.md"]
+
+# A command that begins so is left out, everywhere.
+LEFT_OUT = [
+    ("tools/test.sh", "it runs this script"),
+    ("srun ", "needs a cluster with Slurm"),
+    ("mpirun ", "needs Open MPI; tests/tools/sweep runs it"),
+]
+# What takes minutes, and by what it is replaced: (as written, as run, why that is the same command).
+SHORTENED = [
+    ("tools/reproduce_paper.sh", "tools/reproduce_paper.sh --runs 1", "one run for every number instead of five"),
+    ("tools/hidden_effects.sh 300", "tools/hidden_effects.sh 4", "4 scenarios instead of 300"),
+    ("tools/hidden_effects.sh 20", "tools/hidden_effects.sh 2", "2 scenarios instead of 20"),
+    ("--evaluations 300", "--evaluations 20", "20 runs of the search instead of 300"),
+    ("loopwright sweep diagrams/linear_motor/robustness.sweep.json -o /tmp/robustness",
+     "loopwright sweep diagrams/linear_motor/robustness.sweep.json -o /tmp/robustness --shard 0/20", "a twentieth of the runs"),
+    ("loopwright sweep diagrams/linear_motor/controllers.sweep.json -o /tmp/controllers",
+     "loopwright sweep diagrams/linear_motor/controllers.sweep.json -o /tmp/controllers --shard 0/20", "a twentieth of the runs"),
+]
+# Not in the quick part: seconds to minutes each.
+SLOW = ["tools/", "loopwright sweep ", "loopwright gp ", "identification", "loopwright diagnose", "loopwright fit",
+        "diagrams/linear_motor/ps.json", "diagrams/linear_motor/beyond.json", "loopwright deploy", "--replay", "g++"]
+# Commands on measured records, which are not in the tree.
+MEASURED = {"diagrams/emps/": "emps/emps_train.csv", "diagrams/bldc/": "bldc"}
+# What a page takes for granted that this machine may lack.
+BEFORE = {
+    "docs/hardware.md": "# the emulated card in the place of the real one\n"
+                        "export HIL_LIBRARY=$PWD/build/release/lib/libhil_emulator.so\n"
+                        "echo '{\"real_time\": 1}' > card.json; export HIL_EMU=$PWD/card.json\n",
+    "docs/diagnose.md": "# the record of which the example of a map speaks\n"
+                        "awk 'BEGIN { print \"t_s,iq_A,theta_rad\"; for (i = 0; i < 400; ++i) print i \",\" 0.1 * sin(i / 3) \",\" i / 100 }' > map.csv\n",
+}
+# Whole files that stand in a page without a name: where they would lie, and under which name.
+NAMES = {
+    ("docs/diagram_format.md", "A mass on a spring, pushed"): "spring_by_frequency.json",
+    ("docs/diagram_format.md", "EMPS, train"): "diagrams/emps/example.experiment.json",
+    ("docs/diagnose.md", "Holding current"): "holding.experiment.json",
+    ("docs/effects.md", "A bump on the track"): "bump.json",
+    ("docs/sweeps.md", "Payload and cogging"): "diagrams/linear_motor/example.sweep.json",
+}
+
+
+class Block:
+    def __init__(self, page, line, kind, text, before):
+        self.page, self.line, self.kind, self.text = page, line, kind, text
+        named = re.search(r"`([\w./]+\.\w+)`:\s*$", before)
+        self.name = named.group(1) if named and kind in ("json", "cpp") else None
+        if kind == "json" and not self.name:
+            whole = self.whole_file()
+            self.name = NAMES.get((page, whole.get("title"))) if whole else None
+
+    def whole_file(self):
+        """The JSON, when it is a whole file of Loopwright."""
+        try:
+            value = json.loads(self.text)
+        except ValueError:
+            return None
+        return value if isinstance(value, dict) and "loopwright" in value else None
+
+    def commands(self):
+        """Lines of a shell, continued ones joined, without the comments behind them."""
+        joined = self.text.replace("\\\n", " ")
+        return [line for line in joined.splitlines() if line.strip() and not line.lstrip().startswith("#")]
+
+
+def blocks_of(page):
+    blocks, before, kind, start, lines = [], "", None, 0, []
+    for number, line in enumerate((ROOT / page).read_text().splitlines(), 1):
+        if line.startswith("```"):
+            if kind is None:
+                kind, start, lines = line[3:].strip(), number, []
+            else:
+                blocks.append(Block(page, start, kind, "\n".join(lines) + "\n", before))
+                kind = None
+        elif kind is not None:
+            lines.append(line)
+        elif line.strip():
+            before = line
+    return blocks
+
+
+def pages():
+    rest = sorted(str(p.relative_to(ROOT)) for p in (ROOT / "docs").glob("*.md"))
+    return FIRST + [p for p in rest if p not in FIRST]
+
+
+def decide(command, quick, data):
+    """(what is run, or None; why it is not run as written)"""
+    text = command.strip()
+    for beginning, why in LEFT_OUT:
+        if text.startswith(beginning):
+            return None, why
+    for folder, record in MEASURED.items():
+        if folder in text and not (data / record).exists():
+            return None, f"there is no {record} below {data}"
+    if quick and any(part in text for part in SLOW):
+        return None, "slow"
+    for written, run, why in SHORTENED:
+        if written in text:
+            return text.replace(written, run), why
+    return text, ""
+
+
+def scratch_clone(folder, build):
+    """A folder that looks like the root of a clone that was built, in which commands may write."""
+    for name in ("diagrams", "hw"):
+        shutil.copytree(ROOT / name, folder / name)
+    for name in ("docs", "engine", "models", "blocks", "tests"):
+        (folder / name).symlink_to(ROOT / name)
+    (folder / "build").mkdir()
+    (folder / "tmp").mkdir()  # in the place of /tmp
+    (folder / "build/release").symlink_to(build)
+    demo = ROOT / "build/demo"  # made by tools/demo.sh
+    (folder / "build/demo").symlink_to(demo)
+    (folder / "tools").mkdir()
+    for script in (ROOT / "tools").glob("*.sh"):
+        wrapper = folder / "tools" / script.name
+        wrapper.write_text(f'#!/bin/sh\nexec "{script}" "$@"\n')
+        wrapper.chmod(0o755)
+
+
+def need_hidden_record(build):
+    """The record of the README's diagnosis, which tools/demo.sh would make."""
+    hidden = ROOT / "build/demo/hidden"
+    if not (hidden / "nominal.json").exists():
+        hidden.parent.mkdir(parents=True, exist_ok=True)
+        subprocess.run([build / "bin/hidden_effects", "21", hidden, "paper", "coulomb_friction", "cogging"], check=True,
+                       stdout=subprocess.DEVNULL)
+
+
+def script_of(page, blocks, quick, data, tell):
+    lines = ["set -euo pipefail", BEFORE.get(page, "")]
+    for block in blocks:
+        if block.kind != "sh":
+            continue
+        for command in block.commands():
+            run, why = decide(command, quick, data)
+            tell(f"{page}:{block.line}: {command.strip() if run is None else run}" + (f"   [{'left out: ' if run is None else ''}{why}]" if why else ""))
+            if run is not None:
+                lines.append(f"echo '{page}:{block.line}' > .at; {run.replace('/tmp/', 'tmp/')}")
+    for block in blocks:
+        if block.kind == "json" and block.name and block.whole_file():
+            text = block.text
+            measured = [r for f, r in MEASURED.items() if f in block.name and not (data / r).exists()]
+            if measured:
+                tell(f"{page}:{block.line}: check {block.name}   [left out: there is no {measured[0]} below {data}]")
+            elif quick and block.name.endswith("training.json"):
+                tell(f"{page}:{block.line}: check {block.name}   [left out: slow]")
+            else:
+                lines.append(f"echo '{page}:{block.line}' > .at; loopwright check {block.name}")
+    return "\n".join(lines) + "\n"
+
+
+def faults_of_marks(page, blocks):
+    faults = []
+    for block in blocks:
+        if block.kind not in KINDS:
+            faults.append(f"{page}:{block.line}: the block does not say what it is: one of {', '.join(KINDS)}")
+        if block.kind == "text" and re.search(r"^(loopwright|tools/\w+\.sh|build/\S+) [a-z]", block.text, re.M) and "…" not in block.text and "[" not in block.text \
+                and "#SBATCH" not in block.text:
+            faults.append(f"{page}:{block.line}: these look like commands: mark them sh")
+        if block.kind == "json" and block.whole_file() and not block.name:
+            faults.append(f"{page}:{block.line}: a whole file without a name: NAMES in tests/docs/commands.py gives it one")
+    return faults
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--list", action="store_true")
+    parser.add_argument("--build", type=Path, default=ROOT / "build/release")
+    parser.add_argument("--page", action="append", help="only these pages")
+    arguments = parser.parse_args()
+    build = arguments.build.resolve()
+    data = Path(os.environ.get("LOOPWRIGHT_DATA", ROOT.parent / "shared/data")).resolve()
+    environment = {**os.environ, "PATH": f"{build / 'bin'}:{os.environ['PATH']}", "LOOPWRIGHT_DATA": str(data)}
+    faults = []
+    with tempfile.TemporaryDirectory(prefix="loopwright_docs_") as name:
+        clone = Path(name)
+        if not arguments.list:
+            scratch_clone(clone, build)
+            need_hidden_record(build)
+        for page in arguments.page or pages():
+            blocks = blocks_of(page)
+            faults += faults_of_marks(page, blocks)
+            for block in blocks:
+                if block.name and not arguments.list:
+                    (clone / block.name).parent.mkdir(parents=True, exist_ok=True)
+                    (clone / block.name).write_text(block.text)
+            script = script_of(page, blocks, arguments.quick, data, print)
+            if arguments.list:
+                continue
+            begin = time.monotonic()
+            sys.stdout.flush()
+            done = subprocess.run(["bash", "-c", script], cwd=clone, env=environment, stdin=subprocess.DEVNULL,
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+            print(f"-- {page}: {time.monotonic() - begin:.1f} s")
+            if done.returncode:
+                at = (clone / ".at").read_text().strip() if (clone / ".at").exists() else page
+                faults.append(f"{at}: exit code {done.returncode}\n" + done.stdout[-3000:])
+    for fault in faults:
+        print(fault)
+    print("every command of the docs works" if not faults else f"{len(faults)} of the docs' blocks are wrong")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
