@@ -4,15 +4,15 @@
 /// atan2, sinh, cosh, tanh, exp, ln, log2, log10, sqrt, abs, sign, rint, min, max, sum, avg; `pi`, and `_e`
 /// for Euler's number. Units are not checked inside, and a variable-step solver is not told of its kinks and
 /// jumps: where that matters, blocks serve better. A result that is infinite or no number stops the run.
-#include <muParser.h>
 #include "engine/block.h"
+#include "engine/diagram/formula_parser.h"
 
 namespace loopwright::blocks {
 
 /// A compiled formula with places for its variables. A copy is empty: the compiled code points into its own
 /// variables.
 struct Formula {
-  mu::Parser parser;
+  FormulaParser parser;
   std::vector<double> variables;
   Formula() = default;
   Formula(const Formula&) {}
@@ -20,11 +20,11 @@ struct Formula {
 
   /// Throws mu::ParserError.
   void compile(const std::string& text, const std::vector<std::string>& names) {
-    parser = mu::Parser();
+    parser = FormulaParser();
     parser.DefineConst("pi", pi);
     variables.assign(names.size(), 1.0);
     for (size_t i = 0; i < names.size(); ++i) parser.DefineVar(names[i], &variables[i]);
-    parser.SetExpr(text);
+    parser.set_formula(text);
     parser.Eval();  // compiles: later calls do not allocate
   }
 };
@@ -64,7 +64,7 @@ struct Expression {
           checker.error(in_name ? "names" : "formula",
                         in_name ? "this cannot be the name of an argument" : "the formula cannot be read");
       if (!in_name && error.GetPos() >= 0) p.place.offset += 1 + uint32_t(error.GetPos());  // after the quote
-      p.found = error.GetMsg();
+      p.found = FormulaParser::message_of(error);
       for (const std::string& name : names) p.hint += (p.hint.empty() ? "its arguments are " : ", ") + name;
     }
   }

@@ -5,9 +5,10 @@
 #include <cctype>
 #include <cmath>
 #include <fmt/format.h>
-#include <muParser.h>
 #include <numbers>
 #include <unordered_map>
+#include "engine/diagram/formula_parser.h"
+#include "models/real/double_functions.h"
 
 namespace loopwright {
 namespace {
@@ -97,7 +98,7 @@ class Compiled {
   Compiled(std::string_view expression, const std::vector<std::string>& names) : numbers_(names.size()) {
     parser().ClearVar();
     for (size_t i = 0; i < names.size(); ++i) parser().DefineVar(names[i], &numbers_[i]);
-    parser().SetExpr(std::string(expression));
+    parser().set_formula(std::string(expression));
   }
   ~Compiled() { parser().ClearVar(); }
   Compiled(const Compiled&) = delete;
@@ -121,9 +122,9 @@ class Compiled {
 
  private:
   /// Making a parser costs far more than using it.
-  static mu::Parser& parser() {
-    thread_local mu::Parser instance = [] {
-      mu::Parser parser;
+  static FormulaParser& parser() {
+    thread_local FormulaParser instance = [] {
+      FormulaParser parser;
       parser.DefineConst("pi", std::numbers::pi);
       parser.DefineConst("e", std::numbers::e);
       return parser;
@@ -142,7 +143,7 @@ constexpr double mixes_units = std::numeric_limits<double>::quiet_NaN();
 /// b in f ~ λ^b, a multiple of 1/12; not a number when f is no power of λ.
 double exponent_of_growth(double at_one, double at_two, double at_three) {
   const auto rounded = [at_one](double grown, double lambda) {
-    const double exponent = std::log(grown / at_one) / std::log(lambda);
+    const double exponent = natural_logarithm(grown / at_one) / natural_logarithm(lambda);
     const double nearest = std::round(exponent * 12) / 12;
     return std::abs(exponent - nearest) < 1e-9 ? nearest : mixes_units;
   };
@@ -165,7 +166,7 @@ UnitFinding unit_at(Compiled& f, const std::vector<Quantity>& parameters, const 
     const auto grown = [&](double lambda) {
       std::vector<double> rescaled = numbers;
       for (size_t i = 0; i < parameters.size(); ++i)
-        if (parameters[i].unit) rescaled[i] *= std::pow(lambda, double{parameters[i].unit->exponents[base]});
+        if (parameters[i].unit) rescaled[i] *= any_power(lambda, double{parameters[i].unit->exponents[base]});
       return f(rescaled);
     };
     const double exponent = exponent_of_growth(at_one, grown(2), grown(3));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include "engine/solve/solver.h"
+#include "models/real/double_functions.h"
 
 namespace loopwright {
 namespace {
@@ -151,7 +152,7 @@ class Times {
 
   /// 1, 2 or 5 times a power of ten, near x from below.
   static Fraction round_time(double x) {
-    const double power = std::pow(10.0, std::floor(std::log10(x)));
+    const double power = any_power(10, std::floor(decimal_logarithm(x)));
     const double digit = x / power >= 5 ? 5 : x / power >= 2 ? 2 : 1;
     return to_fraction(digit * power).value_or(Fraction{1, 1000});
   }

@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <vector>
 #include <udunits2.h>
+#include "models/real/double_functions.h"
 
 namespace loopwright {
 namespace {
@@ -329,7 +330,7 @@ Unit operator*(const Unit& a, const Unit& b) {
 
 Unit power(const Unit& a, double exponent) {
   if (exponent == 1) return a;
-  Unit result{std::pow(a.scale, exponent), {}};
+  Unit result{any_power(a.scale, exponent), {}};
   for (size_t i = 0; i < result.exponents.size(); ++i)
     result.exponents[i] = exact_exponent(a.exponents[i] * exponent);
   return result;

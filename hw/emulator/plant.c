@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "elementary.h"
+
 static const double pi = 3.14159265358979323846;
 static const double gravity = 9.80665;
 static const double longest_step = 20e-6;
@@ -32,9 +34,9 @@ struct series {
 };
 
 static struct series series_of(const struct plant* p, double h) {
-  struct series s = {.current_share = p->current_lag > 0 ? 1 - exp(-h / p->current_lag) : 1};
+  struct series s = {.current_share = p->current_lag > 0 ? 1 - exponential_of(-h / p->current_lag) : 1};
   for (int n = 0; n < PLANT_HARMONICS; ++n) {
-    s.sine[n] = p->cogging[n] * cos(p->cogging_phase[n]), s.cosine[n] = p->cogging[n] * sin(p->cogging_phase[n]);
+    s.sine[n] = p->cogging[n] * cosine_of(p->cogging_phase[n]), s.cosine[n] = p->cogging[n] * sine_of(p->cogging_phase[n]);
     if (p->cogging[n] != 0) s.harmonics = n + 1;
   }
   return s;
@@ -43,7 +45,7 @@ static struct series series_of(const struct plant* p, double h) {
 static double cogging(const struct plant* p, const struct series* s) {
   if (s->harmonics == 0) return 0;
   const double angle = 2 * pi * p->position / p->pole_pitch;
-  const double sine = sin(angle), cosine = cos(angle);
+  const double sine = sine_of(angle), cosine = cosine_of(angle);
   double sum = 0, sine_n = sine, cosine_n = cosine;
   for (int n = 0; n < s->harmonics; ++n) {
     sum += s->sine[n] * sine_n + s->cosine[n] * cosine_n;
@@ -53,7 +55,7 @@ static double cogging(const struct plant* p, const struct series* s) {
   const double by_speed = 1 - p->cogging_slope * fabs(p->velocity);
   double along = 1;
   if (p->cogging_modulation != 0)
-    along += p->cogging_modulation * sin(2 * pi * p->position / p->modulation_period);
+    along += p->cogging_modulation * sine_of(2 * pi * p->position / p->modulation_period);
   return (by_speed > 0 ? by_speed : 0) * along * sum;
 }
 
@@ -61,8 +63,8 @@ static double friction(const struct plant* p) {
   const double v = p->velocity;
   double force = p->damping * v + p->drag * v * fabs(v);
   double level = p->coulomb + (v < 0 ? p->coulomb_backward : 0);
-  if (p->stribeck != 0) level += p->stribeck * exp(-(v / p->stribeck_speed) * (v / p->stribeck_speed));
-  if (level != 0) force += level * tanh(v / p->transition_speed);
+  if (p->stribeck != 0) level += p->stribeck * exponential_of(-(v / p->stribeck_speed) * (v / p->stribeck_speed));
+  if (level != 0) force += level * hyperbolic_tangent_of(v / p->transition_speed);
   return force;
 }
 
@@ -70,7 +72,7 @@ static void step(struct plant* p, const struct series* s, double command, double
   p->current += (command - p->current) * s->current_share;
   const double mass = p->mass + p->payload + (now >= p->load_at ? p->load_change : 0);
   const double force = p->force_constant * p->current - friction(p) - cogging(p, s) - p->offset -
-                       p->cable * (p->position - p->cable_center) - (p->tilt != 0 ? mass * gravity * sin(p->tilt) : 0);
+                       p->cable * (p->position - p->cable_center) - (p->tilt != 0 ? mass * gravity * sine_of(p->tilt) : 0);
   p->velocity += h * force / mass;
   p->position += h * p->velocity;
   if (p->position > p->stop_high && p->velocity > 0) p->position = p->stop_high, p->velocity *= -p->restitution;

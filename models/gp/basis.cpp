@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include "models/real/functions.h"
 
 namespace loopwright::gp {
 namespace {
@@ -61,7 +62,7 @@ std::vector<double> nodes_of(const Basis& basis) {
   if (basis.kind == Basis::Kind::levels) return basis.levels;
   std::vector<double> nodes;
   const double middle = 0.5 * (basis.low + basis.high), half = 0.5 * (basis.high - basis.low);
-  for (int a = 0; a < basis.size; ++a) nodes.push_back(middle + half * std::cos(pi * (a + 0.5) / basis.size));
+  for (int a = 0; a < basis.size; ++a) nodes.push_back(middle + half * cosine(pi * (a + 0.5) / basis.size));
   return nodes;
 }
 
@@ -118,8 +119,8 @@ void moment_functions(const Basis& basis, std::span<const double> values, int co
   for (size_t i = 0; i < n; ++i) {
     const double turns = values[i] / basis.period;
     const double angle = 2 * pi * (turns - std::nearbyint(turns));
-    row(1)[i] = std::cos(angle);
-    if (count > 2) row(2)[i] = std::sin(angle);
+    row(1)[i] = cosine(angle);
+    if (count > 2) row(2)[i] = sine(angle);
   }
   for (int k = 3; k + 1 < count; k += 2) {
     double *cosine = row(k), *sine = row(k + 1);

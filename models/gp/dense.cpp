@@ -3,6 +3,7 @@
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+#include "models/real/functions.h"
 
 namespace loopwright::gp {
 namespace {
@@ -33,9 +34,9 @@ Evidence dense_evidence(const Kernel& kernel, const Samples& samples) {
   const Eigen::Map<const VectorXd> y(samples.labels.data(), n);
   const VectorXd weights = root.solve(y);
   double log_determinant = 0;
-  for (Eigen::Index i = 0; i < n; ++i) log_determinant += 2 * std::log(root.matrixLLT()(i, i));
-  evidence.value =
-      -0.5 * y.dot(weights) - 0.5 * log_determinant - 0.5 * double(n) * std::log(2 * std::numbers::pi);
+  for (Eigen::Index i = 0; i < n; ++i) log_determinant += 2 * natural_logarithm(root.matrixLLT()(i, i));
+  evidence.value = -0.5 * y.dot(weights) - 0.5 * log_determinant -
+                   0.5 * double(n) * natural_logarithm(2 * std::numbers::pi);
 
   // ∂/∂θ = ½ tr((w wᵀ - K⁻¹) ∂K/∂θ); pairs i ≠ j count twice.
   const MatrixXd inverse = root.solve(MatrixXd::Identity(n, n));

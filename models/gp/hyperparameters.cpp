@@ -5,6 +5,7 @@
 #include <exception>
 #include <limits>
 #include <memory>
+#include "models/real/functions.h"
 
 namespace loopwright::gp {
 namespace {
@@ -24,7 +25,7 @@ struct Objective {
   double operator()(std::span<const double> logarithms, double* gradient) {
     ++evaluations;
     std::vector<double> parameters;
-    for (double x : logarithms) parameters.push_back(std::exp(x));
+    for (double x : logarithms) parameters.push_back(exponential(x));
     const Evidence e = evidence(with_parameters(kernel, parameters)), prior = log_prior(priors, parameters);
     const double value = e.value + prior.value;
     if (gradient)
@@ -44,7 +45,7 @@ struct Objective {
 Evidence log_prior(std::span<const Prior> priors, std::span<const double> parameters) {
   Evidence result;
   for (size_t i = 0; i < priors.size(); ++i) {
-    const double z = std::log(parameters[i] / priors[i].median) / priors[i].log_deviation;
+    const double z = natural_logarithm(parameters[i] / priors[i].median) / priors[i].log_deviation;
     result.value -= 0.5 * z * z;
     result.gradient.push_back(-z / priors[i].log_deviation);
   }
@@ -56,9 +57,9 @@ Fit fit(const EvidenceFunction& evidence, const Kernel& from, std::span<const Pr
   Objective objective{evidence, from, priors, {}};
   std::vector<double> x = parameters_of(from), low, high;
   for (size_t i = 0; i < x.size(); ++i) {
-    low.push_back(std::log(priors[i].low));
-    high.push_back(std::log(priors[i].high));
-    x[i] = std::clamp(std::log(x[i]), low[i], high[i]);
+    low.push_back(natural_logarithm(priors[i].low));
+    high.push_back(natural_logarithm(priors[i].high));
+    x[i] = std::clamp(natural_logarithm(x[i]), low[i], high[i]);
   }
   // SLSQP's first step is the gradient itself, which is 10⁶ for 10⁶ samples: scaled to 1.
   std::vector<double> slope(x.size());
@@ -102,8 +103,8 @@ std::vector<Prior> default_priors(const Kernel& kernel, const DataScale& scale) 
   const auto add = [&](double median, double log_deviation, double low = 0) {
     // Long lengths and large deviations are harmless, as the prior keeps them in check; short lengths are
     // not.
-    priors.push_back({median, log_deviation, std::max(low, median * std::exp(-4 * log_deviation)),
-                      median * std::exp(8 * log_deviation)});
+    priors.push_back({median, log_deviation, std::max(low, median * exponential(-4 * log_deviation)),
+                      median * exponential(8 * log_deviation)});
   };
   for (const Term& term : kernel.terms) {
     add(term.along[0].kind == Shape::Kind::constant ? 0.3 * s : s, 0.7);
@@ -127,8 +128,8 @@ Kernel at_medians(const Kernel& kernel, std::span<const Prior> priors) {
 }
 
 bool is_at_limit(const Prior& prior, double value) {
-  const double low = std::log(prior.low), high = std::log(prior.high);
-  const double margin = 1e-3 * (high - low), at = std::log(value);
+  const double low = natural_logarithm(prior.low), high = natural_logarithm(prior.high);
+  const double margin = 1e-3 * (high - low), at = natural_logarithm(value);
   return at < low + margin || at > high - margin;
 }
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 #include "models/gp/basis.h"
+#include "models/real/double_functions.h"
 
 namespace loopwright::gp {
 namespace {
@@ -17,7 +18,7 @@ double exponent(const Shape& shape, double r) {
       return 0.5 * square(r / shape.length);
     case Shape::Kind::periodic: {
       const double turns = r / shape.period;
-      return 2 * square(std::sin(std::numbers::pi * (turns - std::nearbyint(turns))) / shape.length);
+      return 2 * square(sine(std::numbers::pi * (turns - std::nearbyint(turns))) / shape.length);
     }
   }
   return 0;
@@ -38,11 +39,11 @@ template <class AnyKernel, class F> void for_each_parameter(AnyKernel& kernel, F
 
 }  // namespace
 
-double correlation(const Shape& shape, double r) { return std::exp(-exponent(shape, r)); }
+double correlation(const Shape& shape, double r) { return exponential(-exponent(shape, r)); }
 
 double length_slope(const Shape& shape, double r) {
   const double e = exponent(shape, r);
-  return 2 * e * std::exp(-e);
+  return 2 * e * exponential(-e);
 }
 
 double distance_slope(const Shape& shape, double r) {
@@ -54,7 +55,7 @@ double distance_slope(const Shape& shape, double r) {
     case Shape::Kind::periodic: {
       // d/dr 2 sin²(πr/τ)/ℓ² = 2π sin(2πr/τ)/(τℓ²)
       const double turns = r / shape.period;
-      return -2 * std::numbers::pi * std::sin(2 * std::numbers::pi * (turns - std::nearbyint(turns))) /
+      return -2 * std::numbers::pi * sine(2 * std::numbers::pi * (turns - std::nearbyint(turns))) /
              (shape.period * square(shape.length)) * correlation(shape, r);
     }
   }
@@ -75,7 +76,7 @@ double derivative_bound(const Shape& shape, int order) {
           periodic_weights(shape.length, size_for({Basis::Kind::fourier}, shape.length)).value;
       double sum = order == 0 ? weights[0] : 0;
       for (size_t i = 1; i < weights.size(); i += 2)
-        sum += weights[i] * std::pow(2 * std::numbers::pi * double((i + 1) / 2) / shape.period, 2 * order);
+        sum += weights[i] * any_power(2 * std::numbers::pi * double((i + 1) / 2) / shape.period, 2 * order);
       return std::sqrt(sum);
     }
   }
@@ -84,7 +85,7 @@ double derivative_bound(const Shape& shape, int order) {
 
 double covariance(const Term& term, const Point& a, const Point& b) {
   return square(term.deviation) *
-         std::exp(-exponent(term.along[0], a[0] - b[0]) - exponent(term.along[1], a[1] - b[1]));
+         exponential(-exponent(term.along[0], a[0] - b[0]) - exponent(term.along[1], a[1] - b[1]));
 }
 
 double covariance(const Kernel& kernel, const Point& a, const Point& b) {

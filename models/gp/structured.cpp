@@ -2,6 +2,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <numbers>
+#include "models/real/functions.h"
 
 namespace loopwright::gp {
 namespace {
@@ -115,7 +116,7 @@ void to_nodes(MatrixXd& x, Index begin, const std::array<Basis, 2>& bases) {
     MatrixXd cardinal(n, n);  // of node a in row a
     for (int a = 0; a < n; ++a)
       for (int k = 0; k < n; ++k)
-        cardinal(a, k) = (k == 0 ? 1.0 : 2.0) / n * std::cos(std::numbers::pi * k * (a + 0.5) / n);
+        cardinal(a, k) = (k == 0 ? 1.0 : 2.0) / n * cosine(std::numbers::pi * k * (a + 0.5) / n);
     if (d == 0)
       for (Index j = 0; j < n1; ++j) {
         const auto rows = Eigen::seqN(begin + j, n0, n1);
@@ -224,8 +225,8 @@ Solution::Solution(const Statistics& statistics, const Gram& gram, const Kernel&
   const auto lower = root.matrixL();
   const VectorXd u = lower.solve(projected);
   quadratic = (statistics.label_square - u.squaredNorm() / noise_square) / noise_square;
-  log_determinant = double(statistics.count) * std::log(noise_square);
-  for (Index i = 0; i < rank; ++i) log_determinant += 2 * std::log(root.matrixLLT()(i, i));
+  log_determinant = double(statistics.count) * natural_logarithm(noise_square);
+  for (Index i = 0; i < rank; ++i) log_determinant += 2 * natural_logarithm(root.matrixLLT()(i, i));
   whitened = lower.transpose().solve(u) / noise_square;
   beta = (gram.b - gl * whitened) / noise_square;
   // y - mean = y - ΦL whitened, and LᵀGL = σ_n² (B - I)
@@ -299,8 +300,8 @@ Evidence StructuredEvidence::operator()(const Kernel& kernel) {
     evidence.gradient.assign(parameters_of(kernel).size(), 0.0);
     return evidence;
   }
-  evidence.value =
-      -0.5 * (s.quadratic + s.log_determinant + double(statistics.count) * std::log(2 * std::numbers::pi));
+  evidence.value = -0.5 * (s.quadratic + s.log_determinant +
+                           double(statistics.count) * natural_logarithm(2 * std::numbers::pi));
   // ∂/∂θ = ½ (βᵀ ∂S β - tr(Z ∂S)); for ∂S = 2S this is |Lᵀβ|² - tr(I - B⁻¹), free of cancellation.
   for (size_t t = 0; t < s.terms.size(); ++t) {
     const TermMatrix& term = s.terms[t];

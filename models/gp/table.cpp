@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include "models/real/double_functions.h"
 
 namespace loopwright::gp {
 namespace {
@@ -73,20 +74,20 @@ MeanTable::TermTable MeanTable::tabulate(const Posterior& posterior, size_t inde
       axis.high = shape.period;
     } else {
       const double tail = std::min(1.0, 0.1 * tolerance / reach);
-      const double margin = shape.length * std::sqrt(-2 * std::log(tail));
+      const double margin = shape.length * std::sqrt(-2 * natural_logarithm(tail));
       axis.low = posterior.trained()[d].low - margin;
       axis.high = posterior.trained()[d].high + margin;
       bound_ += tail * reach;
     }
     // Half the tolerance for the interpolation, shared by the axes of a pair.
     const double curvature = norm * derivative_bound(shape, 4) * (is_pair ? 2 : 1);
-    const double step = std::pow(384 * 0.5 * tolerance / std::max(curvature, 1e-300), 0.25);
+    const double step = any_power(384 * 0.5 * tolerance / std::max(curvature, 1e-300), 0.25);
     const double cells = std::ceil((axis.high - axis.low) / step);
     axis.cells = int(std::clamp(cells, 1.0, double(is_pair ? most_cells_of_pair : most_cells_alone)));
     axis.step = (axis.high - axis.low) / axis.cells;
     axis.per_step = 1 / axis.step;
   }
-  const auto error = [&](size_t d, double m4) { return std::pow(table.axis[d].step, 4) / 384 * m4; };
+  const auto error = [&](size_t d, double m4) { return any_power(table.axis[d].step, 4) / 384 * m4; };
   const auto derivative = [&](int a, int b) {
     return norm * derivative_bound(term.along[0], a) * derivative_bound(term.along[1], b);
   };

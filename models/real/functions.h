@@ -1,11 +1,12 @@
 /// Elementary functions of a simulation's scalar, with the same bits for double and for every lane width.
 ///
-/// Own polynomials instead of libm: libm has other bits than vector libraries, and serves one lane at a time.
-/// All reduce the argument to a small interval (W. J. Cody, W. Waite, Software Manual for the Elementary
-/// Functions, 1980) and evaluate a near-minimax polynomial there. Errors are in units in the last place (ulp)
-/// of the result, the greatest seen over millions of arguments; the tests hold the bounds. NaN gives NaN
-/// everywhere; infinities give what libm gives.
+/// Own polynomials instead of libm: its bits depend on the processor and differ from vector libraries', and
+/// it serves one lane at a time. All reduce the argument to a small interval (W. J. Cody, W. Waite, Software
+/// Manual for the Elementary Functions, 1980) and evaluate a near-minimax polynomial there. Errors are in
+/// units in the last place (ulp) of the result, the greatest seen over millions of arguments; the tests hold
+/// the bounds. NaN gives NaN everywhere; infinities give what libm gives.
 #pragma once
+#include "models/real/far_angle.h"
 #include "models/real/real.h"
 
 namespace loopwright {
@@ -57,39 +58,44 @@ template <class Real> LW_INLINE Real sine_of_remainder(const Real& x, const Real
   const Real y = r + r * z * polynomial<sine_series>(z);
   return lesser(Real(1.0), greater(Real(-1.0), y));  // never rounded beyond ±1
 }
-// Static, as they are not inlined: see LW_INLINE.
-template <class Real> [[gnu::noinline, gnu::cold]] static Real sine_far(Real x, Real y) {
-  for (int l = 0; l < lanes_of<Real>; ++l) {
-    if (!(__builtin_fabs(lane(x, l)) <= sine_limit)) set_lane(y, l, __builtin_sin(lane(x, l)));
-  }
-  return y;
+/// sin(x + quarters π/2) for x > 1.
+LW_INLINE double sine_of_far(double x, int quarters) {
+  if (!(x < infinity)) return __builtin_nan("");
+  const FarAngle angle = far_angle(x);
+  const int turn = (angle.quarters + quarters) & 3;
+  const double y = turn & 1 ? sine_of_remainder(-absolute(angle.rest), -0.5)  // a cosine: even
+                            : sine_of_remainder(angle.rest, 0.0);
+  return turn & 2 ? -y : y;
 }
-template <class Real> [[gnu::noinline, gnu::cold]] static Real cosine_far(Real x, Real y) {
+// Static, as they are not inlined: see LW_INLINE.
+template <int quarters, class Real> [[gnu::noinline, gnu::cold]] static Real with_far_lanes(Real x, Real y) {
   for (int l = 0; l < lanes_of<Real>; ++l) {
-    if (!(__builtin_fabs(lane(x, l)) <= sine_limit)) set_lane(y, l, __builtin_cos(lane(x, l)));
+    const double angle = absolute(lane(x, l));
+    if (!(angle <= sine_limit)) set_lane(y, l, sine_of_far(angle, quarters));
   }
   return y;
 }
 
 }  // namespace detail
 
-/// sin x, x in rad. Error ≤ 3 ulp for |x| ≤ 10⁶; libm, lane by lane, beyond. Odd to the bit; |sin x| ≤ 1.
+/// sin x, x in rad. Error ≤ 3 ulp; lane by lane for |x| > 10⁶. Odd to the bit; |sin x| ≤ 1.
 template <Scalar Real> LW_INLINE Real sine(const Real& x) {
   const Real magnitude = absolute(x);
   const Real half_turns = detail::nearest_integer(magnitude * 0x1.45f306dc9c883p-2);
   const Real y = negate_if_odd(detail::sine_of_remainder(magnitude, half_turns), half_turns);
   if (any(magnitude > detail::sine_limit)) [[unlikely]]
-    return register_by_register([](auto a, auto b) { return detail::sine_far(a, b); }, x, flip_sign(y, x));
+    return flip_sign(
+        register_by_register([](auto a, auto b) { return detail::with_far_lanes<0>(a, b); }, x, y), x);
   return flip_sign(y, x);
 }
 
-/// cos x = sin(x + π/2), x in rad. Error ≤ 3 ulp for |x| ≤ 10⁶; libm, lane by lane, beyond. Even; at most 1.
+/// cos x = sin(x + π/2), x in rad. Error ≤ 3 ulp; lane by lane for |x| > 10⁶. Even; at most 1.
 template <Scalar Real> LW_INLINE Real cosine(const Real& x) {
   const Real magnitude = absolute(x);
   const Real half_turns = detail::nearest_integer(magnitude * 0x1.45f306dc9c883p-2 + 0.5);
   const Real y = negate_if_odd(detail::sine_of_remainder(magnitude, half_turns - 0.5), half_turns);
   if (any(magnitude > detail::sine_limit)) [[unlikely]]
-    return register_by_register([](auto a, auto b) { return detail::cosine_far(a, b); }, x, y);
+    return register_by_register([](auto a, auto b) { return detail::with_far_lanes<1>(a, b); }, x, y);
   return y;
 }
 

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "hw/emulator/elementary.h"
+
 const char* const controller_names[CONTROLLERS] = {"pd_with_observer", "cascade"};
 
 static const double two_pi = 6.283185307179586;
@@ -17,14 +19,15 @@ double filter_step(Filter* filter, double input) {
 
 /// Kp + Kd (1 − 1/z)/T behind a first-order low-pass of 150 Hz.
 static Filter pd_filter(double proportional, double derivative, double sample_time_s) {
-  const double pole = exp(-two_pi * 150 * sample_time_s), slope = derivative * (1 - pole) / sample_time_s;
+  const double pole = exponential_of(-two_pi * 150 * sample_time_s),
+               slope = derivative * (1 - pole) / sample_time_s;
   return (Filter){.numerator = {proportional + slope, -proportional * pole - slope},
                   .denominator = {1, -pole}};
 }
 
 /// (1 − q)²/(1 − q/z)² times b0 + b1/z + b2/z².
 static Filter behind_low_pass(double frequency_hz, double sample_time_s, double b0, double b1, double b2) {
-  const double q = exp(-two_pi * frequency_hz * sample_time_s), gain = (1 - q) * (1 - q);
+  const double q = exponential_of(-two_pi * frequency_hz * sample_time_s), gain = (1 - q) * (1 - q);
   return (Filter){.numerator = {gain * b0, gain * b1, gain * b2}, .denominator = {1, -2 * q, q * q}};
 }
 

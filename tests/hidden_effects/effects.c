@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "hw/emulator/elementary.h"
+
 const char* const effect_names[EFFECTS] = {"inertia",
                                            "viscous_friction",
                                            "coulomb_friction",
@@ -70,8 +72,8 @@ bool effects_clash(Effect one, Effect other) {
 
 static void write_periodic(FILE* file, const char* amplitude, Periodic term) {
   fprintf(file, "{\"%s\": %.9g, \"pitch\": %.9g, \"sine\": %.9g, \"cosine\": %.9g}", amplitude,
-          term.amplitude, term.pitch_m, term.amplitude * cos(term.phase_rad),
-          term.amplitude * sin(term.phase_rad));
+          term.amplitude, term.pitch_m, term.amplitude * cosine_of(term.phase_rad),
+          term.amplitude * sine_of(term.phase_rad));
 }
 
 void effect_write(FILE* file, Effect effect, const Physics* p) {
@@ -136,8 +138,7 @@ void effect_write(FILE* file, Effect effect, const Physics* p) {
       const double frequency = sqrt(p->coupling_n_per_m / p->load_kg);
       fprintf(file,
               "{\"load_mass\": %.9g, \"gap\": %.9g, \"contact_frequency\": %.9g, \"contact_damping\": %.9g}",
-              p->load_kg, p->gap_m, frequency / two_pi,
-              p->coupling_n_s_per_m / (2 * frequency * p->load_kg));
+              p->load_kg, p->gap_m, frequency / two_pi, p->coupling_n_s_per_m / (2 * frequency * p->load_kg));
       break;
     }
     case FLEXIBLE_MODE: {

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "hw/emulator/elementary.h"
+
 const char* const trajectory_names[TRAJECTORIES] = {"paper",     "many_speeds", "constant_speeds",
                                                     "multisine", "forward",     "held_out"};
 
@@ -151,17 +153,18 @@ static Wanted on_piece(const Piece* piece, double time_s) {
   const double t = fmin(time_s - piece->start_s, piece->duration_s),
                change = piece->to_m_per_s - piece->from_m_per_s;
   const double w = pi / piece->duration_s;
-  return (Wanted){piece->position_m + piece->from_m_per_s * t + 0.5 * change * (t - sin(w * t) / w),
-                  piece->from_m_per_s + 0.5 * change * (1 - cos(w * t)), 0.5 * change * w * sin(w * t)};
+  return (Wanted){piece->position_m + piece->from_m_per_s * t + 0.5 * change * (t - sine_of(w * t) / w),
+                  piece->from_m_per_s + 0.5 * change * (1 - cosine_of(w * t)),
+                  0.5 * change * w * sine_of(w * t)};
 }
 
 /// Fades a sine in and out: e(t) = (1 − cos(π t/1 s))/2 at both ends, with its two derivatives.
 static void fade(const Motion* motion, double time_s, double envelope[3]) {
   const double since = time_s - motion->sines_start_s, left = motion->sines_end_s - time_s;
   const double t = fmin(since, left), direction = since < left ? 1.0 : -1.0;
-  envelope[0] = t >= 1 ? 1 : t <= 0 ? 0 : 0.5 * (1 - cos(pi * t));
-  envelope[1] = t >= 1 || t <= 0 ? 0 : direction * 0.5 * pi * sin(pi * t);
-  envelope[2] = t >= 1 || t <= 0 ? 0 : 0.5 * pi * pi * cos(pi * t);
+  envelope[0] = t >= 1 ? 1 : t <= 0 ? 0 : 0.5 * (1 - cosine_of(pi * t));
+  envelope[1] = t >= 1 || t <= 0 ? 0 : direction * 0.5 * pi * sine_of(pi * t);
+  envelope[2] = t >= 1 || t <= 0 ? 0 : 0.5 * pi * pi * cosine_of(pi * t);
 }
 
 Wanted motion_at(const Motion* motion, double time_s) {
@@ -173,7 +176,7 @@ Wanted motion_at(const Motion* motion, double time_s) {
   for (int j = 0; j < motion->sine_count; ++j) {
     const Sine* sine = &motion->sines[j];
     const double w = 2 * pi * sine->frequency_hz, angle = w * time_s + sine->phase_rad;
-    const double y = sine->amplitude_m * sin(angle), dy = sine->amplitude_m * w * cos(angle),
+    const double y = sine->amplitude_m * sine_of(angle), dy = sine->amplitude_m * w * cosine_of(angle),
                  ddy = -w * w * y;
     wanted.position_m += envelope[0] * y;
     wanted.velocity_m_per_s += envelope[0] * dy + envelope[1] * y;

@@ -3,14 +3,18 @@
 #include <math.h>
 #include <string.h>
 
+#include "hw/emulator/elementary.h"
+
 static const double two_pi = 6.283185307179586;
 
+static double square(double x) { return x * x; }
+
 double periodic(Periodic term, double x) {
-  return term.amplitude == 0 ? 0 : term.amplitude * sin(two_pi * x / term.pitch_m + term.phase_rad);
+  return term.amplitude == 0 ? 0 : term.amplitude * sine_of(two_pi * x / term.pitch_m + term.phase_rad);
 }
 
 static double drifted(const Physics* p, DriftOf what, double t) {
-  return p->drift == 0 || p->drift_of != what ? 0 : p->drift * (1 - exp(-t / p->drift_time_s));
+  return p->drift == 0 || p->drift_of != what ? 0 : p->drift * (1 - exponential_of(-t / p->drift_time_s));
 }
 
 double plant_motor_force(const Physics* p, double f, double x, double t) {
@@ -24,12 +28,13 @@ double plant_resisting_force(const Physics* p, double x, double v, double t) {
   force +=
       periodic(p->nominal_cogging, x) + periodic(p->cogging, x) + fabs(v) * periodic(p->moving_cogging, x);
   force += p->direction_damping_n_s_per_m * fabs(v) + p->quadratic_n_s2_per_m2 * v * fabs(v) + p->offset_n;
-  if (p->eddy_n_s_per_m != 0) force += p->eddy_n_s_per_m * v / (1 + pow(v / p->eddy_speed_m_per_s, 2));
-  force += p->spring_n_per_m * (x - p->spring_rest_m) + p->cubic_n_per_m3 * pow(x - p->cubic_rest_m, 3);
+  if (p->eddy_n_s_per_m != 0) force += p->eddy_n_s_per_m * v / (1 + square(v / p->eddy_speed_m_per_s));
+  force += p->spring_n_per_m * (x - p->spring_rest_m) +
+           p->cubic_n_per_m3 * square(x - p->cubic_rest_m) * (x - p->cubic_rest_m);
   if (p->stop_n_per_m != 0) force += p->stop_n_per_m * fmax(0, x - p->stop_m);
   force += drifted(p, DRIFT_OF_DAMPING, t) * v + drifted(p, DRIFT_OF_OFFSET, t);
-  if (p->bump_n != 0) force += p->bump_n * exp(-0.5 * pow((x - p->bump_m) / p->bump_width_m, 2));
-  if (p->hum_n != 0) force += p->hum_n * sin(two_pi * p->hum_hz * t + p->hum_rad);
+  if (p->bump_n != 0) force += p->bump_n * exponential_of(-0.5 * square((x - p->bump_m) / p->bump_width_m));
+  if (p->hum_n != 0) force += p->hum_n * sine_of(two_pi * p->hum_hz * t + p->hum_rad);
   if (p->step_n != 0 && t >= p->step_s) force += p->step_n;
   return force + p->coupled_n_s_per_m2 * (x - p->coupled_rest_m) * v;
 }
@@ -39,7 +44,8 @@ double plant_dry_friction(const Physics* p, double speed, double x) {
   if (p->uneven_n != 0) level += p->uneven_n * fmax(0, x / p->uneven_m);
   const Stribeck* s = &p->stribeck;
   if (s->level_n != 0)
-    level += s->level_n + (s->static_level_n - s->level_n) * exp(-pow(speed / s->speed_m_per_s, s->exponent));
+    level += s->level_n + (s->static_level_n - s->level_n) *
+                              exponential_of(-power_of(speed / s->speed_m_per_s, s->exponent));
   return level;
 }
 

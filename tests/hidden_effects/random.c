@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "hw/emulator/elementary.h"
+
 static uint64_t next(Random* random) {
   uint64_t z = random->state += 0x9e3779b97f4a7c15u;
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -23,12 +25,12 @@ double random_uniform(Random* random, double low, double high) {
 }
 
 double random_log_uniform(Random* random, double low, double high) {
-  return low * pow(high / low, random_unit(random));
+  return low * power_of(high / low, random_unit(random));
 }
 
 double random_normal(Random* random) {
-  const double radius = sqrt(-2.0 * log(random_unit(random)));
-  return radius * cos(6.283185307179586 * random_unit(random));
+  const double radius = sqrt(-2.0 * logarithm_of(random_unit(random)));
+  return radius * cosine_of(6.283185307179586 * random_unit(random));
 }
 
 int random_below(Random* random, int count) { return (int)(random_unit(random) * count); }

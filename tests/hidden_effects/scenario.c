@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hw/emulator/elementary.h"
+
 const char* const kind_names[KINDS] = {"clean", "hidden", "outside"};
 const double sample_time_s = 0.001;
 
@@ -61,7 +63,7 @@ Record record_make(const Scenario* scenario, const Physics* physics, const Motio
     plant_sample(&plant, record.force_n[k], white + coloured);
     record.delayed_n[k] = plant_delayed_input(&plant);
     if (noise) {
-      const double memory = exp(-sample_time_s / noise->coloured_s);
+      const double memory = exponential_of(-sample_time_s / noise->coloured_s);
       coloured = memory * coloured + sqrt(1 - memory * memory) * noise->coloured_n * random_normal(&random);
     }
   }
@@ -109,7 +111,8 @@ static double own_force_rms(Effect effect, const Physics* before, const Physics*
   int count = 0;
   for (int k = 0; k + 1 < record->count; ++k) {
     if (fabs(record->true_velocity_m_per_s[k]) < moving_m_per_s) continue;
-    sum += pow(own_force(effect, before, after, record, k), 2);
+    const double force = own_force(effect, before, after, record, k);
+    sum += force * force;
     ++count;
   }
   return count ? sqrt(sum / count) : 0;
@@ -126,8 +129,10 @@ static bool in_control(const Record* record) {
 /// Noise must not ring through the loop: nobody would run such an axis.
 static bool well_damped(const Record* with_noise, const Record* without) {
   double sum = 0;
-  for (int k = 0; k < without->count; ++k)
-    sum += pow(with_noise->true_position_m[k] - without->true_position_m[k], 2);
+  for (int k = 0; k < without->count; ++k) {
+    const double apart = with_noise->true_position_m[k] - without->true_position_m[k];
+    sum += apart * apart;
+  }
   return sqrt(sum / without->count) < 1e-4;
 }
 

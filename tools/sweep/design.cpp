@@ -1,11 +1,11 @@
 #include "tools/sweep/design.h"
 #include <algorithm>
 #include <bit>
-#include <boost/math/special_functions/erf.hpp>
 #include <boost/random/sobol.hpp>
 #include <cmath>
-#include <numbers>
+#include "models/random/normal_quantile.h"
 #include "models/random/philox.h"
+#include "models/real/double_functions.h"
 
 namespace loopwright {
 namespace {
@@ -116,9 +116,9 @@ std::vector<double> Design::sobol(int64_t sample) const {
 double Design::quantile(const Axis& axis, double u) {
   switch (axis.kind) {
     case Axis::Kind::logarithmic:
-      return axis.low * std::pow(axis.high / axis.low, u);
+      return axis.low * any_power(axis.high / axis.low, u);
     case Axis::Kind::normal:
-      return axis.low - axis.high * std::numbers::sqrt2 * boost::math::erfc_inv(2 * u);
+      return axis.low + axis.high * normal_quantile(u);
     default:
       return axis.low + (axis.high - axis.low) * u;
   }

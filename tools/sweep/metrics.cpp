@@ -1,8 +1,8 @@
 #include "tools/sweep/metrics.h"
 #include <fmt/format.h>
-#include <muParser.h>
 #include <algorithm>
 #include <cmath>
+#include "engine/diagram/formula_parser.h"
 #include "engine/json/reader.h"
 
 namespace loopwright {
@@ -16,14 +16,15 @@ bool is_expression(const std::string& signal) { return signal.starts_with('='); 
 std::vector<std::string> ports_of(const Metric& metric, Problems& problems) {
   if (!is_expression(metric.signal)) return {metric.signal};
   try {
-    mu::Parser parser;
+    FormulaParser parser;
     parser.DefineNameChars(name_characters);
-    parser.SetExpr(metric.signal.substr(1));
+    parser.set_formula(metric.signal.substr(1));
     std::vector<std::string> ports;
     for (const auto& [name, value] : parser.GetUsedVar()) ports.push_back(name);
     return ports;
   } catch (const mu::ParserError& error) {
-    problems.error(metric.place, metric.pointer, "", "the expression cannot be read").found = error.GetMsg();
+    problems.error(metric.place, metric.pointer, "", "the expression cannot be read").found =
+        FormulaParser::message_of(error);
     return {};
   }
 }
@@ -82,7 +83,7 @@ struct MetricBank::Accumulator {
     Problems none;
     const auto ports = ports_of(metric, none);
     for (size_t i = 0; i < ports.size(); ++i) parser.DefineVar(ports[i], &arguments[i]);
-    parser.SetExpr(metric.signal.substr(1));
+    parser.set_formula(metric.signal.substr(1));
   }
 
   void reset() {
@@ -177,7 +178,7 @@ struct MetricBank::Accumulator {
   std::vector<double> signal, a, b;
   std::vector<std::vector<double>> kept;
   std::vector<double> arguments;
-  mu::Parser parser;
+  FormulaParser parser;
 };
 
 MetricBank::MetricBank(const Sweep& sweep, const Observed& observed, int lanes) {

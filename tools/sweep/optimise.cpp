@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlopt.hpp>
 #include "engine/json/reader.h"
+#include "models/real/double_functions.h"
 #include "tools/sweep/lane_group.h"
 
 namespace loopwright {
@@ -47,7 +48,7 @@ class Search {
     double from, to;
     bool is_logarithmic;
     double at(double u) const {
-      return is_logarithmic ? from * std::pow(to / from, u) : from + (to - from) * u;
+      return is_logarithmic ? from * any_power(to / from, u) : from + (to - from) * u;
     }
   };
 

@@ -4,6 +4,7 @@
 #include "engine/json/file_kind.h"
 #include "engine/json/json.h"
 #include "engine/json/reader.h"
+#include "models/real/double_functions.h"
 #include "tools/sweep/metric_reader.h"
 
 namespace loopwright {
@@ -160,7 +161,7 @@ class Loader {
     const int64_t count = whole(*member, 2, 1e6);
     for (int64_t i = 0; i < count && !problems_.has_errors(); ++i) {
       const double share = double(i) / double(count - 1);
-      const double value = is_logarithmic ? from * std::pow(to / from, share) : from + (to - from) * share;
+      const double value = is_logarithmic ? from * any_power(to / from, share) : from + (to - from) * share;
       axis.values.push_back(i == count - 1 ? to : value);
     }
   }
