@@ -1,8 +1,9 @@
 #!/bin/bash
-# Sets up, builds and runs all tests: optimised, then under the address and undefined-behaviour sanitizers.
+# Sets up, builds and runs all tests: optimised, then those of what reads files and drives machines under sanitizers.
 #   tools/test.sh            everything
 #   tools/test.sh --quick    without the sanitizers
-# Measured data is looked for in $LOOPWRIGHT_DATA (default ../shared/data); tests that need it say when it is absent.
+# Ends with where the time went. Measured data is looked for in $LOOPWRIGHT_DATA (default ../shared/data); tests that need
+# it say when it is absent.
 set -euo pipefail
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
 
@@ -10,19 +11,41 @@ quick=
 case ${1-} in
   '') ;;
   --quick) quick=1 ;;
-  *) sed -n '2,5s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
+  *) sed -n '2,6s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
 esac
 
 export LOOPWRIGHT_DATA=${LOOPWRIGHT_DATA:-$PWD/../shared/data}
 jobs=$(nproc)
+times=()
 
-tools/setup.sh
+# What it does, then the command, timed.
+timed() {
+  local name=$1 begin=$SECONDS code=0
+  shift
+  "$@" || code=$?
+  times+=("$(printf '%7d s  %s' $((SECONDS - begin)) "$name")")
+  return $code
+}
+say_times() {
+  echo "== where the time went, $jobs processors"
+  printf '%s\n' "${times[@]}"
+  for preset in release sanitize; do
+    [ -d "build/$preset/test_times" ] || continue
+    echo "-- the longest tests of $preset"
+    python3 tests/slowest.py "build/$preset"
+  done
+}
+trap say_times EXIT
+
+configure() { cmake --preset "$1" >build/cmake_"$1".log 2>&1 || { cat build/cmake_"$1".log; return 1; }; }
 run() {
   echo "== $1"
-  cmake --preset "$1" >build/cmake_"$1".log 2>&1 || { cat build/cmake_"$1".log; exit 1; }
-  cmake --build --preset "$1" -- -k 0
-  ctest --preset "$1" --parallel "$jobs"
+  timed "configure $1" configure "$1"
+  timed "build $1" cmake --build --preset "$1" -- -k 0
+  rm -rf "build/$1/test_times"
+  timed "test $1" ctest --preset "$1" --parallel "$jobs"
 }
+timed "set up" tools/setup.sh
 mkdir -p build
 run release
 [ -n "$quick" ] || run sanitize

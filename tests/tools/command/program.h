@@ -17,7 +17,7 @@ namespace loopwright {
 /// The program of this build, or the one that $LOOPWRIGHT_PROGRAM names.
 inline std::string program() {
   const char* other = std::getenv("LOOPWRIGHT_PROGRAM");
-  return other ? other : LOOPWRIGHT_BINARY "/bin/loopwright";
+  return other ? other : LOOPWRIGHT_PROGRAM;
 }
 
 struct Outcome {

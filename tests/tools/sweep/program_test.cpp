@@ -11,7 +11,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const std::string program = LOOPWRIGHT_BINARY "/bin/loopwright";
+const std::string program = LOOPWRIGHT_PROGRAM;
 
 int exit_code(const std::string& command) {
   const int status = std::system((command + " >/dev/null 2>&1").c_str());

@@ -1,0 +1,54 @@
+// The functions that the emulated motor and the judge of the diagnosis have in the place of the C library's.
+#include <gtest/gtest.h>
+#include <cmath>
+#include <limits>
+#include <random>
+
+extern "C" {
+#include "hw/emulator/elementary.h"
+}
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// The greatest error between low and high, in units in the last place.
+double worst(double (*own)(double), long double (*reference)(long double), double low, double high) {
+  std::mt19937_64 generator(1);
+  double worst = 0;
+  for (int i = 0; i < 200000; ++i) {
+    const double x = low + (high - low) * 0x1p-53 * double(generator() >> 11);
+    const long double expected = reference(x);
+    const double size = std::fabs(double(expected));
+    worst = std::max(worst, double(std::fabs(own(x) - expected)) / (std::nextafter(size, infinity) - size));
+  }
+  return worst;
+}
+
+TEST(Elementary, IsWithinThreeUlp) {
+  for (const double limit : {1.0, 100.0, 1e6}) {
+    EXPECT_LE(worst(sine_of, sinl, -limit, limit), 3);
+    EXPECT_LE(worst(cosine_of, cosl, -limit, limit), 3);
+  }
+  for (const double limit : {1e-6, 0.3, 700.0}) EXPECT_LE(worst(exponential_of, expl, -limit, limit), 3);
+  for (const double limit : {1e-6, 0.3, 30.0})
+    EXPECT_LE(worst(hyperbolic_tangent_of, tanhl, -limit, limit), 3);
+  for (const double limit : {1.0, 2.0, 1e6}) EXPECT_LE(worst(logarithm_of, logl, 0.5 / limit, limit), 3);
+}
+
+TEST(Elementary, TakesTheEndsOfItsDomains) {
+  EXPECT_EQ(sine_of(0), 0);
+  EXPECT_EQ(cosine_of(0), 1);
+  EXPECT_EQ(exponential_of(0), 1);
+  EXPECT_EQ(exponential_of(-infinity), 0);
+  EXPECT_EQ(exponential_of(infinity), infinity);
+  EXPECT_EQ(hyperbolic_tangent_of(infinity), 1);
+  EXPECT_EQ(hyperbolic_tangent_of(-infinity), -1);
+  EXPECT_EQ(logarithm_of(1), 0);
+  EXPECT_EQ(logarithm_of(0), -infinity);
+  EXPECT_EQ(power_of(0, 1.5), 0);
+  EXPECT_EQ(power_of(1, 1.5), 1);
+  EXPECT_TRUE(std::isnan(sine_of(infinity)) && std::isnan(hyperbolic_tangent_of(NAN)));
+}
+
+}  // namespace
