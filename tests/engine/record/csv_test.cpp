@@ -51,6 +51,23 @@ void expect_round_trip(const Recording& recording) {
   EXPECT_EQ(folder.count_files(), 1u);
 }
 
+TEST(CsvNumbers, CountsAreWrittenOut) {
+  const auto written = [](double value) {
+    std::string text;
+    append_number(text, value);
+    return text;
+  };
+  EXPECT_EQ(written(100000), "100000") << "not 1e+05";
+  EXPECT_EQ(written(999999999999999), "999999999999999");
+  EXPECT_EQ(written(-2e6), "-2000000");
+  EXPECT_EQ(written(0), "0");
+  EXPECT_EQ(written(-0.0), "-0");
+  EXPECT_EQ(written(1e15), "1e+15");
+  EXPECT_EQ(written(0.1), "0.1");
+  EXPECT_EQ(written(1e-7), "1e-07");
+  EXPECT_EQ(written(123456.5), "123456.5");
+}
+
 TEST(CsvRoundTrip, RestoresRandomBitPatternsExactly) {
   std::mt19937_64 random(1);
   Recording recording;

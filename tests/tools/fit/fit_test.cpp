@@ -90,6 +90,19 @@ TEST_F(Fitted, TheFileGetsNewNumbersInItsOwnUnitsAndNothingElse) {
   EXPECT_NEAR(c.signals[0].rmse, 1e-3, 1e-4);
 }
 
+TEST_F(Fitted, WrongNamesInExperimentAndParametersAreToldAtOnce) {
+  folder.with("wrong.json", R"({"loopwright": 1, "data": "data.csv", "time": "t",
+    "drive": {"moter.u": {"column": "v", "unit": "N"}}, "compare": {"mass.positon": {"column": "x", "unit": "m"}}})");
+  try {
+    fit(folder.path("axis.json"), folder.path("wrong.json"), {"mas"});
+    FAIL() << "was not refused";
+  } catch (const InputError& error) {
+    for (const char* part : {"did you mean \"motor\"?", "the data have no column \"v\"", "did you mean \"mass.position\"?",
+                             "did you mean \"mass\"?"})
+      EXPECT_TRUE(has(error.what(), part)) << part << "\n" << error.what();
+  }
+}
+
 TEST_F(Fitted, WhatTheRecordDoesNotTellIsSaid) {
   const Fit idle = fitted({"mass", "spare"});
   EXPECT_FALSE(idle.parameters[1].is_determined);

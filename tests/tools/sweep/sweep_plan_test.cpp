@@ -2,6 +2,7 @@
 #include <cmath>
 #include <set>
 #include "tests/tools/sweep/sweep_testing.h"
+#include "tools/sweep/sweep_page.h"
 #include "tools/sweep/sensitivity.h"
 #include "tools/sweep/tunables.h"
 
@@ -154,6 +155,24 @@ TEST(Sensitivity, FindsTheIndicesOfTheIshigamiFunction) {
   EXPECT_NEAR(effects[0].total.value(), 0.5576, 0.03);
   EXPECT_NEAR(effects[1].total.value(), 0.4424, 0.03);
   EXPECT_NEAR(effects[2].total.value(), 0.2437, 0.03);
+  const double first_order[] = {0.3139, 0.4424, 0.0}, total[] = {0.5576, 0.4424, 0.2437};
+  for (int a = 0; a < 3; ++a) {  // the stated errors are those of the estimates, neither wishes nor fears
+    EXPECT_GT(effects[size_t(a)].first_order_error, 0.005);
+    EXPECT_LT(effects[size_t(a)].first_order_error, 0.06);
+    EXPECT_NEAR(effects[size_t(a)].first_order, first_order[a], 3 * effects[size_t(a)].first_order_error);
+    EXPECT_NEAR(effects[size_t(a)].total.value(), total[a], 3 * effects[size_t(a)].total_error);
+  }
+  bool is_shown = false;
+  for (const report::Section& section : sweep_page(plan, read_results(plan, folder.results()), {}).sections)
+    for (const report::Item& item : section.items)
+      if (const auto* table = std::get_if<report::Table>(&item); table && table->head[0] == "Axis")
+        for (const auto& row : table->rows)
+          if (row[0] == "x3.value" && table->head[1] == "First-order index") {
+            EXPECT_TRUE(row[1].starts_with("< 0.0")) << "an index below its error is no number: " << row[1];
+            EXPECT_NE(row[2].find(" ± 0.0"), row[2].npos) << row[2];
+            is_shown = true;
+          }
+  EXPECT_TRUE(is_shown);
 }
 
 }  // namespace

@@ -1,0 +1,117 @@
+// What is offered in the place of what does not exist.
+#include <gtest/gtest.h>
+#include "engine/block/registry.h"
+#include "engine/json/unit_hint.h"
+#include "tests/engine/written_diagram.h"
+
+namespace loopwright {
+namespace {
+
+TEST(Hints, NamesOfOtherProgramsLeadToBlocksThatExist) {
+  for (const auto& [written, block] :
+       std::vector<std::pair<std::string, std::string>>{{"PID", "PidController"},
+                                                        {"Transfer Fcn", "TransferFunction"},
+                                                        {"TransferFcn", "TransferFunction"},
+                                                        {"Mux", "Pack"},
+                                                        {"Demux", "Unpack"},
+                                                        {"Inertia", "Mass"},
+                                                        {"Abs", "Absolute"},
+                                                        {"Trig", "Expression"},
+                                                        {"Sin", "Expression"},
+                                                        {"Gian", "Gain"},
+                                                        {"Sine Wave", "Sine"},
+                                                        {"From Workspace", "RecordedColumn"}}) {
+    const std::string hint = block_type_hint(written);
+    EXPECT_TRUE(hint.starts_with("did you mean \"" + block + "\"")) << written << ": " << hint;
+    EXPECT_TRUE(find_block(block)) << block;
+  }
+  EXPECT_TRUE(has(block_type_hint("Scope"), "\"log\"") && has(block_type_hint("Scope"), "--report"));
+  EXPECT_TRUE(has(block_type_hint("ode45"), "dopri5"));
+  EXPECT_TRUE(has(block_type_hint("Chart"), "no state machine")) << "no Chirp";
+  EXPECT_EQ(block_type_hint("Xyzzy"), "`loopwright blocks` lists all types");
+}
+
+TEST(Hints, EveryBlockThatIsOfferedExists) {
+  // Whatever a hint offers in quotes after "did you mean" is a block.
+  for (const char* written : {"abs",
+                              "bias",
+                              "busselector",
+                              "chirpsignal",
+                              "damper",
+                              "demux",
+                              "differentiator",
+                              "digitalclock",
+                              "discretefilter",
+                              "discretepidcontroller",
+                              "discretetimeintegrator",
+                              "divide",
+                              "fcn",
+                              "fromfile",
+                              "fromworkspace",
+                              "inertia",
+                              "lookuptable",
+                              "math",
+                              "mathfunction",
+                              "matlabfunction",
+                              "memory",
+                              "minmax",
+                              "multiply",
+                              "mux",
+                              "pd",
+                              "pi",
+                              "pid",
+                              "pulsegenerator",
+                              "randomnumber",
+                              "relationaloperator",
+                              "sampleandhold",
+                              "sin",
+                              "sinewave",
+                              "squarewave",
+                              "subtract",
+                              "transferfcn",
+                              "trig",
+                              "trigonometricfunction",
+                              "uniformrandomnumber",
+                              "whitenoise",
+                              "zeropole"}) {
+    const std::string hint = block_type_hint(written);
+    const size_t begin = hint.find('"') + 1;
+    const std::string block = hint.substr(begin, hint.find('"', begin) - begin);
+    EXPECT_TRUE(find_block(block)) << written << ": " << hint;
+  }
+}
+
+TEST(Hints, ABlockInThePlaceOfItsOutputOffersThem) {
+  const std::string wired = problems_of(diagram(R"("pd": {"type": "Gain", "gain": 1, "in": {"u": "c.y"}},
+  "c": {"type": "Constant", "value": 1}, "g": {"type": "Gain", "gain": 1, "in": {"u": "pd"}})"));
+  EXPECT_TRUE(has(wired, "did you mean \"pd.y\"?")) << wired;
+  const std::string logged =
+      problems_of(diagram(R"("two": {"type": "Mass", "mass": 1, "in": {"force": "c.y"}},
+  "c": {"type": "Constant", "value": 1})",
+                          R"("stop": 1, "step": 0.1)", R"(, "log": ["two"])"));
+  EXPECT_TRUE(has(logged, "\"two.position\" or \"two.velocity\" or \"two.acceleration\"")) << logged;
+}
+
+TEST(Hints, TheSettingThatAsksForWiresIsNamed) {
+  const std::string sum = problems_of(diagram(R"("c": {"type": "Constant", "value": 1},
+  "s": {"type": "Sum", "signs": "+-", "in": {"terms": ["c.y"]}})"));
+  EXPECT_TRUE(has(sum, "\"signs\": \"+-\" asks for 2 wires")) << sum;
+}
+
+TEST(Hints, UnitsWrittenNearlySo) {
+  for (const auto& [written, meant] : std::vector<std::pair<std::string, std::string>>{{"Kg", "kg"},
+                                                                                       {"Nm", "N*m"},
+                                                                                       {"n", "N"},
+                                                                                       {"RPM", "rpm"},
+                                                                                       {"sec", "s"},
+                                                                                       {"Kg*m/s", "kg*m/s"},
+                                                                                       {"v/A", "V/A"}})
+    EXPECT_EQ(unit_hint(written), "did you mean \"" + meant + "\"?") << written;
+  EXPECT_EQ(unit_hint("furlongs per fortnightly"), "");
+  const std::string text =
+      problems_of(diagram(R"("m": {"type": "Constant", "value": {"value": 1, "unit": "Kg"}})"));
+  EXPECT_TRUE(has(text, "did you mean \"kg\"?")) << text;
+}
+
+}  // namespace
+}  // namespace loopwright

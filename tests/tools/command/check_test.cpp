@@ -1,0 +1,97 @@
+// check knows every kind of file by its keys, and says all that is wrong with it.
+#include <gtest/gtest.h>
+#include "tests/tools/command/program.h"
+
+namespace loopwright {
+namespace {
+
+const std::string root = LOOPWRIGHT_SOURCE;
+
+class Check : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (access(program().c_str(), X_OK) != 0) GTEST_SKIP() << program() << " is not built";
+  }
+  Outcome run(std::vector<std::string> arguments) const {
+    return loopwright_program(std::move(arguments), folder.path(""));
+  }
+  DiagramFolder folder;
+};
+
+TEST_F(Check, EveryKindOfFileIsToldByItsKeys) {
+  folder.with("data.csv", "t,x\n0,0\n1,1\n2,2\n");
+  folder.with(
+      "e.json",
+      R"({"loopwright": 1, "$schema": "x", "data": "data.csv", "compare": {"a.y": {"column": "x", "unit": "m"}}})");
+  folder.with(
+      "d.json",
+      R"({"loopwright": 1, "$schema": "x", "solver": {"stop": 1}, "blocks": {"c": {"type": "Constant", "value": 1}}})");
+  folder.with(
+      "s.json",
+      R"({"loopwright": 1, "$schema": "x", "diagram": "d.json", "axes": {"c.value": {"values": [1, 2]}},
+    "metrics": {"end": {"final": "c.y"}}})");
+  const std::string motor = root + "/diagrams/linear_motor/";
+  for (const auto& [file, kind] : std::vector<std::pair<std::string, std::string>>{
+           {"d.json", "1 blocks"},
+           {"e.json", "an experiment of 3 rows, 0 driven and 1 compared"},
+           {"s.json", "a sweep of 2 runs over 1 axes"},
+           {root + "/diagrams/effects/cogging.json", "an effect"},
+           {root + "/hw/devices/qpid_e.json", "a device of the driver quanser"},
+           {motor + "ps.model.json", "a learned model of 13181 samples"},
+           {motor + "stage.json", "a subdiagram of"}}) {
+    const Outcome outcome = run({"check", file});
+    EXPECT_EQ(outcome.code, 0) << file << outcome.err;
+    EXPECT_TRUE(contains(outcome.out, file + ": fine, " + kind)) << outcome.out;
+  }
+}
+
+TEST_F(Check, EachKindIsHeldToItsOwnRules) {
+  folder.with("e.json",
+              R"({"loopwright": 1, "data": "none.csv", "comparre": {}, "drive": {"a.u": {"colum": "x"}}})");
+  folder.with(
+      "s.json",
+      R"({"loopwright": 1, "diagram": "d.json", "axes": {"c.value": {"valus": [1]}}, "metrics": {}})");
+  folder.with("t.json", R"({"loopwright": 1, "recordings": ["none.csv"], "labell": {}})");
+  folder.with("device.json", R"({"loopwright": 1, "driver": "quansar"})");
+  folder.with("effect.json",
+              R"({"loopwright": 1, "effect": "effect", "title": "x", "blocks": {}, "atach": []})");
+  folder.with("model.json", R"({"loopwright_gp_model": 1, "checksum": "0"})");
+  for (const auto& [file, told] : std::vector<std::pair<std::string, std::vector<std::string>>>{
+           {"e.json",
+            {"an experiment has no key \"comparre\"", "\"compare\"", "did you mean \"column\"?", "none.csv"}},
+           {"s.json", {"did you mean \"values\"?"}},
+           {"t.json", {"\"labell\"", "did you mean \"label\"?"}},
+           {"device.json", {"did you mean \"quanser\"?"}},
+           {"effect.json", {"did you mean \"attach\"?", "\"physics\""}},
+           {"model.json", {"model.json:1:"}}}) {
+    const Outcome outcome = run({"check", file});
+    EXPECT_EQ(outcome.code, 2) << file << outcome.out;
+    EXPECT_EQ(outcome.out, "");
+    for (const std::string& part : told)
+      EXPECT_TRUE(contains(outcome.err, part)) << part << "\n" << outcome.err;
+  }
+}
+
+TEST_F(Check, AllFormulasThatCannotBeReadAreTold) {
+  folder.with("two.json", R"({"loopwright": 1, "solver": {"stop": 1}, "blocks": {
+  "a": {"type": "Expression", "formula": "2*(", "names": [], "in": {"arguments": []}},
+  "b": {"type": "Expression", "formula": "3*)", "names": [], "in": {
+    "arguments" : []}
+}
+}
+})");
+  const Outcome outcome = run({"check", "two.json"});
+EXPECT_TRUE(contains(outcome.err, "block: a") && contains(outcome.err, "block: b")) << outcome.err;
+}
+
+TEST_F(Check, OptionsThatChangeNothingAreRefused) {
+  const Outcome outcome =
+      run({"check", root + "/hw/devices/qpid_e.json", "--set", "x=1", "--variant", "a=b"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_TRUE(contains(outcome.err, "--set changes nothing in") &&
+              contains(outcome.err, "--variant changes nothing in"))
+      << outcome.err;
+}
+
+}  // namespace
+}  // namespace loopwright

@@ -1,0 +1,60 @@
+// Command lines that cannot be read: what was meant, in the words of all other messages, and exit code 2.
+#include <gtest/gtest.h>
+#include "tests/tools/command/program.h"
+
+namespace loopwright {
+namespace {
+
+struct Slip {
+  std::vector<std::string> arguments;
+  std::vector<std::string> told;  // parts of the message
+};
+
+TEST(CommandLine, SlipsAreExplained) {
+  if (access(program().c_str(), X_OK) != 0) GTEST_SKIP() << program() << " is not built";
+  for (const Slip& slip : std::vector<Slip>{
+           {{"chek", "a.json"}, {"error: loopwright has no command \"chek\"", "did you mean \"check\"?"}},
+           {{"simulate"}, {"no command \"simulate\"", "one of check, run,"}},
+           {{}, {"no command is given", "loopwright --help"}},
+           {{"run", "a.json", "--reprot", "a.html"},
+            {"loopwright run has no option \"--reprot\"", "did you mean \"--report\"?"}},
+           {{"run", "--sett=a=1", "--varint", "b=c", "a.json"},
+            {"\"--sett\"", "did you mean \"--set\"?", "\"--varint\"", "did you mean \"--variant\"?",
+             "2 errors"}},
+           {{"run", "a.json", "--zzz"}, {"no option \"--zzz\"", "`loopwright run --help`"}},
+           {{"run"}, {"loopwright run: diagram is missing", "Diagram file (JSON)"}},
+           {{"compare", "a.json"}, {"loopwright compare: experiment is missing"}},
+           {{"compare", "a.json", "b.json", "c.json"}, {"\"c.json\" is one argument too many"}},
+           {{"run", "a.json", "--report"}, {"--report has no value"}},
+           {{"run", "a.json", "--run", "-1"}, {"--run does not take this value", "0 or more", "found: -1"}},
+           {{"run", "a.json", "--run", "two"},
+            {"--run does not take this value", "a whole number", "found: two"}},
+           {{"deploy", "a.json", "--priority", "100"}, {"--priority does not take", "from 0 to 99"}},
+           {{"run", "a.json", "--replay", "a.csv", "--report", "a.html"},
+            {"do not go together", "--replay", "--report"}},
+           {{"gp"}, {"loopwright gp: no command is given", "one of train, show"}},
+           {{"gp", "trian", "a.json"}, {"loopwright gp has no command \"trian\"", "did you mean \"train\"?"}},
+           {{"gp", "train", "a.json"}, {"loopwright gp train: --model is missing"}},
+           {{"sweep", "reprot", "folder"},
+            {"loopwright sweep has no command \"reprot\"", "did you mean \"report\"?"}},
+           {{"sweep"}, {"loopwright sweep: sweep is missing"}}}) {
+    const Outcome outcome = loopwright_program(slip.arguments);
+    const std::string what = ::testing::PrintToString(slip.arguments) + "\n" + outcome.err;
+    EXPECT_EQ(outcome.code, 2) << what;
+    EXPECT_EQ(outcome.out, "") << what;
+    for (const std::string& part : slip.told) EXPECT_TRUE(contains(outcome.err, part)) << part << what;
+    for (const char* foreign : {"RequiredError", "ExtrasError", "Could not convert", "Usage:"})
+      EXPECT_FALSE(contains(outcome.err, foreign)) << what;
+  }
+}
+
+TEST(CommandLine, HelpSaysTheExitCodes) {
+  if (access(program().c_str(), X_OK) != 0) GTEST_SKIP() << program() << " is not built";
+  const Outcome outcome = loopwright_program({"--help"});
+  EXPECT_EQ(outcome.code, 0);
+  for (const char* part : {"0 done", "1 a run failed", "2 wrong input", "130 interrupted"})
+    EXPECT_TRUE(contains(outcome.out, part)) << part << outcome.out;
+}
+
+}  // namespace
+}  // namespace loopwright
