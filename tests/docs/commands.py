@@ -46,8 +46,6 @@ SHORTENED = [
 # Not in the quick part: seconds to minutes each.
 SLOW = ["tools/", "loopwright sweep ", "loopwright gp ", "identification", "loopwright diagnose", "loopwright fit",
         "diagrams/linear_motor/ps.json", "diagrams/linear_motor/beyond.json", "loopwright deploy", "--replay", "g++"]
-# Commands on measured records, which are not in the tree.
-MEASURED = {"diagrams/emps/": "emps/emps_train.csv", "diagrams/bldc/": "bldc"}
 # What a page takes for granted that this machine may lack.
 BEFORE = {
     "docs/hardware.md": "# the emulated card in the place of the real one\n"
@@ -110,15 +108,23 @@ def pages():
     return FIRST + [p for p in rest if p not in FIRST]
 
 
+def missing_record(experiment, folder, data):
+    """The name of the measured record of an experiment that is neither beside it nor below the folder of data; or None."""
+    name = experiment.get("data", "")
+    places = [folder, data, *(data.iterdir() if data.is_dir() else [])]
+    return None if not name or any((place / name).is_file() for place in places) else name
+
+
 def decide(command, quick, data):
     """(what is run, or None; why it is not run as written)"""
     text = command.strip()
     for beginning, why in LEFT_OUT:
         if text.startswith(beginning):
             return None, why
-    for folder, record in MEASURED.items():
-        if folder in text and not (data / record).exists():
-            return None, f"there is no {record} below {data}"
+    for named in re.findall(r"diagrams/[\w/.]+\.experiment\.json", text):
+        missing = missing_record(json.loads((ROOT / named).read_text()), (ROOT / named).parent, data)
+        if missing:
+            return None, f"there is no {missing} below {data}"
     if quick and any(part in text for part in SLOW):
         return None, "slow"
     for written, run, why in SHORTENED:
@@ -167,9 +173,9 @@ def script_of(page, blocks, quick, data, tell):
     for block in blocks:
         if block.kind == "json" and block.name and block.whole_file():
             text = block.text
-            measured = [r for f, r in MEASURED.items() if f in block.name and not (data / r).exists()]
-            if measured:
-                tell(f"{page}:{block.line}: check {block.name}   [left out: there is no {measured[0]} below {data}]")
+            missing = missing_record(block.whole_file(), data, data) if block.name.startswith("diagrams/emps/") else None
+            if missing:
+                tell(f"{page}:{block.line}: check {block.name}   [left out: there is no {missing} below {data}]")
             elif quick and block.name.endswith("training.json"):
                 tell(f"{page}:{block.line}: check {block.name}   [left out: slow]")
             else:
