@@ -45,7 +45,7 @@ SHORTENED = [
 ]
 # Not in the quick part: seconds to minutes each.
 SLOW = ["tools/", "loopwright sweep ", "loopwright gp ", "identification", "loopwright diagnose", "loopwright fit",
-        "diagrams/linear_motor/ps.json", "diagrams/linear_motor/beyond.json", "loopwright deploy", "--replay", "g++"]
+        "diagrams/linear_motor/ps.json", "diagrams/linear_motor/beyond.json", "loopwright deploy", "--replay", "g++", "magnetic_pull"]
 # What a page takes for granted that this machine may lack.
 BEFORE = {
     "docs/hardware.md": "# the emulated card in the place of the real one\n"
@@ -62,6 +62,8 @@ NAMES = {
     ("docs/effects.md", "A bump on the track"): "bump.json",
     ("docs/sweeps.md", "Payload and cogging"): "diagrams/linear_motor/example.sweep.json",
 }
+# What `check` needs beside the file.
+CHECKED_WITH = {"magnet.json": "--blocks magnetic_pull.so"}
 
 
 class Block:
@@ -176,10 +178,12 @@ def script_of(page, blocks, quick, data, tell):
             missing = missing_record(block.whole_file(), data, data) if block.name.startswith("diagrams/emps/") else None
             if missing:
                 tell(f"{page}:{block.line}: check {block.name}   [left out: there is no {missing} below {data}]")
-            elif quick and block.name.endswith("training.json"):
-                tell(f"{page}:{block.line}: check {block.name}   [left out: slow]")
+                continue
+            check = f"loopwright check {block.name} {CHECKED_WITH.get(block.name, '')}"
+            if quick and (block.name in CHECKED_WITH or block.name.endswith("training.json")):
+                tell(f"{page}:{block.line}: {check}   [left out: slow]")
             else:
-                lines.append(f"echo '{page}:{block.line}' > .at; loopwright check {block.name}")
+                lines.append(f"echo '{page}:{block.line}' > .at; {check}")
     return "\n".join(lines) + "\n"
 
 
