@@ -174,7 +174,6 @@ def script_of(page, blocks, quick, data, tell):
                 lines.append(f"echo '{page}:{block.line}' > .at; {run.replace('/tmp/', 'tmp/')}")
     for block in blocks:
         if block.kind == "json" and block.name and block.whole_file():
-            text = block.text
             missing = missing_record(block.whole_file(), data, data) if block.name.startswith("diagrams/emps/") else None
             if missing:
                 tell(f"{page}:{block.line}: check {block.name}   [left out: there is no {missing} below {data}]")
