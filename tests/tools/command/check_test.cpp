@@ -73,15 +73,11 @@ TEST_F(Check, EachKindIsHeldToItsOwnRules) {
 }
 
 TEST_F(Check, AllFormulasThatCannotBeReadAreTold) {
-  folder.with("two.json", R"({"loopwright": 1, "solver": {"stop": 1}, "blocks": {
+  folder.with("two.json", R"json({"loopwright": 1, "solver": {"stop": 1}, "blocks": {
   "a": {"type": "Expression", "formula": "2*(", "names": [], "in": {"arguments": []}},
-  "b": {"type": "Expression", "formula": "3*)", "names": [], "in": {
-    "arguments" : []}
-}
-}
-})");
+  "b": {"type": "Expression", "formula": "3*)", "names": [], "in": {"arguments": []}}}})json");
   const Outcome outcome = run({"check", "two.json"});
-EXPECT_TRUE(contains(outcome.err, "block: a") && contains(outcome.err, "block: b")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "block: a") && contains(outcome.err, "block: b")) << outcome.err;
 }
 
 TEST_F(Check, OptionsThatChangeNothingAreRefused) {
