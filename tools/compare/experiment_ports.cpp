@@ -105,8 +105,10 @@ void explain_failure(const std::string& path, const std::vector<std::string>& ex
     Problems problems;
     const auto experiment = read_experiment(experiment_path, problems);
     const LoadOptions driven = with_drives(path, experiment ? *experiment : Experiment{}, options, problems);
-    const auto diagram = load_diagram(path, driven, problems);
-    const auto plan = diagram ? compile(*diagram, problems) : nullptr;
+    Problems of_diagram;
+    const auto diagram = load_diagram(path, driven, of_diagram);
+    const auto plan = diagram ? compile(*diagram, of_diagram) : nullptr;
+    add_errors(of_diagram.list(), 0, problems);
     if (plan && experiment) logging(*plan, *experiment, problems);
     add_errors(problems.list(), 0, found);
   }
