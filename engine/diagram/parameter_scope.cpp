@@ -248,6 +248,11 @@ Value ParameterScope::evaluate(const Value& value, const std::string& block) {
   return result;
 }
 
+/// A text keeps the place where it was written: a path is relative to that file. An option stands in none.
+static bool stands_in_file(const Value& text) {
+  return text.place.file && !text.place.file->name.starts_with("--set ");
+}
+
 Value ParameterScope::evaluate_text(const Value& text, const std::string& block) {
   const std::string_view expression = std::string_view(text.text).substr(1);
   if (is_name(expression) && !is_constant_name(expression)) {  // hands on a text or a list as well
@@ -255,7 +260,7 @@ Value ParameterScope::evaluate_text(const Value& text, const std::string& block)
     const Entry* entry = find({expression, 0, false}, place, text, block);
     if (!entry || entry->parameter.value.is_broken) return broken(text);
     Value value = entry->parameter.value;
-    value.place = text.place;
+    if (value.kind != Value::Kind::text || !stands_in_file(value)) value.place = text.place;
     if (value.kind == Value::Kind::number) value.text = text.text;
     return value;
   }

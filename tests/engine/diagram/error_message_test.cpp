@@ -79,7 +79,8 @@ TEST(DiagramErrors, Parameters) {
        "top.json:2:16: error: the parameter \"a\" has no \"value\"\n  at: /parameters/a\n1 error"},
       {R"("parameters": {"a": {"value": 1, "unit": "Nm"}})",
        "top.json:2:42: error: there is no unit \"Nm\"\n  at: /parameters/a/unit\n"
-       "  expected: an SI unit such as \"N*m\", \"V*s^2/m\", \"mm\", \"rad/s\", or \"1\"\n1 error"},
+       "  expected: an SI unit such as \"N*m\", \"V*s^2/m\", \"mm\", \"rad/s\", or \"1\"\n"
+       "  hint: did you mean \"N*m\"?\n1 error"},
       {R"("parameters": {"2a": 1, "pi": 3, "a.b": 1})",
        "top.json:2:16: error: \"2a\" cannot be the name of a parameter\n  at: /parameters/2a\n"
        "  expected: letters, digits and underscores, not starting with a digit\n"
@@ -199,6 +200,7 @@ TEST(DiagramErrors, Wires) {
        "  expected: a port in quotes, as in \"stage.position\" or \"gain.y[2]\"\n  found: the text \"1x\"\n"
        "top.json:2:61: error: there is no unit \"Nm\"\n  at: /inputs/u\n"
        "  expected: an SI unit such as \"N*m\", \"V*s^2/m\", \"mm\", \"rad/s\", or \"1\"\n"
+       "  hint: did you mean \"N*m\"?\n"
        "top.json:2:72: error: an input is of the wrong kind\n  at: /inputs/v\n"
        "  expected: its unit in quotes, or {\"unit\": …, \"description\": …}\n  found: the number 1\n4 "
        "errors"},

@@ -61,6 +61,19 @@ TEST(FilePaths, ParametersThatReachAFileAreFollowed) {
     EXPECT_TRUE(has(result, part)) << part << "\n" << result;
 }
 
+TEST(FilePaths, APathThatIsHandedOnIsRelativeToTheFileInWhichItStands) {
+  DiagramFolder folder;
+  folder.with("inner/play.json",
+              R"({"loopwright": 1, "parameters": {"record": "own.csv"}, "outputs": {"y": "c.value"},
+    "blocks": {"c": {"type": "RecordedColumn", "file": "=record", "column": "x"}}})");
+  folder.with("inner/own.csv", "t,x\n0,1\n1,1\n").with("outer.csv", "t,x\n0,2\n1,2\n");
+  folder.with("top.json", diagram(R"("own": {"diagram": "inner/play.json"},
+    "given": {"diagram": "inner/play.json", "parameters": {"record": "outer.csv"}})"));
+  const RunResult result = simulate(*load_plan(folder.path("top.json")));
+  EXPECT_EQ(signal(result, "own.y").back(), 1);
+  EXPECT_EQ(signal(result, "given.y").back(), 2);
+}
+
 TEST(FilePaths, AShippedDiagramStillLoadsFromElsewhere) {
   DiagramFolder folder;
   const std::string path = LOOPWRIGHT_SOURCE "/diagrams/linear_motor/ps.json";
