@@ -49,10 +49,9 @@ double median_step(std::span<const double> times) {
   return *middle;
 }
 
-/// The step from first to last time, evenly divided. Times are mostly written as decimals: a step of 12
-/// digits is taken instead where rounding of the last time cannot tell the two apart.
-double mean_step(std::span<const double> times) {
-  const double steps = static_cast<double>(times.size() - 1);
+/// The time from the first to the last row, evenly divided into steps. Times are mostly written as decimals:
+/// a step of 12 digits is taken instead where rounding of the last time cannot tell the two apart.
+double mean_step(std::span<const double> times, double steps) {
   const double mean = (times.back() - times.front()) / steps;
   const double decimal = csv::parse_number(fmt::format("{:.12g}", mean)).value_or(mean);
   const double rounding =
@@ -60,12 +59,33 @@ double mean_step(std::span<const double> times) {
   return std::abs(decimal - mean) * steps <= rounding ? decimal : mean;
 }
 
-/// [sample times] How far the worst time lies from the grid.
-double worst_deviation(std::span<const double> times, double sample_time) {
+/// [sample times] How far the worst time lies from the grid; `sample_of(row)` is the row's place on it.
+template <class SampleOf>
+double worst_deviation(std::span<const double> times, double sample_time, SampleOf&& sample_of) {
   double worst = 0;
   for (size_t i = 0; i < times.size(); ++i)
-    worst = std::max(worst, std::abs(times[i] - (times.front() + static_cast<double>(i) * sample_time)));
+    worst = std::max(worst, std::abs(times[i] - (times.front() + double(sample_of(i)) * sample_time)));
   return worst / sample_time;
+}
+
+/// The median of steps that tremble is off by as much as drifts by many samples over a long record; their
+/// mean is not, and a short decimal that the last time cannot tell from it is what was meant.
+double plain_step(double mean, double median, double steps) {
+  constexpr double alike = 0.02, least_told = 0.5;  // of the step
+  if (!(std::abs(mean - median) <= alike * median)) return median;
+  const double decimal = csv::parse_number(fmt::format("{:.4g}", mean)).value_or(mean);
+  return std::abs(decimal - mean) * steps <= least_told * mean ? decimal : mean;
+}
+
+/// An axis that is even but for samples without a row; without `on_grid` where it is not.
+TimeAxis even_but_for_gaps(std::span<const double> times, double median, double tolerance) {
+  TimeAxis axis{times.front(), median, false};
+  const std::vector<int64_t> sample = sample_numbers(times, median);
+  axis.missing = sample.back() - int64_t(times.size() - 1);
+  const double even = mean_step(times, double(sample.back()));
+  axis.on_grid = worst_deviation(times, even, [&](size_t i) { return sample[i]; }) <= tolerance;
+  axis.sample_time = axis.on_grid ? even : plain_step(even, median, double(sample.back()));
+  return axis;
 }
 
 }  // namespace
@@ -76,11 +96,11 @@ TimeAxis check_time(const Column& time, Problems& problems, const TimeOptions& o
   const std::string name = excerpt(time.name);
   if (times.empty()) limit.error(place, fmt::format("time \"{}\" has no rows", name));
   if (!check_growth(time, limit, place)) return {};
-  if (times.size() == 1) return {times.front(), 0, true};
+  if (times.size() == 1) return {times.front(), 0, true, true};
 
-  const double even = mean_step(times);
-  const double deviation = worst_deviation(times, even);
-  if (deviation <= options.tolerance) return {times.front(), even, true};
+  const double even = mean_step(times, double(times.size() - 1));
+  const double deviation = worst_deviation(times, even, [](size_t i) { return i; });
+  if (deviation <= options.tolerance) return {times.front(), even, true, true};
 
   const auto tell = [&](std::string message, std::string hint) {
     if (options.must_be_regular)
@@ -99,7 +119,27 @@ TimeAxis check_time(const Column& time, Problems& problems, const TimeOptions& o
       tell(fmt::format("time \"{}\", row {}: a gap of {:.6g} s behind {} s", name, i + 1, step, times[i - 1]),
            fmt::format("about {:.0f} samples are missing", std::round(step / median) - 1));
   }
-  return {times.front(), median, false};
+  return even_but_for_gaps(times, median, options.tolerance);
+}
+
+std::vector<int64_t> sample_numbers(std::span<const double> times, double sample_time) {
+  constexpr size_t looked_ahead = 20;  // rows: a burst of late stamps has caught up by then
+  constexpr double followed = 0.05;    // of a row's deviation: stamps tremble, clocks drift
+  constexpr double longest_gap = 1e9;  // samples: so many in each of a billion rows can be counted
+  std::vector<int64_t> sample(times.size());
+  double expected = times.empty() ? 0 : times.front();  // of the present row
+  for (size_t row = 1; row < times.size(); ++row) {
+    expected += sample_time;
+    double skipped = longest_gap;
+    for (size_t i = row; i < std::min(row + looked_ahead, times.size()); ++i)
+      skipped = std::min(skipped, (times[i] - expected) / sample_time - double(i - row));
+    skipped = skipped > 0.5 ? std::round(skipped) : 0;
+    sample[row] = sample[row - 1] + 1 + int64_t(skipped);
+    expected += skipped * sample_time;
+    const double late = (times[row] - expected) / sample_time;
+    expected += followed * std::clamp(late, -0.5, 0.5) * sample_time;
+  }
+  return sample;
 }
 
 }  // namespace loopwright

@@ -42,7 +42,7 @@ RecordSizes sizes_of(const Scenario& scenario) {
   sizes.stroke = sizes.highest_position = 0.6;
   sizes.top_speed = 0.35;
   sizes.top_acceleration = 3;
-  sizes.force_level = 0.6;
+  sizes.force_level = sizes.input_level = 0.6;
   sizes.machine_mass = scenario.stages[0].mass_kg;
   sizes.machine_damping = scenario.stages[0].damping_n_s_per_m;
   sizes.resolution = scenario.noise.resolution_m;

@@ -78,7 +78,7 @@ void gather_balances(Experiment& experiment, Problems& problems) {
   }
   Column& time = experiment.data.columns.front();
   for (size_t s = 0; s < count; ++s) time.values[s] = double(s) * apart_s;
-  experiment.time = {0, apart_s, true};
+  experiment.time = {0, apart_s, true, true};
 }
 
 }  // namespace loopwright

@@ -66,20 +66,23 @@ void add_axes(Comparison& comparison, const Experiment& experiment) {
   }
 }
 
-double rms_difference(const std::vector<double>& a, const std::vector<double>& b) {
+/// Over the rows that were recorded.
+double rms_difference(const std::vector<double>& position, const MeasuredMotion& motion) {
   std::vector<double> difference;
-  for (size_t i = 0; i < std::min(a.size(), b.size()); ++i) difference.push_back(a[i] - b[i]);
+  for (size_t k = 0; k < std::min(position.size(), motion.rows()); ++k)
+    if (!motion.is_missing(k)) difference.push_back(position[k] - motion.position[k]);
   return rms(difference);
 }
 
 OpenLoopErrors open_loop_errors(const Machine& machine) {
   OpenLoopErrors errors;
-  errors.whole_record = rms_difference(simulate_position(machine, 0), machine.motion.position);
+  const auto error = [&](size_t horizon) {
+    return rms_difference(simulate_position(machine, horizon), machine.motion);
+  };
+  errors.whole_record = error(0);
   for (double horizon : {0.05, 0.1, 0.2}) {
     const auto samples = size_t(std::llround(horizon / machine.motion.sample_time));
-    if (samples >= 2)
-      errors.restarted.emplace_back(
-          horizon, rms_difference(simulate_position(machine, samples), machine.motion.position));
+    if (samples >= 2) errors.restarted.emplace_back(horizon, error(samples));
   }
   return errors;
 }
@@ -90,7 +93,7 @@ double damping_of(const Machine& machine, const std::vector<double>& acceleratio
   double fv = 0, vv = 0;
   for (size_t k = 0; k < m.rows(); ++k) {
     if (!m.counts[k]) continue;
-    fv += (m.input[k] - machine.mass * acceleration[k]) * m.velocity[k], vv += m.velocity[k] * m.velocity[k];
+    fv += (m.force[k] - machine.mass * acceleration[k]) * m.velocity[k], vv += m.velocity[k] * m.velocity[k];
   }
   return vv > 0 ? std::max(fv / vv, 0.0) : 0;
 }
@@ -127,8 +130,7 @@ void analyse_force(Comparison& comparison, const std::string& diagram, const Exp
   Problems problems;
   analysis.identifiable = identifiable(analysis.content, load_catalogue({catalogue_folder()}, problems));
   for (const Problem& problem : problems.list()) comparison.warnings.push_back(to_string(problem));
-  analysis.faults =
-      faults_of(*machine, analysis.residual, analysis.content, experiment.data.columns.front().values);
+  analysis.faults = faults_of(*machine, analysis.residual, analysis.content);
   analysis.motion = std::move(machine->motion);
   comparison.force = std::move(analysis);
 }
@@ -147,6 +149,7 @@ Comparison compare_signals(const std::string& diagram_path, const Experiment& ex
   for (const Problem& problem : problems.list()) comparison.warnings.push_back(to_string(problem));
   comparison.run = simulate(*comparison.plan, run_options);
   for (const std::string& warning : comparison.run.warnings) comparison.warnings.push_back(warning);
+  comparison.missing_samples = experiment.time.missing;
   comparison.time = experiment.data.columns.front().values;
   for (const RecordedSignal& recorded : experiment.compared) {
     const Column& measured = *experiment.data.find(recorded.port);

@@ -39,7 +39,8 @@ struct ForceAnalysis {
 };
 
 struct Comparison {
-  std::vector<double> time;  ///< s
+  std::vector<double> time;     ///< s
+  int64_t missing_samples = 0;  ///< between rows of the recording: the input was held there
   std::vector<ComparedSignal> signals;
   std::vector<double> position, velocity;  ///< measured or simulated, by the roles; empty: not known
   std::string position_unit, velocity_unit, position_source, velocity_source;

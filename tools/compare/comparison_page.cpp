@@ -68,6 +68,7 @@ report::Page comparison_page(const Comparison& c, const std::string& title) {
   page.subtitle = "The model held against the measurement";
   page.facts = {
       {"Diagram", c.plan->title}, {"Plan", c.plan->hash}, {"Rows", fmt::format("{}", c.time.size())}};
+  if (c.missing_samples > 0) page.facts.push_back({"Missing samples", fmt::format("{}", c.missing_samples)});
   report::Table table{
       {"Signal", "Error, RMS", "Error, greatest", "Mean error", "Relative (%)", "Fit (%)"}, {}, ""};
   for (const ComparedSignal& s : c.signals)

@@ -66,7 +66,7 @@ std::string force_text(const Comparison& comparison) {
   const ForceAnalysis& f = *comparison.force;
   const std::string &force = f.motion.force_unit, &position = f.motion.position_unit;
   std::string text =
-      fmt::format("\n  force that the model lacks: {} rms, {:.2f} % of the input; noise floor {} ({})\n",
+      fmt::format("\n  force that the model lacks: {} rms, {:.2f} % of the force; noise floor {} ({})\n",
                   shown(f.residual.rmse, force), f.residual.relative_percent,
                   shown(f.residual.noise_floor, force), f.residual.floor_source);
   std::vector<Dependence> ranked = f.dependence;
@@ -104,6 +104,7 @@ std::string to_json(const Comparison& comparison) {
   nlohmann::ordered_json json;
   json["plan"] = comparison.plan->hash;
   json["rows"] = comparison.time.size();
+  if (comparison.missing_samples > 0) json["missing_samples"] = comparison.missing_samples;
   json["finished"] = comparison.run.status == RunStatus::finished;
   if (!comparison.run.message.empty()) json["message"] = comparison.run.message;
   for (const ComparedSignal& s : comparison.signals) {
@@ -137,6 +138,9 @@ std::string to_text(const Comparison& comparison) {
     text += fmt::format("  {:<{}} {:>12} {:>12} {:>12} {:>8.2f} % {:>7.2f} %\n", s.name, width,
                         shown(s.rmse, s.unit), shown(s.max_abs, s.unit), shown(s.mean, s.unit),
                         s.relative_percent, s.fit_percent);
+  if (const int64_t missing = comparison.missing_samples; missing > 0)
+    text += fmt::format("  {} sample{} between the {} rows of the recording {} missing\n", missing,
+                        missing == 1 ? "" : "s", comparison.time.size(), missing == 1 ? "is" : "are");
   if (comparison.force)
     text += force_text(comparison);
   else if (!comparison.why_no_force.empty())

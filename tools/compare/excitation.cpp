@@ -62,7 +62,7 @@ bool has_varied_force(const MeasuredMotion& m) {
     if (!m.counts[k]) continue;
     const auto bin = size_t(std::clamp(int((m.position[k] - low) / stroke * bins), 0, bins - 1) +
                             (m.velocity[k] > 0 ? bins : 0));
-    sum[bin] += m.input[k], squares[bin] += m.input[k] * m.input[k], count[bin] += 1;
+    sum[bin] += m.force[k], squares[bin] += m.force[k] * m.force[k], count[bin] += 1;
   }
   double within = 0, all = 0;
   for (size_t b = 0; b < sum.size(); ++b)
@@ -99,8 +99,8 @@ double saturated_part(const MeasuredMotion& m) {
   return double(rows) / double(m.rows());
 }
 
-/// Recorded input against the force that the model needs: slope, correlation, and by how many samples it is
-/// off.
+/// The force that the input makes against the force that the model needs: slope, correlation, and by how many
+/// samples it is off.
 struct InputMatch {
   double slope = 0, correlation = 0;
   int late_samples = 0;
@@ -110,7 +110,7 @@ struct InputMatch {
 };
 InputMatch match_input(const MeasuredMotion& m, const ForceResidual& residual) {
   std::vector<double> needed(m.rows());
-  for (size_t k = 0; k < m.rows(); ++k) needed[k] = m.input[k] - residual.value[k];
+  for (size_t k = 0; k < m.rows(); ++k) needed[k] = m.force[k] - residual.value[k];
   const int most = int(std::ceil(0.1 / m.sample_time));
   InputMatch match;
   double at_zero = 0, best = 1e300;
@@ -119,7 +119,7 @@ InputMatch match_input(const MeasuredMotion& m, const ForceResidual& residual) {
     for (size_t k = 0; k < m.rows(); ++k) {
       const ptrdiff_t other = ptrdiff_t(k) - lag;
       if (!m.counts[k] || other < 0 || other >= ptrdiff_t(m.rows())) continue;
-      const double u = m.input[size_t(other)], f = needed[k];
+      const double u = m.force[size_t(other)], f = needed[k];
       uf += u * f, uu += u * u, ff += f * f;
     }
     const double left = ff > 0 ? (uu + ff - 2 * uf) / ff : 0;
@@ -144,8 +144,10 @@ void check_input(const MeasuredMotion& m, const ForceResidual& residual, std::ve
          true});
   else if (std::abs(match.correlation) > 0.7 && (size > 5 || size < 0.2))
     faults.push_back(
-        {"wrong_unit", fmt::format("the recorded input is {:.3g} times the force that the model needs", size),
-         "the residual is mostly this factor: check the unit of the input, or the mass of the model",
+        {"wrong_unit",
+         fmt::format("the recorded input makes {:.3g} times the force that the model needs", size),
+         "the residual is mostly this factor: check the unit of the input, the gain between input and force, "
+         "or the mass of the model",
          size > 20 || size < 0.05});
   const double late_s = match.late_samples * m.sample_time;
   if (std::abs(match.late_samples) >= 8 && match.gained > 0.6 && match.slope > 0 && !match.is_at_end)
@@ -166,7 +168,8 @@ RecordContent content_of(const Machine& machine, const ForceResidual& residual, 
   c.sizes.lowest_position = *std::ranges::min_element(m.position);
   c.sizes.highest_position = *std::ranges::max_element(m.position);
   c.sizes.top_speed = greatest(m.velocity), c.sizes.top_acceleration = greatest(m.acceleration);
-  c.sizes.force_level = rms(m.input), c.sizes.machine_mass = machine.mass;
+  c.sizes.force_level = rms(m.force), c.sizes.input_level = rms(m.input);
+  c.sizes.machine_mass = machine.mass;
   c.sizes.duration = double(m.rows()) * m.sample_time, c.sizes.sample_time = m.sample_time;
   c.sizes.initial_position = m.position.front(), c.sizes.initial_velocity = m.velocity.front();
   c.directions = directions_in(m), c.speeds = speeds_in(m), c.reversals = reversals_in(m);
@@ -205,7 +208,7 @@ std::vector<Identifiability> identifiable(const RecordContent& c, const std::vec
 }
 
 std::vector<RecordFault> faults_of(const Machine& machine, const ForceResidual& residual,
-                                   const RecordContent& c, const std::vector<double>& recorded_time) {
+                                   const RecordContent& c) {
   const MeasuredMotion& m = machine.motion;
   std::vector<RecordFault> faults;
   const double moving = double(std::ranges::count(m.counts, 1)) * m.sample_time;
@@ -220,11 +223,13 @@ std::vector<RecordFault> faults_of(const Machine& machine, const ForceResidual& 
     faults.push_back({"one_speed", "nearly all motion is at one speed",
                       "friction of any kind, drag and periodic errors of force or encoder look alike"});
   size_t gaps = 0;
-  for (size_t k = 1; k < recorded_time.size(); ++k)
-    gaps += recorded_time[k] - recorded_time[k - 1] > 1.5 * m.sample_time;
+  for (size_t k = 0; k < m.rows(); ++k) gaps += m.is_missing(k) && (k == 0 || !m.is_missing(k - 1));
+  const auto lost = std::ranges::count(m.missing, char(1));
   if (gaps > 0)
-    faults.push_back({"gaps", fmt::format("samples are missing at {} place{}", gaps, gaps == 1 ? "" : "s"),
-                      "the motion is bridged there; residuals beside the gaps are not real"});
+    faults.push_back({"gaps",
+                      fmt::format("{} sample{} {} missing at {} place{}", lost, lost == 1 ? "" : "s",
+                                  lost == 1 ? "is" : "are", gaps, gaps == 1 ? "" : "s"),
+                      "the input is taken as held there, and the rows beside the gaps do not count"});
   if (const size_t count = outliers_in(m); count > 0)
     faults.push_back(
         {"outliers",

@@ -35,6 +35,6 @@ struct RecordFault {
   bool may_be_physics = false;  ///< unless effects explain all of it: then it was no fault
 };
 std::vector<RecordFault> faults_of(const Machine& machine, const ForceResidual& residual,
-                                   const RecordContent& content, const std::vector<double>& recorded_time);
+                                   const RecordContent& content);
 
 }  // namespace loopwright

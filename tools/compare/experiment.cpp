@@ -259,7 +259,7 @@ LoadOptions follow(const Experiment& experiment, LoadOptions options) {
   };
   set("solver.start", time.front());
   set("solver.stop", time.back());
-  if (experiment.time.regular) set("solver.record_step", experiment.time.sample_time);
+  if (experiment.time.on_grid) set("solver.record_step", experiment.time.sample_time);
   return options;
 }
 

@@ -67,14 +67,14 @@ report::Section residual_section(const Comparison& c) {
   report::Section section{"The force that the model lacks", {}};
   section.items.push_back(
       report::Paragraph{fmt::format("The measured motion needs a force that the model does not account for: "
-                                    "the recorded input less what the model "
+                                    "the force that the recorded input makes less what the model "
                                     "needs for this motion, below {:.0f} Hz, without shift in time. Rows at "
                                     "rest are left out, where friction may "
                                     "be anything.",
                                     f.residual.cutoff)});
   report::KeyNumbers numbers;
   numbers.numbers = {key("Missing force, RMS", f.residual.rmse, force,
-                         fmt::format("{:.2f} % of the input", f.residual.relative_percent)),
+                         fmt::format("{:.2f} % of the force that acts there", f.residual.relative_percent)),
                      key("Noise floor", f.residual.noise_floor, force, f.residual.floor_source),
                      key("Position, open loop, RMS", f.open_loop.whole_record, position, "begun once")};
   for (const auto& [horizon, error] : f.open_loop.restarted)

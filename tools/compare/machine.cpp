@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include "tools/compare/even_grid.h"
 #include "tools/compare/zero_phase.h"
 
 namespace loopwright {
@@ -28,46 +29,6 @@ const RecordedSignal* recorded(const Experiment& experiment, const Plan& plan, c
   return nullptr;
 }
 
-/// The even grid on which a record is looked at. Time stamps may tremble: then row k is sample k. Where
-/// samples are missing, it is bridged.
-class EvenGrid {
- public:
-  EvenGrid(const Experiment& experiment, MeasuredMotion& motion)
-      : time_(experiment.data.columns.front().values) {
-    const double dt = motion.sample_time = experiment.time.sample_time;  // the median, where stamps tremble
-    std::vector<double> starts;
-    for (size_t k = 0; k < time_.size(); ++k) starts.push_back(time_[k] - double(k) * dt);
-    const auto [earliest, latest] = std::ranges::minmax(starts);
-    is_bridged_ = latest - earliest > 5 * dt;
-    std::ranges::nth_element(starts, starts.begin() + ptrdiff_t(starts.size() / 2));
-    const double middle = std::round(starts[starts.size() / 2] / dt) * dt;
-    motion.start = experiment.time.regular ? time_.front()
-                   : is_bridged_           ? std::ceil(time_.front() / dt) * dt
-                                           : middle;
-    const size_t rows = is_bridged_ ? size_t((time_.back() - motion.start) / dt) : time_.size();
-    for (size_t k = 0; k < rows; ++k) motion.time.push_back(motion.start + double(k) * dt);
-    grid_ = motion.time;
-  }
-
-  /// A column on the grid; bridged by straight lines, or held.
-  std::vector<double> sampled(const std::vector<double>& values, bool is_held) const {
-    if (!is_bridged_) return values;
-    std::vector<double> result;
-    size_t i = 0;
-    for (double t : grid_) {
-      while (i + 2 < time_.size() && time_[i + 1] <= t + 1e-9) ++i;
-      const double s = std::clamp((t - time_[i]) / (time_[i + 1] - time_[i]), 0.0, 1.0);
-      result.push_back(is_held ? values[i] : (1 - s) * values[i] + s * values[i + 1]);
-    }
-    return result;
-  }
-
- private:
-  const std::vector<double>& time_;
-  std::vector<double> grid_;
-  bool is_bridged_ = false;
-};
-
 std::vector<double> central_difference(const std::vector<double>& x, double dt) {
   std::vector<double> v(x.size());
   for (size_t k = 1; k + 1 < x.size(); ++k) v[k] = (x[k + 1] - x[k - 1]) / (2 * dt);
@@ -82,7 +43,8 @@ std::vector<double> second_difference(const std::vector<double>& x, double dt) {
   return a;
 }
 
-/// Fast enough for the sign of friction to be certain, a twelfth of a tenth of a second away from rest.
+/// Fast enough for the sign of friction to be certain, a twelfth of a tenth of a second away from rest and
+/// from samples that are missing: so far filters reach.
 void find_moving_rows(MeasuredMotion& m) {
   const size_t n = m.rows(), margin = size_t(std::ceil(0.012 / m.sample_time)),
                ends = std::min(n / 10, size_t(std::ceil(0.1 / m.sample_time)));
@@ -90,7 +52,7 @@ void find_moving_rows(MeasuredMotion& m) {
   m.counts.assign(n, 1);
   for (size_t k = 0; k < n; ++k) {
     if (k < ends || k + ends >= n) m.counts[k] = 0;
-    if (std::abs(m.velocity[k]) > m.rest_speed) continue;
+    if (std::abs(m.velocity[k]) > m.rest_speed && !m.is_missing(k)) continue;
     for (size_t i = k > margin ? k - margin : 0; i <= std::min(n - 1, k + margin); ++i) m.counts[i] = 0;
   }
 }
@@ -108,12 +70,16 @@ bool measure_motion(const Experiment& experiment, const Plan& plan, MeasuredMoti
     why = "the record is too short";
     return false;
   }
-  const EvenGrid grid(experiment, m);
+  why = too_many_missing(experiment);
+  if (!why.empty()) return false;
+  const EvenGrid grid(experiment);
+  m.start = grid.start(), m.sample_time = grid.sample_time(), m.missing = grid.missing();
+  for (size_t k = 0; k < grid.rows(); ++k) m.time.push_back(m.start + double(k) * m.sample_time);
   if (x) {
-    m.raw_position = grid.sampled(experiment.data.find(x->port)->values, false);
+    m.raw_position = grid.measured(experiment.data.find(x->port)->values);
     m.position_unit = experiment.data.find(x->port)->unit;
   } else {
-    m.velocity = grid.sampled(experiment.data.find(v->port)->values, false);
+    m.velocity = grid.measured(experiment.data.find(v->port)->values);
     const std::string& unit = experiment.data.find(v->port)->unit;
     m.position_unit = unit == "Hz"           ? "1"
                       : unit.ends_with("/s") ? unit.substr(0, unit.size() - 2)
@@ -165,6 +131,28 @@ bool is_state(const Plan& plan, Number number) {
   return number >= plan.signals && number < plan.signals + plan.states;
 }
 
+/// As the driven plan knows it, or else the diagram as it was written: what drives the input there may say
+/// more.
+std::optional<Unit> unit_of_port(const std::string& port, const Plan& driven, const std::string& diagram,
+                                 const LoadOptions& options) {
+  const auto unit_in = [&](const Plan& plan) {
+    const std::vector<Number> numbers = plan.find(port);
+    return numbers.size() == 1 ? plan.unit_of(numbers[0]) : std::nullopt;
+  };
+  if (const auto unit = unit_in(driven)) return unit;
+  Problems problems;
+  const auto loaded = load_diagram(diagram, options, problems);
+  const auto plan = loaded ? compile(*loaded, problems) : nullptr;
+  return plan ? unit_in(*plan) : std::nullopt;
+}
+
+/// The input stays at nothing.
+std::shared_ptr<const Plan> without_input(const Plan& plan, const std::string& port) {
+  auto changed = std::make_shared<Plan>(plan);
+  for (Number number : plan.find(port)) silence(*changed, number);
+  return changed;
+}
+
 /// True where two ports cannot be the same quantity.
 bool differ_in_unit(const Plan& plan, Number a, Number b) {
   const auto of_a = plan.unit_of(a), of_b = plan.unit_of(b);
@@ -174,13 +162,14 @@ bool differ_in_unit(const Plan& plan, Number a, Number b) {
 /// Steps a run over one sample and calls `at_begin` and `at_end`.
 class Stepper {
  public:
-  Stepper(const Machine& machine)
+  Stepper(const Machine& machine, const Plan& plan)
       : machine_(machine),
-        run_(*machine.plan),
-        period_(std::llround(machine.motion.sample_time / machine.plan->clock.time(1))) {
-    switch_off_noise(run_, *machine.plan);
-    run_.reset({machine.plan->seed, 0});
+        run_(plan),
+        period_(std::llround(machine.motion.sample_time / plan.clock.time(1))) {
+    switch_off_noise(run_, plan);
+    run_.reset({plan.seed, 0});
   }
+  explicit Stepper(const Machine& machine) : Stepper(machine, *machine.plan) {}
 
   void set(double position, double velocity) {
     const int first = machine_.plan->signals;
@@ -317,13 +306,12 @@ std::optional<Machine> find_machine(const std::string& diagram, const Experiment
         *input_port);
     return {};
   }
-  MeasuredMotion grid_only;
-  machine.motion.input =
-      EvenGrid(experiment, grid_only).sampled(experiment.data.find(input->port)->values, true);
-  machine.motion.force_unit = experiment.data.find(input->port)->unit;
+  machine.motion.input = EvenGrid(experiment).held(experiment.data.find(input->port)->values);
+  machine.motion.input_unit = experiment.data.find(input->port)->unit;
   machine.plan =
       driven_plan(diagram, experiment, options, *input, *input_port, is_driven, machine.motion, why);
   if (!machine.plan) return {};
+  machine.undriven = without_input(*machine.plan, *input_port);
   const auto x = machine.plan->find(*position), v = machine.plan->find(*velocity);
   machine.position = x.size() == 1 ? state_behind(*machine.plan, x[0]) : -1;
   machine.velocity = v.size() == 1 ? state_behind(*machine.plan, v[0]) : -1;
@@ -333,21 +321,50 @@ std::optional<Machine> find_machine(const std::string& diagram, const Experiment
   }
   machine.sensor = x[0];
   if (const std::string* force = port_of(experiment, "force"))
-    if (const auto number = machine.plan->find(*force); number.size() == 1) machine.net_force = number[0];
+    if (const auto number = machine.plan->find(*force); number.size() == 1) {
+      machine.net_force = number[0];
+      machine.force_unit = unit_of_port(*force, *machine.plan, diagram, options);
+    }
   if (machine.sensor != machine.position && recorded(experiment, *plan, *position, false))
     take_out_sensor_error(machine);
   return machine;
 }
 
+void silence(Plan& plan, Number number) {
+  const int block = plan.source_of(number).first;
+  std::erase_if(plan.order, [&](const Plan::Entry& entry) {
+    return entry.kind != Plan::Entry::Kind::algebraic_loop && entry.block == block;
+  });
+}
+
+std::vector<double> driving_force(const std::vector<double>& with_input,
+                                  const std::vector<double>& without_input) {
+  std::vector<double> force(with_input.size());
+  for (size_t k = 0; k < force.size(); ++k) force[k] = with_input[k] - without_input[k];
+  return force;
+}
+
+std::string unit_of_force(const std::optional<Unit>& known, const MeasuredMotion& motion) {
+  if (known) return to_string(*known);
+  constexpr double rounding = 1e-9;  // of the input, as forces were added to it and taken off again
+  double level = 0, difference = 0;
+  for (size_t k = 0; k < motion.input.size(); ++k) {
+    level = std::max(level, std::abs(motion.input[k]));
+    difference = std::max(difference, std::abs(motion.force[k] - motion.input[k]));
+  }
+  return difference <= rounding * level ? motion.input_unit : "1";
+}
+
 std::vector<double> model_acceleration(Machine& machine) {
-  const MeasuredMotion& m = machine.motion;
-  Stepper stepper(machine);
-  std::vector<double> acceleration;
+  MeasuredMotion& m = machine.motion;
+  Stepper stepper(machine), undriven(machine, *machine.undriven);
+  std::vector<double> acceleration, driven_force, other_force;
   double force_by_acceleration = 0, squared_acceleration = 0;
   for (size_t k = 0; k < m.rows(); ++k) {
-    stepper.set(m.position[k], m.velocity[k]);
+    stepper.set(m.position[k], m.velocity[k]), undriven.set(m.position[k], m.velocity[k]);
     const double before = stepper.evaluate();
-    if (!stepper.step()) break;
+    driven_force.push_back(before), other_force.push_back(undriven.evaluate());
+    if (!stepper.step() || !undriven.step()) break;
     acceleration.push_back((stepper.velocity() - m.velocity[k]) / m.sample_time);
     // The force was read at the last step within the sample, hence in the middle by mean.
     const double force = 0.5 * (before + stepper.net_force());
@@ -355,6 +372,9 @@ std::vector<double> model_acceleration(Machine& machine) {
     squared_acceleration += acceleration.back() * acceleration.back();
   }
   acceleration.resize(m.rows(), acceleration.empty() ? 0 : acceleration.back());
+  m.force = driving_force(driven_force, other_force);
+  m.force.resize(m.rows());
+  m.force_unit = unit_of_force(machine.force_unit, m);
   if (machine.net_force >= 0 && squared_acceleration > 0)
     machine.mass = force_by_acceleration / squared_acceleration;
   return acceleration;
@@ -365,7 +385,9 @@ std::vector<double> simulate_position(const Machine& machine, size_t horizon) {
   Stepper stepper(machine);
   std::vector<double> position;
   for (size_t k = 0; k < m.rows(); ++k) {
-    if (k == 0 || (horizon > 0 && k % horizon == 0)) stepper.set(m.position[k], m.velocity[k]);
+    const bool is_behind_gap = k > 0 && m.is_missing(k - 1) && !m.is_missing(k);
+    if (k == 0 || is_behind_gap || (horizon > 0 && k % horizon == 0))
+      stepper.set(m.position[k], m.velocity[k]);
     position.push_back(stepper.position());
     if (!stepper.step()) break;
   }

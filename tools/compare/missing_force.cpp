@@ -78,8 +78,8 @@ ForceResidual force_residual(const Machine& machine, const std::vector<double>& 
   for (size_t k = 0; k < m.rows(); ++k) result.value.push_back(machine.mass * (model[k] - m.acceleration[k]));
   result.value = zero_phase_low_pass(result.value, result.cutoff, m.sample_time);
   result.rmse = rms_where(result.value, m.counts);
-  const double input = rms_where(m.input, m.counts);
-  result.relative_percent = input > 0 ? 100 * result.rmse / input : 0;
+  const double driving = rms_where(m.force, m.counts);
+  result.relative_percent = driving > 0 ? 100 * result.rmse / driving : 0;
   const size_t lag = find_repeat(m);
   if (lag > 0) {
     result.repeat_s = double(lag) * m.sample_time;

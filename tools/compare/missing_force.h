@@ -5,12 +5,13 @@
 
 namespace loopwright {
 
-/// r = u - (force that the model needs for the measured motion): positive where the machine takes more.
+/// r = driving force - (force that the model needs for the measured motion): positive where the machine takes
+/// more. All in the unit of the place where the forces add up, whatever the unit of the input.
 struct ForceResidual {
   std::vector<double> value;    ///< [force] below `cutoff`, at every row of the motion
   double cutoff = 0;            ///< [Hz]
   double rmse = 0;              ///< [force] over the rows that count
-  double relative_percent = 0;  ///< of the rms of the input
+  double relative_percent = 0;  ///< of the rms of the driving force
   double noise_floor = 0;       ///< [force] what no model could explain
   std::string floor_source;     ///< where the floor comes from, in words
   double repeat_s = 0;          ///< [s] after which the motion repeats; 0: it does not

@@ -21,29 +21,9 @@ Number number_of(const Plan& plan, const std::string& port) {
   return numbers.size() == 1 ? numbers[0] : -1;
 }
 
-/// Nobody computes the block any more: its output is what is written into the arena.
-void silence(Plan& plan, Number number) {
-  const int block = plan.source_of(number).first;
-  std::erase_if(plan.order, [&](const Plan::Entry& entry) {
-    return entry.kind != Plan::Entry::Kind::algebraic_loop && entry.block == block;
-  });
-}
-
 /// Only what the axis itself needs is computed: the controller that the cut left behind is not.
 void keep_only(Plan& plan, const std::vector<Number>& wanted) {
-  std::vector<bool> needed(plan.blocks.size(), false);
-  std::vector<int> todo;
-  const auto want = [&](Number n) {
-    const int block = n < 0 ? -1 : plan.source_of(n).first;
-    if (block >= 0 && !needed[size_t(block)]) needed[size_t(block)] = true, todo.push_back(block);
-  };
-  for (Number n : wanted) want(n);
-  while (!todo.empty()) {
-    const Plan::Block& block = plan.blocks[size_t(todo.back())];
-    todo.pop_back();
-    for (const auto& port : block.inputs)
-      for (Number n : port) want(n);
-  }
+  const std::vector<bool> needed = blocks_behind(plan, wanted, {});
   std::erase_if(plan.order, [&](const Plan::Entry& entry) {
     return entry.kind != Plan::Entry::Kind::algebraic_loop && !needed[size_t(entry.block)];
   });
@@ -62,6 +42,25 @@ std::string inertia_parameter(const Plan& plan, Run<double>& run, Number force) 
 }
 
 }  // namespace
+
+std::vector<bool> blocks_behind(const Plan& plan, const std::vector<Number>& wanted,
+                                const std::vector<int>& beyond) {
+  std::vector<bool> needed(plan.blocks.size(), false);
+  std::vector<int> todo;
+  const auto want = [&](Number n) {
+    const int block = n < 0 ? -1 : plan.source_of(n).first;
+    if (block < 0 || needed[size_t(block)] || std::ranges::find(beyond, block) != beyond.end()) return;
+    needed[size_t(block)] = true, todo.push_back(block);
+  };
+  for (Number n : wanted) want(n);
+  while (!todo.empty()) {
+    const Plan::Block& block = plan.blocks[size_t(todo.back())];
+    todo.pop_back();
+    for (const auto& port : block.inputs)
+      for (Number n : port) want(n);
+  }
+  return needed;
+}
 
 AxisModel::AxisModel(const std::string& path, const std::string& experiment_path,
                      const LoadOptions& options) {
@@ -87,6 +86,10 @@ AxisModel::AxisModel(const std::string& path, const std::string& experiment_path
   const auto plan = injected ? compile(*injected, problems) : nullptr;
   if (!plan || problems.has_errors()) throw InputError(std::move(problems));
   auto changed = std::make_shared<Plan>(*plan);
+  std::optional<Unit> force_unit;  // what drives the input in the diagram as written may say more
+  for (const Plan* known : {static_cast<const Plan*>(changed.get()), whole_plan.get()})
+    if (const Number number = number_of(*known, force_port); number >= 0 && !force_unit)
+      force_unit = known->unit_of(number);
   record_ = read_axis_record(cut, *changed, problems);
   if (problems.has_errors()) throw InputError(std::move(problems));
   input_ = number_of(*changed, role(cut, "input").first);
@@ -105,7 +108,6 @@ AxisModel::AxisModel(const std::string& path, const std::string& experiment_path
   std::vector<Number> wanted{force_, position_, velocity_};
   for (const MeasuredPort& port : record_.measured) wanted.push_back(port.number);
   keep_only(*changed, wanted);
-  if (const auto unit = plan->unit_of(force_)) force_unit_ = to_string(*unit);
   if (position_ >= 0)
     if (const auto unit = plan->unit_of(position_)) position_unit_ = to_string(*unit);
   plan_ = std::move(changed);
@@ -116,6 +118,8 @@ AxisModel::AxisModel(const std::string& path, const std::string& experiment_path
   inertia_parameter_ = inertia_parameter(*plan_, *run_, force_);
   if (!inertia_parameter_.empty()) own_inertia_ = *run_->parameter(inertia_parameter_);
   for (int i = 0; i < plan_->states; ++i) seen_.push_back(i);
+  look_between_input_and_force();
+  work_out_driving_force(force_unit);
   const LinearAxis linear = linearize_motion();
   keep_seen_states(linear);
   nominal_inertia_ = linear.inertia, nominal_damping_ = linear.damping;
@@ -166,7 +170,8 @@ void AxisModel::place(double position, double velocity) {
 void AxisModel::step(double input, double force) {
   numbers_[input_] = input;
   numbers_[injected_] = force;
-  run_->step_fixed(INT64_MAX, false, [] {});
+  const int64_t end = run_->now().tick + plan_->step_ticks;
+  while (run_->now().tick < end) run_->step_fixed(end, false, [] {});
   if (all_outputs_) run_->evaluate(0, true);
 }
 
@@ -175,24 +180,5 @@ double AxisModel::velocity() const { return velocity_ < 0 ? 0 : numbers_[velocit
 double AxisModel::measured(size_t port) const { return numbers_[record_.measured[port].number]; }
 double AxisModel::state(int index) const { return numbers_[plan_->signals + index]; }
 void AxisModel::correct(int index, double by) { numbers_[plan_->signals + index] += by; }
-
-double AxisModel::net_force(double input, double force) {
-  numbers_[input_] = input;
-  numbers_[injected_] = force;
-  run_->evaluate(0, true);
-  return numbers_[force_];
-}
-
-double AxisModel::net_force_along(double position, double velocity, double input, double force) {
-  place(position, velocity);
-  const double net = net_force(input, force);
-  run_->accept();
-  return net;
-}
-
-bool AxisModel::holds_at_rest(double small_force) {
-  start(record_.measured.front().value[0], 0);
-  return net_force(0, small_force) - net_force(0, -small_force) < small_force;
-}
 
 }  // namespace loopwright::diagnosis

@@ -1,4 +1,7 @@
 /// The user's diagram, cut open at its input and given one more force: what the predictor steps.
+///
+/// Input and force may be different quantities: a current, and the newtons that a motor makes of it. What
+/// lies between them is the diagram's own: gains, saturations, lags, sampled filters.
 #pragma once
 #include <Eigen/Dense>
 #include <memory>
@@ -28,6 +31,10 @@ struct LinearAxis {
   double damping = 0;  ///< force per speed
 };
 
+/// The blocks on which these numbers hang, without those of `beyond` and what lies behind them alone.
+std::vector<bool> blocks_behind(const Plan& plan, const std::vector<Number>& wanted,
+                                const std::vector<int>& beyond);
+
 class AxisModel {
  public:
   /// The diagram at `path`, driven by the experiment's input alone. Throws InputError with every problem.
@@ -38,6 +45,10 @@ class AxisModel {
   const AxisRecord& record() const { return record_; }
   const Plan& plan() const { return *plan_; }
   bool has_position() const { return position_ >= 0; }
+  /// [force] What the recorded input makes of force, row by row: loopwright::driving_force().
+  const std::vector<double>& driving_force() const { return driving_force_; }
+  /// [force/input] The gain that fits the driving force best.
+  double force_per_input() const { return force_per_input_; }
   const std::string& force_unit() const { return force_unit_; }
   const std::string& position_unit() const { return position_unit_; }
 
@@ -62,8 +73,16 @@ class AxisModel {
   /// The mean force on the moving part at the present state, the added force included.
   double net_force(double input, double force);
   void place(double position, double velocity);
-  /// The same where a path leads, place by place: dry friction remembers from where it came.
-  double net_force_along(double position, double velocity, double input, double force);
+  /// The same where a path leads, place by place: dry friction remembers from where it came. Lags and filters
+  /// between input and force have come to rest.
+  double net_force_at_rest(double position, double velocity, double input, double force);
+  /// At the instant of a row the input changes: the net force from there on, or the mean of before and after.
+  enum class At { from_there_on, mean };
+  /// The net force at every row along a motion. The input is held from its row to the next. Lags and filters
+  /// between input and force follow it; in a map of balances each row stands alone, and they have come to
+  /// rest.
+  std::vector<double> net_forces(std::span<const double> position, std::span<const double> velocity,
+                                 std::span<const double> input, At at);
   /// Whether a force as small as this moves nothing at rest: something in the diagram holds.
   bool holds_at_rest(double small_force);
 
@@ -71,6 +90,13 @@ class AxisModel {
   LinearAxis linearize();
 
  private:
+  void look_between_input_and_force();
+  void work_out_driving_force(const std::optional<Unit>& force_unit);
+  void let_inner_states_rest(double position, double velocity, double input);
+  Eigen::VectorXd inner_states_after_sample(double position, double velocity, double input,
+                                            const Eigen::VectorXd& from);
+  double held_force(double input);
+  double net_force_along(double position, double velocity, double input, double force);
   LinearAxis linearize_motion();
   void keep_seen_states(const LinearAxis& linear);
   Eigen::VectorXd sample_from(const Eigen::VectorXd& states, double input, double force);
@@ -83,6 +109,13 @@ class AxisModel {
   std::string inertia_parameter_, force_unit_, position_unit_;
   double own_inertia_ = 0, nominal_inertia_ = 0, nominal_damping_ = 0;
   std::vector<int> seen_;
+  std::vector<int> inner_states_;   // between input and force
+  bool input_is_filtered_ = false;  // by states, sampled blocks or delays
+  bool force_remembers_ = false;    // the net force hangs on more than motion and input now
+  Eigen::MatrixXd inner_decay_;     // of the inner states over a sample; empty: not yet known
+  std::vector<char> remembered_;    // the arena at an operating point
+  std::vector<double> driving_force_;
+  double force_per_input_ = 0;
   AxisRecord record_;
 };
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include "tools/compare/even_grid.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -33,39 +34,20 @@ Number number_of_role(const Experiment& experiment, const Plan& plan, std::strin
   return -1;
 }
 
-/// Rows on the grid start + k Ts. An input holds across a hole, a measured value is joined across it.
-struct Grid {
-  std::vector<size_t> row;       // at or before the grid point
-  std::vector<double> fraction;  // of the way to the next row
-};
-
-Grid grid_of(const std::vector<double>& time, double sample_time) {
-  Grid grid;
-  const size_t rows = size_t(std::llround((time.back() - time.front()) / sample_time)) + 1;
-  size_t i = 0;
-  for (size_t k = 0; k < rows; ++k) {
-    const double t = time.front() + double(k) * sample_time;
-    while (i + 1 < time.size() && time[i + 1] <= t + 0.25 * sample_time) ++i;
-    const double beyond = t - time[i];
-    const bool missing = beyond > 0.25 * sample_time && i + 1 < time.size();
-    grid.row.push_back(i);
-    grid.fraction.push_back(missing ? beyond / (time[i + 1] - time[i]) : 0);
-  }
-  return grid;
-}
-
-std::vector<double> on_grid(const std::vector<double>& values, const Grid& grid, bool join) {
-  std::vector<double> result;
-  result.reserve(grid.row.size());
-  for (size_t k = 0; k < grid.row.size(); ++k) {
-    const size_t i = grid.row[k];
-    const double step = join && grid.fraction[k] > 0 ? values[i + 1] - values[i] : 0;
-    result.push_back(values[i] + grid.fraction[k] * step);
-  }
-  return result;
-}
-
 }  // namespace
+
+MeasuredMotion measured_motion(const AxisRecord& record) {
+  MeasuredMotion m;
+  m.start = record.start, m.sample_time = record.sample_time, m.input = record.input;
+  m.input_unit = record.input_unit, m.missing = record.missing;
+  for (size_t k = 0; k < record.rows(); ++k) m.time.push_back(record.start + double(k) * record.sample_time);
+  if (const MeasuredPort* position = record.find("position"))
+    m.raw_position = position->value;
+  else
+    m.velocity = record.find("velocity")->value;
+  smooth_motion(m);
+  return m;
+}
 
 Experiment cut_open(const Experiment& experiment, const Plan& plan, Problems& problems) {
   Experiment cut = experiment;
@@ -105,11 +87,14 @@ AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Prob
   record.title = experiment.title, record.path = experiment.path;
   const std::vector<double>& time = experiment.data.columns.front().values;
   if (experiment.drives.empty() || time.size() < 2) return record;
-  record.sample_time = experiment.time.sample_time;
-  record.start = time.front(), record.recorded_time = time;
-  const Grid grid = grid_of(time, record.sample_time);
+  if (const std::string why = too_many_missing(experiment); !why.empty()) {
+    problems.error({}, "/data", "", fmt::format("{}: {}", experiment.path, why));
+    return record;
+  }
+  const EvenGrid grid(experiment);
+  record.start = grid.start(), record.sample_time = grid.sample_time(), record.missing = grid.missing();
   const Column& input = *experiment.data.find(experiment.drives.front().port);
-  record.input = on_grid(input.values, grid, false);
+  record.input = grid.held(input.values);
   record.input_unit = input.unit;
   record.is_map = experiment.is_map;
   for (const char* role : {"position", "velocity"}) {
@@ -121,7 +106,7 @@ AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Prob
       const Column& column = *experiment.data.find(signal.port);
       const auto written = parse_unit(signal.unit);  // rad, not 1
       const std::string unit = written && written->scale == 1 ? signal.unit : column.unit;
-      record.measured.push_back({role, wanted, unit, signal.resolution, on_grid(column.values, grid, true)});
+      record.measured.push_back({role, wanted, unit, signal.resolution, grid.measured(column.values)});
     }
   }
   record.held_out_from = size_t(std::llround(double(record.rows()) * (1 - experiment.hold_out_fraction)));

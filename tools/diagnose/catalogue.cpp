@@ -101,7 +101,7 @@ struct Compiled {
     RoleSignals signals;
     signals.position = acts == Acts::sensor ? path.predicted_position : path.position;
     signals.velocity = path.velocity, signals.acceleration = path.acceleration;
-    signals.input = path.input, signals.force = path.input;
+    signals.input = path.input, signals.force = path.force;
     const size_t rows = path.samples(), per_shape = std::max<size_t>(1, linear.size());
     const size_t wanted = shapes.size() * per_shape;
     std::vector<Columns> result(shapes.size());
@@ -210,7 +210,7 @@ void leave_out(std::vector<NotLookedFor>& list, const std::string& effect, std::
 RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
                      const std::vector<const AxisModel*>& models) {
   RecordSizes sizes;
-  double square = 0, count = 0, low = 1e300, high = -1e300;
+  double squared_force = 0, squared_input = 0, count = 0, low = 1e300, high = -1e300;
   std::vector<double> speeds;
   for (size_t i = 0; i < paths.size(); ++i) {
     const Path& path = *paths[i];
@@ -219,7 +219,9 @@ RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
       if (k < 10) continue;
       const double step = path.position[k] - path.position[k - 1];
       speeds.push_back(std::abs(models[i]->record().is_map ? step / path.sample_time : path.velocity[k]));
-      if (!path.rests[k]) square += path.input[k] * path.input[k], count += 1;
+      if (path.rests[k]) continue;
+      squared_force += path.force[k] * path.force[k], squared_input += path.input[k] * path.input[k];
+      count += 1;
     }
     for (size_t k = 20; k + 20 < path.samples(); k += 5)
       sizes.top_acceleration =
@@ -235,7 +237,8 @@ RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
     sizes.top_speed = *top;
   }
   sizes.lowest_position = low, sizes.highest_position = high, sizes.stroke = high - low;
-  sizes.force_level = std::sqrt(square / std::max(count, 1.0));
+  sizes.force_level = std::sqrt(squared_force / std::max(count, 1.0));
+  sizes.input_level = std::sqrt(squared_input / std::max(count, 1.0));
   sizes.machine_mass = models.front()->nominal_inertia();
   sizes.machine_damping = std::max(0.0, models.front()->nominal_damping());
   sizes.sample_time = paths.front()->sample_time;

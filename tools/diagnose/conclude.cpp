@@ -12,9 +12,9 @@ namespace loopwright::diagnosis {
 namespace {
 
 constexpr double least_wald = 25, least_wald_per_row = 0.001, plain_wald_per_row = 0.01;
-constexpr double least_force = 0.005;          // of the input's rms
+constexpr double least_force = 0.005;          // of the driving force's rms
 constexpr double least_force_to_noise = 0.25;  // of the white noise
-constexpr double least_unique_force = 0.001;   // of the input's rms
+constexpr double least_unique_force = 0.001;   // of the driving force's rms
 
 /// Places of a member's parameters among the free ones. Only those that say whether it is there: the linear
 /// ones, or the shape of one that has none.
@@ -73,6 +73,8 @@ double force_rms(const Trials& trials, const Estimate& estimate, size_t index) {
     for (size_t c = 0; c < columns.size(); ++c)
       for (size_t k = 0; k < whole.size(); ++k) whole[k] += float(member.linear[c]) * (*columns[c].mean)[k];
     std::vector<double> seen(whole.begin(), whole.end());
+    if (member.candidate->acts == Acts::input)
+      for (double& u : seen) u *= trial.model->force_per_input();
     if (member.candidate->acts == Acts::sensor) {
       const Column feigned(whole);
       const Column* const one = &feigned;
@@ -267,11 +269,11 @@ void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
     }
     const Weight& weight = result.weights[weakest];
     result.trail.push_back(
-        fmt::format("{}: {}, χ² {:.0f}, force {:.3g}, unique {:.3g} beside an input of {:.3g} and "
+        fmt::format("{}: {}, χ² {:.0f}, force {:.3g}, unique {:.3g} beside a driving force of {:.3g} and "
                     "noise of {:.3g} and {:.3g}",
                     *least < 1 ? "not material" : "other noise does as well",
                     estimate.members[weakest].candidate->name, weight.wald, weight.force_rms,
-                    weight.unique_force, trials.input_rms, estimate.noise.white, estimate.noise.slow()));
+                    weight.unique_force, trials.force_rms, estimate.noise.white, estimate.noise.slow()));
     estimate = std::move(without);
   }
 }
@@ -349,11 +351,11 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
 double material(const Trials& trials, const Estimate& estimate, const Weight& weight) {
   const double n = double(fitted_numbers(trials));
   const double least_force_now =
-      std::max(least_force * trials.input_rms, least_force_to_noise * estimate.noise.white);
+      std::max(least_force * trials.force_rms, least_force_to_noise * estimate.noise.white);
   // A delay shows for moments only, yet plainly.
   const double size = std::max(weight.force_rms / least_force_now, weight.wald / (plain_wald_per_row * n));
   return std::min({weight.wald / std::max(least_wald, least_wald_per_row * n), size,
-                   weight.unique_force / (least_unique_force * trials.input_rms)});
+                   weight.unique_force / (least_unique_force * trials.force_rms)});
 }
 
 std::vector<Weight> weigh_all(Trials& trials, Estimate& estimate) {

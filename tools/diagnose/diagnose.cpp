@@ -19,7 +19,7 @@ using namespace diagnosis;
 
 MachineUnits units_of(const AxisModel& model) {
   MachineUnits units;
-  units.force = model.force_unit().empty() ? model.record().input_unit : model.force_unit();
+  units.force = model.force_unit(), units.input = model.record().input_unit;
   const MeasuredPort* position = model.record().find("position");
   if (position)
     units.position = position->unit;
@@ -231,9 +231,8 @@ void tell_effects(const Conclusion& conclusion, const std::vector<size_t>& order
 
 void tell_errors(const Trials& trials, const Conclusion& conclusion, const Inquiry& inquiry,
                  Diagnosis& result) {
-  const bool holds_out = result.steps.front().held_out_force_rmse > 0;
   const auto error = [&](const DiagnosisStep& step) {
-    return holds_out ? step.held_out_force_rmse : step.force_rmse;
+    return result.holds_out ? step.held_out_force_rmse : step.force_rmse;
   };
   result.error_before = error(result.steps.front()), result.error_after = error(result.steps.back());
   const Noise& noise = conclusion.estimate.noise;
@@ -286,6 +285,8 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   result.findings = look_at_records(trials, inverse), result.not_looked_for = catalogue.left_out;
   Inquiry inquiry(trials, motion, catalogue, sizes, progress);
   const Conclusion conclusion = conclusion_from(inquiry, result.findings);
+  result.holds_out = std::ranges::any_of(
+      trials.list, [](const Trial& trial) { return trial.held_out_from < trial.usable.size(); });
   result.diagram = diagram, result.experiments = experiments, result.trail = conclusion.trail;
   result.title = models.front()->plan().title;
   result.force_unit = units.force, result.position_unit = units.position;

@@ -41,8 +41,9 @@ struct OtherExplanation {
 /// The errors with the effects up to this one.
 struct DiagnosisStep {
   std::vector<std::string> added;
-  double force_rmse = 0, held_out_force_rmse = 0, simulation_rmse = 0;
-  bool is_optional = false;  ///< after the knee: improves little
+  double force_rmse = 0, held_out_force_rmse = 0,
+         simulation_rmse = 0;  ///< held out: see Diagnosis::holds_out
+  bool is_optional = false;    ///< after the knee: improves little
 };
 
 struct SuggestedExperiment {
@@ -75,9 +76,10 @@ struct Diagnosis {
   Verdict verdict = Verdict::nothing_missing;
   std::string diagram, title;
   std::vector<std::string> experiments;
-  std::vector<DiagnosedEffect> effects;                       ///< strongest first
-  std::vector<OtherExplanation> other_explanations;           ///< where more than one effect changes
-  std::vector<DiagnosisStep> steps;                           ///< the first is the nominal diagram
+  std::vector<DiagnosedEffect> effects;              ///< strongest first
+  std::vector<OtherExplanation> other_explanations;  ///< where more than one effect changes
+  std::vector<DiagnosisStep> steps;                  ///< the first is the nominal diagram
+  bool holds_out = false;  ///< else everything about held-out rows is 0 and nobody is told of it
   double error_before = 0, error_after = 0, noise_floor = 0;  ///< force, held out where there is a hold-out
   std::string force_unit, position_unit, measured_unit;
   std::vector<SuggestedExperiment> suggested;

@@ -23,12 +23,12 @@ std::string to_json(const Diagnosis& d) {
   for (const OtherExplanation& other : d.other_explanations)
     json["other_explanations"].push_back({{"in_place_of", other.in_place_of}, {"effects", other.effects}});
   json["steps"] = nlohmann::ordered_json::array();
-  for (const DiagnosisStep& step : d.steps)
-    json["steps"].push_back({{"added", step.added},
-                             {"force_rmse", step.force_rmse},
-                             {"held_out_force_rmse", step.held_out_force_rmse},
-                             {"simulation_rmse", step.simulation_rmse},
-                             {"optional", step.is_optional}});
+  for (const DiagnosisStep& step : d.steps) {
+    nlohmann::ordered_json entry{{"added", step.added}, {"force_rmse", step.force_rmse}};
+    if (d.holds_out) entry["held_out_force_rmse"] = step.held_out_force_rmse;
+    entry["simulation_rmse"] = step.simulation_rmse, entry["optional"] = step.is_optional;
+    json["steps"].push_back(std::move(entry));
+  }
   json["error"] = {{"before", d.error_before},
                    {"after", d.error_after},
                    {"noise_floor", d.noise_floor},
@@ -45,9 +45,9 @@ std::string to_json(const Diagnosis& d) {
   for (const NotLookedFor& n : d.not_looked_for)
     for (const std::string& effect : n.effects)
       json["not_looked_for"].push_back({{"effect", effect}, {"why", n.why}});
-  json["prediction_errors"] = {{"mean_square", d.mean_square},
-                               {"held_out_mean_square", d.held_out_mean_square},
-                               {"portmanteau_40", d.portmanteau}};
+  json["prediction_errors"]["mean_square"] = d.mean_square;
+  if (d.holds_out) json["prediction_errors"]["held_out_mean_square"] = d.held_out_mean_square;
+  json["prediction_errors"]["portmanteau_40"] = d.portmanteau;
   json["noise"] = {{"white_force", d.white_force},
                    {"slow_force", d.slow_force},
                    {"slow_force_time_s", d.slow_force_time_s},

@@ -122,35 +122,47 @@ report::Section what_is_missing(const Diagnosis& d) {
   return section;
 }
 
+/// A column behind that of the fitted rows.
+void add_held_out(const Diagnosis& d, report::Table& table) {
+  constexpr ptrdiff_t behind_fitted = 2;
+  table.head.insert(table.head.begin() + behind_fitted, "Residual force, held out");
+  for (size_t i = 0; i < table.rows.size(); ++i)
+    table.rows[i].insert(table.rows[i].begin() + behind_fitted,
+                         i < d.steps.size() ? shown(d.steps[i].held_out_force_rmse, d.force_unit) : "");
+  table.caption += " Held-out rows were never fitted.";
+}
+
 report::Section staircase(const Diagnosis& d) {
   report::Section section{"The staircase of the error", {}};
-  report::Table table{
-      {"Diagram", "Residual force, fitted", "Residual force, held out", "Position after 0.1 s", ""},
-      {},
-      "Each row has all parameters fitted anew. Held-out rows were never fitted."};
+  report::Table table{{"Diagram", "Residual force, fitted", "Position after 0.1 s", ""},
+                      {},
+                      "Each row has all parameters fitted anew."};
   for (const DiagnosisStep& step : d.steps) {
     std::vector<std::string> names;
     for (const std::string& name : step.added) names.push_back(words(name));
-    table.rows.push_back(
-        {names.empty() ? "nominal" : "+ " + joined(names, " + "), shown(step.force_rmse, d.force_unit),
-         step.held_out_force_rmse > 0 ? shown(step.held_out_force_rmse, d.force_unit) : "–",
-         shown(step.simulation_rmse, d.measured_unit), step.is_optional ? "optional: past the knee" : ""});
+    table.rows.push_back({names.empty() ? "nominal" : "+ " + joined(names, " + "),
+                          shown(step.force_rmse, d.force_unit), shown(step.simulation_rmse, d.measured_unit),
+                          step.is_optional ? "optional: past the knee" : ""});
   }
-  table.rows.push_back({"noise alone", shown(d.noise_floor, d.force_unit), "", "", ""});
+  table.rows.push_back({"noise alone", shown(d.noise_floor, d.force_unit), "", ""});
+  if (d.holds_out) add_held_out(d, table);
   section.items.push_back(std::move(table));
   return section;
 }
 
 report::Section what_remains(const Diagnosis& d) {
   report::Section section{"What remains", {}};
-  section.items.push_back(report::KeyNumbers{
+  report::KeyNumbers numbers{
       {{"Squared prediction error, fitted", fmt::format("{:.3f}", d.mean_square), "",
         "1 when all is explained"},
-       {"held out", fmt::format("{:.3f}", d.held_out_mean_square), "", ""},
        {"Whiteness, 40 lags", fmt::format("{:.0f}", d.portmanteau), "", "near 40 when nothing is left"},
        {"White force noise", shown(d.white_force, d.force_unit), "", ""},
        {"Slow force noise", shown(d.slow_force, d.force_unit), "",
-        fmt::format("over {:.3g} s", d.slow_force_time_s)}}});
+        fmt::format("over {:.3g} s", d.slow_force_time_s)}}};
+  if (d.holds_out)
+    numbers.numbers.insert(numbers.numbers.begin() + 1,
+                           {"held out", fmt::format("{:.3f}", d.held_out_mean_square), "", ""});
+  section.items.push_back(std::move(numbers));
   if (!d.dependence.empty()) {
     report::Table table{
         {"Variable", "Share of the remainder that it explains"}, {}, "On rows left out of the fit."};

@@ -52,11 +52,16 @@ std::string to_text(const Diagnosis& d) {
     line(
         "A Gpr block can stand in for it: train one on this record with `loopwright gp train`, with "
         "label.command, mass and damping.");
-  line(fmt::format("  {:<42} {:>14} {:>14} {:>14}", "residual force", "fitted", "held out", "0.1 s ahead"));
+  const auto held_out = [&](const std::string& words) {
+    return d.holds_out ? fmt::format(" {:>14}", words) : "";
+  };
+  line(fmt::format("  {:<42} {:>14}{} {:>14}", "residual force", "fitted", held_out("held out"),
+                   "0.1 s ahead"));
   for (const DiagnosisStep& step : d.steps)
-    line(fmt::format("  {:<42} {:>14} {:>14} {:>14}{}",
+    line(fmt::format("  {:<42} {:>14}{} {:>14}{}",
                      step.added.empty() ? "nominal diagram" : "+ " + joined(step.added, " + "),
-                     shown(step.force_rmse, d.force_unit), shown(step.held_out_force_rmse, d.force_unit),
+                     shown(step.force_rmse, d.force_unit),
+                     held_out(shown(step.held_out_force_rmse, d.force_unit)),
                      shown(step.simulation_rmse, d.measured_unit), step.is_optional ? "  optional" : ""));
   line(fmt::format("  {:<42} {:>14}", "noise alone", shown(d.noise_floor, d.force_unit)));
   for (const SuggestedExperiment& e : d.suggested)

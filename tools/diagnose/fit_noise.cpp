@@ -7,7 +7,8 @@
 namespace loopwright::diagnosis {
 namespace {
 
-constexpr double least_white = 1e-3;  // of the input's rms
+/// Of the driving force's rms: a fiftieth of the least force that is material.
+constexpr double least_white = 1e-4;
 
 /// Logarithms of the free numbers of a noise.
 struct Coordinates {
@@ -67,7 +68,7 @@ double evaluate(unsigned, const double* x, double*, void* data) {
 Noise search_noise(const Trials& trials) {
   constexpr double memory_s = 0.03;
   Noise noise = trials.noise;
-  noise.white = std::clamp(noise.white, 0.005 * trials.input_rms, 0.02 * trials.input_rms);
+  noise.white = std::clamp(noise.white, 0.005 * trials.force_rms, 0.02 * trials.force_rms);
   const double sample_time = trials.list.front().model->record().sample_time;
   noise.memory = std::exp(-sample_time / memory_s);
   noise.step = usual_slow_noise * noise.white * std::sqrt(1 - noise.memory * noise.memory);
@@ -79,7 +80,7 @@ Noise fit_noise(const Trials& trials, const std::vector<Fitted>& fitted, const N
   std::vector<double> x = objective.coordinates.of(start), low = x, high = x;
   for (size_t i = 0; i < x.size(); ++i) low[i] -= std::log(30.0), high[i] += std::log(30.0);
   // Where the sensor's counts are the only noise, that of the force would go to nothing.
-  low[0] = std::max(low[0], std::log(least_white * trials.input_rms));
+  low[0] = std::max(low[0], std::log(least_white * trials.force_rms));
   x[0] = std::max(x[0], low[0]), high[0] = std::max(high[0], x[0]);
   nlopt_opt optimiser = nlopt_create(NLOPT_LN_BOBYQA, unsigned(x.size()));
   nlopt_set_min_objective(optimiser, evaluate, &objective);

@@ -29,7 +29,7 @@ struct Trials {
   Noise noise;
   double rest_speed = 0;
   bool nominal_holds = false;  ///< the user's diagram has dry friction that holds the axis
-  double input_rms = 0;        ///< while moving
+  double force_rms = 0;        ///< what the recorded inputs make of force
   double lowest_position = 0, highest_position = 0, longest_s = 0;  ///< as the first prediction saw them
   const std::atomic<bool>* interrupt =
       nullptr;  ///< once true, the next run along the records throws Interrupted

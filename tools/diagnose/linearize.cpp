@@ -26,11 +26,12 @@ std::vector<size_t> operating_rows(const AxisRecord& record) {
 
 /// Of a map each row stands alone: one state, the force that the model has left over, and that is measured to
 /// be none.
-LinearAxis balance_of(const LinearAxis& moving) {
+LinearAxis balance_of(const LinearAxis& moving, double force_per_input) {
   LinearAxis linear;
   linear.inertia = moving.inertia, linear.damping = moving.damping;
   linear.A = Eigen::MatrixXd::Zero(1, 1), linear.C = Eigen::MatrixXd::Ones(1, 1);
-  linear.push = linear.input_push = Eigen::VectorXd::Ones(1);
+  linear.push = Eigen::VectorXd::Ones(1);
+  linear.input_push = Eigen::VectorXd::Constant(1, force_per_input);
   linear.slope_share = Eigen::VectorXd::Zero(1);
   return linear;
 }
@@ -38,6 +39,10 @@ LinearAxis balance_of(const LinearAxis& moving) {
 }  // namespace
 
 Eigen::VectorXd AxisModel::sample_from(const Eigen::VectorXd& states, double input, double force) {
+  if (force_remembers_) {  // sampled filters and delays as they were, whatever was tried before
+    std::ranges::copy(remembered_, run_->arena().begin());
+    run_->restored(plan_->start_tick);
+  }
   for (size_t i = 0; i < seen_.size(); ++i) numbers_[plan_->signals + seen_[i]] = states[Eigen::Index(i)];
   step(input, force);
   Eigen::VectorXd next(states.size());
@@ -46,7 +51,7 @@ Eigen::VectorXd AxisModel::sample_from(const Eigen::VectorXd& states, double inp
 }
 
 LinearAxis AxisModel::linearize() {
-  return record_.is_map ? balance_of(linearize_motion()) : linearize_motion();
+  return record_.is_map ? balance_of(linearize_motion(), force_per_input_) : linearize_motion();
 }
 
 LinearAxis AxisModel::linearize_motion() {
@@ -56,9 +61,11 @@ LinearAxis AxisModel::linearize_motion() {
   linear.push = linear.input_push = Eigen::VectorXd::Zero(n);
   linear.C = Eigen::MatrixXd::Zero(Eigen::Index(record_.measured.size()), n);
   const std::vector<size_t> rows = operating_rows(record_);
-  double input_size = 0;
+  double input_size = 0, force_size = 0;
   for (double u : record_.input) input_size = std::max(input_size, std::abs(u));
+  for (double f : driving_force_) force_size = std::max(force_size, std::abs(f));
   if (input_size == 0) input_size = 1;
+  if (force_size == 0) force_size = 1;
   const MeasuredPort* position = record_.find("position");
   const MeasuredPort* velocity = record_.find("velocity");
   const double weight = 1.0 / double(rows.size());
@@ -68,12 +75,15 @@ LinearAxis AxisModel::linearize_motion() {
                          ? (position->value[k + 1] - position->value[k - 1]) / (2 * record_.sample_time)
                          : 0;
     start(position ? position->value[k] : 0, v);
+    if (force_remembers_) remembered_.assign(run_->arena().begin(), run_->arena().end());
     Eigen::VectorXd at(n);
     for (Eigen::Index i = 0; i < n; ++i) at[i] = state(seen_[size_t(i)]);
-    const double u = record_.input[k], push = 1e-3 * input_size;
+    const double u = record_.input[k], push = 1e-3 * force_size, change_of_u = 1e-3 * input_size;
     linear.push += weight * (sample_from(at, u, push) - sample_from(at, u, -push)) / (2 * push);
-    linear.input_push += weight * (sample_from(at, u + push, 0) - sample_from(at, u - push, 0)) / (2 * push);
-    const Eigen::VectorXd moved = sample_from(at, u, input_size) - sample_from(at, u, 0);
+    linear.input_push += weight *
+                         (sample_from(at, u + change_of_u, 0) - sample_from(at, u - change_of_u, 0)) /
+                         (2 * change_of_u);
+    const Eigen::VectorXd moved = sample_from(at, u, force_size) - sample_from(at, u, 0);
     for (Eigen::Index i = 0; i < n; ++i) {
       const double change = std::max(1e-2 * std::abs(moved[i]), 1e-9);
       Eigen::VectorXd up = at, down = at;
@@ -95,6 +105,8 @@ LinearAxis AxisModel::linearize_motion() {
       }
     }
   }
+  // What samples remember is no state here: effects at the input act as they do in the long run.
+  if (input_is_filtered_ && inner_states_.empty()) linear.input_push = linear.push * force_per_input_;
   const Eigen::Index v = velocity_ - plan_->signals, x = position_ - plan_->signals;
   linear.slope_share = Eigen::VectorXd::Zero(n);
   for (Eigen::Index i = 0; i < n; ++i)

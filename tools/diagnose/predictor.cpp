@@ -157,7 +157,7 @@ Path Path::first_samples(size_t count) const {
   Path shorter = *this;
   shorter.identity = next_identity();
   for (auto* list : {&shorter.position, &shorter.velocity, &shorter.acceleration, &shorter.input,
-                     &shorter.predicted_position})
+                     &shorter.force, &shorter.predicted_position})
     list->resize(count);
   shorter.rests.resize(count), shorter.turns.resize(count);
   return shorter;
@@ -216,11 +216,15 @@ std::vector<std::vector<double>> responses(const LinearAxis& axis, const Gains& 
 
 namespace {
 
+std::vector<double> first_rows(const std::vector<double>& all, size_t rows) {
+  return {all.begin(), all.begin() + std::ptrdiff_t(rows)};
+}
+
 /// At the balances of a map the force that the model has left over is the error.
 Prediction balance(AxisModel& model, const Gains& gains, const Drives& drives) {
   Prediction result;
   Path& path = result.path = creep_along(model.record(), drives.input.size());
-  path.input = drives.input;
+  path.input = drives.input, path.force = first_rows(model.driving_force(), path.samples());
   result.error.resize(path.samples()), result.slow.resize(path.samples());
   model.start(path.position[0], 0);
   double d = 0, expected = 0;
@@ -229,7 +233,7 @@ Prediction balance(AxisModel& model, const Gains& gains, const Drives& drives) {
     d -= gains.K(1, 0) * expected;
     result.slow[k] = d;
     expected =
-        model.net_force_along(path.position[k], path.velocity[k], drives.input[k], d - drives.force[k]);
+        model.net_force_at_rest(path.position[k], path.velocity[k], drives.input[k], d - drives.force[k]);
     d *= gains.memory;
   }
   return result;
@@ -248,7 +252,7 @@ Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains,
   Path& path = result.path;
   path.identity = next_identity(), path.sample_time = record.sample_time, path.rest_speed = rest_speed;
   for (auto* list : {&path.position, &path.velocity, &path.acceleration}) list->resize(rows);
-  path.input = drives.input;
+  path.input = drives.input, path.force = first_rows(model.driving_force(), rows);
   path.predicted_position.resize(rows), path.rests.resize(rows), path.turns.resize(rows);
   const MeasuredPort* position = record.find("position");
   const MeasuredPort* velocity = record.find("velocity");
@@ -276,7 +280,7 @@ Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains,
     path.position[k] = model.position(), path.velocity[k] = velocity_now;
     path.rests[k] = std::abs(velocity_now) < rest_speed;
     const bool turned = k > 0 && (velocity_now > 0) != (path.velocity[k - 1] > 0);
-    turning = turned ? samples_to_correct : std::max(0, turning - 1);
+    turning = turned || record.is_missing(k) ? samples_to_correct : std::max(0, turning - 1);
     path.turns[k] = turning > 0;
     if (path.forgets(k)) d = 0;
     result.slow[k] = d;

@@ -26,10 +26,11 @@ struct Path {
       0;  ///< equal only for equal paths, as what was computed along one is remembered; 0: none
   double sample_time = 0;
   std::vector<double> position, velocity, acceleration, input;
+  std::vector<double> force;               ///< what the recorded input makes of force
   std::vector<double> predicted_position;  ///< before the sample itself was measured
   std::vector<char> rests;                 ///< slower than `rest_speed`
   /// For some samples after a reversal. Dry friction turns there, at a moment that is known to a sample or
-  /// two, and what it does meanwhile is no slow force.
+  /// two, and what it does meanwhile is no slow force. Nor is what happened while samples were missing.
   std::vector<char> turns;
   double rest_speed = 0;
   size_t samples() const { return rests.size(); }

@@ -43,7 +43,7 @@ double measurement_noise(const MeasuredPort& port) {
 
 Noise first_guess(const Trials& trials) {
   Noise noise;
-  noise.white = 0.01 * trials.input_rms;
+  noise.white = 0.01 * trials.force_rms;
   noise.step = 0.3 * noise.white;
   for (const MeasuredPort& port : trials.list.front().model->record().measured)
     noise.measurement.push_back(trials.has_map() ? noise.white : measurement_noise(port));
@@ -96,15 +96,15 @@ Trials prepare(const std::string& diagram, const std::vector<std::string>& exper
     trial.held_out_from = record.held_out_from;
     const std::vector<double> own = speeds(record);
     speed.insert(speed.end(), own.begin(), own.end());
-    for (double u : record.input) square += u * u, ++n;
+    for (double f : trial.model->driving_force()) square += f * f, ++n;
     trials.list.push_back(std::move(trial));
   }
   reject_mixed(trials);
   trials.run_along(Trials::Rows::all);
   trials.rest_speed = 0.005 * quantile(speed, 0.99);
-  trials.input_rms = std::sqrt(square / double(std::max<size_t>(n, 1)));
+  trials.force_rms = std::sqrt(square / double(std::max<size_t>(n, 1)));
   trials.noise = first_guess(trials);
-  trials.nominal_holds = trials.list.front().model->holds_at_rest(1e-3 * trials.input_rms);
+  trials.nominal_holds = trials.list.front().model->holds_at_rest(1e-3 * trials.force_rms);
   std::vector<Fitted> nominal = run_members(trials, {}, {}, trials.noise);
   for (size_t t = 0; t < trials.list.size(); ++t)
     mark_usable(trials.list[t], nominal[t].prediction.path, trials.has_map());

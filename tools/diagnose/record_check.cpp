@@ -17,7 +17,7 @@ std::vector<RecordFinding> look_at_records(const Trials& trials,
     const MeasuredPort* position = model.record().find("position");
     const RecordContent content = content_of(machine, residual, position ? position->resolution : 0);
     const std::string of = trials.list.size() > 1 ? fmt::format("record {}: ", t + 1) : "";
-    for (const RecordFault& fault : faults_of(machine, residual, content, model.record().recorded_time)) {
+    for (const RecordFault& fault : faults_of(machine, residual, content)) {
       if (trials.has_map() && fault.name != "one_direction") continue;  // of time and speed a map has none
       findings.push_back({of + fault.text, fault.cost, fault.is_fatal, fault.may_be_physics});
     }

@@ -27,17 +27,15 @@ std::vector<double> at_samples(const std::vector<double>& held, const AxisRecord
   return mean;
 }
 
-MeasuredMotion motion_of(const AxisRecord& record) {
-  MeasuredMotion m;
-  m.start = record.start, m.sample_time = record.sample_time, m.input = record.input;
-  m.force_unit = record.input_unit;
-  for (size_t k = 0; k < record.rows(); ++k) m.time.push_back(record.start + double(k) * record.sample_time);
-  if (const MeasuredPort* position = record.find("position"))
-    m.raw_position = position->value;
-  else
-    m.velocity = record.find("velocity")->value;
-  smooth_motion(m);
-  return m;
+bool misses_samples(const AxisRecord& record, size_t from, size_t to) {
+  for (size_t k = from; k < to; ++k)
+    if (record.is_missing(k)) return true;
+  return false;
+}
+
+/// Of the model along a path, as the instants of its rows see it.
+std::vector<double> net_forces(AxisModel& model, const Path& path, const std::vector<double>& input) {
+  return model.net_forces(path.position, path.velocity, input, AxisModel::At::mean);
 }
 
 }  // namespace
@@ -46,7 +44,8 @@ InverseDynamics inverse_dynamics(Trial& trial, double rest_speed) {
   AxisModel& model = *trial.model;
   const AxisRecord& record = model.record();
   InverseDynamics result;
-  result.motion = motion_of(record);
+  result.motion = measured_motion(record);
+  result.motion.force = model.driving_force(), result.motion.force_unit = model.force_unit();
   Path& path = result.path;
   if (record.is_map) {
     path = creep_along(record, record.rows());
@@ -58,13 +57,10 @@ InverseDynamics inverse_dynamics(Trial& trial, double rest_speed) {
     path.rests.resize(record.rows()), path.turns.resize(record.rows());
     for (size_t k = 0; k < record.rows(); ++k) path.rests[k] = std::abs(path.velocity[k]) < rest_speed;
   }
-  const std::vector<double> input = at_samples(record.input, record);
-  model.set_added_inertia(0);
-  model.start(path.position[0], path.velocity[0]);
-  for (size_t k = 0; k < record.rows(); ++k) {
-    const double net = model.net_force_along(path.position[k], path.velocity[k], input[k], 0);
-    result.residual.push_back(net - model.nominal_inertia() * path.acceleration[k]);
-  }
+  path.force = model.driving_force();
+  result.net_force = net_forces(model, path, record.input);
+  for (size_t k = 0; k < record.rows(); ++k)
+    result.residual.push_back(result.net_force[k] - model.nominal_inertia() * path.acceleration[k]);
   return result;
 }
 
@@ -73,7 +69,7 @@ std::vector<double> residual_with(const Trial& trial, const InverseDynamics& inv
   const AxisRecord& record = trial.model->record();
   const double T = record.sample_time, mass = trial.model->nominal_inertia();
   std::vector<double> residual = inverse.residual;
-  Drives consumed{record.input, std::vector<double>(record.rows(), 0.0), {}, {}, {}};
+  std::vector<double> consumed(record.rows(), 0.0);
   std::vector<Member> others;
   for (const Member& member : members) {
     if (member.candidate->acts != Acts::force) {
@@ -83,12 +79,15 @@ std::vector<double> residual_with(const Trial& trial, const InverseDynamics& inv
     const Columns columns = member.candidate->columns(inverse.path, member.nonlinear);
     for (size_t c = 0; c < columns.size(); ++c)
       for (size_t k = 0; k < residual.size(); ++k)
-        consumed.force[k] += member.linear[c] * double((*columns[c].mean)[k]);
+        consumed[k] += member.linear[c] * double((*columns[c].mean)[k]);
   }
   const Drives changed = drives_of(others, inverse.path, record.input);
-  for (size_t k = 0; k < residual.size(); ++k) consumed.force[k] += record.input[k] - changed.input[k];
-  const std::vector<double> force = at_samples(consumed.force, record);
+  const std::vector<double> force = at_samples(consumed, record);
   for (size_t k = 0; k < residual.size(); ++k) residual[k] -= force[k];
+  if (changed.input != record.input) {
+    const std::vector<double> net = net_forces(*trial.model, inverse.path, changed.input);
+    for (size_t k = 0; k < residual.size(); ++k) residual[k] += net[k] - inverse.net_force[k];
+  }
   if (!changed.sensor.empty())
     for (size_t k = 1; k + 1 < residual.size(); ++k)
       residual[k] += mass * (changed.sensor[k + 1] - 2 * changed.sensor[k] + changed.sensor[k - 1]) / (T * T);
@@ -143,6 +142,7 @@ double short_horizon_error(Trials& trials, const Estimate& estimate, double hori
     const size_t horizon = std::max<size_t>(2, size_t(horizon_s / record.sample_time));
     for (size_t start = 0; start + horizon < path.samples(); start += horizon) {
       if (!trials.list[t].usable[start] || !trials.list[t].usable[start + horizon]) continue;
+      if (misses_samples(record, start, start + horizon)) continue;
       model.place(path.position[start], path.velocity[start]);
       for (size_t k = start; k < start + horizon; ++k) model.step(drives.input[k], -drives.force[k]);
       const double sensor = drives.sensor.empty() ? 0 : drives.sensor[start + horizon];

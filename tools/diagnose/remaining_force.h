@@ -10,8 +10,9 @@ namespace loopwright::diagnosis {
 /// Measured motion, filtered forward and backward, and what the nominal model lacks to explain it.
 struct InverseDynamics {
   MeasuredMotion motion;
-  Path path;                     ///< the same, as effects read it
-  std::vector<double> residual;  ///< force: net force of the nominal diagram less inertia × acceleration
+  Path path;                      ///< the same, as effects read it
+  std::vector<double> net_force;  ///< of the nominal diagram, as recorded
+  std::vector<double> residual;   ///< net force less inertia × acceleration
 };
 
 InverseDynamics inverse_dynamics(Trial& trial, double rest_speed);

@@ -15,6 +15,7 @@ const std::vector<NamedSize> record_sizes = {
     {"top_speed", "$position/s", &RecordSizes::top_speed},
     {"top_acceleration", "$position/s^2", &RecordSizes::top_acceleration},
     {"force_level", "$force", &RecordSizes::force_level},
+    {"input_level", "$input", &RecordSizes::input_level},
     {"machine_mass", "$force*s^2/$position", &RecordSizes::machine_mass},
     {"machine_damping", "$force*s/$position", &RecordSizes::machine_damping},
     {"resolution", "$position", &RecordSizes::resolution},
@@ -64,7 +65,9 @@ std::string unit_in(std::string_view unit, const MachineUnits& units) {
     return true;
   };
   while (!unit.empty()) {
-    if (by_role("$position", units.position) || by_role("$force", units.force)) continue;
+    if (by_role("$position", units.position) || by_role("$force", units.force) ||
+        by_role("$input", units.input))
+      continue;
     text += unit.front();
     unit.remove_prefix(1);
   }

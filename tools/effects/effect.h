@@ -14,9 +14,10 @@ namespace loopwright {
 inline const std::vector<std::string> effect_roles = {"position", "velocity", "acceleration", "input",
                                                       "force"};
 
-/// What $position and $force stand for: rad and A for a motor that is driven by current.
+/// What $position, $force and $input stand for: rad, N*m and A for a motor that is driven by current. The
+/// force is that of the place where forces add up, the input what was recorded.
 struct MachineUnits {
-  std::string position = "m", force = "N";
+  std::string position = "m", force = "N", input = "N";
 };
 
 /// Sizes of a record and of its machine, in SI: ranges and starts of parameters are expressions over them.
@@ -27,7 +28,8 @@ struct RecordSizes {
   double highest_position = 0;  ///< [position]
   double top_speed = 0;         ///< [position/s]
   double top_acceleration = 0;  ///< [position/s²]
-  double force_level = 0;       ///< [force] root of the mean square of the input
+  double force_level = 0;       ///< [force] root of the mean square of what the input makes of force
+  double input_level = 0;       ///< [input] root of the mean square of the input
   double machine_mass = 0;      ///< [force s²/position] of the nominal model
   double machine_damping = 0;   ///< [force s/position] of the nominal model
   double resolution = 0;        ///< [position] of the measured position
@@ -98,7 +100,7 @@ struct SeparatingExperiment {
   int passes = 1;
   double pause_s = 0.2;        ///< between strokes
   double added_mass = 0;       ///< of the machine's mass
-  double chirp_amplitude = 0;  ///< of the level of the input; on top of the command
+  double chirp_amplitude = 0;  ///< of the level of the force; on top of the command
   double chirp_from_hz = 0, chirp_to_hz = 0;
 };
 

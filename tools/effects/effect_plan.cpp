@@ -39,7 +39,7 @@ std::string_view unit_of_role(std::string_view role) {
   if (role == "position") return "$position";
   if (role == "velocity") return "$position/s";
   if (role == "acceleration") return "$position/s^2";
-  return "$force";
+  return role == "input" ? "$input" : "$force";
 }
 
 /// The diagram in which an effect runs alone: signals → effect → integrator.

@@ -31,7 +31,7 @@ struct RoleSignals {
 /// Runs an effect on SIMD lanes: several sets of parameters side by side if so wished, and, where the effect
 /// remembers nothing, many samples of one set. What it gives for each sample is
 ///   acting on force or parameters: the force that it consumes [force], mean over the sample
-///   acting on the input:           what it adds to the input [force], mean over the sample
+///   acting on the input:           what it adds to the input [input], mean over the sample
 ///   acting on the sensor:          what it adds to the measured position [position], at the sample
 /// Within a sample the position is a parabola and velocity a straight line; input and force are held. The
 /// mean is by Gauss's two points where the effect has no states, else by an integrator beside them. Beside

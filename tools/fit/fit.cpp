@@ -306,6 +306,11 @@ Fit fit(const std::string& diagram, const std::string& experiment_path, const st
   for (const FittedParameter& p : result.parameters)
     if (const double near = 1e-6 * std::abs(p.start); p.value <= p.least + near || p.value >= p.most - near)
       result.warnings.push_back(fmt::format("\"{}\" ends at the limit of what its block allows", p.path));
+  if (const int64_t missing = before.missing_samples; missing > 0)
+    result.warnings.push_back(
+        fmt::format("{} sample{} between the rows of the recording {} missing: held inputs "
+                    "were held there",
+                    missing, missing == 1 ? "" : "s", missing == 1 ? "is" : "are"));
   result.simulations = model.simulations();
   return result;
 }

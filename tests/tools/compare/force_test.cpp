@@ -1,4 +1,5 @@
 // The force that a model lacks, on records made from closed forms: what was left out must come back.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -19,7 +20,8 @@ struct Record {
   std::function<double(double t)> phase = [](double t) { return 3 * t + 1.5 * std::sin(0.9 * t); };
   double offset_per_second = 0;  ///< m/s: one way only
   double unit_error = 1;
-  int late = 0;  ///< samples by which the force column is late
+  int late = 0;           ///< samples by which the force column is late
+  std::vector<int> lost;  ///< samples without a row
 
   double x(double t) const { return 0.1 - 0.1 * std::cos(phase(t)) + offset_per_second * t; }
   /// Mean force over the sample after t: what a held command must have been.
@@ -37,7 +39,8 @@ struct Record {
     DiagramFolder folder;
     std::string text = "t,F,x\n";
     for (int k = 0; k * dt < duration; ++k)
-      text += fmt::format("{:.3f},{:.12g},{:.12g}\n", k * dt, force((k - late) * dt), x(k * dt));
+      if (std::ranges::find(lost, k) == lost.end())
+        text += fmt::format("{:.3f},{:.12g},{:.12g}\n", k * dt, force((k - late) * dt), x(k * dt));
     folder.with("data.csv", text);
     folder.with("axis.json", diagram(R"("push": {"type": "Constant", "value": {"value": 0, "unit": "N"}},
       "viscous": {"type": "ViscousFriction", "damping": 5, "in": {"velocity": "mass.velocity"}},
@@ -116,6 +119,25 @@ TEST(ForceResidual, ARepeatedMotionTellsItsNoiseFloor) {
   const Comparison c = record.compared();
   EXPECT_NEAR(c.force->residual.repeat_s, 3, 0.01);
   EXPECT_NEAR(c.force->residual.noise_floor, 0.05 / std::sqrt(2), 0.02);
+}
+
+TEST(ForceResidual, LostRowsShiftNothing) {
+  Record few, many;
+  few.lost = {2000, 2001, 2002, 5000};
+  for (int k = 500; k < 11'500; k += 37) many.lost.push_back(k);
+  for (int k = 6000; k < 6300; ++k) many.lost.push_back(k);
+  for (const Record& record : {few, many}) {
+    const Comparison c = record.compared();
+    ASSERT_TRUE(c.force) << c.why_no_force;
+    EXPECT_EQ(c.force->motion.rows(), 12'000u) << "every row in its place";
+    EXPECT_NEAR(c.force->mass, mass, 1e-3);
+    EXPECT_LT(c.force->residual.rmse, 0.02) << "of some 20 N";
+    EXPECT_FALSE(has_fault(c, "unsynchronised"));
+    EXPECT_TRUE(has_fault(c, "gaps"));
+    EXPECT_EQ(c.missing_samples, 12'000 - int64_t(c.time.size()));
+    EXPECT_THAT(to_text(c), testing::HasSubstr(fmt::format("{} samples between the", c.missing_samples)));
+    EXPECT_LT(c.force->open_loop.restarted[0].second, 1e-4);
+  }
 }
 
 TEST(RecordFaults, AreNamed) {

@@ -1,5 +1,7 @@
 // Records that cannot support a verdict are named, with what it costs.
 #include <gmock/gmock.h>
+#include "tests/tools/diagnose/diagnosed.h"
+#include "tests/tools/diagnose/hidden_axis.h"
 #include "tests/tools/diagnose/recorded_axis.h"
 #include "tools/diagnose/diagnose.h"
 
@@ -54,6 +56,22 @@ TEST(BadRecord, TooFewRowsGiveNoVerdict) {
 TEST(BadRecord, OutliersAreCounted) {
   const Diagnosis d = spoilt([](auto&, auto& position) { position[2000] += 1e-3, position[3500] -= 1e-3; });
   EXPECT_THAT(d.findings, finds("leap out of line"));
+}
+
+TEST(BadRecord, LostSamplesAreCountedAndTakenForNoDeadTime) {
+  for (const size_t every : {1500, 60}) {
+    SCOPED_TRACE(every);
+    HiddenMachine machine;
+    machine.loses_every = every;
+    HiddenAxis axis(machine);
+    Physics truth = axis.nominal();
+    truth.added_damping_n_s_per_m = 2;
+    const Diagnosis d = diagnose(axis.diagram(), {axis.record("record", truth, there_and_back(0.2, 0.4))});
+    EXPECT_THAT(names(d), testing::ElementsAre("viscous_friction"));
+    EXPECT_EQ(name_of(d.verdict), "explained");
+    expect_parameter(d.effects[0], "damping", 2, 0.5, "N*s/m");
+    EXPECT_THAT(d.findings, finds("missing at"));
+  }
 }
 
 }  // namespace

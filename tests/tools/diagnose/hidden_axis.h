@@ -82,10 +82,14 @@ inline WantedMotion one_way_without_rest(double direction) {
 struct HiddenMachine {
   double mass = 0.2621, damping = 3;
   std::string position_unit = "m", force_unit = "N";
+  /// Of the recorded input: of its column, of the diagram, and the motor's gain; empty: it is the force.
+  std::string column_unit, input_unit, gain = "1";
+  double newtons_per_column = 1;
   double force_noise = 0.01, encoder_noise = 5e-8, resolution = 2e-7;
   std::optional<double> velocity_noise;  ///< measured with so much noise; empty: not measured
   bool measures_position = true, has_controller = true;
   double leaves_out_s = 0;  ///< of the start of every record
+  size_t loses_every = 0;   ///< row of so many that a device would have lost; 0: none
   std::string position_port = "mass.position", velocity_port = "mass.velocity",
               damping_port = "viscous.force";
   std::string further_blocks;   ///< of the diagram
@@ -100,6 +104,8 @@ class HiddenAxis {
     folder_ = std::filesystem::path(testing::TempDir()) /
               fmt::format("hidden_axis_{}_{}_{}", getpid(), test->test_suite_name(), test->name());
     std::filesystem::create_directories(folder_);
+    if (machine_.input_unit.empty()) machine_.input_unit = machine_.force_unit;
+    if (machine_.column_unit.empty()) machine_.column_unit = machine_.input_unit;
     write_diagram();
   }
   HiddenAxis(const HiddenAxis&) = delete;
@@ -154,8 +160,10 @@ class HiddenAxis {
       const double velocity =
           plant.state[VELOCITY] + machine_.velocity_noise.value_or(0) * random_normal(&random);
       const double t = double(k) * hidden_sample_time;
-      if (t >= machine_.leaves_out_s)
-        out << fmt::format("{:.3f},{:.10g},{:.10g},{:.10g}\n", t, force, seen, velocity);
+      const bool is_lost = machine_.loses_every > 0 && k % machine_.loses_every == machine_.loses_every / 2;
+      if (t >= machine_.leaves_out_s && !is_lost)
+        out << fmt::format("{:.3f},{:.10g},{:.10g},{:.10g}\n", t, force / machine_.newtons_per_column, seen,
+                           velocity);
       plant_sample(&plant, force, scale * random_normal(&random) + slow);
       slow = memory * slow + 0.3 * scale * std::sqrt(1 - memory * memory) * random_normal(&random);
       square += force * force;
@@ -178,8 +186,8 @@ class HiddenAxis {
   "title": "An axis, nominal",
   "solver": {{"method": "rk4", "step": 0.001, "stop": 12}},
   "blocks": {{
-    "force":     {{"type": "Constant", "value": {{"value": 0, "unit": "{1}"}}}},
-    "motor":     {{"type": "Gain", "gain": 1, "in": {{"u": "force.y"}}}},
+    "force":     {{"type": "Constant", "value": {{"value": 0, "unit": "{7}"}}}},
+    "motor":     {{"type": "Gain", "gain": {8}, "in": {{"u": "force.y"}}}},
     {3},
     "net_force": {{"type": "Sum", "signs": "+-", "in": {{"terms": ["motor.y", "{6}"]}}}},
     {4}
@@ -189,7 +197,7 @@ class HiddenAxis {
 }}
 )",
         machine_.position_unit, machine_.force_unit, moving, viscous, machine_.further_blocks,
-        machine_.position_port, machine_.damping_port);
+        machine_.position_port, machine_.damping_port, machine_.input_unit, machine_.gain);
   }
   void write_experiment(const std::string& name) const {
     std::string compared;
@@ -207,7 +215,7 @@ class HiddenAxis {
   "roles":   {{"position": "{3}", "velocity": "{4}", "force": "net_force.sum", "input": "motor.u"}}
 }}
 )",
-        name, machine_.force_unit, compared, machine_.position_port, machine_.velocity_port);
+        name, machine_.column_unit, compared, machine_.position_port, machine_.velocity_port);
   }
 
   HiddenMachine machine_;

@@ -41,7 +41,7 @@ RecordSizes sizes_of(const WantedMotion& record, const HiddenAxis& axis) {
     sizes.top_speed = std::max(sizes.top_speed, std::abs(speed));
     sizes.top_acceleration = std::max(sizes.top_acceleration, std::abs(acceleration));
   }
-  sizes.force_level = axis.force_level(), sizes.sample_time = hidden_sample_time;
+  sizes.force_level = sizes.input_level = axis.force_level(), sizes.sample_time = hidden_sample_time;
   return sizes;
 }
 

@@ -9,7 +9,7 @@ namespace loopwright {
 inline RecordSizes axis_sizes() {
   RecordSizes s;
   s.stroke = 0.6, s.lowest_position = 0, s.highest_position = 0.6, s.top_speed = 0.4, s.top_acceleration = 5;
-  s.force_level = 0.6, s.machine_mass = 0.2621, s.machine_damping = 3, s.resolution = 2e-7, s.duration = 12;
+  s.force_level = s.input_level = 0.6, s.machine_mass = 0.2621, s.machine_damping = 3, s.resolution = 2e-7, s.duration = 12;
   return s;
 }
 
