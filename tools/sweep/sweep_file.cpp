@@ -4,6 +4,7 @@
 #include "engine/json/file_kind.h"
 #include "engine/json/json.h"
 #include "engine/json/reader.h"
+#include "engine/plan/plan.h"
 #include "models/real/double_functions.h"
 #include "tools/sweep/metric_reader.h"
 
@@ -45,7 +46,9 @@ class Loader {
     sweep_->metrics = read_metrics(reader_, file);
     read_keep(file);
     check_size(file);
-    return problems_.has_errors() ? nullptr : sweep_;
+    if (!problems_.has_errors()) return sweep_;
+    tell_problems_of_diagram();
+    return nullptr;
   }
 
  private:
@@ -73,6 +76,14 @@ class Loader {
       return;
     }
     sweep_->diagram = resolve_relative(diagram->place, name);
+  }
+  /// With a sweep that cannot be used what is wrong with its diagram is told as well: all problems at once.
+  void tell_problems_of_diagram() {
+    if (sweep_->diagram.empty()) return;
+    Problems own;
+    if (const auto diagram = load_diagram(sweep_->diagram, sweep_->options, own)) compile(*diagram, own);
+    for (const Problem& problem : own.list())
+      if (problem.severity == Problem::Severity::error) problems_.add(problem);
   }
   void read_settings(const Value& file) {
     if (const Value* set = object(file, "set", "an object: path → value"))

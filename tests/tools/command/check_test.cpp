@@ -72,6 +72,18 @@ TEST_F(Check, EachKindIsHeldToItsOwnRules) {
   }
 }
 
+TEST_F(Check, ASweepsDiagramIsReadEvenWhereTheSweepIsWrong) {
+  folder.with(
+      "d.json",
+      R"({"loopwright": 1, "solver": {"stop": 1}, "blocks": {"c": {"type": "Constnat", "value": 1}}})");
+  folder.with("s.json", R"({"loopwright": 1, "diagram": "d.json", "axes": {"c.value": {"values": [1]}},
+    "metrics": {"end": {"finale": "c.y"}}})");
+  const Outcome outcome = run({"check", "s.json"});
+  EXPECT_EQ(outcome.code, 2);
+  for (const char* part : {"s.json:", "\"finale\"", "d.json:1:", "did you mean \"Constant\"?"})
+    EXPECT_TRUE(contains(outcome.err, part)) << part << "\n" << outcome.err;
+}
+
 TEST_F(Check, AllFormulasThatCannotBeReadAreTold) {
   folder.with("two.json", R"json({"loopwright": 1, "solver": {"stop": 1}, "blocks": {
   "a": {"type": "Expression", "formula": "2*(", "names": [], "in": {"arguments": []}},
