@@ -275,7 +275,7 @@ TEST(BadInput, FilesAndColumnsThatAreNotThereAreNamed) {
   StageFolder folder;
   folder.pass("pass.csv", four).training();
   EXPECT_FALSE(folder.train({{"position.column", "xx"}}));
-  EXPECT_THAT(folder.said, HasSubstr("pass.csv the data have no column \"xx\""));
+  EXPECT_THAT(folder.said, HasSubstr("pass.csv: the data have no column \"xx\""));
   EXPECT_FALSE(folder.train({{"recordings", "[\"other.csv\"]"}}));
   EXPECT_THAT(folder.said, AllOf(HasSubstr("\"other.csv\" is not there"), HasSubstr("expected")));
 }
