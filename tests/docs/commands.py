@@ -48,9 +48,8 @@ SLOW = ["tools/", "bin/hidden_effects ", "loopwright sweep ", "loopwright gp ", 
         "diagrams/linear_motor/ps.json", "diagrams/linear_motor/beyond.json", "loopwright deploy", "--replay", "g++", "magnetic_pull"]
 # What a page takes for granted that this machine may lack.
 BEFORE = {
-    "docs/hardware.md": "# the emulated card in the place of the real one\n"
-                        "export HIL_LIBRARY=$PWD/build/release/lib/libhil_emulator.so\n"
-                        "echo '{\"real_time\": 1}' > card.json; export HIL_EMU=$PWD/card.json\n",
+    "docs/hardware.md": "# the emulated card in the place of the real one, in virtual time: this machine may be busy\n"
+                        "export HIL_LIBRARY=$PWD/build/release/lib/libhil_emulator.so\n",
     "docs/diagnose.md": "# the record of which the example of a map speaks\n"
                         "awk 'BEGIN { print \"t_s,iq_A,theta_rad\"; for (i = 0; i < 400; ++i) print i \",\" 0.1 * sin(i / 3) \",\" i / 100 }' > map.csv\n",
 }

@@ -54,8 +54,12 @@ std::optional<Metric> read_metric(const Reader& reader, const Value::Member& mem
     }
   if (kinds != 1) {
     auto& p = reader.error(member, kinds ? "a metric measures one thing" : "the metric measures nothing");
-    for (const auto& [name, kind] : metric_kinds)
-      p.expected += (p.expected.empty() ? "one of " : ", ") + std::string(name);
+    std::vector<std::string> names;
+    for (const auto& [name, kind] : metric_kinds) names.emplace_back(name);
+    p.expected = fmt::format("one of {}", fmt::join(names, ", "));
+    for (const Value::Member& key : body.members)
+      if (const std::string near = nearest_name(key.name, names); kinds == 0 && !near.empty())
+        p.found = fmt::format("\"{}\"", key.name), p.hint = fmt::format("did you mean \"{}\"?", near);
     return {};
   }
   reject_what_does_not_belong(reader, metric, body);

@@ -80,7 +80,8 @@ TEST_F(Check, ASweepsDiagramIsReadEvenWhereTheSweepIsWrong) {
     "metrics": {"end": {"finale": "c.y"}}})");
   const Outcome outcome = run({"check", "s.json"});
   EXPECT_EQ(outcome.code, 2);
-  for (const char* part : {"s.json:2:", "the metric measures nothing", "d.json:1:", "did you mean \"Constant\"?"})
+  for (const char* part : {"s.json:2:", "the metric measures nothing", "did you mean \"final\"?",
+                           "d.json:1:", "did you mean \"Constant\"?"})
     EXPECT_TRUE(contains(outcome.err, part)) << part << "\n" << outcome.err;
 }
 
