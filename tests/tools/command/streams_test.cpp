@@ -109,6 +109,21 @@ TEST_F(Streams, TwoResultsOnStdoutAndFilesThatAreNoneAreRefused) {
   }
 }
 
+TEST_F(Streams, AFitIntoAnotherFolderTouchesNumbersOnly) {
+  for (const char* unit_or_name : {"m", "N", "kg", "1", "axis", "Mass", "mass.velocity", "out/unused"})
+    folder.with(unit_or_name, "a file that happens to be called so");
+  const Outcome outcome = run({"fit", "axis.json", "e.json", "--parameters", "mass", "-o", "out/f.json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  std::string before = text_of(folder.path("axis.json")), after = text_of(folder.path("out/f.json"));
+  const std::string beginning = "\"mass\": {\"value\": ";
+  for (std::string* text : {&before, &after}) {
+    const size_t number = text->find(beginning) + beginning.size();
+    text->erase(number, text->find(',', number) - number);
+  }
+  EXPECT_EQ(before, after);
+  EXPECT_EQ(run({"check", "out/f.json"}).code, 0);
+}
+
 TEST_F(Streams, ArgumentsInEachOthersPlaceAreToldAsThat) {
   for (const std::vector<std::string>& arguments :
        std::vector<std::vector<std::string>>{{"compare", "e.json", "axis.json"},
