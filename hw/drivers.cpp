@@ -1,4 +1,5 @@
 #include "hw/drivers.h"
+#include <fmt/format.h>
 #include <algorithm>
 #include "hw/quanser/quanser.h"
 #include "hw/udp/udp.h"
@@ -10,10 +11,10 @@ namespace {
 const DriverType types[] = {
     {"quanser", "Cards behind Quanser's HIL library",
      [](const DeviceDescription& device, Problems& problems) { quanser::read_settings(device, problems); },
-     &quanser::make_driver},
+     &quanser::foreign_code, quanser::what_taking_over_does, &quanser::make_driver},
     {"udp", "Devices that speak UDP",
      [](const DeviceDescription& device, Problems& problems) { udp::read_settings(device, problems); },
-     &udp::make_driver},
+     [](const DeviceDescription&) { return std::string(); }, nullptr, &udp::make_driver},
 };
 
 }  // namespace
@@ -23,6 +24,12 @@ std::span<const DriverType> driver_types() { return types; }
 const DriverType* find_driver(std::string_view name) {
   const auto found = std::ranges::find(types, name, &DriverType::name);
   return found == std::end(types) ? nullptr : found;
+}
+
+std::string foreign_code_of(const DeviceDescription& device) {
+  const DriverType* driver = find_driver(device.driver);
+  const std::string code = driver ? driver->foreign_code(device) : "";
+  return code.empty() ? code : fmt::format("{}: its driver loads and runs the code of {}", device.path, code);
 }
 
 std::shared_ptr<const DeviceDescription> load_device(const std::string& path, const Place& reference,

@@ -26,6 +26,10 @@ enum class Time { real, simulated };
 constexpr auto names_of(Time) { return std::array<std::string_view, 2>{"real", "simulated"}; }
 enum class OnOverrun { fault, count };
 constexpr auto names_of(OnOverrun) { return std::array<std::string_view, 2>{"fault", "count"}; }
+enum class OnLost { fault, hold, count };
+constexpr auto names_of(OnLost) { return std::array<std::string_view, 3>{"fault", "hold", "count"}; }
+enum class OnInvalid { fault, hold };
+constexpr auto names_of(OnInvalid) { return std::array<std::string_view, 2>{"fault", "hold"}; }
 
 struct InputChannel {
   std::string name;
@@ -128,15 +132,48 @@ struct WatchdogSettings {
   }
 };
 
+/// Samples or periods in a row. The diagram is stepped through every instant that has no sample, in the
+/// period in which the next sample came: a longer gap is a fault whatever the policy says.
+inline constexpr int longest_gap = 1000;
+
+/// What the loop makes of samples that come late, not at all, or as numbers that cannot be
+/// (docs/hardware.md).
 struct Policy {
   OnOverrun on_overrun = OnOverrun::fault;
   int most_overruns = 3;
+  OnLost on_lost = OnLost::fault;
+  int most_lost = 3;
+  int most_skipped = 20;
+  OnInvalid on_invalid = OnInvalid::fault;
+  int most_invalid = 3;
   static constexpr auto describe() {
-    return fields(parameter(&Policy::on_overrun, "on_overrun", "", "Whether overruns end the run").optional(),
-                  parameter(&Policy::most_overruns, "most_overruns", "", "So many in a row are a fault")
-                      .at_least(1)
-                      .optional());
+    return fields(
+        parameter(&Policy::on_overrun, "on_overrun", "", "Whether overruns end the run").optional(),
+        parameter(&Policy::most_overruns, "most_overruns", "", "So many in a row are a fault")
+            .at_least(1)
+            .optional(),
+        parameter(&Policy::on_lost, "on_lost", "",
+                  "Samples that the device lost: few in a row are interpolated and many end the run, few are "
+                  "held and many end the run, or they are interpolated and counted")
+            .optional(),
+        parameter(&Policy::most_lost, "most_lost", "",
+                  "So many lost samples in a row are a fault, unless they are only counted")
+            .between(1, longest_gap)
+            .optional(),
+        parameter(&Policy::most_skipped, "most_skipped", "",
+                  "So many periods in a row that the computer's clock left out are a fault")
+            .between(1, longest_gap)
+            .optional(),
+        parameter(&Policy::on_invalid, "on_invalid", "",
+                  "A raw number that cannot be: a fault, or the value before it is held")
+            .optional(),
+        parameter(&Policy::most_invalid, "most_invalid", "",
+                  "So many of them in a row are a fault where they are held")
+            .between(1, longest_gap)
+            .optional());
   }
+  /// So many lost in a row end the run.
+  int64_t lost_that_end() const { return on_lost == OnLost::count ? longest_gap : most_lost; }
 };
 
 struct DeviceDescription {

@@ -22,8 +22,8 @@ struct Capabilities {
 
 /// Facts that come with a sample.
 struct RawSample {
-  int64_t sequence = 0;  ///< counted by the device, from 0
-  int32_t lost = 0;      ///< samples dropped since the last one
+  /// Counted by the device, one a period: where a number is missing, its sample was lost.
+  int64_t sequence = 0;
 };
 
 class Driver {
@@ -32,7 +32,10 @@ class Driver {
   virtual Capabilities capabilities() const = 0;
 
   // Set-up: may allocate and take time.
+  /// `busy`: another program has the device; then nothing of it was touched.
   virtual Status open() = 0;
+  /// Ends what another program does with the device, and opens it. Only after a person has agreed.
+  virtual Status take_over() { return {Code::unsupported}; }
   /// Ranges, encoder counts, initial outputs, watchdog states. `initial`, `safe`: raw, an output each.
   virtual Status configure(std::span<const double> initial, std::span<const double> safe) = 0;
   virtual Status start(double period_s) = 0;
@@ -42,6 +45,7 @@ class Driver {
   virtual std::vector<std::string> facts() const { return {}; }
 
   // The loop: bounded, no allocation, no lock.
+  /// Raw numbers of all inputs. One that is not filled in stays NaN, and is refused as that.
   virtual Status read(RawSample& sample, std::span<double> raw) noexcept = 0;
   virtual Status write(std::span<const double> raw) noexcept = 0;
   /// A sign of life for the watchdog; the first one arms it.

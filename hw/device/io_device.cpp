@@ -2,16 +2,18 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace loopwright::hw {
 namespace {
-constexpr int most_glitches = 3;  // in a row: then it is no glitch but a broken sensor
-}
+constexpr int most_jumps = 3;          // in a row: then it is no glitch but a broken sensor
+constexpr int most_first_samples = 4;  // of which two in a row must agree
+}  // namespace
 
 std::string_view to_name(Code code) {
-  static constexpr std::string_view names[] = {"ok",           "stopped",      "late",         "range",
-                                               "watchdog",     "device_fault", "disconnected", "unsupported",
-                                               "config_error", "not_open",     "busy",         "no_driver"};
+  static constexpr std::string_view names[] = {
+      "ok",           "stopped",     "late",         "lost",     "range", "watchdog", "device_fault",
+      "disconnected", "unsupported", "config_error", "not_open", "busy",  "no_driver"};
   return names[size_t(code)];
 }
 std::string_view to_name(OutputsSafe safe) {
@@ -21,19 +23,22 @@ std::string_view to_name(OutputsSafe safe) {
 
 IoDevice::IoDevice(std::shared_ptr<const DeviceDescription> description, std::unique_ptr<Driver> driver)
     : description_(std::move(description)), driver_(std::move(driver)) {
-  inputs_.resize(description_->inputs.size());
-  raw_in_.resize(inputs_.size());
+  raw_in_.resize(description_->inputs.size());
+  has_rates_ = std::ranges::any_of(description_->inputs,
+                                   [](const InputChannel& input) { return input.maximum_rate > 0; });
   for (const OutputChannel& output : description_->outputs) {
     raw_safe_.push_back(output.volts(output.safe));
+    raw_initial_.push_back(output.volts(output.initial));
     applied_.push_back(output.initial);
   }
   raw_out_ = raw_safe_;
 }
 
 std::string IoDevice::describe(Status status) const {
-  if (status.code == Code::range && status.native == 0) return "a value to put out is not a finite number";
+  const bool is_own = status.native == 0 && (status.code == Code::device_fault || status.code == Code::range);
+  if (is_own && incident_.what != Incident::What::none) return explain(incident_, *description_);
   const std::string text = driver_->describe(status);
-  return fmt::format("{}{}{}", to_name(status.code), text.empty() ? "" : ": ", text);
+  return fmt::format("{}{}{}", sentence_of(status.code), text.empty() ? "" : ": ", text);
 }
 
 Status IoDevice::latch(Status status) noexcept {
@@ -42,19 +47,26 @@ Status IoDevice::latch(Status status) noexcept {
 }
 
 Status IoDevice::open() {
+  if (stage_ == Stage::open) return {};
   if (stage_ != Stage::closed) return {Code::busy};
-  const Status status = driver_->open();
+  return opened(driver_->open());
+}
+
+Status IoDevice::take_over() {
+  if (stage_ != Stage::closed) return {Code::busy};
+  return opened(driver_->take_over());
+}
+
+Status IoDevice::opened(Status status) {
   if (status.ok()) stage_ = Stage::open;
   return status;
 }
 
 Status IoDevice::preset() {
   if (stage_ != Stage::open) return {Code::not_open};
-  std::vector<double> initial;
-  for (const OutputChannel& output : description_->outputs) initial.push_back(output.volts(output.initial));
   has_written_ = true, is_stopped_ = false;  // even where it fails half way
   outputs_safe_ = OutputsSafe::unknown;
-  const Status status = driver_->configure(initial, raw_safe_);
+  const Status status = driver_->configure(raw_initial_, raw_safe_);
   if (!status.ok()) return latch(status);
   stage_ = Stage::ready;
   return status;
@@ -63,53 +75,87 @@ Status IoDevice::preset() {
 Status IoDevice::start(double period_s) {
   if (stage_ != Stage::ready) return {Code::not_open};
   period_s_ = period_s;
-  for (InputState& input : inputs_) input = {};
+  inputs_.clear();
+  for (const InputChannel& channel : description_->inputs) inputs_.emplace_back(channel, period_s);
+  has_begun_ = false, last_sequence_ = -1, incident_ = {};
   const Status status = driver_->start(period_s);
   if (!status.ok()) return latch(status);
   stage_ = Stage::running;
   return status;
 }
 
-/// Raw to physical: counts are unwrapped by differences modulo the counter's width. False: a glitch, held.
-bool IoDevice::take_input(size_t i) noexcept {
-  const InputChannel& channel = description_->inputs[i];
-  InputState& state = inputs_[i];
-  double raw = raw_in_[i];
-  int64_t counts = 0;
-  int32_t read = 0;
-  if (channel.kind == InputKind::encoder) {
-    read = int32_t(raw);
-    const int unused = 32 - channel.counter_bits;
-    const auto difference = int32_t((uint32_t(read) - uint32_t(state.last_counts)) << unused) >> unused;
-    counts = state.is_known ? state.counts + difference : read;
-    raw = double(counts);
+/// A sample of the driver with its number; nothing is converted yet.
+Status IoDevice::take_sample(Sample& sample) noexcept {
+  RawSample raw;
+  std::ranges::fill(raw_in_, std::numeric_limits<double>::quiet_NaN());
+  if (const Status status = driver_->read(raw, raw_in_); !status.ok()) return status;
+  sample = {raw.sequence, raw.sequence - last_sequence_ - 1, 0};
+  if (raw.sequence <= last_sequence_) {
+    incident_ = {.what = Incident::What::numbering, .sample = raw.sequence, .sample_before = last_sequence_};
+    return {Code::device_fault};
   }
-  const double value = channel.scale * raw + channel.offset;
-  const double most = channel.maximum_rate * period_s_ * (1 + state.glitches_in_row);
-  const bool jumps = state.is_known && channel.maximum_rate > 0 && std::abs(value - state.value) > most;
-  if (jumps || !std::isfinite(value)) {
-    ++glitches_, ++state.glitches_in_row;
-    return false;
+  last_sequence_ = raw.sequence;
+  return {};
+}
+
+Status IoDevice::refuse(size_t i, Reading reading) noexcept {
+  incident_ = {.what = Incident::What::input,
+               .channel = i,
+               .reading = reading,
+               .number = raw_in_[i],
+               .value_before = inputs_[i].value(),
+               .in_row = inputs_[i].bad_in_row(),
+               .has_begun = has_begun_};
+  return {Code::device_fault};
+}
+
+/// Whether a bad reading may stand for the value before it once more.
+bool IoDevice::may_hold(const Input& input, Reading reading) const noexcept {
+  if (!input.is_known()) return false;
+  if (reading == Reading::jump) return input.bad_in_row() < most_jumps;
+  const Policy& policy = description_->policy;
+  return policy.on_invalid == OnInvalid::hold && input.bad_in_row() < policy.most_invalid;
+}
+
+/// Before anything moves, two samples in a row must agree: of a single one nobody can tell whether it is a
+/// glitch. The initial values meanwhile are a sign of life, for devices that want one for every sample.
+Status IoDevice::read_first(Sample& sample) noexcept {
+  size_t jumped = 0;
+  for (int taken = 0; taken < most_first_samples; ++taken) {
+    if (taken > 0)
+      if (const Status status = driver_->write(raw_initial_); !status.ok()) return status;
+    if (const Status status = take_sample(sample); !status.ok()) return status;
+    bool agree = taken > 0 || !has_rates_;
+    for (size_t i = 0; i < inputs_.size(); ++i) {
+      Reading reading = inputs_[i].take(raw_in_[i], sample.lost + 1);
+      if (reading == Reading::jump) {  // one of the two is wrong: the later one is tried
+        agree = false, jumped = i;
+        inputs_[i].forget();
+        reading = inputs_[i].take(raw_in_[i], 1);
+      }
+      if (reading != Reading::good) return refuse(i, reading);
+    }
+    if (agree) return has_begun_ = true, Status{};
   }
-  state.last_counts = read, state.counts = counts, state.value = value;
-  state.glitches_in_row = 0, state.is_known = true;
-  return true;
+  return refuse(jumped, Reading::jump);
+}
+
+Status IoDevice::read_next(Sample& sample) noexcept {
+  if (const Status status = take_sample(sample); !status.ok()) return status;
+  Status worst;
+  for (size_t i = 0; i < inputs_.size(); ++i) {
+    const Reading reading = inputs_[i].take(raw_in_[i], sample.lost + 1);
+    if (reading == Reading::good) continue;
+    ++sample.glitches, ++glitches_;
+    if (worst.ok() && !may_hold(inputs_[i], reading)) worst = refuse(i, reading);
+  }
+  return worst;
 }
 
 Status IoDevice::read(Sample& sample, std::span<double> values) noexcept {
   if (stage_ != Stage::running) return {Code::not_open};
-  RawSample raw;
-  const Status status = driver_->read(raw, raw_in_);
-  sample = {raw.sequence, raw.lost, 0};
-  bool is_broken = false;
-  if (status.ok())
-    for (size_t i = 0; i < inputs_.size(); ++i)
-      if (!take_input(i)) {
-        ++sample.glitches;
-        is_broken |= inputs_[i].glitches_in_row >= most_glitches;
-      }
-  for (size_t i = 0; i < std::min(values.size(), inputs_.size()); ++i) values[i] = inputs_[i].value;
-  if (is_broken) return latch({Code::device_fault, 0});
+  const Status status = has_begun_ ? read_next(sample) : read_first(sample);
+  for (size_t i = 0; i < std::min(values.size(), inputs_.size()); ++i) values[i] = inputs_[i].value();
   return latch(status);
 }
 
@@ -119,8 +165,10 @@ Status IoDevice::write(std::span<const double> values) noexcept {
     send_safe();
     return fault_;
   }
-  if (values.size() != applied_.size() ||
-      !std::ranges::all_of(values, [](double v) { return std::isfinite(v); })) {
+  const auto bad = std::ranges::find_if(values, [](double v) { return !std::isfinite(v); });
+  if (values.size() != applied_.size() || bad != values.end()) {
+    if (bad != values.end() && values.size() == applied_.size() && !latches(fault_.code))
+      incident_ = {.what = Incident::What::output, .channel = size_t(bad - values.begin()), .number = *bad};
     latch({Code::device_fault, 0});
     send_safe();
     return {Code::range};

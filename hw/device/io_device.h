@@ -7,17 +7,21 @@
 /// 3. A write is all or nothing. A value that is not finite is refused and latches.
 /// 4. stop() and close() may be called in any state, and again.
 /// 5. Whether the outputs are safe is confirmed or unknown, never assumed.
+/// 6. A raw number that cannot be is never a plausible value: it is a fault, or the value before it is
+///    held for a stated number of samples. Nothing begins before two samples have agreed.
 #pragma once
 #include <atomic>
 #include "hw/device/driver.h"
+#include "hw/device/explain.h"
+#include "hw/device/input.h"
 
 namespace loopwright::hw {
 
 /// When a sample was taken, as far as the device tells.
 struct Sample {
   int64_t sequence = 0;
-  int32_t lost = 0;      ///< since the sample before
-  int32_t glitches = 0;  ///< inputs that were held because they jumped beyond their maximum rate
+  int64_t lost = 0;      ///< numbers missing since the sample before
+  int32_t glitches = 0;  ///< inputs whose reading was refused
 };
 
 class IoDevice {
@@ -32,13 +36,16 @@ class IoDevice {
   std::vector<std::string> facts() const { return driver_->facts(); }
   std::string describe(Status status) const;
 
+  /// `busy`: another program has the device, of which nothing was touched. An open device stays so.
   Status open();
+  /// Ends what another program does with the device, and opens it.
+  Status take_over();
   /// Encoder counts, ranges, initial outputs, watchdog values.
   Status preset();
   Status start(double period_s);
 
   /// Values of all inputs, in the order of the description. On a fault the values are those of the last
-  /// sample.
+  /// sample. The first read takes two samples or more, until two agree, where inputs have a maximum rate.
   Status read(Sample& sample, std::span<double> values) noexcept;
   /// Values of all outputs; clamped, and moved towards no faster than their maximum rate.
   Status write(std::span<const double> values) noexcept;
@@ -64,15 +71,13 @@ class IoDevice {
 
  private:
   enum class Stage { closed, open, ready, running };
-  struct InputState {
-    int32_t last_counts = 0;
-    int64_t counts = 0;  // unwrapped
-    double value = 0;
-    int glitches_in_row = 0;
-    bool is_known = false;
-  };
   Status latch(Status status) noexcept;
-  bool take_input(size_t i) noexcept;
+  Status opened(Status status);
+  Status read_first(Sample& sample) noexcept;
+  Status read_next(Sample& sample) noexcept;
+  Status take_sample(Sample& sample) noexcept;
+  Status refuse(size_t i, Reading reading) noexcept;
+  bool may_hold(const Input& input, Reading reading) const noexcept;
   bool send_safe() noexcept;
 
   std::shared_ptr<const DeviceDescription> description_;
@@ -82,8 +87,11 @@ class IoDevice {
   OutputsSafe outputs_safe_ = OutputsSafe::confirmed;  // nothing was sent yet
   bool has_written_ = false, is_stopped_ = false;
   double period_s_ = 0;
-  std::vector<InputState> inputs_;
-  std::vector<double> raw_in_, raw_out_, raw_safe_, applied_;
+  std::vector<Input> inputs_;
+  bool has_rates_ = false, has_begun_ = false;
+  int64_t last_sequence_ = -1;
+  Incident incident_;
+  std::vector<double> raw_in_, raw_out_, raw_safe_, raw_initial_, applied_;
   int64_t clamped_ = 0, rate_limited_ = 0, glitches_ = 0;
 };
 

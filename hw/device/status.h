@@ -10,6 +10,7 @@ enum class Code : uint8_t {
   ok,
   stopped,  ///< the device was asked to stop, or its task ended
   late,     ///< the sample is there, but its time is over
+  lost,     ///< more samples in a row are missing than the policy allows
   range,    ///< a number out of range was refused
   watchdog,
   device_fault,

@@ -77,6 +77,8 @@ struct world* enter(const char* function);
 /* Unlocks and hands on the answer. */
 t_error leave(struct world* w, t_error answer);
 
+/* Whether the card was last opened by this process. */
+int is_own(const struct world* w);
 /* 0, or the negative code why this card or task cannot be used. */
 t_error check_card(const struct world* w, t_card card);
 t_error check_task(const struct world* w, t_task task, struct task** found);

@@ -7,15 +7,20 @@
 struct tag_card {
   int unused;
 };
-static struct tag_card the_card;
+/* A handle serves from its opening to the next one: a program whose card was taken over holds an invalid one. */
+enum { CARD_HANDLES = 16 };
+static struct tag_card handles[CARD_HANDLES];
+static int64_t opened_here; /* which opening of the world was this process's last */
 
 t_error leave(struct world* w, t_error answer) {
   world_unlock(w);
   return answer;
 }
 
+int is_own(const struct world* w) { return w->card.openings == opened_here; }
+
 t_error check_card(const struct world* w, t_card card) {
-  if (card != &the_card || !w->card.is_open) return -INVALID_CARD_HANDLE;
+  if (!w->card.is_open || card != &handles[w->card.openings % CARD_HANDLES] || !is_own(w)) return -INVALID_CARD_HANDLE;
   return w->is_unplugged ? -DEVICE_DISCONNECTED : 0;
 }
 
@@ -46,7 +51,8 @@ static t_error open_card(struct world* w, const char* type, const char* identifi
   if (strcmp(identifier, "0") != 0) return -BOARD_NOT_FOUND;
   if (w->card.is_open) return -BOARD_ALREADY_OPEN;
   w->card.is_open = 1;
-  *card = &the_card;
+  opened_here = ++w->card.openings;
+  *card = &handles[opened_here % CARD_HANDLES];
   return 0;
 }
 

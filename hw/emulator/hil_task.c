@@ -11,7 +11,7 @@ static struct tag_task handles[CLOCK_TASKS];
 
 t_error check_task(const struct world* w, t_task task, struct task** found) {
   for (int i = 0; i < CLOCK_TASKS; ++i)
-    if (task == &handles[i] && w->tasks[i].is_created) {
+    if (task == &handles[i] && w->tasks[i].is_created && is_own(w)) {
       *found = (struct task*)&w->tasks[i];
       return w->is_unplugged ? -DEVICE_DISCONNECTED : 0;
     }

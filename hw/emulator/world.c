@@ -31,7 +31,8 @@ void world_reset(struct world* w) {
   w->dac_bits = 16;
   w->analog_per_ampere = 1;
   w->watchdog_longest = 0.419, w->watchdog_write_error = 1202;
-  w->unplug_at = w->lose_from = w->stall_at = w->glitch_at = w->stuck_at = w->hang_at = -1;
+  w->lose_length = 1, w->bad_count = 1;
+  w->unplug_at = w->lose_from = w->bad_from = w->stall_at = w->glitch_at = w->stuck_at = w->hang_at = -1;
   w->random = 1;
   for (int i = 0; i < CHANNELS; ++i)
     w->card.output_low[i] = -10, w->card.output_high[i] = 10, w->card.quadrature[i] = 4;
@@ -100,7 +101,8 @@ int32_t world_counts(struct world* w, uint32_t channel) {
   if (channel != 0) return wrapped(w->card.preset[channel], (int)w->encoder_bits);
   const double edges = w->card.quadrature[0] > 0 ? w->card.quadrature[0] : 1;
   const double seen = w->plant.position * w->encoder_sign * w->encoder_scale * (1 - w->encoder_drift);
-  int64_t counts = (int64_t)floor(seen / (w->resolution * 4 / edges)) + w->card.preset[0];
+  const double edge = floor(seen / (w->resolution * 4 / edges));
+  int64_t counts = (fabs(edge) < 1e15 ? (int64_t)edge : 0) + w->card.preset[0]; /* what no counter can count is 0 */
   const double since = (double)w->samples - w->glitch_at;
   if (w->glitch_at >= 0 && since >= 0 && since < w->glitch_count) counts += (int64_t)w->glitch_counts;
   if (w->stuck_at >= 0 && w->samples >= w->stuck_at) return w->stuck_count;
@@ -123,16 +125,27 @@ static struct sample take_sample(struct world* w) {
   return s;
 }
 
+static int is_lost(const struct world* w, int64_t index) {
+  const double since = (double)index - w->lose_from;
+  if (w->lose_from >= 0 && since >= 0 && since < w->lose_count) return 1;
+  return w->lose_every > 0 && (double)index >= w->lose_every && fmod((double)index, w->lose_every) < w->lose_length;
+}
+
 /* What the card's interrupt does at a sample instant. */
 static void sample_task(struct world* w, struct task* t) {
   if (w->dac_hold != 0) memcpy(w->card.volts, w->card.pending, sizeof w->card.volts);
-  const struct sample s = take_sample(w);
+  struct sample s = take_sample(w);
   const int64_t index = t->samples++;
   if (t == w->tasks) w->samples = t->samples;
   if (w->unplug_at >= 0 && index >= w->unplug_at) w->is_unplugged = 1;
   if (t->wanted >= 0 && t->samples >= t->wanted) t->is_running = 0, t->is_finished = 1;
-  const double since = (double)index - w->lose_from;
-  if (w->is_unplugged || (w->lose_from >= 0 && since >= 0 && since < w->lose_count)) return;
+  const double since_bad = (double)index - w->bad_from;
+  if (w->bad_from >= 0 && since_bad >= 0 && since_bad < w->bad_count) s.analog[0] = w->bad_volts;
+  if (w->is_unplugged) return;
+  if (is_lost(w, index)) {
+    if (w->lose_told != 0 && t->overflow_mode == 1) ++t->overflows;
+    return;
+  }
   if (t->stored == t->capacity) {
     ++t->overflows;
     if (t->overflow_mode == 0) t->has_overflowed = 1;

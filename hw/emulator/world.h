@@ -62,6 +62,7 @@ struct task {
 
 struct card {
   int is_open;
+  int64_t openings; /* so often was it opened */
   double volts[CHANNELS];   /* at the terminals */
   double pending[CHANNELS]; /* written, but held back until the next sample */
   double output_low[CHANNELS], output_high[CHANNELS];
@@ -94,6 +95,9 @@ struct world {
   struct fault faults[FAULT_POINTS];
   double unplug_at;                                   /* sample */
   double lose_from, lose_count;                       /* samples that are not stored */
+  double lose_every, lose_length;                     /* so many are not stored, again and again */
+  double lose_told;                                   /* counted as overflows, where those drop the oldest */
+  double bad_from, bad_count, bad_volts;              /* samples of analog input 0 that read so */
   double stall_at, stall_seconds;                     /* the read of that sample comes late */
   double glitch_at, glitch_count, glitch_counts;      /* samples, counts */
   double stuck_at;                                    /* sample */

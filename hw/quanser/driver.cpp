@@ -2,6 +2,7 @@
 #include <atomic>
 #include <cmath>
 #include <ctime>
+#include "hw/quanser/card_in_use.h"
 #include "hw/quanser/errors.h"
 #include "hw/quanser/library.h"
 #include "hw/quanser/quanser.h"
@@ -9,7 +10,6 @@
 namespace loopwright::hw::quanser {
 namespace {
 
-constexpr int32_t board_already_open = -1073;
 constexpr int32_t function_not_supported = -94;
 
 /// Channels of one kind, and where their numbers stand among all inputs of the description.
@@ -45,14 +45,18 @@ class QuanserDriver final : public Driver {
   }
 
   Status open() override {
-    t_error result = call().hil_open(settings_.board.c_str(), settings_.identifier.c_str(), &card_);
-    for (int i = 0; i < 2 && result == board_already_open && call().hil_close_all; ++i) {
-      call().hil_close_all();  // left open by a program that was killed
-      result = call().hil_open(settings_.board.c_str(), settings_.identifier.c_str(), &card_);
-    }
+    step_ = "hil_open";
+    const t_error result = call().hil_open(settings_.board.c_str(), settings_.identifier.c_str(), &card_);
     if (result < 0) card_ = nullptr;
     is_asked_to_stop_ = false, is_armed_ = false;
     return status_of(result, false);
+  }
+  /// The library offers no way to close one card of another program: all that it has open are closed.
+  Status take_over() override {
+    step_ = "hil_close_all";
+    if (!call().hil_close_all) return {Code::unsupported, function_not_supported};
+    if (const t_error result = call().hil_close_all(); result < 0) return status_of(result, false);
+    return open();
   }
 
   Status configure(std::span<const double> initial, std::span<const double> safe) override;
@@ -120,8 +124,7 @@ class QuanserDriver final : public Driver {
   std::vector<double> analog_values_, other_values_;
   std::atomic<bool> is_asked_to_stop_ = false;
   bool is_armed_ = false, has_termination_states_ = false;
-  int32_t overflows_ = 0;
-  int64_t sequence_ = 0;
+  int64_t sequence_ = 0;   // samples read
   const char* step_ = "";  // of the set-up: for messages
 };
 
@@ -145,6 +148,8 @@ Status QuanserDriver::configure(std::span<const double> initial, std::span<const
                   encoders_.count(), channel_list{}, 0u, other_.list(), other_.count(), &task_);
   if (!status.ok()) return status;
   const bool overwrites = device_->clock.overflow == Overflow::overwrite;
+  if (overwrites && !call().hil_task_get_buffer_overflows)
+    return step_ = "hil_task_get_buffer_overflows", Status{Code::unsupported, function_not_supported};
   return set_up("hil_task_set_buffer_overflow_mode", overwrites, call().hil_task_set_buffer_overflow_mode,
                 task_, overwrites ? overflow_drops_oldest : overflow_is_error);
 }
@@ -224,7 +229,7 @@ Status QuanserDriver::set_watchdog(std::span<const double> safe) {
 }
 
 Status QuanserDriver::start(double period_s) {
-  sequence_ = 0, overflows_ = 0;
+  sequence_ = 0;
   if (device_->clock.source == ClockSource::host) return {};
   return set_up("hil_task_start", true, call().hil_task_start, task_, int32_t(settings_.clock), 1 / period_s,
                 until_stopped);
@@ -232,6 +237,7 @@ Status QuanserDriver::start(double period_s) {
 
 std::string QuanserDriver::describe(Status status) const {
   if (status.native == 0) return "";
+  if (status.code == Code::busy && !card_) return who_has(settings_, library_, status.native);
   char text[512] = "";
   if (call().msg_get_error_messageA) call().msg_get_error_messageA(nullptr, status.native, text, sizeof text);
   const std::string_view name = error_name(status.native);
@@ -266,7 +272,7 @@ Status QuanserDriver::read(RawSample& sample, std::span<double> raw) noexcept {
   step_ = "";
   if (device_->clock.source == ClockSource::host) {
     const Status status = is_asked_to_stop_ ? Status{Code::stopped} : read_now();
-    sample = {sequence_++, 0};
+    sample.sequence = sequence_++;
     spread(raw);
     return status;
   }
@@ -274,12 +280,12 @@ Status QuanserDriver::read(RawSample& sample, std::span<double> raw) noexcept {
       call().hil_task_read(task_, 1, analog_values_.data(), counts_.data(), nullptr, other_values_.data());
   if (result < 0) return status_of(result);
   if (result == 0) return {Code::stopped};  // no error: the task was stopped or has finished
-  sample = {sequence_++, 0};
-  if (device_->clock.overflow == Overflow::overwrite && call().hil_task_get_buffer_overflows)
-    if (const t_error all = call().hil_task_get_buffer_overflows(task_); all >= 0) {
-      sample.lost = all - overflows_, overflows_ = all;
-      sample.sequence = sequence_ += sample.lost;
-    }
+  sample.sequence = sequence_++;
+  if (device_->clock.overflow == Overflow::overwrite) {
+    const t_error dropped = call().hil_task_get_buffer_overflows(task_);
+    if (dropped < 0) return status_of(dropped);  // what time it is cannot be told
+    sample.sequence += dropped;  // all of them before this one, which was taken out of a buffer of newer ones
+  }
   spread(raw);
   return {};
 }
@@ -334,6 +340,11 @@ bool QuanserDriver::watchdog_took_over() noexcept {
 }
 
 }  // namespace
+
+std::string foreign_code(const DeviceDescription& device) {
+  Problems ignored;  // told when the device was loaded
+  return library_to_load(read_settings(device, ignored).library);
+}
 
 std::unique_ptr<Driver> make_driver(std::shared_ptr<const DeviceDescription> device, Problems& problems) {
   const size_t before = problems.list().size();

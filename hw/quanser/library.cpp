@@ -26,6 +26,7 @@ void* find_symbol(void* handle, const char* name) {
   return reinterpret_cast<void*>(GetProcAddress(static_cast<HMODULE>(handle), name));
 }
 std::string other_architecture(const std::string&) { return ""; }
+std::string file_of(void*, const std::string& path) { return path; }
 #else
 #ifdef __aarch64__
 constexpr int own_machine = EM_AARCH64;
@@ -56,6 +57,12 @@ void* find_symbol(void* handle, const char* name) {
   if (std::strncmp(name, "msg_", 4) != 0) return nullptr;
   void* common = dlopen("libquanser_common.so.1", RTLD_NOW | RTLD_LOCAL);
   return common ? dlsym(common, name) : nullptr;
+}
+
+/// Where the loader found it.
+std::string file_of(void* symbol, const std::string& path) {
+  Dl_info info{};
+  return dladdr(symbol, &info) && info.dli_fname ? info.dli_fname : path;
 }
 
 /// The loader says "no such file" of a library for another processor. Empty: it is for this one, or no
@@ -96,6 +103,14 @@ std::vector<std::string> resolve(void* handle, Library& library) {
 
 }  // namespace
 
+std::string library_to_load(const std::string& named) {
+  const std::vector<std::string> tried = places(named);
+  if (const char* variable = std::getenv("HIL_LIBRARY"); variable && *variable)
+    return fmt::format("{} (HIL_LIBRARY)", tried.front());
+  if (!named.empty()) return fmt::format("{} (\"library\" in the device file)", tried.front());
+  return fmt::format("the first that is there of {}", fmt::join(tried, ", "));
+}
+
 bool load_library(const std::string& named, Library& library, LibraryProblem& problem) {
   library = {};
   const std::vector<std::string> tried = places(named);
@@ -110,6 +125,7 @@ bool load_library(const std::string& named, Library& library, LibraryProblem& pr
     }
     const std::vector<std::string> lacks = resolve(handle, library);
     library.path = path;
+    library.file = file_of(reinterpret_cast<void*>(library.functions.hil_open), path);
     if (lacks.empty()) return true;
     problem.message = fmt::format("{} lacks functions that are needed", path);
     problem.found = fmt::format("no {}", fmt::join(lacks, ", "));

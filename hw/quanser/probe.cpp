@@ -1,6 +1,7 @@
 #include "hw/quanser/probe.h"
 #include <fmt/format.h>
 #include <ctime>
+#include "hw/quanser/card_in_use.h"
 #include "hw/quanser/errors.h"
 #include "hw/quanser/library.h"
 
@@ -20,8 +21,9 @@ void pause_s(double seconds) {
 
 class Probe {
  public:
-  Probe(const Settings& settings, const Library& library)
-      : settings_(settings), library_(library), call_(library.functions) {}
+  Probe(const Settings& settings, const Library& library,
+        const std::function<bool(const std::string&)>& may_take_over)
+      : settings_(settings), library_(library), call_(library.functions), may_take_over_(may_take_over) {}
 
   std::vector<ProbeAnswer> run(bool may_touch) {
     ask_library();
@@ -55,12 +57,22 @@ class Probe {
   }
 
   bool open() {
-    const t_error result = call_.hil_open(settings_.board.c_str(), settings_.identifier.c_str(), &card_);
+    t_error result = call_.hil_open(settings_.board.c_str(), settings_.identifier.c_str(), &card_);
+    const bool is_in_use = result < 0 && classify(result, false) == Code::busy;
+    const std::string who = is_in_use ? who_has(settings_, library_, result) : "";
+    if (is_in_use && call_.hil_close_all && may_take_over_ && may_take_over_(who)) {
+      tell("taking it over", shown(call_.hil_close_all()));
+      result = call_.hil_open(settings_.board.c_str(), settings_.identifier.c_str(), &card_);
+    }
     const bool has_driver = result >= 0 || (result != -986 && result != -179 && result != -15);
     tell(fmt::format("driver of the {}", settings_.board),
          has_driver ? "there is one" : "none: " + shown(result), has_driver);
     if (has_driver)
-      tell(fmt::format("card {}", settings_.identifier), result >= 0 ? "opened" : shown(result), result >= 0);
+      tell(fmt::format("card {}", settings_.identifier),
+           result >= 0 ? "opened"
+           : is_in_use ? "in use: " + who
+                       : shown(result),
+           result >= 0);
     return result >= 0;
   }
 
@@ -133,18 +145,20 @@ class Probe {
   const Settings& settings_;
   const Library& library_;
   const HilFunctions& call_;
+  const std::function<bool(const std::string&)>& may_take_over_;
   t_card card_ = nullptr;
   std::vector<ProbeAnswer> answers_;
 };
 
 }  // namespace
 
-std::vector<ProbeAnswer> probe(const Settings& settings, bool may_touch) {
+std::vector<ProbeAnswer> probe(const Settings& settings, bool may_touch,
+                               const std::function<bool(const std::string&)>& may_take_over) {
   Library library;
   LibraryProblem problem;
   if (!load_library(settings.library, library, problem))
     return {{"library", fmt::format("{}: {}", problem.message, problem.found), false}};
-  return Probe(settings, library).run(may_touch);
+  return Probe(settings, library, may_take_over).run(may_touch);
 }
 
 }  // namespace loopwright::hw::quanser

@@ -31,6 +31,18 @@ struct Settings {
 /// Reads and checks the driver's part of a device file, with the rules of the card; loads nothing.
 Settings read_settings(const DeviceDescription& device, Problems& problems);
 
+/// Which library make_driver loads, and who says so.
+std::string foreign_code(const DeviceDescription& device);
+
+/// For a person who is to agree to Driver::take_over.
+inline constexpr const char* what_taking_over_does =
+    "Taking it over closes every card that the vendor's library has open, under whatever program drives it: "
+    "that "
+    "program's loop ends in the middle of its motion, and the outputs stay where they were until this "
+    "program "
+    "sends its own initial values. What the vendor's library does to programs in other processes is not "
+    "known.";
+
 /// Loads the library; null after a problem. Opens no card.
 std::unique_ptr<Driver> make_driver(std::shared_ptr<const DeviceDescription> device, Problems& problems);
 

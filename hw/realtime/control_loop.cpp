@@ -46,6 +46,7 @@ bool ControlLoop::cycle() noexcept {
   if (is_asked_to_stop_.load(std::memory_order_relaxed)) return end_with(LoopEnd::Why::asked);
   const int64_t lateness_ns = lateness_of(sample);
   const int64_t was_read = wall_ns();
+  if (!count_missing(sample)) return false;
   for (size_t a = 0; a < hardware_.axes.size(); ++a) {
     const blocks::HardwareIo& io = *hardware_.axes[a].io;
     stepper_.measure(a, inputs_[size_t(io.position_channel)],
@@ -59,14 +60,14 @@ bool ControlLoop::cycle() noexcept {
   statistics_.step.add(stepped - was_read, statistics_.cycles);
   statistics_.write.add(done - stepped, statistics_.cycles);
   statistics_.total.add(done - was_read, statistics_.cycles);
-  const bool goes_on = account_for(lateness_ns, sample, stepped - was_read);
+  const bool goes_on = account_for(lateness_ns, stepped - was_read);
   if (!written.ok()) return end_with(LoopEnd::Why::status, written);
   return goes_on;
 }
 
 Status ControlLoop::read(Sample& sample) noexcept {
   if (!device_is_clock_ && statistics_.cycles > 0)
-    clock_.sleep_until(origin_ns_ + (statistics_.cycles + statistics_.skipped_periods) * period_ns_);
+    clock_.sleep_until(origin_ns_ + (instant_ + 1) * period_ns_);
   reading_since_.store(wall_ns(), std::memory_order_relaxed);
   const Status status = device_.read(sample, inputs_);
   reading_since_.store(0, std::memory_order_relaxed);
@@ -88,17 +89,33 @@ int64_t ControlLoop::lateness_of(const Sample& sample) noexcept {
     return 0;
   }
   if (!device_is_clock_) {
-    due_ns_ = origin_ns_ + (statistics_.cycles + statistics_.skipped_periods) * period_ns_;
-    return std::max<int64_t>(0, now - due_ns_);
+    due_ns_ = origin_ns_ + (instant_ + 1) * period_ns_;
+    const int64_t late = std::max<int64_t>(0, now - due_ns_);
+    skipped_ = late / period_ns_;  // the sample belongs to the last instant that is over
+    return late;
   }
   const int64_t late = now - due_ns_;
   origin_ns_ += late < 0 ? late : std::min(late, period_ns_) / 1000;
   return std::max<int64_t>(0, late);
 }
 
+bool ControlLoop::count_missing(const Sample& sample) noexcept {
+  LoopStatistics& s = statistics_;
+  const Policy& policy = device_.description().policy;
+  const bool is_first = s.cycles == 0;  // the plan begins with it, whatever was lost before
+  missing_ = is_first ? 0 : sample.lost + skipped_;
+  s.lost_samples += is_first ? 0 : sample.lost;
+  s.skipped_periods += skipped_;
+  s.longest_gap = std::max(s.longest_gap, missing_);
+  if (!is_first && sample.lost >= policy.lost_that_end()) return end_with(LoopEnd::Why::lost, {Code::lost});
+  if (skipped_ >= policy.most_skipped) return end_with(LoopEnd::Why::skipped, {Code::late});
+  instant_ += is_first ? 0 : missing_ + 1;
+  return stepper_.ends_within(missing_) ? end_with(LoopEnd::Why::finished) : true;
+}
+
 bool ControlLoop::step() noexcept {
   int64_t before = wall_ns();
-  stepper_.compute([&](int block) {
+  stepper_.compute(missing_, [&](int block) {
     const int64_t now = wall_ns();
     BlockSum& sum = block_sums_[size_t(block)];
     sum.total_ns += now - before;
@@ -120,14 +137,12 @@ Status ControlLoop::write() noexcept {
 }
 
 /// Counts, logs, and says whether to go on.
-bool ControlLoop::account_for(int64_t lateness_ns, const Sample& sample, int64_t step_ns) noexcept {
+bool ControlLoop::account_for(int64_t lateness_ns, int64_t step_ns) noexcept {
   LoopStatistics& s = statistics_;
-  const CycleAccount account{1e-9 * double(lateness_ns), 1e-9 * double(step_ns), double(sample.lost)};
+  const CycleAccount account{1e-9 * double(lateness_ns), 1e-9 * double(step_ns), double(missing_)};
   s.lateness.add(lateness_ns, s.cycles);
-  s.lost_samples += sample.lost;
   const int64_t backlog = lateness_ns / period_ns_;
   s.longest_backlog = std::max(s.longest_backlog, backlog);
-  if (!device_is_clock_) s.skipped_periods += backlog;
   const bool is_overrun = clock_.now_ns() - due_ns_ > period_ns_;
   s.overruns += is_overrun;
   overruns_in_row_ = is_overrun ? overruns_in_row_ + 1 : 0;

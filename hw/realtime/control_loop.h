@@ -9,7 +9,7 @@ namespace loopwright::hw {
 
 /// How the loop came to its end.
 struct LoopEnd {
-  enum class Why : uint8_t { running, finished, asked, status, step_failed, overruns };
+  enum class Why : uint8_t { running, finished, asked, status, step_failed, overruns, lost, skipped };
   Why why = Why::running;
   Status status;
 };
@@ -46,9 +46,11 @@ class ControlLoop {
   bool cycle() noexcept;
   Status read(Sample& sample) noexcept;
   int64_t lateness_of(const Sample& sample) noexcept;
+  /// Counts the instants that have no sample. False: too many in a row, or the run is over among them.
+  bool count_missing(const Sample& sample) noexcept;
   bool step() noexcept;
   Status write() noexcept;
-  bool account_for(int64_t lateness_ns, const Sample& sample, int64_t step_ns) noexcept;
+  bool account_for(int64_t lateness_ns, int64_t step_ns) noexcept;
   bool end_with(LoopEnd::Why why, Status status = {}) noexcept {
     end_ = {why, status};
     return false;
@@ -69,6 +71,9 @@ class ControlLoop {
   LoopEnd end_;
   LoopStatistics statistics_;
   int64_t origin_ns_ = 0, due_ns_ = 0, kicked_ns_ = 0, longest_unkicked_ns_ = 0;
+  int64_t instant_ = 0;  ///< of the sample, in periods since the first one
+  int64_t skipped_ = 0;  ///< periods before this sample that the computer's clock left out
+  int64_t missing_ = 0;  ///< instants before this sample that have none
   int64_t overruns_in_row_ = 0;
   std::atomic<bool> is_asked_to_stop_ = false;
   std::atomic<int64_t> reading_since_ = 0;

@@ -189,6 +189,18 @@ class Deployment {
       fail(fmt::format("{}, {}", device_.describe(end.status), at), end.status);
     } else if (end.why == Why::step_failed) {
       fail(loop_.stepper().fault());
+    } else if (end.why == Why::lost) {
+      fail(fmt::format(
+               "the device lost {} samples in a row {}; {} end a run (\"on_lost\", \"most_lost\" in the "
+               "device file's policy)",
+               result_.statistics.longest_gap, at, device_.description().policy.lost_that_end()),
+           end.status);
+    } else if (end.why == Why::skipped) {
+      fail(fmt::format(
+               "this computer left out {} periods in a row {}; {} end a run (\"most_skipped\" in the device "
+               "file's policy)",
+               result_.statistics.longest_gap, at, device_.description().policy.most_skipped),
+           end.status);
     } else if (end.why == Why::overruns) {
       std::string slowest;
       for (size_t i = 0; i < std::min<size_t>(3, result_.statistics.blocks.size()); ++i)

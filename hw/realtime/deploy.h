@@ -42,8 +42,9 @@ struct LoopStatistics {
   int64_t cycles = 0;
   int64_t overruns = 0;  ///< commands that came after the next sample was due
   int64_t most_overruns_in_row = 0;
-  int64_t lost_samples = 0;     ///< dropped by the device
+  int64_t lost_samples = 0;     ///< between the first and the last that the loop read
   int64_t skipped_periods = 0;  ///< left out by the computer's clock
+  int64_t longest_gap = 0;      ///< instants in a row without a sample
   int64_t longest_backlog = 0;  ///< periods that a sample had waited
   int64_t glitches = 0, clamped = 0, rate_limited = 0;
   int64_t dropped_rows = 0;  ///< of the log

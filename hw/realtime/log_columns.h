@@ -18,7 +18,8 @@ struct LogColumn {
 
 /// What the loop knows of a cycle beside the run and the device.
 struct CycleAccount {
-  double lateness_s = 0, step_time_s = 0, lost = 0;
+  double lateness_s = 0, step_time_s = 0;
+  double lost = 0;  ///< instants since the row before that have no row, as no sample of them came
 };
 
 /// "time", everything the plan logs, "<axis>.position", "<axis>.command", "<axis>.applied", the accounts. The

@@ -1,13 +1,39 @@
 #include "hw/realtime/period.h"
 #include <fmt/format.h>
+#include <algorithm>
 
 namespace loopwright::hw {
 
-PeriodStepper::PeriodStepper(const Plan& plan, const Hardware& hardware) : hardware_(hardware), run_(plan) {
+PeriodStepper::PeriodStepper(const Plan& plan, const Hardware& hardware)
+    : hardware_(hardware),
+      holds_(hardware.device && hardware.device->policy.on_lost == OnLost::hold),
+      run_(plan),
+      measured_(hardware.axes.size()),
+      before_(hardware.axes.size()) {
   for (const Axis& axis : hardware.axes) {
     positions_.push_back(run_.parameter(axis.path + ".position"));
     velocities_.push_back(run_.parameter(axis.path + ".velocity"));
   }
+}
+
+void PeriodStepper::reset() {
+  run_.reset({run_.plan().seed, 0});
+  std::ranges::fill(measured_, Measured{});
+  std::ranges::fill(before_, Measured{});
+}
+
+/// What lies at a share of the way from the sample before to this one.
+void PeriodStepper::set_between(double share) noexcept {
+  if (holds_) share = 0;
+  for (size_t a = 0; a < measured_.size(); ++a) {
+    const Measured &from = before_[a], &to = measured_[a];
+    set(a, {from.position + share * (to.position - from.position),
+            from.velocity + share * (to.velocity - from.velocity)});
+  }
+}
+
+void PeriodStepper::set_measured() noexcept {
+  for (size_t a = 0; a < measured_.size(); ++a) set(a, before_[a] = measured_[a]);
 }
 
 void PeriodStepper::finish() noexcept {

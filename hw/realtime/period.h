@@ -1,5 +1,11 @@
 /// One period of a plan on hardware: measured numbers in, commands out. Deployment and replay both step by
 /// this, and it steps by the very Run that a simulation steps by.
+///
+/// Model time is the number of the sample. Where samples are missing, the plan is stepped through every
+/// instant that has none, once the next sample has come: so references and counters keep time, slower rates
+/// keep their phase, and differences are taken over one period. What was measured at those instants is
+/// interpolated between the samples before and after, or held with `"on_lost": "hold"`. Commands computed
+/// there went nowhere: the device held the one before.
 #pragma once
 #include "engine/run/run.h"
 #include "hw/realtime/axes.h"
@@ -10,17 +16,22 @@ class PeriodStepper {
  public:
   PeriodStepper(const Plan& plan, const Hardware& hardware);
 
-  void reset() { run_.reset({run_.plan().seed, 0}); }
-  /// What an axis measured.
+  void reset();
+  /// What an axis measured at the instant that compute() comes to.
   void measure(size_t axis, double position, double velocity) noexcept {
-    *positions_[axis] = position;
-    if (hardware_.axes[axis].io->velocity_channel >= 0) *velocities_[axis] = velocity;
+    measured_[axis] = {position, velocity};
   }
-  /// All outputs of this instant; `after(block)` after each of them.
-  template <class After> void compute(After&& after) noexcept {
-    due_ = run_.due();
-    run_.evaluate_watched(due_, after);
-    run_.accept();
+  /// All outputs of this instant; `after(block)` after each of them. `missing` instants without a sample came
+  /// before it. Failed steps end it: see run().failed().
+  template <class After> void compute(int64_t missing, After&& after) noexcept {
+    for (int64_t i = 1; i <= missing; ++i) {
+      set_between(double(i) / double(missing + 1));
+      evaluate(after);
+      if (run_.failed()) return;
+      finish();
+    }
+    set_measured();
+    evaluate(after);
   }
   double command(size_t axis) const { return run_.number(hardware_.axes[axis].command); }
   /// Memories, and everything between this period and the next; after the commands are out.
@@ -28,12 +39,33 @@ class PeriodStepper {
 
   const Run<double>& run() const { return run_; }
   bool is_last() const { return run_.now().tick + hardware_.period_ticks > run_.plan().stop_tick; }
+  /// Whether so many instants on lies beyond the plan's stop.
+  bool ends_within(int64_t instants) const {
+    return instants > (run_.plan().stop_tick - run_.now().tick) / hardware_.period_ticks;
+  }
   /// Which block stopped the step and why.
   std::string fault() const;
 
  private:
+  struct Measured {
+    double position = 0, velocity = 0;
+  };
+  template <class After> void evaluate(After&& after) noexcept {
+    due_ = run_.due();
+    run_.evaluate_watched(due_, after);
+    run_.accept();
+  }
+  void set_between(double share) noexcept;
+  void set_measured() noexcept;
+  void set(size_t axis, const Measured& measured) noexcept {
+    *positions_[axis] = measured.position;
+    if (hardware_.axes[axis].io->velocity_channel >= 0) *velocities_[axis] = measured.velocity;
+  }
+
   const Hardware& hardware_;
+  const bool holds_;
   Run<double> run_;
+  std::vector<Measured> measured_, before_;
   std::vector<double*> positions_, velocities_;
   uint64_t due_ = 0;
 };

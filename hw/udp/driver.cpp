@@ -48,7 +48,7 @@ class UdpDriver final : public Driver {
   }
 
   Status start(double period_s) override {
-    sequence_ = 0, period_s_ = period_s, is_sampling_ = true;
+    sequence_ = 0, number_of_sample_ = 0, period_s_ = period_s, is_sampling_ = true;
     return send(Request::start, {});
   }
 
@@ -72,8 +72,9 @@ class UdpDriver final : public Driver {
     }
     for (FromDevice newer; take(newer);)
       if (int32_t(newer.sequence - packet.sequence) > 0) packet = newer;
-    sample = {int64_t(packet.sequence) - 1, int32_t(packet.sequence - sequence_ - 1)};
+    number_of_sample_ += uint32_t(packet.sequence - sequence_);
     sequence_ = packet.sequence;
+    sample.sequence = number_of_sample_ - 1;
     std::copy_n(packet.raw, std::min<size_t>(packet.channels, raw.size()), raw.begin());
     return status_of(packet);
   }
@@ -106,7 +107,7 @@ class UdpDriver final : public Driver {
  private:
   static Status status_of(const FromDevice& packet) noexcept {
     if (packet.state == DeviceState::watchdog_expired) return {Code::watchdog};
-    return packet.state == DeviceState::fault ? Status{Code::device_fault} : Status{};
+    return packet.state == DeviceState::fine ? Status{} : Status{Code::device_fault};
   }
 
   Status send(Request request, std::span<const double> raw) noexcept {
@@ -157,6 +158,7 @@ class UdpDriver final : public Driver {
   Settings settings_;
   int socket_ = -1, stop_event_ = -1;
   uint32_t number_ = 0, sequence_ = 0;
+  int64_t number_of_sample_ = 0;  // the same, beyond 32 bits
   double period_s_ = 0;
   bool is_sampling_ = false, is_silent_ = false;
 };

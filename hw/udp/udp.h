@@ -14,7 +14,7 @@ struct Settings {
     return fields(parameter(&Settings::address, "address", "", "IPv4 address of the device").optional(),
                   parameter(&Settings::port, "port", "", "Its port").between(1, 65535),
                   parameter(&Settings::patience, "patience", "s", "Without an answer for so long, it is gone")
-                      .positive()
+                      .between(1e-3, 3600)
                       .optional());
   }
 };

@@ -5,6 +5,7 @@
 #include "engine/json/json.h"
 #include "engine/plan/plan.h"
 #include "hw/drivers.h"
+#include "hw/realtime/axes.h"
 #include "tools/command/command.h"
 #include "tools/compare/experiment.h"
 #include "tools/effects/effect.h"
@@ -17,6 +18,12 @@ namespace {
 /// What there is to say of a file in which nothing is wrong; nothing after an error.
 using Verdict = std::optional<std::string>;
 
+/// A line about code that deploy and probe would load and run: told here, where nothing is loaded.
+std::string foreign_code(const hw::DeviceDescription* device) {
+  const std::string code = device ? hw::foreign_code_of(*device) : "";
+  return code.empty() ? code : fmt::format("\n{}; check does not load it", code);
+}
+
 Verdict check_diagram(const std::string& path, const LoadOptions& options, Problems& problems) {
   const auto diagram = load_diagram(path, options, problems);
   if (!diagram) return {};
@@ -26,7 +33,9 @@ Verdict check_diagram(const std::string& path, const LoadOptions& options, Probl
   }
   const auto plan = compile(*diagram, problems);
   if (!plan) return {};
-  return fmt::format("{} blocks, {} states", plan->blocks.size(), plan->states);
+  Problems of_deploy;  // told there
+  return fmt::format("{} blocks, {} states{}", plan->blocks.size(), plan->states,
+                     foreign_code(hw::find_hardware(*plan, of_deploy).device.get()));
 }
 
 Verdict check_experiment(const std::string& path, Problems& problems) {
@@ -60,8 +69,8 @@ Verdict check_effect(const std::string& path, Problems& problems) {
 Verdict check_device(const std::string& path, Problems& problems) {
   const auto device = hw::load_device(path, {}, problems);
   if (!device) return {};
-  return fmt::format("a device of the driver {}, {} inputs and {} outputs", device->driver,
-                     device->inputs.size(), device->outputs.size());
+  return fmt::format("a device of the driver {}, {} inputs and {} outputs{}", device->driver,
+                     device->inputs.size(), device->outputs.size(), foreign_code(device.get()));
 }
 
 Verdict check_model(const std::string& path, Problems& problems) {

@@ -3,6 +3,7 @@
 #include "engine/record/recording_file.h"
 #include "hw/drivers.h"
 #include "tools/command/command.h"
+#include "tools/command/take_over.h"
 #include "tools/deploy/deployment_page.h"
 
 namespace loopwright {
@@ -13,6 +14,7 @@ struct Arguments {
   std::string output, report, json;
   int priority = 80, processor = -1;
   bool require_real_time = false, quiet = false;
+  TakeOver take_over;
 };
 
 void require_paths(const Arguments& a) {
@@ -47,15 +49,29 @@ void show(const hw::LiveValues& now) {
   std::fflush(stderr);
 }
 
+/// Opens a device in use where a person agrees; false: nobody does. Of anything else deploy() speaks.
+bool take_over(hw::IoDevice& device, const hw::DriverType& driver, const TakeOver& options) {
+  if (!options.is_wanted || !driver.taking_over) return true;
+  const hw::Status status = device.open();
+  if (status.code != hw::Code::busy) return true;
+  if (!agrees(options, device.describe(status), driver.taking_over)) return false;
+  device.take_over();
+  return true;
+}
+
 int run(const Arguments& a) {
   require_paths(a);
   const auto plan = load_plan(a.diagram.path, a.diagram.options());
   for (const Problem& warning : plan->warnings) fmt::print(stderr, "{}\n", to_string(warning));
   const hw::Hardware hardware = hardware_of(*plan, a.diagram.path);
+  if (const std::string code = hw::foreign_code_of(*hardware.device); !code.empty())
+    fmt::print(stderr, "{}\n", code);
   Problems problems;
-  auto driver = hw::find_driver(hardware.device->driver)->make(hardware.device, problems);
+  const hw::DriverType& type = *hw::find_driver(hardware.device->driver);
+  auto driver = type.make(hardware.device, problems);
   if (!driver) throw InputError(std::move(problems));
   hw::IoDevice device(hardware.device, std::move(driver));
+  if (!take_over(device, type, a.take_over)) return run_failed;
   hw::DeployOptions options;
   options.system.priority = a.priority, options.system.processor = a.processor;
   options.require_real_time = a.require_real_time;
@@ -91,6 +107,7 @@ void add_deploy(CLI::App& app, std::function<void(std::function<int()>)> choose)
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--require-rt", a->require_real_time,
                     "Refuse to move anything unless the system grants all that a loop in real time needs");
+  add_take_over(*command, a->take_over);
   command->add_flag("-q,--quiet", a->quiet, "No progress and no summary");
   command->callback([=] { choose([=] { return run(*a); }); });
 }

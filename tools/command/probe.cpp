@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 #include "hw/drivers.h"
+#include "hw/quanser/library.h"
 #include "hw/quanser/probe.h"
 #include "hw/realtime/system.h"
 #include "tools/command/command.h"
+#include "tools/command/take_over.h"
 
 namespace loopwright {
 namespace {
@@ -10,6 +12,7 @@ namespace {
 struct Arguments {
   std::string device;
   bool may_touch = false;
+  TakeOver take_over;
 };
 
 hw::quanser::Settings settings_of(const std::string& path) {
@@ -31,9 +34,14 @@ int run(const Arguments& a) {
     const hw::RealTimeProcess process({}, system);
     hw::make_thread_real_time({}, system);
   }
-  fmt::print("{}device\n", hw::to_text(system));
+  fmt::print("{}device\n  loads and runs the code of {}\n", hw::to_text(system),
+             hw::quanser::library_to_load(settings.library));
+  std::fflush(stdout);  // before that code runs
+  const auto may_take_over = [&](const std::string& who) {
+    return agrees(a.take_over, "in use: " + who, hw::quanser::what_taking_over_does);
+  };
   bool is_good = true;
-  for (const hw::quanser::ProbeAnswer& answer : hw::quanser::probe(settings, a.may_touch)) {
+  for (const hw::quanser::ProbeAnswer& answer : hw::quanser::probe(settings, a.may_touch, may_take_over)) {
     fmt::print("  {} {}: {}\n", answer.is_good ? "+" : "-", answer.question, answer.answer);
     is_good &= answer.is_good;
   }
@@ -49,6 +57,7 @@ void add_probe(CLI::App& app, std::function<void(std::function<int()>)> choose) 
   command->add_flag("--touch", a->may_touch,
                     "Set the card up too: presets encoder 0, puts out 0 V, lets the watchdog expire. "
                     "Disconnect the motor first");
+  add_take_over(*command, a->take_over);
   command->callback([=] { choose([=] { return run(*a); }); });
 }
 

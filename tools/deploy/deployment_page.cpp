@@ -39,7 +39,8 @@ std::vector<Count> counts(const hw::LoopStatistics& s) {
           {"longest_backlog", "Longest wait of a sample (periods)", s.longest_backlog},
           {"lost_samples", "Samples lost by the device", s.lost_samples},
           {"skipped_periods", "Periods skipped", s.skipped_periods},
-          {"glitches", "Glitches of inputs", s.glitches},
+          {"longest_gap", "Most instants in a row without a sample", s.longest_gap},
+          {"glitches", "Readings of inputs that were held", s.glitches},
           {"clamped", "Values clamped", s.clamped},
           {"rate_limited", "Values limited in their rate", s.rate_limited},
           {"dropped_rows", "Rows of the log dropped", s.dropped_rows},
@@ -137,8 +138,12 @@ std::string to_text(const hw::DeployResult& result) {
     text +=
         fmt::format("  {:<24} mean {:7.2f} us   99 % {:5.0f} us   longest {:8.1f} us in cycle {}\n", title,
                     h.mean_us(), h.quantile_us(0.99), 1e-3 * double(h.longest_ns()), h.longest_cycle());
+  if (s.skipped_periods > 0)
+    text += fmt::format("  {} periods skipped by this computer\n", s.skipped_periods);
+  if (s.longest_gap > 0)
+    text += fmt::format("  at most {} instants in a row without a sample\n", s.longest_gap);
   if (s.clamped + s.rate_limited + s.glitches > 0)
-    text += fmt::format("  {} values clamped, {} limited in their rate, {} glitches of inputs\n", s.clamped,
+    text += fmt::format("  {} values clamped, {} limited in their rate, {} readings held\n", s.clamped,
                         s.rate_limited, s.glitches);
   if (s.least_watchdog_margin_s != 0)
     text += fmt::format("  least margin to the watchdog {:.2f} ms\n", 1e3 * s.least_watchdog_margin_s);
@@ -162,8 +167,7 @@ report::Page deployment_page(const Plan& plan, const hw::DeployResult& result) {
   for (report::Plot& plot : scopes(result.recording)) signals.items.push_back(std::move(plot));
   page.sections.push_back(std::move(signals));
   report::Table accounts{{"Account", "Value"}, {}, ""};
-  for (const auto& [key, title, value] : counts(s))
-    accounts.rows.push_back({title, value.dump()});
+  for (const auto& [key, title, value] : counts(s)) accounts.rows.push_back({title, value.dump()});
   report::Table blocks{{"Block", "mean (us)", "longest (us)"}, {}, "Slowest first."};
   for (const hw::BlockTime& block : s.blocks)
     blocks.rows.push_back(

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include "hw/realtime/deploy.h"
 #include "hw/realtime/log_columns.h"
 
 namespace loopwright {
@@ -47,6 +48,13 @@ void compare(double logged, double computed, int64_t row, double time, ReplayedC
   to.largest = std::max(to.largest, std::abs(logged - computed));
 }
 
+/// Instants before a row that have none, as the loop noted them; 0 in logs that do not say.
+int64_t missing_before(const Column* lost, size_t row, const hw::PeriodStepper& stepper) {
+  const double instants = lost && row > 0 ? lost->values[row] : 0;
+  if (!(instants >= 0) || instants > hw::longest_gap || instants != std::floor(instants)) return 0;
+  return stepper.ends_within(int64_t(instants)) ? 0 : int64_t(instants);
+}
+
 }  // namespace
 
 bool Replay::explains() const {
@@ -68,9 +76,11 @@ Replay replay(const Plan& plan, const hw::Hardware& hardware, const Recording& l
   if (problems.has_errors()) return result;
   for (const auto& [key, value] : log.facts) result.same_plan &= key != "plan" || value == plan.hash;
 
+  const Column* lost = log.find(hw::lost_column);
   hw::PeriodStepper stepper(plan, hardware);
   for (size_t row = 0; row < log.rows(); ++row) {
-    const double now = stepper.run().now().time;
+    const int64_t missing = missing_before(lost, row, stepper);
+    const double now = plan.clock.time(stepper.run().now().tick + missing * hardware.period_ticks);
     if (!equal_bits(time->values[row], now)) {
       result.fault = fmt::format("the log has a hole: row {} is at {:g} s, and should be at {:g} s", row + 1,
                                  time->values[row], now);
@@ -79,7 +89,7 @@ Replay replay(const Plan& plan, const hw::Hardware& hardware, const Recording& l
     for (size_t a = 0; a < measured.size(); ++a)
       stepper.measure(a, measured[a].position->values[row],
                       measured[a].velocity ? measured[a].velocity->values[row] : 0);
-    stepper.compute([](int) {});
+    stepper.compute(missing, [](int) {});
     if (stepper.run().failed()) {
       result.fault = stepper.fault();
       return result;

@@ -1,5 +1,6 @@
 // The port's rules, on a driver that does what a test tells it.
 #include "hw/device/io_device.h"
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <cmath>
 #include <limits>
@@ -10,6 +11,9 @@ namespace {
 
 struct Script {
   double raw = 0;
+  std::vector<double> raws;  // read one after the other, before `raw`
+  size_t filled_inputs = 1;
+  int64_t sequence = 0;
   Status read, write;
   bool watchdog_took_over = false;
   std::vector<std::string> calls;
@@ -24,8 +28,11 @@ class ScriptedDriver final : public Driver {
   Status configure(std::span<const double>, std::span<const double>) override { return note("configure"); }
   Status start(double) override { return note("start"); }
   std::string describe(Status) const override { return ""; }
-  Status read(RawSample&, std::span<double> raw) noexcept override {
-    raw[0] = script_.raw;
+  Status read(RawSample& sample, std::span<double> raw) noexcept override {
+    sample.sequence = script_.sequence++;
+    for (size_t i = 0; i < script_.filled_inputs; ++i)
+      raw[i] = script_.raws.empty() ? script_.raw : script_.raws.front();
+    if (!script_.raws.empty()) script_.raws.erase(script_.raws.begin());
     return script_.read;
   }
   Status write(std::span<const double> raw) noexcept override {
@@ -54,7 +61,6 @@ struct Bench {
   }
   double read(double raw) {
     script.raw = raw;
-    Sample sample;
     std::array<double, 1> value{};
     last = device.read(sample, value);
     return value[0];
@@ -62,6 +68,7 @@ struct Bench {
   Status write(double value) { return device.write(std::array{value}); }
   Script script;
   IoDevice device;
+  Sample sample;
   Status last;
 };
 
@@ -98,6 +105,119 @@ TEST(IoDevice, AGlitchIsHeldAndThreeInARowAreAFault) {
   EXPECT_EQ(bench.device.glitches(), 4);
 }
 
+TEST(IoDevice, AGlitchThatStaysIsAFaultThatNamesTheChannelAndWhatWasRead) {
+  Bench bench;
+  bench.read(0);
+  for (int i = 0; i < 3; ++i) bench.read(5e6);
+  EXPECT_EQ(bench.device.describe(bench.last),
+            "input \"position\" (encoder 0) read 5000000 counts, a jump from 0 m beyond its maximum rate of "
+            "3 m/s; 3 "
+            "bad readings in a row");
+}
+
+TEST(IoDevice, AfterLostSamplesAnAxisMayHaveGoneFarther) {
+  Bench bench;
+  bench.read(0);
+  bench.script.sequence += 4;
+  EXPECT_NEAR(bench.read(14.9e-3 / 2e-7), 14.9e-3, 1e-9) << "five periods at 3 m/s";
+  EXPECT_EQ(bench.sample.lost, 4);
+  EXPECT_EQ(bench.device.glitches(), 0);
+}
+
+TEST(IoDevice, ASampleNumberedBackwardIsAFault) {
+  Bench bench;
+  bench.read(0);
+  bench.script.sequence = 1;
+  bench.read(0);
+  EXPECT_EQ(bench.last.code, Code::device_fault);
+  EXPECT_EQ(bench.device.describe(bench.last),
+            "the device numbered a sample 1 after sample 1: what time it is cannot be told");
+}
+
+// ---- raw numbers that cannot be ----
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double inf = std::numeric_limits<double>::infinity();
+
+TEST(IoDevice, ANumberThatCannotBeIsAFault) {
+  for (const double raw : {nan, inf, -inf, 0.5, 1e10, 4294967296.0, -2147483649.0, 1e300, 1073741824.0}) {
+    Bench bench;
+    EXPECT_NEAR(bench.read(1000), 2e-4, 1e-12);
+    EXPECT_NEAR(bench.read(raw), 2e-4, 1e-12) << "the value before " << raw;
+    EXPECT_EQ(bench.last.code, Code::device_fault) << raw;
+    EXPECT_EQ(bench.write(4).code, Code::device_fault);
+    EXPECT_EQ(bench.script.written.back(), 0);
+  }
+}
+
+TEST(IoDevice, WhatWasReadIsToldInASentence) {
+  const std::pair<double, const char*> sentences[] = {
+      {nan, "input \"position\" (encoder 0) read nan counts, which is no finite number"},
+      {0.5, "input \"position\" (encoder 0) read 0.5 counts: a counter counts whole edges"},
+      {1e10,
+       "input \"position\" (encoder 0) read 10000000000 counts, which its counter of 24 bits cannot do "
+       "(\"counter_bits\")"}};
+  for (const auto& [raw, sentence] : sentences) {
+    Bench bench;
+    bench.read(0), bench.read(raw);
+    EXPECT_EQ(bench.device.describe(bench.last), sentence);
+  }
+}
+
+TEST(IoDevice, ItIsHeldForAStatedNumberOfSamplesWhereThePolicySaysSo) {
+  Bench bench(R"({"policy": {"on_invalid": "hold", "most_invalid": 4}})");
+  bench.read(1000);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(bench.read(nan), 2e-4, 1e-12);
+    EXPECT_TRUE(bench.last.ok());
+  }
+  EXPECT_NEAR(bench.read(1100), 2.2e-4, 1e-12) << "the row is broken";
+  for (int i = 0; i < 4; ++i) bench.read(inf);
+  EXPECT_EQ(bench.last.code, Code::device_fault);
+}
+
+TEST(IoDevice, NothingBeginsWithANumberThatCannotBe) {
+  for (const char* policy : {"{}", R"({"policy": {"on_invalid": "hold"}})"})
+    for (const size_t at : {0, 1}) {
+      Bench bench(policy);
+      bench.script.raws = at == 0 ? std::vector<double>{nan} : std::vector<double>{1000, nan};
+      bench.read(1000);
+      EXPECT_EQ(bench.last.code, Code::device_fault) << policy << at;
+      EXPECT_THAT(bench.device.describe(bench.last), testing::HasSubstr("the diagram has not begun"));
+    }
+}
+
+TEST(IoDevice, AGlitchInTheFirstSampleIsNotWhereTheMotionBegins) {
+  Bench bench;
+  bench.script.raws = {5e6};
+  EXPECT_NEAR(bench.read(1000), 2e-4, 1e-12) << "the second and the third sample agree";
+  EXPECT_TRUE(bench.last.ok());
+  EXPECT_EQ(bench.script.sequence, 3);
+  EXPECT_EQ(bench.script.written, (std::vector<double>{0, 0})) << "the initial value meanwhile";
+}
+
+TEST(IoDevice, FirstSamplesThatNeverAgreeAreAFault) {
+  Bench bench;
+  bench.script.raws = {0, 5e6, 0, 5e6, 0};
+  bench.read(0);
+  EXPECT_EQ(bench.last.code, Code::device_fault);
+  EXPECT_THAT(
+      bench.device.describe(bench.last),
+      testing::AllOf(testing::HasSubstr("a jump from"), testing::HasSubstr("the diagram has not begun")));
+}
+
+TEST(IoDevice, AnInputThatTheDriverDoesNotFillInIsNoNumber) {
+  Bench bench(R"({"inputs": {"current": {"kind": "analog", "channel": 0, "unit": "A", "scale": 1}}})");
+  bench.script.filled_inputs = 2;
+  bench.read(1);
+  EXPECT_TRUE(bench.last.ok());
+  bench.script.filled_inputs = 1;
+  bench.read(1);
+  EXPECT_EQ(bench.last.code, Code::device_fault);
+  EXPECT_THAT(bench.device.describe(bench.last),
+              testing::HasSubstr("input \"current\" (analog 0) read nan V"));
+}
+
 TEST(IoDevice, OutputsAreClampedToTheRangeAndToTheFurtherLimits) {
   Bench bench(R"({"outputs": {"drive": {"scale": 2, "maximum": 6, "maximum_rate": 0}}})");
   bench.write(100);
@@ -123,7 +243,10 @@ TEST(IoDevice, AValueThatIsNoNumberIsNeverSentAndLatches) {
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     Bench bench;
     bench.write(4);
-    EXPECT_EQ(bench.write(bad).code, Code::range);
+    const Status refused = bench.write(bad);
+    EXPECT_EQ(refused.code, Code::range);
+    EXPECT_THAT(bench.device.describe(refused),
+                testing::HasSubstr("the command for output \"drive\" (channel 0) became"));
     EXPECT_EQ(bench.script.written.back(), 0) << "the safe value";
     EXPECT_TRUE(latches(bench.write(4).code));
     EXPECT_EQ(bench.script.written.back(), 0);

@@ -2,7 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <fstream>
+#include <sys/wait.h>
+#include <unistd.h>
 #include "hw/device/io_device.h"
+#include "hw/quanser/card_in_use.h"
 #include "hw/quanser/errors.h"
 #include "hw/quanser/library.h"
 #include "hw/quanser/quanser.h"
@@ -63,6 +66,7 @@ TEST_F(Quanser, CallsComeInTheOrderOfTheVendorsOwnPrograms) {
                   "hil_set_encoder_quadrature_mode", "hil_set_encoder_filter_frequency",
                   "hil_set_encoder_counts", "hil_task_create_reader", "hil_task_set_buffer_overflow_mode",
                   "hil_task_start",                                            //
+                  "hil_task_read", "hil_write_analog",                         // two samples that agree
                   "hil_task_read", "hil_write_analog", "hil_watchdog_start",   //
                   "hil_task_read", "hil_write_analog", "hil_watchdog_reload",  //
                   "hil_write_analog", "hil_task_stop", "hil_write_analog", "hil_write_termination_states",
@@ -117,11 +121,52 @@ TEST_F(Quanser, OpeningTellsWhyItCannot) {
   EXPECT_EQ(device->open().code, Code::no_driver) << "no board";
 }
 
-TEST_F(Quanser, ABoardLeftOpenByAKilledProgramIsClosedAndOpened) {
+TEST_F(Quanser, ACardInUseIsRefusedAndNothingOfItTouched) {
   begin();
+  cycle(3);
+  auto first = std::move(device);
+  const size_t calls = card.calls().size();
   make();
-  EXPECT_TRUE(device->open().ok());
-  device->close();
+  const Status status = device->open();
+  EXPECT_EQ(status.code, Code::busy);
+  EXPECT_THAT(device->describe(status),
+              AllOf(HasSubstr("the device is in use: card qpid_e 0 (-1073, BOARD_ALREADY_OPEN)"),
+                    HasSubstr("Nothing of it was touched"), HasSubstr("--take-over")));
+  device->stop(), device->close();
+  EXPECT_EQ(card.calls().size(), calls + 1) << "hil_open alone";
+  device = std::move(first);
+  EXPECT_EQ(first_failure(20), Code::ok) << "the first goes on";
+  EXPECT_EQ(device->stop(), OutputsSafe::confirmed);
+}
+
+TEST_F(Quanser, ACardInUseIsTakenOverWhereThatIsAskedFor) {
+  begin();
+  auto first = std::move(device);
+  make();
+  ASSERT_EQ(device->open().code, Code::busy);
+  EXPECT_TRUE(device->take_over().ok());
+  ASSERT_EQ(device->preset().code, Code::ok);
+  ASSERT_EQ(device->start(0.001).code, Code::ok);
+  EXPECT_EQ(first_failure(5), Code::ok);
+}
+
+TEST_F(Quanser, NamesAreGivenOfProcessesThatHaveTheLibraryLoaded) {
+  int to_child[2];
+  ASSERT_EQ(pipe(to_child), 0);
+  const pid_t child = fork();
+  if (child == 0) {  // has the library of this process
+    close(to_child[1]);
+    char ignored;
+    [[maybe_unused]] const ssize_t end = ::read(to_child[0], &ignored, 1);
+    _exit(0);
+  }
+  close(to_child[0]);
+  const auto processes = quanser::processes_with(emulator_library());
+  close(to_child[1]);
+  waitpid(child, nullptr, 0);
+  EXPECT_THAT(processes, testing::Contains(HasSubstr(std::to_string(child) + " (")));
+  EXPECT_THAT(processes, testing::Not(testing::Contains(HasSubstr(std::to_string(getpid()) + " ("))));
+  EXPECT_THAT(quanser::processes_with("/nowhere/libhil.so"), ElementsAre());
 }
 
 TEST_F(Quanser, WhatTheCardLacksIsAnErrorOnlyWhereItWasAskedFor) {
@@ -148,13 +193,13 @@ TEST_F(Quanser, WhatTheCardLacksIsAnErrorOnlyWhereItWasAskedFor) {
 TEST_F(Quanser, AnOverflowIsAFaultOrCountsAsLostSamples) {
   begin();
   cycle();
-  card.set("stall.at", 1), card.set("stall.seconds", 0.0045);
+  card.set("stall.at", 2), card.set("stall.seconds", 0.0045);
   EXPECT_EQ(first_failure(), Code::device_fault);
   EXPECT_EQ(device->fault().native, -111);
   card.set("reset", 0);
   begin(R"({"clock": {"buffer": 1, "overflow": "overwrite"}, "watchdog": {"timeout": 0.1}})");
   card.set("stall.at", 3), card.set("stall.seconds", 0.0045);
-  int lost = 0;
+  int64_t lost = 0;
   for (int i = 0; i < 10; ++i) {
     ASSERT_TRUE(cycle().ok());
     lost += sample.lost;
@@ -196,7 +241,7 @@ TEST_F(Quanser, TheComputersClockNeedsNoTask) {
   EXPECT_TRUE(cycle().ok());
   const auto calls = card.calls();
   EXPECT_EQ(std::ranges::count(calls, "hil_task_create_reader"), 0);
-  EXPECT_EQ(std::ranges::count(calls, "hil_read_encoder"), 1);
+  EXPECT_EQ(std::ranges::count(calls, "hil_read_encoder"), 2) << "two readings that agree";
 }
 
 // ---- libraries ----
@@ -221,6 +266,17 @@ std::string library_problem(const std::string& path) {
 TEST_F(Quanser, AMissingFunctionIsNamed) {
   EXPECT_THAT(library_problem(emulator_library("hil_emulator_broken")),
               AllOf(HasSubstr("lacks functions"), HasSubstr("hil_task_read")));
+}
+
+TEST_F(Quanser, WhichLibraryWouldBeLoadedIsToldBeforeItsCodeRuns) {
+  setenv("HIL_LIBRARY", "/opt/own/libhil.so", 1);
+  EXPECT_THAT(
+      foreign_code_of(*device_of()),
+      HasSubstr("device.json: its driver loads and runs the code of /opt/own/libhil.so (HIL_LIBRARY)"));
+  unsetenv("HIL_LIBRARY");
+  EXPECT_THAT(foreign_code_of(*device_of(R"({"quanser": {"library": "./mine.so"}})")),
+              AllOf(HasSubstr("/mine.so (\"library\" in the device file)")));
+  EXPECT_THAT(foreign_code_of(*device_of()), HasSubstr("the first that is there of libhil.so.1, "));
 }
 
 TEST_F(Quanser, NoLibraryIsToldWithWhatWasTried) {

@@ -40,7 +40,8 @@ class Peer {
   }
   int port = 0;
   std::atomic<double> output = 99;
-  std::atomic<int> silent_from = -1, gap_at = -1, expires_at = -1;
+  std::atomic<int> silent_from = -1, gap_at = -1, gap = 2, expires_at = -1, short_at = -1, bad_at = -1;
+  std::atomic<double> bad = 0;
 
  private:
   void serve() {
@@ -66,14 +67,16 @@ class Peer {
     FromDevice answer;
     answer.answered = packet.number, answer.channels = 1;
     if (is_sampling_) {
-      ++sequence_;
-      if (int(sequence_) == gap_at) sequence_ += 3;
-      velocity_ += 1e-3 * (output - 20 * velocity_), position_ += 1e-3 * velocity_;
+      const uint32_t before = sequence_++;
+      if (int(sequence_) == gap_at) sequence_ += uint32_t(gap);
+      for (uint32_t i = before; i < sequence_; ++i)
+        velocity_ += 1e-3 * (output - 20 * velocity_), position_ += 1e-3 * velocity_;
     }
     if (expires_at >= 0 && int(sequence_) >= expires_at)
       answer.state = DeviceState::watchdog_expired, output = safe_;
     answer.sequence = sequence_;
-    answer.raw[0] = std::floor(position_ / 2e-7);
+    answer.raw[0] = int(sequence_) == bad_at ? bad.load() : std::floor(position_ / 2e-7);
+    if (int(sequence_) == short_at) answer.channels = 0;
     return answer;
   }
   int socket_;
@@ -117,12 +120,50 @@ TEST(Udp, TheSameDiagramRunsOnAnotherKindOfDevice) {
   EXPECT_NEAR(result.recording.find("axis.position")->values.back(), 0.01 - 0.2e-3, 2e-5);
 }
 
-TEST(Udp, SamplesThatWereLostAreCounted) {
+TEST(Udp, ModelTimeFollowsTheNumbersOfItsSamples) {
   Peer peer;
-  peer.gap_at = 100;
+  peer.gap_at = 500;
   const DeployResult result = deploy_on(peer);
-  EXPECT_EQ(result.status, RunStatus::finished) << result.message;
-  EXPECT_EQ(result.statistics.lost_samples, 3);
+  ASSERT_EQ(result.status, RunStatus::finished) << result.message;
+  EXPECT_EQ(result.statistics.lost_samples, 2);
+  EXPECT_EQ(result.statistics.cycles, 999) << "every instant of the second has a row but two";
+  const auto &time = result.recording.find("time")->values,
+             &lost = result.recording.find("loop.lost")->values,
+             &reference = result.recording.find("reference.y")->values;
+  for (size_t row = 1; row < time.size(); ++row) {
+    EXPECT_NEAR(time[row] - time[row - 1], 1e-3 * (1 + lost[row]), 1e-12);
+    EXPECT_NEAR(reference[row], 0.01 * time[row], 1e-15);
+  }
+  EXPECT_EQ(time.back(), 1);
+  EXPECT_NEAR(result.recording.find("axis.position")->values.back(), 0.01 - 0.2e-3, 2e-5);
+}
+
+TEST(Udp, AGapBeyondTheBoundIsAFault) {
+  Peer peer;
+  peer.gap_at = 500, peer.gap = 3;
+  const DeployResult result = deploy_on(peer);
+  EXPECT_EQ(result.status, RunStatus::failed);
+  EXPECT_THAT(result.message, HasSubstr("lost 3 samples in a row"));
+  EXPECT_EQ(result.outputs_safe, OutputsSafe::confirmed);
+  EXPECT_EQ(peer.output, 0);
+}
+
+TEST(Udp, APacketWithoutItsChannelsOrWithNoNumberIsAFault) {
+  const auto message_of = [](auto&& prepare) {
+    Peer peer;
+    prepare(peer);
+    const DeployResult result = deploy_on(peer);
+    EXPECT_EQ(result.status, RunStatus::failed);
+    EXPECT_EQ(result.outputs_safe, OutputsSafe::confirmed);
+    EXPECT_EQ(peer.output, 0);
+    return result.message;
+  };
+  EXPECT_THAT(message_of([](Peer& peer) { peer.short_at = 300; }),
+              HasSubstr("input \"position\" (encoder 0) read nan"));
+  EXPECT_THAT(message_of([](Peer& peer) { peer.bad_at = 300, peer.bad = 1e300; }),
+              HasSubstr("read 1e+300 counts"));
+  EXPECT_THAT(message_of([](Peer& peer) { peer.bad_at = 1, peer.bad = std::nan(""); }),
+              HasSubstr("the diagram has not begun"));
 }
 
 TEST(Udp, ADeviceThatFallsSilentIsGoneAndItsOutputsUnknown) {
@@ -133,7 +174,7 @@ TEST(Udp, ADeviceThatFallsSilentIsGoneAndItsOutputsUnknown) {
   EXPECT_EQ(result.fault.code, Code::disconnected);
   EXPECT_THAT(result.message, HasSubstr("does not answer"));
   EXPECT_EQ(result.outputs_safe, OutputsSafe::unknown);
-  EXPECT_EQ(result.recording.rows(), 200u);
+  EXPECT_EQ(result.recording.rows(), 199u) << "the first sample only confirms the second";
 }
 
 TEST(Udp, ItsWatchdogIsReported) {

@@ -51,7 +51,7 @@ class DeployProgram : public testing::Test {
 const std::string in_virtual_time = R"({"clock": {"time": "simulated"}})";
 /// A computer that does other things meanwhile: what comes late is only counted, the watchdog has time.
 const std::string patient =
-    R"({"clock": {"buffer": 1, "overflow": "overwrite"}, "policy": {"on_overrun": "count"}, "watchdog": {"timeout": 0.4}})";
+    R"({"clock": {"buffer": 1, "overflow": "overwrite"}, "policy": {"on_overrun": "count", "on_lost": "count"}, "watchdog": {"timeout": 0.4}})";
 
 TEST_F(DeployProgram, MovesTheStageAndWritesLogPageAndFigures) {
   files(in_virtual_time, "{}");
@@ -145,6 +145,76 @@ TEST_F(DeployProgram, AKilledControllerLeavesTheOutputsToTheWatchdog) {
   EXPECT_EQ(card.get("dac.0"), 0);
   EXPECT_LE(card.get("watchdog.expired_at"), killed + 0.4);
   unsetenv("HIL_EMU_SHARED");
+}
+
+TEST_F(DeployProgram, ASecondDeployOfACardInUseTouchesNothingAndTheFirstGoesOn) {
+  files(patient, "{}");
+  unsetenv("HIL_EMU");
+  Daemon card(folder_.path("world"), folder_.path("card.json"));
+  setenv("HIL_EMU_SHARED", folder_.path("world").c_str(), 1);
+  Program first(arguments({"--json", folder_.path("figures.json"), "-o", folder_.path("log.csv")}));
+  ASSERT_TRUE(wait_for([&] { return card.get("watchdog.armed") == 1; }));
+  const Outcome second = loopwright_program(arguments({"-o", folder_.path("second.csv")}));
+  EXPECT_EQ(second.code, 1);
+  EXPECT_THAT(second.err,
+              AllOf(HasSubstr("the device is in use: card qpid_e 0 (-1073, BOARD_ALREADY_OPEN). "
+                              "Nothing of it was touched. The vendor's library is loaded in process "),
+                    HasSubstr("loopwright deploy"), HasSubstr("end that one first")));
+  const Outcome unasked = loopwright_program(arguments({"--take-over"}));
+  EXPECT_EQ(unasked.code, 1) << "there is no terminal to ask on";
+  EXPECT_THAT(unasked.err, AllOf(HasSubstr("closes every card"), HasSubstr("--yes answers it")));
+  const Outcome probed = loopwright_program({"probe", folder_.path("device.json"), "--touch"});
+  EXPECT_EQ(probed.code, 1);
+  EXPECT_THAT(probed.out, HasSubstr("in use: card qpid_e 0"));
+  const Outcome outcome = first.wait();
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(figures().at("status"), "finished");
+  EXPECT_EQ(figures().at("outputs_safe"), "confirmed");
+  EXPECT_EQ(int(figures().at("cycles")) + int(figures().at("lost_samples")), 3101)
+      << "every instant of the run";
+}
+
+TEST_F(DeployProgram, TakingOverEndsTheOtherProgramWhereSomebodyAgreed) {
+  files(patient, "{}");
+  unsetenv("HIL_EMU");
+  Daemon card(folder_.path("world"), folder_.path("card.json"));
+  setenv("HIL_EMU_SHARED", folder_.path("world").c_str(), 1);
+  Program first(arguments({"--set", "solver.stop=60"}));
+  ASSERT_TRUE(wait_for([&] { return card.get("watchdog.armed") == 1; }));
+  const Outcome second = loopwright_program(arguments({"--take-over", "--yes", "--set", "solver.stop=0.2"}));
+  EXPECT_EQ(second.code, 0) << second.err;
+  EXPECT_THAT(second.err, HasSubstr("ends in the middle of its motion"));
+  EXPECT_EQ(first.wait().code, 1);
+}
+
+TEST_F(DeployProgram, ACardLeftOpenByAKilledProgramIsToldFromOneInUse) {
+  files(patient, "{}");
+  unsetenv("HIL_EMU");
+  Daemon card(folder_.path("world"), folder_.path("card.json"));
+  setenv("HIL_EMU_SHARED", folder_.path("world").c_str(), 1);
+  Program killed(arguments());
+  ASSERT_TRUE(wait_for([&] { return card.get("watchdog.armed") == 1; }));
+  killed.send(SIGKILL);
+  killed.wait();
+  const Outcome second = loopwright_program(arguments());
+  EXPECT_EQ(second.code, 1);
+  EXPECT_THAT(second.err,
+              AllOf(HasSubstr("No other process that can be seen has the vendor's library loaded"),
+                    HasSubstr("--take-over opens it")));
+}
+
+TEST_F(DeployProgram, CheckProbeAndDeployNameTheCodeThatADeviceFileLoads) {
+  files(in_virtual_time, "{}");
+  const Outcome checked = loopwright_program({"check", conventional, "--variant", "stage=quanser", "--set",
+                                              "stage.device=" + folder_.path("device.json")});
+  EXPECT_EQ(checked.code, 0);
+  const std::string named = "loads and runs the code of " + hw::emulator_library() + " (HIL_LIBRARY)";
+  EXPECT_THAT(checked.out, AllOf(HasSubstr(named), HasSubstr("check does not load it")));
+  const Outcome deployed = loopwright_program(arguments());
+  EXPECT_LT(deployed.err.find(named), deployed.err.find("library " + hw::emulator_library()));
+  EXPECT_THAT(loopwright_program({"probe", folder_.path("device.json")}).out, HasSubstr(named));
+  setenv("HIL_LIBRARY", "/nowhere/libhil.so", 1);
+  EXPECT_THAT(loopwright_program(arguments({"-q"})).err, HasSubstr("the code of /nowhere/libhil.so"));
 }
 
 TEST_F(DeployProgram, WrongInputIsExitCodeTwoBeforeAnythingMoves) {

@@ -1,0 +1,22 @@
+/// The question before a device is taken from another program.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+
+namespace loopwright {
+
+/// Options --take-over and --yes of a subcommand.
+struct TakeOver {
+  bool is_wanted = false, is_agreed = false;
+};
+
+void add_take_over(CLI::App& command, TakeOver& options);
+
+/// Says on stderr who has the device and what taking it over does, and asks on the terminal. Without a
+/// terminal only --yes agrees. A question that is interrupted is answered with no.
+bool agrees(
+    const TakeOver& options, const std::string& who_has_it, const std::string& what_it_does,
+    const std::function<bool()>& is_interrupted = [] { return false; });
+
+}  // namespace loopwright
