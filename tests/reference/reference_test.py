@@ -1,6 +1,6 @@
 """Numbers of the program against SciPy, against exact fractions and against closed forms that share no code with it.
 
-    python3 reference_test.py build/release/bin/loopwright
+    /usr/bin/python3 tests/reference/reference_test.py build/release/bin/loopwright
 """
 
 import fractions
@@ -96,14 +96,14 @@ class Sampled(unittest.TestCase):
                 b = 0.5 * a
             expected.append((x, a, b))
             x = (a + b) + (x - a - b) * decay
-        blocks = {"x": {"type": "LowPass", "cutoff": 1, "initial": 1, "in": {"u": "sum.sum"}},
-                  "ga": {"type": "Gain", "gain": -0.8, "in": {"u": "x.y"}},
+        blocks = {"x": state_space(-numpy.eye(1), numpy.eye(1), numpy.eye(1), [1], "sum.sum"),
+                  "ga": {"type": "Gain", "gain": -0.8, "in": {"u": "x.y[0]"}},
                   "a": {"type": "ZeroOrderHold", "sample_time": 0.3, "sample_offset": 0.1, "in": {"u": "ga.y"}},
                   "gb": {"type": "Gain", "gain": 0.5, "in": {"u": "a.y"}},
                   "b": {"type": "ZeroOrderHold", "sample_time": 0.2, "sample_offset": 0.05, "in": {"u": "gb.y"}},
                   "sum": {"type": "Sum", "in": {"terms": ["a.y", "b.y"]}}}
-        out = run(blocks, variable_step("dopri5", 6, 1 / ticks, **tight), ["x.y", "a.y", "b.y"])
-        numpy.testing.assert_allclose(numpy.array([out["x.y"], out["a.y"], out["b.y"]]).T, expected, atol=1e-9)
+        out = run(blocks, variable_step("dopri5", 6, 1 / ticks, **tight), ["x.y[0]", "a.y", "b.y"])
+        numpy.testing.assert_allclose(numpy.array([out["x.y[0]"], out["a.y"], out["b.y"]]).T, expected, atol=1e-9)
 
     def test_a_billion_ticks(self):
         """The last second of a million at 1 kHz, by exact fractions."""
@@ -191,7 +191,8 @@ class Events(unittest.TestCase):
         caught.terminal, caught.direction = True, 1
         # From the moment of release: the spring is stretched to the holding force, the mass moves with the belt.
         release = [holding / stiffness, speed]
-        piece = scipy.integrate.solve_ivp(slip, (0, 5), [release[0], release[1] - 1e-12], events=caught, rtol=1e-12, atol=1e-14)
+        piece = scipy.integrate.solve_ivp(slip, (0, 5), [release[0], release[1] - 1e-12], events=caught, rtol=1e-12, atol=1e-14,
+                                          max_step=1e-3)
         slip_time, slip_end = piece.t[-1], piece.y[0, -1]
         period = slip_time + (release[0] - slip_end) / speed
         blocks = {"m": {"type": "Mass", "mass": {"value": mass, "unit": "kg"}, "initial_position": {"value": slip_end, "unit": "m"},
@@ -210,7 +211,7 @@ class Events(unittest.TestCase):
         releases = [t for t, before, now in zip(times[1:], velocity, velocity[1:]) if before > speed - 1e-6 > now]
         self.assertGreaterEqual(len(releases), cycles - 1)
         numpy.testing.assert_allclose(numpy.diff(releases), period, atol=0.0021)  # rows are a millisecond apart
-        self.assertAlmostEqual(out["m.position"].max(), release[0], delta=1e-3)
+        self.assertAlmostEqual(out["m.position"].max(), piece.y[0].max(), delta=1e-4)
 
 
 if __name__ == "__main__":
