@@ -22,13 +22,14 @@
 ///     void crossings(…, Crossings&) const;
 ///     bool may_cross() const;                               // false: with these parameters nothing ever crosses; default: true
 ///     double next_stop(double now) const;                   // the next time (s) at which it is not smooth
+///     double shortest_period() const;                       // s, of a signal of its own: steps do not leap over it; infinity: none
 ///     static constexpr bool has_side_effects = true;        // acts on the world outside: never several runs at a time
 ///   };
 ///   LOOPWRIGHT_BLOCK(MyBlock)
 // clang-format on
 ///
 /// Where … is, a method takes any of `const Instant&, const In&, const State&, const Memory&, const Mode&`.
-/// Any method but prepare, start and check may return a Fault.
+/// Any of them, prepare and start too, may return a Fault.
 #pragma once
 #include <cmath>
 #include <numbers>

@@ -47,8 +47,10 @@ struct TransportDelay {
   double until_arrival(const Instant& now, const Memory& memory) const {
     return memory.count ? (memory.begin + delay) - now.time : delay;
   }
+  /// By how much now - delay may differ from the very time that is meant, s: each is rounded.
+  static double rounding(const Instant& now) { return 0x1p-50 * std::abs(now.time); }
   void decide(const Instant& now, const Memory& memory, Mode& mode) const {
-    mode.has_arrived = until_arrival(now, memory) <= 1e-12 * delay ? 1.0 : 0.0;
+    mode.has_arrived = until_arrival(now, memory) <= std::max(1e-12 * delay, rounding(now)) ? 1.0 : 0.0;
   }
   void crossings(const Instant& now, const Memory& memory, const Mode& mode, Crossings& value) const {
     value.arrival = mode.has_arrived > 0.5 ? 1.0 : -until_arrival(now, memory);
@@ -59,7 +61,7 @@ struct TransportDelay {
     out.y = initial;
     if (mode.has_arrived < 0.5) return {};
     const double wanted = now.time - delay;
-    out.y = interpolate(memory, wanted);
+    out.y = interpolate(memory, wanted, rounding(now));
     return fault_if(wanted > memory.time[size_t(memory.newest)] + 1e-6 * delay,
                     "the solver's step is longer than the delay");
   }
@@ -92,15 +94,18 @@ struct TransportDelay {
     memory.count = std::min(memory.count + 1, capacity());
     memory.time[size_t(memory.newest)] = time, memory.value[size_t(memory.newest)] = value;
   }
-  double interpolate(const Memory& memory, double wanted) const {
-    int near = 0, far = memory.count - 1;  // how far back: time[near] > wanted >= time[far]
+  /// A time within rounding of one that is kept is that one: what was kept comes back unchanged.
+  double interpolate(const Memory& memory, double wanted, double rounding) const {
+    int near = 0, far = memory.count - 1;  // how far back: time[near] > last >= time[far]
     if (far < 0) return initial;
-    if (wanted >= memory.time[slot(memory, near)]) return memory.value[slot(memory, near)];
-    if (wanted < memory.time[slot(memory, far)]) return memory.value[slot(memory, far)];
+    const double last = wanted + rounding;
+    if (last >= memory.time[slot(memory, near)]) return memory.value[slot(memory, near)];
+    if (last < memory.time[slot(memory, far)]) return memory.value[slot(memory, far)];
     while (far - near > 1) {
       const int middle = (near + far) / 2;
-      (memory.time[slot(memory, middle)] > wanted ? near : far) = middle;
+      (memory.time[slot(memory, middle)] > last ? near : far) = middle;
     }
+    if (wanted - rounding <= memory.time[slot(memory, far)]) return memory.value[slot(memory, far)];
     const size_t a = slot(memory, far), b = slot(memory, near);
     const double weight = (wanted - memory.time[a]) / (memory.time[b] - memory.time[a]);
     return memory.value[a] + weight * (memory.value[b] - memory.value[a]);

@@ -4,12 +4,13 @@
 /// Brings the prediction of a learned disturbance into a loop: softly, late by 1/ω and one sample, without an
 /// algebraic loop. Give `command` of a DisturbanceObserver this output too.
 #include "engine/block.h"
+#include "models/real/exact_times.h"
 
 namespace loopwright::blocks {
 
 template <class Real> struct CompensationFilter {
   Real cutoff, weight = 1.0, ramp_time = 0.0, start_time = 0.0;
-  Real keep, per_ramp_time;
+  Real keep, per_ramp_time, begin;  // begin: start_time, exact
   struct In {
     Real prediction;
   };
@@ -36,10 +37,11 @@ template <class Real> struct CompensationFilter {
   }
   void prepare(double sample_time) {
     keep = exponential(-cutoff * sample_time);
+    begin = exact_time(start_time);
     per_ramp_time = select(ramp_time > 0.0, 1.0 / maximum(ramp_time, Real(1e-300)), Real(0.0));
   }
   Real present_weight(const Instant& now) const {
-    const Real elapsed = now.time - start_time;
+    const Real elapsed = now.time - begin;
     const Real share =
         select(ramp_time > 0.0, elapsed * per_ramp_time, select(elapsed >= 0.0, Real(1.0), Real(0.0)));
     return weight * minimum(maximum(share, Real(0.0)), Real(1.0));

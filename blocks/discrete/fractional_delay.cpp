@@ -43,7 +43,7 @@ struct FractionalDelay {
     memory.newest = 0;
   }
   Fault outputs(const In& in, const Memory& memory, Out& out) const {
-    const double late = delay / period;
+    const double late = in_samples();
     const int whole = int(std::min(late, double(samples)));
     const double f = std::min(late - whole, 1.0);
     const double late_u = ago(in.u, memory, whole),
@@ -59,6 +59,12 @@ struct FractionalDelay {
   }
 
  private:
+  /// A delay of whole samples is one of whole samples, although delay and period are rounded.
+  double in_samples() const {
+    constexpr double rounding = 1e-12;
+    const double late = delay / period, whole = std::round(late);
+    return std::abs(late - whole) <= rounding * whole ? whole : late;
+  }
   double ago(double now, const Memory& memory, int count) const {
     if (count == 0) return now;
     return memory.line[size_t((memory.newest - (count - 1) + capacity()) % capacity())];

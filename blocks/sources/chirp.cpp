@@ -14,6 +14,7 @@ template <class Real> struct Chirp {
   Sweep sweep = Sweep::linear;
   bool repeats = false;
   Real ratio;  // ln(f₁/f₀)
+  Periods<Real> periods;
   struct Out {
     Real y, frequency;
   };
@@ -43,13 +44,16 @@ template <class Real> struct Chirp {
         "a number above 0 in Hz";
   }
   void prepare(double) {
+    periods.start = start_time, periods.period = duration;
+    Real* const all[] = {&periods.start, &periods.period};
+    periods.units = to_counts<Real>(all);
     ratio =
         sweep == Sweep::linear ? Real(0.0) : Real(natural_logarithm(Real(last_frequency / first_frequency)));
   }
   void decide(const Instant& now, Mode& mode) const {
-    const Real cycle = whole_periods(Real(now.time), start_time, duration);
+    const Real cycle = periods.at(Real(now.time));
     const auto is_on = repeats ? cycle >= 0.0 : cycle == 0.0;
-    mode.begin = start_time + (repeats ? cycle * duration : Real(0.0));
+    mode.begin = periods.time(repeats ? cycle : Real(0.0));
     mode.is_on = select(is_on, Real(1.0), Real(0.0));
   }
   void outputs(const Instant& now, const Mode& mode, Out& out) const {
@@ -66,9 +70,12 @@ template <class Real> struct Chirp {
     out.frequency = select(mode.is_on > 0.5, frequency, Real(0.0));
   }
   double next_stop(double now) const {
-    const double begin = lane(start_time, 0), period = lane(duration, 0);
-    const double next = begin + (whole_periods(now, begin, period) + 1.0) * period;
-    return now < begin ? begin : repeats || next <= begin + period ? next : infinity;
+    const double cycle = std::max(-1.0, lane(periods.at(Real(now)), 0));
+    return repeats || cycle < 1.0 ? lane(periods.time(Real(cycle + 1.0)), 0) : infinity;
+  }
+  double shortest_period() const {
+    const double fastest = std::max(lane(first_frequency, 0), lane(last_frequency, 0));
+    return fastest > 0.0 && lane(amplitude, 0) != 0.0 ? 1.0 / fastest : infinity;
   }
 
  private:

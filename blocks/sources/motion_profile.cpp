@@ -26,14 +26,15 @@ template <class Real> struct MotionProfile {
   };
   struct Piece {
     Real begin, position, velocity, change, duration;
-  };  // begin and position count from the start of a pass
+  };  // begin, in units, and position count from the start of a pass
   std::vector<Segment> segments;
   RampShape shape = RampShape::raised_cosine;
   Real start_position = 0.0, start_velocity = 0.0, start_time = 0.0;
   bool returns = false;
   int passes = 1;
   std::vector<Piece> pieces;
-  Real distance, period;  // of a pass
+  Real distance;          // of a pass
+  Periods<Real> periods;  // the passes
   struct Out {
     Real position, velocity, acceleration;
   };
@@ -63,17 +64,17 @@ template <class Real> struct MotionProfile {
   void check(const Checker& checker) const;
   void prepare(double);
   void decide(const Instant& now, Mode& mode) const {
-    const Real time = now.time, pass = whole_periods(time, start_time, period);
+    const Real time = now.time, pass = periods.at(time);
     mode.pass = passes > 0 ? minimum(pass, Real(passes - 1.0)) : pass;
     mode.piece = Real(-1.0);
     for (size_t i = 0; i < pieces.size(); ++i)
-      mode.piece =
-          select((pass >= 0.0) & (begin_of(mode.pass, pieces[i]) <= time), Real(double(i)), mode.piece);
+      mode.piece = select((pass >= 0.0) & (periods.time(mode.pass, pieces[i].begin) <= time), Real(double(i)),
+                          mode.piece);
   }
   void outputs(const Instant& now, const Mode& mode, Out& out) const {
     const Piece p = piece_at(mode.piece);
     const auto waits = mode.piece < 0.0;
-    const Real t = select(waits, Real(0.0), now.time - begin_of(mode.pass, p)), s = t / p.duration;
+    const Real t = select(waits, Real(0.0), now.time - periods.time(mode.pass, p.begin)), s = t / p.duration;
     Real share, integral, slope;  // w, ∫w ds, dw/ds
     if (shape == RampShape::raised_cosine) {
       const auto wave = sine_cosine(Real(pi * s));
@@ -92,7 +93,6 @@ template <class Real> struct MotionProfile {
   double next_stop(double now) const;
 
  private:
-  Real begin_of(const Real& pass, const Piece& p) const { return (start_time + pass * period) + p.begin; }
   Piece piece_at(const Real& index) const {
     const double first = lane(index, 0);
     if (!any(index != first)) return pieces[size_t(std::max(0.0, first))];
@@ -130,11 +130,18 @@ template <class Real> void MotionProfile<Real>::check(const Checker& checker) co
 
 template <class Real> void MotionProfile<Real>::prepare(double) {
   pieces.clear();
+  std::vector<Real> lengths;  // of the segments, in units
+  for (const Segment& s : segments) lengths.push_back(s.duration);
+  periods.start = start_time;
+  std::vector<Real*> all{&periods.start};
+  for (Real& length : lengths) all.push_back(&length);
+  periods.units = to_counts<Real>(all);
   Real time = 0.0, position = 0.0, velocity = start_velocity;
-  for (const Segment& s : segments) {
+  for (size_t i = 0; i < segments.size(); ++i) {
+    const Segment& s = segments[i];
     pieces.push_back({time, position, velocity, s.velocity - velocity, s.duration});
     position = position + 0.5 * (velocity + s.velocity) * s.duration;
-    time = time + s.duration, velocity = s.velocity;
+    time = time + lengths[i], velocity = s.velocity;
   }
   distance = returns ? Real(0.0) : position;
   if (returns)
@@ -142,23 +149,22 @@ template <class Real> void MotionProfile<Real>::prepare(double) {
       const Piece there = pieces[i];  // a copy: the list grows under it
       const Real end = i + 1 < segments.size() ? pieces[i + 1].position : position;
       pieces.push_back({time, end, -(there.velocity + there.change), there.change, there.duration});
-      time = time + there.duration;
+      time = time + lengths[i];
     }
-  period = time;
+  periods.period = time;
   const Real last = returns ? Real(-start_velocity) : velocity;
   pieces.push_back({time, distance, last, Real(0.0), Real(1.0)});
 }
 
 template <class Real> double MotionProfile<Real>::next_stop(double now) const {
-  const double start = lane(start_time, 0);
-  if (now < start) return start;
-  double pass = whole_periods(now, start, lane(period, 0));
+  double pass = lane(periods.at(Real(now)), 0);
+  if (pass < 0.0) return lane(periods.time(Real(0.0)), 0);
   if (passes > 0) pass = std::min(pass, passes - 1.0);
   for (const Piece& p : pieces) {
-    const double begin = lane(begin_of(Real(pass), p), 0);
+    const double begin = lane(periods.time(Real(pass), p.begin), 0);
     if (begin > now) return begin;
   }
-  return passes > 0 && pass >= passes - 1.0 ? infinity : start + (pass + 1.0) * lane(period, 0);
+  return passes > 0 && pass >= passes - 1.0 ? infinity : lane(periods.time(Real(pass + 1.0)), 0);
 }
 LOOPWRIGHT_BLOCK(MotionProfile)
 

@@ -64,6 +64,12 @@ template <class Real> struct Multisine {
       sum = sum + tone.amplitude * sine_of_turns(Real(tone.frequency * now.time), tone.phase);
     out.y = sum;
   }
+  double shortest_period() const {
+    double fastest = 0.0;
+    for (const Component& tone : tones)
+      if (lane(tone.amplitude, 0) != 0.0) fastest = std::max(fastest, lane(tone.frequency, 0));
+    return fastest > 0.0 ? 1.0 / fastest : infinity;
+  }
 };
 LOOPWRIGHT_BLOCK(Multisine)
 

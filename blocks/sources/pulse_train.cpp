@@ -5,6 +5,8 @@ namespace loopwright::blocks {
 
 template <class Real> struct PulseTrain {
   Real period, width, start_time = 0.0, low = 0.0, high = 1.0;
+  Periods<Real> periods;
+  Real width_in_units;
   struct Out {
     Real y;
   };
@@ -24,17 +26,20 @@ template <class Real> struct PulseTrain {
     if (width <= period) return;
     checker.error("width", "a pulse lasts longer than the period").expected = "width <= period";
   }
+  void prepare(double) {
+    periods.start = start_time, periods.period = period, width_in_units = width;
+    Real* const all[] = {&periods.start, &periods.period, &width_in_units};
+    periods.units = to_counts<Real>(all);
+  }
   void decide(const Instant& now, Mode& mode) const {
-    const Real cycle = whole_periods(Real(now.time), start_time, period);
-    const Real rise = start_time + cycle * period;
-    mode.is_high = select((cycle >= 0.0) & (Real(now.time) < rise + width), Real(1.0), Real(0.0));
+    const Real cycle = periods.at(Real(now.time)), fall = periods.time(cycle, width_in_units);
+    mode.is_high = select((cycle >= 0.0) & (Real(now.time) < fall), Real(1.0), Real(0.0));
   }
   void outputs(const Mode& mode, Out& out) const { out.y = select(mode.is_high > 0.5, high, low); }
   double next_stop(double now) const {
-    const double start = lane(start_time, 0), T = lane(period, 0);
-    if (now < start) return start;
-    const double cycle = whole_periods(now, start, T), fall = (start + cycle * T) + lane(width, 0);
-    return fall > now ? fall : start + (cycle + 1.0) * T;
+    const double cycle = std::max(-1.0, lane(periods.at(Real(now)), 0));
+    const double fall = lane(periods.time(Real(cycle), width_in_units), 0);
+    return cycle >= 0.0 && fall > now ? fall : lane(periods.time(Real(cycle + 1.0)), 0);
   }
 };
 LOOPWRIGHT_BLOCK(PulseTrain)

@@ -1,10 +1,12 @@
 /// y = initial + slope · (t - start) for start ≤ t < stop, constant before and after
 #include "engine/block.h"
+#include "models/real/exact_times.h"
 
 namespace loopwright::blocks {
 
 template <class Real> struct Ramp {
   Real slope, start_time = 0.0, stop_time = infinity, initial = 0.0;
+  Real begin, end;  // s, exact
   struct Out {
     Real y;
   };
@@ -24,16 +26,17 @@ template <class Real> struct Ramp {
     if (start_time <= stop_time) return;
     checker.error("stop", "the ramp stops before it starts").expected = "start <= stop";
   }
+  void prepare(double) { begin = exact_time(start_time), end = exact_time(stop_time); }
   void decide(const Instant& now, Mode& mode) const {
-    mode.has_started = select(Real(now.time) >= start_time, Real(1.0), Real(0.0));
-    mode.has_stopped = select(Real(now.time) >= stop_time, Real(1.0), Real(0.0));
+    mode.has_started = select(Real(now.time) >= begin, Real(1.0), Real(0.0));
+    mode.has_stopped = select(Real(now.time) >= end, Real(1.0), Real(0.0));
   }
   void outputs(const Instant& now, const Mode& mode, Out& out) const {
-    const Real until = select(mode.has_stopped > 0.5, stop_time, Real(now.time));
-    out.y = initial + select(mode.has_started > 0.5, slope * (until - start_time), Real(0.0));
+    const Real until = select(mode.has_stopped > 0.5, end, Real(now.time));
+    out.y = initial + select(mode.has_started > 0.5, slope * (until - begin), Real(0.0));
   }
   double next_stop(double now) const {
-    for (double time : {lane(start_time, 0), lane(stop_time, 0)})
+    for (double time : {lane(begin, 0), lane(end, 0)})
       if (time > now) return time;
     return infinity;
   }

@@ -20,6 +20,10 @@ template <class Real> struct Sine {
   void outputs(const Instant& now, Out& out) const {
     out.y = bias + amplitude * sine_of_turns(Real(frequency * now.time), phase);
   }
+  double shortest_period() const {
+    const double turns = lane(frequency, 0);
+    return turns > 0.0 && lane(amplitude, 0) != 0.0 ? 1.0 / turns : infinity;
+  }
 };
 LOOPWRIGHT_BLOCK(Sine)
 

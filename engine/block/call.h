@@ -29,7 +29,7 @@ template <class Real> struct Stage {
 
 /// One call of one method of one block, in one arena.
 template <class Real> struct Call {
-  uint64_t (*step)(const Call&) = nullptr;  ///< lanes that faulted; for a jump: lanes whose state changed
+  uint64_t (*step)(const Call&) = nullptr;  ///< lanes that faulted
   const void* block = nullptr;
   const Port<Real>*in = nullptr, *out = nullptr;
   Real *state = nullptr, *rate = nullptr, *crossing = nullptr;
@@ -38,6 +38,7 @@ template <class Real> struct Call {
   const Stage<Real>* stage = nullptr;
   const Instant* now = nullptr;
   FaultReport* report = nullptr;  ///< of the first lane of the run; the others follow
+  uint64_t* jumped = nullptr;     ///< where a jump adds the lanes whose states it changed
   int index = 0, states = 0;
   int first_lane = 0;  ///< of the arena
 };
@@ -51,8 +52,8 @@ template <class Real> struct Kernels {
   void (*destroy)(void* block);
   void (*copy)(void* to, const void* scalar_block);  ///< parameters of the scalar block into every lane
   Real* (*tunable)(void* block, std::string_view path);
-  void (*prepare)(void* block, const Setup& setup);
-  void (*start)(const void* block, Real* state, void* memory, const Port<Real>* buffers, void* mode);
+  Fault (*prepare)(void* block, const Setup& setup);
+  Fault (*start)(const void* block, Real* state, void* memory, const Port<Real>* buffers, void* mode);
   Step<Real> outputs[8];
   Step<Real> derivatives, to_next_stage, to_next_step, update, accept, decide, jump, crossings;
 };

@@ -43,6 +43,7 @@ struct BlockInfo {
   bool (*may_cross)(const void* block);    ///< whether its crossings need to be watched; null: always
   double (*next_stop)(const void* block,
                       double now);  ///< the next time at which it is not smooth; null: always smooth
+  double (*shortest_period)(const void* block);  ///< s, of what it puts out by itself; null: it has none
 };
 
 template <class Entry> constexpr PortInfo::Shape shape_of() {
@@ -146,6 +147,8 @@ template <class B> BlockInfo info_of(std::string_view type) {
     info.may_cross = [](const void* p) { return static_cast<const B*>(p)->may_cross(); };
   if constexpr (requires(const B b) { b.next_stop(0.0); })
     info.next_stop = [](const void* p, double now) { return static_cast<const B*>(p)->next_stop(now); };
+  if constexpr (requires(const B b) { b.shortest_period(); })
+    info.shortest_period = [](const void* p) { return static_cast<const B*>(p)->shortest_period(); };
   return info;
 }
 

@@ -218,17 +218,20 @@ template <class Real, class T> uint64_t differing_lanes(const T& a, const T& b) 
   }
   return lanes;
 }
-/// The answer is not a fault but the lanes whose states changed: their signals must then be computed again.
+/// Tells the lanes whose states changed: their signals must then be computed again.
 template <class B, class Real> uint64_t step_jump(const Call<Real>& c) {
-  const B& block = *static_cast<const B*>(c.block);
-  const auto in = gather<B>(c, AllInputs{});
-  State<B>& state = view_state(block, c.state);
-  const State<B> before = state;
-  with_memory<B>(c, false, [&](const Memory<B>& memory) {
-    invoke(&B::jump, block, *c.now, in, before, memory, stored_mode<B>(c), state);
-    return uint64_t(0);
+  return guard<B>(c, [&](const B& block) {
+    const auto in = gather<B>(c, AllInputs{});
+    State<B>& state = view_state(block, c.state);
+    const State<B> before = state;
+    Fault fault;
+    with_memory<B>(c, false, [&](const Memory<B>& memory) {
+      fault = invoke(&B::jump, block, *c.now, in, before, memory, stored_mode<B>(c), state);
+      return uint64_t(0);
+    });
+    *c.jumped |= differing_lanes<Real>(before, state) << c.first_lane;
+    return fault;
   });
-  return differing_lanes<Real>(before, state) << c.first_lane;
 }
 template <class B, class Real> uint64_t step_crossings(const Call<Real>& c) {
   return guard<B>(
@@ -245,32 +248,51 @@ template <class B, class Real> uint64_t step_crossings(const Call<Real>& c) {
       });
 }
 
-template <class B> void prepare_block(B& block, const Setup& setup) {
-  if constexpr (requires { block.prepare(setup); })
-    block.prepare(setup);
-  else if constexpr (requires { block.prepare(setup.sample_time); })
-    block.prepare(setup.sample_time);
+/// What a method answers that may return a Fault or nothing.
+template <class F> Fault fault_of(F&& f) {
+  if constexpr (std::is_void_v<decltype(f())>)
+    return f(), Fault{};
+  else
+    return f();
+}
+/// Both; the reason is that of the first.
+inline Fault joined(const Fault& first, const Fault& second) {
+  return {first.lanes | second.lanes, first.lanes ? first.reason : second.reason};
+}
+
+template <class B> Fault prepare_block(B& block, const Setup& setup) {
+  return fault_of([&] {
+    if constexpr (requires { block.prepare(setup); })
+      return block.prepare(setup);
+    else if constexpr (requires { block.prepare(setup.sample_time); })
+      return block.prepare(setup.sample_time);
+  });
 }
 
 template <class B, class Real>
-void start_block(const void* p, Real* state_data, void* memory_data, const Port<Real>* buffers,
-                 void* mode_data) {
+Fault start_block(const void* p, Real* state_data, void* memory_data, const Port<Real>* buffers,
+                  void* mode_data) {
   const B& block = *static_cast<const B*>(p);
+  Fault fault;
+  const auto start = [&](auto& to) {
+    if constexpr (requires { block.start(to); })
+      fault = joined(fault, fault_of([&] { return block.start(to); }));
+  };
   if constexpr (!std::is_same_v<State<B>, None>) {
     if constexpr (count_of<B, is_state_vector> == 0) new (state_data) State<B>{};
     auto&& state = view_state(block, state_data);
-    if constexpr (requires { block.start(state); }) block.start(state);
+    start(state);
   }
   if constexpr (!std::is_same_v<Memory<B>, None>) {
     auto& stored = *new (memory_data) Memory<B>{};
     for_each<B, is_buffer>([&](auto i, const auto& entry) { attach(stored.*entry.member, buffers[i]); });
-    if constexpr (requires { block.start(stored); }) block.start(stored);
+    start(stored);
     for_each<B, is_buffer>([&](auto, const auto& entry) { stored.*entry.member = {}; });
   }
   if constexpr (!std::is_same_v<Mode<B>, None>) {
-    auto& mode = *new (mode_data) Mode<B>{};
-    if constexpr (requires { block.start(mode); }) block.start(mode);
+    start(*new (mode_data) Mode<B>{});
   }
+  return fault;
 }
 
 /// Whether T has bytes between its members or after them, which assigning to it leaves undetermined.
@@ -302,7 +324,7 @@ template <class B, class Real> Kernels<Real> kernels_of() {
       spread(*static_cast<B*>(to), *static_cast<const scalar_of<B>*>(from));
   };
   k.tunable = [](void* p, std::string_view path) { return tunable<Real>(*static_cast<B*>(p), path); };
-  k.prepare = [](void* p, const Setup& setup) { prepare_block(*static_cast<B*>(p), setup); };
+  k.prepare = [](void* p, const Setup& setup) { return prepare_block(*static_cast<B*>(p), setup); };
   k.start = &start_block<B, Real>;
   [&]<size_t... G>(std::index_sequence<G...>) { ((k.outputs[G] = &step_outputs<B, Real, int(G)>), ...); }
   (std::make_index_sequence<size_t(group_count<B>)>{});

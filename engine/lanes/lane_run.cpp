@@ -5,6 +5,7 @@
 #include "engine/lanes/lane_run_of.h"
 #include "engine/lanes/module.h"
 #include "engine/record/installation.h"
+#include "engine/run/fault_text.h"
 
 namespace loopwright {
 namespace {
@@ -52,7 +53,7 @@ std::string lanes_forbidden_by(const Plan& plan) {
   for (const Plan::Block& block : plan.blocks)
     if (block.type->info.has_side_effects)
       return fmt::format("\"{}\" acts on the world outside, one run at a time", block.path);
-  if (!is_fixed_step(plan.method) && plan.states > 0)
+  if (!is_fixed_step(plan.method) && plan.steps_between_samples)
     return fmt::format("\"{}\" chooses its steps for each run; lanes need a fixed step: euler, heun or rk4",
                        to_name(plan.method));
   return "";
@@ -78,8 +79,7 @@ std::unique_ptr<LaneRun> make_lane_run(const Plan& plan, InstructionSet set, int
 
 std::string to_text(const LaneFailure& failure, const Plan& plan) {
   const std::string block = failure.block < 0 ? "?" : plan.blocks[size_t(failure.block)].path;
-  if (failure.reason)
-    return fmt::format("\"{}\" stopped the run at t = {:g} s: {}", block, failure.time, failure.reason);
+  if (failure.reason) return fault_text(plan, {failure.block, failure.reason}, failure.time);
   return fmt::format("the run diverged: \"{}\" is no finite number any more at t = {:g} s",
                      failure.number < 0 ? block : plan.name_of(failure.number), failure.time);
 }

@@ -28,7 +28,7 @@ template <class Real> class LaneRunOf final : public LaneRun {
     if (failed_ == all_) return;
     bool wanted = true;
     const bool reached_stop = run_fixed_steps(
-        run_, run_.now().tick, [] { return INT64_MAX; },
+        run_, run_.now().tick,
         [&] {
           if (row) wanted = row(run_.now().time);
           for (int r = 0; r < arenas_; ++r) look_for_non_finite(r, log_of(r));

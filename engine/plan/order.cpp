@@ -44,6 +44,7 @@ class Order {
     }
     collect_rates();
     mark_needed();
+    look_between_samples();
   }
 
  private:
@@ -271,12 +272,24 @@ class Order {
         need_inputs(int(b), for_events);
       if (decision_[b] >= 0 && plan_.blocks[b].period == 0) for_events[size_t(decision_[b])] = true;
     }
+    // A loop is solved from its last solution on: how often must not depend on who looks at it.
+    for (size_t v = 0; v < vertices_.size(); ++v)
+      if (is_in_algebraic_loop(v)) for_events[v] = true, need_inputs(vertices_[v].block, for_events);
     for (size_t v = 0; v < vertices_.size(); ++v) {
       if (entry_of_vertex_[v] < 0) continue;
       Plan::Entry& entry = plan_.order[size_t(entry_of_vertex_[v])];
       if (entry.rate.kind != Rate::Kind::continuous) continue;
       entry.in_stages |= for_stages[v], entry.for_events |= for_events[v];
     }
+  }
+  bool is_in_algebraic_loop(size_t v) const {
+    return entry_of_vertex_[v] >= 0 && plan_.order[size_t(entry_of_vertex_[v])].kind == Kind::algebraic_loop;
+  }
+  void look_between_samples() {
+    bool& steps = plan_.steps_between_samples = plan_.states > 0;
+    for (const Plan::Entry& entry : plan_.order)
+      steps |= entry.rate.kind == Rate::Kind::continuous && entry.kind != Kind::outputs;
+    for (const Plan::Block& block : plan_.blocks) steps |= block.type->kernels.accept != nullptr;
   }
   void need_inputs(int block, std::vector<bool>& needed) {
     std::vector<int> todo;

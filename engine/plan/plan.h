@@ -23,6 +23,8 @@ struct Rate {
   Kind kind = Kind::constant;
   int64_t period = 0, offset = 0;
   bool operator==(const Rate&) const = default;
+  /// Of a sampled rate: whether a sample falls on the tick.
+  bool is_due(int64_t tick) const { return tick >= offset && (tick - offset) % period == 0; }
 };
 
 struct Plan {
@@ -65,7 +67,8 @@ struct Plan {
     bool for_events = false;  ///< a crossing function needs it
   };
 
-  /// An algebraic loop (blocks of direct feedthrough in a cycle), solved by Newton's method on the tear numbers.
+  /// An algebraic loop (blocks of direct feedthrough in a cycle), solved by Newton's method on the tear
+  /// numbers.
   struct AlgebraicLoop {
     std::vector<Entry> entries;  ///< in order, tears taken as known
     std::vector<Number> tears;
@@ -106,12 +109,16 @@ struct Plan {
   TickClock clock;
   int64_t start_tick = 0, stop_tick = 0;
   int64_t step_ticks = 0;    ///< of a fixed-step method
+  double typical_step = 0;   ///< s; the step, or what a fixed-step method would take: what is short or long
   int64_t record_ticks = 0;  ///< a row of the recording every so often
   Method method = Method::rk4;
   double relative_tolerance = 1e-6, absolute_tolerance = 1e-9, maximum_step = infinity;
   uint64_t seed = 1;
 
   int signals = 0, states = 0, buffer_numbers = 0;
+  /// Whether what happens between samples depends on where the steps lie: there are states, decisions,
+  /// accepted memories or algebraic loops that no sample time drives.
+  bool steps_between_samples = false;
   std::vector<int> block_of_state;
   std::vector<Problem> warnings;
   std::string hash;  ///< of structure and effective parameters, 16 hex digits

@@ -28,7 +28,7 @@ class Times {
     if (time && (may_be_zero || time->numerator > 0)) return time;
     auto& p = problems_.error(place, place.pointer(), block,
                               fmt::format("{} cannot be kept exactly as a whole number of ticks", name));
-    p.expected = fmt::format("a {} time in s that is a fraction of whole numbers below 2e9",
+    p.expected = fmt::format("a {} time of at most 2e12 s that is a fraction with a denominator below 2e9",
                              may_be_zero ? "non-negative" : "positive");
     p.found = fmt::format("{}", value);
     return {};
@@ -146,8 +146,23 @@ class Times {
         offset = *given;
       }
       sample_times_[b] = {*period, offset};
+      warn_of_few_samples(*period, block);
       if (!fastest_ || period->value() < fastest_->value()) fastest_ = *period;
     }
+  }
+  /// A sample time in milliseconds that was meant in seconds, or the other way round.
+  void warn_of_few_samples(const Fraction& period, const FlatBlock& block) {
+    constexpr double few = 10;
+    const double duration = stop_ ? stop_->value() - start_.value() : 0;
+    if (duration <= 0 || period.value() * few <= duration * (1 + 1e-12)) return;
+    if (std::ranges::find(told_, period) != told_.end()) return;
+    told_.push_back(period);
+    const Place& place = block.entry->sample_time->place;
+    auto& p = problems_.warning(
+        place, place.pointer(), block.path,
+        fmt::format("a sample time of {:g} s in a run of {:g} s: it is sampled fewer than {:g} times",
+                    period.value(), duration, few));
+    p.hint = "is the sample time, or \"stop\", in another unit than seconds?";
   }
 
   /// 1, 2 or 5 times a power of ten, near x from below.
@@ -158,16 +173,10 @@ class Times {
   }
   void choose_defaults() {
     const double duration = stop_ ? stop_->value() - start_.value() : 0;
-    if (!step_ && is_fixed_step(plan_.method))
-      step_ = fastest_ ? *fastest_ : round_time(duration > 0 ? duration / 1000 : 1e-3);
-    if (!record_) {
-      if (fastest_)
-        record_ = *fastest_;
-      else if (step_)
-        record_ = *step_;
-      else
-        record_ = round_time(duration > 0 ? duration / 1000 : 1e-3);
-    }
+    const Fraction usual = fastest_ ? *fastest_ : round_time(duration > 0 ? duration / 1000 : 1e-3);
+    if (!step_ && is_fixed_step(plan_.method)) step_ = usual;
+    if (!record_) record_ = !fastest_ && step_ ? *step_ : usual;
+    plan_.typical_step = std::min(step_ ? step_->value() : usual.value(), plan_.maximum_step);
   }
 
   bool find_base() {
@@ -179,15 +188,19 @@ class Times {
     for (const auto& f : {step_, record_, std::optional(start_)})
       if (f && !add(base, *f)) return false;
     if (base.numerator == 0) base = {1, 1000};
-    plan_.clock.base = base;
+    plan_.clock.base = shared_ = base;
     if (!stop_) return true;
-    // The stop need not fall on a tick of the rates; the base is refined for it only when that costs little.
+    const auto are_counted = [&](const Fraction& tick) {
+      return stop_->value() / tick.value() * double(tick.numerator) < 9e15 &&
+             tick.denominator < int64_t(9e15);
+    };
+    // The stop need not fall on a tick of the rates; a finer base costs nothing as long as it can be counted.
     if (!whole_ratio(*stop_, base)) {
       const auto finer = common_divisor(base, *stop_);
-      if (finer && finer->value() > base.value() * 1e-4) plan_.clock.base = base = *finer;
+      if (finer && are_counted(*finer)) plan_.clock.base = base = *finer;
     }
     const double ticks = stop_->value() / base.value();
-    if (ticks * double(base.numerator) < 9e15) return true;
+    if (are_counted(base)) return true;
     auto& p =
         problems_.error(diagram_.solver.stop.place, diagram_.solver.stop.place.pointer(), "",
                         fmt::format("the run has {:.3g} ticks of {:.3g} s, more than can be counted exactly",
@@ -217,7 +230,7 @@ class Times {
     if (stop_)
       plan_.stop_tick =
           whole_ratio(*stop_, base).value_or(int64_t(std::ceil(stop_->value() / base.value() - 1e-9)));
-    plan_.step_ticks = step_ ? whole_ratio(*step_, base).value_or(1) : 1;
+    plan_.step_ticks = step_ ? whole_ratio(*step_, base).value_or(1) : whole_ratio(shared_, base).value_or(1);
     plan_.record_ticks = whole_ratio(*record_, base).value_or(1);
     for (size_t b = 0; b < plan_.blocks.size(); ++b) {
       if (flat_of_block[b] < 0 || !sample_times_[size_t(flat_of_block[b])]) continue;
@@ -233,8 +246,9 @@ class Times {
   Plan& plan_;
   Problems& problems_;
   std::vector<std::optional<std::pair<Fraction, Fraction>>> sample_times_;
-  Fraction start_{0, 1};
+  Fraction start_{0, 1}, shared_{1, 1};  // shared_: the base period of all but the stop
   std::optional<Fraction> stop_, step_, record_, fastest_;
+  std::vector<Fraction> told_;  // sample times that were warned of
 };
 
 }  // namespace

@@ -10,6 +10,10 @@
 
 namespace loopwright {
 
+inline constexpr const char *loop_not_solved = "Newton's method did not converge for its algebraic loop",
+                            *loop_is_singular =
+                                "its algebraic loop is singular: the equations do not determine the signals";
+
 /// Newton's method on y - G(y), from the values of the last solution; lane after lane, as each takes steps of
 /// its own.
 template <class Real> class AlgebraicLoopSolver {
@@ -28,13 +32,19 @@ template <class Real> class AlgebraicLoopSolver {
 
   static uint64_t step(const Call<Real>& call) {
     auto& loop = *const_cast<AlgebraicLoopSolver*>(static_cast<const AlgebraicLoopSolver*>(call.block));
-    const uint64_t unsolved = loop.solve();
-    constexpr const char* reason = "Newton's method did not converge for its algebraic loop";
-    return unsolved ? report_fault(call.report, call.index, {unsolved << call.first_lane, reason}) : 0;
+    const Unsolved unsolved = loop.solve();
+    const auto report = [&](uint64_t lanes, const char* reason) {
+      return lanes ? report_fault(call.report, call.index, {lanes << call.first_lane, reason}) : 0;
+    };
+    return report(unsolved.not_solved, loop_not_solved) | report(unsolved.singular, loop_is_singular);
   }
 
  private:
   static constexpr int width = lanes_of<Real>;
+  /// A bit a lane.
+  struct Unsolved {
+    uint64_t not_solved = 0, singular = 0;
+  };
 
   Real& tear(size_t i) { return *tears_[i]; }
   std::span<double> guess() { return {&y_[size_t(lane_) * tears_.size()], tears_.size()}; }
@@ -43,16 +53,18 @@ template <class Real> class AlgebraicLoopSolver {
   }
 
   /// The lanes without a solution; in the others the tears and all that hangs on them hold it.
-  uint64_t solve() {
+  Unsolved solve() {
     each_lane([&] {
       for (size_t i = 0; i < tears_.size(); ++i) {
         const double last = lane(tear(i), lane_);
         guess()[i] = std::isfinite(last) ? last : 0.0;
       }
     });
-    uint64_t unsolved = 0;
+    Unsolved unsolved;
     each_lane([&] {
-      if (newton_->solve(guess()).status != NewtonStatus::converged) unsolved |= uint64_t(1) << lane_;
+      const NewtonStatus status = newton_->solve(guess()).status;
+      uint64_t& lanes = status == NewtonStatus::singular_jacobian ? unsolved.singular : unsolved.not_solved;
+      if (status != NewtonStatus::converged) lanes |= uint64_t(1) << lane_;
     });
     each_lane([&] { take(guess().data()); });
     evaluate();

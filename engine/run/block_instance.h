@@ -12,6 +12,14 @@ inline uint64_t hash_of_path(std::string_view path) { return ContentHash().add(p
 
 template <class Real> class BlockInstance;
 
+template <class Real>
+uint64_t start_by(const Kernels<Real>& kernels, void* block, const Call<Real>& call, const Setup& setup) {
+  const Fault unprepared = kernels.prepare(block, setup);
+  Fault fault = joined(unprepared, kernels.start(block, call.state, call.memory, call.buffers, call.mode));
+  fault.lanes <<= call.first_lane;
+  return fault.lanes ? report_fault(call.report, call.index, fault) : 0;
+}
+
 /// One simulation: the block itself.
 template <> class BlockInstance<double> {
  public:
@@ -27,9 +35,9 @@ template <> class BlockInstance<double> {
   size_t memory_bytes() const { return kernels_->memory_size; }
   size_t mode_bytes() const { return kernels_->mode_size; }
   double* tunable(std::string_view path, int) { return kernels_->tunable(memory_.get(), path); }
-  void start(const Call<double>& call, const Setup& setup) {
-    kernels_->prepare(memory_.get(), setup);
-    kernels_->start(memory_.get(), call.state, call.memory, call.buffers, call.mode);
+  /// Prepares and starts the block; the lanes that faulted.
+  uint64_t start(const Call<double>& call, const Setup& setup) {
+    return start_by(*kernels_, memory_.get(), call, setup);
   }
   Step<double> outputs(int group) const { return kernels_->outputs[group]; }
   Step<double> decide() const { return kernels_->decide; }

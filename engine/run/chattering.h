@@ -4,15 +4,16 @@
 #include <span>
 #include <string>
 #include "engine/plan/plan.h"
+#include "engine/solve/state_archive.h"
 
 namespace loopwright {
 
 class Chattering {
  public:
-  static constexpr int most = 100;  ///< events in a row, within a ten-thousandth of a row of the recording
+  static constexpr int most = 100;  ///< events in a row, within a ten-thousandth of the plan's typical step
 
   explicit Chattering(const Plan& plan)
-      : plan_(plan), events_(plan.crossings.size(), 0), window_(1e-4 * plan.clock.time(plan.record_ticks)) {}
+      : plan_(plan), events_(plan.crossings.size(), 0), window_(1e-4 * plan.typical_step) {}
 
   /// Notes the crossings that fired at t; false when the last hundred events lie within the window.
   bool count(double t, std::span<const int8_t> fired) {
@@ -24,6 +25,7 @@ class Chattering {
     span_ = t - oldest;
     return ++total_ <= most || span_ > window_;
   }
+  void archive(StateArchive& a) { a.members(events_, times_, next_, total_, worst_, span_); }
   int64_t events(size_t crossing) const { return events_[crossing]; }
   size_t worst() const { return worst_; }
   double span() const { return span_; }

@@ -8,13 +8,14 @@
 namespace loopwright {
 namespace {
 
-constexpr std::string_view magic = "loopwright checkpoint 1\n";
+constexpr std::string_view magic = "loopwright checkpoint 2\n";
 
 struct Header {
   char plan_hash[16];
   uint64_t seed;
   int64_t run, tick;
-  uint64_t arena_bytes, columns, rows;
+  double time;
+  uint64_t arena_bytes, solver_bytes, columns, rows;
 };
 
 void append(std::string& to, const void* data, size_t bytes) {
@@ -31,22 +32,25 @@ void append(std::string& to, const void* data, size_t bytes) {
 }  // namespace
 
 void write_checkpoint(const std::string& path, Run<double>& run, const RunIdentity& identity,
-                      Recorder& recorder) {
+                      const std::string& solver, Recorder& recorder) {
   Header header{};
   std::memcpy(header.plan_hash, run.plan().hash.data(), 16);
   header.seed = identity.seed, header.run = identity.run, header.tick = run.now().tick;
-  header.arena_bytes = run.arena().size();
+  header.time = run.now().time;
+  header.arena_bytes = run.arena().size(), header.solver_bytes = solver.size();
   header.columns = recorder.recording().columns.size(), header.rows = uint64_t(recorder.rows());
   std::string bytes(magic);
   append(bytes, &header, sizeof header);
   append(bytes, run.arena().data(), run.arena().size());
+  bytes += solver;
   for (const Column& column : recorder.recording().columns)
     append(bytes, column.values.data(), column.values.size() * sizeof(double));
   bytes += content_hash(bytes);
   write_file(path, bytes);
 }
 
-void read_checkpoint(const std::string& path, Run<double>& run, RunIdentity& identity, Recorder& recorder) {
+std::string read_checkpoint(const std::string& path, Run<double>& run, RunIdentity& identity,
+                            Recorder& recorder) {
   std::ifstream file(path, std::ios::binary);
   if (!file) refuse(path, "the checkpoint cannot be read", "is the path right?");
   std::stringstream stream;
@@ -66,19 +70,22 @@ void read_checkpoint(const std::string& path, Run<double>& run, RunIdentity& ide
                        std::string_view(header.plan_hash, 16), plan.hash),
            "run the same diagram with the same --set and --variant as when it was written");
   const char* at = bytes.data() + magic.size() + sizeof header;
-  if (bytes.size() !=
-      size_t(at - bytes.data()) + header.arena_bytes + header.columns * header.rows * sizeof(double) + 16)
+  if (bytes.size() != size_t(at - bytes.data()) + header.arena_bytes + header.solver_bytes +
+                          header.columns * header.rows * sizeof(double) + 16)
     refuse(path, "the checkpoint is damaged", "start the run anew");
   identity = {header.seed, header.run};
   run.reset(identity);
   std::memcpy(run.arena().data(), at, header.arena_bytes);
-  run.restored(header.tick);
+  run.restored({header.time, header.tick});
   at += header.arena_bytes;
+  std::string solver(at, header.solver_bytes);
+  at += header.solver_bytes;
   for (Column& column : recorder.recording().columns) {
     column.values.resize(header.rows);
     std::memcpy(column.values.data(), at, header.rows * sizeof(double));
     at += header.rows * sizeof(double);
   }
+  return solver;
 }
 
 }  // namespace loopwright

@@ -48,17 +48,20 @@ template <class Real> class LaneByLane {
   size_t mode_bytes() const { return mode_.size() * sizeof(Real); }
   double* tunable(std::string_view path, int lane) { return lanes_[size_t(lane)]->tunable(path, 0); }
 
-  void start(const Call<Real>& call, const Setup& setup) {
+  uint64_t start(const Call<Real>& call, const Setup& setup) {
+    uint64_t faults = 0;
     for (int lane = 0; lane < width; ++lane) {
       Setup own = setup;
       own.run += lane;
-      lanes_[size_t(lane)]->start(scalar_call(call, lane), own);
+      const uint64_t fault = lanes_[size_t(lane)]->start(scalar_call(call, lane), own);
+      faults |= uint64_t(fault != 0) << (call.first_lane + lane);
       put(call, lane);
     }
+    return faults;
   }
 
   template <Step<double> Kernels<double>::*method> bool has() const { return kernels_.*method != nullptr; }
-  /// A method of the scalar block in every lane. The answer: faults, or states that jumped, a bit a lane.
+  /// A method of the scalar block in every lane. The answer: faults, a bit a lane.
   template <Step<double> Kernels<double>::*method> static uint64_t step(const Call<Real>& call) {
     return of(call).each_lane(call, of(call).kernels_.*method);
   }
@@ -84,7 +87,9 @@ template <class Real> class LaneByLane {
       if (call.report[call.first_lane + lane].block >= 0)
         continue;  // nothing counts any more in a lane that has failed
       take(call, lane);
+      jumped_ = 0;
       answer |= uint64_t(method(scalar_call(call, lane)) != 0) << (call.first_lane + lane);
+      if (jumped_) *call.jumped |= uint64_t(1) << (call.first_lane + lane);
       put(call, lane);
     }
     return answer;
@@ -96,7 +101,7 @@ template <class Real> class LaneByLane {
     }
     Call<double> scalar;
     scalar.block = lanes_[size_t(lane)]->block(), scalar.index = call.index, scalar.now = call.now;
-    scalar.report = call.report + call.first_lane + lane;
+    scalar.report = call.report + call.first_lane + lane, scalar.jumped = &jumped_;
     scalar.in = in_.data(), scalar.out = out_.data(), scalar.buffers = buffers_.data();
     scalar.state = state_.data(), scalar.rate = rate_.data(), scalar.mode = mode_.data();
     scalar.memory = static_cast<char*>(call.memory) + lane * ptrdiff_t(memory_stride_);
@@ -135,6 +140,7 @@ template <class Real> class LaneByLane {
   std::vector<Port<double>> in_, out_, buffers_;
   std::vector<double> state_, rate_;
   std::vector<double> mode_;  // its bytes travel as doubles; nothing is computed with them
+  uint64_t jumped_ = 0;       // of the lane whose turn it is
 };
 
 /// A block that nothing but the time has an effect on, such as a reference: as long as nobody has asked for a
@@ -242,11 +248,11 @@ template <class Real> class BlockInstance {
     if (found && once_for_all_) once_for_all_->part();
     return found ? reinterpret_cast<double*>(found) + lane : nullptr;
   }
-  void start(const Call<Real>& call, const Setup& setup) {
+  /// Prepares and starts the block; the lanes that faulted.
+  uint64_t start(const Call<Real>& call, const Setup& setup) {
     if (!kernels_) return lane_by_lane_->start(call, setup);
     if (once_for_all_) once_for_all_->start(call, setup);
-    kernels_->prepare(block_.get(), setup);
-    kernels_->start(block_.get(), call.state, call.memory, call.buffers, call.mode);
+    return start_by(*kernels_, block_.get(), call, setup);
   }
   Step<Real> outputs(int group) const {
     static constexpr auto by_group = []<int... g>(std::integer_sequence<int, g...>) {

@@ -1,9 +1,9 @@
 /// A run: all mutable numbers of one simulation in one arena. Run<double> is one simulation, Run<Lanes<8>>
 /// eight side by side.
 ///
-/// The step at tick k (docs/architecture.md, tests/engine/run/step_order_test.cpp):
+/// The step at tick k (docs/architecture.md, tests/engine/run/order_test.cpp):
 ///   1. for every rate due at k, and everything continuous: decisions and outputs, in order
-///   2. jumps of states from frozen inputs; if a state changed, 1 again
+///   2. jumps of states from frozen inputs; if a state changed, 1 again, at most ten times
 ///   3. accepted memory of continuous blocks; a row of the recording, if one is due
 ///   4. updates of the rates due, from frozen inputs
 ///   5. the continuous states advance to the next tick that is due, or by one solver step, sampled signals
@@ -37,7 +37,8 @@ template <class Real> class Run {
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
 
-  /// Back to the start with the present parameters.
+  /// Back to the start with the present parameters. Signals whose first sample lies later are computed from
+  /// the initial values of what they read.
   void reset(const RunIdentity& identity);
   /// A tunable number of one lane by path, "stage.cogging.harmonics.0.amplitude"; null: no such, or
   /// structural. Takes effect at reset.
@@ -65,28 +66,40 @@ template <class Real> class Run {
     now_ = {plan_.clock.time(tick), tick};
   }
 
-  /// One whole step, at most to `limit`; `record()` is called where part 3 says, if `everything`. Without
-  /// states nothing happens between samples: the step then reaches to the next of them.
-  template <class Record> void step_fixed(int64_t limit, bool everything, Record&& record) {
-    const bool has_states = plan_.states > 0;
+  /// Parts 1 to 4 of a step of at most up to `limit`; `record()` is called where part 3 says, if
+  /// `everything`. Returns the tick to which part 5 must integrate. Where nothing happens between samples,
+  /// the step reaches to the next of them.
+  template <class Record> int64_t begin_step(int64_t limit, bool everything, Record&& record) {
     const uint64_t due_rates = due();
-    evaluate(due_rates, everything || due_rates != 0 || !has_states);
+    evaluate(due_rates, everything || due_rates != 0);
     accept();
     if (everything) record();
     update(due_rates);
-    int64_t next = has_states ? std::min(limit, now_.tick + plan_.step_ticks) : limit;
+    int64_t next = plan_.steps_between_samples ? std::min(limit, now_.tick + plan_.step_ticks) : limit;
     if (!plan_.rates.empty()) next = std::min(next, next_due());
+    return next;
+  }
+  /// One whole step.
+  template <class Record> void step_fixed(int64_t limit, bool everything, Record&& record) {
+    const int64_t next = begin_step(limit, everything, record);
     integrate(next - now_.tick);
   }
+  /// Calls `record()` with time, states and signals at a tick inside the step that has begun, as a shorter
+  /// step gives them, decisions and samples held; then all is as before.
+  template <class Record> void look_ahead(int64_t tick, Record&& record);
+  /// Before the first look_ahead: takes the room for it.
+  void allow_look_ahead() { ahead_.resize(number_count() * base_.size()); }
 
   // For variable-step solvers: the system between discontinuities. Scalar runs only.
   bool derivatives_at(double time, const double* x, double* rate);
   bool crossings_at(double time, const double* x, double* value);
   /// States and time as given; signals are not yet computed.
   void look_at(double time, const double* x);
-  /// Continuous outputs with modes held, as inside a solver step: those that accepted memory reads, or
-  /// `everything`.
-  void evaluate_held(bool everything) { run(everything ? held_ : for_events_); }
+  /// Calls `record()` with all signals at a time inside a solver step, modes held. Leaves no trace in what
+  /// later steps compute.
+  template <class Record> void look_between(double time, const double* x, Record&& record);
+  /// The continuous outputs that accepted memory reads, with modes held, as inside a solver step.
+  void evaluate_held() { run(for_events_); }
   bool has_accepted_memory() const { return !accepts_.empty(); }
   void set_time(double time) { now_.time = time; }
   /// The next discontinuity in time that a block declares, strictly after `time`.
@@ -104,9 +117,10 @@ template <class Real> class Run {
   const FaultReport& fault(int lane = 0) const { return reports_[size_t(lane)]; }
   /// Every mutable number: copying it is snapshot, checkpoint and return.
   std::span<char> arena() { return {arena_.get(), bytes_}; }
-  /// After the arena was overwritten by a snapshot taken at this tick.
-  void restored(int64_t tick) {
-    move_to(tick);
+  /// After the arena was overwritten by a snapshot taken at this instant.
+  void restored(const Instant& now) {
+    now_ = now;
+    none_due_before_ = INT64_MIN;
     forget_faults();
   }
 
@@ -134,6 +148,17 @@ template <class Real> class Run {
   void forget_faults() {
     failed_ = 0;
     std::fill(reports_.begin(), reports_.end(), FaultReport{});
+  }
+  /// A snapshot of signals and states in all arenas, and back.
+  size_t number_count() const { return size_t(plan_.signals + plan_.states); }
+  void keep_numbers();
+  void put_numbers_back();
+  /// Whether a call is made at the start although its rate is not due there.
+  bool is_evaluated_early(const Plan::Entry& entry) const;
+  bool reads_nothing(const Plan::Entry& entry) const;
+  /// A block that refused a trial of the solver has not stopped the run.
+  void forget_trials() {
+    if (!failed_ && reports_[0].block >= 0) reports_[0] = {};
   }
   /// Computes the signals again where states have jumped; the other lanes keep theirs.
   void repeat_after_jumps(const std::vector<Call<Real>>& calls);
@@ -167,8 +192,8 @@ template <class Real> class Run {
   std::vector<Wires> wires_;
   std::vector<std::vector<Call<Real>>> base_;  // a block each, without a step
   std::vector<std::unique_ptr<AlgebraicLoopSolver<Real>>> algebraic_loops_;
-  std::vector<Call<Real>> constants_, between_, stage_, for_events_, held_, accepts_, jumps_, crossings_,
-      slopes_;
+  std::vector<Call<Real>> constants_, early_, between_, stage_, for_events_, held_, accepts_, jumps_,
+      crossings_, slopes_;
   // Of fixed-step methods, for each stage; see run_stages.h.
   std::array<Real*, 4> slope_{};    // kept to the end of the step: summed up on the way they would cost more
   std::array<Real*, 2> stage_x_{};  // states of the second and fourth stage, of the third
@@ -181,8 +206,9 @@ template <class Real> class Run {
   std::vector<std::pair<const void*, double (*)(const void*, double)>> stops_;
   Instant now_;
   int64_t none_due_before_ = INT64_MIN;  // a tick that is not passed yet: until then due() need not look
-  uint64_t failed_ = 0;
+  uint64_t failed_ = 0, jumped_ = 0;
   std::vector<FaultReport> reports_;  // one a lane
+  std::vector<Real> ahead_;           // signals and states while a recording looks inside a step
 };
 
 }  // namespace loopwright

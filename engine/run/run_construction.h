@@ -73,7 +73,7 @@ std::vector<Call<Real>> Run<Real>::connect(size_t arena, Wires& wires, Real* sta
     const Plan::Block& block = plan_.blocks[b];
     Call<Real>& call = calls[b];
     call.block = instances_[arena][b].block(), call.index = int(b), call.now = &now_;
-    call.report = reports_.data(), call.first_lane = int(arena) * width;
+    call.report = reports_.data(), call.jumped = &jumped_, call.first_lane = int(arena) * width;
     call.states = block.states, call.state = states + block.first_state,
     call.rate = slope_[0] + offset + block.first_state,
     call.crossing = crossing_ + offset + block.first_crossing;
@@ -168,6 +168,7 @@ template <class Real> void Run<Real>::schedule_arena(const std::vector<Call<Real
       continue;
     }
     outputs_.all.emplace_back(mask_of(entry.rate), call);
+    if (is_evaluated_early(entry)) early_.push_back(call);
     if (entry.rate.kind != Rate::Kind::continuous) continue;
     if (entry.kind != Kind::decide) held_.push_back(call);
     const bool decides = entry.kind == Kind::decide;
@@ -191,6 +192,24 @@ template <class Real> void Run<Real>::schedule_arena(const std::vector<Call<Real
   }
 }
 
+/// A sampled block that reads inputs waits for its first sample. What reads memory alone shows it, and what
+/// has no sample time of its own is computed from what it reads.
+template <class Real> bool Run<Real>::is_evaluated_early(const Plan::Entry& entry) const {
+  if (entry.rate.kind != Rate::Kind::sampled || entry.rate.is_due(plan_.start_tick)) return false;
+  const auto waits = [&](const Plan::Entry& e) {
+    return plan_.blocks[size_t(e.block)].period > 0 && !reads_nothing(e);
+  };
+  if (entry.kind != Plan::Entry::Kind::algebraic_loop) return !waits(entry);
+  return std::ranges::none_of(plan_.algebraic_loops[size_t(entry.block)].entries, waits);
+}
+template <class Real> bool Run<Real>::reads_nothing(const Plan::Entry& entry) const {
+  const BlockInfo& info = plan_.blocks[size_t(entry.block)].type->info;
+  if (entry.kind == Plan::Entry::Kind::decide) return info.inputs.empty();
+  return std::ranges::none_of(info.outputs, [&](const PortInfo& output) {
+    return output.group == entry.group && output.fed_by != 0;
+  });
+}
+
 template <class Real> double* Run<Real>::parameter(std::string_view path, int lane) {
   for (size_t b = 0; b < plan_.blocks.size(); ++b) {
     const std::string& block = plan_.blocks[b].path;
@@ -211,10 +230,11 @@ template <class Real> void Run<Real>::reset(const RunIdentity& identity) {
     for (size_t b = 0; b < plan_.blocks.size(); ++b) {
       const Setup setup{plan_.blocks[b].sample_time, identity.seed, identity.run + int64_t(a) * width,
                         hash_of_path(plan_.blocks[b].path)};
-      instances_[a][b].start(base_[a][b], setup);
+      failed_ |= instances_[a][b].start(base_[a][b], setup);
     }
   }
   run(constants_);
+  run(early_);
 }
 
 }  // namespace loopwright

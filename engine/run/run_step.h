@@ -7,10 +7,7 @@ namespace loopwright {
 template <class Real> uint64_t Run<Real>::due() const {
   if (now_.tick < none_due_before_) return 0;
   uint64_t mask = 0;
-  for (size_t r = 0; r < plan_.rates.size(); ++r) {
-    const Rate& rate = plan_.rates[r];
-    mask |= uint64_t(now_.tick >= rate.offset && (now_.tick - rate.offset) % rate.period == 0) << r;
-  }
+  for (size_t r = 0; r < plan_.rates.size(); ++r) mask |= uint64_t(plan_.rates[r].is_due(now_.tick)) << r;
   return mask;
 }
 
@@ -30,12 +27,22 @@ template <class Real> void Run<Real>::evaluate(uint64_t due_rates, bool everythi
   if (!jumps_.empty()) repeat_after_jumps(calls);
 }
 
-/// A jump changes states that others have read: all signals again, until no state jumps any more.
+/// A jump changes states that others have read: all signals again, until no state jumps any more. Who goes on
+/// jumping after that is to blame.
 template <class Real> void Run<Real>::repeat_after_jumps(const std::vector<Call<Real>>& calls) {
-  for (int i = 0; i < 10; ++i) {
+  constexpr int most = 10;
+  for (int round = 0;; ++round) {
     uint64_t changed = 0;
-    for (const Call<Real>& c : jumps_) changed |= c.step(c);
-    if (!changed) break;
+    for (const Call<Real>& c : jumps_) {
+      jumped_ = 0;
+      failed_ |= c.step(c);
+      jumped_ &= ~failed_;
+      if (jumped_ && round == most)
+        failed_ |= report_fault(reports_.data(), c.index,
+                                {jumped_, "its states jump again and again at this instant, without an end"});
+      changed |= jumped_;
+    }
+    if (!changed || round == most) break;
     if constexpr (width == 1)
       run(calls);
     else
@@ -56,11 +63,43 @@ template <class Real> void Run<Real>::evaluate_again(uint64_t jumped, const std:
         std::memcpy(numbers_of(a) + i, &kept_[size_t(a) * count + i], sizeof(double));
 }
 
+template <class Real> void Run<Real>::keep_numbers() {
+  for (size_t a = 0; a < base_.size(); ++a)
+    std::memcpy(&ahead_[a * number_count()], numbers_ + ptrdiff_t(a) * stride_,
+                number_count() * sizeof(Real));
+}
+template <class Real> void Run<Real>::put_numbers_back() {
+  for (size_t a = 0; a < base_.size(); ++a)
+    std::memcpy(numbers_ + ptrdiff_t(a) * stride_, &ahead_[a * number_count()],
+                number_count() * sizeof(Real));
+}
+
+template <class Real> template <class Record> void Run<Real>::look_ahead(int64_t tick, Record&& record) {
+  const Instant now = now_;
+  keep_numbers();
+  integrate(tick - now_.tick);
+  run(held_);
+  record();
+  put_numbers_back();
+  now_ = now;
+}
+
 // Between discontinuities, for variable-step solvers.
+
+template <class Real>
+template <class Record>
+void Run<Real>::look_between(double time, const double* x, Record&& record) {
+  keep_numbers();
+  look_at(time, x);
+  run(held_);
+  record();
+  put_numbers_back();
+}
 
 template <class Real> bool Run<Real>::derivatives_at(double time, const double* x, double* rate) {
   std::copy_n(x, plan_.states, x_);
   now_.time = time;
+  forget_trials();
   uint64_t bad = 0;
   for (const Call<Real>& c : stage_) bad |= c.step(c);
   for (const Call<Real>& c : slopes_) bad |= c.step(c);
@@ -71,6 +110,7 @@ template <class Real> bool Run<Real>::derivatives_at(double time, const double* 
 template <class Real> bool Run<Real>::crossings_at(double time, const double* x, double* value) {
   std::copy_n(x, plan_.states, x_);
   now_.time = time;
+  forget_trials();
   uint64_t bad = 0;
   for (const Call<Real>& c : for_events_) bad |= c.step(c);
   for (const Call<Real>& c : crossings_) bad |= c.step(c);

@@ -4,9 +4,11 @@
 #include <cmath>
 #include "engine/run/chattering.h"
 #include "engine/run/checkpoint.h"
+#include "engine/run/fault_text.h"
 #include "engine/run/fixed_step.h"
 #include "engine/run/recorder.h"
 #include "engine/run/pole_check.h"
+#include "engine/run/source_periods.h"
 #include "engine/solve/solver.h"
 
 namespace loopwright {
@@ -21,10 +23,12 @@ class Simulation {
     identity_ = {plan.seed, options.run};
     run_.reset(identity_);
     for (const Plan::Crossing& crossing : plan.crossings) directions_.push_back(crossing.direction);
-    if (options.checkpoint_every > 0)
-      checkpoint_ticks_ =
-          std::max<int64_t>(1, std::llround(options.checkpoint_every / plan.clock.base.value()));
-    if (!options.resume_file.empty()) read_checkpoint(options.resume_file, run_, identity_, recorder_);
+    if (!options.resume_file.empty())
+      solver_bytes_ = read_checkpoint(options.resume_file, run_, identity_, recorder_);
+    if (!options.checkpoint_file.empty() && options.checkpoint_every > 0) {
+      checkpoint_every_ = options.checkpoint_every;
+      plan_next_checkpoint(run_.now().time);
+    }
   }
 
   RunResult simulate() {
@@ -34,7 +38,7 @@ class Simulation {
     else if (options_.resume_file.empty())
       look_at_poles();
     if (result_.status == RunStatus::finished)
-      is_fixed_step(plan_.method) || plan_.states == 0 ? run_fixed() : run_variable();
+      is_fixed_step(plan_.method) || !plan_.steps_between_samples ? run_fixed() : run_variable();
     if (result_.status == RunStatus::finished && options_.at_stop) options_.at_stop(run_);
     result_.time = run_.now().time;
     result_.statistics.rows = recorder_.rows();
@@ -50,21 +54,17 @@ class Simulation {
  private:
   // ---- fixed step ----
   void run_fixed() {
-    int64_t next_checkpoint = next_multiple(checkpoint_ticks_);
+    if (!solver_bytes_.empty()) restore(nullptr);
     const bool reached_stop = run_fixed_steps(
-        run_, first_row(), [&] { return next_checkpoint; }, [&] { recorder_.record(run_); },
-        [&](bool was_row) {
+        run_, first_row(), [&] { recorder_.record(run_); },
+        [&](bool has_row) {
           ++result_.statistics.steps;
           if (run_.failed()) return fail_by_fault();
-          if (was_row && !check_finite()) return false;
-          if (run_.now().tick == next_checkpoint) checkpoint(), next_checkpoint += checkpoint_ticks_;
+          if (has_row && !check_finite()) return false;
+          if (run_.now().time >= next_checkpoint_) checkpoint(nullptr);
           return go_on();
         });
     if (reached_stop) run_.failed() ? fail_by_fault() : check_finite();
-  }
-  int64_t next_multiple(int64_t ticks) const {
-    if (ticks <= 0) return INT64_MAX;
-    return (run_.now().tick / ticks + 1) * ticks;
   }
   /// The first tick, now or later, that has a row: rows are counted from the start. A checkpoint holds no row
   /// of its tick.
@@ -79,7 +79,11 @@ class Simulation {
     options.method = plan_.method;
     options.relative_tolerance = plan_.relative_tolerance,
     options.absolute_tolerance = plan_.absolute_tolerance;
-    options.maximum_step = plan_.maximum_step;
+    options.maximum_step =
+        std::isfinite(plan_.maximum_step) ? plan_.maximum_step : default_maximum_step(run_);
+    if (std::isfinite(options.maximum_step))  // many short steps are no sign of being stuck
+      options.maximum_steps_between_stops += int64_t(
+          std::fmin(1e15, 10 * plan_.clock.time(plan_.stop_tick - plan_.start_tick) / options.maximum_step));
     const OdeSystem system{&run_, plan_.states, int(plan_.crossings.size()),
                            [](void* self, double t, const double* x, double* rate) {
                              return static_cast<Run<double>*>(self)->derivatives_at(t, x, rate);
@@ -88,44 +92,22 @@ class Simulation {
                              return static_cast<Run<double>*>(self)->crossings_at(t, x, value);
                            }};
     Solver solver(options, system);
-    int64_t next_checkpoint = next_multiple(checkpoint_ticks_);
     next_row_ = first_row();
-    bool fresh = true;
+    run_.allow_look_ahead();
+    bool has_started = !solver_bytes_.empty();
+    if (has_started) restore(&solver);
     for (;;) {
-      const int64_t tick = run_.now().tick;
-      if (tick == next_checkpoint) {
-        checkpoint();
-        next_checkpoint += checkpoint_ticks_;
-        fresh = true;  // so that a run resumed here takes the very same steps
+      if (!is_between_ticks_) {
+        if (run_.now().time >= next_checkpoint_ && has_started) checkpoint(&solver);
+        if (!begin_at_tick() || run_.now().tick == plan_.stop_tick) break;
+        copy_states();
+        has_started ? solver.restart(run_.now().time, x_.data()) : solver.start(run_.now().time, x_.data());
       }
-      const uint64_t due = run_.due();
-      run_.evaluate(due, true);
-      run_.accept();
-      if (tick >= next_row_ || tick == plan_.stop_tick) {
-        recorder_.record(run_);
-        next_row_ = tick + plan_.record_ticks;
-        if (!check_finite()) break;
-      }
-      if (run_.failed()) {
-        fail_by_fault();
-        break;
-      }
-      if (tick == plan_.stop_tick) break;
-      run_.update(due);
-      if (run_.failed()) {
-        fail_by_fault();
-        break;
-      }
-      const int64_t next =
-          std::min({plan_.stop_tick, next_checkpoint, plan_.rates.empty() ? INT64_MAX : run_.next_due()});
-      copy_states();
-      if (fresh)
-        count(solver.statistics()), solver.start(run_.now().time, x_.data());
-      else
-        solver.restart(run_.now().time, x_.data());
-      fresh = false;
+      has_started = true, is_between_ticks_ = false;
+      const int64_t next = std::min(plan_.stop_tick, plan_.rates.empty() ? INT64_MAX : run_.next_due());
       if (!advance(solver, next) || !go_on()) break;
     }
+    tell_narrow_passages(solver, options.maximum_step);
     count(solver.statistics());
     if (stiffest_state_ >= 0)
       result_.warnings.push_back(
@@ -133,13 +115,28 @@ class Simulation {
                       "\"cvode-bdf\" would take longer steps",
                       block_of_state(stiffest_state_), to_name(plan_.method)));
   }
-  /// Adds what a solver did since its start, which forgets it.
+  /// Parts 1 to 4 of the step, at a tick. False: the run has failed.
+  bool begin_at_tick() {
+    const int64_t tick = run_.now().tick;
+    const uint64_t due = run_.due();
+    run_.evaluate(due, true);
+    run_.accept();
+    if (tick >= next_row_ || tick == plan_.stop_tick) {
+      recorder_.record(run_);
+      next_row_ = tick + plan_.record_ticks;
+      if (!check_finite()) return false;
+    }
+    if (run_.failed()) return fail_by_fault();
+    if (tick == plan_.stop_tick) return true;
+    run_.update(due);
+    return !run_.failed() || fail_by_fault();
+  }
   void count(const SolverStatistics& s) {
-    result_.statistics.steps += s.steps,
-        result_.statistics.rejected_steps += s.error_test_failures + s.convergence_failures;
-    result_.statistics.derivative_evaluations += s.derivative_evaluations,
-        result_.statistics.restarts += s.restarts;
-    if (s.stiff && stiffest_state_ < 0) stiffest_state_ = s.stiffest_state;
+    result_.statistics.steps = s.steps,
+    result_.statistics.rejected_steps = s.error_test_failures + s.convergence_failures;
+    result_.statistics.derivative_evaluations = s.derivative_evaluations,
+    result_.statistics.restarts = s.restarts;
+    if (s.stiff) stiffest_state_ = s.stiffest_state;
   }
 
   /// From the present tick to the next at which something is due, over events and known discontinuities.
@@ -152,6 +149,7 @@ class Simulation {
       if (!record_between(solver, next)) return false;
       if (!accept_at(solver)) return false;  // before a jump too: a delay keeps both sides of it
       if (step.status == SolverStatus::stepped) {
+        checkpoint_inside(solver);
         if (!go_on()) return false;
         continue;
       }
@@ -165,6 +163,7 @@ class Simulation {
                         Chattering::most, chattering_.span(), step.t));
       handle_event(solver);
       if (run_.failed()) return fail_by_fault();
+      checkpoint_inside(solver);
       if (!go_on()) return false;
     }
     run_.look_at(end, solver.x().data());
@@ -182,9 +181,24 @@ class Simulation {
   bool accept_at(Solver& solver) {
     if (!run_.has_accepted_memory()) return true;
     run_.look_at(solver.t(), solver.x().data());
-    run_.evaluate_held(false);
+    run_.evaluate_held();
     run_.accept();
     return !run_.failed() || fail_by_fault();
+  }
+  /// Where a crossing was seen on the other side of zero at one look alone, others will have been missed.
+  void tell_narrow_passages(const Solver& solver, double maximum_step) {
+    constexpr int64_t few = 2;
+    constexpr double share = 0.05;  // of its events: what is rare says little about the steps
+    for (size_t i = 0; i < plan_.crossings.size(); ++i) {
+      const int64_t seen = solver.narrow_passages()[i];
+      if (seen < few || double(seen) < share * double(chattering_.events(i))) continue;
+      result_.warnings.push_back(fmt::format(
+          "\"{}\" went through zero and back within one step of the solver, {} times that were noticed: "
+          "others may have been missed; give \"solver\" a \"maximum_step\"{} below the time between its "
+          "passages",
+          chattering_.name(i), seen,
+          std::isfinite(maximum_step) ? fmt::format(" shorter than {:.3g} s,", maximum_step) : ""));
+    }
   }
   /// Rows that fall inside the last step, from the solver's dense output.
   bool record_between(Solver& solver, int64_t next) {
@@ -193,10 +207,12 @@ class Simulation {
       if (time < solver.step_begin()) continue;
       between_.resize(size_t(plan_.states));
       solver.interpolate(time, between_.data());
-      run_.look_at(time, between_.data());
-      run_.evaluate_held(true);
-      recorder_.record(run_);
-      if (!check_finite()) return false;
+      bool is_finite = true;
+      run_.look_between(time, between_.data(), [&] {
+        recorder_.record(run_);
+        is_finite = check_finite();
+      });
+      if (!is_finite) return false;
     }
     return true;
   }
@@ -211,13 +227,43 @@ class Simulation {
     }
     const FastestPole pole = fastest_pole(run_);
     result_.statistics.largest_pole = pole.magnitude;
-    if (const std::string warning = step_warning(plan_, pole); !warning.empty())
-      result_.warnings.push_back(warning);
+    for (const std::string& warning : {step_warning(plan_, pole), aliasing_warning(run_)})
+      if (!warning.empty()) result_.warnings.push_back(warning);
     run_.reset(identity_);
   }
-  void checkpoint() {
-    if (!options_.checkpoint_file.empty())
-      write_checkpoint(options_.checkpoint_file, run_, identity_, recorder_);
+  void plan_next_checkpoint(double now) {
+    const double since_start = now - plan_.clock.time(plan_.start_tick);
+    next_checkpoint_ = plan_.clock.time(plan_.start_tick) +
+                       (std::floor(since_start / checkpoint_every_ + 1e-9) + 1) * checkpoint_every_;
+  }
+  /// `solver`: null for a fixed step.
+  void checkpoint(Solver* solver) {
+    StateArchive state;
+    archive(state, solver);
+    write_checkpoint(options_.checkpoint_file, run_, identity_, state.bytes(), recorder_);
+    plan_next_checkpoint(run_.now().time);
+  }
+  /// Between ticks. It changes nothing: where the solver cannot be set aside, the checkpoint comes later.
+  void checkpoint_inside(Solver& solver) {
+    if (solver.t() < next_checkpoint_ || !solver.can_be_archived()) return;
+    run_.set_time(solver.t());
+    is_between_ticks_ = true;
+    checkpoint(&solver);
+    is_between_ticks_ = false;
+  }
+  void restore(Solver* solver) {
+    StateArchive state(solver_bytes_);
+    archive(state, solver);
+    if (state.is_whole()) return;
+    Problems problems;
+    problems.error({}, "", "", options_.resume_file + ": the checkpoint is damaged").hint =
+        "start the run anew";
+    throw InputError(std::move(problems));
+  }
+  void archive(StateArchive& a, Solver* solver) {
+    a.members(result_.statistics.steps, next_row_, is_between_ticks_);
+    chattering_.archive(a);
+    if (solver) solver->archive(a);
   }
   bool go_on() {
     if (options_.interrupt && options_.interrupt->load(std::memory_order_relaxed)) {
@@ -237,12 +283,7 @@ class Simulation {
     result_.message = std::move(message);
     return false;
   }
-  bool fail_by_fault() {
-    const FaultReport& fault = run_.fault();
-    return fail(fmt::format("\"{}\" stopped the run at t = {:g} s: {}",
-                            fault.block < 0 ? "?" : plan_.blocks[size_t(fault.block)].path, run_.now().time,
-                            fault.reason));
-  }
+  bool fail_by_fault() { return fail(fault_text(plan_, run_.fault(), run_.now().time)); }
   bool fail_by_solver(const Solver& solver, const Advance& step) {
     if (step.status == SolverStatus::block_fault && run_.fault().block >= 0) return fail_by_fault();
     run_.set_time(step.t);
@@ -296,8 +337,11 @@ class Simulation {
   RunResult result_;
   std::vector<Crossing> directions_;
   std::vector<double> x_, between_;
-  int64_t checkpoint_ticks_ = 0, next_row_ = 0;
-  int stiffest_state_ = -1;  // the first that made the solver stiff; -1: none
+  std::string solver_bytes_;                                  // of the checkpoint that the run goes on from
+  double checkpoint_every_ = 0, next_checkpoint_ = infinity;  // s
+  int64_t next_row_ = 0;
+  bool is_between_ticks_ = false;  // where a checkpoint was taken
+  int stiffest_state_ = -1;        // the first that made the solver stiff; -1: none
   uint32_t since_progress_ = 0;
 };
 

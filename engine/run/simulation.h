@@ -10,7 +10,7 @@ namespace loopwright {
 struct RunOptions {
   int64_t run = 0;              ///< number of the run: another one has other noise
   std::string checkpoint_file;  ///< written while running; empty: none
-  double checkpoint_every = 0;  ///< [s] of simulated time, so that a resumed run repeats the same bits
+  double checkpoint_every = 0;  ///< [s] of simulated time; at the end of the next step. They change no step
   std::string resume_file;      ///< continue from this checkpoint
   const std::atomic<bool>* interrupt = nullptr;            ///< set by a signal handler: stop after this step
   std::function<void(double time, double stop)> progress;  ///< called now and then between steps

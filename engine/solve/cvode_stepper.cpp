@@ -29,6 +29,12 @@ class CvodeStepper final : public Stepper {
   CvodeStepper(const SolverOptions& options, const OdeSystem& system);
   SolverStatus step(double t_stop) override;
   int worst_state() const override;
+  /// CVODE's history lies in memory of its own: only where it has none yet.
+  bool can_be_archived() const override { return fresh_; }
+  void archive(StateArchive& a) override {
+    Stepper::archive(a);
+    if (a.reads()) forget_history();
+  }
 
  private:
   void forget_all() override { forget_history(); }

@@ -58,6 +58,13 @@ class DormandPrince final : public Stepper {
 
   SolverStatus step(double t_stop) override;
   int worst_state() const override;
+  bool can_be_archived() const override { return true; }
+  void archive(StateArchive& a) override {
+    Stepper::archive(a);
+    a.members(step_size_, error_root_, rate_, stiff_streak_, calm_streak_);
+    for (double* rates : {k1_, k2_, k3_, k4_, k5_, k6_, k7_})
+      for (size_t i = 0; i < states_; ++i) a.members(rates[i]);
+  }
 
  private:
   enum class Rate : uint8_t { unknown, in_k1, in_k7 };  ///< where f(t_end, x_end) lies

@@ -24,6 +24,8 @@ EventFinder::EventFinder(const OdeSystem& system, int samples_per_step)
       samples_per_step_(samples_per_step),
       sign_(static_cast<size_t>(system.crossings)),
       fired_(sign_.size()),
+      flipped_(sign_.size()),
+      narrow_(sign_.size()),
       zero_band_(sign_.size()),
       side_(sign_.size()) {
   for (Sample* sample : {&left_, &right_, &trial_}) {
@@ -35,6 +37,8 @@ EventFinder::EventFinder(const OdeSystem& system, int samples_per_step)
 void EventFinder::forget() {
   std::fill(sign_.begin(), sign_.end(), int8_t{0});
   std::fill(zero_band_.begin(), zero_band_.end(), 0.0);
+  std::fill(flipped_.begin(), flipped_.end(), int8_t{0});
+  std::fill(narrow_.begin(), narrow_.end(), int64_t{0});
   clear_fired();
   leaving_zero_ = false;
 }
@@ -61,6 +65,7 @@ EventFinder::Found EventFinder::begin(Stepper& stepper, double t, const double* 
   std::copy_n(x, left_.x.size(), left_.x.begin());
   if (const Found trouble = evaluate(stepper, left_); trouble != Found::nothing) return trouble;
   leaving_zero_ = false;
+  std::fill(flipped_.begin(), flipped_.end(), int8_t{0});
   for (size_t i = 0; i < sign_.size(); ++i) {
     const double value = left_.value[i];
     if (zero_band_[i] > 0.0 && std::fabs(value) <= zero_band_[i]) {
@@ -123,13 +128,42 @@ EventFinder::Found EventFinder::scan(Stepper& stepper, double from, double to, c
         trouble != Found::nothing) {
       return trouble;
     }
-    if (any_changed(right_, wanted)) return locate(stepper, to, wanted);
+    if (any_changed(right_, wanted)) {
+      look_beyond(stepper, from, to, departure);
+      return locate(stepper, to, wanted);
+    }
+    note_returns(right_);
     pass(right_);
     std::swap(left_, right_);
   }
   std::fill(zero_band_.begin(), zero_band_.end(), 0.0);
   leaving_zero_ = false;
   return Found::nothing;
+}
+
+/// Whether what changed at the last look has changed back at this one.
+void EventFinder::note_returns(const Sample& sample) {
+  for (size_t i = 0; i < sign_.size(); ++i) {
+    const bool flips = sign_of(sample.value[i]) * sign_[i] < 0;
+    if (flips && flipped_[i]) ++narrow_[i];
+    flipped_[i] = flips;
+  }
+}
+
+/// Before an event is located, which ends the step: whether the next look would see its crossing back.
+void EventFinder::look_beyond(Stepper& stepper, double from, double to, double departure) {
+  note_returns(right_);
+  if (leaving_zero_ || right_.t >= to) return;
+  std::swap(left_.t, right_.t);  // next_sample looks on from the left end
+  const double next = next_sample(from, to, departure);
+  std::swap(left_.t, right_.t);
+  if (look(stepper, next, trial_) != Found::nothing) return;
+  for (size_t i = 0; i < sign_.size(); ++i)
+    if (flipped_[i] && sign_of(trial_.value[i]) * sign_[i] > 0) ++narrow_[i];
+}
+
+void EventFinder::archive(StateArchive& a) {
+  a.members(sign_, zero_band_, side_, flipped_, narrow_, leaving_zero_, left_.t, left_.x, left_.value);
 }
 
 /// Where the first crossing goes through zero by the secant; the weights are those of the Illinois method.

@@ -8,6 +8,7 @@
 
 namespace loopwright {
 
+class StateArchive;
 class Stepper;
 
 /// Keeps for every crossing the sign it last had, so that a value of exactly zero is neither lost nor counted
@@ -40,6 +41,12 @@ class EventFinder {
   /// Says that nothing has fired since the last scan.
   void clear_fired();
 
+  /// How often each crossing went through zero and back between two looks, with one look in between: as often
+  /// it may have done so between looks, unseen.
+  std::span<const int64_t> narrow_passages() const { return narrow_; }
+
+  void archive(StateArchive& a);
+
  private:
   /// The solution and its crossing values at one time.
   struct Sample {
@@ -52,6 +59,8 @@ class EventFinder {
   bool changed(size_t crossing, const Sample& sample, const Crossing* wanted) const;
   bool any_changed(const Sample& sample, const Crossing* wanted) const;
   void pass(const Sample& sample);
+  void note_returns(const Sample& sample);
+  void look_beyond(Stepper& stepper, double from, double to, double departure);
   double next_sample(double from, double to, double& departure) const;
   double secant(double left_weight, double right_weight, const Crossing* wanted) const;
   Found locate(Stepper& stepper, double to, const Crossing* wanted);
@@ -62,6 +71,8 @@ class EventFinder {
   int samples_per_step_;
   std::vector<int8_t> sign_;       ///< the last sign that was not zero; 0: none yet
   std::vector<int8_t> fired_;      ///< at the last event: +1 rose, -1 fell
+  std::vector<int8_t> flipped_;    ///< whether it changed its sign at the last look
+  std::vector<int64_t> narrow_;    ///< how often it changed back at the next
   std::vector<double> zero_band_;  ///< a crossing that just fired counts as zero up to this size
   std::vector<int8_t> side_;       ///< of zero on which it stood, within that band, at the restart
   bool leaving_zero_ = false;      ///< some crossing has just fired and has no sign yet

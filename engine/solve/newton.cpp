@@ -75,6 +75,7 @@ struct NewtonSolver::Work {
   double size(size_t i) const { return std::fmax(std::fabs(y[i]), negligible_part * typical[i]); }
   bool evaluate(const double* at, double* into);
   bool difference_quotients(double* at, const double* value, SUNMatrix into, double* trial);
+  bool is_determined();
   double evaluate_beside(double* at, size_t j, double distance, double* trial);
   NewtonStatus status_of(int flag) const;
   static int residual_function(N_Vector y, N_Vector residual, void* self);
@@ -85,7 +86,8 @@ struct NewtonSolver::Work {
   const size_t n;
   const double tolerance;
   const std::vector<double> typical;
-  std::vector<double> y, scale, residual;
+  std::vector<double> y, scale, residual, beside, weight;
+  bool was_determined = false;                      ///< some solution has been looked at
   NewtonStatus trouble = NewtonStatus::non_finite;  ///< of the last failed evaluation
   int evaluations = 0;
 
@@ -104,7 +106,9 @@ NewtonSolver::Work::Work(const NewtonOptions& options, const AlgebraicSystem& sy
       typical(options.typical.empty() ? std::vector<double>(n, 1.0) : options.typical),
       y(n),
       scale(n, 1.0),
-      residual(n) {
+      residual(n),
+      beside(n),
+      weight(n * n) {
   const auto length = static_cast<sunindextype>(n);
   y_vector = own(N_VMake_Serial(length, y.data(), context.get()));
   scale_vector = own(N_VMake_Serial(length, scale.data(), context.get()));
@@ -163,6 +167,38 @@ bool NewtonSolver::Work::difference_quotients(double* at, const double* value, S
       for (size_t i = 0; i < n; ++i) {
         column[i] = (trial[i] - value[i]) / increment;
         moved = moved || column[i] != 0.0;
+      }
+    }
+  }
+  return true;
+}
+
+/// Whether the solution is the only one nearby: the Jacobian there has full rank. Gaussian elimination; a
+/// pivot counts as zero where it is lost in the rounding of the difference quotients that it was made of.
+bool NewtonSolver::Work::is_determined() {
+  constexpr double lost = 1e-7;  // difference quotients have half of a double's digits
+  if (!difference_quotients(y.data(), residual.data(), jacobian.get(), beside.data()))
+    return true;  // not to be told here
+  double** const column = SUNDenseMatrix_Cols(jacobian.get());
+  const auto weight_at = [&](size_t i, size_t j) -> double& { return weight[j * n + i]; };
+  for (size_t j = 0; j < n; ++j)  // the residual is a difference: G(y) - y
+    for (size_t i = 0; i < n; ++i)
+      weight_at(i, j) = i == j ? std::fabs(column[j][i] + 1.0) + 1.0 : std::fabs(column[j][i]);
+  for (size_t k = 0; k < n; ++k) {
+    size_t best = k;
+    double share = 0.0;
+    for (size_t i = k; i < n; ++i) {
+      const double part = weight_at(i, k) > 0.0 ? std::fabs(column[k][i]) / weight_at(i, k) : 0.0;
+      if (part > share) share = part, best = i;
+    }
+    if (!(share > lost)) return false;
+    for (size_t j = k; j < n; ++j)
+      std::swap(column[j][k], column[j][best]), std::swap(weight_at(k, j), weight_at(best, j));
+    for (size_t i = k + 1; i < n; ++i) {
+      const double factor = column[k][i] / column[k][k];
+      for (size_t j = k; j < n; ++j) {
+        column[j][i] -= factor * column[j][k];
+        weight_at(i, j) += std::fabs(factor) * weight_at(k, j);
       }
     }
   }
@@ -230,6 +266,11 @@ NewtonResult NewtonSolver::Work::solve(std::span<double> guess) {
     measure(result);
     if (result.residual_norm <= tolerance) result.status = NewtonStatus::converged;
     if (flag < 0 || result.status == NewtonStatus::converged) break;
+  }
+  // A guess that is a solution at once has met no Jacobian yet.
+  if (result.status == NewtonStatus::converged && (result.iterations == 0 || !was_determined)) {
+    was_determined = is_determined();
+    if (!was_determined) result.status = NewtonStatus::singular_jacobian;
   }
   result.evaluations = evaluations;
   if (result.status == NewtonStatus::converged) std::copy_n(y.begin(), n, guess.begin());

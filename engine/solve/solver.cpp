@@ -119,6 +119,14 @@ void Solver::stand_at_restart(double t) {
   trials_at_stop_ = statistics().trials();
 }
 
+bool Solver::can_be_archived() const { return x_ == stepper_->x_end() && stepper_->can_be_archived(); }
+void Solver::archive(StateArchive& a) {
+  stepper_->archive(a);
+  events_.archive(a);
+  a.members(t_, signs_known_, trials_at_stop_);
+  if (a.reads()) x_ = stepper_->x_end();
+}
+
 double Solver::step_begin() const { return stepper_->t_begin(); }
 void Solver::interpolate(double t, double* x) const { stepper_->interpolate(t, x); }
 int Solver::worst_state() const { return stepper_->worst_state(); }

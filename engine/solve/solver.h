@@ -24,6 +24,7 @@
 
 namespace loopwright {
 
+class StateArchive;
 class Stepper;
 
 /// Below this the estimated error of a step is mostly rounding.
@@ -119,6 +120,16 @@ class Solver {
 
   /// After an event, for each crossing: +1 it rose through zero, -1 it fell, 0 neither.
   std::span<const int8_t> fired() const { return events_.fired(); }
+
+  /// How often each crossing was seen on the other side of zero at one look alone, of several in a step:
+  /// where that happens, shorter passages may have been missed.
+  std::span<const int64_t> narrow_passages() const { return events_.narrow_passages(); }
+
+  /// Whether the solution can be set aside here. CVODE keeps its history to itself: only after a restart.
+  bool can_be_archived() const;
+  /// Writes, or reads, all that the rest of the solution depends on; a solver of the same options and system
+  /// then goes on with the same bits.
+  void archive(StateArchive& a);
 
   /// The state with the largest weighted error in the last tried step, so that a message can name its block;
   /// -1: none.

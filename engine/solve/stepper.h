@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/solve/solver.h"
+#include "engine/solve/state_archive.h"
 
 namespace loopwright {
 
@@ -54,6 +55,17 @@ class Stepper {
   }
 
   virtual int worst_state() const = 0;
+
+  /// Whether the solution can be set aside where it stands, and go on elsewhere with the same bits.
+  virtual bool can_be_archived() const { return false; }
+  /// Everything that the next steps depend on.
+  virtual void archive(StateArchive& a) {
+    auto& s = statistics;
+    a.members(t_begin_, t_end_, x_begin_, x_end_);
+    a.members(s.steps, s.error_test_failures, s.convergence_failures, s.derivative_evaluations,
+              s.jacobian_evaluations, s.crossing_evaluations, s.restarts, s.events, s.stiff_steps, s.stiff,
+              s.stiffest_state, s.smallest_step);
+  }
 
   double t_begin() const { return t_begin_; }
   double t_end() const { return t_end_; }

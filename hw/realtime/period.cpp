@@ -1,6 +1,7 @@
 #include "hw/realtime/period.h"
 #include <fmt/format.h>
 #include <algorithm>
+#include "engine/run/fault_text.h"
 
 namespace loopwright::hw {
 
@@ -41,16 +42,11 @@ void PeriodStepper::finish() noexcept {
   const int64_t end = run_.now().tick + hardware_.period_ticks;
   run_.update(due_);
   int64_t next = std::min(end, run_.next_due());
-  if (plan.states > 0) next = std::min(next, run_.now().tick + plan.step_ticks);
+  if (plan.steps_between_samples) next = std::min(next, run_.now().tick + plan.step_ticks);
   run_.integrate(next - run_.now().tick);
   while (run_.now().tick < end) run_.step_fixed(end, false, [] {});  // what is faster than the period
 }
 
-std::string PeriodStepper::fault() const {
-  const FaultReport& fault = run_.fault();
-  return fmt::format("\"{}\" stopped the run at t = {:g} s: {}",
-                     fault.block < 0 ? "?" : run_.plan().blocks[size_t(fault.block)].path, run_.now().time,
-                     fault.reason);
-}
+std::string PeriodStepper::fault() const { return fault_text(run_.plan(), run_.fault(), run_.now().time); }
 
 }  // namespace loopwright::hw

@@ -115,10 +115,17 @@ void BlockUnderTest::accept() { call(type_.kernels.accept); }
 void BlockUnderTest::crossings() { call(type_.kernels.crossings); }
 bool BlockUnderTest::jump() {
   connect();
-  return type_.kernels.jump && type_.kernels.jump(call_) != 0;
+  uint64_t jumped = 0;
+  call_.jumped = &jumped;
+  if (type_.kernels.jump) type_.kernels.jump(call_);
+  return jumped != 0;
 }
 double BlockUnderTest::next_stop(double now) const {
   return info().next_stop ? info().next_stop(block_, now) : infinity;
+}
+
+double BlockUnderTest::shortest_period() const {
+  return info().shortest_period ? info().shortest_period(block_) : infinity;
 }
 
 void BlockUnderTest::compute_outputs() {

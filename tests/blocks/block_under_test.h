@@ -54,6 +54,7 @@ class BlockUnderTest {
   bool jump();
   void crossings();
   double next_stop(double now) const;
+  double shortest_period() const;
   /// Why a method refused since the start, or nothing.
   std::string_view fault() const { return fault_.reason; }
 

@@ -31,6 +31,21 @@ TEST(TransportDelay, TheFirstPieceHoldsInsideAStepThatEndsAtTheDelay) {
   EXPECT_EQ(block.output("y"), 0);
 }
 
+/// On a grid that holds the delay each value comes back with its bits, however late it is.
+TEST(TransportDelay, GivesBackWhatItTookOnAGrid) {
+  BlockUnderTest block("TransportDelay", R"({"delay": 0.007, "initial": -1})");
+  const auto value = [](int64_t tick) { return double(tick % 13 * (tick % 5)) / 7; };
+  for (const int64_t from : {int64_t(0), int64_t(1'000'000'000)}) {
+    block.restart();
+    for (int64_t tick = from; tick < from + 5000; ++tick) {
+      block.input("u") = value(tick);
+      block.evaluate(double(tick) / 1000, tick);
+      block.accept();
+      ASSERT_EQ(block.output("y"), tick < from + 7 ? -1 : value(tick - 7)) << tick;
+    }
+  }
+}
+
 TEST(TransportDelay, ReproducesStraightLinesExactly) {
   BlockUnderTest block("TransportDelay", R"({"delay": 0.25, "points": 10})");
   const auto line = [](double t) { return 3 * t - 1; };

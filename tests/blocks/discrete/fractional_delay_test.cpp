@@ -40,6 +40,18 @@ TEST(FractionalDelay, WholeSamplesAreThoseOfADelay) {
   EXPECT_EQ(late.fault(), "");
 }
 
+TEST(FractionalDelay, WholeSamplesOfAnyPeriodAreThose) {
+  for (const int rate : {700, 1000, 3000, 9999})
+    for (int samples = 1; samples < 60; ++samples) {
+      const double delay = double(samples) / rate;
+      BlockUnderTest late("FractionalDelay",
+                          R"({"samples": 100, "delay": )" + reading::number_text(delay) + "}", 1.0 / rate);
+      for (int k = 0; k <= samples + 3; ++k)
+        ASSERT_EQ(late.sample("u", k + 1, "y"), k < samples ? 0 : k - samples + 1) << samples << "/" << rate;
+      EXPECT_EQ(late.output("slope"), 0);
+    }
+}
+
 TEST(FractionalDelay, RefusesADelayThatItHasNoRoomFor) {
   BlockUnderTest late("FractionalDelay", R"({"delay": 0.05, "samples": 3})", 0.01);
   late.sample("u", 1, "y");

@@ -68,6 +68,23 @@ TEST(Chirp, StartsAnewWhenItRepeats) {
   EXPECT_EQ(chirp.next_stop(0.8), 1.5);
 }
 
+TEST(Chirp, BeginsEachSweepOnItsVeryTick) {
+  BlockUnderTest chirp(
+      "Chirp", R"({"from": 100, "to": 200, "duration": 0.007, "repeats": true, "bias": 5, "start": 0.001})");
+  for (const int64_t from : {int64_t(0), int64_t(999'990'000)})
+    for (int64_t tick = from; tick < from + 10'000; ++tick) {
+      chirp.evaluate(double(tick) / 1000, tick);
+      const int64_t phase = (tick + 6) % 7;
+      const double expected = tick < 1 ? 0 : 100 + 100 * double(phase) / 7;
+      ASSERT_NEAR(chirp.output("frequency"), expected, 1e-5) << tick;
+      if (tick >= 1 && phase == 0) {
+        ASSERT_EQ(chirp.output("frequency"), 100) << tick;
+        ASSERT_EQ(chirp.output("y"), 5) << tick;
+      }
+    }
+  EXPECT_EQ(chirp.shortest_period(), 1.0 / 200);
+}
+
 TEST(Chirp, RefusesALogarithmicSweepFromZero) {
   BlockUnderTest chirp("Chirp", R"({"from": 0, "to": 5, "duration": 1, "sweep": "logarithmic"})");
   EXPECT_NE(chirp.problems().text().find("cannot reach 0 Hz"), std::string::npos) << chirp.problems().text();

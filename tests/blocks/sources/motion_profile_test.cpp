@@ -118,6 +118,26 @@ TEST(MotionProfile, EntersANewPieceAtEveryStopThatItAnnounces) {
   EXPECT_NEAR(t, 1000 * 1.1, 1e-9);
 }
 
+/// Ten segments of a tenth, again and again: each begins on its very tick, to a billion samples.
+TEST(MotionProfile, ItsPiecesBeginOnTheirVeryTicks) {
+  std::string segments;
+  for (int i = 0; i < 10; ++i)
+    segments +=
+        std::string(i ? ", " : "") + R"({"duration": 0.1, "velocity": )" + std::to_string(i % 2) + "}";
+  BlockUnderTest motion("MotionProfile",
+                        R"({"shape": "linear", "passes": 0, "start_velocity": 1, "start": 0.3,
+      "segments": [)" + segments +
+                            "]}");
+  for (const int64_t from : {int64_t(3), int64_t(10'000'003)})
+    for (int64_t piece = 0; piece < 200; ++piece) {
+      const int64_t tick = from + piece;  // tenths
+      motion.evaluate(double(tick) / 10, tick);
+      ASSERT_EQ(motion.output("velocity"), piece % 2 ? 0 : 1) << tick;
+      ASSERT_EQ(motion.output("acceleration"), piece % 2 ? 1 / 0.1 : -1 / 0.1) << tick;
+      ASSERT_EQ(motion.next_stop(double(tick) / 10), double(tick + 1) / 10) << tick;
+    }
+}
+
 TEST(MotionProfile, ItsVelocitiesAreTunable) {
   BlockUnderTest motion("MotionProfile", common_job());
   motion.tune("segments.3.velocity", 0.25);

@@ -33,6 +33,14 @@ TEST(Ramp, TellsTheSolverItsKinks) {
   EXPECT_EQ(ramp.next_stop(2), infinity);
 }
 
+TEST(Ramp, BeginsAndEndsAtTheTimesThatWereMeant) {
+  BlockUnderTest ramp("Ramp", R"({"slope": 1, "start": 0.00030000000000000003, "stop": 0.6000000000000001})");
+  EXPECT_EQ(ramp.next_stop(0), 0.0003);
+  EXPECT_EQ(ramp.next_stop(0.0003), 0.6);
+  ramp.evaluate(0.6);
+  EXPECT_EQ(ramp.output("y"), 0.6 - 0.0003);
+}
+
 TEST(Ramp, RefusesToStopBeforeItStarts) {
   BlockUnderTest ramp("Ramp", R"({"slope": 1, "start": 2, "stop": 1})");
   EXPECT_NE(ramp.problems().text().find("stops before it starts"), std::string::npos)

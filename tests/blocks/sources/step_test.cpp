@@ -20,6 +20,14 @@ TEST(Step, HoldsItsValueInsideASolverStep) {
   EXPECT_EQ(step.output("y"), 0);
 }
 
+TEST(Step, JumpsAtTheTimeThatWasMeant) {
+  BlockUnderTest step("Step",
+                      R"({"time": 0.00030000000000000003})");  // 3 * 0.0001, as an expression gives it
+  step.evaluate(0.0003);
+  EXPECT_EQ(step.output("y"), 1);
+  EXPECT_EQ(step.next_stop(0), 0.0003);
+}
+
 TEST(Step, TellsTheSolverWhereItJumps) {
   BlockUnderTest step("Step", R"({"time": 0.5})");
   EXPECT_EQ(step.next_stop(0), 0.5);

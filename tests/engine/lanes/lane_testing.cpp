@@ -72,7 +72,7 @@ Rows scalar_rows(const Plan& plan, const std::vector<TunedParameter>& parameters
   run.reset({plan.seed, lane});
   Rows rows;
   run_fixed_steps(
-      run, run.now().tick, [] { return INT64_MAX; },
+      run, run.now().tick,
       [&] {
         rows.values.push_back(run.now().time);
         for (const Plan::Logged& logged : plan.log) rows.values.push_back(run.number(logged.number));

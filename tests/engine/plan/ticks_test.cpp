@@ -18,6 +18,9 @@ TEST(Ticks, ANumberBecomesTheSimplestFractionNearIt) {
   EXPECT_EQ(to_fraction(1e-9), (Fraction{1, 1'000'000'000}));
   EXPECT_EQ(to_fraction(24.84), (Fraction{621, 25}));
   EXPECT_EQ(to_fraction(1e6), (Fraction{1'000'000, 1}));
+  EXPECT_EQ(to_fraction(1e12), (Fraction{1'000'000'000'000, 1}));
+  EXPECT_EQ(to_fraction(1e9 + 0.001), (Fraction{1'000'000'000'001, 1000})) << "a millisecond is not lost";
+  EXPECT_EQ(to_fraction(1e11 + 0.25), (Fraction{400'000'000'001, 4}));
 }
 
 TEST(Ticks, EveryReciprocalOfAWholeRateIsExact) {
@@ -33,7 +36,7 @@ TEST(Ticks, RoundingOfAQuotientDoesNotMatter) {
 }
 
 TEST(Ticks, WhatIsNoTimeHasNoFraction) {
-  for (double x : {-1.0, std::nan(""), std::numeric_limits<double>::infinity(), -0.5e-300, 1e10, 1e-10})
+  for (double x : {-1.0, std::nan(""), std::numeric_limits<double>::infinity(), -0.5e-300, 1e13, 1e-10})
     EXPECT_FALSE(to_fraction(x)) << x;
 }
 

@@ -34,7 +34,7 @@ TEST(Snapshot, OfTheArenaRestoresEveryBlockBitByBit) {
     const int64_t tick = run.now().tick;
     const auto first = steps(run, 30);
     std::memcpy(run.arena().data(), arena.data(), arena.size());
-    run.restored(tick);
+    run.restored({plan.clock.time(tick), tick});
     EXPECT_TRUE(steps(run, 30) == first) << file;
   }
 }
@@ -46,7 +46,7 @@ TEST(Snapshot, GoesOnInAnotherRunOfTheSamePlan) {
     ScalarRun one(plan), other(plan);
     steps(one, 30);
     std::memcpy(other.arena().data(), one.arena().data(), one.arena().size());
-    other.restored(one.now().tick);
+    other.restored(one.now());
     EXPECT_TRUE(steps(other, 30) == steps(one, 30))
         << file << ": something mutable lies outside of the arena";
   }

@@ -93,7 +93,7 @@ TEST(Newton, AWarmStartCostsOneEvaluationOrTwo) {
   const NewtonResult again = solver.solve(y);
   EXPECT_EQ(again.status, NewtonStatus::converged);
   EXPECT_EQ(again.iterations, 0);
-  EXPECT_LE(again.evaluations, 2);
+  EXPECT_LE(again.evaluations, 3) << "one an unknown tells whether the solution is the only one nearby";
   EXPECT_EQ(y[0], solution);
 }
 
