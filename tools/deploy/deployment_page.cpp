@@ -43,6 +43,7 @@ std::vector<Count> counts(const hw::LoopStatistics& s) {
           {"clamped", "Values clamped", s.clamped},
           {"rate_limited", "Values limited in their rate", s.rate_limited},
           {"dropped_rows", "Rows of the log dropped", s.dropped_rows},
+          {"log_delay_max_s", "Longest wait of a row for the log (s)", s.longest_log_delay_s},
           {"watchdog_min_margin_s", "Least margin to the watchdog (s)", s.least_watchdog_margin_s}};
 }
 
@@ -162,8 +163,7 @@ report::Page deployment_page(const Plan& plan, const hw::DeployResult& result) {
   for (report::Plot& plot : scopes(result.recording)) signals.items.push_back(std::move(plot));
   page.sections.push_back(std::move(signals));
   report::Table accounts{{"Account", "Value"}, {}, ""};
-  for (const auto& [key, title, value] : counts(s))
-    accounts.rows.push_back({title, value.dump()});
+  for (const auto& [key, title, value] : counts(s)) accounts.rows.push_back({title, value.dump()});
   report::Table blocks{{"Block", "mean (us)", "longest (us)"}, {}, "Slowest first."};
   for (const hw::BlockTime& block : s.blocks)
     blocks.rows.push_back(
