@@ -3,9 +3,11 @@
 #pragma once
 #include <cstdio>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "engine/json/problem.h"
+#include "engine/record/atomic_file.h"
 #include "engine/record/recording.h"
 
 namespace loopwright {
@@ -39,6 +41,21 @@ Recording parse_csv(std::shared_ptr<const SourceFile> source, Problems& problems
 /// The file appears whole or not at all. Throws std::runtime_error when it cannot be written (see
 /// atomic_file.h), std::invalid_argument when the recording is not well formed (see check_recording).
 void write_csv(const std::string& path, const Recording& recording);
+
+/// The same file row by row, for recordings that are longer than memory. Without commit() the target stays as
+/// it was.
+class CsvWriter {
+ public:
+  /// `heading`: columns and facts; its values are not written.
+  CsvWriter(const std::string& path, const Recording& heading);
+  /// A number for each column.
+  void add(std::span<const double> row);
+  void commit();
+
+ private:
+  AtomicFile file_;
+  std::string text_;  // not yet handed over
+};
 
 /// The same text to an open stream, such as standard output. Throws std::runtime_error when it takes no more.
 void print_csv(std::FILE* stream, const Recording& recording);

@@ -47,10 +47,11 @@ std::string header(const Recording& recording) {
   return text += '\n';
 }
 
+constexpr size_t chunk = 1 << 20;  // [bytes] bounds the memory; longer writes are not faster
+
 /// Hands the text to `write(std::string_view)` in pieces.
 template <class Write> void put(const Recording& recording, Write&& write) {
   check_recording(recording);
-  constexpr size_t chunk = 1 << 20;  // bounds the memory; longer writes are not faster
   std::string text = header(recording);
   for (size_t row = 0; row < recording.rows(); ++row) {
     for (const Column& column : recording.columns) {
@@ -72,6 +73,28 @@ void write_csv(const std::string& path, const Recording& recording) {
   AtomicFile file(path);
   put(recording, [&](std::string_view text) { file.write(text); });
   file.commit();
+}
+
+CsvWriter::CsvWriter(const std::string& path, const Recording& heading) : file_(path) {
+  check_recording(heading);
+  text_ = header(heading);
+}
+
+void CsvWriter::add(std::span<const double> row) {
+  for (const double value : row) {
+    append_number(text_, value);
+    text_ += ',';
+  }
+  text_.back() = '\n';
+  if (text_.size() < chunk) return;
+  file_.write(text_);
+  text_.clear();
+}
+
+void CsvWriter::commit() {
+  file_.write(text_);
+  text_.clear();
+  file_.commit();
 }
 
 void print_csv(std::FILE* stream, const Recording& recording) {

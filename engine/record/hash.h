@@ -24,4 +24,9 @@ class ContentHash {
 /// The hash of all these bytes as 16 hexadecimal digits.
 std::string content_hash(std::string_view bytes);
 
+/// CRC-32C, which finds every damage of up to 32 bits in a row: the remainder by the Castagnoli polynomial,
+/// reflected 0x82f63b78, as RFC 3720 has it ("123456789" → 0xe3069283). `before`: the result for the bytes in
+/// front of these.
+uint32_t crc32c(std::string_view bytes, uint32_t before = 0);
+
 }  // namespace loopwright

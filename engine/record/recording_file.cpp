@@ -53,4 +53,6 @@ bool is_recording_path(const std::string& path) {
   return end == ".csv" || end == ".mat";
 }
 
+bool is_csv_path(const std::string& path) { return extension(path) == ".csv"; }
+
 }  // namespace loopwright

@@ -18,5 +18,7 @@ void write_recording(const std::string& path, const Recording& recording);
 /// Whether write_recording() knows what to do, so that a program can refuse the path before it computes for
 /// hours.
 bool is_recording_path(const std::string& path);
+/// The same of CSV alone, which can be written row by row.
+bool is_csv_path(const std::string& path);
 
 }  // namespace loopwright

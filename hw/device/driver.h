@@ -18,6 +18,9 @@ struct Capabilities {
   bool has_watchdog = false;  ///< of its own, beyond this program
   bool detects_lost = false;  ///< tells when a sample was dropped
   bool reads_back = false;    ///< a write is answered, so that safe outputs can be confirmed
+  /// emergency_stop() works while another thread hangs anywhere in the driver, with any lock held. False: it
+  /// is tried, with a limit of time, and only the watchdog is certain.
+  bool is_reentrant = false;
 };
 
 /// Facts that come with a sample.
@@ -52,6 +55,11 @@ class Driver {
   virtual Status kick() noexcept = 0;
   /// Ends a blocked read. Called from another thread; async-signal-safe.
   virtual void request_stop() noexcept = 0;
+  /// After a crash of the process: puts out `safe` (raw, an output each) at once, with what is already open
+  /// and resolved. Called in any state, from a thread that is not the loop's, while that may stand anywhere
+  /// in this driver or be dead; in the worst case from a signal handler. So it allocates, locks and waits for
+  /// nothing of its own.
+  virtual void emergency_stop(std::span<const double> safe) noexcept = 0;
 
   // The end: every step is attempted, whatever failed before; may be called in any state, and again.
   /// Ends sampling; the outputs stay as they are.

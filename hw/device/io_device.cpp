@@ -186,7 +186,18 @@ Status IoDevice::write(std::span<const double> values) noexcept {
     applied_[i] = value;
     raw_out_[i] = output.volts(value);
   }
-  return latch(driver_->write(raw_out_));
+  return latch(send(raw_out_));
+}
+
+/// A value that was on its way when the emergency came must not be the last one.
+Status IoDevice::send(std::span<const double> raw) noexcept {
+  const Status status = driver_->write(is_emergency_ ? raw_safe_ : raw);
+  return is_emergency_ ? driver_->write(raw_safe_) : status;
+}
+
+void IoDevice::emergency_stop() noexcept {
+  is_emergency_ = true;
+  driver_->emergency_stop(raw_safe_);
 }
 
 Status IoDevice::kick() noexcept {

@@ -53,6 +53,10 @@ class IoDevice {
   /// From any thread or signal handler: the next read answers `stopped`.
   void request_stop() noexcept { driver_->request_stop(); }
 
+  /// After a crash, from a thread that does not use the device otherwise: sends the safe values, and from
+  /// then on nothing else leaves, whatever the loop writes.
+  void emergency_stop() noexcept;
+
   /// Sends the safe values now; the device goes on sampling.
   Status safe_outputs() noexcept;
   /// Safe values, end of sampling, safe values again; the watchdog stays armed unless they were confirmed.
@@ -78,12 +82,14 @@ class IoDevice {
   Status take_sample(Sample& sample) noexcept;
   Status refuse(size_t i, Reading reading) noexcept;
   bool may_hold(const Input& input, Reading reading) const noexcept;
+  Status send(std::span<const double> raw) noexcept;
   bool send_safe() noexcept;
 
   std::shared_ptr<const DeviceDescription> description_;
   std::unique_ptr<Driver> driver_;
   Stage stage_ = Stage::closed;
   Status fault_;
+  std::atomic<bool> is_emergency_ = false;
   OutputsSafe outputs_safe_ = OutputsSafe::confirmed;  // nothing was sent yet
   bool has_written_ = false, is_stopped_ = false;
   double period_s_ = 0;

@@ -41,7 +41,8 @@ class QuanserDriver final : public Driver {
 
   Capabilities capabilities() const override {
     return {device_->clock.source == ClockSource::device, device_->watchdog.timeout > 0,
-            device_->clock.source == ClockSource::device, true};
+            device_->clock.source == ClockSource::device, true,
+            false};  // the vendor does not say what may be called at the same time
   }
 
   Status open() override {
@@ -74,6 +75,11 @@ class QuanserDriver final : public Driver {
   void request_stop() noexcept override {
     is_asked_to_stop_ = true;
     if (task_) call().hil_task_stop(task_);
+  }
+
+  void emergency_stop(std::span<const double> safe) noexcept override {
+    if (card_ && !outputs_.empty())
+      call().hil_write_analog(card_, outputs_.data(), uint32_t(outputs_.size()), safe.data());
   }
 
   void stop_sampling() noexcept override {

@@ -51,6 +51,7 @@ class ControlLoop {
   bool step() noexcept;
   Status write() noexcept;
   bool account_for(int64_t lateness_ns, int64_t step_ns) noexcept;
+  void wait_for_log() const noexcept;
   bool end_with(LoopEnd::Why why, Status status = {}) noexcept {
     end_ = {why, status};
     return false;
@@ -62,7 +63,7 @@ class ControlLoop {
   LogRing& log_;
   std::span<const LogColumn> columns_;
   PeriodStepper stepper_;
-  const bool device_is_clock_;
+  const bool device_is_clock_, is_simulated_;
   const int64_t period_ns_;
   std::vector<double> inputs_, outputs_, row_;
   std::vector<BlockSum> block_sums_;

@@ -1,40 +1,43 @@
 #include "hw/realtime/deploy.h"
 #include <fmt/format.h>
 #include <pthread.h>
+#include <unistd.h>
 #include <chrono>
 #include <csignal>
+#include <cstring>
 #include <semaphore>
-#include <thread>
 #include "hw/realtime/control_loop.h"
+#include "hw/realtime/log_writer.h"
+#include "hw/realtime/stop_signals.h"
+#include "hw/realtime/threads.h"
 
 namespace loopwright::hw {
 namespace {
 
 using namespace std::chrono_literals;
 
-/// SIGINT, SIGTERM and SIGHUP wait in line for whoever asks, in every thread that is started while this
-/// lives.
-class BlockedSignals {
- public:
-  BlockedSignals() {
-    sigemptyset(&set_);
-    for (int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&set_, signal);
-    pthread_sigmask(SIG_BLOCK, &set_, &before_);
-  }
-  ~BlockedSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-  /// The signal that came within the time; 0: none.
-  int wait(std::chrono::nanoseconds most) const {
-    const timespec time{most.count() / 1'000'000'000, most.count() % 1'000'000'000};
-    return std::max(0, sigtimedwait(&set_, nullptr, &time));
-  }
+/// After a stop was asked for, the loop has so long to follow; then the next signal ends the process.
+constexpr int64_t longest_stop_ns = 2'000'000'000;
+/// The disk has so long to take the end of the log, as long as nobody asks again.
+constexpr int64_t longest_wait_for_disk_ns = 60'000'000'000;
 
- private:
-  sigset_t set_, before_;
-};
+size_t rows_of_run(const Plan& plan, const Hardware& hardware) {
+  return size_t((plan.stop_tick - plan.start_tick) / hardware.period_ticks + 1);
+}
+size_t rows_of_ring(const Plan& plan, const Hardware& hardware, size_t columns, size_t most_bytes) {
+  const size_t most = std::max<size_t>(1, most_bytes / (columns * sizeof(double)));
+  return std::clamp<size_t>(rows_of_run(plan, hardware), 1, most);
+}
 
-size_t rows_of_log(const Plan& plan, const Hardware& hardware, size_t columns, size_t most_bytes) {
-  const auto rows = size_t((plan.stop_tick - plan.start_tick) / hardware.period_ticks + 1);
-  return std::clamp<size_t>(rows, 1, std::max<size_t>(1, most_bytes / (columns * sizeof(double))));
+/// What an exception says that nobody expected.
+std::string text_of_exception() {
+  try {
+    throw;
+  } catch (const std::exception& e) {
+    return e.what();
+  } catch (...) {
+    return "an unknown exception";
+  }
 }
 
 class Deployment {
@@ -46,57 +49,110 @@ class Deployment {
         options_(options),
         is_simulated_(device.description().clock.time == Time::simulated),
         columns_(log_columns(plan, hardware)),
-        log_(columns_.size(), rows_of_log(plan, hardware, columns_.size(), options.log_bytes)),
-        loop_(plan, hardware, device, clock(), log_, columns_) {
-    for (const LogColumn& column : columns_) {
+        ring_(std::make_shared<LogRing>(columns_.size(),
+                                        rows_of_ring(plan, hardware, columns_.size(), options.ring_bytes))),
+        loop_(plan, hardware, device, clock(), *ring_, columns_) {
+    for (const LogColumn& column : columns_)
       result_.recording.columns.push_back({column.name, column.unit, {}});
-      result_.recording.columns.back().values.reserve(
-          rows_of_log(plan, hardware, columns_.size(), options.log_bytes));
-    }
+    auto& facts = result_.recording.facts;
+    facts.emplace_back("title", plan_.title);
+    facts.emplace_back("plan", plan_.hash);
+    facts.emplace_back("seed", fmt::format("{}", plan_.seed));
+    facts.emplace_back("device", device_.description().path);
+    for (const auto& [name, value] : plan_.parameters) facts.emplace_back("parameter " + name, value);
+    const std::string log =
+        options.journal.empty()
+            ? ""
+            : fmt::format("; the log: loopwright recover {} -o FILE.csv", options.journal);
+    const std::string_view ends[] = {"the device took the safe values and is closed",
+                                     "the device's watchdog put out its safe values; the device is closed",
+                                     "safe values were sent, but nobody knows whether they were taken"};
+    for (const std::string_view end : ends) last_words_.push_back(fmt::format("{}{}", end, log));
   }
 
   DeployResult run() {
-    const BlockedSignals signals;
+    const StopSignals signals;
+    const HandlerStack stack;
     SystemRequest request = options_.system;
     if (is_simulated_) request = {0, -1, false};  // nothing is to be on time
     const RealTimeProcess process(request, result_.system);
-    std::thread loop([&] { run_loop(request); });
-    is_prepared_.acquire();
-    if (set_up()) {
-      std::thread monitor([&] { watch(signals); });
-      may_begin_.release();
-      follow();
-      monitor.join();
-    } else {
-      is_called_off_ = true;
-      may_begin_.release();
+    make_log();
+    CrashGuard guard;
+    const GuardedThread watcher([&] { watch(signals, guard, request.priority); }, [&] { is_over_ = true; });
+    try {
+      const GuardedThread loop([&] { run_loop(request); }, [&] { call_off(); });
+      is_prepared_.acquire();
+      if (set_up()) {
+        tell_to(Begin::go);
+        follow();
+      }
+    } catch (...) {
+      fail(fmt::format("stopped by an exception: {}", text_of_exception()));
     }
-    loop.join();
-    device_.close();
+    {
+      const DeviceUser::Use use(device_user_);
+      device_.close();
+    }
+    is_closed_ = true;
     finish();
     return std::move(result_);
   }
 
  private:
+  enum class Begin : uint8_t { waits, go, called_off };
+
   Clock& clock() {
     if (options_.clock) return *options_.clock;
     return is_simulated_ ? static_cast<Clock&>(simulated_clock_) : computer_clock_;
   }
 
+  void make_log() {
+    if (options_.journal.empty())
+      sink_ = memory_ = std::make_shared<MemorySink>(
+          result_.recording, options_.keeps_log ? options_.memory_bytes : 0, rows_of_run(plan_, hardware_));
+    else
+      sink_ = std::make_shared<JournalSink>(options_.journal, result_.recording);
+    writer_ = std::make_unique<LogWriter>(ring_, sink_);
+  }
+
+  void tell_to(Begin what) {
+    Begin waits = Begin::waits;
+    begin_.compare_exchange_strong(waits, what);
+    begin_.notify_all();
+  }
+  /// Ends the loop's thread, wherever it is.
+  void call_off() {
+    tell_to(Begin::called_off);
+    if (!has_ended_) loop_.request_stop();
+  }
+
   /// The real-time thread, from its scheduling to its safe outputs.
-  void run_loop(const SystemRequest& request) {
-    make_thread_real_time(request, result_.system);
-    loop_.warm_up();
-    is_prepared_.release();
-    may_begin_.acquire();
-    if (is_called_off_) return;
-    started_ = device_.start(hardware_.period_s);
-    if (started_.ok()) {
-      if (options_.loop_begins) options_.loop_begins();
-      loop_.run();
-      if (options_.loop_ends) options_.loop_ends();
+  void run_loop(const SystemRequest& request) noexcept {
+    const HandlerStack stack;
+    try {
+      make_thread_real_time(request, result_.system);
+      loop_.warm_up();
+    } catch (...) {
+      exception_in_loop_ = text_of_exception();
     }
-    result_.outputs_safe = device_.stop();
+    is_prepared_.release();
+    begin_.wait(Begin::waits);
+    if (begin_ == Begin::called_off) return;
+    {
+      const DeviceUser::Use use(device_user_);
+      try {
+        started_ = device_.start(hardware_.period_s);
+        if (started_.ok()) {
+          if (options_.loop_begins) options_.loop_begins();
+          loop_.run();
+          if (options_.loop_ends) options_.loop_ends();
+        }
+      } catch (...) {
+        exception_in_loop_ = text_of_exception();
+      }
+      device_.stop();
+    }
+    has_ended_ = true;
     is_done_.release();
   }
 
@@ -109,80 +165,167 @@ class Deployment {
 
   /// Everything up to the first sample. False: called off, with nothing moved.
   bool set_up() {
-    if (options_.require_real_time && !is_simulated_ && !result_.system.all_granted()) {
-      result_.outputs_safe = OutputsSafe::confirmed;  // nothing was touched
+    if (!exception_in_loop_.empty()) return fail("the loop cannot be prepared: " + exception_in_loop_);
+    if (options_.require_real_time && !is_simulated_ && !result_.system.all_granted())
       return fail("the system does not grant what a loop in real time needs:\n" + to_text(result_.system));
-    }
+    const DeviceUser::Use use(device_user_);
     Status status = device_.open();
-    if (status.ok()) status = device_.preset();
     result_.device = device_.facts();
-    if (!status.ok()) {
-      const std::string what = device_.describe(status);
-      result_.outputs_safe = device_.stop();
-      return fail(fmt::format("{} cannot be set up: {}", device_.description().path, what), status);
+    result_.device.push_back(fact_about_crashes());
+    if (status.ok()) {
+      tell_ready();
+      status = device_.preset();
     }
-    if (options_.ready) {
-      std::vector<std::string> lines = result_.device;
-      for (const Granted& item : result_.system.items)
-        lines.push_back(fmt::format("{}: {}", item.what, item.answer));
-      options_.ready(lines);
-    }
-    return true;
+    if (status.ok()) return true;
+    const std::string what = device_.describe(status);
+    device_.stop();
+    return fail(fmt::format("{} cannot be set up: {}", device_.description().path, what), status);
   }
 
-  /// Signals, and reads that do not return.
-  void watch(const BlockedSignals& signals) {
+  void tell_ready() {
+    if (!options_.ready) return;
+    std::vector<std::string> lines = result_.device;
+    for (const Granted& item : result_.system.items)
+      lines.push_back(fmt::format("{}: {}", item.what, item.answer));
+    options_.ready(lines);
+  }
+
+  std::string fact_about_crashes() const {
+    const double timeout = device_.description().watchdog.timeout;
+    const Capabilities can = device_.capabilities();
+    const std::string watchdog =
+        can.has_watchdog ? fmt::format("the device's watchdog puts them out after {:g} s", timeout)
+                         : "there is no watchdog: nothing puts them out";
+    return fmt::format("safe values after a crash of this program: {}; after kill -9 or a power cut {}",
+                       can.is_reentrant   ? "sent by the driver"
+                       : can.has_watchdog ? "tried by the driver, which is not re-entrant; else the watchdog"
+                                          : "tried by the driver, which is not re-entrant",
+                       watchdog);
+  }
+
+  // ---- the watcher: signals, reads that do not return, a log that cannot be written, crashes ----
+
+  void watch(const StopSignals& signals, CrashGuard& guard, int priority) noexcept {
+    const HandlerStack stack;
+    // Before the loop, so that a loop that spins cannot keep it away; without the right to, as it is.
+    const sched_param above{std::min(priority + 1, 99)};
+    if (priority > 0) pthread_setschedparam(pthread_self(), SCHED_FIFO, &above);
+    guard.begin_guardian([](void* self) { return static_cast<Deployment*>(self)->stop_in_emergency(); },
+                         this);
     const double usual = is_simulated_ ? 5 : std::max(0.25, 10 * hardware_.period_s);
     const double longest = options_.read_timeout > 0 ? options_.read_timeout : usual;
-    while (!has_ended_) {
-      if (signals.wait(5ms) > 0) loop_.request_stop();
+    while (!is_over_) {
+      if (const int signal = signals.wait(5, guard.descriptor())) take_signal(signal);
+      if (CrashGuard::crashed_thread()) {
+        guard.release(stop_in_emergency());
+        for (;;) pause();  // the process ends
+      }
       if (!has_timed_out_ && 1e-9 * double(loop_.waiting_ns()) > longest)
         has_timed_out_ = true, loop_.request_stop();
+      if (!has_ended_ && log_failure_ == 0 && (log_failure_ = writer_->failure()) != 0) loop_.request_stop();
+    }
+    guard.end_guardian();
+  }
+
+  void take_signal(int signal) noexcept {
+    ++signals_;
+    if (int none = 0; stop_signal_.compare_exchange_strong(none, signal)) {
+      asked_ns_ = wall_ns();
+      loop_.request_stop();
+    } else if (!is_closed_ && wall_ns() - asked_ns_ > longest_stop_ns) {
+      end_by_signal(signal);
     }
   }
 
-  void take_rows() {
-    log_.drain([&](std::span<const double> row) {
-      for (size_t i = 0; i < row.size(); ++i) result_.recording.columns[i].values.push_back(row[i]);
-    });
+  /// Driver or callback hang and follow no request: safe values from here, within a second, then the end.
+  [[noreturn]] void end_by_signal(int signal) noexcept {
+    for (const int by_default : {SIGALRM, signal}) {
+      std::signal(by_default, SIG_DFL);
+      sigset_t set;
+      sigemptyset(&set);
+      sigaddset(&set, by_default);
+      pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+    }
+    alarm(1);
+    device_.emergency_stop();
+    writer_->wait_for_pass(200);
+    raise(signal);
+    _exit(128 + signal);  // somebody ignores it
   }
 
-  /// Empties the log and shows how it goes, until the loop has ended.
+  /// A thread has crashed and waits in its handler, or is the caller in it.
+  const char* stop_in_emergency() noexcept {
+    device_.emergency_stop();
+    loop_.request_stop();  // a healthy loop stops the device itself
+    OutputsSafe safe = OutputsSafe::unknown;
+    if (device_user_.take_over(CrashGuard::crashed_thread(), CrashGuard::patience_ms / 2)) {
+      device_.stop();
+      device_.close();
+      safe = device_.outputs_safe();
+    }
+    writer_->wait_for_pass(3 * LogWriter::every_ms);
+    return last_words_[size_t(safe)].c_str();
+  }
+
+  /// Shows how it goes, until the loop has ended.
   void follow() {
-    int turn = 0;
-    while (!is_done_.try_acquire_for(20ms)) {
-      if (options_.drains_log) take_rows();
-      if (options_.progress && ++turn % 10 == 0) options_.progress(loop_.live());
-    }
-    has_ended_ = true;
-    take_rows();
+    for (int turn = 1; !is_done_.try_acquire_for(20ms); ++turn)
+      if (options_.progress && turn % 10 == 0) options_.progress(loop_.live());
   }
+
+  // ---- afterwards ----
 
   void finish() {
+    result_.outputs_safe = device_.outputs_safe();
     result_.statistics = loop_.statistics();
     result_.time = loop_.stepper().run().now().time;
     if (result_.status == RunStatus::finished) explain_end();
-    auto& facts = result_.recording.facts;
-    facts.emplace_back("title", plan_.title);
-    facts.emplace_back("plan", plan_.hash);
-    facts.emplace_back("seed", fmt::format("{}", plan_.seed));
-    facts.emplace_back("device", device_.description().path);
-    facts.emplace_back("outputs_safe", std::string(to_name(result_.outputs_safe)));
+    Facts facts{{"outputs_safe", std::string(to_name(result_.outputs_safe))}};
     if (result_.status != RunStatus::finished) facts.emplace_back("incomplete", result_.message);
-    for (const auto& [name, value] : plan_.parameters) facts.emplace_back("parameter " + name, value);
+    end_log(facts);
+    result_.statistics.longest_log_delay_s = writer_->longest_delay_s();
+  }
+
+  /// The machine stands; the disk may take its time, but not for ever, nor against a second signal.
+  void end_log(const Facts& facts) {
+    const int64_t begin = wall_ns();
+    const int signals_before = signals_;
+    const bool took_all = writer_->end(facts, [&] {
+      const int64_t waited = wall_ns() - begin;
+      return waited < longest_stop_ns || (signals_ == signals_before && waited < longest_wait_for_disk_ns);
+    });
+    if (took_all && memory_) {
+      result_.recording = std::move(memory_->recording());
+      result_.recording.facts.insert(result_.recording.facts.end(), facts.begin(), facts.end());
+      if (options_.keeps_log) result_.statistics.dropped_rows += memory_->dropped();
+    }
+    if (took_all) return;
+    const int error = writer_->failure();
+    result_.log = error ? LogEnd::failed : LogEnd::stalled;
+    result_.statistics.dropped_rows += int64_t(ring_->waiting());
+    const std::string why = error ? std::strerror(error) : "the disk does not answer";
+    const std::string what = fmt::format("the log could not be written to its end: {}", why);
+    if (result_.status == RunStatus::finished)
+      fail(what);
+    else if (log_failure_ == 0)
+      result_.message += "\n" + what;
   }
 
   void explain_end() {
     using Why = LoopEnd::Why;
     const LoopEnd& end = loop_.end();
     const auto at = fmt::format("at t = {:g} s", result_.time);
-    if (!started_.ok()) {
+    if (!exception_in_loop_.empty()) {
+      fail(fmt::format("an exception in the loop's thread: {}, {}", exception_in_loop_, at));
+    } else if (!started_.ok()) {
       fail(fmt::format("the device does not start: {}", device_.describe(started_)), started_);
     } else if (has_timed_out_) {
       fail(fmt::format("a read of the device did not return, {}", at), {Code::device_fault});
+    } else if (log_failure_ != 0 && end.why == Why::asked) {
+      fail(fmt::format("the log cannot be written: {}; stopped {}", std::strerror(log_failure_), at));
     } else if (end.why == Why::asked) {
       result_.status = RunStatus::interrupted;
-      result_.message = "interrupted " + at;
+      result_.message = fmt::format("interrupted by {} {}", name_of_signal(stop_signal_), at);
     } else if (end.why == Why::status && end.status.code == Code::stopped) {
       fail("the device stopped sampling " + at, end.status);
     } else if (end.why == Why::status) {
@@ -225,13 +368,21 @@ class Deployment {
   MonotonicClock computer_clock_;
   SimulatedClock simulated_clock_;
   std::vector<LogColumn> columns_;
-  LogRing log_;
+  std::shared_ptr<LogRing> ring_;
+  std::shared_ptr<LogSink> sink_;
+  std::shared_ptr<MemorySink> memory_;  // the same, where there is no journal
+  std::unique_ptr<LogWriter> writer_;
   ControlLoop loop_;
   DeployResult result_;
   Status started_;
-  bool is_called_off_ = false;
-  std::binary_semaphore is_prepared_{0}, may_begin_{0}, is_done_{0};
-  std::atomic<bool> has_ended_ = false, has_timed_out_ = false;
+  std::string exception_in_loop_;
+  std::vector<std::string> last_words_;  // by OutputsSafe
+  DeviceUser device_user_;
+  std::binary_semaphore is_prepared_{0}, is_done_{0};
+  std::atomic<Begin> begin_ = Begin::waits;
+  std::atomic<bool> has_ended_ = false, is_closed_ = false, is_over_ = false, has_timed_out_ = false;
+  std::atomic<int> stop_signal_ = 0, signals_ = 0, log_failure_ = 0;
+  std::atomic<int64_t> asked_ns_ = 0;
 };
 
 }  // namespace

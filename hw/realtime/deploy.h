@@ -20,15 +20,20 @@ struct LiveValues {
 struct DeployOptions {
   SystemRequest system;
   bool require_real_time = false;  ///< refuse to move anything unless all of `system` is granted
-  size_t log_bytes =
-      256u << 20;          ///< at most, of the ring between loop and log; the whole run where that fits
-  bool drains_log = true;  ///< off: rows are only taken out at the end
+  /// The log as it grows, see engine/record/journal.h: a file that must not exist yet. Empty: rows are kept
+  /// in memory.
+  std::string journal;
+  bool keeps_log = true;  ///< off: without a journal no row is kept
+  size_t ring_bytes =
+      32u << 20;  ///< at most, between loop and log; rows without room are dropped and counted
+  size_t memory_bytes =
+      256u << 20;  ///< at most, of a log in memory; what comes after that is dropped and counted
   double read_timeout =
       0;  ///< s; 0: ten periods, at least 0.25 s; 5 s in simulated time. A longer read is asked to stop
   Clock* clock = nullptr;  ///< null: the computer's, or the simulation's where the device says so
   std::function<void(const LiveValues&)> progress;  ///< called a few times a second, not in the loop
-  std::function<void(const std::vector<std::string>&)>
-      ready;                        ///< lines about device and system, before it moves
+  /// Lines about device and system, when the device is open and nothing was put out yet.
+  std::function<void(const std::vector<std::string>&)> ready;
   void (*loop_begins)() = nullptr;  ///< in the loop's thread, before the first and after the last cycle
   void (*loop_ends)() = nullptr;
 };
@@ -47,11 +52,19 @@ struct LoopStatistics {
   int64_t longest_gap = 0;      ///< instants in a row without a sample
   int64_t longest_backlog = 0;  ///< periods that a sample had waited
   int64_t glitches = 0, clamped = 0, rate_limited = 0;
-  int64_t dropped_rows = 0;  ///< of the log
+  int64_t dropped_rows = 0;        ///< of the log, because the disk did not take them in time
+  double longest_log_delay_s = 0;  ///< for which a row waited before it was handed to the system
   double least_watchdog_margin_s =
       0;  ///< timeout less the longest time between signs of life; 0: no watchdog
   Histogram lateness, read, step, write, total;
   std::vector<BlockTime> blocks;  ///< slowest first
+};
+
+/// What became of the log.
+enum class LogEnd : uint8_t {
+  whole,
+  failed,  ///< the disk refused it from some row on
+  stalled  ///< the disk does not answer: a thread still waits for it
 };
 
 struct DeployResult {
@@ -60,14 +73,23 @@ struct DeployResult {
   double time = 0;      ///< [s] how far it came
   OutputsSafe outputs_safe = OutputsSafe::unknown;
   Status fault;
-  Recording recording;  ///< one row a period: what the plan logs, then what each axis did, then the accounts
+  /// One row a period: what the plan logs, then what each axis did, then the accounts. Without rows where
+  /// there is a journal.
+  Recording recording;
+  LogEnd log = LogEnd::whole;
   LoopStatistics statistics;
   SystemReport system;
   std::vector<std::string> device;
 };
 
-/// Runs the plan from start to stop on an opened or closed device, in a thread of its own. SIGINT, SIGTERM
-/// and SIGHUP end it within a period. Whatever happens, the device is stopped and closed at the end.
+/// Runs the plan from start to stop on a closed device, in a thread of its own.
+///
+/// Whatever happens, safe values are sent and the device is closed: at the plan's end, at a fault, at any
+/// signal that asks to end (stop_signals.h), when a callback throws, when the log cannot be written, and when
+/// the process crashes (crash_guard.h). A second signal 2 s after the first, with the loop still hanging in
+/// the driver, sends the safe values from another thread and ends the process. What nothing in this process
+/// can survive, SIGKILL and a power cut, is left to the device's watchdog. Throws only before the device is
+/// opened: without threads, or a journal that cannot be made.
 DeployResult deploy(const Plan& plan, const Hardware& hardware, IoDevice& device,
                     const DeployOptions& options = {});
 

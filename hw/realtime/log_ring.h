@@ -13,12 +13,15 @@ class LogRing {
  public:
   LogRing(size_t columns, size_t rows) : columns_(columns), rows_(rows), numbers_(columns * rows) {}
 
+  bool has_room() const noexcept {
+    return end_.load(std::memory_order_relaxed) - begin_.load(std::memory_order_acquire) < rows_;
+  }
   void push(std::span<const double> row) noexcept {
-    const size_t end = end_.load(std::memory_order_relaxed);
-    if (end - begin_.load(std::memory_order_acquire) == rows_) {
+    if (!has_room()) {
       drops_.store(drops_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
       return;
     }
+    const size_t end = end_.load(std::memory_order_relaxed);
     std::memcpy(&numbers_[end % rows_ * columns_], row.data(), columns_ * sizeof(double));
     end_.store(end + 1, std::memory_order_release);
   }
@@ -29,6 +32,11 @@ class LogRing {
       take(std::span<const double>(&numbers_[begin % rows_ * columns_], columns_));
       begin_.store(begin + 1, std::memory_order_release);
     }
+  }
+  size_t columns() const { return columns_; }
+  /// Rows that nobody has taken yet.
+  size_t waiting() const {
+    return end_.load(std::memory_order_acquire) - begin_.load(std::memory_order_acquire);
   }
   int64_t drops() const { return drops_.load(std::memory_order_relaxed); }
 

@@ -5,6 +5,7 @@
 #include <sys/eventfd.h>
 #include <sys/socket.h>
 #include <unistd.h>
+#include <atomic>
 #include <bit>
 #include <cerrno>
 #include <cmath>
@@ -23,7 +24,9 @@ class UdpDriver final : public Driver {
       : device_(std::move(device)), settings_(std::move(settings)) {}
   ~UdpDriver() override { close(); }
 
-  Capabilities capabilities() const override { return {true, device_->watchdog.timeout > 0, true, true}; }
+  Capabilities capabilities() const override {
+    return {true, device_->watchdog.timeout > 0, true, true, true};
+  }
 
   Status open() override {
     socket_ = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
@@ -87,6 +90,11 @@ class UdpDriver final : public Driver {
   void request_stop() noexcept override {
     const uint64_t one = 1;
     [[maybe_unused]] const ssize_t written = ::write(stop_event_, &one, sizeof one);
+  }
+
+  /// Three times, as no answer can be waited for and a packet may be lost.
+  void emergency_stop(std::span<const double> safe) noexcept override {
+    for (int i = 0; i < 3 && socket_ >= 0; ++i) send(Request::command, safe);
   }
 
   void stop_sampling() noexcept override {
@@ -157,7 +165,8 @@ class UdpDriver final : public Driver {
   std::shared_ptr<const DeviceDescription> device_;
   Settings settings_;
   int socket_ = -1, stop_event_ = -1;
-  uint32_t number_ = 0, sequence_ = 0;
+  std::atomic<uint32_t> number_ = 0;
+  uint32_t sequence_ = 0;
   int64_t number_of_sample_ = 0;  // the same, beyond 32 bits
   double period_s_ = 0;
   bool is_sampling_ = false, is_silent_ = false;

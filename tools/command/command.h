@@ -34,6 +34,7 @@ void add_fit(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_gp(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_diagnose(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_deploy(CLI::App& app, std::function<void(std::function<int()>)> choose);
+void add_recover(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_probe(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_linearize(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_stability(CLI::App& app, std::function<void(std::function<int()>)> choose);

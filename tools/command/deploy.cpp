@@ -1,10 +1,16 @@
 #include <fmt/format.h>
 #include <unistd.h>
+#include <cstdio>
+#include <optional>
+#include "engine/record/atomic_file.h"
 #include "engine/record/recording_file.h"
 #include "hw/drivers.h"
+#include "hw/realtime/stop_signals.h"
 #include "tools/command/command.h"
 #include "tools/command/take_over.h"
+#include "tools/deploy/console.h"
 #include "tools/deploy/deployment_page.h"
+#include "tools/deploy/log_file.h"
 
 namespace loopwright {
 namespace {
@@ -13,7 +19,7 @@ struct Arguments {
   DiagramArguments diagram;
   std::string output, report, json;
   int priority = 80, processor = -1;
-  bool require_real_time = false, quiet = false;
+  bool require_real_time = false, accepts_no_watchdog = false, quiet = false;
   TakeOver take_over;
 };
 
@@ -42,53 +48,163 @@ hw::Hardware hardware_of(const Plan& plan, const std::string& diagram) {
 /// One line that is written over on a terminal, a line now and then elsewhere.
 void show(const hw::LiveValues& now) {
   const bool on_terminal = isatty(STDERR_FILENO);
-  fmt::print(stderr, "{}deploy {:8.2f} s of {:g} s   ", on_terminal ? "\r" : "", now.time, now.stop);
-  if (now.has_error) fmt::print(stderr, "error {:+.3e}   ", now.error);
-  fmt::print(stderr, "command {:+.3f}   lateness {:6.1f} us{}", now.command, 1e6 * now.lateness_s,
-             on_terminal ? " " : "\n");
-  std::fflush(stderr);
+  std::string text =
+      fmt::format("{}deploy {:8.2f} s of {:g} s   ", on_terminal ? "\r" : "", now.time, now.stop);
+  if (now.has_error) text += fmt::format("error {:+.3e}   ", now.error);
+  text += fmt::format("command {:+.3f}   lateness {:6.1f} us{}", now.command, 1e6 * now.lateness_s,
+                      on_terminal ? " " : "\n");
+  say(text, 0);
 }
 
 /// Opens a device in use where a person agrees; false: nobody does. Of anything else deploy() speaks.
-bool take_over(hw::IoDevice& device, const hw::DriverType& driver, const TakeOver& options) {
+bool take_over(hw::IoDevice& device, const hw::DriverType& driver, const TakeOver& options,
+               const hw::StopSignals& signals) {
   if (!options.is_wanted || !driver.taking_over) return true;
   const hw::Status status = device.open();
   if (status.code != hw::Code::busy) return true;
-  if (!agrees(options, device.describe(status), driver.taking_over)) return false;
+  if (!agrees(options, device.describe(status), driver.taking_over, [&] { return signals.wait(0) != 0; }))
+    return false;
   device.take_over();
   return true;
 }
 
-int run(const Arguments& a) {
-  require_paths(a);
-  const auto plan = load_plan(a.diagram.path, a.diagram.options());
-  for (const Problem& warning : plan->warnings) fmt::print(stderr, "{}\n", to_string(warning));
-  const hw::Hardware hardware = hardware_of(*plan, a.diagram.path);
-  if (const std::string code = hw::foreign_code_of(*hardware.device); !code.empty())
-    fmt::print(stderr, "{}\n", code);
+/// Without a watchdog a motor stays driven when this process is killed or the computer dies.
+void require_watchdog(const hw::DeviceDescription& device) {
+  if (device.watchdog.timeout > 0) return;
+  Problems problems;
+  auto& p = problems.error({}, "/watchdog", "", fmt::format("{} has no watchdog", device.path));
+  p.expected =
+      "\"watchdog\": {\"timeout\": 0.01}: when this program is killed or the computer dies, only the device "
+      "itself can put out its safe values";
+  p.hint = "--no-watchdog moves without one";
+  throw InputError(std::move(problems));
+}
+
+/// For readers of messages, once the machine stands.
+constexpr int patience_ms = 2000;
+
+/// What is on the disk becomes the files that were asked for; each is tried, whatever becomes of the others.
+class Results {
+ public:
+  Results(const Arguments& a, const hw::StopSignals& signals) : a_(a), signals_(signals) {}
+
+  bool write(const Plan& plan, hw::DeployResult& result, const std::string& journal) {
+    if (!journal.empty()) attempt([&] { write_log(plan, result, journal); });
+    if (a_.json == "-")
+      attempt([&] { print(to_json(result)); });
+    else if (!a_.json.empty())
+      attempt([&] { write_file(a_.json, to_json(result)); });
+    return is_good_;
+  }
+
+ private:
+  template <class Write> void attempt(Write&& write) {
+    try {
+      write();
+    } catch (const std::exception& e) {
+      is_good_ = false;
+      say(fmt::format("error: {}\n", e.what()), patience_ms);
+    }
+  }
+
+  void write_log(const Plan& plan, hw::DeployResult& result, const std::string& path) {
+    const std::string kept =
+        fmt::format("the log is kept in {0}: loopwright recover {0} -o FILE.csv\n", path);
+    try {
+      if (result.log == hw::LogEnd::stalled) return is_good_ = false, say(kept, patience_ms);
+      const JournalReader journal(path);
+      if (journal.survey().rows > 0) {
+        const int64_t begin = hw::wall_ns();
+        // The second and third of a few hasty signals do not cost the log.
+        const auto stops = [&] { return signals_.wait(0) != 0 && hw::wall_ns() - begin > 2'000'000'000; };
+        if (!a_.output.empty() && !write_journal_as(a_.output, journal, stops))
+          return is_good_ = false, say(kept, patience_ms);
+        if (!a_.report.empty()) write_report(plan, result, journal);
+      } else if (!a_.report.empty()) {
+        write_report(plan, result, journal);
+      }
+      std::remove(path.c_str());
+    } catch (...) {
+      say(kept, patience_ms);
+      throw;
+    }
+  }
+
+  void write_report(const Plan& plan, hw::DeployResult& result, const JournalReader& journal) {
+    constexpr size_t most_rows = 400'000;
+    result.recording = read_journal(journal, most_rows);
+    report::Page page = deployment_page(plan, result);
+    if (journal.survey().rows > int64_t(most_rows))
+      page.facts.push_back({"Signals", fmt::format("least and greatest values of parts of the {} rows",
+                                                   journal.survey().rows)});
+    report::write_html(a_.report, page);
+  }
+
+  /// A reader that sleeps is waited for until the next signal.
+  void print(const std::string& text) const {
+    if (!write_text(STDOUT_FILENO, text, [&] { return signals_.wait(0) != 0; }))
+      throw std::runtime_error("the figures cannot be written to the standard output");
+  }
+
+  const Arguments& a_;
+  const hw::StopSignals& signals_;
+  bool is_good_ = true;
+};
+
+/// Where the log grows: beside what will be made of it. Empty: none was asked for, and none is kept.
+std::string journal_for(const Arguments& a) {
+  const std::string& target = a.output.empty() ? a.report : a.output;
+  return target.empty() ? "" : journal_of(target);
+}
+
+/// Nothing where a device in use was not taken over.
+std::optional<hw::DeployResult> move(const Arguments& a, const Plan& plan, const hw::Hardware& hardware,
+                                     const hw::StopSignals& signals, const std::string& journal) {
   Problems problems;
   const hw::DriverType& type = *hw::find_driver(hardware.device->driver);
   auto driver = type.make(hardware.device, problems);
   if (!driver) throw InputError(std::move(problems));
   hw::IoDevice device(hardware.device, std::move(driver));
-  if (!take_over(device, type, a.take_over)) return run_failed;
+  if (!take_over(device, type, a.take_over, signals)) return {};
   hw::DeployOptions options;
   options.system.priority = a.priority, options.system.processor = a.processor;
   options.require_real_time = a.require_real_time;
+  options.journal = journal, options.keeps_log = !journal.empty();
   if (!a.quiet) {
     options.progress = show;
     options.ready = [](const std::vector<std::string>& lines) {
-      for (const std::string& line : lines) fmt::print(stderr, "{}\n", line);
+      for (const std::string& line : lines) say(line + "\n", patience_ms / 2);
     };
   }
-  const hw::DeployResult result = hw::deploy(*plan, hardware, device, options);
-  if (!a.quiet && isatty(STDERR_FILENO)) fmt::print(stderr, "\r\033[K");
-  if (!a.output.empty()) write_recording(a.output, result.recording);
-  if (!a.report.empty()) report::write_html(a.report, deployment_page(*plan, result));
-  write_json(a.json, [&] { return to_json(result); });
-  if (!a.quiet) fmt::print(summary_stream({a.json}), "{}", to_text(result));
-  if (result.status == RunStatus::finished) return done;
-  fmt::print(stderr, "{}: {}\n", a.diagram.path, result.message);
+  hw::DeployResult result = hw::deploy(plan, hardware, device, options);
+  if (!a.quiet && isatty(STDERR_FILENO)) say("\r\033[K", 0);
+  return result;
+}
+
+int run(const Arguments& a) {
+  hold_standard_descriptors();
+  require_paths(a);
+  const auto plan = load_plan(a.diagram.path, a.diagram.options());
+  for (const Problem& warning : plan->warnings) fmt::print(stderr, "{}\n", to_string(warning));
+  const hw::Hardware hardware = hardware_of(*plan, a.diagram.path);
+  if (const std::string code = hw::foreign_code_of(*hardware.device); !code.empty())
+    say(code + "\n", patience_ms);
+  if (!a.accepts_no_watchdog) require_watchdog(*hardware.device);
+  const std::string journal = journal_for(a);
+  if (!journal.empty()) require_no_journal(journal);
+  // Until the process has ended: a hasty signal must not come between the last file and the exit code.
+  static const hw::StopSignals& signals = *new hw::StopSignals;
+  std::optional<hw::DeployResult> moved = move(a, *plan, hardware, signals, journal);
+  if (!moved) return run_failed;
+  hw::DeployResult& result = *moved;
+  const bool is_written = Results(a, signals).write(*plan, result, journal);
+  if (result.statistics.dropped_rows > 0 && !journal.empty())
+    say(fmt::format("warning: the log lacks {} rows: the disk did not take them in time\n",
+                    result.statistics.dropped_rows),
+        patience_ms);
+  if (!a.quiet) say(to_text(result), patience_ms, a.json == "-" ? STDERR_FILENO : STDOUT_FILENO);
+  if (result.status == RunStatus::finished) return is_written ? done : run_failed;
+  say(fmt::format("{}: {}\n", a.diagram.path, result.message), patience_ms);
   return result.status == RunStatus::interrupted ? interrupted : run_failed;
 }
 
@@ -98,7 +214,8 @@ void add_deploy(CLI::App& app, std::function<void(std::function<int()>)> choose)
   CLI::App* command = app.add_subcommand("deploy", "Run a diagram on hardware");
   auto a = std::make_shared<Arguments>();
   a->diagram.add_to(*command);
-  command->add_option("-o,--output", a->output, "Write the log: .csv or .mat");
+  command->add_option("-o,--output", a->output,
+                      "Write the log: .csv or .mat. While the loop runs it grows in FILE.journal");
   command->add_option("--report", a->report, "Write an HTML page with scopes and timing");
   command->add_option("--json", a->json, "Write the figures as JSON; - for stdout");
   command->add_option("--priority", a->priority, "Of SCHED_FIFO; 0: the usual scheduling")
@@ -108,6 +225,9 @@ void add_deploy(CLI::App& app, std::function<void(std::function<int()>)> choose)
   command->add_flag("--require-rt", a->require_real_time,
                     "Refuse to move anything unless the system grants all that a loop in real time needs");
   add_take_over(*command, a->take_over);
+  command->add_flag(
+      "--no-watchdog", a->accepts_no_watchdog,
+      "Move a device that has no watchdog: if this program is killed, its outputs stay as they are");
   command->add_flag("-q,--quiet", a->quiet, "No progress and no summary");
   command->callback([=] { choose([=] { return run(*a); }); });
 }

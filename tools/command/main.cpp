@@ -27,6 +27,7 @@ int main(int count, char** arguments) {
   add_diagnose(app, choose);
   add_sweep(app, choose);
   add_deploy(app, choose);
+  add_recover(app, choose);
   add_probe(app, choose);
   add_linearize(app, choose);
   add_stability(app, choose);

@@ -44,6 +44,7 @@ std::vector<Count> counts(const hw::LoopStatistics& s) {
           {"clamped", "Values clamped", s.clamped},
           {"rate_limited", "Values limited in their rate", s.rate_limited},
           {"dropped_rows", "Rows of the log dropped", s.dropped_rows},
+          {"log_delay_max_s", "Longest wait of a row for the log (s)", s.longest_log_delay_s},
           {"watchdog_min_margin_s", "Least margin to the watchdog (s)", s.least_watchdog_margin_s}};
 }
 

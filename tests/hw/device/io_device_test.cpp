@@ -42,6 +42,7 @@ class ScriptedDriver final : public Driver {
   }
   Status kick() noexcept override { return note("kick"); }
   void request_stop() noexcept override {}
+  void emergency_stop(std::span<const double> safe) noexcept override { write(safe); }
   void stop_sampling() noexcept override { note("stop_sampling"); }
   void disarm() noexcept override { note("disarm"); }
   bool watchdog_took_over() noexcept override { return script_.watchdog_took_over; }

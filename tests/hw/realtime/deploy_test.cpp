@@ -159,8 +159,7 @@ TEST(Deploy, ALogWithoutRoomDropsRowsAndCountsThem) {
   EmulatedCard card;
   Deployed deployed(in_virtual_time);
   DeployOptions options;
-  options.log_bytes = 100 * 14 * sizeof(double);
-  options.drains_log = false;
+  options.memory_bytes = 100 * 14 * sizeof(double);
   const DeployResult result = deployed.run(options);
   EXPECT_EQ(result.status, RunStatus::finished);
   EXPECT_EQ(int64_t(result.recording.rows()) + result.statistics.dropped_rows, 3101);

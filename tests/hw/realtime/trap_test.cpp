@@ -25,6 +25,7 @@ class QuietDriver final : public Driver {
   Status write(std::span<const double> raw) noexcept override { return volts_ = raw[0], Status{}; }
   Status kick() noexcept override { return {}; }
   void request_stop() noexcept override {}
+  void emergency_stop(std::span<const double> safe) noexcept override { write(safe); }
   void stop_sampling() noexcept override {}
   void disarm() noexcept override {}
   bool watchdog_took_over() noexcept override { return false; }

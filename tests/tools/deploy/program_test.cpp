@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <thread>
+#include "tests/hw/card_daemon.h"
 #include "tests/hw/device_file.h"
 #include "tests/hw/emulated_card.h"
 #include "tests/tools/command/program.h"
@@ -93,47 +94,10 @@ TEST_F(DeployProgram, AnUnpluggedCardIsExitCodeOneAndUnknown) {
   EXPECT_THAT(outcome.err, HasSubstr("-1160, DEVICE_DISCONNECTED"));
 }
 
-/// The emulated card in a process of its own.
-class Daemon {
- public:
-  Daemon(const std::string& world, const std::string& settings) {
-    int to[2], from[2];
-    if (pipe(to) != 0 || pipe(from) != 0) throw std::runtime_error("no pipe");
-    process_ = fork();
-    if (process_ == 0) {
-      dup2(to[0], STDIN_FILENO), dup2(from[1], STDOUT_FILENO);
-      close(to[1]), close(from[0]);
-      execl(LOOPWRIGHT_BINARY "/bin/hil_emulator_daemon", "hil_emulator_daemon", world.c_str(),
-            settings.c_str(), nullptr);
-      _exit(98);
-    }
-    close(to[0]), close(from[1]);
-    in_ = fdopen(to[1], "w"), out_ = fdopen(from[0], "r");
-    if (line() != "ready\n") throw std::runtime_error("the daemon does not begin");
-  }
-  ~Daemon() {
-    fclose(in_), fclose(out_);
-    waitpid(process_, nullptr, 0);
-  }
-  double get(const std::string& name) {
-    fprintf(in_, "get %s\n", name.c_str());
-    fflush(in_);
-    return std::stod(line());
-  }
-
- private:
-  std::string line() {
-    char text[128] = "";
-    return fgets(text, sizeof text, out_) ? text : "";
-  }
-  pid_t process_;
-  FILE *in_, *out_;
-};
-
 TEST_F(DeployProgram, AKilledControllerLeavesTheOutputsToTheWatchdog) {
   files(patient, R"({"plant.cogging": 0, "plant.tilt": 0.2})");
   unsetenv("HIL_EMU");
-  Daemon card(folder_.path("world"), folder_.path("card.json"));
+  hw::CardDaemon card(folder_.path("world"), folder_.path("card.json"));
   setenv("HIL_EMU_SHARED", folder_.path("world").c_str(), 1);
   Program program(arguments());
   ASSERT_TRUE(wait_for([&] { return card.get("watchdog.armed") == 1 && card.get("dac.0") != 0; }))

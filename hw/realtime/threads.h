@@ -1,0 +1,63 @@
+/// Threads of a deployment: none is left to itself, and the device belongs to one at a time.
+#pragma once
+#include <atomic>
+#include <ctime>
+#include <functional>
+#include <thread>
+#include "hw/realtime/crash_guard.h"
+
+namespace loopwright::hw {
+
+/// A thread that is told to end and joined, whatever is thrown around it.
+class GuardedThread {
+ public:
+  GuardedThread(std::function<void()> run, std::function<void()> end)
+      : end_(std::move(end)), thread_(std::move(run)) {}
+  ~GuardedThread() {
+    end_();
+    thread_.join();
+  }
+  GuardedThread(const GuardedThread&) = delete;
+  GuardedThread& operator=(const GuardedThread&) = delete;
+
+ private:
+  std::function<void()> end_;
+  std::thread thread_;
+};
+
+/// The thread that uses the device now; 0: none. After a crash the guardian takes it, and keeps it.
+class DeviceUser {
+ public:
+  /// Uses the device while it lives. Where the guardian has it, the process is about to end: nobody returns.
+  class Use {
+   public:
+    explicit Use(DeviceUser& user) : user_(user) {
+      for (int none = 0; !user_.thread_.compare_exchange_strong(none, thread_number()); none = 0)
+        wait_a_moment();
+    }
+    ~Use() { user_.thread_ = 0; }
+    Use(const Use&) = delete;
+    Use& operator=(const Use&) = delete;
+
+   private:
+    DeviceUser& user_;
+  };
+  /// For the guardian: waits at most so long until the device is free, or its user is the one that crashed.
+  bool take_over(int crashed, int milliseconds) noexcept {
+    for (int i = 0; i <= milliseconds; ++i) {
+      for (int user : {0, crashed})
+        if (thread_.compare_exchange_strong(user, thread_number())) return true;
+      wait_a_moment();
+    }
+    return false;
+  }
+
+ private:
+  static void wait_a_moment() noexcept {
+    const timespec moment = {0, 1'000'000};
+    nanosleep(&moment, nullptr);
+  }
+  std::atomic<int> thread_ = 0;
+};
+
+}  // namespace loopwright::hw

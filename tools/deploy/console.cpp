@@ -1,0 +1,47 @@
+#include "tools/deploy/console.h"
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+#include <algorithm>
+#include <cerrno>
+#include <climits>
+
+namespace loopwright {
+namespace {
+
+/// False: nothing more is taken. What has no room after so many milliseconds stays in `text`.
+bool write_some(int descriptor, std::string_view& text, int milliseconds) noexcept {
+  pollfd event = {descriptor, POLLOUT, 0};
+  if (poll(&event, 1, milliseconds) != 1) return true;
+  if (!(event.revents & POLLOUT)) return false;
+  // A pipe that can be written to takes this much without waiting.
+  const ssize_t written = write(descriptor, text.data(), std::min<size_t>(text.size(), PIPE_BUF));
+  if (written < 0) return errno == EINTR || errno == EAGAIN;
+  text.remove_prefix(size_t(written));
+  return true;
+}
+
+}  // namespace
+
+void hold_standard_descriptors() noexcept {
+  for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor)
+    if (fcntl(descriptor, F_GETFD) < 0) (void)!open("/dev/null", O_RDWR);  // takes the least number that is free
+}
+
+bool write_text(int descriptor, std::string_view text, const std::function<bool()>& gives_up) noexcept {
+  while (!text.empty()) {
+    const size_t before = text.size();
+    if (!write_some(descriptor, text, 100)) return false;
+    if (text.size() == before && gives_up()) return false;
+  }
+  return true;
+}
+
+void say(std::string_view text, int patience_ms, int descriptor) noexcept {
+  while (!text.empty()) {
+    const size_t before = text.size();
+    if (!write_some(descriptor, text, patience_ms) || text.size() == before) return;
+  }
+}
+
+}  // namespace loopwright
