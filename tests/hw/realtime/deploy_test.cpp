@@ -145,12 +145,14 @@ TEST(Deploy, TheComputersClockPacesTheLoopWhereTheDeviceHasNone) {
   LoadOptions short_run;
   short_run.set = {{"solver.stop", "0.2"}};
   Deployed deployed(
-      R"({"clock": {"source": "host"}, "policy": {"on_overrun": "count"}, "watchdog": {"timeout": 0.4}})",
+      R"({"clock": {"source": "host"}, "policy": {"on_overrun": "count", "most_skipped": 400}, "watchdog": {"timeout": 0.4}})",
       short_run);
   const int64_t start = wall_ns();
   const DeployResult result = deployed.run();
   EXPECT_EQ(result.status, RunStatus::finished) << result.message;
-  EXPECT_EQ(result.statistics.cycles, 201);
+  EXPECT_LE(result.statistics.cycles, 201);
+  EXPECT_GE(result.statistics.cycles + result.statistics.skipped_periods, 201)
+      << "a busy computer may skip some";
   EXPECT_GE(wall_ns() - start, 199'000'000);
   EXPECT_EQ(std::ranges::count(card.calls(), "hil_task_create_reader"), 0);
 }
