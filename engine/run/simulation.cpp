@@ -8,6 +8,7 @@
 #include "engine/run/recorder.h"
 #include "engine/run/pole_check.h"
 #include "engine/solve/solver.h"
+#include "models/real/whole.h"
 
 namespace loopwright {
 namespace {
@@ -23,7 +24,7 @@ class Simulation {
     for (const Plan::Crossing& crossing : plan.crossings) directions_.push_back(crossing.direction);
     if (options.checkpoint_every > 0)
       checkpoint_ticks_ =
-          std::max<int64_t>(1, std::llround(options.checkpoint_every / plan.clock.base.value()));
+          whole_between<int64_t>(std::round(options.checkpoint_every / plan.clock.base.value()), 1, INT64_MAX / 2);
     if (!options.resume_file.empty()) read_checkpoint(options.resume_file, run_, identity_, recorder_);
   }
 
@@ -280,7 +281,7 @@ class Simulation {
   void add_facts() {
     auto& facts = result_.recording.facts;
     facts.emplace_back("title", plan_.title);
-    facts.emplace_back("plan", plan_.hash);
+    for (auto& fact : plan_.identity.facts()) facts.push_back(std::move(fact));
     facts.emplace_back("seed", fmt::format("{}", identity_.seed));
     if (identity_.run) facts.emplace_back("run", fmt::format("{}", identity_.run));
     if (result_.status != RunStatus::finished) facts.emplace_back("incomplete", result_.message);

@@ -164,7 +164,7 @@ class Deployment {
     if (result_.status == RunStatus::finished) explain_end();
     auto& facts = result_.recording.facts;
     facts.emplace_back("title", plan_.title);
-    facts.emplace_back("plan", plan_.hash);
+    for (auto& fact : plan_.identity.facts()) facts.push_back(std::move(fact));
     facts.emplace_back("seed", fmt::format("{}", plan_.seed));
     facts.emplace_back("device", device_.description().path);
     facts.emplace_back("outputs_safe", std::string(to_name(result_.outputs_safe)));

@@ -40,17 +40,17 @@ hw::Hardware hardware_of(const Plan& plan, const std::string& diagram) {
 /// One line that is written over on a terminal, a line now and then elsewhere.
 void show(const hw::LiveValues& now) {
   const bool on_terminal = isatty(STDERR_FILENO);
-  fmt::print(stderr, "{}deploy {:8.2f} s of {:g} s   ", on_terminal ? "\r" : "", now.time, now.stop);
-  if (now.has_error) fmt::print(stderr, "error {:+.3e}   ", now.error);
-  fmt::print(stderr, "command {:+.3f}   lateness {:6.1f} us{}", now.command, 1e6 * now.lateness_s,
-             on_terminal ? " " : "\n");
-  std::fflush(stderr);
+  std::string line = fmt::format("{}deploy {:8.2f} s of {:g} s   ", on_terminal ? "\r" : "", now.time, now.stop);
+  if (now.has_error) line += fmt::format("error {:+.3e}   ", now.error);
+  line += fmt::format("command {:+.3f}   lateness {:6.1f} us{}", now.command, 1e6 * now.lateness_s,
+                      on_terminal ? " " : "\n");
+  tell_terminal(line);
 }
 
 int run(const Arguments& a) {
   require_paths(a);
   const auto plan = load_plan(a.diagram.path, a.diagram.options());
-  for (const Problem& warning : plan->warnings) fmt::print(stderr, "{}\n", to_string(warning));
+  tell_text(to_text(plan->warnings));
   const hw::Hardware hardware = hardware_of(*plan, a.diagram.path);
   Problems problems;
   auto driver = hw::find_driver(hardware.device->driver)->make(hardware.device, problems);
@@ -62,17 +62,18 @@ int run(const Arguments& a) {
   if (!a.quiet) {
     options.progress = show;
     options.ready = [](const std::vector<std::string>& lines) {
-      for (const std::string& line : lines) fmt::print(stderr, "{}\n", line);
+      for (const std::string& line : lines) tell("{}\n", line);
     };
   }
+  take_time_after_interruption();  // the machine is stopped and the log is written
   const hw::DeployResult result = hw::deploy(*plan, hardware, device, options);
-  if (!a.quiet && isatty(STDERR_FILENO)) fmt::print(stderr, "\r\033[K");
+  if (!a.quiet && isatty(STDERR_FILENO)) tell_terminal("\r\033[K");
   if (!a.output.empty()) write_recording(a.output, result.recording);
   if (!a.report.empty()) report::write_html(a.report, deployment_page(*plan, result));
   write_json(a.json, [&] { return to_json(result); });
-  if (!a.quiet) fmt::print(summary_stream({a.json}), "{}", to_text(result));
+  if (!a.quiet) give_summary(to_text(result), {a.json});
   if (result.status == RunStatus::finished) return done;
-  fmt::print(stderr, "{}: {}\n", a.diagram.path, result.message);
+  tell("{}: {}\n", a.diagram.path, result.message);
   return result.status == RunStatus::interrupted ? interrupted : run_failed;
 }
 

@@ -25,17 +25,18 @@ hw::quanser::Settings settings_of(const std::string& path) {
 
 int run(const Arguments& a) {
   const auto settings = settings_of(a.device);
-  fmt::print("real-time service\n");
+  answer("real-time service\n");
   hw::SystemReport system;
   {
     const hw::RealTimeProcess process({}, system);
     hw::make_thread_real_time({}, system);
   }
-  fmt::print("{}device\n", hw::to_text(system));
+  answer("{}device\n", hw::to_text(system));
   bool is_good = true;
-  for (const hw::quanser::ProbeAnswer& answer : hw::quanser::probe(settings, a.may_touch)) {
-    fmt::print("  {} {}: {}\n", answer.is_good ? "+" : "-", answer.question, answer.answer);
-    is_good &= answer.is_good;
+  take_time_after_interruption();  // the card is closed
+  for (const hw::quanser::ProbeAnswer& given : hw::quanser::probe(settings, a.may_touch)) {
+    answer("  {} {}: {}\n", given.is_good ? "+" : "-", given.question, given.answer);
+    is_good &= given.is_good;
   }
   return is_good ? done : run_failed;
 }
