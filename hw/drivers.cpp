@@ -39,7 +39,7 @@ std::shared_ptr<const DeviceDescription> load_device(const std::string& path, co
   for (const DriverType& type : types) names.emplace_back(type.name);
   const auto device = read_device(path, reference, names, own);
   if (device) find_driver(device->driver)->check(*device, own);
-  for (const Problem& problem : own.list()) problems.add(problem);
+  problems.add(own);
   return own.has_errors() ? nullptr : device;
 }
 

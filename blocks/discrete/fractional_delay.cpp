@@ -1,5 +1,6 @@
 /// y[k] = (1 - f) u[k-n] + f u[k-n-1],  slope[k] = 6 f (1 - f) (u[k-n] - u[k-n-1]),  delay = (n + f) T
 #include "engine/block.h"
+#include "models/real/whole.h"
 
 namespace loopwright::blocks {
 
@@ -44,7 +45,7 @@ struct FractionalDelay {
   }
   Fault outputs(const In& in, const Memory& memory, Out& out) const {
     const double late = in_samples();
-    const int whole = int(std::min(late, double(samples)));
+    const int whole = whole_between(late, 0, samples);
     const double f = std::min(late - whole, 1.0);
     const double late_u = ago(in.u, memory, whole),
                  change = f > 0 ? late_u - ago(in.u, memory, whole + 1) : 0.0;

@@ -55,6 +55,8 @@ struct Gpr {
     if (prediction == Prediction::exact) ready->posterior.mean({});
   }
   Fault outputs(const In& in, Out& out) const {
+    out.prediction = 0;
+    if (const Fault fault = ModelInput::not_finite(in.position, in.velocity); fault.lanes) return fault;
     const ModelInput input{homing_offset + homing_shift, lead, untrained, trained};
     const gp::Point at = input.of(in.position, in.velocity);
     out.prediction = prediction == Prediction::table ? (*table)(at) : ready->posterior.mean(at);

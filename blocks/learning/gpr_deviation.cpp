@@ -46,6 +46,8 @@ struct GprDeviation {
   /// The first evaluation on a thread makes room for its sums; steps then allocate nothing.
   void prepare(double) { ready->posterior.variance({}); }
   Fault outputs(const In& in, Out& out) const {
+    out.deviation = 0;
+    if (const Fault fault = ModelInput::not_finite(in.position, in.velocity); fault.lanes) return fault;
     const ModelInput input{homing_offset + homing_shift, lead, untrained, trained};
     out.deviation = std::sqrt(ready->posterior.variance(input.of(in.position, in.velocity)));
     return input.fault(in.velocity);

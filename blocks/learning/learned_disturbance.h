@@ -21,6 +21,11 @@ struct ModelInput {
     const double x = position - homing_offset + velocity * lead;
     return {x, untrained == Untrained::hold ? trained.clamp(velocity) : velocity};
   }
+  /// Of inputs that no model can say anything of. Then nothing is predicted.
+  static Fault not_finite(double position, double velocity) {
+    return fault_if(!(std::isfinite(position) && std::isfinite(velocity)),
+                    "the position or the velocity that a learned model is asked at is no finite number");
+  }
   Fault fault(double velocity) const {
     const double low = std::min(trained.low, 0.0), high = std::max(trained.high, 0.0);
     const double margin = 0.05 * (high - low);

@@ -6,7 +6,7 @@
 #include "engine/json/json.h"
 #include "engine/json/reader.h"
 #include "engine/record/atomic_file.h"
-#include "engine/record/hash.h"
+#include "engine/file/hash.h"
 
 namespace loopwright {
 namespace {
@@ -319,15 +319,18 @@ bool is_intact(const Value& file, const Reader& reader) {
 }  // namespace
 
 LearnedModel read_model(const std::string& path, const Place& reference, Problems& problems) {
+  auto source = read_source(path, reference, problems);
+  return source ? read_model(std::move(source), problems) : LearnedModel{};
+}
+
+LearnedModel read_model(std::shared_ptr<const SourceFile> source, Problems& problems) {
   const size_t before = problems.list().size();
   const auto failed = [&] {
     for (size_t i = before; i < problems.list().size(); ++i)
       if (problems.list()[i].severity == Problem::Severity::error) return true;
     return false;
   };
-  const auto source = read_source(path, reference, problems);
-  if (!source) return {};
-  const Value file = parse_json(source, problems);
+  const Value file = parse_json(std::move(source), problems);
   const Reader reader{problems, ""};
   if (failed() || !reader.expect(file, Value::Kind::object, "a model", "an object in braces") ||
       !expect_kind(file, FileKind::model, problems) || !is_intact(file, reader))

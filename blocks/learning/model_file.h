@@ -28,6 +28,8 @@ inline constexpr int model_file_version = 1;
 /// Problems are placed in the model file, or at `reference` when it cannot be read at all. The result is of
 /// use only when no error was added.
 LearnedModel read_model(const std::string& path, const Place& reference, Problems& problems);
+/// The same from what the file holds.
+LearnedModel read_model(std::shared_ptr<const SourceFile> file, Problems& problems);
 
 /// Whole or not at all; throws std::runtime_error as write_file().
 void write_model(const std::string& path, const LearnedModel& model);

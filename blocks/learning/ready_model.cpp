@@ -1,24 +1,29 @@
 #include "blocks/learning/ready_model.h"
+#include <algorithm>
 #include <map>
 #include <stdexcept>
 #include "engine/json/json.h"
-#include "engine/record/hash.h"
 
 namespace loopwright {
 namespace {
 
-/// Reads and prepares; null after a problem.
+/// Null after a problem, also one of reading the source.
 std::shared_ptr<const ReadyModel> prepare(const Checker& checker, std::string_view name,
-                                          const std::string& file, const std::string& path) {
+                                          const std::string& file,
+                                          const std::shared_ptr<const SourceFile>& source) {
   const size_t before = checker.problems().list().size();
-  LearnedModel learned = read_model(path, checker.place(name), checker.problems());
-  for (size_t i = before; i < checker.problems().list().size(); ++i)
-    if (checker.problems().list()[i].severity == Problem::Severity::error) {
-      auto& p = checker.error(name, "the model cannot be used");
-      p.found = file;
-      p.hint = "loopwright gp train makes models";
-      return nullptr;
-    }
+  LearnedModel learned;
+  if (source) learned = read_model(source, checker.problems());
+  const auto& list = checker.problems().list();
+  const bool has_errors = std::any_of(list.begin() + ptrdiff_t(before), list.end(), [](const Problem& p) {
+    return p.severity == Problem::Severity::error;
+  });
+  if (!source || has_errors) {
+    auto& p = checker.error(name, "the model cannot be used");
+    p.found = file;
+    p.hint = "loopwright gp train makes models";
+    return nullptr;
+  }
   try {
     return std::make_shared<const ReadyModel>(std::move(learned));
   } catch (const std::domain_error& failure) {
@@ -34,15 +39,14 @@ std::shared_ptr<const ReadyModel> ready_model(const Checker& checker, std::strin
   static std::mutex mutex;
   static std::map<std::string, std::weak_ptr<const ReadyModel>> in_use;  // by what the file holds
   const std::string path = checker.resolve_file(name, file);
-  Problems told_by_prepare;
-  const auto source = read_source(path, checker.place(name), told_by_prepare);
-  const std::string key = source ? content_hash(source->text) : "";
+  const auto source = read_source(path, checker.place(name), checker.problems());
+  const std::string key = source ? checker.problems().files().back().hash : "";  // just noted
   const std::lock_guard lock(mutex);
   std::erase_if(in_use, [](const auto& entry) { return entry.second.expired(); });
   if (const auto found = in_use.find(key); found != in_use.end())
     if (auto model = found->second.lock()) return model;
   const size_t before = checker.problems().list().size();
-  auto model = prepare(checker, name, file, path);
+  auto model = prepare(checker, name, file, source);
   // What was said of a model is said again each time.
   if (model && checker.problems().list().size() == before) in_use[key] = model;
   return model;

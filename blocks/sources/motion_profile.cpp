@@ -8,6 +8,7 @@
 /// A pass ends at the velocity of its last segment. With `returns` the same path is run back in mirrored
 /// time; passes follow each other `passes` times, after that the last velocity is kept.
 #include "blocks/sources/turns.h"
+#include "models/real/whole.h"
 
 namespace loopwright::blocks {
 
@@ -95,10 +96,10 @@ template <class Real> struct MotionProfile {
  private:
   Piece piece_at(const Real& index) const {
     const double first = lane(index, 0);
-    if (!any(index != first)) return pieces[size_t(std::max(0.0, first))];
+    if (!any(index != first)) return pieces[whole_index(first, pieces.size())];
     Piece here;
     for (int l = 0; l < lanes_of<Real>; ++l) {
-      const Piece& p = pieces[size_t(std::max(0.0, lane(index, l)))];
+      const Piece& p = pieces[whole_index(lane(index, l), pieces.size())];
       for (Real Piece::*m :
            {&Piece::begin, &Piece::position, &Piece::velocity, &Piece::change, &Piece::duration})
         set_lane(here.*m, l, lane(p.*m, l));

@@ -1,4 +1,5 @@
 #include "engine/block/parameters.h"
+#include "models/real/whole.h"
 #include <fmt/format.h>
 #include <cmath>
 #include <filesystem>
@@ -20,8 +21,11 @@ Problem& Checker::warning(std::string_view parameter, std::string message) const
 }
 std::string Checker::resolve_file(std::string_view parameter, std::string_view path) const {
   const Place at = place(parameter);
-  if (!at.file || std::filesystem::path(path).is_absolute()) return std::string(path);
-  return (std::filesystem::path(at.file->name).parent_path() / path).string();
+  std::string resolved(path);
+  if (at.file && !std::filesystem::path(path).is_absolute())
+    resolved = (std::filesystem::path(at.file->name).parent_path() / path).string();
+  problems_.note_file_name(resolved);
+  return resolved;
 }
 
 namespace reading {
@@ -86,7 +90,7 @@ bool whole(int64_t& to, const Value& v, const Range& range, const std::string& b
   if (v.kind == Value::Kind::number && v.number != std::floor(v.number))
     return wrong_kind(v, "a whole number", block, problems, range.sentence);
   if (!number(x, v, range, block, problems)) return false;
-  to = int64_t(x);
+  to = whole_between(x, std::numeric_limits<int64_t>::min(), std::numeric_limits<int64_t>::max());
   return true;
 }
 bool flag(bool& to, const Value& v, const std::string& block, Problems& problems) {

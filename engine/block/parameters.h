@@ -20,7 +20,8 @@ class Checker {
   /// An error at the parameter's place in the file (or at the block, where the parameter was left out).
   Problem& error(std::string_view parameter, std::string message) const;
   Problem& warning(std::string_view parameter, std::string message) const;
-  /// A path that a parameter names, relative to the file that names it.
+  /// A path that a parameter names, relative to the file that names it. The file's contents become part of the
+  /// plan's identity, however the block reads them.
   std::string resolve_file(std::string_view parameter, std::string_view path) const;
   const Value& settings() const { return settings_; }
   const std::string& block() const { return block_; }

@@ -2,8 +2,12 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 #include <algorithm>
+#include <deque>
+#include <limits>
 #include <set>
 #include <stdexcept>
+#include "engine/file/hash.h"
+#include "engine/file/regular_file.h"
 
 namespace loopwright {
 namespace {
@@ -15,13 +19,13 @@ std::map<std::string, BlockType, std::less<>>& registry() {
 
 /// What a library did while it was loaded: nothing may be thrown out of its initialisers.
 struct Loading {
-  std::string library;
+  const FileRead* library;
   std::vector<std::string> added, refused;
 };
 Loading* loading = nullptr;
 
 std::string origin_of(const BlockType& type) {
-  return type.library.empty() ? "built in, " + type.info.source : "of the library " + type.library;
+  return type.library ? "of the library " + type.library->path : "built in, " + type.info.source;
 }
 
 Problem& cannot_load(const std::string& path, Problems& problems) {
@@ -45,7 +49,7 @@ void add_block(std::span<const size_t> layout, BlockInfo&& info, const Kernels<d
   }
   const std::string name = info.type;
   const auto [entry, is_new] =
-      registry().try_emplace(name, BlockType{std::move(info), kernels, loading ? loading->library : ""});
+      registry().try_emplace(name, BlockType{std::move(info), kernels, loading ? loading->library : nullptr});
   if (!loading && !is_new) throw std::logic_error("two blocks are called " + name);
   if (loading) (is_new ? loading->added : loading->refused).push_back(name);
 }
@@ -54,13 +58,20 @@ void load_block_library(const std::string& path, Problems& problems) {
   static std::set<void*> loaded;
   // A bare file name would be searched for in the system's folders only.
   const std::string file = path.find('/') == path.npos ? "./" + path : path;
-  Loading now{path, {}, {}};
+  static std::deque<FileRead> libraries;  // block types point at them
+  std::string bytes;
+  const std::string reason = read_regular_file(file, std::numeric_limits<uint32_t>::max(), bytes);
+  if (!reason.empty()) {
+    cannot_load(path, problems).found = reason;
+    return;
+  }
+  Loading now{&libraries.emplace_back(FileRead{path, content_hash(bytes)}), {}, {}};
   loading = &now;
   void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL);
   loading = nullptr;
   if (!library) {
-    const char* reason = dlerror();
-    cannot_load(path, problems).found = reason ? reason : "";
+    const char* cause = dlerror();
+    cannot_load(path, problems).found = cause ? cause : "";
     return;
   }
   if (!loaded.insert(library).second) return;  // named twice

@@ -10,7 +10,7 @@ namespace loopwright {
 struct BlockType {
   BlockInfo info;
   Kernels<double> kernels;
-  std::string library;  ///< that it came from; empty: built in
+  const FileRead* library = nullptr;  ///< that brought the type; null: the program did
 };
 
 /// Sizes of what crosses the border between a library of blocks and the program: they differ when the library
@@ -26,7 +26,8 @@ const std::map<std::string, BlockType, std::less<>>& all_blocks();
 /// load_block_library tells. Two blocks of one name in the program itself throw std::logic_error.
 void add_block(std::span<const size_t> layout, BlockInfo&& info, const Kernels<double>& kernels);
 /// Loads a shared library whose blocks register themselves; once, however often it is named. A problem when
-/// it cannot be loaded, has no block, or one whose name is taken: then none of its blocks is kept.
+/// it cannot be loaded, has no block, or one whose name is taken: then none of its blocks is kept. What its
+/// bytes say becomes part of the identity of every plan that uses its blocks.
 void load_block_library(const std::string& path, Problems& problems);
 
 /// What was probably meant by a type that does not exist: a block that does what the name says elsewhere

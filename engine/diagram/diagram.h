@@ -102,6 +102,7 @@ struct Diagram {
   std::vector<Wire> log;  ///< also ports of nested blocks, "stage.mass.velocity", and patterns, "stage.*"
   std::vector<std::string>
       files;  ///< outermost diagram: every diagram file that was read, in order of reading
+  std::vector<FileRead> files_read;  ///< outermost diagram: the subdiagrams' files
 };
 
 /// Replaces what feeds an input port by the output of a new block at the top.

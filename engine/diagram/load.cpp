@@ -69,6 +69,8 @@ std::shared_ptr<const Diagram> with_options(const LoadOptions& options, Problems
   if (diagram) {
     apply_drives(*diagram, options.drives, found);
     diagram->files = load.library.take_names();
+    diagram->files_read = found.files();
+    std::erase_if(diagram->files_read, [&](const FileRead& file) { return file.path == diagram->path; });
   }
   add_without_repetition(found, problems);
   return diagram;

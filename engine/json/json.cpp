@@ -1,11 +1,8 @@
 #include "engine/json/json.h"
 
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <fmt/format.h>
+#include "engine/file/regular_file.h"
 #include "engine/json/tokens.h"
 
 namespace loopwright {
@@ -82,25 +79,10 @@ std::shared_ptr<const SourceFile> read_source(const std::string& path, const Pla
     problems.error(place, {}, {}, fmt::format("the file \"{}\" cannot be read: {}", path, reason));
     return nullptr;
   };
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (path.empty() || !std::filesystem::exists(status)) return fail("there is no such file");
-  if (std::filesystem::is_directory(status)) return fail("it is a folder");
-  if (!std::filesystem::is_regular_file(status) && !std::filesystem::is_fifo(status))
-    return fail("it is not a file of text");
-  errno = 0;
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) return fail(std::strerror(errno));
   auto file = std::make_shared<SourceFile>(SourceFile{path, {}});
-  constexpr size_t chunk = 1u << 16;
-  while (stream && file->text.size() <= largest_json_file) {
-    const size_t length = file->text.size();
-    file->text.resize(length + chunk);
-    stream.read(file->text.data() + length, chunk);
-    file->text.resize(length + static_cast<size_t>(stream.gcount()));
-  }
-  if (stream.bad()) return fail(std::strerror(errno));
-  if (file->text.size() > largest_json_file) return fail("it is larger than 64 MB");
+  const std::string reason = read_regular_file(path, largest_json_file, file->text);
+  if (!reason.empty()) return fail(reason);
+  problems.note_file(path, file->text);
   return file;
 }
 

@@ -7,8 +7,8 @@
 
 namespace loopwright {
 
-/// The text of a file of at most 64 MB; null after a problem, which is placed at `reference` (where the file
-/// was named).
+/// The text of a regular file of at most 64 MB; null after a problem, which is placed at `reference` (where the
+/// file was named).
 std::shared_ptr<const SourceFile> read_source(const std::string& path, const Place& reference,
                                               Problems& problems);
 

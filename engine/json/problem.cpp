@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <fmt/format.h>
+#include "engine/file/hash.h"
 
 namespace loopwright {
 namespace {
@@ -55,11 +56,40 @@ std::string message_at(const Problem& problem, LineColumn position) {
   detail("expected", problem.expected);
   detail("found", problem.found);
   detail("hint", problem.hint);
+  return printable(text);
+}
+
+/// "99,800"
+std::string with_commas(size_t number) {
+  std::string text = std::to_string(number);
+  for (size_t end = text.size(); end > 3; end -= 3) text.insert(end - 3, 1, ',');
   return text;
 }
 
 std::string counted(size_t number, std::string_view noun) {
-  return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
+  return fmt::format("{} {}{}", with_commas(number), noun, number == 1 ? "" : "s");
+}
+
+bool is_error(const Problem& problem) { return problem.severity == Problem::Severity::error; }
+
+/// Length in bytes of the UTF-8 character that the text begins with; 0: none.
+size_t length_of_character(std::string_view text) {
+  const auto byte = [&](size_t i) { return static_cast<unsigned char>(text[i]); };
+  const size_t length = byte(0) < 0x80 ? 1 : byte(0) < 0xC2 ? 0 : byte(0) < 0xE0 ? 2 : byte(0) < 0xF0 ? 3
+                        : byte(0) < 0xF5 ? 4 : 0;
+  if (length == 0 || text.size() < length) return 0;
+  for (size_t i = 1; i < length; ++i)
+    if ((byte(i) & 0xC0) != 0x80) return 0;
+  const bool is_overlong = (byte(0) == 0xE0 && byte(1) < 0xA0) || (byte(0) == 0xF0 && byte(1) < 0x90);
+  const bool is_surrogate = byte(0) == 0xED && byte(1) >= 0xA0;
+  const bool is_beyond = byte(0) == 0xF4 && byte(1) >= 0x90;
+  return is_overlong || is_surrogate || is_beyond ? 0 : length;
+}
+
+/// Controls of ASCII and of Latin-1 (U+0080 to U+009F, among them a second way to begin an escape sequence).
+bool is_control(std::string_view character) {
+  const auto first = static_cast<unsigned char>(character[0]);
+  return first < 0x20 || first == 0x7F || (first == 0xC2 && static_cast<unsigned char>(character[1]) < 0xA0);
 }
 
 char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
@@ -110,34 +140,64 @@ Problem& Problems::warning(Place place, std::string pointer, std::string block, 
   return problem;
 }
 
-bool Problems::has_errors() const {
-  return std::ranges::any_of(list_, [](const Problem& p) { return p.severity == Problem::Severity::error; });
+bool Problems::has_errors() const { return std::ranges::any_of(list_, is_error); }
+
+std::string printable(std::string_view text) {
+  std::string shown;
+  shown.reserve(text.size());
+  while (!text.empty()) {
+    const size_t length = length_of_character(text);
+    const std::string_view character = text.substr(0, std::max<size_t>(1, length));
+    if (length > 0 && (character == "\n" || !is_control(character)))
+      shown += character;
+    else
+      for (const char byte : character) shown += fmt::format("\\x{:02x}", static_cast<unsigned char>(byte));
+    text.remove_prefix(character.size());
+  }
+  return shown;
 }
 
-std::string Problems::text() const {
-  if (list_.empty()) return {};
-  std::vector<const Problem*> sorted;
-  for (const Problem& problem : list_) sorted.push_back(&problem);
-  std::ranges::stable_sort(sorted, {},
-                           [](const Problem* p) { return std::pair(file_name(*p), p->place.offset); });
+std::string to_text(std::span<const Problem> problems) {
+  std::vector<const Problem*> told;
+  for (const Problem& problem : problems) told.push_back(&problem);
+  if (told.size() > most_problems_told) {
+    std::ranges::stable_partition(told, [](const Problem* p) { return is_error(*p); });
+    told.resize(most_problems_told);
+  }
+  std::ranges::stable_sort(told, {}, [](const Problem* p) { return std::pair(file_name(*p), p->place.offset); });
 
   std::string text;
-  size_t errors = 0;
   const SourceFile* file = nullptr;
   LineCounter counter{{}};
-  for (const Problem* problem : sorted) {
+  for (const Problem* problem : told) {
     if (problem->place.file && problem->place.file.get() != file) {
       file = problem->place.file.get();
       counter = LineCounter(file->text);
     }
     text += message_at(*problem, counter.advance_to(problem->place.offset)) + '\n';
-    errors += problem->severity == Problem::Severity::error;
   }
-  const size_t warnings = sorted.size() - errors;
+  if (told.size() < problems.size()) text += fmt::format("… and {} more\n", with_commas(problems.size() - told.size()));
+  return text;
+}
+
+std::string Problems::text() const {
+  if (list_.empty()) return {};
+  const auto errors = static_cast<size_t>(std::ranges::count_if(list_, is_error));
+  const size_t warnings = list_.size() - errors;
+  std::string text = to_text(list_);
   if (errors > 0) text += counted(errors, "error");
   if (errors > 0 && warnings > 0) text += ", ";
   if (warnings > 0) text += counted(warnings, "warning");
   return text;
+}
+
+void Problems::add(const Problems& part) {
+  list_.insert(list_.end(), part.list_.begin(), part.list_.end());
+  files_.insert(files_.end(), part.files_.begin(), part.files_.end());
+}
+
+void Problems::note_file(const std::string& path, std::string_view bytes) {
+  files_.push_back({path, content_hash(bytes)});
 }
 
 std::string nearest_name(std::string_view wrong, const std::vector<std::string>& candidates) {

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -50,22 +51,49 @@ struct Problem {
   std::string hint;      ///< how to mend it
 };
 
-/// file:line:column: error: message … as shown to a person, several lines without a trailing newline.
+/// Text from a file as a terminal may show it: UTF-8 stays, while control characters other than the end of a
+/// line, and bytes that are not UTF-8, become \x1b and the like. Otherwise a file could move the cursor, or hide
+/// what is said of it.
+std::string printable(std::string_view text);
+
+/// file:line:column: error: message … as shown to a person, printable, several lines without a trailing newline.
 std::string to_string(const Problem& problem);
 
-/// The findings of one load, in the order of their finding.
+/// At most so many problems are written out; the others are counted. More are not read by anybody.
+constexpr size_t most_problems_told = 200;
+
+/// Problems as a person sees them, sorted by file and place, a line's end after each. Errors come before
+/// warnings where not all can be told.
+std::string to_text(std::span<const Problem> problems);
+
+/// A file that was read: what its bytes say decided the result.
+struct FileRead {
+  std::string path;  ///< as it was opened
+  std::string hash;  ///< content_hash() of its bytes; empty: only named
+};
+
+/// The findings of one load: problems in the order of their finding, and the files that were read.
 class Problems {
  public:
   Problem& error(Place place, std::string pointer, std::string block, std::string message);
   Problem& warning(Place place, std::string pointer, std::string block, std::string message);
   void add(Problem problem) { list_.push_back(std::move(problem)); }
+  /// The findings of a part of the load.
+  void add(const Problems& part);
   bool has_errors() const;
   const std::vector<Problem>& list() const { return list_; }
-  /// Every problem, sorted by file and place, then a line that counts them.
+  /// The problems as to_text() shows them, then a line that counts them all.
   std::string text() const;
+
+  /// Everyone who reads a file notes it here.
+  void note_file(const std::string& path, std::string_view bytes);
+  /// Notes a file that somebody is about to read, with an empty hash.
+  void note_file_name(const std::string& path) { files_.push_back({path, {}}); }
+  const std::vector<FileRead>& files() const { return files_; }
 
  private:
   std::vector<Problem> list_;
+  std::vector<FileRead> files_;
 };
 
 /// Thrown once at the end of a load that found errors: the program answers with exit code 2.

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <charconv>
+#include <limits>
+#include <set>
 #include <span>
 #include <unordered_map>
 #include "engine/plan/layout.h"
@@ -8,7 +10,8 @@
 #include "engine/plan/shapes.h"
 #include "engine/plan/times.h"
 #include "engine/plan/units.h"
-#include "engine/record/hash.h"
+#include "engine/file/hash.h"
+#include "engine/file/regular_file.h"
 
 namespace loopwright {
 namespace {
@@ -219,7 +222,7 @@ void add_crossings(Plan& plan) {
   }
 }
 
-std::string hash_of(const Plan& plan) {
+std::string hash_of_structure(const Plan& plan) {
   ContentHash hash;
   const auto add = [&](const auto& number) {
     hash.add({reinterpret_cast<const char*>(&number), sizeof number});
@@ -239,9 +242,36 @@ std::string hash_of(const Plan& plan) {
   return hash.text();
 }
 
+/// Files that a block named and read by its own means are read once more for their contents.
+std::vector<FileRead> with_contents(std::vector<FileRead> files) {
+  std::set<std::string> known;
+  for (const FileRead& file : files)
+    if (!file.hash.empty()) known.insert(file.path);
+  std::erase_if(files, [&](const FileRead& file) { return file.hash.empty() && known.contains(file.path); });
+  for (FileRead& file : files) {
+    std::string bytes;
+    if (!file.hash.empty()) continue;
+    const std::string reason = read_regular_file(file.path, std::numeric_limits<uint32_t>::max(), bytes);
+    file.hash = content_hash(reason.empty() ? bytes : reason);
+  }
+  return files;
+}
+
+/// `first_file`: those that `problems` had before belong to something else.
+Identity identity_of(const Plan& plan, const Diagram& diagram, const Problems& problems, size_t first_file) {
+  std::vector<FileRead> files = diagram.files_read;
+  files.insert(files.end(), problems.files().begin() + ptrdiff_t(first_file), problems.files().end());
+  std::set<const FileRead*> libraries;
+  for (const Plan::Block& block : plan.blocks)
+    if (block.type->library && libraries.insert(block.type->library).second)
+      files.push_back(*block.type->library);
+  return {hash_of_structure(plan), program_build(), named_from(diagram.path, with_contents(std::move(files)))};
+}
+
 }  // namespace
 
 std::shared_ptr<const Plan> compile(const Diagram& diagram, Problems& problems) {
+  const size_t first_file = problems.files().size();
   FlatDiagram flat = flatten(diagram, problems);
   if (flat.log.empty() && diagram.log.empty()) LogOfEverything(flat).add(diagram);
   find_shapes(flat, problems);
@@ -270,7 +300,8 @@ std::shared_ptr<const Plan> compile(const Diagram& diagram, Problems& problems) 
   add_crossings(*plan);
   add_rates_to_log(*plan);
   plan->parameters = std::move(flat.settings.effective);
-  plan->hash = hash_of(*plan);
+  plan->identity = identity_of(*plan, diagram, problems, first_file);
+  plan->hash = plan->identity.hash();
   for (const Problem& problem : problems.list()) plan->warnings.push_back(problem);
   return plan;
 }

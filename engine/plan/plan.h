@@ -8,6 +8,7 @@
 #include <vector>
 #include "engine/block/registry.h"
 #include "engine/diagram/diagram.h"
+#include "engine/plan/identity.h"
 #include "engine/plan/ticks.h"
 #include "engine/solve/method.h"
 
@@ -121,7 +122,8 @@ struct Plan {
   bool steps_between_samples = false;
   std::vector<int> block_of_state;
   std::vector<Problem> warnings;
-  std::string hash;  ///< of structure and effective parameters, 16 hex digits
+  Identity identity;
+  std::string hash;  ///< of the identity
 
   /// The numbers of a port, "stage.position" or "gain.y[2]", inputs too; empty if there is none.
   std::vector<Number> find(std::string_view port) const;

@@ -1,17 +1,24 @@
 #include "engine/record/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <fmt/format.h>
+#include <map>
+#include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 namespace loopwright {
 namespace {
@@ -33,10 +40,57 @@ std::string folder_of(const std::string& path) {
 
 /// Beside the target, so that the rename stays on one file system; hidden, so that globs over results miss
 /// it.
+std::string temporary_prefix(const std::string& target) {
+  return fmt::format(".{}.", target.substr(target.rfind('/') + 1, 200));  // npos + 1 = 0
+}
 std::string temporary_name(const std::string& target) {
   static std::atomic<unsigned> counter{0};
-  const size_t name = target.rfind('/') + 1;  // npos + 1 = 0
-  return fmt::format("{}.{}.{}-{}", target.substr(0, name), target.substr(name, 200), ::getpid(), counter++);
+  return fmt::format("{}{}{}-{}", target.substr(0, target.rfind('/') + 1), temporary_prefix(target), ::getpid(),
+                     counter++);
+}
+
+/// The process in the "1234-5" at the end of a temporary name; 0: the text is not like that.
+pid_t process_of(std::string_view ending) {
+  pid_t process = 0;
+  unsigned number = 0;
+  const char* const end = ending.data() + ending.size();
+  const auto first = std::from_chars(ending.data(), end, process);
+  if (first.ec != std::errc() || first.ptr == end || *first.ptr != '-' || process <= 0) return 0;
+  const auto second = std::from_chars(first.ptr + 1, end, number);
+  return second.ec == std::errc() && second.ptr == end ? process : 0;
+}
+
+/// The hidden files that a folder held when this program first wrote into it: folders of many results are listed
+/// once.
+std::vector<std::string> hidden_files(const std::string& folder) {
+  static std::mutex mutex;
+  static std::map<std::string, std::vector<std::string>> of_folder;
+  const std::lock_guard lock(mutex);
+  const auto [entry, is_new] = of_folder.try_emplace(folder);
+  std::error_code code;
+  if (is_new)
+    for (std::filesystem::directory_iterator i(folder, code), end; !code && i != end; i.increment(code))
+      if (std::string name = i->path().filename().string(); name.starts_with('.'))
+        entry->second.push_back(std::move(name));
+  return entry->second;
+}
+
+/// Takes away what killed programs left half-written beside the target. A temporary file is locked as long as its
+/// program writes it, on whatever machine, and names the program's process: both must be gone.
+void remove_left_behind(const std::string& target) {
+  const std::string folder = folder_of(target), prefix = temporary_prefix(target);
+  for (const std::string& name : hidden_files(folder)) {
+    if (!name.starts_with(prefix)) continue;
+    const pid_t process = process_of(std::string_view(name).substr(prefix.size()));
+    if (process == 0 || ::kill(process, 0) == 0 || errno != ESRCH) continue;
+    const std::string path = folder + '/' + name;
+    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+    if (file < 0) continue;
+    struct stat status;
+    if (::fstat(file, &status) == 0 && S_ISREG(status.st_mode) && ::flock(file, LOCK_EX | LOCK_NB) == 0)
+      ::unlink(path.c_str());
+    ::close(file);
+  }
 }
 
 std::optional<struct stat> status_of(const std::string& path) {
@@ -59,10 +113,12 @@ AtomicFile::AtomicFile(std::string path) : path_(std::move(path)), target_(follo
   }
   // A file that its owner protected against writing must not be replaced behind his back.
   if (existing && ::access(target_.c_str(), W_OK) != 0) fail(errno);
+  remove_left_behind(target_);
   do {
     temporary_ = temporary_name(target_);
     file_ = ::open(temporary_.c_str(), flags | O_CREAT | O_EXCL, 0666);
   } while (file_ < 0 && errno == EEXIST);
+  if (file_ >= 0) (void)::flock(file_, LOCK_EX | LOCK_NB);  // best effort: see remove_left_behind()
   if (file_ < 0) {
     const int reason = errno;
     temporary_.clear();

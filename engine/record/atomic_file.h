@@ -6,7 +6,8 @@
 namespace loopwright {
 
 /// Writes to a temporary file in the target's folder; commit() brings it to the disk and renames it over the
-/// target. Without commit() the target stays as it was and the temporary file is removed.
+/// target. Without commit() the target stays as it was and the temporary file is removed; one that a killed
+/// program left is removed by the next that writes the same target.
 ///
 /// A symbolic link is followed, and permissions of a replaced file are kept. A target that is no regular
 /// file, such as /dev/stdout or a pipe, is written to directly: it cannot be replaced. Every failure throws

@@ -8,7 +8,7 @@
 
 #include "engine/record/csv.h"
 #include "engine/record/csv_syntax.h"
-#include "engine/record/input_file.h"
+#include "engine/record/recorded_bytes.h"
 #include "engine/json/problem_limit.h"
 #include "engine/record/text.h"
 
@@ -361,10 +361,8 @@ Recording parse_csv(std::shared_ptr<const SourceFile> source, Problems& problems
 }
 
 Recording read_csv(const std::string& path, Problems& problems, const ReadOptions& options) {
-  Problems opening;
-  const std::shared_ptr<const SourceFile> source = read_input_file(path, opening);
-  for (const Problem& problem : opening.list()) problems.add(problem);
-  return opening.has_errors() ? Recording{} : parse_csv(source, problems, options);
+  const std::shared_ptr<const SourceFile> source = read_recorded_bytes(path, problems);
+  return source ? parse_csv(source, problems, options) : Recording{};
 }
 
 }  // namespace loopwright

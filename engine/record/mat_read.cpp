@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <fmt/format.h>
 #include <map>
 #include <memory>
@@ -9,7 +8,7 @@
 #include <unordered_set>
 #include <utility>
 
-#include "engine/record/input_file.h"
+#include "engine/record/recorded_bytes.h"
 #include "engine/record/mat.h"
 #include "engine/record/mat_layout.h"
 #include "engine/record/mat_names.h"
@@ -176,10 +175,8 @@ void Assembly::check(const Column& column) {
 }  // namespace
 
 Recording read_mat(const std::string& path, Problems& problems, const ReadOptions& options) {
-  Problems opening;
-  const std::shared_ptr<const SourceFile> file = read_input_file(path, opening);
-  for (const Problem& problem : opening.list()) problems.add(problem);
-  if (opening.has_errors()) return {};
+  const std::shared_ptr<const SourceFile> file = read_recorded_bytes(path, problems);
+  if (!file) return {};
 
   // A place without text: lines and columns mean nothing in a binary file.
   const Place place{std::make_shared<SourceFile>(SourceFile{path, {}}), 0};
@@ -193,8 +190,6 @@ Recording read_mat(const std::string& path, Problems& problems, const ReadOption
     return damaged(fmt::format("byte {}: {}", layout->damage_offset, layout->damage),
                    "was the copy complete?");
   const bool is_hdf5 = layout->version == mat::Layout::Version::seven_three;
-  if (is_hdf5 && !std::filesystem::is_regular_file(path))
-    return damaged("a MAT file of version 7.3 cannot be read from a pipe", "save it with -v7, or as a file");
   mat::Variables variables = mat::read_variables(file->text, is_hdf5 ? path : "", options);
   if (!variables.failure.empty()) return damaged(variables.failure);
   if (layout->variables && variables.count != *layout->variables)

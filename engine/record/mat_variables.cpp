@@ -279,7 +279,7 @@ void limit_this_process(int time_limit, [[maybe_unused]] size_t memory_limit) {
   ::setrlimit(RLIMIT_CPU, &computing);
   sigset_t deadlines;
   sigemptyset(&deadlines);
-  for (const int deadline : {SIGXCPU, SIGALRM}) {
+  for (const int deadline : {SIGXCPU, SIGALRM, SIGINT, SIGTERM}) {
     ::signal(deadline, SIG_DFL);
     sigaddset(&deadlines, deadline);
   }

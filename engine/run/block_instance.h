@@ -3,7 +3,7 @@
 #pragma once
 #include <memory>
 #include "engine/plan/plan.h"
-#include "engine/record/hash.h"
+#include "engine/file/hash.h"
 
 namespace loopwright {
 

@@ -1,5 +1,5 @@
 /// A run set aside in a file: the arena, the instant, the solver and the rows so far. It belongs to one plan,
-/// told by its hash.
+/// told by its identity: the same diagram, parameters, contents of files, and program.
 #pragma once
 #include "engine/run/recorder.h"
 
@@ -11,7 +11,7 @@ void write_checkpoint(const std::string& path, Run<double>& run, const RunIdenti
                       const std::string& solver, Recorder& recorder);
 
 /// Puts run, identity and recorder where they were; returns what was given as `solver`. Throws InputError
-/// when the file is damaged or of another plan.
+/// when the file is damaged, or with what has changed since.
 std::string read_checkpoint(const std::string& path, Run<double>& run, RunIdentity& identity,
                             Recorder& recorder);
 

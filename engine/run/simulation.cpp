@@ -10,6 +10,7 @@
 #include "engine/run/pole_check.h"
 #include "engine/run/source_periods.h"
 #include "engine/solve/solver.h"
+#include "models/real/whole.h"
 
 namespace loopwright {
 namespace {
@@ -321,7 +322,7 @@ class Simulation {
   void add_facts() {
     auto& facts = result_.recording.facts;
     facts.emplace_back("title", plan_.title);
-    facts.emplace_back("plan", plan_.hash);
+    for (auto& fact : plan_.identity.facts()) facts.push_back(std::move(fact));
     facts.emplace_back("seed", fmt::format("{}", identity_.seed));
     if (identity_.run) facts.emplace_back("run", fmt::format("{}", identity_.run));
     if (result_.status != RunStatus::finished) facts.emplace_back("incomplete", result_.message);

@@ -168,7 +168,7 @@ std::shared_ptr<const DeviceDescription> read_device(const std::string& path, co
         expect_kind(file, FileKind::device, own))
       DeviceReader(drivers, own).read(file, *device);
   }
-  for (const Problem& problem : own.list()) problems.add(problem);
+  problems.add(own);
   return own.has_errors() ? nullptr : device;
 }
 

@@ -6,6 +6,7 @@
 #include "hw/quanser/errors.h"
 #include "hw/quanser/library.h"
 #include "hw/quanser/quanser.h"
+#include "models/real/whole.h"
 
 namespace loopwright::hw::quanser {
 namespace {
@@ -338,7 +339,7 @@ bool QuanserDriver::watchdog_took_over() noexcept {
   t_error result = call().hil_watchdog_is_expired(card_);
   if (result == 0) {
     const double wait_s = device_->watchdog.timeout + 2e-3;
-    const timespec wait{time_t(wait_s), long(1e9 * (wait_s - std::floor(wait_s)))};
+    const timespec wait{whole_between<time_t>(wait_s, 0, 1000), whole_between(1e9 * (wait_s - std::floor(wait_s)), 0L, 999'999'999L)};
     nanosleep(&wait, nullptr);
     result = call().hil_watchdog_is_expired(card_);
   }

@@ -1,4 +1,5 @@
 #include "hw/quanser/library.h"
+#include "engine/file/regular_file.h"
 #include <fmt/format.h>
 #include <array>
 #include <cstdlib>
@@ -18,6 +19,12 @@ namespace {
 #ifdef _WIN32
 const std::vector<std::string> usual_places{"hil.dll", "C:\\Program Files\\Quanser\\HIL SDK\\bin\\hil.dll"};
 void* open_library(const std::string& path, std::string& why) {
+  // The loader would wait for the writer of a pipe. A bare name is looked for in the system's folders.
+  if (path.find('/') != path.npos)
+    if (const std::string reason = why_not_regular(path); !reason.empty() && reason != "there is no such file") {
+      why = path + ": " + reason;
+      return nullptr;
+    }
   void* handle = LoadLibraryA(path.c_str());
   if (!handle) why = fmt::format("error {} of LoadLibrary", GetLastError());
   return handle;
@@ -69,6 +76,7 @@ std::string file_of(void* symbol, const std::string& path) {
 /// library.
 std::string other_architecture(const std::string& path) {
   Elf64_Ehdr header{};
+  if (!why_not_regular(path).empty()) return "";
   std::ifstream file(path, std::ios::binary);
   if (!file.read(reinterpret_cast<char*>(&header), sizeof header)) return "";
   if (std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0)

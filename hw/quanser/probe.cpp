@@ -1,9 +1,11 @@
 #include "hw/quanser/probe.h"
 #include <fmt/format.h>
+#include <cmath>
 #include <ctime>
 #include "hw/quanser/card_in_use.h"
 #include "hw/quanser/errors.h"
 #include "hw/quanser/library.h"
+#include "models/real/whole.h"
 
 namespace loopwright::hw::quanser {
 namespace {
@@ -15,7 +17,7 @@ std::string shown(t_error result) {
 }
 
 void pause_s(double seconds) {
-  const timespec time{time_t(seconds), long(1e9 * (seconds - double(time_t(seconds))))};
+  const timespec time{whole_between<time_t>(seconds, 0, 1000), whole_between(1e9 * (seconds - std::floor(seconds)), 0L, 999'999'999L)};
   nanosleep(&time, nullptr);
 }
 

@@ -1,4 +1,5 @@
 #include "hw/realtime/control_loop.h"
+#include "models/real/whole.h"
 #include <algorithm>
 #include <cmath>
 
@@ -14,7 +15,7 @@ ControlLoop::ControlLoop(const Plan& plan, const Hardware& hardware, IoDevice& d
       stepper_(plan, hardware),
       device_is_clock_(device.capabilities().is_clock),
       is_simulated_(device.description().clock.time == Time::simulated),
-      period_ns_(std::llround(1e9 * hardware.period_s)) {
+      period_ns_(whole_between<int64_t>(std::round(1e9 * hardware.period_s), 1, INT64_MAX / 2)) {
   inputs_.resize(device.description().inputs.size());
   for (const OutputChannel& output : device.description().outputs) outputs_.push_back(output.safe);
   row_.resize(columns.size());

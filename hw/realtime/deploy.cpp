@@ -56,7 +56,7 @@ class Deployment {
       result_.recording.columns.push_back({column.name, column.unit, {}});
     auto& facts = result_.recording.facts;
     facts.emplace_back("title", plan_.title);
-    facts.emplace_back("plan", plan_.hash);
+    for (auto& fact : plan_.identity.facts()) facts.push_back(std::move(fact));
     facts.emplace_back("seed", fmt::format("{}", plan_.seed));
     facts.emplace_back("device", device_.description().path);
     for (const auto& [name, value] : plan_.parameters) facts.emplace_back("parameter " + name, value);

@@ -12,6 +12,7 @@
 #include <cstring>
 #include "hw/udp/protocol.h"
 #include "hw/udp/udp.h"
+#include "models/real/whole.h"
 
 namespace loopwright::hw::udp {
 namespace {
@@ -139,7 +140,7 @@ class UdpDriver final : public Driver {
     pollfd events[] = {{socket_, POLLIN, 0}, {stop_event_, POLLIN, 0}};
     for (;;) {
       if (take(packet)) return is_silent_ = false, Status{};
-      const int answer = poll(events, is_sampling_ ? 2 : 1, int(std::ceil(1e3 * settings_.patience)));
+      const int answer = poll(events, is_sampling_ ? 2 : 1, whole_between(std::ceil(1e3 * settings_.patience), 0, 1'000'000));
       if (answer == 0) return is_silent_ = true, Status{Code::disconnected};
       if (answer < 0 && errno != EINTR) return {Code::device_fault, errno};
       if (is_sampling_ && (events[1].revents & POLLIN)) return {Code::stopped};

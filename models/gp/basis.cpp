@@ -1,4 +1,5 @@
 #include "models/gp/basis.h"
+#include "models/real/whole.h"
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -8,6 +9,8 @@ namespace loopwright::gp {
 namespace {
 
 using std::numbers::pi;
+
+constexpr int most_terms = 1 << 20;  // of a series: lengths of 1e-5 periods need no more
 
 /// I_j(z)/I_{j-1}(z) for j = 1 … count, by its continued fraction from far beyond: stable, never overflows.
 std::vector<double> bessel_ratios(double z, int count) {
@@ -22,7 +25,7 @@ std::vector<double> bessel_ratios(double z, int count) {
 
 /// e^(-z) I_j(z), j = 0 … count.
 std::vector<double> scaled_bessel(double z, int count) {
-  const int enough = count + int(std::sqrt(80 * z)) + 20;  // so far the sum below needs its terms
+  const int enough = count + whole_between(std::sqrt(80 * z), 0, most_terms) + 20;  // so far the sum below needs its terms
   const std::vector<double> ratio = bessel_ratios(z, enough);
   double sum = 0, product = 1;
   for (int j = 1; j <= enough; ++j) sum += product *= ratio[size_t(j)];
@@ -36,7 +39,7 @@ std::vector<double> scaled_bessel(double z, int count) {
 int size_for(const Basis& basis, double length) {
   if (basis.kind == Basis::Kind::fourier) {
     const double z = 1 / (length * length);
-    const int most = int(std::sqrt(80 * z)) + 25;
+    const int most = whole_between(std::sqrt(80 * z), 0, most_terms) + 25;
     const std::vector<double> ratio = bessel_ratios(z, most);
     double weight = 1;
     int j = 0;
@@ -47,7 +50,7 @@ int size_for(const Basis& basis, double length) {
     // The spectrum of exp(-r²/(2ℓ²)) has fallen to 1e-15 at 8.3/ℓ, and T_n resolves n rad on half the
     // interval.
     const double needed = 8.3 * 0.5 * (basis.high - basis.low) / length + 14;
-    return int(std::ceil(needed / 4)) * 4;
+    return whole_between(std::ceil(needed / 4), 1, most_terms / 4) * 4;
   }
   return basis.size;
 }

@@ -1,4 +1,5 @@
 #include "models/gp/table.h"
+#include "models/real/whole.h"
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -21,7 +22,7 @@ bool MeanTable::Axis::find(double value, int& cell, double& place) const {
   } else if (!(at >= 0 && at <= cells)) {
     return false;
   }
-  cell = std::min(int(at), cells - 1);
+  cell = whole_between(at, 0, cells - 1);  // of a NaN the first; the NaN stays in the place
   place = at - cell;
   return true;
 }
@@ -83,7 +84,7 @@ MeanTable::TermTable MeanTable::tabulate(const Posterior& posterior, size_t inde
     const double curvature = norm * derivative_bound(shape, 4) * (is_pair ? 2 : 1);
     const double step = any_power(384 * 0.5 * tolerance / std::max(curvature, 1e-300), 0.25);
     const double cells = std::ceil((axis.high - axis.low) / step);
-    axis.cells = int(std::clamp(cells, 1.0, double(is_pair ? most_cells_of_pair : most_cells_alone)));
+    axis.cells = whole_between(cells, 1, is_pair ? most_cells_of_pair : most_cells_alone);
     axis.step = (axis.high - axis.low) / axis.cells;
     axis.per_step = 1 / axis.step;
   }
@@ -167,7 +168,7 @@ SlopeBounds slope_bounds(const Posterior& posterior) {
       const double scale =
           shape.kind == Shape::Kind::periodic ? shape.period * shape.length / 7 : shape.length;
       cells[d] =
-          int(std::clamp(20 * (range[d].high - range[d].low) / scale, 20.0, sees(term, 1 - d) ? 300.0 : 1e5));
+          whole_between(20 * (range[d].high - range[d].low) / scale, 20, sees(term, 1 - d) ? 300 : 100'000);
     }
     SlopeBounds seen;
     for (int i = 0; i <= cells[0]; ++i)

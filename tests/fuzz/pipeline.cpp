@@ -6,9 +6,7 @@
 #include "tools/compare/compare.h"
 
 namespace loopwright::fuzz {
-namespace {
 
-/// Every problem speaks, and points into a file.
 void expect_helpful(const Problems& problems, const std::string& what) {
   EXPECT_TRUE(problems.has_errors()) << "refused without an error\n" << what;
   EXPECT_FALSE(problems.text().empty()) << what;
@@ -21,6 +19,8 @@ void expect_helpful(const Problems& problems, const std::string& what) {
     EXPECT_TRUE(at.line >= 1 && at.column >= 1) << to_string(problem) << "\n" << what;
   }
 }
+
+namespace {
 
 Outcome outcome_of(const RunResult& result, const std::string& what) {
   const Recording& recording = result.recording;

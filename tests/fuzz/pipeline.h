@@ -12,6 +12,9 @@ enum class Outcome { refused, finished, failed, cut_short };
 /// of the test.
 Outcome run_diagram(const std::string& path, const std::string& what);
 
+/// Every problem speaks, and points into a file of text.
+void expect_helpful(const Problems& problems, const std::string& what);
+
 /// Holds a diagram against an experiment.
 Outcome compare_experiment(const std::string& diagram, const std::string& experiment,
                            const std::string& what);

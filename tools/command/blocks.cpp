@@ -6,11 +6,11 @@ namespace loopwright {
 
 static int show(const std::string& type) {
   if (type.empty()) {
-    fmt::print("{}", block_list());
+    answer("{}", block_list());
     return done;
   }
   if (const BlockType* found = find_block(type)) {
-    fmt::print("{}", block_text(found->info));
+    answer("{}", block_text(found->info));
     return done;
   }
   Problems problems;
@@ -35,7 +35,7 @@ void add_blocks(CLI::App& app, std::function<void(std::function<int()>)> choose)
     choose([=]() -> int {
       a->libraries.options();
       if (!a->markdown) return show(a->type);
-      fmt::print("{}", block_reference());
+      answer_data(block_reference());
       return done;
     });
   });
@@ -45,7 +45,7 @@ void add_schema(CLI::App& app, std::function<void(std::function<int()>)> choose)
   CLI::App* command = app.add_subcommand("schema", "Print the JSON Schema of diagram files, for editors");
   command->callback([=] {
     choose([]() -> int {
-      fmt::print("{}", diagram_schema());
+      answer_data(diagram_schema());
       return done;
     });
   });

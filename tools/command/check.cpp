@@ -122,13 +122,13 @@ int check(const std::vector<std::string>& paths, const LoadOptions& options) {
     try {
       verdict = check_file(path, options, problems);
     } catch (const InputError& error) {
-      for (const Problem& problem : error.problems.list()) problems.add(problem);
+      problems.add(error.problems);
     }
-    if (!problems.list().empty()) fmt::print(stderr, "{}\n", problems.text());
+    if (!problems.list().empty()) tell("{}\n", problems.text());
     if (problems.has_errors() || !verdict)
       ++wrong;
     else
-      fmt::print("{}: fine, {}\n", path, *verdict);
+      answer("{}: fine, {}\n", path, *verdict);
   }
   return wrong ? input_wrong : done;
 }
@@ -155,7 +155,9 @@ void add_check(CLI::App& app, std::function<void(std::function<int()>)> choose) 
   command->add_option("--blocks", arguments->diagram.libraries, "Shared library with more blocks")
       ->type_name("FILE.so")
       ->allow_extra_args(false);
-  command->callback([=] { choose([=] { return check(arguments->paths, arguments->diagram.options()); }); });
+  command->callback([=] {
+    choose([=] { return check(arguments->paths, {arguments->diagram.options(), arguments->strict_units}); });
+  });
 }
 
 }  // namespace loopwright

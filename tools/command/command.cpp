@@ -3,7 +3,6 @@
 #include <unistd.h>
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <filesystem>
 #include "engine/block/registry.h"
 #include "engine/json/file_kind.h"
@@ -58,17 +57,6 @@ void reject_swapped(const std::string& diagram, const std::vector<std::string>& 
   }
 }
 
-const std::atomic<bool>& interruption() {
-  static std::atomic<bool> flag = false;
-  static_assert(std::atomic<bool>::is_always_lock_free);
-  const auto handler = [](int) {
-    if (flag.exchange(true)) _exit(interrupted);
-  };
-  std::signal(SIGINT, handler);
-  std::signal(SIGTERM, handler);
-  return flag;
-}
-
 static double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -80,31 +68,30 @@ void Progress::show(double done, double total) {
   const double now = now_s();
   if (now - last_ < 0.2 || now - started_ < 0.5 || total <= 0) return;
   last_ = now;
-  const double share = std::min(1.0, done / total);
+  const double share = std::clamp(done / total, 0.0, 1.0);
   const double left = share > 0 ? (now - started_) * (1 - share) / share : 0;
   if (on_terminal_) {
     const int filled = int(share * 30);
-    fmt::print(stderr, "\r{} [{:█>{}}{:░>{}}] {:3.0f} %  {:.0f} s left ", what_, "", filled, "", 30 - filled,
-               100 * share, left);
-    std::fflush(stderr);
+    tell_terminal(fmt::format("\r{} [{:█>{}}{:░>{}}] {:3.0f} %  {:.0f} s left ", what_, "", filled, "",
+                              30 - filled, 100 * share, left));
     drawn_ = true;
   } else if (int(share * 10) > shown_tenths_) {
     shown_tenths_ = int(share * 10);
-    fmt::print(stderr, "{}: {} %, about {:.0f} s left\n", what_, shown_tenths_ * 10, left);
+    tell("{}: {} %, about {:.0f} s left\n", what_, shown_tenths_ * 10, left);
   }
 }
 
 void Progress::finish() {
-  if (drawn_) fmt::print(stderr, "\r\033[K");
+  if (drawn_) tell_terminal("\r\033[K");
 }
 
-std::FILE* summary_stream(std::initializer_list<std::string_view> results) {
-  return std::ranges::find(results, "-") == results.end() ? stdout : stderr;
+void give_summary(const std::string& text, std::initializer_list<std::string_view> results) {
+  std::ranges::find(results, "-") == results.end() ? answer_text(text) : tell_text(text);
 }
 
 void write_json(const std::string& path, const std::function<std::string()>& json) {
   if (path == "-")
-    fmt::print("{}", json());
+    answer_data(json());
   else if (!path.empty())
     write_file(path, json());
 }
@@ -112,7 +99,7 @@ void write_json(const std::string& path, const std::function<std::string()>& jso
 void give_answer(const std::string& text, const std::string& json_path,
                  const std::function<std::string()>& json) {
   write_json(json_path, json);
-  fmt::print(summary_stream({json_path}), "{}", text);
+  give_summary(text, {json_path});
 }
 
 void reject_two_on_stdout(std::initializer_list<std::pair<std::string_view, std::string_view>> options) {

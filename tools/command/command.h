@@ -1,12 +1,13 @@
 /// What the subcommands of `loopwright` share: diagram arguments, exit codes, interruption, progress.
 #pragma once
 #include <CLI/CLI.hpp>
-#include <atomic>
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 #include "engine/diagram/diagram.h"
+#include "tools/command/interruption.h"
+#include "tools/command/output.h"
 
 namespace loopwright {
 
@@ -43,9 +44,6 @@ void add_stability(CLI::App& app, std::function<void(std::function<int()>)> choo
 /// InputError.
 void reject_swapped(const std::string& diagram, const std::vector<std::string>& experiments);
 
-/// Set by SIGINT and SIGTERM once this was called; the second signal ends the program at once.
-const std::atomic<bool>& interruption();
-
 /// A bar on a terminal, a line every tenth elsewhere; on stderr.
 class Progress {
  public:
@@ -61,8 +59,8 @@ class Progress {
   double started_, last_;
 };
 
-/// Where the summary for people goes: stdout, or stderr when one of these results goes to stdout ("-").
-std::FILE* summary_stream(std::initializer_list<std::string_view> results);
+/// The summary for people: on stdout, or on stderr when one of these results goes to stdout ("-").
+void give_summary(const std::string& text, std::initializer_list<std::string_view> results);
 
 /// JSON where it is wanted: in a file, or on stdout for "-".
 void write_json(const std::string& path, const std::function<std::string()>& json);

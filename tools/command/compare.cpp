@@ -21,13 +21,13 @@ int run(const Arguments& a) {
   options.progress = [&](double time, double stop) { progress.show(time, stop); };
   const Comparison comparison = compare(a.diagram.path, a.experiment, a.diagram.options(), options);
   progress.finish();
-  for (const std::string& warning : comparison.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  for (const std::string& warning : comparison.warnings) tell("warning: {}\n", warning);
   const std::string title = std::filesystem::path(a.experiment).filename().string();
   if (!a.report.empty())
     report::write_html(a.report, comparison_page(comparison, comparison.plan->title + " — " + title));
   give_answer(to_text(comparison), a.json, [&] { return to_json(comparison); });
   if (comparison.run.status == RunStatus::finished) return done;
-  fmt::print(stderr, "{}: {}\n", a.diagram.path, comparison.run.message);
+  tell("{}: {}\n", a.diagram.path, comparison.run.message);
   return comparison.run.status == RunStatus::interrupted ? interrupted : run_failed;
 }
 

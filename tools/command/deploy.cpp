@@ -7,6 +7,8 @@
 #include "hw/drivers.h"
 #include "hw/realtime/stop_signals.h"
 #include "tools/command/command.h"
+#include "tools/command/interruption.h"
+#include "tools/command/output.h"
 #include "tools/command/take_over.h"
 #include "tools/deploy/console.h"
 #include "tools/deploy/deployment_page.h"
@@ -185,7 +187,7 @@ int run(const Arguments& a) {
   hold_standard_descriptors();
   require_paths(a);
   const auto plan = load_plan(a.diagram.path, a.diagram.options());
-  for (const Problem& warning : plan->warnings) fmt::print(stderr, "{}\n", to_string(warning));
+  tell_text(to_text(plan->warnings));
   const hw::Hardware hardware = hardware_of(*plan, a.diagram.path);
   if (const std::string code = hw::foreign_code_of(*hardware.device); !code.empty())
     say(code + "\n", patience_ms);
@@ -193,6 +195,7 @@ int run(const Arguments& a) {
   const std::string journal = journal_for(a);
   if (!journal.empty()) require_no_journal(journal);
   // Until the process has ended: a hasty signal must not come between the last file and the exit code.
+  take_time_after_interruption();
   static const hw::StopSignals& signals = *new hw::StopSignals;
   std::optional<hw::DeployResult> moved = move(a, *plan, hardware, signals, journal);
   if (!moved) return run_failed;

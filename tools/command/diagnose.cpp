@@ -27,7 +27,7 @@ int run(const Arguments& a) {
   progress.finish();
   if (diagnosis.was_interrupted) return interrupted;
   if (a.trail)
-    for (const std::string& line : diagnosis.trail) fmt::print(stderr, "{}\n", line);
+    for (const std::string& line : diagnosis.trail) tell("{}\n", line);
   if (!a.report.empty()) report::write_html(a.report, diagnosis_page(diagnosis));
   give_answer(to_text(diagnosis), a.json, [&] { return to_json(diagnosis); });
   return done;

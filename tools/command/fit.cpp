@@ -19,7 +19,7 @@ struct Arguments {
 /// The fitted text where it is wanted; relative paths in it still lead to their files.
 void write_fitted(const Arguments& a, const std::string& text) {
   if (a.output == "-") {
-    fmt::print("{}", text);
+    answer_data(text);
     return;
   }
   const std::string folder = std::filesystem::path(a.output).parent_path().string();
@@ -45,7 +45,7 @@ int run(const Arguments& a) {
     write_fitted(a, text);
   }
   write_json(a.json, [&] { return to_json(result); });
-  fmt::print(summary_stream({a.json, a.output}), "{}", to_text(result));
+  give_summary(to_text(result), {a.json, a.output});
   return result.was_interrupted ? interrupted : done;
 }
 

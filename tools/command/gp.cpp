@@ -33,7 +33,7 @@ void throw_errors(Problems& problems) {
   if (problems.has_errors()) throw InputError(std::move(problems));
 }
 void print_warnings(const Problems& problems) {
-  if (!problems.list().empty()) fmt::print(stderr, "{}\n", problems.text());
+  if (!problems.list().empty()) tell("{}\n", problems.text());
 }
 
 void write_results(const LearnedModel& learned, const std::vector<ShownSamples>& shown,

@@ -52,7 +52,7 @@ int run(const Arguments& a) {
     throw InputError(std::move(problems));
   }
   const auto plan = load_plan(a.diagram.path, a.diagram.options());
-  for (const Problem& warning : plan->warnings) fmt::print(stderr, "{}\n", to_string(warning));
+  tell_text(to_text(plan->warnings));
   RunOptions options;
   options.interrupt = &interruption();
   LinearizeRequest request = a.request;
@@ -65,7 +65,7 @@ int run(const Arguments& a) {
     write_csv(a.csv, to_recording(analysis));
   if (!a.report.empty()) report::write_html(a.report, linear_page(analysis));
   write_json(a.json, [&] { return to_json(analysis); });
-  fmt::print(summary_stream({a.json, a.csv}), "{}", to_text(analysis));
+  give_summary(to_text(analysis), {a.json, a.csv});
   return done;
 }
 

@@ -1,11 +1,15 @@
 /// The `loopwright` program: one subcommand a file.
-#include <fmt/format.h>
+#include <sys/resource.h>
 #include <exception>
+#include <new>
+#include <thread>
 #include "tools/command/command.h"
 #include "tools/command/command_line.h"
 
-int main(int count, char** arguments) {
-  using namespace loopwright;
+namespace loopwright {
+namespace {
+
+int run_program(int count, char** arguments) {
   CLI::App app{"Loopwright simulates block diagrams of motion control, and holds them against measurements."};
   app.require_subcommand(1);
   app.set_version_flag("--version", "loopwright " LOOPWRIGHT_VERSION);
@@ -36,13 +40,43 @@ int main(int count, char** arguments) {
     return action();
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
-    fmt::print(stderr, "{}\n", explain(app, e).text());
+    tell("{}\n", explain(app, e).text());
     return input_wrong;
   } catch (const InputError& e) {
-    fmt::print(stderr, "{}\n", e.what());
+    tell("{}\n", e.what());
     return input_wrong;
+  } catch (const std::bad_alloc&) {
+    tell("error: this needs more memory than there is\n");
+    return run_failed;
   } catch (const std::exception& e) {
-    fmt::print(stderr, "error: {}\n", e.what());
+    tell("error: {}\n", e.what());
     return run_failed;
   }
+}
+
+/// Some work needs more room on its stack than a system with small limits gives a program; a thread of its own, and
+/// those that it starts, are given what they need whatever the limit is.
+template <class Work> int with_room_on_the_stack(Work&& work) {
+  constexpr size_t enough = 8u << 20;  // bytes; what Linux gives by default
+  rlimit limit{};
+  if (getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur >= enough) return work();
+  pthread_attr_t attributes;
+  pthread_attr_init(&attributes);
+  pthread_attr_setstacksize(&attributes, enough);
+  pthread_setattr_default_np(&attributes);
+  pthread_attr_destroy(&attributes);
+  int result = run_failed;
+  std::thread([&] { result = work(); }).join();
+  return result;
+}
+
+}  // namespace
+}  // namespace loopwright
+
+int main(int count, char** arguments) {
+  using namespace loopwright;
+  prepare_standard_streams();
+  obey_interruption();
+  const int result = with_room_on_the_stack([&] { return run_program(count, arguments); });
+  return finish_answers() || result != done ? result : run_failed;
 }

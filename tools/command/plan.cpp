@@ -9,7 +9,7 @@ namespace {
 void write_picture(const Plan& plan, const std::string& path) {
   for (const report::Item& item : report::graph_picture(graph_of(plan))) {
     if (const auto* picture = std::get_if<report::Picture>(&item)) write_file(path, picture->svg);
-    if (const auto* notice = std::get_if<report::Notice>(&item)) fmt::print(stderr, "{}\n", notice->text);
+    if (const auto* notice = std::get_if<report::Notice>(&item)) tell("{}\n", notice->text);
   }
 }
 
@@ -29,8 +29,8 @@ void add_plan(CLI::App& app, std::function<void(std::function<int()>)> choose) {
     choose([=]() -> int {
       require_writable_file(a->svg, "--svg");
       const auto plan = load_plan(a->diagram.path, a->diagram.options());
-      for (const Problem& warning : plan->warnings) fmt::print(stderr, "{}\n", to_string(warning));
-      fmt::print("{}", describe(*plan));
+      tell_text(to_text(plan->warnings));
+      answer("{}", describe(*plan));
       if (!a->svg.empty()) write_picture(*plan, a->svg);
       return done;
     });

@@ -28,22 +28,23 @@ hw::quanser::Settings settings_of(const std::string& path) {
 
 int run(const Arguments& a) {
   const auto settings = settings_of(a.device);
-  fmt::print("real-time service\n");
+  answer("real-time service\n");
   hw::SystemReport system;
   {
     const hw::RealTimeProcess process({}, system);
     hw::make_thread_real_time({}, system);
   }
-  fmt::print("{}device\n  loads and runs the code of {}\n", hw::to_text(system),
-             hw::quanser::library_to_load(settings.library));
+  answer("{}device\n  loads and runs the code of {}\n", hw::to_text(system),
+         hw::quanser::library_to_load(settings.library));
   std::fflush(stdout);  // before that code runs
   const auto may_take_over = [&](const std::string& who) {
     return agrees(a.take_over, "in use: " + who, hw::quanser::what_taking_over_does);
   };
   bool is_good = true;
-  for (const hw::quanser::ProbeAnswer& answer : hw::quanser::probe(settings, a.may_touch, may_take_over)) {
-    fmt::print("  {} {}: {}\n", answer.is_good ? "+" : "-", answer.question, answer.answer);
-    is_good &= answer.is_good;
+  take_time_after_interruption();  // the card is closed
+  for (const hw::quanser::ProbeAnswer& given : hw::quanser::probe(settings, a.may_touch, may_take_over)) {
+    answer("  {} {}: {}\n", given.is_good ? "+" : "-", given.question, given.answer);
+    is_good &= given.is_good;
   }
   return is_good ? done : run_failed;
 }

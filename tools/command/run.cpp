@@ -39,7 +39,7 @@ int replay_log(const Arguments& a, const Plan& plan) {
   if (problems.has_errors()) throw InputError(std::move(problems));
   const Replay result = replay(plan, hardware, log, problems);
   if (problems.has_errors()) throw InputError(std::move(problems));
-  fmt::print("{}", to_text(result));
+  answer("{}", to_text(result));
   return result.explains() ? done : run_failed;
 }
 
@@ -48,18 +48,18 @@ int replay_log(const Arguments& a, const Plan& plan) {
 void warn_of_hardware(const Plan& plan) {
   for (const Plan::Block& block : plan.blocks)
     if (block.type->info.type == "HardwareIo")
-      fmt::print(stderr,
-                 "warning: \"{}\" is hardware and stands still in a simulation; loopwright deploy moves it\n",
+      tell("warning: \"{}\" is hardware and stands still in a simulation; loopwright deploy moves it\n",
                  block.path);
 }
 
 int run(const Arguments& a) {
   require_paths(a);
   const auto plan = load_plan(a.diagram.path, a.diagram.options());
-  for (const Problem& warning : plan->warnings) fmt::print(stderr, "{}\n", to_string(warning));
+  tell_text(to_text(plan->warnings));
   if (!a.replay.empty()) return replay_log(a, *plan);
   warn_of_hardware(*plan);
   Progress progress("run");
+  take_time_after_interruption();  // what was computed is written
   RunOptions options;
   options.run = a.run;
   options.checkpoint_file = a.checkpoint, options.checkpoint_every = a.checkpoint_every,
@@ -69,15 +69,15 @@ int run(const Arguments& a) {
   const RunResult result = simulate(*plan, options);
   progress.finish();
   for (const std::string& warning : result.warnings)
-    fmt::print(stderr, "{}: warning: {}\n", a.diagram.path, warning);
+    tell("{}: warning: {}\n", a.diagram.path, warning);
   if (a.output == "-")
     print_csv(stdout, result.recording);
   else if (!a.output.empty())
     write_recording(a.output, result.recording);
   if (!a.report.empty()) report::write_html(a.report, run_page(*plan, result));
-  if (!a.quiet) fmt::print(summary_stream({a.output}), "{}", run_summary(*plan, result));
+  if (!a.quiet) give_summary(run_summary(*plan, result), {a.output});
   if (result.status == RunStatus::finished) return done;
-  fmt::print(stderr, "{}: {}\n", a.diagram.path, result.message);
+  tell("{}: {}\n", a.diagram.path, result.message);
   return result.status == RunStatus::interrupted ? interrupted : run_failed;
 }
 

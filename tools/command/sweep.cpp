@@ -11,6 +11,7 @@
 #include "tools/sweep/run_sweep.h"
 #include "tools/run/run_page.h"
 #include "tools/sweep/sweep_page.h"
+#include "models/real/whole.h"
 
 namespace loopwright {
 namespace {
@@ -78,22 +79,23 @@ void write_traces(const SweepPlan& plan, const std::string& folder, const SweepR
     if (i < most_trace_pages)
       report::write_html(trace_of(folder, runs[i], "html"), run_page(*diagram, result));
   }
-  fmt::print("{} traces in {}/traces\n", runs.size(), folder);
+  answer("{} traces in {}/traces\n", runs.size(), folder);
 }
 
-int write_tables(const SweepPlan& plan, const std::string& folder) {
+/// Answers how many runs are missing in the tables.
+int64_t write_tables(const SweepPlan& plan, const std::string& folder) {
   const SweepResults results = read_results(plan, folder);
-  for (const std::string& note : results.notes) fmt::print(stderr, "warning: {}\n", note);
+  for (const std::string& note : results.notes) tell("warning: {}\n", note);
   write_recording(folder + "/results.csv", results.table);
   write_recording(folder + "/results.mat", results.table);
   std::string failures;
   for (const auto& [run, reason] : results.failures) failures += fmt::format("run {}: {}\n", run, reason);
   write_file(folder + "/failures.txt", failures);
-  fmt::print("{} runs in {}/results.csv and .mat; {} failed{}\n", results.table.rows(), folder,
+  answer("{} runs in {}/results.csv and .mat; {} failed{}\n", results.table.rows(), folder,
              results.failures.size(),
              results.missing ? fmt::format("; {} are missing", results.missing) : "");
   if (results.missing == 0) write_traces(plan, folder, results);
-  return done;
+  return results.missing;
 }
 
 int optimise(const SweepPlan& plan, const Arguments& a) {
@@ -107,22 +109,22 @@ int optimise(const SweepPlan& plan, const Arguments& a) {
   const Optimum best = optimise(plan, options);
   progress.finish();
   if (!best.found) {
-    fmt::print(stderr, "none of {} runs has the metric\n", best.evaluations);
+    tell("none of {} runs has the metric\n", best.evaluations);
     return best.interrupted ? interrupted : run_failed;
   }
   const auto& metrics = plan.sweep().metrics;
   const auto metric =
       std::find_if(metrics.begin(), metrics.end(), [&](const Metric& m) { return m.name == options.metric; });
-  fmt::print("{} {} = {} {}\n", options.maximise ? "greatest" : "least", options.metric, best.value,
+  answer("{} {} = {} {}\n", options.maximise ? "greatest" : "least", options.metric, best.value,
              plan.world(0).observed.units[size_t(metric - metrics.begin())]);
   for (size_t i = 0; i < best.point.size(); ++i) {
     const Axis& axis = plan.sweep().axes[i];
-    fmt::print("  {} = {}\n", axis.name,
-               axis.kind == Axis::Kind::variants ? axis.variants[size_t(best.point[i])]
+    answer("  {} = {}\n", axis.name,
+               axis.kind == Axis::Kind::variants ? axis.variants[whole_index(best.point[i], axis.variants.size())]
                                                  : fmt::format("{} {}", best.point[i], axis.unit));
   }
-  fmt::print("{}\n", plan.command(plan.options_at(best.point), 0));
-  fmt::print("{} runs, {} of them failed\n", best.evaluations, best.failed);
+  answer("{}\n", plan.command(plan.options_at(best.point), 0));
+  answer("{} runs, {} of them failed\n", best.evaluations, best.failed);
   return best.interrupted ? interrupted : done;
 }
 
@@ -141,12 +143,12 @@ int make(const SweepPlan& plan, const Arguments& a) {
   const SweepOutcome outcome = run_sweep(plan, a.folder, options);
   ranks.wait();
   progress.finish();
-  for (const std::string& note : outcome.notes) fmt::print(stderr, "{}\n", note);
-  fmt::print("{}{} of {} runs done, {} now, {} of them failed\n", ranks.name(), outcome.done, outcome.runs,
+  for (const std::string& note : outcome.notes) tell("{}\n", note);
+  answer("{}{} of {} runs done, {} now, {} of them failed\n", ranks.name(), outcome.done, outcome.runs,
              outcome.made, outcome.failed);
   if (options.shards == 1 && ranks.is_first()) write_tables(plan, a.folder);
   if (!outcome.interrupted) return done;
-  fmt::print(stderr, "interrupted; --resume goes on\n");
+  tell("interrupted; --resume goes on\n");
   return interrupted;
 }
 
@@ -167,7 +169,7 @@ int write_report(const std::string& folder, const std::string& page) {
     if (const std::string trace = trace_of(folder, run, "html"); std::filesystem::exists(trace))
       traces[run] = std::filesystem::absolute(trace).lexically_relative(home);
   report::write_html(path, sweep_page(plan, results, traces));
-  fmt::print("{}\n", path);
+  answer("{}\n", path);
   return done;
 }
 
@@ -202,7 +204,7 @@ void add_sweep(CLI::App& app, std::function<void(std::function<int()>)> choose) 
   merged->callback([=] {
     choose([=] {
       a->libraries.options();
-      return write_tables(plan_of(sweep_file_of(*folder)), *folder);
+      return write_tables(plan_of(sweep_file_of(*folder)), *folder) == 0 ? done : run_failed;
     });
   });
   CLI::App* shown = command->add_subcommand("report", "A page on the results in a folder");

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include "models/real/whole.h"
 #include "tools/compare/experiment_ports.h"
 
 namespace loopwright {
@@ -48,7 +49,7 @@ void measure(ComparedSignal& signal, double hold_out_fraction) {
   signal.relative_percent = size > 0 ? 100 * signal.rmse / size : 0;
   signal.fit_percent = spread > 0 ? 100 * (1 - signal.rmse / spread) : 0;
   if (hold_out_fraction > 0)
-    signal.held_out_rmse = rms(std::span(signal.error).last(size_t(double(n) * hold_out_fraction)));
+    signal.held_out_rmse = rms(std::span(signal.error).last(whole_between<size_t>(double(n) * hold_out_fraction, 0, n)));
 }
 
 void add_axes(Comparison& comparison, const Experiment& experiment) {
@@ -81,7 +82,7 @@ OpenLoopErrors open_loop_errors(const Machine& machine) {
   };
   errors.whole_record = error(0);
   for (double horizon : {0.05, 0.1, 0.2}) {
-    const auto samples = size_t(std::llround(horizon / machine.motion.sample_time));
+    const auto samples = whole_count(std::round(horizon / machine.motion.sample_time));
     if (samples >= 2) errors.restarted.emplace_back(horizon, error(samples));
   }
   return errors;

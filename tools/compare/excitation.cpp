@@ -1,4 +1,5 @@
 #include "tools/compare/excitation.h"
+#include "models/real/whole.h"
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -31,7 +32,7 @@ int speeds_in(const MeasuredMotion& m) {
   std::map<int, double> seconds;  // by the logarithm of speed
   for (size_t k = 0; k < m.rows(); ++k)
     if (m.counts[k])
-      seconds[int(std::floor(std::log(std::abs(m.velocity[k])) / std::log(1.2)))] += m.sample_time;
+      seconds[whole_between(std::floor(std::log(std::abs(m.velocity[k])) / std::log(1.2)), -10000, 10000)] += m.sample_time;
   double moving = 0;
   for (const auto& [bin, s] : seconds) moving += s;
   int count = 0, last = -1000;
@@ -60,8 +61,7 @@ bool has_varied_force(const MeasuredMotion& m) {
   const double low = *std::ranges::min_element(m.position), stroke = std::max(m.stroke(), 1e-300);
   for (size_t k = 0; k < m.rows(); ++k) {
     if (!m.counts[k]) continue;
-    const auto bin = size_t(std::clamp(int((m.position[k] - low) / stroke * bins), 0, bins - 1) +
-                            (m.velocity[k] > 0 ? bins : 0));
+    const auto bin = whole_index((m.position[k] - low) / stroke * bins, bins) + size_t(m.velocity[k] > 0 ? bins : 0);
     sum[bin] += m.force[k], squares[bin] += m.force[k] * m.force[k], count[bin] += 1;
   }
   double within = 0, all = 0;
@@ -111,7 +111,7 @@ struct InputMatch {
 InputMatch match_input(const MeasuredMotion& m, const ForceResidual& residual) {
   std::vector<double> needed(m.rows());
   for (size_t k = 0; k < m.rows(); ++k) needed[k] = m.force[k] - residual.value[k];
-  const int most = int(std::ceil(0.1 / m.sample_time));
+  const int most = whole_between(std::ceil(0.1 / m.sample_time), 0, int(m.rows()));
   InputMatch match;
   double at_zero = 0, best = 1e300;
   for (int lag = -most; lag <= most; ++lag) {
@@ -178,7 +178,7 @@ RecordContent content_of(const Machine& machine, const ForceResidual& residual, 
     if (m.counts[k]) up = std::max(up, m.acceleration[k]), down = std::min(down, m.acceleration[k]);
   const double clear = 5 * residual.noise_floor / std::max(machine.mass, 1e-300);
   c.accelerations = int(up > clear) + int(-down > clear);
-  c.passes = residual.repeat_s > 0 ? int(c.sizes.duration / residual.repeat_s) : 1;
+  c.passes = residual.repeat_s > 0 ? int(whole_count(c.sizes.duration / residual.repeat_s)) : 1;
   c.varied_force = has_varied_force(m);
   return c;
 }

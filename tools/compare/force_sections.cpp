@@ -3,6 +3,7 @@
 #include <cmath>
 #include "tools/compare/compare.h"
 #include "tools/report/typography.h"
+#include "models/real/whole.h"
 
 namespace loopwright {
 namespace {
@@ -47,7 +48,7 @@ report::Plot against(const ForceAnalysis& f, std::string title, std::string axis
     std::vector<double> sum(size_t(bins), 0.0), count(size_t(bins), 0.0);
     for (size_t k = 0; k < variable.size(); ++k) {
       if (!f.motion.counts[k] || (f.motion.velocity[k] > 0) != (direction > 0) || high <= low) continue;
-      const auto b = size_t(std::clamp(int((variable[k] - low) / (high - low) * bins), 0, bins - 1));
+      const auto b = whole_index((variable[k] - low) / (high - low) * bins, size_t(bins));
       sum[b] += f.residual.value[k], count[b] += 1;
     }
     Series mean{direction > 0 ? "mean, forward" : "mean, backward", {}, {}, Series::Shape::line};

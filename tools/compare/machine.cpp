@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include "tools/compare/even_grid.h"
 #include "tools/compare/zero_phase.h"
+#include "models/real/whole.h"
 
 namespace loopwright {
 namespace {
@@ -46,8 +47,8 @@ std::vector<double> second_difference(const std::vector<double>& x, double dt) {
 /// Fast enough for the sign of friction to be certain, a twelfth of a tenth of a second away from rest and
 /// from samples that are missing: so far filters reach.
 void find_moving_rows(MeasuredMotion& m) {
-  const size_t n = m.rows(), margin = size_t(std::ceil(0.012 / m.sample_time)),
-               ends = std::min(n / 10, size_t(std::ceil(0.1 / m.sample_time)));
+  const size_t n = m.rows(), margin = whole_count(std::ceil(0.012 / m.sample_time)),
+               ends = std::min(n / 10, whole_count(std::ceil(0.1 / m.sample_time)));
   m.rest_speed = 0.005 * m.top_speed();
   m.counts.assign(n, 1);
   for (size_t k = 0; k < n; ++k) {
@@ -165,7 +166,7 @@ class Stepper {
   Stepper(const Machine& machine, const Plan& plan)
       : machine_(machine),
         run_(plan),
-        period_(std::llround(machine.motion.sample_time / plan.clock.time(1))) {
+        period_(int64_t(whole_count(std::round(machine.motion.sample_time / plan.clock.time(1))))) {
     switch_off_noise(run_, plan);
     run_.reset({plan.seed, 0});
   }

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include "tools/compare/smoother.h"
 #include "tools/compare/zero_phase.h"
+#include "models/real/whole.h"
 
 namespace loopwright {
 namespace {
@@ -27,7 +28,7 @@ double difference_after(const std::vector<double>& x, size_t lag, size_t step) {
 
 /// Rows after which the motion is the same again, at least a third of the record long; 0: none.
 size_t find_repeat(const MeasuredMotion& m) {
-  const size_t n = m.rows(), coarse = std::max<size_t>(1, size_t(0.02 / m.sample_time));
+  const size_t n = m.rows(), coarse = std::max<size_t>(1, whole_count(0.02 / m.sample_time));
   const double allowed = 0.003 * m.stroke();
   bool has_left = false;  // the motion is like itself after a short time too
   size_t best = 0;
@@ -152,7 +153,7 @@ std::vector<ResidualShare> where_it_lies(const Machine& machine, const ForceResi
     }
     for (size_t k = 0; k < m.rows(); ++k) {
       if (!m.counts[k]) continue;
-      const int b = std::clamp(int((variables[v][k] - low) / (high - low) * bins), 0, bins - 1);
+      const int b = whole_between((variables[v][k] - low) / (high - low) * bins, 0, bins - 1);
       own[size_t(b)].share += residual.value[k] * residual.value[k] / total,
           own[size_t(b)].of_rows += 1 / rows;
     }

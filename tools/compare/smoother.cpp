@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include "models/random/philox.h"
+#include "models/real/whole.h"
 
 namespace loopwright {
 namespace {
@@ -120,7 +121,7 @@ Line find_line(const std::vector<double>& residual, const Rows& rows, const std:
 
 Rows thinned(const MeasuredMotion& m, const std::vector<double>& residual) {
   Rows rows;
-  const size_t step = std::max<size_t>(1, size_t(std::llround(0.005 / m.sample_time)));
+  const size_t step = std::max<size_t>(1, whole_count(std::round(0.005 / m.sample_time)));
   const size_t most = 6000, wanted = std::max(step, m.rows() / most);
   const double block = std::max(0.4, std::min(1.25, double(m.rows()) * m.sample_time / 32));
   for (size_t k = 0; k < m.rows(); k += wanted) {
@@ -129,7 +130,7 @@ Rows thinned(const MeasuredMotion& m, const std::vector<double>& residual) {
     rows.residual.push_back(residual[k]);
     rows.position.push_back(m.position[k]), rows.velocity.push_back(m.velocity[k]);
     rows.acceleration.push_back(m.acceleration[k]), rows.time.push_back(m.time[k]);
-    rows.block.push_back(int(double(k) * m.sample_time / block));
+    rows.block.push_back(int(whole_count(double(k) * m.sample_time / block)));
     rows.blocks = rows.block.back() + 1;
   }
   return rows;

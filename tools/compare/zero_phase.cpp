@@ -1,4 +1,5 @@
 #include "tools/compare/zero_phase.h"
+#include "models/real/whole.h"
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -35,7 +36,7 @@ struct Section {
 std::vector<double> zero_phase_low_pass(std::span<const double> values, double cutoff, double sample_time) {
   const size_t n = values.size();
   if (n < 8 || cutoff * sample_time >= 0.45) return {values.begin(), values.end()};
-  const size_t margin = std::min(n - 1, size_t(std::ceil(3 / (cutoff * sample_time))));
+  const size_t margin = std::min(n - 1, whole_count(std::ceil(3 / (cutoff * sample_time))));
   std::vector<double> x;
   for (size_t i = margin; i > 0; --i) x.push_back(2 * values[0] - values[i]);
   x.insert(x.end(), values.begin(), values.end());

@@ -40,6 +40,20 @@ std::vector<Measured> measured_columns(const hw::Hardware& hardware, const Recor
   return measured;
 }
 
+/// What the log says of its origin must be what the plan is. A log without such facts has lost them, or comes from
+/// a version that wrote none: then only its bits can tell.
+void compare_origin(const Plan& plan, const Recording& log, Replay& result, Problems& problems) {
+  const Identity before = identity_of(log.facts);
+  if (before.structure.empty()) return;
+  for (const std::string& change : changes(before, plan.identity))
+    problems.error({}, "", "", "the log was made by something else: " + change).hint =
+        "a replay needs the diagram, --set, --variant and files of the deployment";
+  if (before.build != plan.identity.build)
+    result.other_build =
+        fmt::format("the log was made by another build of the program ({}, here {}): bits may differ",
+                    before.build, plan.identity.build);
+}
+
 bool equal_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
 void compare(double logged, double computed, int64_t row, double time, ReplayedColumn& to) {
@@ -73,8 +87,8 @@ Replay replay(const Plan& plan, const hw::Hardware& hardware, const Recording& l
         computed.push_back({logged, column.number});
         result.columns.push_back({column.name, column.unit});
       }
+  compare_origin(plan, log, result, problems);
   if (problems.has_errors()) return result;
-  for (const auto& [key, value] : log.facts) result.same_plan &= key != "plan" || value == plan.hash;
 
   const Column* lost = log.find(hw::lost_column);
   hw::PeriodStepper stepper(plan, hardware);
@@ -105,8 +119,7 @@ Replay replay(const Plan& plan, const hw::Hardware& hardware, const Recording& l
 
 std::string to_text(const Replay& replay) {
   std::string text;
-  if (!replay.same_plan)
-    text += "the log was made by another plan: a changed parameter, or another version\n";
+  if (!replay.other_build.empty()) text += "warning: " + replay.other_build + "\n";
   for (const ReplayedColumn& column : replay.columns)
     text +=
         column.differing == 0

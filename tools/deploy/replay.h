@@ -21,11 +21,12 @@ struct Replay {
   int64_t rows = 0;  ///< replayed
   std::vector<ReplayedColumn> columns;
   std::string fault;      ///< why it ended before the log did; empty: it did not
-  bool same_plan = true;  ///< the log was made by a plan of the same hash
+  std::string other_build;  ///< says so where another build of the program made the log; empty: this one did
   bool explains() const;  ///< every row was replayed and every bit is the same
 };
 
-/// Steps the plan through the rows of the log. Problems: a column that is needed is not in the log.
+/// Steps the plan through the rows of the log. Problems: a column that is needed is not in the log; the log was
+/// made by other parameters, or with other contents of a file.
 Replay replay(const Plan& plan, const hw::Hardware& hardware, const Recording& log, Problems& problems);
 
 /// A few lines for a terminal.

@@ -1,4 +1,5 @@
 #include "tools/diagnose/axis_record.h"
+#include "models/real/whole.h"
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
@@ -109,7 +110,7 @@ AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Prob
       record.measured.push_back({role, wanted, unit, signal.resolution, grid.measured(column.values)});
     }
   }
-  record.held_out_from = size_t(std::llround(double(record.rows()) * (1 - experiment.hold_out_fraction)));
+  record.held_out_from = whole_between<size_t>(std::round(double(record.rows()) * (1 - experiment.hold_out_fraction)), 0, record.rows());
   if (record.measured.empty())
     problems
         .error({}, "/compare", "",

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <deque>
 #include "tools/effects/effect_run.h"
+#include "models/real/whole.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -232,7 +233,7 @@ RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
       sizes.resolution = std::max(sizes.resolution, position->resolution);
   }
   if (!speeds.empty()) {  // a few rows may have been disturbed
-    const auto top = speeds.begin() + std::ptrdiff_t(0.995 * double(speeds.size() - 1));
+    const auto top = speeds.begin() + std::ptrdiff_t(whole_index(0.995 * double(speeds.size() - 1), speeds.size()));
     std::ranges::nth_element(speeds, top);
     sizes.top_speed = *top;
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include "tools/diagnose/verdict.h"
+#include "models/real/whole.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -39,7 +40,7 @@ struct Hats {
   Hats(std::vector<double> values, size_t count) {
     std::ranges::sort(values);
     for (size_t i = 0; i < count; ++i) {
-      const double knot = values[size_t(double(values.size() - 1) * double(i) / double(count - 1))];
+      const double knot = values[whole_index(double(values.size() - 1) * double(i) / double(count - 1), values.size())];
       if (knots.empty() || knot > knots.back()) knots.push_back(knot);
     }
   }

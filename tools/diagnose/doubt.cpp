@@ -1,4 +1,5 @@
 #include "tools/diagnose/doubt.h"
+#include "models/real/whole.h"
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -16,7 +17,7 @@ constexpr double shifts_s[] = {1, 2};  // each gives other errors
 Path seen_otherwise(const Path& path, double shift_s) {
   Path other = path;
   other.identity = 0;
-  const size_t rows = path.samples(), shift = size_t(shift_s / path.sample_time);
+  const size_t rows = path.samples(), shift = whole_count(shift_s / path.sample_time);
   double error = 0;
   for (size_t k = 0; k < rows; ++k) {
     const size_t from = (k + rows - shift % rows) % rows;

@@ -1,5 +1,6 @@
 #include "tools/diagnose/maximum_likelihood.h"
 #include "tools/diagnose/rest.h"
+#include "models/real/whole.h"
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -143,7 +144,7 @@ void widen_by_blocks(const Trials& trials, Estimate& estimate) {
     const Fitted& fitted = estimate.fitted[t];
     const Path& path = *estimate.motion.paths[t];
     const Sensitivity s = sensitivity(estimate.members, path, fitted, trial.input);
-    const size_t block = std::max<size_t>(1, size_t(block_s / path.sample_time));
+    const size_t block = std::max<size_t>(1, whole_count(block_s / path.sample_time));
     Eigen::VectorXd sum(n), score(n);
     for (size_t start = 0; start < trial.held_out_from; start += block) {
       sum.setZero();

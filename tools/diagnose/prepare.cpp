@@ -1,4 +1,5 @@
 #include "tools/diagnose/prepare.h"
+#include "models/real/whole.h"
 #include <algorithm>
 #include <cmath>
 #include "tools/compare/experiment_ports.h"
@@ -11,7 +12,7 @@ constexpr int memory_of_rest = 50;  // rows after a rest that do not count: the 
 
 double quantile(std::vector<double> values, double fraction) {
   if (values.empty()) return 0;
-  const auto at = values.begin() + std::ptrdiff_t(fraction * double(values.size() - 1));
+  const auto at = values.begin() + std::ptrdiff_t(whole_index(fraction * double(values.size() - 1), values.size()));
   std::ranges::nth_element(values, at);
   return *at;
 }
@@ -55,7 +56,7 @@ void mark_usable(Trial& trial, const Path& path, bool is_map) {
   const size_t rows = path.samples();
   trial.moving.assign(rows, 1), trial.at_rest.assign(rows, 0);
   int since_rest = memory_of_rest;
-  const int start = is_map ? 1 : int(std::ceil(settling_s / path.sample_time));
+  const int start = is_map ? 1 : int(whole_count(std::ceil(settling_s / path.sample_time)));
   for (size_t k = 0; k < rows; ++k) {
     since_rest = path.rests[k] ? 0 : since_rest + 1;
     trial.moving[k] = since_rest > memory_of_rest && !path.turns[k] && int(k) >= start;

@@ -4,6 +4,7 @@
 #include <complex>
 #include <numbers>
 #include "tools/compare/zero_phase.h"
+#include "models/real/whole.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -139,7 +140,7 @@ double short_horizon_error(Trials& trials, const Estimate& estimate, double hori
     const Drives drives = drives_of(estimate.members, *estimate.motion.paths[t], trials.list[t].input);
     model.set_added_inertia(inertia);
     model.start(path.position[0], path.velocity[0]);
-    const size_t horizon = std::max<size_t>(2, size_t(horizon_s / record.sample_time));
+    const size_t horizon = std::max<size_t>(2, whole_count(horizon_s / record.sample_time));
     for (size_t start = 0; start + horizon < path.samples(); start += horizon) {
       if (!trials.list[t].usable[start] || !trials.list[t].usable[start + horizon]) continue;
       if (misses_samples(record, start, start + horizon)) continue;

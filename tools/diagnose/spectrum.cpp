@@ -1,4 +1,5 @@
 #include "tools/diagnose/spectrum.h"
+#include "models/real/whole.h"
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -69,17 +70,18 @@ double gain_at(const ErrorSystem& system, const Gains& gains, bool is_sensor, do
 
 /// A uniform grid of spatial frequencies: k / (samples · bin), k = 0 … samples / 2.
 struct SpatialGrid {
+  static constexpr size_t most_bins = 1 << 24;  // finer than any record tells
   double low, bin;
   size_t bins, samples;
 
   SpatialGrid(double lowest, double highest, double shortest) : low(lowest), bin(shortest / 6) {
-    bins = size_t((highest - lowest) / bin) + 1;
+    bins = whole_between<size_t>((highest - lowest) / bin, 0, most_bins) + 1;
     samples = 1;
     while (samples < 4 * bins) samples *= 2;
   }
   double frequency(size_t k) const { return double(k) / (double(samples) * bin); }
   size_t place(double position) const {
-    return size_t(std::clamp((position - low) / bin, 0.0, double(bins - 1)));
+    return whole_index((position - low) / bin, bins);
   }
 };
 
@@ -124,7 +126,7 @@ std::vector<double> spectrum(const Trials& trials, const Estimate& estimate, con
       density[grid.place(coordinate(k))] += weight[k] * double(swell[k]);
       const double rate = candidate.repeats_in_time ? top : std::abs(path.velocity[k]);
       if (trials.list[t].usable[k])
-        by_speed[std::min(speeds - 1, size_t(rate / top * speeds))] += double(swell[k]) * double(swell[k]);
+        by_speed[whole_index(rate / top * speeds, speeds)] += double(swell[k]) * double(swell[k]);
     }
   }
   std::vector<Complex> lines;
@@ -145,7 +147,7 @@ std::vector<double> spectrum(const Trials& trials, const Estimate& estimate, con
     for (size_t s = 0; s < speeds; ++s) {
       const double per_sample =
           2 * grid.frequency(f) * top * (double(s) + 0.5) / speeds * T;  // 1: half the rate
-      if (per_sample < 1) energy += by_speed[s] * table[size_t(per_sample * table_size)];
+      if (per_sample < 1) energy += by_speed[s] * table[whole_index(per_sample * table_size, table.size())];
     }
     explained[f] = energy > 0 ? 2 * std::norm(lines[f]) / energy : 0;
   }

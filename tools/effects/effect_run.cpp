@@ -1,4 +1,5 @@
 #include "tools/effects/effect_run.h"
+#include "models/real/whole.h"
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
@@ -38,7 +39,7 @@ EffectRun::EffectRun(std::shared_ptr<const EffectPlan> plan, int lanes) : plan_(
       bound.push_back(run_->parameter(binding.path, lane));
   position_ = wire("position"), velocity_ = wire("velocity"), acceleration_ = wire("acceleration");
   input_ = wire("input"), force_ = wire("force");
-  sample_ticks_ = std::llround(plan_->sizes.sample_time / plan_->plan.clock.time(1));
+  sample_ticks_ = int64_t(whole_count(std::round(plan_->sizes.sample_time / plan_->plan.clock.time(1))));
   for (auto* list : {&value_, &slope_, &stated_slope_, &integral_, &second_, &area_})
     list->resize(size_t(run_->lanes()));
 }

@@ -1,4 +1,5 @@
 #include "tools/effects/motion.h"
+#include "models/real/whole.h"
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -34,10 +35,10 @@ struct Stroke {
 
 void append(Motion& motion, const Stroke& stroke, double pause) {
   const double begin = motion.position.back();
-  const auto samples = size_t(std::ceil(stroke.duration() / motion.sample_time));
+  const auto samples = whole_count(std::ceil(stroke.duration() / motion.sample_time));
   for (size_t k = 1; k <= samples; ++k)
     motion.position.push_back(begin + stroke.at(std::min(double(k) * motion.sample_time, stroke.duration())));
-  motion.position.insert(motion.position.end(), size_t(std::llround(pause / motion.sample_time)),
+  motion.position.insert(motion.position.end(), whole_count(std::round(pause / motion.sample_time)),
                          begin + stroke.way);
 }
 
@@ -59,7 +60,7 @@ Motion motion_of(const SeparatingExperiment& e, const RecordSizes& sizes) {
   const double distance = e.distance * sizes.stroke;
   const double middle = 0.5 * (sizes.lowest_position + sizes.highest_position);
   motion.position.push_back(middle - 0.5 * distance);
-  motion.position.insert(motion.position.end(), size_t(std::llround(e.pause_s / sizes.sample_time)),
+  motion.position.insert(motion.position.end(), whole_count(std::round(e.pause_s / sizes.sample_time)),
                          motion.position.back());
   for (int pass = 0; pass < e.passes; ++pass)
     for (double speed : e.speeds)

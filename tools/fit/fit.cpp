@@ -8,6 +8,7 @@
 #include "engine/json/reader.h"
 #include "tools/compare/experiment_ports.h"
 #include "tools/fit/parameter.h"
+#include "models/real/whole.h"
 
 namespace loopwright {
 namespace {
@@ -51,7 +52,7 @@ class Model {
   }
 
   size_t fitted_rows(const ComparedSignal& signal) const {
-    return signal.measured.size() - size_t(double(signal.measured.size()) * experiment_->hold_out_fraction);
+    return signal.measured.size() - whole_between<size_t>(double(signal.measured.size()) * experiment_->hold_out_fraction, 0, signal.measured.size());
   }
   size_t rows() const { return experiment_->data.rows(); }
 

@@ -6,12 +6,13 @@
 #include <filesystem>
 #include "engine/json/reader.h"
 #include "engine/unit/unit.h"
+#include "engine/file/hash.h"
 #include "engine/record/column_units.h"
-#include "engine/record/hash.h"
 #include "engine/record/recording_file.h"
 #include "engine/record/time_axis.h"
 #include "models/signal/zero_phase.h"
 #include "tools/compare/data_file.h"
+#include "models/real/whole.h"
 
 namespace loopwright {
 namespace {
@@ -155,7 +156,7 @@ class Collector {
     check_law(name, "damping", label.damping_unit, "s^-1");
     const double t = rows.sample_time;
     const auto& x = rows.position;
-    const size_t n = x.size(), late = size_t(std::lround(label.delay / t));
+    const size_t n = x.size(), late = whole_count(std::round(label.delay / t));
     std::vector<double> d(n, 0.0);
     for (size_t i = late + 1; i + 1 < n; ++i) {
       const double acceleration = (x[i + 1] - 2 * x[i] + x[i - 1]) / (t * t);
@@ -167,7 +168,7 @@ class Collector {
     std::fill(d.begin(), d.begin() + std::ptrdiff_t(late + 1), d[late + 1]);
     d[n - 1] = d[n - 2];
     rows.label = zero_phase_low_pass(std::move(d), label.cutoff, t);
-    const auto margin = size_t(std::ceil(4 / (label.cutoff * t)));
+    const auto margin = whole_count(std::ceil(4 / (label.cutoff * t)));
     rows.begin = late + 1 + margin;
     rows.end = n > margin + 1 ? n - 1 - margin : 0;
   }
@@ -194,7 +195,7 @@ class Collector {
     const auto keeps = [&](size_t i) {
       return std::abs(rows.velocity[i] - wanted) <= training_.velocity_tolerance * std::abs(wanted) + 1e-9;
     };
-    const auto settled = size_t(std::ceil(training_.settling / rows.sample_time));
+    const auto settled = whole_count(std::ceil(training_.settling / rows.sample_time));
     for (size_t i = 0; i < rows.time.size();) {
       size_t next = i + 1;
       if (keeps(i)) {

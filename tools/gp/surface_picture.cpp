@@ -1,4 +1,5 @@
 #include "tools/gp/surface_picture.h"
+#include "models/real/whole.h"
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
@@ -32,7 +33,7 @@ std::string colour(double share) {
   const int i = at < 1 ? 0 : 1;
   int rgb[3];
   for (int k = 0; k < 3; ++k)
-    rgb[k] = int(std::lround(stops[i][k] + (at - i) * (stops[i + 1][k] - stops[i][k])));
+    rgb[k] = whole_between(std::round(stops[i][k] + (at - i) * (stops[i + 1][k] - stops[i][k])), 0, 255);
   return fmt::format("#{:02x}{:02x}{:02x}", rgb[0], rgb[1], rgb[2]);
 }
 

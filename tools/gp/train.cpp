@@ -4,6 +4,7 @@
 #include <cmath>
 #include "models/gp/table.h"
 #include "tools/gp/warnings.h"
+#include "models/real/whole.h"
 
 namespace loopwright {
 namespace {
@@ -209,7 +210,7 @@ class Trainer {
     const double span = std::max(high[0] - low[0], training_.period);
     // A change of the period by τ²/span turns the phase by one over the samples.
     const double share = training_.period_search;
-    const int steps = std::clamp(int(std::ceil(share * 8 * span / training_.period)), 4, 200);
+    const int steps = whole_between(std::ceil(share * 8 * span / training_.period), 4, 200);
     double best = training_.period, best_value = -1e300;
     for (int i = -steps; i <= steps; ++i) {
       const double period = training_.period * (1 + share * i / steps);

@@ -1,4 +1,5 @@
 #include "tools/gp/warnings.h"
+#include "models/real/whole.h"
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
@@ -136,7 +137,7 @@ PeriodCheck check_period(const gp::Samples& samples, double period) {
   };
   PeriodCheck result{share(period), period, share(period)};
   if (high - low < 2 * period) return result;
-  const int steps = std::clamp(int(4 * (high - low) / period), 20, 400);
+  const int steps = whole_between(4 * (high - low) / period, 20, 400);
   for (int i = 0; i <= steps; ++i) {
     const double tau = period * std::pow(2.0, double(i) / steps - 0.5);
     if (const double s = share(tau); s > result.best_share) result.best_share = s, result.best_period = tau;

@@ -1,4 +1,5 @@
 #include "tools/linearize/linear_diagram.h"
+#include "models/real/whole.h"
 #include <cmath>
 #include <stdexcept>
 
@@ -27,7 +28,7 @@ LinearDiagram linearize_at_start(const Plan& plan) {
 
 LinearDiagram linearize_at(const Plan& plan, double time, const RunOptions& options) {
   Plan until = plan;
-  until.stop_tick = std::max<int64_t>(plan.start_tick, std::llround(time / plan.clock.base.value()));
+  until.stop_tick = whole_between<int64_t>(std::round(time / plan.clock.base.value()), plan.start_tick, INT64_MAX);
   LinearDiagram diagram;
   RunOptions with_stop = options;
   with_stop.at_stop = [&](Run<double>& run) { diagram = linearize(run); };

@@ -3,6 +3,7 @@
 #include <set>
 #include "tools/linearize/linear_diagram.h"
 #include "tools/linearize/linear_step.h"
+#include "models/real/whole.h"
 
 namespace loopwright {
 namespace {
@@ -215,7 +216,7 @@ class Sampler {
     for (size_t b = 0; b < diagram_.blocks.size(); ++b) {
       if (diagram_.blocks[b].kind != Kind::delay) continue;
       const double samples = diagram_.blocks[b].delay / base_period_;
-      DelayLine line{int(b), int(std::floor(samples + 1e-9)), 0};
+      DelayLine line{int(b), int(whole_count(std::floor(samples + 1e-9))), 0};
       line.change = std::max(0.0, samples - line.whole);
       if (line.change < 1e-9) line.change = 0;
       line.length = line.whole + (line.change > 0 ? 1 : 0);

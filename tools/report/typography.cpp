@@ -1,4 +1,5 @@
 #include "tools/report/typography.h"
+#include "models/real/whole.h"
 #include <array>
 #include <algorithm>
 #include <cmath>
@@ -159,7 +160,7 @@ int significant_digits(std::span<const double> values) {
   }
   const double largest = std::max(std::abs(low), std::abs(high)), span = high - low;
   if (!(span > 0) || !std::isfinite(span)) return 7;
-  return std::clamp(7 + static_cast<int>(std::ceil(std::log10(largest / span))), 7, 17);
+  return 7 + whole_between(std::ceil(std::log10(largest / span)), 0, 10);
 }
 
 std::size_t text_width(std::string_view text) {
@@ -176,7 +177,7 @@ Quantity engineering(double value, std::string_view unit, int digits) {
   const bool fits = !is_power && std::ranges::find(takes_prefix, head) != takes_prefix.end();
   if (!fits || value == 0 || !std::isfinite(value))
     return {fmt::format("{:.{}g}", value, digits), readable_unit(unit)};
-  const int step = std::clamp(int(std::floor(std::log10(std::abs(value)) / 3)), -4, head == "s" ? 0 : 4);
+  const int step = whole_between(std::floor(std::log10(std::abs(value)) / 3), -4, head == "s" ? 0 : 4);
   return {fmt::format("{:.{}g}", value / std::pow(1000.0, step), digits),
           std::string(prefixes[size_t(step + 4)]) + readable_unit(unit)};
 }

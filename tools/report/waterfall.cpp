@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 #include "tools/report/typography.h"
+#include "models/real/whole.h"
 
 namespace loopwright::report {
 namespace {
@@ -29,7 +30,7 @@ struct Point {
 
 /// The value at a share of a range, to a hundredth of the range.
 std::string number(const Range& range, double share) {
-  const int decimals = std::max(0, 2 - int(std::floor(std::log10(range.high - range.low))));
+  const int decimals = whole_between(2 - std::floor(std::log10(range.high - range.low)), 0, 300);
   std::string text = fmt::format("{:.{}f}", range.low + share * (range.high - range.low), decimals);
   if (decimals > 0) text.erase(text.find_last_not_of('0') + 1);
   if (text.back() == '.') text.pop_back();

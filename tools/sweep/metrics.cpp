@@ -4,6 +4,7 @@
 #include <cmath>
 #include "engine/diagram/formula_parser.h"
 #include "engine/json/reader.h"
+#include "models/real/whole.h"
 
 namespace loopwright {
 namespace {
@@ -146,7 +147,7 @@ struct MetricBank::Accumulator {
     if (metric.kind == Metric::Kind::percentile) {
       auto& values = kept[l];
       const double rank = std::ceil(metric.percent / 100 * double(values.size()));
-      const auto at = values.begin() + ptrdiff_t(std::max(1.0, rank)) - 1;
+      const auto at = values.begin() + ptrdiff_t(whole_index(rank - 1, values.size()));
       std::nth_element(values.begin(), at, values.end());
       value = *at;
     }

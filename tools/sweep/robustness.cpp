@@ -5,6 +5,7 @@
 #include "tools/report/typography.h"
 #include "tools/sweep/sensitivity.h"
 #include "tools/sweep/svg.h"
+#include "models/real/whole.h"
 
 namespace loopwright {
 namespace {
@@ -15,7 +16,7 @@ constexpr int most_bins = 12;
 double quantile(std::vector<double>& values, double share) {
   if (values.empty()) return std::nan("");
   std::sort(values.begin(), values.end());
-  return values[size_t(std::round(share * double(values.size() - 1)))];
+  return values[whole_index(std::round(share * double(values.size() - 1)), values.size())];
 }
 
 const std::vector<double>& metric_values(const SweepPlan& plan, const Recording& table, size_t metric) {

@@ -4,10 +4,11 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <mutex>
+#include <new>
 #include <stdexcept>
 #include <thread>
+#include "engine/file/regular_file.h"
 #include "engine/record/atomic_file.h"
 #include "tools/sweep/lane_group.h"
 
@@ -17,7 +18,25 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr const char* name_of_sweep_file = "sweep_file.txt";  // holds the path of the sweep file
+/// Holds the path of the sweep file, and then the facts of the identity of the results.
+constexpr const char* name_of_sweep_file = "sweep_file.txt";
+
+/// The first line of the file, and the facts below it.
+std::pair<std::string, Facts> read_sweep_file(const std::string& folder) {
+  std::string text;
+  if (!read_regular_file(folder + '/' + name_of_sweep_file, size_t(1) << 26, text).empty()) return {};
+  const size_t end = std::min(text.find('\n'), text.size());
+  return {text.substr(0, end), facts_of(std::string_view(text).substr(std::min(end + 1, text.size())))};
+}
+
+[[noreturn]] void refuse_foreign(const SweepPlan& plan, const std::string& folder, const std::string& path,
+                                 const ShardState& state) {
+  std::string message = fmt::format("{}: {}", path, state.problem);
+  const Identity before = identity_of(read_sweep_file(folder).second);
+  if (!before.structure.empty() && before.hash() != plan.hash())
+    message += ": " + changes_with_build(before, plan.identity());
+  throw std::runtime_error(message);
+}
 
 /// Blocks of all worlds, one after the other; a block never reaches from one world into the next.
 struct Blocks {
@@ -41,7 +60,7 @@ std::vector<bool> runs_in_folder(const SweepPlan& plan, const std::string& folde
         read_shard(path, plan.hash(), plan.sweep().metrics.size(), [&](const RunRecord& record) {
           if (record.run >= 0 && record.run < plan.runs()) done[size_t(record.run)] = true;
         });
-    if (!state.is_readable) throw std::runtime_error(fmt::format("{}: {}", path, state.problem));
+    if (!state.is_readable) refuse_foreign(plan, folder, path, state);
     if (state.damaged_bytes)
       notes.push_back(
           fmt::format("{}: {} bytes are damaged; their runs are made again", path, state.damaged_bytes));
@@ -86,10 +105,15 @@ class Crew {
         if (std::find(done_.begin() + first, done_.begin() + end, false) == done_.begin() + end) continue;
         hand_in(group.make(first, end));
       }
+    } catch (const std::bad_alloc&) {
+      end_with("the runs need more memory than there is: fewer threads need less");
     } catch (const std::exception& error) {
-      const std::lock_guard lock(mutex_);
-      if (problem_.empty()) problem_ = error.what();
+      end_with(error.what());
     }
+  }
+  void end_with(std::string problem) {
+    const std::lock_guard lock(mutex_);
+    if (problem_.empty()) problem_ = std::move(problem);
   }
   int64_t next_block() {
     const std::lock_guard lock(mutex_);
@@ -151,9 +175,7 @@ static std::string from_here(const std::string& path) {
 }
 
 std::string sweep_file_of(const std::string& folder) {
-  std::ifstream file(folder + '/' + name_of_sweep_file);
-  std::string path;
-  if (std::getline(file, path)) return from_here(path);
+  if (const std::string path = read_sweep_file(folder).first; !path.empty()) return from_here(path);
   Problems problems;
   problems.error({}, "", "", fmt::format("\"{}\" holds no results of a sweep", folder)).expected =
       "the folder that was given to `loopwright sweep … -o`";
@@ -167,15 +189,20 @@ SweepOutcome run_sweep(const SweepPlan& plan, const std::string& folder, const S
   const std::string file =
       fmt::format("{}/runs_{}_of_{}_{}.shard", folder, options.shard, options.shards, options.writer);
   if (!options.resume)
-    for (const std::string& path : shard_files(folder))
+    for (const std::string& path : shard_files(folder)) {
       if ((options.shards == 1 && !options.next_block) || path == file)
         throw std::runtime_error(fmt::format(
             "{} holds results already: --resume goes on with them, another folder starts anew", path));
+      if (const ShardState state = read_head_of_shard(path, plan.hash(), plan.sweep().metrics.size());
+               !state.is_readable)
+        refuse_foreign(plan, folder, path, state);
+    }
   std::vector<std::string> notes;
   auto done = options.resume ? runs_in_folder(plan, folder, notes) : std::vector<bool>(size_t(plan.runs()));
   if (options.all_have_read) options.all_have_read();
   ShardWriter writer(file, plan.hash(), plan.sweep().metrics.size());
-  write_file(folder + '/' + name_of_sweep_file, fs::absolute(plan.sweep().path).string() + "\n");
+  write_file(folder + '/' + name_of_sweep_file,
+             fs::absolute(plan.sweep().path).string() + "\n" + to_text(plan.identity().facts()));
   SweepOutcome outcome = Crew(plan, options, writer, std::move(done)).work();
   for (int64_t w = 0; w < plan.design().worlds(); ++w)
     if (const World& world = plan.world(w); !world.lanes_forbidden.empty() && notes.size() < 5)
@@ -189,10 +216,22 @@ std::vector<RunRecord> make_runs(const SweepPlan& plan, int64_t first, int64_t e
   return LaneGroup(plan, set).make(first, end);
 }
 
+/// Of the results in a folder. Those of another build of the program are read as well, and that is said: there is
+/// nothing to mix them with.
+Identity identity_of_results(const SweepPlan& plan, const std::string& folder, std::vector<std::string>& notes) {
+  Identity before = identity_of(read_sweep_file(folder).second);
+  if (before.build == plan.identity().build || !changes(before, plan.identity()).empty()) return plan.identity();
+  notes.push_back(fmt::format("the results were made by another build of the program ({}, here {})", before.build,
+                              plan.identity().build));
+  return before;
+}
+
 SweepResults read_results(const SweepPlan& plan, const std::string& folder) {
   const Sweep& sweep = plan.sweep();
   const size_t axes = sweep.axes.size(), metrics = sweep.metrics.size();
   SweepResults results;
+  const Identity identity = identity_of_results(plan, folder, results.notes);
+  const std::string hash = identity.hash();
   auto& columns = results.table.columns;
   columns.push_back({"run", "", {}});
   for (const Axis& axis : sweep.axes) columns.push_back(axis_column(axis));
@@ -205,7 +244,7 @@ SweepResults read_results(const SweepPlan& plan, const std::string& folder) {
   const size_t runs = size_t(plan.runs()), failed_column = 1 + axes + metrics;
   for (size_t c = 1 + axes; c < columns.size(); ++c) columns[c].values.assign(runs, std::nan(""));
   for (const std::string& path : shard_files(folder)) {
-    const ShardState state = read_shard(path, plan.hash(), metrics, [&](const RunRecord& record) {
+    const ShardState state = read_shard(path, hash, metrics, [&](const RunRecord& record) {
       const size_t at = size_t(record.run);
       if (at >= runs || !std::isnan(columns[failed_column].values[at])) return;  // the same bits again
       for (size_t m = 0; m < metrics; ++m) columns[1 + axes + m].values[at] = record.metrics[m];
@@ -213,7 +252,7 @@ SweepResults read_results(const SweepPlan& plan, const std::string& folder) {
       columns[failed_column + 1].values[at] = record.stopped_at;
       if (record.failed) results.failures.emplace_back(record.run, record.reason);
     });
-    if (!state.is_readable) throw std::runtime_error(fmt::format("{}: {}", path, state.problem));
+    if (!state.is_readable) refuse_foreign(plan, folder, path, state);
     if (state.damaged_bytes || state.torn_bytes)
       results.notes.push_back(
           fmt::format("{}: {} bytes are damaged or torn off", path, state.damaged_bytes + state.torn_bytes));
@@ -233,7 +272,9 @@ SweepResults read_results(const SweepPlan& plan, const std::string& folder) {
   results.missing = int64_t(runs - kept);
   auto& facts = results.table.facts;
   facts.emplace_back("title", sweep.title);
-  facts.emplace_back("sweep", plan.hash());
+  facts.emplace_back("sweep", hash);
+  for (auto& [name, value] : identity.facts())
+    if (name != "plan") facts.emplace_back(name, value);
   for (const Axis& axis : sweep.axes)
     for (size_t v = 0; v < axis.variants.size(); ++v)
       facts.emplace_back(fmt::format("{} {}", axis.name, v), axis.variants[v]);

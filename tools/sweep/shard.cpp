@@ -7,7 +7,8 @@
 #include <cstring>
 #include <fstream>
 #include <stdexcept>
-#include "engine/record/hash.h"
+#include "engine/file/hash.h"
+#include "engine/file/regular_file.h"
 
 namespace loopwright {
 namespace {
@@ -44,7 +45,9 @@ void put_record(std::string& to, const RunRecord& record) {
 /// A window that moves over a file.
 class Window {
  public:
-  explicit Window(const std::string& path) : file_(path, std::ios::binary) {}
+  explicit Window(const std::string& path) {
+    if (why_not_regular(path).empty()) file_.open(path, std::ios::binary);
+  }
   bool is_open() const { return file_.is_open(); }
   /// The next bytes, at least `wanted` where the file has as many.
   std::string_view at_least(size_t wanted) {
@@ -91,11 +94,10 @@ RunRecord parse(std::string_view bytes, size_t metrics) {
 
 }  // namespace
 
-ShardState read_shard(const std::string& path, const std::string& hash, size_t metrics,
-                      const std::function<void(const RunRecord&)>& found) {
+namespace {
+
+ShardState read_head(Window& window, const std::string& expected) {
   ShardState state;
-  Window window(path);
-  const std::string expected = first_line(hash, metrics);
   const std::string_view head = window.at_least(expected.size()).substr(0, expected.size());
   if (!window.is_open() || head != expected) {
     const bool is_shard = head.starts_with("loopwright sweep shard");
@@ -109,6 +111,21 @@ ShardState read_shard(const std::string& path, const std::string& hash, size_t m
   state.is_readable = true;
   window.skip(expected.size());
   state.whole_bytes = window.position();
+  return state;
+}
+
+}  // namespace
+
+ShardState read_head_of_shard(const std::string& path, const std::string& hash, size_t metrics) {
+  Window window(path);
+  return read_head(window, first_line(hash, metrics));
+}
+
+ShardState read_shard(const std::string& path, const std::string& hash, size_t metrics,
+                      const std::function<void(const RunRecord&)>& found) {
+  Window window(path);
+  ShardState state = read_head(window, first_line(hash, metrics));
+  if (state.whole_bytes == 0) return state;  // no shard of this sweep, or one that ended within its head
   for (int64_t skipped = 0;;) {
     std::string_view bytes = window.at_least(head_bytes);
     if (bytes.size() >= head_bytes && bytes.starts_with(mark)) {

@@ -34,6 +34,9 @@ struct ShardState {
 ShardState read_shard(const std::string& path, const std::string& hash, size_t metrics,
                       const std::function<void(const RunRecord&)>& record);
 
+/// Whether a file is a shard of this sweep, from its first line alone.
+ShardState read_head_of_shard(const std::string& path, const std::string& hash, size_t metrics);
+
 /// One writer a file: a second one is refused.
 class ShardWriter {
  public:

@@ -8,6 +8,7 @@
 #include "tools/sweep/robustness.h"
 #include "tools/sweep/sensitivity.h"
 #include "tools/sweep/sweep_pictures.h"
+#include "models/real/whole.h"
 
 namespace loopwright {
 namespace {
@@ -29,7 +30,7 @@ std::vector<double> sorted_finite(const std::vector<double>& values) {
   return finite;
 }
 double quantile(const std::vector<double>& sorted, double share) {
-  return sorted.empty() ? std::nan("") : sorted[size_t(std::round(share * double(sorted.size() - 1)))];
+  return sorted.empty() ? std::nan("") : sorted[whole_index(std::round(share * double(sorted.size() - 1)), sorted.size())];
 }
 std::string text(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : "—"; }
 

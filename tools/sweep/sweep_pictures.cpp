@@ -6,6 +6,7 @@
 #include <numeric>
 #include "tools/report/typography.h"
 #include "tools/sweep/svg.h"
+#include "models/real/whole.h"
 
 namespace loopwright {
 namespace {
@@ -23,9 +24,9 @@ std::string colour(double share) {
                                                          {170, 220, 50},
                                                          {253, 231, 37}}};
   const double at = std::clamp(share, 0.0, 1.0) * 8;
-  const size_t i = std::min<size_t>(7, size_t(at));
+  const size_t i = whole_index(at, 8);
   const double t = at - double(i);
-  const auto mix = [&](size_t c) { return int(places[i][c] + t * (places[i + 1][c] - places[i][c]) + 0.5); };
+  const auto mix = [&](size_t c) { return whole_between(places[i][c] + t * (places[i + 1][c] - places[i][c]) + 0.5, 0, 255); };
   return fmt::format("rgb({},{},{})", mix(0), mix(1), mix(2));
 }
 
@@ -35,7 +36,7 @@ std::string short_number(double value) {
   return size >= 1000 && size < 1e5 ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
 }
 std::string value_text(const Axis& axis, double value) {
-  return axis.kind == Axis::Kind::variants ? axis.variants[size_t(value)] : fmt::format("{:.3g}", value);
+  return axis.kind == Axis::Kind::variants ? axis.variants[whole_index(value, axis.variants.size())] : fmt::format("{:.3g}", value);
 }
 std::string bin_text(const Axis& axis, const Bin& bin) {
   return bin.from == bin.to ? value_text(axis, bin.from) : fmt::format("{:.3g} … {:.3g}", bin.from, bin.to);
@@ -173,7 +174,7 @@ report::Picture worst_in_distribution(const SweepPlan& plan, const Recording& ta
   const double span = high > low ? high - low : 1;
   std::array<double, bars> count{};
   for (const double value : values)
-    if (std::isfinite(value)) count[std::min(bars - 1, size_t((value - low) / span * double(bars)))] += 1;
+    if (std::isfinite(value)) count[whole_index((value - low) / span * double(bars), bars)] += 1;
   const double most = std::max(1.0, *std::max_element(count.begin(), count.end()));
   std::string inside;
   for (size_t i = 0; i < bars; ++i) {

@@ -1,10 +1,12 @@
 #include "tools/sweep/sweep_plan.h"
 #include <fmt/format.h>
 #include <algorithm>
+#include <filesystem>
 #include <set>
 #include "engine/lanes/lane_run.h"
-#include "engine/record/hash.h"
+#include "engine/file/hash.h"
 #include "tools/sweep/tunables.h"
+#include "models/real/whole.h"
 
 namespace loopwright {
 namespace {
@@ -56,14 +58,20 @@ SweepPlan::SweepPlan(std::shared_ptr<const Sweep> sweep) : sweep_(std::move(swee
         .expected = fmt::format("at most {}", most_worlds);
     throw InputError(std::move(problems));
   }
-  ContentHash hash;
-  hash.add(sweep_->text);
+  ContentHash structure;
+  std::vector<FileRead> files = {{sweep_->path, content_hash(sweep_->text)}};
   for (int64_t w = 0; w < design_->worlds() && !problems.has_errors(); ++w) {
     worlds_.push_back(make_world(w, problems));
-    if (worlds_.back().plan) hash.add(worlds_.back().plan->hash);
+    if (!worlds_.back().plan) continue;
+    const Identity& of_world = worlds_.back().plan->identity;
+    structure.add(of_world.structure);
+    files.insert(files.end(), of_world.files.begin(), of_world.files.end());
   }
   if (problems.has_errors()) throw InputError(std::move(problems));
-  hash_ = hash.text();
+  // The worlds' files are named from the diagram's folder already, the sweep file by its own name.
+  files.front().path = std::filesystem::path(sweep_->path).filename().string();
+  identity_ = {structure.text(), program_build(), named_from("", std::move(files))};
+  hash_ = identity_.hash();
 }
 
 LoadOptions SweepPlan::options_at(const std::vector<double>& point) const {
@@ -71,7 +79,7 @@ LoadOptions SweepPlan::options_at(const std::vector<double>& point) const {
   for (size_t a = 0; a < sweep_->axes.size(); ++a) {
     const Axis& axis = sweep_->axes[a];
     if (axis.kind == Axis::Kind::variants)
-      options.variants[axis.name] = axis.variants[size_t(point[a])];
+      options.variants[axis.name] = axis.variants[whole_index(point[a], axis.variants.size())];
     else
       options.set.emplace_back(axis.name, setting(axis, point[a]));
   }

@@ -51,6 +51,7 @@ class SweepPlan {
   std::vector<double> tuned(int64_t run) const;
 
   /// Of the sweep file and every plan: results belong together when it is the same.
+  const Identity& identity() const { return identity_; }
   const std::string& hash() const { return hash_; }
   const std::vector<std::string>& warnings() const { return warnings_; }
 
@@ -65,7 +66,8 @@ class SweepPlan {
   std::vector<bool> changes_plan_;  // an axis each
   std::unique_ptr<Design> design_;
   std::vector<World> worlds_;
-  std::string hash_;
+  Identity identity_;
+  std::string hash_;  // of the identity
   std::vector<std::string> warnings_;
   mutable std::mutex loading_;  // units and expressions are read by libraries that know no threads
 };

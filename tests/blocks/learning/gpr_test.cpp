@@ -17,6 +17,8 @@ double predicted(BlockUnderTest& block, double position, double velocity,
   return block.output(output);
 }
 
+const char* block_output(std::string_view type) { return type == "Gpr" ? "prediction" : "deviation"; }
+
 TEST(Gpr, PredictsThePosteriorMeanOfItsModel) {
   for (const gp::Kernel& kernel : {gp::additive(), gp::product()}) {
     const LearnedModel learned = trained_model(kernel);
@@ -71,6 +73,20 @@ TEST(Gpr, StopsTheRunAtUntrainedVelocitiesWhenToldTo) {
   }
   predicted(block, 0.2, 0.6);
   EXPECT_EQ(block.fault(), "the velocity lies outside of those the model was trained on");
+}
+
+TEST(Gpr, StopsTheRunWhereItIsAskedAtNoFiniteNumber) {
+  const ModelFolder folder;
+  const double infinite = std::numeric_limits<double>::infinity(), nan = std::nan("");
+  for (const char* type : {"Gpr", "GprDeviation"})
+    for (const char* untrained : {"hold", "posterior", "fault"})
+      for (const auto& [x, v] : {std::pair(infinite, 0.1), {-infinite, 0.1}, {nan, 0.1}, {0.2, infinite}, {0.2, nan}}) {
+        BlockUnderTest block(type, settings(folder, fmt::format(R"(, "untrained": "{}")", untrained)));
+        predicted(block, x, v, block_output(type));
+        EXPECT_EQ(block.fault(),
+                  "the position or the velocity that a learned model is asked at is no finite number")
+            << type << " " << x << " " << v;
+      }
 }
 
 TEST(Gpr, SaysWhichModelIsMissing) {

@@ -1,5 +1,6 @@
 #include "engine/json/problem.h"
 #include <gtest/gtest.h>
+#include <algorithm>
 
 namespace loopwright {
 namespace {
@@ -99,6 +100,29 @@ TEST(NearestName, OffersNothingWhenNothingIsNear) {
 
 TEST(NearestName, PrefersTheSmallerMistake) {
   EXPECT_EQ(nearest_name("positon", {"position_2", "position", "pos"}), "position");
+}
+
+TEST(ProblemText, ShowsNoControlCharactersOfAFile) {
+  EXPECT_EQ(printable("plain µ→𝄞\n"), "plain µ→𝄞\n");
+  EXPECT_EQ(printable("\x1b[31mred\r\t\x7f"), "\\x1b[31mred\\x0d\\x09\\x7f");
+  EXPECT_EQ(printable("\xc2\x9b" "31m"), "\\xc2\\x9b31m") << "the other way to begin an escape sequence";
+  EXPECT_EQ(printable("\xc2\xa0"), "\xc2\xa0");
+  EXPECT_EQ(printable("\xff\xc0\xaf\xe0\x80\x80\xed\xa0\x80\xf4\x90\x80\x80\xc3"),
+            "\\xff\\xc0\\xaf\\xe0\\x80\\x80\\xed\\xa0\\x80\\xf4\\x90\\x80\\x80\\xc3");
+  Problems problems;
+  problems.error({source("a\x1b.json", "{}"), 0}, "/x\x1b[2J", "b\x07", "m\x1b").found = "f\x1b]0;title\x07";
+  EXPECT_EQ(problems.text().find_first_of("\x1b\x07"), std::string::npos) << problems.text();
+}
+
+TEST(ProblemText, TellsTwoHundredAndCountsTheOthers) {
+  const auto file = source("a.json", std::string(1000, '\n'));
+  Problems problems;
+  for (uint32_t i = 0; i < 100'000; ++i) problems.warning({file, i % 900}, "", "", "doubtful");
+  problems.error({file, 950}, "", "", "wrong");
+  const std::string text = problems.text();
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 201);
+  EXPECT_NE(text.find("a.json:951:1: error: wrong\n"), text.npos) << "no error hides behind warnings";
+  EXPECT_NE(text.find("\n… and 99,801 more\n1 error, 100,000 warnings"), text.npos) << text.substr(text.size() - 200);
 }
 
 }  // namespace

@@ -1,10 +1,19 @@
 // The hash of a plan: the same for what runs the same, another for anything that changes a number.
 #include <gtest/gtest.h>
+#include <fstream>
 #include <set>
+#include <sstream>
 #include "tests/engine/written_diagram.h"
+#include "where.h"
 
 namespace loopwright {
 namespace {
+
+std::string text_of(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
 
 std::string servo(std::string_view gain, std::string_view solver = R"("stop": 1, "step": 0.01)",
                   std::string_view more = "") {
@@ -45,6 +54,76 @@ TEST(Identity, EveryParameterAndSettingMatters) {
   add(servo("-2", R"("stop": 1, "step": 0.01)", R"(, "log": ["x.y"])"));
   add(servo("-2"), {.set = {{"x.initial", "2"}}, .variants = {}, .drives = {}});
   EXPECT_EQ(hashes.size(), variants);
+}
+
+// ---- what was read ----
+
+/// Plays back a recording, through a subdiagram.
+DiagramFolder& with_recording(DiagramFolder& folder, std::string_view rows = "0,1\n1,2\n") {
+  folder.with("data/track.csv", "time,x\n" + std::string(rows));
+  folder.with("parts/player.json",
+              R"({"loopwright": 1, "outputs": {"x": "track.value"},
+  "blocks": {"track": {"type": "RecordedColumn", "file": "../data/track.csv", "column": "x"}}})");
+  folder.with("top.json", diagram(R"("p": {"diagram": "parts/player.json"}, "g": {"type": "Gain", "gain": 2, "in": {"u": "p.x"}})"));
+  return folder;
+}
+std::string changed(const Plan& before, const Plan& now) { return changes_with_build(before.identity, now.identity); }
+
+TEST(Identity, TheBytesOfEveryFileThatWasReadMatter) {
+  DiagramFolder folder;
+  const auto before = load_plan(with_recording(folder).path("top.json"));
+  EXPECT_EQ(load_plan(folder.path("top.json"))->hash, before->hash);
+  ASSERT_EQ(before->identity.files.size(), 2u);
+  EXPECT_EQ(before->identity.files[0].path, "data/track.csv");
+  EXPECT_EQ(before->identity.files[1].path, "parts/player.json");
+
+  const auto now = load_plan(with_recording(folder, "0,1\n1,2.0\n").path("top.json"));  // the same numbers
+  EXPECT_NE(now->hash, before->hash);
+  EXPECT_EQ(now->identity.structure, before->identity.structure);
+  EXPECT_EQ(changed(*before, *now), "the file \"data/track.csv\" has changed");
+
+  with_recording(folder);
+  folder.with("parts/player.json", text_of(folder.path("parts/player.json")) + "\n");
+  EXPECT_EQ(changed(*before, *load_plan(folder.path("top.json"))), "the file \"parts/player.json\" has changed");
+}
+
+TEST(Identity, MovesWithItsFilesToAnotherFolder) {
+  DiagramFolder here, there;
+  const auto before = load_plan(with_recording(here).path("top.json")),
+             now = load_plan(with_recording(there).path("top.json"));
+  EXPECT_EQ(before->hash, now->hash);
+  EXPECT_EQ(changed(*before, *now), "");
+}
+
+TEST(Identity, TheModelOfALearnedBlockMatters) {
+  DiagramFolder folder;
+  const auto examples = std::filesystem::path(LOOPWRIGHT_SOURCE) / "diagrams/examples";
+  const std::string model = text_of((examples / "gpr.model.json").string());
+  folder.with("gpr.json", text_of((examples / "gpr.json").string())).with("gpr.model.json", model);
+  const auto before = load_plan(folder.path("gpr.json"));
+  folder.with("gpr.model.json", model + " ");
+  EXPECT_EQ(changed(*before, *load_plan(folder.path("gpr.json"))), "the file \"gpr.model.json\" has changed");
+}
+
+TEST(Identity, TheProgramsBuildMatters) {
+  const auto plan = plan_of(servo("-2"));
+  Identity other = plan->identity;
+  EXPECT_EQ(other.build, program_build());
+  EXPECT_EQ(other.build.size(), 16u);
+  other.build = "0123456789abcdef";
+  EXPECT_NE(other.hash(), plan->hash);
+  EXPECT_TRUE(changes(other, plan->identity).empty());
+  EXPECT_TRUE(has(changes_with_build(other, plan->identity), "another build (0123456789abcdef, here "));
+}
+
+TEST(Identity, IsReadBackFromTheFactsOfARecording) {
+  DiagramFolder folder;
+  const auto plan = load_plan(with_recording(folder).path("top.json"));
+  EXPECT_EQ(identity_of(simulate(*plan).recording.facts).hash(), plan->hash);
+  EXPECT_EQ(identity_of(facts_of(to_text(plan->identity.facts()))).hash(), plan->hash);
+  Identity odd = plan->identity;
+  odd.files = {{"a: b\n\x1b.csv", "0"}};
+  EXPECT_EQ(identity_of(facts_of(to_text(odd.facts()))).files[0].path, odd.files[0].path);
 }
 
 TEST(Identity, EffectiveParametersAreListedWithUnitsAndDefaults) {

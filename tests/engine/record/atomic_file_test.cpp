@@ -1,11 +1,14 @@
 #include "engine/record/atomic_file.h"
 
 #include <gmock/gmock.h>
+#include <fcntl.h>
 #include <signal.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 
+#include <fstream>
 #include <functional>
 
 #include "engine/record/csv.h"
@@ -41,6 +44,40 @@ TEST(AtomicFile, LeavesTheOldFileWhenItIsAbandoned) {
   }
   EXPECT_EQ(bytes_of(folder / "a.txt"), "old");
   EXPECT_EQ(folder.count_files(), 1u);
+}
+
+/// The number of a process that is gone.
+pid_t ended_process() {
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(0);
+  ::waitpid(child, nullptr, 0);
+  return child;
+}
+
+TEST(AtomicFile, RemovesWhatAKilledProgramLeftBesideTheTarget) {
+  const TemporaryFolder folder;
+  const std::string gone = std::to_string(ended_process()), here = std::to_string(::getpid());
+  const auto make = [&](const std::string& name) { std::ofstream(folder / name) << "half"; };
+  make(".a.csv." + gone + "-0");
+  make(".a.csv." + gone + "-17");
+  const std::vector<std::string> kept = {".a.csv." + here + "-99", ".b.csv." + gone + "-0", ".a.csv." + gone,
+                                         ".a.csv." + gone + "-0x",  ".a.csv.bak." + gone + "-0"};
+  for (const std::string& name : kept) make(name);
+  write_file(folder / "a.csv", "whole");
+  EXPECT_EQ(bytes_of(folder / "a.csv"), "whole");
+  for (const std::string& name : kept) EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
+  EXPECT_EQ(folder.count_files(), kept.size() + 1);
+}
+
+TEST(AtomicFile, KeepsWhatIsStillBeingWrittenThoughItsProcessCannotBeSeen) {
+  const TemporaryFolder folder;  // as from another machine, on a folder that is shared
+  const std::string other = folder / (".a.csv." + std::to_string(ended_process()) + "-0");
+  std::ofstream(other) << "half";
+  const int writer = ::open(other.c_str(), O_WRONLY);
+  ASSERT_EQ(::flock(writer, LOCK_EX), 0);
+  write_file(folder / "a.csv", "whole");
+  EXPECT_TRUE(std::filesystem::exists(other));
+  ::close(writer);
 }
 
 TEST(AtomicFile, KeepsPermissionsAndFollowsLinks) {

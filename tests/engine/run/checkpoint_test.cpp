@@ -132,8 +132,32 @@ TEST(Checkpoint, OfOtherParametersOrAnotherDiagramIsRefused) {
   simulate(*plan_of(everything(solvers[0])), write_every(0.6, file));
   EXPECT_EQ(refusal(*plan_of(everything(solvers[0])), file), "");
   EXPECT_TRUE(has(refusal(*plan_of(everything(solvers[0], "2")), file),
-                  "belongs to another diagram or other parameters"));
-  EXPECT_TRUE(has(refusal(*plan_of(everything(solvers[1])), file), "belongs to another diagram"));
+                  "the diagram or its parameters (--set, --variant) have changed"));
+  EXPECT_TRUE(has(refusal(*plan_of(everything(solvers[1])), file), "belongs to something else"));
+}
+
+TEST(Checkpoint, OfARecordingThatHasChangedSinceIsRefusedByItsName) {
+  DiagramFolder folder;
+  const std::string file = folder.path("c");
+  const auto load = [&](const char* rows) {
+    folder.with("track.csv", std::string("time,x\n") + rows);
+    folder.with("top.json", diagram(R"("t": {"type": "RecordedColumn", "file": "track.csv", "column": "x"},
+      "x": {"type": "Integrator", "in": {"u": "t.value"}})"));
+    return load_plan(folder.path("top.json"));
+  };
+  simulate(*load("0,1\n1,2\n"), write_every(0.5, file));
+  EXPECT_EQ(refusal(*load("0,1\n1,2\n"), file), "");
+  EXPECT_TRUE(has(refusal(*load("0,1\n1,3\n"), file), "the file \"track.csv\" has changed"));
+}
+
+TEST(Checkpoint, OfAnotherBuildIsRefused) {
+  DiagramFolder folder;
+  const std::string file = folder.path("c");
+  const auto plan = plan_of(everything(solvers[0]));
+  Plan other = *plan;
+  other.identity.build = "0123456789abcdef", other.hash = other.identity.hash();
+  simulate(other, write_every(0.6, file));
+  EXPECT_TRUE(has(refusal(*plan, file), "the program is another build"));
 }
 
 TEST(Checkpoint, ThatIsDamagedShortOrMissingIsRefused) {

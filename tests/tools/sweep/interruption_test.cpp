@@ -116,6 +116,31 @@ TEST(Interruption, RefusesASecondWriterAndForeignResults) {
               HasSubstr("another sweep is writing here"));
 }
 
+constexpr const char* played_loop = R"json({
+  "loopwright": 1, "solver": {"method": "rk4", "step": 0.01, "stop": 0.5},
+  "blocks": {"track": {"type": "RecordedColumn", "file": "track.csv", "column": "x"},
+             "gain": {"type": "Gain", "gain": 1, "in": {"u": "track.value"}}},
+  "log": ["gain.y"]})json";
+
+TEST(Interruption, RefusesToGoOnWithOtherContentsOfAFile) {
+  SweepFolder folder(R"("gain.gain": {"values": [1, 2, 3]})", "", R"("a": {"final": "gain.y"})", played_loop);
+  folder.folder.with("track.csv", "time,x\n0,1\n1,1\n");
+  run_sweep(folder.plan(), folder.results(), {});
+  folder.folder.with("track.csv", "time,x\n0,1\n1,2\n");
+  const SweepPlan changed = folder.plan();
+  const auto names_it = HasSubstr("belongs to another sweep: the file \"track.csv\" has changed");
+  EXPECT_THAT(failure_of(changed, folder.results(), {.resume = true}), names_it);
+  EXPECT_THAT(failure_of(changed, folder.results(), {.shard = 1, .shards = 2}), names_it) << "another part of it";
+  try {
+    read_results(changed, folder.results());
+    ADD_FAILURE() << "tables of other data";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), names_it);
+  }
+  folder.folder.with("track.csv", "time,x\n0,1\n1,1\n");
+  EXPECT_EQ(failure_of(folder.plan(), folder.results(), {.resume = true}), "");
+}
+
 TEST(Interruption, SaysWhenNoMoreCanBeWrittenAndKeepsWhatWasWritten) {
   const SweepFolder folder(four_axis_values, forty_samples);
   const SweepPlan plan = folder.plan();

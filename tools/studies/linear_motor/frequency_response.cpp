@@ -3,6 +3,7 @@
 #include <numbers>
 #include <span>
 #include "tools/studies/linear_motor/runs.h"
+#include "models/real/whole.h"
 
 namespace loopwright::paper {
 namespace {
@@ -13,7 +14,7 @@ constexpr double sample_time_s = 0.001, first_s = 1.2, span_s = 10;  // at const
 /// Amplitude of a frequency, after a straight line through the ends of the stretch was taken out: the stage
 /// moves on while it shakes.
 Complex projected(std::span<const double> values, double frequency_hz) {
-  const size_t first = size_t(first_s / sample_time_s), count = size_t(span_s / sample_time_s);
+  const size_t first = whole_count(first_s / sample_time_s), count = whole_count(span_s / sample_time_s);
   const double slope = (values[first + count] - values[first]) / double(count);
   Complex sum = 0;
   for (size_t k = 0; k < count; ++k) {

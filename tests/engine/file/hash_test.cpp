@@ -1,4 +1,4 @@
-#include "engine/record/hash.h"
+#include "engine/file/hash.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,14 @@
+/// The bytes of a recording's file.
+#pragma once
+#include <memory>
+#include <string>
+
+#include "engine/json/problem.h"
+
+namespace loopwright {
+
+/// The bytes of a regular file of at most 4 GiB, which is as far as a Place can point; null after a problem. The
+/// file is noted in `problems` as one that was read.
+std::shared_ptr<const SourceFile> read_recorded_bytes(const std::string& path, Problems& problems);
+
+}  // namespace loopwright

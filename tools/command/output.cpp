@@ -1,0 +1,60 @@
+#include "tools/command/output.h"
+#include <fcntl.h>
+#include <unistd.h>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <iostream>
+#include "engine/json/problem.h"
+
+namespace loopwright {
+namespace {
+
+int first_failure = 0;  // errno of the first answer that got lost
+
+void note_failure(bool failed) {
+  if (failed && first_failure == 0) first_failure = errno ? errno : EIO;
+}
+
+}  // namespace
+
+void prepare_standard_streams() {
+  for (int descriptor = 0; descriptor <= STDERR_FILENO; ++descriptor)
+    if (fcntl(descriptor, F_GETFD) < 0 && errno == EBADF) {
+      const int opened = open("/dev/null", O_RDWR);  // the least number that is free: this one
+      if (opened > STDERR_FILENO) close(opened);
+    }
+  std::signal(SIGPIPE, SIG_IGN);  // then a write fails with EPIPE
+  std::signal(SIGXFSZ, SIG_IGN);  // and one beyond the limit of file sizes with EFBIG
+}
+
+void tell_terminal(std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return;
+    text.remove_prefix(size_t(written));
+  }
+}
+
+void tell_text(std::string_view text) { tell_terminal(printable(text)); }
+
+void answer_data(std::string_view bytes) {
+  errno = 0;
+  note_failure(std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size());
+}
+
+void answer_text(std::string_view text) { answer_data(printable(text)); }
+
+bool finish_answers() {
+  errno = 0;
+  note_failure(!std::cout.flush());
+  note_failure(std::fflush(stdout) != 0 || std::ferror(stdout));
+  if (first_failure == 0) return true;
+  // A reader that took what it wanted and went, such as `head`, needs no explanation.
+  if (first_failure != EPIPE) tell("error: the answer cannot be written: {}\n", std::strerror(first_failure));
+  return false;
+}
+
+}  // namespace loopwright
