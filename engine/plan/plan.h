@@ -9,6 +9,7 @@
 #include "engine/block/registry.h"
 #include "engine/diagram/diagram.h"
 #include "engine/plan/ticks.h"
+#include "engine/plan/wires_without_unit.h"
 #include "engine/solve/method.h"
 
 namespace loopwright {
@@ -65,7 +66,8 @@ struct Plan {
     bool for_events = false;  ///< a crossing function needs it
   };
 
-  /// An algebraic loop (blocks of direct feedthrough in a cycle), solved by Newton's method on the tear numbers.
+  /// An algebraic loop (blocks of direct feedthrough in a cycle), solved by Newton's method on the tear
+  /// numbers.
   struct AlgebraicLoop {
     std::vector<Entry> entries;  ///< in order, tears taken as known
     std::vector<Number> tears;
@@ -114,6 +116,7 @@ struct Plan {
   int signals = 0, states = 0, buffer_numbers = 0;
   std::vector<int> block_of_state;
   std::vector<Problem> warnings;
+  WiresWithoutUnit without_unit;
   std::string hash;  ///< of structure and effective parameters, 16 hex digits
 
   /// The numbers of a port, "stage.position" or "gain.y[2]", inputs too; empty if there is none.
@@ -132,7 +135,7 @@ struct Plan {
 std::shared_ptr<const Plan> compile(const Diagram& diagram, Problems& problems);
 
 /// Looks at a subdiagram on its own: everything that does not need the wires into it.
-void check_part(const Diagram& diagram, Problems& problems);
+WiresWithoutUnit check_part(const Diagram& diagram, Problems& problems);
 
 /// Loads and compiles; throws InputError with every problem found. Warnings end in Plan::warnings.
 std::shared_ptr<const Plan> load_plan(const std::string& path, const LoadOptions& options = {});
