@@ -23,6 +23,9 @@
 ///     bool may_cross() const;                               // false: with these parameters nothing ever crosses; default: true
 ///     double next_stop(double now) const;                   // the next time (s) at which it is not smooth
 ///     double shortest_period() const;                       // s, of a signal of its own: steps do not leap over it; infinity: none
+///     std::vector<UnitClaim> unit_claims() const;           // units that come from files (engine/block/instance_units.h)
+///     double unit_power(int wire) const;                    // the output's unit is the product of its wires' to these powers
+///     FormulaUnit formula_unit(std::span<const Unit>) const;  // the output's unit from those of the wires
 ///     static constexpr bool has_side_effects = true;        // acts on the world outside: never several runs at a time
 ///   };
 ///   LOOPWRIGHT_BLOCK(MyBlock)

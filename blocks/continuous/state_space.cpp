@@ -23,9 +23,10 @@ template <class Real> struct StateSpace {
         "A linear system given by four matrices, each a list of rows.",
         parameter(&StateSpace::A, "A", "", "How the states act on their rates, states by states"),
         parameter(&StateSpace::B, "B", "", "How the inputs act on the rates, states by inputs"),
-        parameter(&StateSpace::C, "C", "", "What of the states shows, outputs by states"),
-        parameter(&StateSpace::D, "D", "", "What of the inputs shows at once, outputs by inputs"),
-        parameter(&StateSpace::initial, "initial", "", "States at the start; zeros when left out").optional(),
+        parameter(&StateSpace::C, "C", "$y/$u", "What of the states shows, outputs by states").factor(),
+        parameter(&StateSpace::D, "D", "$y/$u", "What of the inputs shows at once, outputs by inputs")
+            .factor(),
+        parameter(&StateSpace::initial, "initial", "$u", "States at the start; zeros when left out").optional(),
         input(&In::u, "u", "$u", "Inputs").length(&StateSpace::inputs),
         output(&Out::y, "y", "$y", "Outputs").length(&StateSpace::results),
         state_vector(&State::x, &StateSpace::states));

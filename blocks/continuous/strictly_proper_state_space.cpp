@@ -23,8 +23,8 @@ template <class Real> struct StrictlyProperStateSpace {
         "A linear system given by three matrices, each a list of rows; no input acts on an output at once.",
         parameter(&Block::A, "A", "", "How the states act on their rates, states by states"),
         parameter(&Block::B, "B", "", "How the inputs act on the rates, states by inputs"),
-        parameter(&Block::C, "C", "", "What of the states shows, outputs by states"),
-        parameter(&Block::initial, "initial", "", "States at the start; zeros when left out").optional(),
+        parameter(&Block::C, "C", "$y/$u", "What of the states shows, outputs by states").factor(),
+        parameter(&Block::initial, "initial", "$u", "States at the start; zeros when left out").optional(),
         input(&In::u, "u", "$u", "Inputs").length(&Block::inputs),
         output(&Out::y, "y", "$y", "Outputs").from_memory().length(&Block::results),
         state_vector(&State::x, &Block::states));

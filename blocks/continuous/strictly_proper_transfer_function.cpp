@@ -24,7 +24,7 @@ template <class Real> struct StrictlyProperTransferFunction {
     using B = StrictlyProperTransferFunction;
     return block(
         "A linear system whose numerator has a lower degree than its denominator, at rest at the start.",
-        parameter(&B::numerator, "numerator", "", "Coefficients in s, highest power first"),
+        parameter(&B::numerator, "numerator", "$y/$u", "Coefficients in s, highest power first").factor(),
         parameter(&B::denominator, "denominator", "", "Coefficients in s, highest power first"),
         input(&In::u, "u", "$u", "Signal"), output(&Out::y, "y", "$y", "The filtered signal").from_memory(),
         state_vector(&State::z, &B::order));

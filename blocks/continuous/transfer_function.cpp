@@ -22,13 +22,14 @@ template <class Real> struct TransferFunction {
     Real y;
   };
   static constexpr auto describe() {
-    return block(
-        "A linear system given by its transfer function, at rest at the start.",
-        parameter(&TransferFunction::numerator, "numerator", "", "Coefficients in s, highest power first"),
-        parameter(&TransferFunction::denominator, "denominator", "",
-                  "Coefficients in s, highest power first"),
-        input(&In::u, "u", "$u", "Signal"), output(&Out::y, "y", "$y", "The filtered signal"),
-        state_vector(&State::z, &TransferFunction::order));
+    return block("A linear system given by its transfer function, at rest at the start.",
+                 parameter(&TransferFunction::numerator, "numerator", "$y/$u",
+                           "Coefficients in s, highest power first")
+                     .factor(),
+                 parameter(&TransferFunction::denominator, "denominator", "",
+                           "Coefficients in s, highest power first"),
+                 input(&In::u, "u", "$u", "Signal"), output(&Out::y, "y", "$y", "The filtered signal"),
+                 state_vector(&State::z, &TransferFunction::order));
   }
   int order() const { return int(denominator.size()) - 1; }
   void check(const Checker& checker) const {

@@ -20,7 +20,7 @@ template <class Real> struct LeadLag {
   static constexpr auto describe() {
     return block(
         "Advances or retards the phase of a signal around a frequency, sampled.",
-        parameter(&LeadLag::gain, "gain", "$y/$u", "Gain at rest").optional(),
+        parameter(&LeadLag::gain, "gain", "$y/$u", "Gain at rest").factor().optional(),
         parameter(&LeadLag::zero, "zero", "rad/s", "Where the gain begins to change with frequency, upwards")
             .positive(),
         parameter(&LeadLag::pole, "pole", "rad/s", "Where the gain begins to change downwards").positive(),

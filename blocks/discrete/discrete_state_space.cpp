@@ -20,9 +20,11 @@ template <class Real> struct DiscreteStateSpace {
         "A sampled linear system given by four matrices, each a list of rows.",
         parameter(&DiscreteStateSpace::A, "A", "", "How the states act on the next, states by states"),
         parameter(&DiscreteStateSpace::B, "B", "", "How the inputs act on the next states, states by inputs"),
-        parameter(&DiscreteStateSpace::C, "C", "", "What of the states shows, outputs by states"),
-        parameter(&DiscreteStateSpace::D, "D", "", "What of the inputs shows at once, outputs by inputs"),
-        parameter(&DiscreteStateSpace::initial, "initial", "", "States at the start; zeros when left out")
+        parameter(&DiscreteStateSpace::C, "C", "$y/$u", "What of the states shows, outputs by states")
+            .factor(),
+        parameter(&DiscreteStateSpace::D, "D", "$y/$u", "What of the inputs shows at once, outputs by inputs")
+            .factor(),
+        parameter(&DiscreteStateSpace::initial, "initial", "$u", "States at the start; zeros when left out")
             .optional(),
         input(&In::u, "u", "$u", "Inputs").length(&DiscreteStateSpace::inputs),
         output(&Out::y, "y", "$y", "Outputs").length(&DiscreteStateSpace::results),

@@ -20,7 +20,7 @@ template <class Real> struct DiscreteTransferFunction {
   static constexpr auto describe() {
     using B = DiscreteTransferFunction;
     return block("A linear system given by its transfer function in z, at rest at the start.",
-                 parameter(&B::numerator, "numerator", "", "Coefficients of 1, 1/z, 1/z² …"),
+                 parameter(&B::numerator, "numerator", "$y/$u", "Coefficients of 1, 1/z, 1/z² …").factor(),
                  parameter(&B::denominator, "denominator", "",
                            "Coefficients of 1, 1/z, 1/z² …; [1] for a finite impulse response"),
                  input(&In::u, "u", "$u", "Signal"), output(&Out::y, "y", "$y", "The filtered signal"),

@@ -43,6 +43,9 @@ struct Gpr {
         input(&In::velocity, "velocity", "$position/s", "Its velocity"),
         output(&Out::prediction, "prediction", "$command", "Predicted disturbance"));
   }
+  std::vector<UnitClaim> unit_claims() const {
+    return ready ? ready->unit_claims() : std::vector<UnitClaim>();
+  }
   void check(const Checker& checker) {
     ready = ready_model(checker, "model", model);
     if (!ready) return;

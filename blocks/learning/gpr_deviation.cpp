@@ -37,6 +37,9 @@ struct GprDeviation {
         input(&In::velocity, "velocity", "$position/s", "Its velocity"),
         output(&Out::deviation, "deviation", "$command", "Standard deviation of the predicted disturbance"));
   }
+  std::vector<UnitClaim> unit_claims() const {
+    return ready ? ready->unit_claims() : std::vector<UnitClaim>();
+  }
   void check(const Checker& checker) {
     ready = ready_model(checker, "model", model);
     if (!ready) return;

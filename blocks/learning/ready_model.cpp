@@ -34,6 +34,16 @@ std::shared_ptr<const ReadyModel> prepare(const Checker& checker, std::string_vi
 
 }  // namespace
 
+std::vector<UnitClaim> ReadyModel::unit_claims() const {
+  std::vector<UnitClaim> claims;
+  const auto claim = [&](std::string_view port, const std::string& text) {
+    const auto unit = text.empty() ? std::nullopt : parse_unit(text);
+    if (unit) claims.push_back({port, unit->in_si(), "model"});
+  };
+  claim("$position", learned.position_unit), claim("$command", learned.label_unit);
+  return claims;
+}
+
 std::shared_ptr<const ReadyModel> ready_model(const Checker& checker, std::string_view name,
                                               const std::string& file) {
   static std::mutex mutex;

@@ -16,6 +16,8 @@ struct ReadyModel {
     std::call_once(tabulated_, [this] { table_.emplace(posterior); });
     return *table_;
   }
+  /// Of the ports of a block that predicts by it.
+  std::vector<UnitClaim> unit_claims() const;
   const LearnedModel learned;
   const gp::Posterior posterior;
 

@@ -2,8 +2,10 @@
 ///
 /// The formula is muParser's: + - * / ^, comparisons, && || !, c ? a : b, sin, cos, tan, asin, acos, atan,
 /// atan2, sinh, cosh, tanh, exp, ln, log2, log10, sqrt, abs, sign, rint, min, max, sum, avg; `pi`, and `_e`
-/// for Euler's number. Units are not checked inside, and a variable-step solver is not told of its kinks and
-/// jumps: where that matters, blocks serve better. A result that is infinite or no number stops the run.
+/// for Euler's number. Units are checked as in the expression of a parameter; π is a half cycle in radians. A
+/// variable-step solver is not told of its kinks and jumps: where that matters, blocks serve better. A result
+/// that is infinite or no number stops the run.
+#include <algorithm>
 #include "engine/block.h"
 #include "engine/diagram/formula_parser.h"
 
@@ -18,10 +20,13 @@ struct Formula {
   Formula(const Formula&) {}
   Formula& operator=(const Formula&) { return *this; }
 
-  /// Throws mu::ParserError.
-  void compile(const std::string& text, const std::vector<std::string>& names) {
+  /// Throws mu::ParserError. `half_turn` takes the place of π, for one who asks what it does to the result.
+  void compile(const std::string& text, const std::vector<std::string>& names, double* half_turn = nullptr) {
     parser = FormulaParser();
-    parser.DefineConst("pi", pi);
+    if (half_turn)
+      parser.DefineVar("pi", half_turn);
+    else
+      parser.DefineConst("pi", pi);
     variables.assign(names.size(), 1.0);
     for (size_t i = 0; i < names.size(); ++i) parser.DefineVar(names[i], &variables[i]);
     parser.set_formula(text);
@@ -67,6 +72,29 @@ struct Expression {
       p.found = FormulaParser::message_of(error);
       for (const std::string& name : names) p.hint += (p.hint.empty() ? "its arguments are " : ", ") + name;
     }
+  }
+  FormulaUnit formula_unit(std::span<const Unit> of_wires) const {
+    FormulaUnit result;
+    result.parameter = "formula";
+    if (of_wires.size() != names.size()) return result;  // told where the shapes are checked
+    std::vector<Quantity> arguments;
+    for (size_t i = 0; i < of_wires.size(); ++i) {
+      arguments.push_back({1.0, of_wires[i]});
+      result.found += (i ? ", " : formula + " with ") + names[i] + " in " + to_string(of_wires[i]);
+    }
+    double half_turn = pi;
+    Formula rescaled;
+    const auto at = [&](const std::vector<double>& numbers, double pi_there) {
+      std::ranges::copy(numbers, rescaled.variables.begin());
+      half_turn = pi_there;
+      return rescaled.parser.Eval();
+    };
+    try {
+      rescaled.compile(formula, names, &half_turn);
+      result.finding = find_unit(at, arguments, result.unit);
+    } catch (const mu::ParserError&) {  // told by check
+    }
+    return result;
   }
   void prepare(double) { compiled.compile(formula, names); }
   Fault outputs(const In& in, Out& out) const {

@@ -12,7 +12,8 @@ template <class Real> struct Gain {
     Real y;
   };
   static constexpr auto describe() {
-    return block("Multiplies a signal by a number.", parameter(&Gain::gain, "gain", "$y/$u", "Factor"),
+    return block("Multiplies a signal by a number.",
+                 parameter(&Gain::gain, "gain", "$y/$u", "Factor").factor(),
                  input(&In::u, "u", "$u", "Signal"), output(&Out::y, "y", "$y", "The signal, multiplied"));
   }
   void outputs(const In& in, Out& out) const { out.y = gain * in.u; }

@@ -14,7 +14,8 @@ template <class Real> struct MatrixGain {
   static constexpr auto describe() {
     return block(
         "Multiplies a vector by a matrix.",
-        parameter(&MatrixGain::matrix, "matrix", "$y/$u", "Rows of the matrix, as in [[1, 0], [0, 1]]"),
+        parameter(&MatrixGain::matrix, "matrix", "$y/$u", "Rows of the matrix, as in [[1, 0], [0, 1]]")
+            .factor(),
         input(&In::u, "u", "$u", "Vector, as long as the matrix has columns").length(&MatrixGain::columns),
         output(&Out::y, "y", "$y", "Vector, as long as the matrix has rows").length(&MatrixGain::rows));
   }

@@ -22,6 +22,9 @@ template <class Real> struct Product {
         input(&In::factors, "factors", "?", "What is multiplied").length(&Product::factors),
         output(&Out::product, "product", "$product", "The product"));
   }
+  double unit_power(int wire) const {
+    return size_t(wire) < operations.size() && operations[size_t(wire)] == '/' ? -1 : 1;
+  }
   int factors() const { return operations.empty() ? -1 : int(operations.size()); }
   void check(const Checker& checker) const {
     if (operations.find_first_not_of("*/") == operations.npos) return;

@@ -22,10 +22,11 @@ template <class Real> struct Quantizer {
     Real lower, upper;
   };
   static constexpr auto describe() {
-    return block("Rounds a signal to multiples of a resolution.",
-                 parameter(&Quantizer::resolution, "resolution", "$u", "Height of a step").positive(),
-                 input(&In::u, "u", "$u", "Signal"), output(&Out::y, "y", "$u", "The signal, rounded"),
-                 crossing(&Crossings::lower, "lower"), crossing(&Crossings::upper, "upper"));
+    return block(
+        "Rounds a signal to multiples of a resolution.",
+        parameter(&Quantizer::resolution, "resolution", "$u", "Height of a step").difference().positive(),
+        input(&In::u, "u", "$u", "Signal"), output(&Out::y, "y", "$u", "The signal, rounded"),
+        crossing(&Crossings::lower, "lower"), crossing(&Crossings::upper, "upper"));
   }
   void prepare(double) { per_resolution = 1.0 / resolution; }
   void decide(const In& in, Mode& mode) const { mode.count = round_even(Real(in.u * per_resolution)); }

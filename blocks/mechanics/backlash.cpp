@@ -22,7 +22,7 @@ template <class Real> struct Backlash {
   };
   static constexpr auto describe() {
     return block("Lets the output follow the input with play.",
-                 parameter(&Backlash::gap, "gap", "$u", "Width of the play").not_negative(),
+                 parameter(&Backlash::gap, "gap", "$u", "Width of the play").difference().not_negative(),
                  parameter(&Backlash::initial, "initial", "$u",
                            "Output before the start, moved only if the input is beyond the gap")
                      .optional(),

@@ -15,7 +15,7 @@ template <class Real> struct Encoder {
       return fields(parameter(&Harmonic::order, "order", "", "How often the error repeats in a pitch")
                         .at_least(1)
                         .optional(),
-                    parameter(&Harmonic::amplitude, "amplitude", "$position", "Peak error"),
+                    parameter(&Harmonic::amplitude, "amplitude", "$position", "Peak error").difference(),
                     parameter(&Harmonic::phase, "phase", "rad", "Phase at position zero").optional());
     }
   };
@@ -38,8 +38,9 @@ template <class Real> struct Encoder {
     return block(
         "Measures a position in counts, with offset and periodic error.",
         parameter(&Encoder::resolution, "resolution", "$position", "Width of a count; 0: continuous")
+            .difference()
             .not_negative(),
-        parameter(&Encoder::offset, "offset", "$position", "Error of the zero").optional(),
+        parameter(&Encoder::offset, "offset", "$position", "Error of the zero").difference().optional(),
         parameter(&Encoder::pitch, "pitch", "$position", "Distance after which the periodic error repeats")
             .not_negative()
             .optional(),

@@ -25,6 +25,7 @@ template <class Real> struct Chirp {
     return block(
         "A sine wave whose frequency sweeps from one value to another.",
         parameter(&Chirp::amplitude, "amplitude", "$y", "Half of the distance from trough to crest")
+            .difference()
             .optional(),
         parameter(&Chirp::first_frequency, "from", "Hz", "Frequency at the start").not_negative(),
         parameter(&Chirp::last_frequency, "to", "Hz", "Frequency at the end").not_negative(),

@@ -12,7 +12,8 @@ template <class Real> struct Multisine {
     Real amplitude, frequency, phase = 0.0;
     static constexpr auto describe() {
       return fields(
-          parameter(&Component::amplitude, "amplitude", "$y", "Half of the distance from trough to crest"),
+          parameter(&Component::amplitude, "amplitude", "$y", "Half of the distance from trough to crest")
+              .difference(),
           parameter(&Component::frequency, "frequency", "Hz", "Periods per second").not_negative(),
           parameter(&Component::phase, "phase", "rad", "Phase at time 0").optional());
     }
@@ -21,10 +22,11 @@ template <class Real> struct Multisine {
     Real lowest = 0.0, highest = 0.0, amplitude = 0.0;
     int count = 0;
     static constexpr auto describe() {
-      return fields(parameter(&Band::lowest, "from", "Hz", "Lowest frequency").not_negative(),
-                    parameter(&Band::highest, "to", "Hz", "Highest frequency").not_negative(),
-                    parameter(&Band::count, "count", "", "Number of components").between(1, 10000),
-                    parameter(&Band::amplitude, "amplitude", "$y", "Amplitude of each component"));
+      return fields(
+          parameter(&Band::lowest, "from", "Hz", "Lowest frequency").not_negative(),
+          parameter(&Band::highest, "to", "Hz", "Highest frequency").not_negative(),
+          parameter(&Band::count, "count", "", "Number of components").between(1, 10000),
+          parameter(&Band::amplitude, "amplitude", "$y", "Amplitude of each component").difference());
     }
   };
   std::vector<Component> components;

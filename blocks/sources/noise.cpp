@@ -27,6 +27,7 @@ template <class Real> struct Noise {
     return block(
         "White noise, a new number at every sample.",
         parameter(&Noise::standard_deviation, "standard_deviation", "$y", "Root mean square about the mean")
+            .difference()
             .not_negative(),
         parameter(&Noise::mean, "mean", "$y", "Mean value").optional(),
         parameter(&Noise::distribution, "distribution", "", "How the numbers are spread").optional(),

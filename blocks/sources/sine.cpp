@@ -11,6 +11,7 @@ template <class Real> struct Sine {
   static constexpr auto describe() {
     return block("A sine wave.",
                  parameter(&Sine::amplitude, "amplitude", "$y", "Half of the distance from trough to crest")
+                     .difference()
                      .optional(),
                  parameter(&Sine::frequency, "frequency", "Hz", "Periods per second").not_negative(),
                  parameter(&Sine::phase, "phase", "rad", "Phase at time 0").optional(),

@@ -70,6 +70,7 @@ template <class Owner, class T> struct ParameterEntry {
   std::string_view name, unit, sentence;
   double low = -infinity, high = infinity;
   bool low_is_open = false, has_default = false, is_file = false;
+  bool is_difference = false, plain_when_bare = false;
   constexpr ParameterEntry positive() const {
     auto p = *this;
     p.low = 0;
@@ -97,6 +98,19 @@ template <class Owner, class T> struct ParameterEntry {
   constexpr ParameterEntry file() const {
     auto p = *this;
     p.is_file = true;
+    return p;
+  }
+  /// An amplitude, a resolution, a width: of temperatures it takes K, and refuses degC.
+  constexpr ParameterEntry difference() const {
+    auto p = *this;
+    p.is_difference = true;
+    return p;
+  }
+  /// A bare number has no unit, so that a bare gain keeps the unit of its input. Elsewhere a bare number has
+  /// whatever unit the wires ask for.
+  constexpr ParameterEntry factor() const {
+    auto p = *this;
+    p.plain_when_bare = true;
     return p;
   }
 };

@@ -1,5 +1,6 @@
 /// What the engine knows of a block type: the same for every scalar.
 #pragma once
+#include "engine/block/instance_units.h"
 #include "engine/block/kernels.h"
 #include "engine/block/memory_layout.h"
 
@@ -44,6 +45,11 @@ struct BlockInfo {
   double (*next_stop)(const void* block,
                       double now);  ///< the next time at which it is not smooth; null: always smooth
   double (*shortest_period)(const void* block);  ///< s, of what it puts out by itself; null: it has none
+  // Units, each null where the description says all.
+  std::vector<UnitClaim> (*unit_claims)(const void* block);
+  /// The output is the product of the wires of the first input, each to this power.
+  double (*unit_power)(const void* block, int wire);
+  FormulaUnit (*formula_unit)(const void* block, std::span<const Unit> of_wires);
 };
 
 template <class Entry> constexpr PortInfo::Shape shape_of() {
@@ -149,6 +155,16 @@ template <class B> BlockInfo info_of(std::string_view type) {
     info.next_stop = [](const void* p, double now) { return static_cast<const B*>(p)->next_stop(now); };
   if constexpr (requires(const B b) { b.shortest_period(); })
     info.shortest_period = [](const void* p) { return static_cast<const B*>(p)->shortest_period(); };
+  if constexpr (requires(const B b) { b.unit_claims(); })
+    info.unit_claims = [](const void* p) { return static_cast<const B*>(p)->unit_claims(); };
+  if constexpr (requires(const B b) { b.unit_power(0); })
+    info.unit_power = [](const void* p, int wire) {
+      return double(static_cast<const B*>(p)->unit_power(wire));
+    };
+  if constexpr (requires(const B b) { b.formula_unit(std::span<const Unit>()); })
+    info.formula_unit = [](const void* p, std::span<const Unit> of_wires) {
+      return static_cast<const B*>(p)->formula_unit(of_wires);
+    };
   return info;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <cmath>
 #include <filesystem>
+#include "engine/json/take_unit.h"
 
 namespace loopwright {
 
@@ -70,9 +71,36 @@ static bool wrong_kind(const Value& v, std::string expected, const std::string& 
   return false;
 }
 
+/// Whether the number of a value with a unit can be used as it stands. Most can: this is asked of every one.
+static bool as_described(const Value& v, const Range& range) {
+  if (range.is_difference && v.unit->is_point) return false;
+  const bool counts_cycles = range.unit.find("Hz") != range.unit.npos;
+  const bool is_fixed = range.unit.find('$') == range.unit.npos;
+  return !is_fixed || (v.unit->cycles() == 0) == !counts_cycles;
+}
+/// False after a problem.
+static bool take(Value& v, const Range& range, const Reader& reader) {
+  if (range.is_difference && v.unit->is_point) {
+    auto& p = reader.error(v, "a difference of temperatures is no temperature");
+    p.expected = "a number in K";
+    p.found = fmt::format("{} K above absolute zero, from a scale with a zero of its own", v.number);
+    p.hint = range.sentence;
+    return false;
+  }
+  const auto unit = parse_unit(range.unit);
+  const UnitTaken taken = unit ? take_unit(v, *unit, reader) : UnitTaken::no;
+  if (taken == UnitTaken::no) v.unit = {};  // told where the units of all wires are checked
+  return taken != UnitTaken::told;
+}
+
 bool number(double& to, const Value& v, const Range& range, const std::string& block, Problems& problems) {
   if (v.kind != Value::Kind::number)
     return wrong_kind(v, with_unit("a number", range.unit), block, problems, range.sentence);
+  if (v.unit && !as_described(v, range)) {
+    Value taken = v;
+    if (!take(taken, range, {problems, block})) return false;
+    return number(to, taken, range, block, problems);
+  }
   const bool inside = std::isfinite(v.number) && v.number >= range.low && v.number <= range.high &&
                       !(range.low_is_open && v.number <= range.low);
   if (!inside) {

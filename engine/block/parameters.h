@@ -44,6 +44,8 @@ struct ParameterInfo {
   ParameterKind kind = ParameterKind::number;
   double low = -infinity, high = infinity;
   bool low_is_open = false, has_default = false;
+  bool is_difference = false;             ///< of two values: takes K, no degC
+  bool plain_when_bare = false;           ///< a bare number has no unit, instead of the one that fits
   bool tunable = false;                   ///< may differ between the runs of a sweep
   std::string default_text;               ///< as JSON; empty without default
   std::vector<std::string_view> choices;  ///< of a choice
@@ -117,7 +119,7 @@ template <class Real, class T> Real* tunable(T& at, std::string_view path) {
 namespace reading {
 struct Range {
   double low = -infinity, high = infinity;
-  bool low_is_open = false;
+  bool low_is_open = false, is_difference = false;
   std::string_view unit, sentence;
 };
 bool number(double& to, const Value&, const Range&, const std::string& block, Problems&);
@@ -173,7 +175,8 @@ void read_fields(B& to, const Value& object, const std::string& block, Problems&
   for_each<B, is_parameter>([&](auto, const auto& p) {
     names[n++] = p.name;
     if (const Value::Member* found = object.find(p.name))
-      read(to.*p.member, found->value, {p.low, p.high, p.low_is_open, p.unit, p.sentence}, block, problems);
+      read(to.*p.member, found->value, {p.low, p.high, p.low_is_open, p.is_difference, p.unit, p.sentence},
+           block, problems);
     else if (!p.has_default)
       reading::missing(object, p.name, p.unit, p.sentence, block, problems);
   });
@@ -199,7 +202,8 @@ template <class T, class Real> void describe_type(ParameterInfo& info) {
     info.kind = ParameterKind::list;
     ParameterInfo element;
     element.unit = info.unit, element.low = info.low, element.high = info.high,
-    element.low_is_open = info.low_is_open;
+    element.low_is_open = info.low_is_open, element.is_difference = info.is_difference,
+    element.plain_when_bare = info.plain_when_bare;
     describe_type<typename T::value_type, Real>(element);
     info.fields = element.fields;
     info.tunable = element.tunable;
@@ -232,6 +236,7 @@ template <class B> std::vector<ParameterInfo> parameters_of() {
     using T = typename std::remove_cvref_t<decltype(p)>::Type;
     ParameterInfo info{p.name, p.unit, p.sentence};
     info.low = p.low, info.high = p.high, info.low_is_open = p.low_is_open, info.has_default = p.has_default;
+    info.is_difference = p.is_difference, info.plain_when_bare = p.plain_when_bare;
     describe_type<T, double>(info);
     if (p.is_file) (info.element.empty() ? info : info.element.front()).kind = ParameterKind::file;
     if (p.has_default) info.default_text = default_text(defaults.*p.member);

@@ -8,7 +8,6 @@
 #include <numbers>
 #include <unordered_map>
 #include "engine/diagram/formula_parser.h"
-#include "models/real/double_functions.h"
 
 namespace loopwright {
 namespace {
@@ -95,112 +94,56 @@ std::string plain_words(const mu::ParserError& error) {
 /// An expression compiled by muParser, with the numbers of its parameters at hand.
 class Compiled {
  public:
-  Compiled(std::string_view expression, const std::vector<std::string>& names) : numbers_(names.size()) {
-    parser().ClearVar();
-    for (size_t i = 0; i < names.size(); ++i) parser().DefineVar(names[i], &numbers_[i]);
-    parser().set_formula(std::string(expression));
+  /// Where π varies, products with it are not folded: the last bits of a result may differ.
+  enum class Pi { is_constant, varies };
+  Compiled(std::string_view expression, const std::vector<std::string>& names, Pi pi = Pi::is_constant)
+      : parser_(parser(pi)), numbers_(names.size()) {
+    parser_.ClearVar();
+    for (size_t i = 0; i < names.size(); ++i) parser_.DefineVar(names[i], &numbers_[i]);
+    if (pi == Pi::varies) parser_.DefineVar("pi", &pi_);
+    parser_.set_formula(std::string(expression));
   }
-  ~Compiled() { parser().ClearVar(); }
+  ~Compiled() { parser_.ClearVar(); }
   Compiled(const Compiled&) = delete;
   Compiled& operator=(const Compiled&) = delete;
 
   /// Throws mu::ParserError when the expression cannot be read.
-  double operator()(const std::vector<double>& numbers) {
+  double operator()(const std::vector<double>& numbers, double pi = std::numbers::pi) {
     std::ranges::copy(numbers, numbers_.begin());
+    pi_ = pi;
     int results = 0;
-    const double* values = parser().Eval(results);
+    const double* values = parser_.Eval(results);
     if (results != 1) throw mu::ParserError(mu::ecUNEXPECTED_ARG_SEP);
     return values[0];
   }
 
-  static bool has_function(std::string_view name) { return parser().GetFunDef().contains(std::string(name)); }
+  static bool has_function(std::string_view name) {
+    return parser(Pi::is_constant).GetFunDef().contains(std::string(name));
+  }
   static std::vector<std::string> functions() {
     std::vector<std::string> names;
-    for (const auto& [name, function] : parser().GetFunDef()) names.push_back(name);
+    for (const auto& [name, function] : parser(Pi::is_constant).GetFunDef()) names.push_back(name);
     return names;
   }
 
  private:
   /// Making a parser costs far more than using it.
-  static FormulaParser& parser() {
-    thread_local FormulaParser instance = [] {
-      FormulaParser parser;
-      parser.DefineConst("pi", std::numbers::pi);
-      parser.DefineConst("e", std::numbers::e);
-      return parser;
-    }();
-    return instance;
+  static FormulaParser& parser(Pi pi) {
+    thread_local FormulaParser with_constant = make_parser(Pi::is_constant),
+                            with_variable = make_parser(Pi::varies);
+    return pi == Pi::is_constant ? with_constant : with_variable;
+  }
+  static FormulaParser make_parser(Pi pi) {
+    FormulaParser parser;
+    if (pi == Pi::is_constant) parser.DefineConst("pi", std::numbers::pi);
+    parser.DefineConst("e", std::numbers::e);
+    return parser;
   }
 
+  FormulaParser& parser_;
   std::vector<double> numbers_;
+  double pi_ = std::numbers::pi;
 };
-
-// ---- The unit of a result
-// --------------------------------------------------------------------------------------
-
-constexpr double mixes_units = std::numeric_limits<double>::quiet_NaN();
-
-/// b in f ~ λ^b, a multiple of 1/12; not a number when f is no power of λ.
-double exponent_of_growth(double at_one, double at_two, double at_three) {
-  const auto rounded = [at_one](double grown, double lambda) {
-    const double exponent = natural_logarithm(grown / at_one) / natural_logarithm(lambda);
-    const double nearest = std::round(exponent * 12) / 12;
-    return std::abs(exponent - nearest) < 1e-9 ? nearest : mixes_units;
-  };
-  const double from_two = rounded(at_two, 2), from_three = rounded(at_three, 3);
-  return from_two == from_three ? from_two : mixes_units;
-}
-
-enum class UnitFinding { known, mixed, zero, no_result };
-
-/// The unit of f found by rescaling, from one set of numbers.
-UnitFinding unit_at(Compiled& f, const std::vector<Quantity>& parameters, const std::vector<double>& numbers,
-                    Unit& unit) {
-  const double at_one = f(numbers);
-  if (!std::isfinite(at_one)) return UnitFinding::no_result;
-  if (at_one == 0) return UnitFinding::zero;
-  for (size_t base = 0; base < unit.exponents.size(); ++base) {
-    const bool occurs = std::ranges::any_of(
-        parameters, [base](const Quantity& p) { return p.unit && p.unit->exponents[base] != 0; });
-    if (!occurs) continue;
-    const auto grown = [&](double lambda) {
-      std::vector<double> rescaled = numbers;
-      for (size_t i = 0; i < parameters.size(); ++i)
-        if (parameters[i].unit) rescaled[i] *= any_power(lambda, double{parameters[i].unit->exponents[base]});
-      return f(rescaled);
-    };
-    const double exponent = exponent_of_growth(at_one, grown(2), grown(3));
-    if (std::isnan(exponent)) return UnitFinding::mixed;
-    unit.exponents[base] = static_cast<float>(exponent);
-  }
-  return UnitFinding::known;
-}
-
-/// Numbers of several magnitudes: beside a small generic number even a small constant of the wrong unit
-/// shows.
-UnitFinding unit_of(Compiled& f, const std::vector<Quantity>& parameters, Unit& unit) {
-  UnitFinding finding = UnitFinding::no_result;
-  for (const double magnitude : {1.0, 1e-6, 1e6}) {
-    std::vector<double> numbers;
-    for (size_t i = 0; i < parameters.size(); ++i) {
-      const double generic =
-          magnitude * (1 + std::fmod(0.6180339887498949 * static_cast<double>(i + 1), 1.0));
-      numbers.push_back(parameters[i].unit ? generic : parameters[i].number);
-    }
-    Unit here;
-    const UnitFinding found = unit_at(f, parameters, numbers, here);
-    if (found == UnitFinding::no_result) continue;
-    if (found == UnitFinding::mixed) return found;
-    if (found == UnitFinding::zero) {
-      if (finding == UnitFinding::no_result) finding = found;
-      continue;
-    }
-    if (finding == UnitFinding::known && !(unit == here)) return UnitFinding::mixed;
-    unit = here;
-    finding = found;
-  }
-  return finding;
-}
 
 // ---- Messages
 // --------------------------------------------------------------------------------------------------
@@ -214,8 +157,7 @@ class Evaluator {
     if (!is_readable() || !find_names()) return {};
     if (names_.size() == 1 && uses_.size() == 1 && trimmed() == names_[0]) return parameters_[0];
     try {
-      Compiled f(expression_, names_);
-      return value_with_unit(f);
+      return value_with_unit();
     } catch (const mu::ParserError& error) {
       report(plain_words(error), static_cast<size_t>(std::max(error.GetPos(), 0)));
     } catch (const std::exception&) {  // muParser lets some errors of the standard library through
@@ -298,10 +240,10 @@ class Evaluator {
     return false;
   }
 
-  std::optional<Quantity> value_with_unit(Compiled& f) {
+  std::optional<Quantity> value_with_unit() {
     std::vector<double> numbers;
     for (const Quantity& parameter : parameters_) numbers.push_back(parameter.number);
-    Quantity result{f(numbers), {}};
+    Quantity result{Compiled(expression_, names_)(numbers), {}};
     if (!std::isfinite(result.number)) {
       Problem& problem = report("the result of the expression is not a finite number", 0);
       problem.found += fmt::format(", which is {}{}", result.number, with_values());
@@ -311,14 +253,19 @@ class Evaluator {
         std::ranges::any_of(parameters_, [](const Quantity& p) { return p.unit.has_value(); });
     if (!has_units) return result;
     Unit unit;
-    const UnitFinding finding = unit_of(f, parameters_, unit);
+    Compiled f(expression_, names_, Compiled::Pi::varies);
+    const UnitFinding finding =
+        find_unit([&f](const std::vector<double>& at, double pi) { return f(at, pi); }, parameters_, unit);
     if (finding == UnitFinding::known) result.unit = unit;
     if (finding == UnitFinding::known || finding == UnitFinding::zero)
       return result;  // a zero fits every unit
-    Problem& problem = report(finding == UnitFinding::mixed ? "the expression mixes units"
-                                                            : "the unit of the expression cannot be found",
-                              0);
+    Problem& problem =
+        report(finding == UnitFinding::mixed         ? "the expression mixes units"
+               : finding == UnitFinding::mixed_turns ? "the expression adds Hz and rad/s"
+                                                     : "the unit of the expression cannot be found",
+               0);
     problem.found += with_units();
+    if (finding == UnitFinding::mixed_turns) problem.hint = "2*pi times a frequency in Hz is in rad/s";
     if (finding == UnitFinding::mixed)
       problem.hint = "a number can be given a unit as a parameter: {\"value\": 3, \"unit\": \"m\"}";
     return {};

@@ -7,15 +7,9 @@
 #include <string_view>
 #include <vector>
 #include "engine/json/problem.h"
-#include "engine/unit/unit.h"
+#include "engine/unit/rescaling.h"
 
 namespace loopwright {
-
-/// A number in SI. Without a unit it is a bare number, which takes the unit that its user expects.
-struct Quantity {
-  double number = 0;
-  std::optional<Unit> unit;
-};
 
 /// A name in an expression, and where it stands (in bytes).
 struct NameUse {
@@ -43,10 +37,8 @@ struct ExpressionSite {
 /// && and ||, pi, e, and sin cos tan asin acos atan atan2 sinh cosh tanh asinh acosh atanh sqrt exp ln log
 /// log2 log10 abs sign rint min max sum avg.
 ///
-/// Unit of the result: every parameter with a unit is given a generic positive number, and each SI base unit
-/// is made 1/λ as large, so that a parameter in m^a grows by λ^a. If the result grows by λ^b for λ = 2 and 3,
-/// b is its exponent; otherwise the expression mixes units, which is a problem. Parameters without unit keep
-/// their value, and a result of such parameters alone is a bare number.
+/// The unit of the result is found by rescaling (engine/unit/rescaling.h); mixing units is a problem. A
+/// result of parameters without units is a bare number. A parameter in Hz is its number of cycles per second.
 std::optional<Quantity> evaluate(std::string_view expression, const ExpressionSite& site, Problems& problems);
 
 }  // namespace loopwright

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include "engine/json/take_unit.h"
 
 namespace loopwright {
 namespace {
@@ -23,7 +24,17 @@ Value broken(const Value& at) {
   return value;
 }
 
-Unit in_base_units(const Unit& unit) { return {1.0, unit.exponents}; }
+std::string_view without_spaces(std::string_view text) {
+  const size_t begin = std::min(text.find_first_not_of(' '), text.size());
+  return text.substr(begin, text.find_last_not_of(' ') + 1 - begin);
+}
+
+/// A bare number takes the unit.
+void give_unit(Value& number, const Unit& unit) {
+  number.number = unit.to_si(number.number);
+  number.whole &= unit.scale == 1 && unit.offset == 0;
+  number.unit = unit.in_si();
+}
 
 std::string_view kind_name(Value::Kind kind) {
   switch (kind) {
@@ -216,18 +227,23 @@ bool ParameterScope::fits(const Value& value, const Entry& entry) {
 void ParameterScope::convert(Value& value, const std::optional<Unit>& unit, const std::string& name) {
   for (Value& item : value.items) convert(item, unit, name);
   if (value.kind != Value::Kind::number) return;
-  const bool fits = !value.unit || value.unit->same_dimension(unit.value_or(Unit{}));
-  if (!fits) {
+  if (!value.unit) {
+    if (unit) give_unit(value, *unit);
+    return;
+  }
+  Unit wanted = unit.value_or(Unit{});
+  if (!unit) wanted.exponents[Unit::radian] = value.unit->radians();
+  const UnitTaken taken = take_unit(value, wanted, reader_);
+  if (taken == UnitTaken::yes) {
+    value.whole &= !unit || unit->scale == 1;
+    return;
+  }
+  if (taken == UnitTaken::no) {
     Problem& problem = reader_.error(value, fmt::format("the unit does not fit the parameter \"{}\"", name));
     problem.expected = unit ? to_string(*unit) : "a bare number, as the parameter has no unit";
     problem.found = shown_unit(value);
-    value = broken(value);
-    return;
   }
-  if (!unit) return;
-  if (!value.unit) value.number *= unit->scale;
-  value.whole &= unit->scale == 1;
-  value.unit = in_base_units(*unit);
+  value = broken(value);
 }
 
 // ---- Evaluation
@@ -255,9 +271,10 @@ static bool stands_in_file(const Value& text) {
 
 Value ParameterScope::evaluate_text(const Value& text, const std::string& block) {
   const std::string_view expression = std::string_view(text.text).substr(1);
-  if (is_name(expression) && !is_constant_name(expression)) {  // hands on a text or a list as well
+  const std::string_view name = without_spaces(expression);
+  if (is_name(name) && !is_constant_name(name)) {  // hands on a text or a list as well
     Place place = text.place;
-    const Entry* entry = find({expression, 0, false}, place, text, block);
+    const Entry* entry = find({name, 0, false}, place, text, block);
     if (!entry || entry->parameter.value.is_broken) return broken(text);
     Value value = entry->parameter.value;
     if (value.kind != Value::Kind::text || !stands_in_file(value)) value.place = text.place;
@@ -280,6 +297,7 @@ Value ParameterScope::evaluate_text(const Value& text, const std::string& block)
   value.kind = Value::Kind::number;
   value.number = quantity->number;
   value.unit = quantity->unit;
+  value.is_computed = quantity->unit.has_value();
   return value;
 }
 
@@ -289,16 +307,18 @@ Value ParameterScope::number_with_unit(const Value& object, const std::string& b
   Value number = evaluate(object.find("value")->value, block);
   if (!unit || number.is_broken) return broken(object);
   if (!reader.expect(number, Value::Kind::number, "\"value\"", "a number")) return broken(object);
-  if (number.unit && !number.unit->same_dimension(*unit)) {
+  if (!number.unit) {
+    give_unit(number, *unit);
+    return number;
+  }
+  const UnitTaken taken = take_unit(number, *unit, reader);
+  if (taken == UnitTaken::no) {
     Problem& problem = reader.error(number, "the unit of the expression is another one");
     problem.expected = to_string(*unit);
     problem.found = shown_unit(number);
-    return broken(object);
   }
-  if (!number.unit) number.number *= unit->scale;
   number.whole &= unit->scale == 1;
-  number.unit = in_base_units(*unit);
-  return number;
+  return taken == UnitTaken::yes ? number : broken(object);
 }
 
 ParameterScope::Entry* ParameterScope::find(const NameUse& use, const Place& place, const Value& text,

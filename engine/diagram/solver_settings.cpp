@@ -8,7 +8,7 @@ namespace loopwright {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-const Unit second = {1.0, {0, 0, 1, 0, 0, 0, 0}};
+const Unit second = {1.0, {0, 0, 1}};
 
 enum class Range { any, positive, not_negative };
 
@@ -67,7 +67,7 @@ class SettingsReader {
           unit == Unit{} ? "a number" : fmt::format("a number in {}", to_string(unit));
       return reader_.expect(value, Value::Kind::number, fmt::format("\"{}\"", key), expected);
     }
-    if (!value.unit || value.unit->same_dimension(unit)) return true;
+    if (!value.unit || value.unit->fits(unit)) return true;
     Problem& problem = reader_.error(value, fmt::format("the unit does not fit \"{}\"", key));
     problem.expected = to_string(unit);
     problem.found = shown_unit(value);

@@ -25,8 +25,8 @@ std::optional<Value> number_with_unit(const std::string& text) {
   if (!unit) return {};
   Value value;
   value.kind = Value::Kind::number;
-  value.number = number * unit->scale;
-  value.unit = Unit{1.0, unit->exponents};
+  value.number = unit->to_si(number);
+  value.unit = unit->in_si();
   return value;
 }
 

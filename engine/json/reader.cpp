@@ -29,7 +29,7 @@ std::string shown(const Value& value) {
 }
 
 std::string shown_unit(const Value& number) {
-  const std::string unit = number.unit->same_dimension(Unit{}) ? "no dimension" : to_string(*number.unit);
+  const std::string unit = *number.unit == Unit{} ? "no dimension" : to_string(*number.unit);
   return number.text.empty() ? unit : fmt::format("{} from {}", unit, number.text);
 }
 
@@ -137,7 +137,7 @@ std::optional<Unit> Reader::unit(const Value& text) const {
   if (unit) return unit;
   Problem& problem = error(text, fmt::format("there is no unit \"{}\"", text.text));
   problem.hint = unit_hint(text.text);
-  problem.expected = "an SI unit such as \"N*m\", \"V*s^2/m\", \"mm\", \"rad/s\", or \"1\"";
+  problem.expected = "an SI unit such as \"N*m\", \"V*s^2/m\", \"mm\", \"rad/s\", \"Hz\", or \"1\"";
   return {};
 }
 

@@ -18,7 +18,8 @@ struct Value {
   bool is_broken =
       false;  ///< a null in place of what could not be worked out: the problem is reported already
   bool boolean = false;
-  bool whole = false;  ///< the number was written without fraction or exponent
+  bool whole = false;        ///< the number was written without fraction or exponent
+  bool is_computed = false;  ///< the unit is that of an expression: taken as it is, not converted
   double number = 0;
   std::string text;  ///< of a text; for numbers from an expression, the expression
   Boxed<Unit> unit;  ///< known for numbers that come from parameters with units

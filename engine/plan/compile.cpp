@@ -295,6 +295,7 @@ std::shared_ptr<const Plan> compile(const Diagram& diagram, Problems& problems) 
   add_ports(flat, layout, *plan, *lists);
   for (size_t b = 0; b < plan->blocks.size(); ++b)
     plan->block_of_state.insert(plan->block_of_state.end(), size_t(plan->blocks[b].states), int(b));
+  plan->without_unit = wires_without_unit(flat, units);
   find_order(*plan, diagram.solver.algebraic_loops.value == "solve", problems);
   if (problems.has_errors()) return nullptr;
   add_crossings(*plan);
@@ -306,10 +307,10 @@ std::shared_ptr<const Plan> compile(const Diagram& diagram, Problems& problems) 
   return plan;
 }
 
-void check_part(const Diagram& diagram, Problems& problems) {
+WiresWithoutUnit check_part(const Diagram& diagram, Problems& problems) {
   FlatDiagram flat = flatten(diagram, problems, true);
   find_shapes(flat, problems);
-  check_units(flat, diagram, problems);
+  return wires_without_unit(flat, check_units(flat, diagram, problems));
 }
 
 std::shared_ptr<const Plan> load_plan(const std::string& path, const LoadOptions& options) {

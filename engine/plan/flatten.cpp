@@ -90,9 +90,9 @@ class Flattener {
       return -1;
     }
     flat.value = {values_, values_->add(flat.type->kernels)};
-    const size_t before = problems_.list().size();
+    const size_t before = errors();
     flat.type->info.read(flat.value.get(), entry.settings, flat.path, problems_);
-    if (problems_.list().size() == before)
+    if (errors() == before)
       flat.type->info.check(flat.value.get(), Checker(entry.settings, flat.path, problems_));
     flat_.settings.add(int(flat_.blocks.size()), *flat.type, entry, flat.path);
     flat.inputs.resize(flat.type->info.inputs.size());
@@ -100,6 +100,10 @@ class Flattener {
     flat_.blocks.push_back(std::move(flat));
     scope_of_block_.push_back(&scope);
     return int(flat_.blocks.size()) - 1;
+  }
+
+  size_t errors() const {
+    return size_t(std::ranges::count(problems_.list(), Problem::Severity::error, &Problem::severity));
   }
 
   void unknown_type(const std::string& path, const BlockEntry& entry) {
@@ -191,7 +195,11 @@ class Flattener {
     std::vector<std::string> names;
     for (const DiagramInput& input : scope.diagram->inputs) {
       if (input.name == name) {
-        if (!scope.parent && open_) return {};
+        if (!scope.parent && open_) {
+          FlatWire wire = unresolved(at);
+          wire.output = int(&input - scope.diagram->inputs.data());
+          return wire;
+        }
         if (!scope.parent)
           return fail(at, reader,
                       fmt::format("the input \"{}\" of the diagram has no source: it is the top", name), {},

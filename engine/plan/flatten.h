@@ -13,6 +13,8 @@ struct FlatWire {
   int element = -1;          ///< -1: the whole port
   const Wire* at = nullptr;  ///< as the reader wrote it; null: nobody did
   bool is_resolved() const { return block >= 0; }
+  /// Which input of the outermost diagram this is, looked at as a part; -1: none.
+  int open_input() const { return block < 0 ? output : -1; }
 };
 
 /// What feeds the ports of a block, a list each, in the memory of its diagram; empty: not wired.

@@ -10,6 +10,7 @@
 #include "engine/diagram/diagram.h"
 #include "engine/plan/identity.h"
 #include "engine/plan/ticks.h"
+#include "engine/plan/wires_without_unit.h"
 #include "engine/solve/method.h"
 
 namespace loopwright {
@@ -122,6 +123,7 @@ struct Plan {
   bool steps_between_samples = false;
   std::vector<int> block_of_state;
   std::vector<Problem> warnings;
+  WiresWithoutUnit without_unit;
   Identity identity;
   std::string hash;  ///< of the identity
 
@@ -141,7 +143,7 @@ struct Plan {
 std::shared_ptr<const Plan> compile(const Diagram& diagram, Problems& problems);
 
 /// Looks at a subdiagram on its own: everything that does not need the wires into it.
-void check_part(const Diagram& diagram, Problems& problems);
+WiresWithoutUnit check_part(const Diagram& diagram, Problems& problems);
 
 /// Loads and compiles; throws InputError with every problem found. Warnings end in Plan::warnings.
 std::shared_ptr<const Plan> load_plan(const std::string& path, const LoadOptions& options = {});

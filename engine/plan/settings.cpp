@@ -1,7 +1,54 @@
 #include "engine/plan/settings.h"
+#include <algorithm>
 #include "engine/json/json.h"
 
 namespace loopwright {
+namespace {
+
+/// A matrix of zeros, which has any unit.
+bool is_zeros(const Value& value) {
+  if (value.kind == Value::Kind::list) return std::ranges::all_of(value.items, is_zeros);
+  return value.kind == Value::Kind::number && value.number == 0;
+}
+
+bool has_unit(const Value& value) { return value.unit || std::ranges::any_of(value.items, has_unit); }
+
+bool has_fixed_unit(const ParameterInfo& info) {
+  return !info.unit.empty() && info.unit.find('$') == info.unit.npos;
+}
+
+/// Whether a block reads another number than the one that stands there: hertz where radians are meant, or the
+/// other way round.
+bool is_converted(const Value& value, const ParameterInfo& info) {
+  if (value.unit && has_fixed_unit(info))
+    return !value.is_computed && (value.unit->cycles() != 0 || info.unit.find("Hz") != info.unit.npos);
+  const auto of_item = [&](const Value& item) { return is_converted(item, info.element[0]); };
+  if (!info.element.empty() && std::ranges::any_of(value.items, of_item)) return true;
+  return std::ranges::any_of(value.members, [&](const Value::Member& member) {
+    const auto field = std::ranges::find(info.fields, member.name, &ParameterInfo::name);
+    return field != info.fields.end() && is_converted(member.value, *field);
+  });
+}
+
+void convert(Value& value, const ParameterInfo& info) {
+  if (value.unit && is_converted(value, info))
+    if (const auto wanted = parse_unit(info.unit))
+      value.number = conversion(*value.unit, *wanted)(value.number);
+  if (!info.element.empty())
+    for (Value& item : value.items) convert(item, info.element[0]);
+  for (Value::Member& member : value.members)
+    for (const ParameterInfo& field : info.fields)
+      if (field.name == member.name) convert(member.value, field);
+}
+
+std::string text_of(const Value& value, const ParameterInfo& info) {
+  if (!is_converted(value, info)) return to_json(value);
+  Value converted = value;
+  convert(converted, info);
+  return to_json(converted);
+}
+
+}  // namespace
 
 void Settings::add(const std::vector<Parameter>& parameters) {
   for (const Parameter& parameter : parameters)
@@ -13,22 +60,29 @@ void Settings::add(const std::vector<Parameter>& parameters) {
 void Settings::add(int block, const BlockType& type, const BlockEntry& entry, const std::string& path) {
   for (const ParameterInfo& info : type.info.parameters) {
     const Value::Member* given = entry.settings.find(info.name);
-    if (given) add_numbers(block, info, info.name, given->value);
+    const bool is_bare = !given || (info.plain_when_bare && !has_unit(given->value));
+    if (!is_bare)
+      add_numbers(block, info, info.name, given->value, info.plain_when_bare);
+    else if (info.plain_when_bare && !(given && info.kind == ParameterKind::list && is_zeros(given->value)))
+      with_units.push_back({block, &info, info.name, given ? &given->value : nullptr});
     auto& [name, text] = effective.emplace_back();
     name.reserve(path.size() + 1 + info.name.size());
     name.append(path).append(".").append(info.name);
-    text = given ? to_json(given->value) : info.default_text;
-    if (!info.unit.empty() && info.unit.find('$') == info.unit.npos) text.append(" ").append(info.unit);
+    text = given ? text_of(given->value, info) : info.default_text;
+    if (has_fixed_unit(info)) text.append(" ").append(info.unit);
   }
 }
 
-void Settings::add_numbers(int block, const ParameterInfo& info, std::string_view name, const Value& value) {
-  if (value.kind == Value::Kind::number && value.unit) with_units.push_back({block, &info, name, &value});
+void Settings::add_numbers(int block, const ParameterInfo& info, std::string_view name, const Value& value,
+                           bool bare_is_plain) {
+  const bool is_plain = bare_is_plain && value.number != 0;  // beside numbers with units, as in a matrix
+  if (value.kind == Value::Kind::number && (value.unit || is_plain))
+    with_units.push_back({block, &info, name, &value});
   if (!info.element.empty())
-    for (const Value& item : value.items) add_numbers(block, info.element[0], name, item);
+    for (const Value& item : value.items) add_numbers(block, info.element[0], name, item, bare_is_plain);
   for (const Value::Member& member : value.members)
     for (const ParameterInfo& field : info.fields)
-      if (field.name == member.name) add_numbers(block, field, field.name, member.value);
+      if (field.name == member.name) add_numbers(block, field, field.name, member.value, bare_is_plain);
 }
 
 }  // namespace loopwright

@@ -10,17 +10,20 @@
 
 namespace loopwright {
 
-/// A number that was written with a unit, or comes from a parameter with one. Points into the diagram.
+/// A number that was written with a unit, or comes from a parameter with one, or is bare where bare numbers
+/// have none. Points into the diagram.
 struct NumberWithUnit {
   int block;                  ///< flat
   const ParameterInfo* info;  ///< of the number, also inside a list or an object
   std::string_view name;      ///< of the parameter that holds it
-  const Value* value;
+  const Value* value;         ///< null: left out
+
+  Unit unit() const { return value && value->unit ? *value->unit : Unit{}; }
 };
 
 struct Settings {
   std::vector<std::pair<std::string, std::string>> effective;  ///< path → value with unit
-  std::vector<NumberWithUnit> with_units;                      ///< block by block
+  std::vector<NumberWithUnit> with_units;                      ///< block by block, and without units too
 
   /// The parameters of a diagram.
   void add(const std::vector<Parameter>& parameters);
@@ -28,7 +31,8 @@ struct Settings {
   void add(int block, const BlockType& type, const BlockEntry& entry, const std::string& path);
 
  private:
-  void add_numbers(int block, const ParameterInfo& info, std::string_view name, const Value& value);
+  void add_numbers(int block, const ParameterInfo& info, std::string_view name, const Value& value,
+                   bool bare_is_plain);
 };
 
 }  // namespace loopwright

@@ -1,273 +1,226 @@
 #include "engine/plan/units.h"
 #include <fmt/format.h>
 #include <algorithm>
-#include <charconv>
-#include <deque>
-#include <unordered_map>
+#include <set>
 #include "engine/plan/groups.h"
+#include "engine/plan/unit_equations.h"
+#include "engine/plan/unit_system.h"
 
 namespace loopwright {
 namespace {
 
-struct UnitFactor {
-  int variable;  // of the block type
-  double exponent;
-};
-/// constant · Π variable^exponent, as a port's description says it.
-struct UnitExpression {
-  Unit constant;
-  std::vector<UnitFactor> factors;
-};
-
-/// The units that a block type's description names; their variables are counted.
-class TypeUnits {
- public:
-  explicit TypeUnits(const BlockInfo& info) {
-    for (const PortInfo& port : info.inputs) inputs_.push_back(&add(port.unit));
-    for (const PortInfo& port : info.outputs) outputs_.push_back(&add(port.unit));
-    for (const ParameterInfo& parameter : info.parameters) add_parameter(parameter);
-  }
-  const UnitExpression& of_input(size_t input) const { return *inputs_[input]; }
-  const UnitExpression& of_output(size_t output) const { return *outputs_[output]; }
-  const UnitExpression& of(const ParameterInfo& parameter) const { return parsed_.at(parameter.unit); }
-  size_t variables() const { return names_.size(); }
-
- private:
-  void add_parameter(const ParameterInfo& parameter) {
-    add(parameter.unit);
-    for (const ParameterInfo& element : parameter.element) add_parameter(element);
-    for (const ParameterInfo& field : parameter.fields) add_parameter(field);
-  }
-  const UnitExpression& add(std::string_view text) {
-    const auto [entry, is_new] = parsed_.try_emplace(text);
-    if (is_new) entry->second = parse(text);
-    return entry->second;
-  }
-
-  /// "$command*s^2/m": factors split at * and /, those with $ are variables.
-  UnitExpression parse(std::string_view text) {
-    UnitExpression expression;
-    if (text.find('$') == text.npos) {
-      expression.constant = parse_unit(text).value_or(Unit{});
-      return expression;
-    }
-    std::string plain = "1";
-    char before = '*';
-    for (size_t i = 0; i <= text.size();) {
-      const size_t end = std::min(text.find_first_of("*/", i), text.size());
-      const std::string_view factor = text.substr(i, end - i);
-      if (factor.starts_with('$')) {
-        const size_t caret = factor.find('^');
-        double exponent = 1;
-        if (caret != factor.npos)
-          std::from_chars(factor.data() + caret + 1, factor.data() + factor.size(), exponent);
-        expression.factors.push_back({variable(factor.substr(1, std::min(caret, factor.size()) - 1)),
-                                      before == '/' ? -exponent : exponent});
-      } else {
-        plain += before;
-        plain += factor;
-      }
-      before = end < text.size() ? text[end] : '*';
-      i = end + 1;
-    }
-    expression.constant = parse_unit(plain).value_or(Unit{});
-    return expression;
-  }
-  int variable(std::string_view name) {
-    const auto index = std::ranges::find(names_, name) - names_.begin();
-    if (index == std::ssize(names_)) names_.push_back(name);
-    return int(index);
-  }
-
-  std::vector<std::string_view> names_;
-  std::unordered_map<std::string_view, UnitExpression> parsed_;
-  std::vector<const UnitExpression*> inputs_, outputs_;
-};
-
-/// Unit expressions of one end of an equation: of a port or parameter of a block, or a plain unit.
-struct End {
-  int block = -1;  // its variables are this block's
-  const UnitExpression* expression = nullptr;
-  std::string_view name;  // of the port or parameter; a plain unit's is what the file says
-};
-/// Points into the diagram: texts are written for the equations that do not hold, and there are many that do.
-struct Equation {
-  End left, right;
-  const Place* place;
-  const std::string* declared;  // the path of a subdiagram's port, if that is its left end
-  bool is_wire() const { return left.block >= 0 && right.block >= 0; }
-  bool is_parameter() const { return left.block >= 0 && right.block < 0; }
-  /// Nothing to be solved, and nothing wrong.
-  bool is_settled() const {
-    return left.expression->factors.empty() && right.expression->factors.empty() &&
-           left.expression->constant.same_dimension(right.expression->constant);
-  }
-};
-
 class Solver {
  public:
   Solver(const FlatDiagram& flat, const Diagram& diagram, Problems& problems)
-      : flat_(flat), problems_(problems) {
-    number_variables();
-    for (size_t b = 0; b < flat.blocks.size(); ++b) add_block(int(b));
-    add_declarations(diagram, "");
+      : flat_(flat),
+        problems_(problems),
+        said_(flat, diagram),
+        equations_(said_.list()),
+        variables_(said_.variables()) {
     readers_ = Groups(variables_.size(), [this](const auto& tell) { each_occurrence(tell); });
   }
 
   PortUnits run() {
-    propagate();
+    // A clash shows at the wire that joins its ends: what is written at blocks and borders counts first, then
+    // what sources say to their readers, then what readers ask of their sources.
+    for (const Phase phase : {Phase::written, Phase::forward, Phase::any}) propagate(phase);
+    solve_together();
     for (const Equation& equation : equations_) check(equation);
     PortUnits units;
     units.first.reserve(flat_.blocks.size());
     for (size_t b = 0; b < flat_.blocks.size(); ++b) {
       units.first.push_back(units.outputs.size());
       for (size_t o = 0; o < flat_.blocks[b].type->info.outputs.size(); ++o)
-        units.outputs.push_back(value({int(b), &types_of_blocks_[b]->of_output(o), {}}));
+        units.outputs.push_back(value({int(b), &said_.types_of(int(b)).of_output(o), {}}));
     }
     return units;
   }
 
  private:
-  void number_variables() {
-    types_of_blocks_.reserve(flat_.blocks.size()), first_variable_.reserve(flat_.blocks.size());
-    size_t variables = 0;
-    for (const FlatBlock& block : flat_.blocks) {
-      const TypeUnits& type = types_.try_emplace(block.type, block.type->info).first->second;
-      types_of_blocks_.push_back(&type), first_variable_.push_back(variables);
-      variables += type.variables();
-    }
-    variables_.resize(variables);
-  }
-  size_t variable_of(int block, const UnitFactor& factor) const {
-    return first_variable_[size_t(block)] + size_t(factor.variable);
-  }
-  const UnitExpression* constant(const Unit& unit) {
-    return &constants_.emplace_back(UnitExpression{unit, {}});
-  }
+  enum class Phase { written, forward, any };
 
-  void add_block(int b) {
-    const FlatBlock& block = flat_.blocks[size_t(b)];
-    const BlockInfo& info = block.type->info;
-    for (size_t i = 0; i < info.inputs.size(); ++i)
-      for (const FlatWire& wire : block.inputs[i]) {
-        if (!wire.is_resolved() || info.inputs[i].unit == any_unit) continue;
-        add_equation({{b, &types_of_blocks_[size_t(b)]->of_input(i), info.inputs[i].name},
-                      output_end(wire),
-                      &wire.at->place,
-                      nullptr});
-      }
-    const auto& numbers = flat_.settings.with_units;
-    for (; next_number_ < numbers.size() && numbers[next_number_].block == b; ++next_number_)
-      add_number(numbers[next_number_]);
-  }
+  // ---- One unknown at a time ----
 
-  /// Most of them are settled already; they would only fill memory.
-  void add_equation(const Equation& equation) {
-    if (!equation.is_settled()) equations_.push_back(equation);
+  /// f(end, power) for every end of an equation: the product of all is 1.
+  template <class F> static void each_end(const Equation& equation, const F& f) {
+    f(equation.left, 1.0);
+    f(equation.right, -1.0);
+    if (equation.rule)
+      for (const Rule::Argument& argument : equation.rule->arguments) f(argument.end, -argument.power);
   }
-
-  void add_number(const NumberWithUnit& number) {
-    const UnitExpression unit{*number.value->unit, {}};
-    Equation equation{{number.block, &types_of_blocks_[size_t(number.block)]->of(*number.info), number.name},
-                      {-1, &unit, number.value->text},
-                      &number.value->place,
-                      nullptr};
-    if (equation.is_settled()) return;
-    equation.right.expression = &constants_.emplace_back(unit);
-    equations_.push_back(equation);
-  }
-
-  End output_end(const FlatWire& wire) const {
-    const PortInfo& output = flat_.blocks[size_t(wire.block)].type->info.outputs[size_t(wire.output)];
-    return {wire.block, &types_of_blocks_[size_t(wire.block)]->of_output(size_t(wire.output)), output.name};
-  }
-
-  /// Inputs and outputs that subdiagrams declare with a unit.
-  void add_declarations(const Diagram& diagram, const std::string& prefix) {
-    const auto declare = [&](const std::string& name, const std::string& unit_text, const Place& place) {
-      if (unit_text.empty()) return;
-      const auto unit = parse_unit(unit_text);
-      const FlatWire* const wire = declared(prefix + name);
-      if (!unit || !wire || !wire->is_resolved()) return;
-      equations_.push_back({{-1, constant(*unit), {}},
-                            output_end(*wire),
-                            &place,
-                            &declared_paths_.emplace_back(prefix + name)});
-    };
-    if (!prefix.empty()) {
-      for (const DiagramInput& input : diagram.inputs) declare(input.name, input.unit, input.place);
-      for (const DiagramOutput& output : diagram.outputs) declare(output.name, output.unit, output.place);
-    }
-    for (const BlockEntry& block : diagram.blocks)
-      if (block.subdiagram) add_declarations(*block.subdiagram, prefix + block.name + ".");
-  }
-
-  /// What a port of a subdiagram leads to.
-  const FlatWire* declared(const std::string& path) {
-    if (declared_.empty())
-      for (const FlatName& name : flat_.names) declared_[name.name] = &name.wire;
-    const auto found = declared_.find(path);
-    return found == declared_.end() ? nullptr : found->second;
-  }
-
   /// Variables, and the equations that they occur in.
   template <class F> void each_occurrence(const F& f) const {
     for (size_t i = 0; i < equations_.size(); ++i)
-      for (const End* end : {&equations_[i].left, &equations_[i].right})
-        for (const UnitFactor& factor : end->expression->factors) f(variable_of(end->block, factor), int(i));
+      each_end(equations_[i], [&](const End& end, double) {
+        for (const UnitFactor& factor : end.expression->factors)
+          f(said_.variable_of(end.block, factor), int(i));
+      });
   }
 
   std::optional<Unit> value(const End& end) const {
     Unit unit = end.expression->constant;
     for (const UnitFactor& factor : end.expression->factors) {
-      const auto& known = variables_[variable_of(end.block, factor)];
+      const auto& known = variables_[said_.variable_of(end.block, factor)];
       if (!known) return {};
       unit = unit * power(*known, factor.exponent);
     }
     return unit;
   }
+  /// Of the right end, or what the rule makes of its arguments.
+  std::optional<Unit> right_value(const Equation& equation) const {
+    if (!equation.rule) return value(equation.right);
+    if (equation.rule->is_formula) {
+      const auto& found = equation.rule->unit;
+      return found && found->finding == UnitFinding::known ? std::optional(found->unit) : std::nullopt;
+    }
+    Unit product;
+    for (const Rule::Argument& argument : equation.rule->arguments) {
+      const auto unit = value(argument.end);
+      if (!unit) return {};
+      product = product * power(*unit, argument.power);
+    }
+    return product;
+  }
 
-  /// Solves an equation that has one unknown.
-  void solve(const Equation& equation) {
-    Unit rest;
-    std::optional<size_t> unknown;
-    double exponent = 0;
-    double sign = 1;
-    for (const End* end : {&equation.left, &equation.right}) {
-      for (const UnitFactor& factor : end->expression->factors) {
-        const size_t variable = variable_of(end->block, factor);
+  /// The unit of a formula, once those of its arguments are known.
+  void find_formula_unit(const Equation& equation) {
+    Rule& rule = *equation.rule;
+    if (rule.unit) return;
+    std::vector<Unit> units;
+    for (const Rule::Argument& argument : rule.arguments) {
+      const auto unit = value(argument.end);
+      if (!unit) return;
+      units.push_back(*unit);
+    }
+    const FlatBlock& block = flat_.blocks[size_t(equation.left.block)];
+    rule.unit = block.type->info.formula_unit(block.value.get(), units);
+  }
+
+  struct Unknown {
+    size_t variable;
+    double exponent;
+    bool is_position;
+  };
+  /// The only unknown of an equation; nothing when there are none or several.
+  std::optional<Unknown> only_unknown(const Equation& equation) const {
+    std::optional<Unknown> unknown;
+    bool has_several = false;
+    each_end(equation, [&](const End& end, double power) {
+      for (const UnitFactor& factor : end.expression->factors) {
+        const size_t variable = said_.variable_of(end.block, factor);
         if (variables_[variable]) continue;
-        if (unknown && unknown != variable) return;
-        unknown = variable, exponent += sign * factor.exponent;
+        if (!unknown) unknown = {variable, 0.0, said_.types_of(end.block).is_position(factor.variable)};
+        has_several |= unknown->variable != variable;
+        unknown->exponent += power * factor.exponent;
       }
-      sign = -1;
-    }
-    if (!unknown || exponent == 0) return;
-    sign = 1;
-    for (const End* end : {&equation.left, &equation.right}) {
-      rest = rest * power(end->expression->constant, sign);
-      for (const UnitFactor& factor : end->expression->factors)
-        if (const auto& known = variables_[variable_of(end->block, factor)])
-          rest = rest * power(*known, sign * factor.exponent);
-      sign = -1;
-    }
-    variables_[*unknown] = power(rest, -1 / exponent);
-    const auto readers = readers_[*unknown];
+    });
+    if (has_several || (unknown && unknown->exponent == 0)) return {};
+    return unknown;
+  }
+
+  void solve(const Equation& equation, Phase phase) {
+    if (equation.rule && equation.rule->is_formula) return solve_formula(equation);
+    if (phase == Phase::forward && (equation.is_wire() || equation.rule) && !right_value(equation)) return;
+    const auto unknown = only_unknown(equation);
+    if (!unknown) return;
+    Unit rest;
+    each_end(equation, [&](const End& end, double end_power) {
+      rest = rest * power(end.expression->constant, end_power);
+      for (const UnitFactor& factor : end.expression->factors)
+        if (const auto& known = variables_[said_.variable_of(end.block, factor)])
+          rest = rest * power(*known, end_power * factor.exponent);
+    });
+    assign(*unknown, power(rest, -1 / unknown->exponent));
+  }
+  void solve_formula(const Equation& equation) {
+    find_formula_unit(equation);
+    const auto unit = right_value(equation);
+    const auto unknown = unit ? only_unknown(equation) : std::nullopt;
+    if (unknown) assign(*unknown, *unit);  // the output is a variable of its own
+  }
+
+  void assign(const Unknown& unknown, Unit unit) {
+    unit.scale = 1;
+    if (unknown.is_position && unit == Unit{}) unit.exponents[Unit::radian] = 1;
+    variables_[unknown.variable] = unit;
+    const auto readers = readers_[unknown.variable];
     todo_.insert(todo_.end(), readers.begin(), readers.end());
   }
 
-  /// First what is written down at blocks and borders, then along the wires: a clash shows at the wire that
-  /// joins its ends.
-  void propagate() {
-    for (const bool with_wires : {false, true}) {
-      for (size_t i = equations_.size(); i-- > 0;) todo_.push_back(int(i));
-      while (!todo_.empty()) {
-        const size_t i = size_t(todo_.back());
-        todo_.pop_back();
-        if (with_wires || !equations_[i].is_wire()) solve(equations_[i]);
-      }
+  void propagate(Phase phase) {
+    for (size_t i = equations_.size(); i-- > 0;) todo_.push_back(int(i));
+    drain(phase);
+  }
+  void drain(Phase phase) {
+    while (!todo_.empty()) {
+      const Equation& equation = equations_[size_t(todo_.back())];
+      todo_.pop_back();
+      if (phase != Phase::written || (!equation.is_wire() && !equation.rule)) solve(equation, phase);
     }
   }
+
+  // ---- Many unknowns at once ----
+
+  /// What is left when every equation has several unknowns, or none.
+  void solve_together() {
+    while (true) {
+      UnitSystem system;
+      add_unsolved(system);
+      if (system.unknowns().empty()) return;
+      system.solve();
+      bool found = false;
+      for (const size_t variable : system.unknowns())
+        if (const auto unit = system.value(variable)) {
+          found = true;
+          assign({variable, 1, said_.is_position(variable)}, *unit);
+        }
+      tell_contradictions(system);
+      if (!found) return;
+      drain(Phase::any);  // formulas whose arguments are known now
+    }
+  }
+  void add_unsolved(UnitSystem& system) const {
+    for (size_t i = 0; i < equations_.size(); ++i) {
+      const Equation& equation = equations_[i];
+      const bool is_one_way = equation.is_bare || (equation.rule && equation.rule->is_formula);
+      if (is_one_way) continue;  // x' = -2 x with a bare gain is a diagram without units, not a wrong one
+      std::vector<UnitSystem::Term> terms;
+      Unit known;
+      each_end(equation, [&](const End& end, double end_power) {
+        known = known * power(end.expression->constant, end_power);
+        for (const UnitFactor& factor : end.expression->factors) {
+          const size_t variable = said_.variable_of(end.block, factor);
+          if (const auto& unit = variables_[variable])
+            known = known * power(*unit, end_power * factor.exponent);
+          else
+            terms.push_back({variable, end_power * factor.exponent});
+        }
+      });
+      if (!terms.empty()) system.add(std::move(terms), known, int(i));
+    }
+  }
+  void tell_contradictions(const UnitSystem& system) {
+    for (const auto& [index, rest] : system.contradictions()) {
+      const Equation& equation = equations_[size_t(index)];
+      const std::string& block =
+          equation.left.block >= 0 ? flat_.blocks[size_t(equation.left.block)].path : *equation.declared;
+      if (is_power_of_time(rest) ||
+          !told_.insert({equation.place->file.get(), equation.place->offset}).second)
+        continue;
+      auto& p = problems_.error(
+          *equation.place, equation.place->pointer(), block,
+          fmt::format("the units contradict each other at {}", name_of(equation, equation.left)));
+      p.found = fmt::format("a unit that would have to be itself times {}", to_string(rest));
+      p.hint = "the numbers with units around it cannot all be right";
+    }
+  }
+  /// What a diagram without units comes to, in which an oscillator is two integrators in a loop.
+  static bool is_power_of_time(Unit rest) {
+    rest.exponents[2] = 0;
+    return rest.same_dimension(Unit{});
+  }
+
+  // ---- What does not hold ----
 
   std::string name_of(const Equation& equation, const End& end) const {
     if (end.block >= 0) return fmt::format("{}.{}", flat_.blocks[size_t(end.block)].path, end.name);
@@ -275,8 +228,9 @@ class Solver {
   }
 
   void check(const Equation& equation) {
-    const auto left = value(equation.left), right = value(equation.right);
-    if (!left || !right || left->same_dimension(*right)) return;
+    if (equation.rule && equation.rule->is_formula) check_formula(equation);
+    const auto left = value(equation.left), right = right_value(equation);
+    if (!left || !right || equation.agrees(*left, *right)) return;
     const std::string left_unit = to_string(*left), right_unit = to_string(*right);
     const std::string& block =
         equation.left.block >= 0 ? flat_.blocks[size_t(equation.left.block)].path : *equation.declared;
@@ -284,7 +238,12 @@ class Solver {
       auto& p = problems_.error(*equation.place, equation.place->pointer(), block, std::move(message));
       p.expected = fmt::format("a {} in {}", what, left_unit);
       p.found = std::move(found);
+      p.hint = hint_for(equation, *left, *right);
     };
+    if (equation.rule)
+      return report(fmt::format("{} is [{}] by its arguments, and [{}] by what reads it",
+                                name_of(equation, equation.left), right_unit, left_unit),
+                    "result", right_unit);
     if (equation.is_parameter())
       return report(fmt::format("the parameter \"{}\" has the wrong unit", equation.left.name), "number",
                     equation.right.name.empty() ? right_unit
@@ -294,25 +253,74 @@ class Solver {
            "signal", right_unit);
   }
 
+  std::string hint_for(const Equation& equation, const Unit& left, const Unit& right) const {
+    if (left.same_dimension(right))
+      return "hertz count cycles: a Gain of {\"value\": \"=2*pi\", \"unit\": \"rad/(Hz*s)\"} makes radians "
+             "of them";
+    if (has_bare_factor(equation.left.block) || has_bare_factor(equation.right.block))
+      return "a bare gain keeps the unit of its input; it can have one of its own, as in {\"value\": 20, "
+             "\"unit\": "
+             "\"N/A\"}";
+    return "";
+  }
+  bool has_bare_factor(int block) const {
+    const auto& numbers = flat_.settings.with_units;
+    const auto [begin, end] = std::ranges::equal_range(numbers, block, {}, &NumberWithUnit::block);
+    return block >= 0 && std::ranges::any_of(begin, end, [](const NumberWithUnit& number) {
+             return number.info->plain_when_bare && !(number.value && number.value->unit);
+           });
+  }
+
+  void check_formula(const Equation& equation) {
+    const auto& unit = equation.rule->unit;
+    if (!unit || (unit->finding != UnitFinding::mixed && unit->finding != UnitFinding::mixed_turns)) return;
+    const FlatBlock& block = flat_.blocks[size_t(equation.left.block)];
+    const Value::Member* const at = block.entry->settings.find(unit->parameter);
+    const Place& place = at ? at->value.place : *equation.place;
+    auto& p = problems_.error(
+        place, place.pointer(), block.path,
+        unit->finding == UnitFinding::mixed ? "the formula mixes units" : "the formula adds Hz and rad/s");
+    p.found = unit->found;
+    p.hint = "a number can be given a unit as an argument: a Constant of {\"value\": 3, \"unit\": \"m\"}";
+  }
+
   const FlatDiagram& flat_;
   Problems& problems_;
-  std::unordered_map<const BlockType*, TypeUnits> types_;
-  std::vector<const TypeUnits*> types_of_blocks_;
-  std::deque<UnitExpression> constants_;
-  std::deque<std::string> declared_paths_;
-  std::unordered_map<std::string_view, const FlatWire*> declared_;
-  std::vector<Equation> equations_;
-  size_t next_number_ = 0;                      // of those with units, whose block comes next
-  std::vector<size_t> first_variable_;          // of each block
+  UnitEquations said_;
+  const std::vector<Equation>& equations_;
   std::vector<std::optional<Unit>> variables_;  // of all blocks
   Groups readers_;                              // of each variable; equations
   std::vector<int> todo_;
+  std::set<std::pair<const SourceFile*, uint32_t>> told_;
 };
 
 }  // namespace
 
 PortUnits check_units(const FlatDiagram& flat, const Diagram& diagram, Problems& problems) {
   return Solver(flat, diagram, problems).run();
+}
+
+WiresWithoutUnit wires_without_unit(const FlatDiagram& flat, const PortUnits& units) {
+  WiresWithoutUnit wires;
+  if (std::ranges::all_of(units.outputs, [](const auto& unit) { return unit.has_value(); })) return wires;
+  std::vector<bool> is_read(units.outputs.size());
+  const auto read = [&](const FlatWire& wire) {
+    if (wire.is_resolved()) is_read[units.first[size_t(wire.block)] + size_t(wire.output)] = true;
+  };
+  for (const FlatBlock& block : flat.blocks)
+    for (const auto& port : block.inputs)
+      for (const FlatWire& wire : port) read(wire);
+  for (const FlatLog& log : flat.log) read(log.wire);
+  for (size_t b = 0; b < flat.blocks.size(); ++b) {
+    const FlatBlock& block = flat.blocks[b];
+    for (size_t o = 0; o < block.type->info.outputs.size(); ++o) {
+      if (units.of(int(b), int(o)) || !is_read[units.first[b] + o]) continue;
+      if (wires.count++ < WiresWithoutUnit::most_named)
+        wires.named.push_back(
+            {fmt::format("{}.{}", block.path, block.type->info.outputs[o].name), block.entry->place});
+    }
+  }
+  return wires;
 }
 
 }  // namespace loopwright

@@ -1,6 +1,7 @@
 /// Units along the wires: $names are solved from their neighbours, clashes name both ends.
 #pragma once
 #include "engine/plan/flatten.h"
+#include "engine/plan/plan.h"
 
 namespace loopwright {
 
@@ -14,5 +15,8 @@ struct PortUnits {
 };
 
 PortUnits check_units(const FlatDiagram& flat, const Diagram& diagram, Problems& problems);
+
+/// The outputs that are read or logged and whose unit nothing decides.
+WiresWithoutUnit wires_without_unit(const FlatDiagram& flat, const PortUnits& units);
 
 }  // namespace loopwright

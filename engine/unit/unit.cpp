@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <fmt/format.h>
 #include <mutex>
+#include <numbers>
 #include <stdexcept>
 #include <unordered_map>
 #include <vector>
@@ -15,7 +16,11 @@
 namespace loopwright {
 namespace {
 
-constexpr std::array<std::string_view, 7> base_symbols = {"m", "kg", "s", "A", "K", "mol", "cd"};
+using Exponents = decltype(Unit::exponents);
+
+constexpr std::string_view cycle_symbol = "cycle of Hz";  // no text names it alone
+constexpr std::array<std::string_view, 9> base_symbols = {"m",   "kg", "s",   "A",         "K",
+                                                          "mol", "cd", "rad", cycle_symbol};
 
 /// Sums of exponents land on a multiple of 1/12 again, so that equal dimensions compare equal.
 float exact_exponent(double exponent) { return static_cast<float>(std::round(exponent * 12) / 12); }
@@ -26,12 +31,13 @@ float exact_exponent(double exponent) { return static_cast<float>(std::round(exp
 /// Collects the powers of base units while udunits walks through a unit; refuses what is not scale · product.
 struct Collector {
   Unit unit;
+  bool has_offset = false;
 
   static int base_index(const ut_unit* base) {
     const char* symbol = ut_get_symbol(base, UT_UTF8);
     for (size_t i = 0; symbol && i < base_symbols.size(); ++i)
       if (symbol == base_symbols[i]) return static_cast<int>(i);
-    return -1;  // the radian counts as 1
+    return -1;
   }
 
   static ut_status multiply(const ut_unit* base, int power, void* self) {
@@ -47,8 +53,8 @@ struct Collector {
   }
   static ut_status visit_scaled(const ut_unit*, double scale, const ut_unit* underlying, double offset,
                                 void* self) {
-    if (offset != 0) return UT_MEANINGLESS;
     static_cast<Collector*>(self)->unit.scale *= scale;
+    static_cast<Collector*>(self)->has_offset |= offset != 0;
     return ut_accept_visitor(underlying, &visitor, self);
   }
   static ut_status visit_timestamp(const ut_unit*, const ut_unit*, double, void*) { return UT_MEANINGLESS; }
@@ -57,6 +63,19 @@ struct Collector {
   static constexpr ut_visitor visitor = {visit_base, visit_product, visit_scaled, visit_timestamp,
                                          visit_logarithmic};
 };
+
+/// udunits2 knows Hz as 1/s, which is a radian per second as well. Here it counts cycles.
+void make_hertz_count_cycles(ut_system* system) {
+  ut_unmap_name_to_unit(system, "hertz", UT_UTF8);
+  ut_unmap_symbol_to_unit(system, "Hz", UT_UTF8);
+  ut_unit* const cycle = ut_new_base_unit(system);
+  ut_map_unit_to_symbol(cycle, std::string(cycle_symbol).c_str(), UT_UTF8);
+  ut_unit* const second = ut_parse(system, "s", UT_UTF8);
+  ut_unit* const hertz = ut_divide(cycle, second);
+  ut_map_name_to_unit("hertz", UT_UTF8, hertz);
+  ut_map_symbol_to_unit("Hz", UT_UTF8, hertz);
+  for (ut_unit* unit : {cycle, second, hertz}) ut_free(unit);
+}
 
 /// The unit database of udunits2, read once, with the spellings of motion control that it lacks.
 ut_system* unit_database() {
@@ -70,6 +89,7 @@ ut_system* unit_database() {
       ut_map_name_to_unit(name, UT_UTF8, unit);
       ut_free(unit);
     };
+    make_hertz_count_cycles(system);
     alias("deg", "degree");
     alias("rev", "revolution");
     for (const char* counted : {"pulse", "pulses", "step", "steps", "sample", "samples", "LSB"})
@@ -79,16 +99,30 @@ ut_system* unit_database() {
   return database;
 }
 
+/// Only temperatures have a zero of their own.
+bool read_offset(const ut_unit* parsed, Unit& unit) {
+  ut_unit* const kelvin = ut_parse(unit_database(), "K", UT_UTF8);
+  cv_converter* const to_kelvin = ut_get_converter(const_cast<ut_unit*>(parsed), kelvin);
+  if (to_kelvin) {
+    unit.offset = cv_convert_double(to_kelvin, 0.0);
+    unit.is_point = true;
+    cv_free(to_kelvin);
+  }
+  ut_free(kelvin);
+  return unit.is_point;
+}
+
 std::optional<Unit> read_by_udunits(const std::string& text) {
   if (text.empty()) return Unit{};
   ut_unit* parsed = ut_parse(unit_database(), text.c_str(), UT_UTF8);
   if (!parsed) return {};
   Collector collector;
   const ut_status status = ut_accept_visitor(parsed, &Collector::visitor, &collector);
-  ut_free(parsed);
   const bool positive = collector.unit.scale > 0 && std::isfinite(collector.unit.scale);
-  if (status != UT_SUCCESS || !positive) return {};
-  return collector.unit;
+  const bool good =
+      status == UT_SUCCESS && positive && (!collector.has_offset || read_offset(parsed, collector.unit));
+  ut_free(parsed);
+  return good ? std::optional(collector.unit) : std::nullopt;
 }
 
 // ---- Roots, which udunits2 does not know
@@ -213,10 +247,10 @@ constexpr std::string_view customary_spellings[] = {"N*s/m", "V*s^2/m", "ohm", "
 
 struct NamedUnit {
   std::string_view symbol;
-  std::array<float, 7> exponents;  // of m kg s A K mol cd
+  Exponents exponents;  // of m kg s A K mol cd
 };
 
-/// Building blocks of the other spellings. Hz and J are none: 1/s is as often rad/s, N*m as often a torque.
+/// Building blocks of the other spellings. J is none: N*m is as often a torque.
 constexpr NamedUnit named_units[] = {
     {"N", {1, 1, -2, 0, 0, 0, 0}},
     {"V", {2, 1, -3, -1, 0, 0, 0}},
@@ -238,21 +272,24 @@ float reading_cost(const std::vector<Factor>& factors) {
   return cost;
 }
 
-std::vector<Factor> base_factors(const std::array<float, 7>& exponents) {
-  constexpr int reading_order[] = {1, 0, 2, 3, 4, 5, 6};  // kg*m/s, not m*kg/s
+std::vector<Factor> base_factors(const Exponents& exponents) {
+  constexpr int reading_order[] = {1, 0, 7, 2, 3, 4, 5, 6};  // kg*m/s, not m*kg/s
   std::vector<Factor> factors;
-  for (const int i : reading_order)
-    if (exponents[i] != 0) factors.push_back({base_symbols[i], exponents[i]});
+  if (exponents[Unit::cycle] != 0) factors.push_back({"Hz", exponents[Unit::cycle]});
+  for (const int i : reading_order) {
+    const float exponent = exponents[i] + (i == 2 ? exponents[Unit::cycle] : 0.0f);  // cycle = Hz*s
+    if (exponent != 0) factors.push_back({base_symbols[i], exponent});
+  }
   return factors;
 }
 
-std::vector<Factor> shortest_factors(const std::array<float, 7>& exponents) {
+std::vector<Factor> shortest_factors(const Exponents& exponents) {
   std::vector<Factor> best = base_factors(exponents);
   const bool is_kinematic = exponents[1] == 0 && exponents[3] == 0;  // m/s^2, never N/kg
   if (is_kinematic) return best;
   for (const NamedUnit& named : named_units) {
     for (const float times : {1.0f, -1.0f, 2.0f, -2.0f}) {
-      std::array<float, 7> remaining = exponents;
+      Exponents remaining = exponents;
       for (size_t i = 0; i < remaining.size(); ++i) remaining[i] -= times * named.exponents[i];
       std::vector<Factor> factors = base_factors(remaining);
       factors.insert(factors.begin(), {named.symbol, times});
@@ -290,7 +327,7 @@ std::string spelled(const std::vector<Factor>& factors) {
 }
 
 /// The spelling of a unit whose scale is 1.
-std::string spelled(const std::array<float, 7>& exponents) {
+std::string spelled(const Exponents& exponents) {
   struct Customary {
     std::string_view spelling;
     Unit unit;
@@ -319,7 +356,40 @@ std::string_view prefix_of(double scale) {
   return {};
 }
 
+/// Units that are no product of a prefix and a spelling.
+std::string_view name_of_scaled(const Unit& unit) {
+  if (unit.scale == 1 && unit.offset == 0) return {};
+  struct Named {
+    std::string_view name;
+    Unit unit;
+  };
+  static const std::vector<Named> list = [] {
+    std::vector<Named> named;
+    for (const std::string_view name : {"%", "deg", "rev", "rpm", "deg/s", "rev/s", "degC", "degF"})
+      named.push_back({name, parse_unit(name).value()});
+    return named;
+  }();
+  const auto found = std::ranges::find(list, unit, &Named::unit);
+  return found == list.end() ? std::string_view() : found->name;
+}
+
 }  // namespace
+
+double Conversion::operator()(double number) const {
+  constexpr double turn = 2 * std::numbers::pi;
+  if (kind != Kind::turns) return number;
+  if (cycles == 1) return number * turn;
+  if (cycles == -1) return number / turn;
+  return number * std::pow(turn, cycles);
+}
+
+Conversion conversion(const Unit& from, const Unit& to) {
+  if (!from.same_dimension(to)) return {Conversion::Kind::impossible};
+  const double cycles = double{from.cycles()} - double{to.cycles()};
+  const double radians = double{to.radians()} - double{from.radians()};
+  if (cycles == 0) return {Conversion::Kind::none};
+  return {cycles == radians ? Conversion::Kind::turns : Conversion::Kind::ambiguous, cycles};
+}
 
 Unit operator*(const Unit& a, const Unit& b) {
   Unit product{a.scale * b.scale, {}};
@@ -347,13 +417,10 @@ std::optional<Unit> parse_unit(std::string_view text) {
 }
 
 std::string to_string(const Unit& unit) {
+  if (const std::string_view name = name_of_scaled(unit); !name.empty()) return std::string(name);
   const std::string spelling = spelled(unit.exponents);
   if (unit.scale == 1) return spelling;
-  if (spelling == "1") {
-    if (unit.scale == 0.01) return "%";
-    if (unit.scale == std::acos(-1.0) / 180) return "deg";
-    return fmt::format("{}", unit.scale);
-  }
+  if (spelling == "1") return fmt::format("{}", unit.scale);
   const bool takes_prefix = !spelling.starts_with("kg") && !spelling.starts_with('1') &&
                             spelling[std::min(spelling.find_first_of("*/^"), spelling.size() - 1)] != '^';
   const std::string_view prefix = takes_prefix ? prefix_of(unit.scale) : std::string_view();

@@ -7,7 +7,7 @@ namespace {
 void check_unit(const Plan::Block& block, std::string_view port, const std::optional<Unit>& in_diagram,
                 const std::string& channel, const std::string& of_channel, Problems& problems) {
   const auto in_device = parse_unit(of_channel);
-  if (!in_diagram || !in_device || in_diagram->same_dimension(*in_device)) return;
+  if (!in_diagram || !in_device || in_diagram->fits(*in_device)) return;
   auto& p = problems.error(block.place, "", block.path,
                            fmt::format("\"{}\" and the device's \"{}\" differ in unit", port, channel));
   p.expected = of_channel + " as the device file says";

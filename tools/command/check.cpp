@@ -24,17 +24,29 @@ std::string foreign_code(const hw::DeviceDescription* device) {
   return code.empty() ? code : fmt::format("\n{}; check does not load it", code);
 }
 
-Verdict check_diagram(const std::string& path, const LoadOptions& options, Problems& problems) {
-  const auto diagram = load_diagram(path, options, problems);
+struct CheckOptions {
+  LoadOptions load;
+  bool strict_units = false;
+};
+
+/// Wires without a unit, which are counted, or refused.
+std::string look_at_units(const WiresWithoutUnit& wires, const CheckOptions& options, Problems& problems) {
+  if (options.strict_units) refuse(wires, problems);
+  return wires.count ? "; " + to_string(wires) : "";
+}
+
+Verdict check_diagram(const std::string& path, const CheckOptions& options, Problems& problems) {
+  const auto diagram = load_diagram(path, options.load, problems);
   if (!diagram) return {};
   if (!diagram->inputs.empty()) {
-    check_part(*diagram, problems);
-    return fmt::format("a subdiagram of {} blocks", diagram->blocks.size());
+    const std::string units = look_at_units(check_part(*diagram, problems), options, problems);
+    return fmt::format("a subdiagram of {} blocks{}", diagram->blocks.size(), units);
   }
   const auto plan = compile(*diagram, problems);
   if (!plan) return {};
+  const std::string units = look_at_units(plan->without_unit, options, problems);
   Problems of_deploy;  // told there
-  return fmt::format("{} blocks, {} states{}", plan->blocks.size(), plan->states,
+  return fmt::format("{} blocks, {} states{}{}", plan->blocks.size(), plan->states, units,
                      foreign_code(hw::find_hardware(*plan, of_deploy).device.get()));
 }
 
@@ -79,17 +91,19 @@ Verdict check_model(const std::string& path, Problems& problems) {
 }
 
 /// Options that change a diagram do nothing to other files: that is said rather than left out.
-void reject_options(FileKind kind, const std::string& path, const LoadOptions& options, Problems& problems) {
+void reject_options(FileKind kind, const std::string& path, const CheckOptions& options,
+                    Problems& problems) {
   const bool takes_set = kind == FileKind::diagram || kind == FileKind::training;
   const auto reject = [&](std::string_view option) {
     problems.error({}, "", "", fmt::format("{} changes nothing in {}", option, path)).found =
         with_article(kind);
   };
-  if (!takes_set && !options.set.empty()) reject("--set");
-  if (kind != FileKind::diagram && !options.variants.empty()) reject("--variant");
+  if (!takes_set && !options.load.set.empty()) reject("--set");
+  if (kind != FileKind::diagram && !options.load.variants.empty()) reject("--variant");
+  if (kind != FileKind::diagram && options.strict_units) reject("--strict-units");
 }
 
-Verdict check_file(const std::string& path, const LoadOptions& options, Problems& problems) {
+Verdict check_file(const std::string& path, const CheckOptions& options, Problems& problems) {
   const FileKind kind = kind_of_file(path, problems);
   if (problems.has_errors()) return {};
   if (kind != FileKind::unknown) reject_options(kind, path, options, problems);
@@ -99,7 +113,7 @@ Verdict check_file(const std::string& path, const LoadOptions& options, Problems
     case FileKind::sweep:
       return check_sweep(path, problems);
     case FileKind::training:
-      return check_training(path, options, problems);
+      return check_training(path, options.load, problems);
     case FileKind::effect:
       return check_effect(path, problems);
     case FileKind::device:
@@ -114,7 +128,7 @@ Verdict check_file(const std::string& path, const LoadOptions& options, Problems
 }
 
 /// Every problem of every file at once.
-int check(const std::vector<std::string>& paths, const LoadOptions& options) {
+int check(const std::vector<std::string>& paths, const CheckOptions& options) {
   int wrong = 0;
   for (const std::string& path : paths) {
     Problems problems;
@@ -143,6 +157,7 @@ void add_check(CLI::App& app, std::function<void(std::function<int()>)> choose) 
   struct Arguments {
     std::vector<std::string> paths;
     DiagramArguments diagram;
+    bool strict_units = false;
   };
   auto arguments = std::make_shared<Arguments>();
   command->add_option("files", arguments->paths, "Files (JSON); what each is, its keys tell")->required();
@@ -155,6 +170,7 @@ void add_check(CLI::App& app, std::function<void(std::function<int()>)> choose) 
   command->add_option("--blocks", arguments->diagram.libraries, "Shared library with more blocks")
       ->type_name("FILE.so")
       ->allow_extra_args(false);
+  command->add_flag("--strict-units", arguments->strict_units, "Refuse wires whose unit nothing decides");
   command->callback([=] {
     choose([=] { return check(arguments->paths, {arguments->diagram.options(), arguments->strict_units}); });
   });

@@ -13,7 +13,7 @@ struct Arguments {
   std::string output, report, checkpoint, resume, replay;
   double checkpoint_every = 0;
   int64_t run = 0;
-  bool quiet = false;
+  bool quiet = false, strict_units = false;
 };
 
 void require_paths(const Arguments& a) {
@@ -25,6 +25,12 @@ void require_paths(const Arguments& a) {
     problems.error({}, "", "", fmt::format("-o {}: recordings are written as .csv or .mat", a.output));
   if (a.checkpoint.empty() != (a.checkpoint_every == 0))
     problems.error({}, "", "", "--checkpoint FILE and --checkpoint-every SECONDS go together");
+  if (problems.has_errors()) throw InputError(std::move(problems));
+}
+
+void require_units(const Plan& plan) {
+  Problems problems;
+  refuse(plan.without_unit, problems);
   if (problems.has_errors()) throw InputError(std::move(problems));
 }
 
@@ -55,6 +61,7 @@ void warn_of_hardware(const Plan& plan) {
 int run(const Arguments& a) {
   require_paths(a);
   const auto plan = load_plan(a.diagram.path, a.diagram.options());
+  if (a.strict_units) require_units(*plan);
   tell_text(to_text(plan->warnings));
   if (!a.replay.empty()) return replay_log(a, *plan);
   warn_of_hardware(*plan);
@@ -100,6 +107,7 @@ void add_run(CLI::App& app, std::function<void(std::function<int()>)> choose) {
                    "Step the diagram through the log of a deployment: every output must be the logged one, "
                    "bit for bit")
       ->excludes("--output", "--report", "--run", "--checkpoint", "--resume");
+  command->add_flag("--strict-units", a->strict_units, "Refuse wires whose unit nothing decides");
   command->add_flag("-q,--quiet", a->quiet, "No progress and no summary");
   command->callback([=] { choose([=] { return run(*a); }); });
 }

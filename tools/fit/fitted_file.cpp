@@ -54,9 +54,9 @@ std::string with_fitted_values(const std::string& path, const Fit& fit, Problems
           .hint = "hand it down as a parameter of the subdiagram's block";
       continue;
     }
-    double scale = 1;
+    Unit written;
     if (const auto* unit = value->find("unit"))
-      if (const auto parsed = parse_unit(unit->value.text)) scale = parsed->scale;
+      if (const auto parsed = parse_unit(unit->value.text)) written = *parsed;
     if (const auto* inner = value->find("value")) value = &inner->value;
     if (value->kind != Kind::number) {
       auto& problem =
@@ -66,7 +66,7 @@ std::string with_fitted_values(const std::string& path, const Fit& fit, Problems
       continue;
     }
     const size_t at = value->place.offset;
-    edits.replace(at, end_of_value(file->text, at), digits(p.value / scale));
+    edits.replace(at, end_of_value(file->text, at), digits(written.from_si(p.value)));
   }
   return problems.has_errors() ? "" : edits.apply(file->text);
 }

@@ -64,7 +64,7 @@ std::optional<DiagramNumber> number_of(const Value& value, const std::optional<U
   if (value.kind != Value::Kind::number) return {};
   DiagramNumber number{value.number, unit ? unit : std::optional<Unit>(value.unit), limits.least,
                        limits.most};
-  if (number.unit) number.unit->scale = 1;
+  if (number.unit) number.unit = number.unit->in_si();
   return number;
 }
 

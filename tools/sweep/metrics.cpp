@@ -58,12 +58,20 @@ Observed observe(const Sweep& sweep, const Plan& plan, Problems& problems) {
     }
     if (metric.is_time()) unit = parse_unit("s");
     const auto stated = metric.unit.empty() ? unit : parse_unit(metric.unit);
-    if (stated && unit && !stated->same_dimension(*unit)) {
-      auto& p = problems.error(metric.place, metric.pointer, "", "the metric has another unit");
-      p.expected = to_string(*unit), p.found = metric.unit;
+    double scale = metric.unit.empty() || !stated ? 1.0 : stated->scale;
+    if (stated && unit) {
+      const Conversion to_stated = conversion(*unit, *stated);
+      const bool is_possible =
+          to_stated.kind == Conversion::Kind::none || to_stated.kind == Conversion::Kind::turns;
+      if (!is_possible || stated->is_point) {
+        auto& p = problems.error(metric.place, metric.pointer, "", "the metric has another unit");
+        p.expected = to_string(*unit), p.found = metric.unit;
+        if (stated->is_point) p.hint = "a metric may be a difference: it takes K";
+      }
+      scale /= to_stated(1.0);
     }
     observed.units.push_back(!metric.unit.empty() ? metric.unit : unit ? to_string(*unit) : "");
-    observed.scales.push_back(metric.unit.empty() || !stated ? 1.0 : stated->scale);
+    observed.scales.push_back(scale);
   }
   return observed;
 }

@@ -40,6 +40,20 @@ void HardwareIo::check(const Checker& checker) {
     velocity_channel =
         choose(checker, "velocity_input", velocity_input, device->inputs, [](auto&) { return false; });
 }
+
+std::vector<UnitClaim> HardwareIo::unit_claims() const {
+  std::vector<UnitClaim> claims;
+  const auto claim = [&](std::string_view port, int channel, const auto& channels,
+                         std::string_view parameter) {
+    const auto unit = device && channel >= 0 ? parse_unit(channels[size_t(channel)].unit) : std::nullopt;
+    if (unit) claims.push_back({port, unit->in_si(), parameter});
+  };
+  if (!device) return claims;
+  claim("$position", position_channel, device->inputs, "position_input");
+  claim("$position/s", velocity_channel, device->inputs, "velocity_input");
+  claim("$command", command_channel, device->outputs, "command_output");
+  return claims;
+}
 LOOPWRIGHT_BLOCK(HardwareIo)
 
 }  // namespace loopwright::blocks

@@ -45,6 +45,8 @@ struct HardwareIo {
             .from_memory());
   }
   void check(const Checker& checker);
+  /// Those of the channels.
+  std::vector<UnitClaim> unit_claims() const;
   void prepare(double sample_time) { period = sample_time; }
   void outputs(const Memory& memory, Out& out) const {
     const bool by_difference = velocity_channel < 0 && memory.is_known > 0;

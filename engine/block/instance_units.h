@@ -1,0 +1,26 @@
+/// What an instance of a block knows of its units beyond the block's description.
+#pragma once
+#include <string>
+#include <string_view>
+#include "engine/unit/rescaling.h"
+
+namespace loopwright {
+
+/// `std::vector<UnitClaim> unit_claims() const` of a block: units that come from files, such as that of a
+/// recorded column.
+struct UnitClaim {
+  std::string_view unit;       ///< as the description writes it: "$value"
+  Unit is;                     ///< its scale is not looked at: signals are in SI
+  std::string_view parameter;  ///< that led to it, for messages
+};
+
+/// `FormulaUnit formula_unit(std::span<const Unit> of_wires) const` of a block whose only output is a
+/// function of its only input, a Many port.
+struct FormulaUnit {
+  UnitFinding finding = UnitFinding::no_result;
+  Unit unit;
+  std::string_view parameter;  ///< that holds the function, for messages
+  std::string found;           ///< the function and the units of its arguments, where they are mixed
+};
+
+}  // namespace loopwright

@@ -1,0 +1,83 @@
+#include "engine/json/take_unit.h"
+#include <fmt/format.h>
+
+namespace loopwright {
+namespace {
+
+/// "cutoff: ", of the member that holds the number.
+std::string named(const Value& number) {
+  const std::string pointer = number.place.pointer();
+  size_t end = pointer.size();
+  while (true) {
+    const size_t slash = pointer.rfind('/', end == 0 ? 0 : end - 1);
+    if (slash == pointer.npos) return "";
+    const std::string_view token = std::string_view(pointer).substr(slash + 1, end - slash - 1);
+    const bool is_inside = token == "value" || token.find_first_not_of("0123456789") == token.npos;
+    if (!is_inside) return fmt::format("{}: ", token);
+    end = slash;
+  }
+}
+
+std::string shown(double number, const Unit& unit) {
+  return fmt::format("{:.4g} {}", number, to_string(unit));
+}
+
+void warn_of_conversion(const Value& number, double converted, const Unit& wanted, const Reader& reader) {
+  reader.problems.warning(
+      number.place, number.place.pointer(), reader.block,
+      fmt::format("{}{} is {}; earlier versions read {}", named(number), shown(number.number, *number.unit),
+                  shown(converted, wanted), shown(number.number, wanted)));
+}
+
+void warn_of_expression(const Value& number, double converted, const Unit& wanted, const Reader& reader) {
+  auto& p = reader.problems.warning(
+      number.place, number.place.pointer(), reader.block,
+      fmt::format("{}the expression seems to give {}, and is taken as {}", named(number),
+                  shown(number.number, *number.unit), shown(number.number, wanted)));
+  p.found = number.text;
+  p.hint = fmt::format("{} would be {}: write 2*pi into the expression, or give its parameters the unit {}",
+                       shown(number.number, *number.unit), shown(converted, wanted), to_string(wanted));
+}
+
+void tell_ambiguity(const Value& number, const Unit& wanted, const Reader& reader) {
+  const Unit given = number.unit->in_si();
+  auto& p = reader.error(
+      number, fmt::format("{}{} can mean two numbers here", named(number), shown(number.number, given)));
+  p.expected = fmt::format("a number in {}", to_string(wanted));
+  Unit other = given;  // the same with radians for cycles
+  other.exponents[Unit::cycle] = wanted.cycles();
+  other.exponents[Unit::radian] += given.cycles() - wanted.cycles();
+  const double converted = conversion(given, other)(number.number);
+  if (wanted.cycles() == 0)
+    p.hint = fmt::format("counted once a cycle it is {}, in radians {}", shown(number.number, wanted),
+                         shown(converted, other));
+  else
+    p.hint = fmt::format("as cycles it is {}, as radians {}", shown(number.number, wanted),
+                         shown(conversion(other, wanted)(number.number), wanted));
+}
+
+}  // namespace
+
+UnitTaken take_unit(Value& number, const Unit& wanted, const Reader& reader) {
+  const Conversion to_wanted = conversion(*number.unit, wanted);
+  if (to_wanted.kind == Conversion::Kind::impossible) return UnitTaken::no;
+  if (to_wanted.kind == Conversion::Kind::ambiguous && !number.is_computed) {
+    tell_ambiguity(number, wanted, reader);
+    return UnitTaken::told;
+  }
+  if (to_wanted.kind == Conversion::Kind::turns) {
+    const double converted = to_wanted(number.number);
+    if (number.is_computed) {
+      if (converted != number.number) warn_of_expression(number, converted, wanted.in_si(), reader);
+    } else {
+      if (converted != number.number) warn_of_conversion(number, converted, wanted.in_si(), reader);
+      number.number = converted;
+      number.whole = false;
+    }
+  }
+  number.unit = wanted.in_si();
+  number.is_computed = false;
+  return UnitTaken::yes;
+}
+
+}  // namespace loopwright

@@ -1,0 +1,127 @@
+#include "engine/unit/rescaling.h"
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include "models/real/double_functions.h"
+
+namespace loopwright {
+namespace {
+
+using Function = std::function<double(const std::vector<double>&, double)>;
+
+constexpr double no_power = std::numeric_limits<double>::quiet_NaN();
+
+/// b in f ~ λ^b, a multiple of 1/12; not a number when f is no power of λ.
+double exponent_of_growth(double at_one, double at_two, double at_three) {
+  const auto rounded = [at_one](double grown, double lambda) {
+    const double exponent = natural_logarithm(grown / at_one) / natural_logarithm(lambda);
+    const double nearest = std::round(exponent * 12) / 12;
+    return std::abs(exponent - nearest) < 1e-9 ? nearest : no_power;
+  };
+  const double from_two = rounded(at_two, 2), from_three = rounded(at_three, 3);
+  return from_two == from_three ? from_two : no_power;
+}
+
+/// The function around one set of numbers.
+class Rescaled {
+ public:
+  Rescaled(const Function& function, std::span<const Quantity> arguments, std::vector<double> numbers)
+      : function_(function), arguments_(arguments), numbers_(std::move(numbers)) {
+    at_one_ = function_(numbers_, std::numbers::pi);
+  }
+  double at_one() const { return at_one_; }
+
+  /// When the units of some exponents become smaller.
+  double exponent(std::initializer_list<size_t> bases) const {
+    const auto grown = [&](double lambda) {
+      std::vector<double> rescaled = numbers_;
+      double of_pi = 0;
+      for (const size_t base : bases) {
+        if (base == Unit::radian) of_pi += 1;
+        if (base == Unit::cycle) of_pi -= 1;
+        for (size_t i = 0; i < arguments_.size(); ++i)
+          if (arguments_[i].unit)
+            rescaled[i] *= any_power(lambda, double{arguments_[i].unit->exponents[base]});
+      }
+      return function_(rescaled, of_pi == 0 ? std::numbers::pi : std::numbers::pi * any_power(lambda, of_pi));
+    };
+    return exponent_of_growth(at_one_, grown(2), grown(3));
+  }
+
+  bool has(size_t base) const {
+    return std::ranges::any_of(arguments_,
+                               [base](const Quantity& q) { return q.unit && q.unit->exponents[base] != 0; });
+  }
+
+ private:
+  const Function& function_;
+  std::span<const Quantity> arguments_;
+  std::vector<double> numbers_;
+  double at_one_ = 0;
+};
+
+/// rad, rad/s, Hz, 1/Hz …, nothing else: m ω² is a stiffness.
+void drop_turns_of_products(Unit& unit) {
+  bool is_kinematic = true;
+  for (size_t i = 0; i < Unit::checked; ++i) is_kinematic &= i == 2 || unit.exponents[i] == 0;
+  const float turns = std::abs(unit.radians()) + std::abs(unit.cycles());
+  if (!is_kinematic || turns != 1) unit.exponents[Unit::radian] = unit.exponents[Unit::cycle] = 0;
+}
+
+UnitFinding find_turns(const Rescaled& f, Unit& unit) {
+  if (!f.has(Unit::radian) && !f.has(Unit::cycle)) return UnitFinding::known;
+  const double radians = f.exponent({Unit::radian}), cycles = f.exponent({Unit::cycle});
+  const bool adds_both =
+      std::isnan(radians) && std::isnan(cycles) && f.has(Unit::radian) && f.has(Unit::cycle);
+  if (adds_both && !std::isnan(f.exponent({Unit::radian, Unit::cycle}))) return UnitFinding::mixed_turns;
+  unit.exponents[Unit::radian] = std::isnan(radians) ? 0 : static_cast<float>(radians);
+  unit.exponents[Unit::cycle] = std::isnan(cycles) ? 0 : static_cast<float>(cycles);
+  drop_turns_of_products(unit);
+  return UnitFinding::known;
+}
+
+/// From one set of numbers.
+UnitFinding unit_at(const Rescaled& f, Unit& unit) {
+  if (!std::isfinite(f.at_one())) return UnitFinding::no_result;
+  if (f.at_one() == 0) return UnitFinding::zero;
+  for (size_t base = 0; base < Unit::checked; ++base) {
+    if (!f.has(base)) continue;
+    const double exponent = f.exponent({base});
+    if (std::isnan(exponent)) return UnitFinding::mixed;
+    unit.exponents[base] = static_cast<float>(exponent);
+  }
+  return find_turns(f, unit);
+}
+
+}  // namespace
+
+/// Numbers of several magnitudes: beside a small generic number even a small constant of the wrong unit
+/// shows.
+UnitFinding find_unit(const Function& function, std::span<const Quantity> arguments, Unit& unit) {
+  UnitFinding finding = UnitFinding::no_result;
+  for (const double magnitude : {1.0, 1e-6, 1e6}) {
+    std::vector<double> numbers;
+    for (size_t i = 0; i < arguments.size(); ++i) {
+      const double generic =
+          magnitude * (1 + std::fmod(0.6180339887498949 * static_cast<double>(i + 1), 1.0));
+      numbers.push_back(arguments[i].unit ? generic : arguments[i].number);
+    }
+    Unit here;
+    const UnitFinding found = unit_at(Rescaled(function, arguments, std::move(numbers)), here);
+    if (found == UnitFinding::no_result) continue;
+    if (found == UnitFinding::mixed || found == UnitFinding::mixed_turns) return found;
+    if (found == UnitFinding::zero) {
+      if (finding == UnitFinding::no_result) finding = found;
+      continue;
+    }
+    if (finding == UnitFinding::known && !unit.same_dimension(here)) return UnitFinding::mixed;
+    if (finding == UnitFinding::known && !(unit == here))
+      here.exponents[Unit::radian] = here.exponents[Unit::cycle] = 0;
+    unit = here;
+    finding = found;
+  }
+  return finding;
+}
+
+}  // namespace loopwright
