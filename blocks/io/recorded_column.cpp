@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 #include "engine/block.h"
+#include "engine/record/column_units.h"
 #include "engine/record/recording_file.h"
 
 namespace loopwright::blocks {
@@ -22,6 +23,7 @@ struct RecordedColumn {
   Joined interpolation = Joined::hold;
   Beyond beyond = Beyond::hold;
   std::shared_ptr<const Table> table;
+  std::optional<Unit> known_unit;  ///< of the file or of `unit`; nothing where neither says one
   struct Out {
     double value;
   };
@@ -29,23 +31,28 @@ struct RecordedColumn {
     ptrdiff_t row;
   };  // -1: before the first sample
   static constexpr auto describe() {
-    return block("Plays back a column of a recording.",
-                 parameter(&RecordedColumn::file, "file", "", "CSV or MAT file, relative to the diagram").file(),
-                 parameter(&RecordedColumn::column, "column", "", "Name of the column"),
-                 parameter(&RecordedColumn::time_column, "time", "",
-                           "Name of the column with the time in s; the first or \"time\" when left out")
-                     .optional(),
-                 parameter(&RecordedColumn::unit, "unit", "",
-                           "Unit of the numbers in the file; as the file says when left out")
-                     .optional(),
-                 parameter(&RecordedColumn::interpolation, "interpolation", "", "What holds between samples")
-                     .optional(),
-                 parameter(&RecordedColumn::beyond, "beyond", "",
-                           "Before the first and after the last sample: hold it, or stop the run")
-                     .optional(),
-                 output(&Out::value, "value", "$value", "The column in SI units"));
+    return block(
+        "Plays back a column of a recording.",
+        parameter(&RecordedColumn::file, "file", "", "CSV or MAT file, relative to the diagram").file(),
+        parameter(&RecordedColumn::column, "column", "", "Name of the column"),
+        parameter(&RecordedColumn::time_column, "time", "",
+                  "Name of the column with the time, in the unit of its heading or in s; \"time\", \"t\" or "
+                  "the first when left out")
+            .optional(),
+        parameter(&RecordedColumn::unit, "unit", "",
+                  "Unit of the numbers in the file, where their heading has none")
+            .optional(),
+        parameter(&RecordedColumn::interpolation, "interpolation", "", "What holds between samples")
+            .optional(),
+        parameter(&RecordedColumn::beyond, "beyond", "",
+                  "Before the first and after the last sample: hold it, or stop the run")
+            .optional(),
+        output(&Out::value, "value", "$value", "The column in SI units"));
   }
   void check(const Checker& checker);
+  std::vector<UnitClaim> unit_claims() const {
+    return known_unit ? std::vector<UnitClaim>{{"$value", *known_unit, "unit"}} : std::vector<UnitClaim>();
+  }
   void decide(const Instant& now, Mode& mode) const {
     mode.row =
         std::upper_bound(table->begin.begin(), table->begin.end(), now.time) - table->begin.begin() - 1;
@@ -67,45 +74,7 @@ struct RecordedColumn {
     const auto next = std::upper_bound(table->begin.begin(), table->begin.end(), now);
     return next == table->begin.end() ? infinity : *next;
   }
-
- private:
-  const Column* find(const Checker&, const Recording&, const char* parameter, const std::string& name) const;
-  double scale_of(const Checker&, const Column&) const;
 };
-
-/// The column of a name; a problem when there is none.
-const Column* RecordedColumn::find(const Checker& checker, const Recording& recording, const char* parameter,
-                                   const std::string& name) const {
-  if (const Column* found = recording.find(name)) return found;
-  std::vector<std::string> names;
-  for (const Column& c : recording.columns) names.push_back(c.name);
-  auto& p = checker.error(parameter, "the recording has no such column");
-  p.found = "\"" + name + "\" in " + file;
-  const std::string near = nearest_name(name, names);
-  if (!near.empty())
-    p.hint = "did you mean \"" + near + "\"?";
-  else
-    for (const std::string& n : names) p.expected += (p.expected.empty() ? "one of " : ", ") + n;
-  return nullptr;
-}
-
-/// From the unit in the file to SI.
-double RecordedColumn::scale_of(const Checker& checker, const Column& values) const {
-  const auto stated = parse_unit(values.unit), given = parse_unit(unit);
-  if (!given || (unit.empty() && !stated)) {
-    auto& p = checker.error("unit", "the unit cannot be read");
-    p.found = "\"" + (unit.empty() ? values.unit : unit) + "\"";
-    p.expected = "a unit without offset, as in \"mm\" or \"V\"";
-    return 1;
-  }
-  if (unit.empty()) return stated->scale;
-  if (!values.unit.empty() && stated && !stated->same_dimension(*given)) {
-    auto& p = checker.error("unit", "the recording gives this column another unit");
-    p.expected = values.unit;
-    p.found = unit;
-  }
-  return given->scale;
-}
 
 void RecordedColumn::check(const Checker& checker) {
   Problems& problems = checker.problems();
@@ -120,21 +89,25 @@ void RecordedColumn::check(const Checker& checker) {
     checker.error("file", "the recording cannot be used").found = file;
     return;
   }
-  const Column* values = find(checker, recording, "column", column);
-  const Column* times = !time_column.empty()     ? find(checker, recording, "time", time_column)
-                        : recording.find("time") ? recording.find("time")
-                                                 : &recording.columns[0];
-  if (!values || !times) return;
+  const char* const names_time = time_column.empty() ? "file" : "time";
+  const auto error_at = [&](const char* parameter) {
+    return [&checker, parameter](std::string message) -> Problem& {
+      return checker.error(parameter, std::move(message));
+    };
+  };
+  const Column* values = find_column(recording, column, error_at("column"));
+  const auto times = time_in_seconds(recording, time_column, error_at(names_time));
+  const auto scale = values ? unit_of(*values, unit, error_at("unit")) : std::nullopt;
+  if (!times || !scale) return;
+  if (!unit.empty() || !values->unit.empty()) known_unit = scale->in_si();
   auto loaded = std::make_shared<Table>();
-  const double scale = scale_of(checker, *values);
   loaded->time = loaded->begin = times->values;
-  for (double x : values->values) loaded->value.push_back(scale * x);
+  loaded->value = in_si(*values, *scale).values;
   for (size_t i = 1; i < loaded->time.size(); ++i) {
     const double step = loaded->time[i] - loaded->time[i - 1];
     loaded->begin[i] -= 1e-6 * step;
     if (step > 0) continue;
-    auto& p =
-        checker.error(time_column.empty() ? "file" : "time", "time does not rise from sample to sample");
+    auto& p = checker.error(names_time, "time does not rise from sample to sample");
     p.found = reading::number_text(loaded->time[i - 1]) + " s, then " +
               reading::number_text(loaded->time[i]) + " s at sample " + std::to_string(i + 1) + " of " +
               times->name;

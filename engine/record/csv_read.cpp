@@ -221,6 +221,8 @@ void CsvReader::name_columns(const std::vector<csv::Field>& fields) {
     Column& column = recording_.columns.emplace_back();
     column.name = signed_ ? unescape(heading.name) : heading.name;
     column.unit = signed_ ? unescape(heading.unit) : heading.unit;
+    const LineColumn place = line_column(at(field.text));
+    column.origin = fmt::format("{}:{}:{}", source_->name, place.line, place.column);
     if (field.open_quote) {
       problems_.error(at(field.text), "the quote before this column name is not closed");
     } else if (column.name.empty()) {

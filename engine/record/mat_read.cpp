@@ -61,6 +61,8 @@ Recording Assembly::assemble(std::vector<Variable>& variables) {
   Recording recording;
   for (auto& [place, column] : ours_) recording.columns.push_back(std::move(column));
   for (Column& column : others_) recording.columns.push_back(std::move(column));
+  for (Column& column : recording.columns) column.origin = place_.file->name;
+  recording.is_ordered = others_.empty();
   recording.facts = std::move(facts_);
   std::unordered_set<std::string_view> names;
   for (const Column& column : recording.columns) {

@@ -12,6 +12,7 @@ struct Column {
   std::string name;  ///< "stage.position", "motor.force[2]"
   std::string unit;  ///< SI unit; empty: not known
   std::vector<double> values;
+  std::string origin;  ///< file:line:column of its heading, or its file; empty: it comes from no file
 };
 
 /// All columns have the same length and names of their own. The first column of a run is "time" in s.
@@ -20,6 +21,9 @@ struct Recording {
   /// Facts that belong to the numbers: title, plan hash, effective parameters ("parameter stage.mass.mass" →
   /// "0.2621 kg").
   std::vector<std::pair<std::string, std::string>> facts;
+  /// The order of the columns is that of their maker: the first may be the time. Variables of a MAT file have
+  /// none.
+  bool is_ordered = true;
 
   const Column* find(std::string_view name) const;  ///< nothing when there is no such column
   size_t rows() const { return columns.empty() ? 0 : columns.front().values.size(); }

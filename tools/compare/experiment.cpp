@@ -1,11 +1,13 @@
 #include "tools/compare/experiment.h"
 #include <fmt/format.h>
 #include <algorithm>
+#include <numeric>
 #include "engine/json/file_kind.h"
 #include "engine/json/json.h"
 #include "engine/json/reader.h"
-#include "engine/json/unit_hint.h"
+#include "engine/record/column_units.h"
 #include "engine/record/recording_file.h"
+#include "hw/realtime/deploy.h"
 #include "tools/compare/balances.h"
 #include "tools/compare/data_file.h"
 
@@ -138,16 +140,7 @@ class Loader {
     const size_t before = problems_.list().size();
     const Recording data = read_recording(result_->data_path, problems_);
     if (data.columns.empty() || has_errors_from(before)) return;
-    result_->time_column = file.find("time") ? reader_.text(file, "time") : data.columns.front().name;
-    const Column* time = column(data, result_->time_column,
-                                file.find("time") ? file.find("time")->place : member->place, "/time");
-    if (time && result_->is_map) {
-      result_->data.columns.push_back({"time", "s", time->values});
-    } else if (time) {
-      result_->time = check_time(*time, problems_, {}, member->place);
-      check_start(*time, *member);
-      result_->data.columns.push_back({"time", "s", time->values});
-    }
+    read_time(file, data, *member);
     for (auto* list : {&result_->drives, &result_->compared})
       for (RecordedSignal& signal : *list) add_column(data, signal);
   }
@@ -156,41 +149,58 @@ class Loader {
     return std::any_of(list.begin() + ptrdiff_t(begin), list.end(),
                        [](const Problem& p) { return p.severity == Problem::Severity::error; });
   }
+  void read_time(const Value& file, const Recording& data, const Value::Member& names_data) {
+    const Value::Member* named = file.find("time");
+    if (result_->is_map && !named) {  // of its rows, nobody asks when they were read
+      result_->data.columns.push_back({"time", "s", std::vector<double>(data.rows())});
+      return;
+    }
+    const Place& place = named ? named->place : names_data.place;
+    const auto time = time_in_seconds(data, named ? reader_.text(file, "time") : "",
+                                      error_at(place, named ? "/time" : "/data"));
+    if (!time) return;
+    result_->time_column = time->name;
+    if (!result_->is_map) {
+      result_->time = check_time(*time, problems_, {}, names_data.place);
+      check_start(*time, names_data);
+      check_lost(data, place);
+    }
+    result_->data.columns.push_back({"time", "s", time->values});
+  }
+  /// A log counts the samples that its device lost: its times must show them.
+  void check_lost(const Recording& data, const Place& place) {
+    const Column* lost = data.find(hw::lost_column);
+    if (!lost || lost->values.empty()) return;
+    const double counted = std::accumulate(lost->values.begin() + 1, lost->values.end(), 0.0);
+    if (!(counted > double(result_->time.missing))) return;
+    auto& p = problems_.error(place, "/data", "",
+                              fmt::format("the log counts {:.0f} lost samples, and its times leave out {}",
+                                          counted, result_->time.missing));
+    p.expected = "the times of the device";
+    p.found = lost->origin;
+    p.hint = "its rows are not as far apart as it says: record it anew";
+  }
+  ColumnError error_at(const Place& place, const std::string& pointer) {
+    return [this, place, pointer](std::string message) -> Problem& {
+      return problems_.error(place, pointer, "", std::move(message));
+    };
+  }
   void check_start(const Column& time, const Value::Member& member) {
     if (time.values.empty() || time.values.front() >= 0) return;
     auto& p = reader_.error(member, "the recorded times begin before zero");
     p.found = fmt::format("{} s", time.values.front());
     p.hint = "shift the time column so that it begins at zero";
   }
-  const Column* column(const Recording& data, const std::string& name, const Place& place,
-                       const std::string& pointer) {
-    if (const Column* found = data.find(name)) return found;
-    auto& p = problems_.error(place, pointer, "", fmt::format("the data have no column \"{}\"", name));
-    std::vector<std::string> names;
-    for (const Column& c : data.columns) names.push_back(c.name);
-    KnownNames(names).explain(p, name);
-    return nullptr;
-  }
   void add_column(const Recording& data, RecordedSignal& signal) {
     if (signal.column.empty()) return;  // told already
-    const Column* found = column(data, signal.column, signal.place, signal.pointer);
+    const Column* found = find_column(data, signal.column, error_at(signal.place, signal.pointer));
     if (!found) return;
-    const std::string text = signal.unit.empty() ? found->unit : signal.unit;
-    const auto unit = parse_unit(text);
-    if (!unit) {
-      auto& p = problems_.error(signal.place, signal.pointer, "",
-                                fmt::format("the unit \"{}\" cannot be read", text));
-      p.expected = "a unit such as N, m/s or V*s^2/m";
-      p.hint = unit_hint(text);
-      return;
-    }
-    signal.unit = text;
+    const auto unit = unit_of(*found, signal.unit, error_at(signal.place, signal.pointer));
+    if (!unit) return;
+    if (!found->unit.empty()) signal.unit = found->unit;
     signal.resolution *= unit->scale;
-    Column values{signal.port, "", found->values};
-    for (double& v : values.values) v *= unit->scale;
-    Unit si = *unit;
-    si.scale = 1;
-    values.unit = to_string(si);
+    Column values = in_si(*found, *unit);
+    values.name = signal.port;
     if (!result_->data.find(signal.port)) result_->data.columns.push_back(std::move(values));
   }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include "engine/json/reader.h"
 #include "engine/unit/unit.h"
+#include "engine/record/column_units.h"
 #include "engine/record/hash.h"
 #include "engine/record/recording_file.h"
 #include "engine/record/time_axis.h"
@@ -56,25 +57,16 @@ class Collector {
   /// A column in SI units; null after a problem.
   std::vector<double> column(const Recording& recording, const std::string& file, const std::string& name,
                              const std::string& unit_text, std::string* si_unit = nullptr) {
-    const Column* found = recording.find(name);
-    if (!found) {
-      auto& p = problem(fmt::format("{} has no column \"{}\"", file, name));
-      std::vector<std::string> names;
-      for (const Column& c : recording.columns) names.push_back(c.name);
-      KnownNames(names).explain(p, name);
-      return {};
-    }
-    const auto unit = parse_unit(unit_text.empty() ? found->unit : unit_text);
-    if (!unit) {
-      auto& p = problem(fmt::format("the unit of \"{}\" in {} cannot be read", name, file));
-      p.found = unit_text.empty() ? found->unit : unit_text;
-      p.expected = "a unit such as \"mm\" or \"V\"";
-      return {};
-    }
-    if (si_unit) *si_unit = to_string(Unit{1, unit->exponents});
-    std::vector<double> values = found->values;
-    for (double& v : values) v *= unit->scale;
-    return values;
+    const ColumnError error = error_in(file);
+    const Column* found = find_column(recording, name, error);
+    const auto unit = found ? unit_of(*found, unit_text, error) : std::nullopt;
+    if (!unit) return {};
+    Column values = in_si(*found, *unit);
+    if (si_unit) *si_unit = values.unit;
+    return std::move(values.values);
+  }
+  ColumnError error_in(const std::string& file) {
+    return [this, file](std::string message) -> Problem& { return problem(file + ": " + message); };
   }
 
   Rows read(const std::string& name) {
@@ -89,14 +81,14 @@ class Collector {
     const Recording recording = read_recording(path, problems_);
     if (problems_.has_errors()) return rows;
     result_->files.push_back(name);
-    const std::string time = training_.time.empty() ? recording.columns[0].name : training_.time;
-    rows.time = column(recording, name, time, "s");
-    if (rows.time.empty()) return rows;
+    const auto time = time_in_seconds(recording, training_.time, error_in(name));
+    if (!time) return rows;
+    rows.time = time->values;
     TimeOptions options;
     options.must_be_regular = true;
-    rows.sample_time =
-        check_time({time, "s", rows.time}, problems_, options, {training_.source, 0}).sample_time;
-    rows.position = column(recording, name, training_.position.column, training_.position.unit);
+    rows.sample_time = check_time(*time, problems_, options, {training_.source, 0}).sample_time;
+    rows.position =
+        column(recording, name, training_.position.column, training_.position.unit, &position_unit_);
     if (problems_.has_errors() || rows.position.empty()) return rows;
     if (rows.time.size() < 10) {
       problem(fmt::format("{} has only {} rows", name, rows.time.size()));
@@ -139,6 +131,19 @@ class Collector {
     }
   }
 
+  /// The number times acceleration or velocity is what the command is: no kilograms beside amperes.
+  void check_law(const std::string& file, const char* number, const std::optional<Unit>& unit,
+                 const char* per_time) {
+    const auto command = parse_unit(result_->label_unit), position = parse_unit(position_unit_);
+    if (!unit || !command || !position) return;
+    const Unit made = *unit * *position * *parse_unit(per_time);
+    if (made.same_dimension(*command)) return;
+    auto& p = problem(fmt::format("{}: the nominal {} does not fit the command", file, number));
+    p.expected = fmt::format("what makes {} of the motion", result_->label_unit);
+    p.found = fmt::format("what makes {}", to_string(made.in_si()));
+    p.hint = "divide it by what the command makes of force, such as a force constant";
+  }
+
   /// d = mass·a + damping·v - u. A command held over samples moves a mass so that the second difference of
   /// its position over T² is the acceleration by the mean of the last two commands: exact, and in phase.
   void label_from_command(const Recording& recording, const std::string& name, Rows& rows) {
@@ -146,6 +151,8 @@ class Collector {
     const std::vector<double> command =
         column(recording, name, label.command, label.unit, &result_->label_unit);
     if (command.empty()) return;
+    check_law(name, "mass", label.mass_unit, "s^-2");
+    check_law(name, "damping", label.damping_unit, "s^-1");
     const double t = rows.sample_time;
     const auto& x = rows.position;
     const size_t n = x.size(), late = size_t(std::lround(label.delay / t));
@@ -246,6 +253,7 @@ class Collector {
   const Training& training_;
   Problems& problems_;
   std::shared_ptr<TrainingSamples> result_ = std::make_shared<TrainingSamples>();
+  std::string position_unit_;
   std::vector<bool> seen_;
   double least_velocity_ = 1e300, greatest_velocity_ = -1e300;
 };

@@ -196,6 +196,12 @@ void check_rules(const TrainingEntry& e, const Value& file, const Reader& reader
     }
 }
 
+std::optional<Unit> unit_in(const Value& file, std::string_view object, std::string_view number) {
+  const Value::Member* outer = file.find(object);
+  const Value::Member* inner = outer ? outer->value.find(number) : nullptr;
+  return inner && inner->value.unit ? std::optional<Unit>(*inner->value.unit) : std::nullopt;
+}
+
 Training training_of(const TrainingEntry& e) {
   Training t;
   t.title = e.title, t.recordings = e.recordings, t.time = e.time;
@@ -269,6 +275,8 @@ std::shared_ptr<const Training> load_training(const std::string& path,
   check_rules(entry, file, reader);
   if (problems.has_errors()) return nullptr;
   auto training = std::make_shared<Training>(training_of(entry));
+  training->label.mass_unit = unit_in(file, "label", "mass");
+  training->label.damping_unit = unit_in(file, "label", "damping");
   training->path = path;
   training->source = source;
   return training;

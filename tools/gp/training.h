@@ -2,9 +2,11 @@
 /// it.
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 #include "engine/json/problem.h"
+#include "engine/unit/unit.h"
 #include "models/gp/hyperparameters.h"
 
 namespace loopwright {
@@ -20,10 +22,11 @@ struct ColumnChoice {
 struct LabelChoice {
   std::vector<std::string> columns;
   std::string unit, command;
-  double lag = 0;                ///< s
-  double mass = 0, damping = 0;  ///< nominal; label unit per m/s², per m/s
-  double cutoff = 0;             ///< rad/s
-  double delay = 0;              ///< s from command to force
+  double lag = 0;                                 ///< s
+  double mass = 0, damping = 0;                   ///< nominal; label unit per m/s², per m/s
+  double cutoff = 0;                              ///< rad/s
+  double delay = 0;                               ///< s from command to force
+  std::optional<Unit> mass_unit, damping_unit{};  ///< where they were written with one
 };
 
 /// Which velocity stands beside a position: the constant one of the section (few distinct values), or the one

@@ -82,13 +82,23 @@ TEST(RecordedColumn, TakesTheTimeColumnThatItIsTold) {
   EXPECT_EQ(column.at(1.5), 2);
 }
 
+TEST(RecordedColumn, TakesTheTimeInTheUnitOfItsHeading) {
+  EXPECT_EQ(Recorded("t [ms],x [mm]\n0,0\n1000,1\n2000,2\n", R"("column": "x")").at(1.5), 1e-3);
+  EXPECT_EQ(Recorded("time [min],y\n0,1\n1,2\n2,3\n", R"("column": "y")").at(61), 2);
+  EXPECT_EQ(Recorded("a,clock [us],y\n7,0,1\n7,1e6,2\n", R"("column": "y", "time": "clock")").at(1.5), 2);
+}
+
 TEST(RecordedColumn, NamesWhatIsWrongWithFileColumnTimeAndUnit) {
   const auto text = [](const std::string& csv, const char* settings) {
     return Recorded(csv, settings).block->problems().text();
   };
   EXPECT_NE(text(ramp, R"("column": "tme")").find("did you mean \"time\"?"), std::string::npos);
   EXPECT_NE(text(ramp, R"("column": "x", "unit": "V")").find("another unit"), std::string::npos);
-  EXPECT_NE(text(ramp, R"("column": "y", "unit": "foo")").find("the unit cannot be read"), std::string::npos);
+  EXPECT_NE(text(ramp, R"("column": "y", "unit": "foo")").find("the unit \"foo\" cannot be read"),
+            std::string::npos);
+  EXPECT_NE(text(ramp, R"("column": "x", "unit": "m")").find("data.csv:1:6"), std::string::npos)
+      << "the heading says mm";
+  EXPECT_NE(text("x [mm],y\n0,1\n1,2\n", R"("column": "y")").find("\"x\" is no time"), std::string::npos);
   EXPECT_NE(text("t,y\n0,1\n1,2\n1,3\n", R"("column": "y")").find("at sample 3 of t"), std::string::npos);
   const std::string broken = text("t,y\n0,1\n1,two\n", R"("column": "y")");
   EXPECT_NE(broken.find("data.csv:3:3"), std::string::npos) << broken;

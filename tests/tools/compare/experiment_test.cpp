@@ -50,6 +50,30 @@ TEST_F(Experiments, AUnitThatCannotBeReadIsAnError) {
   expect_refusal({"the unit \"blorps\" cannot be read"});
 }
 
+TEST_F(Experiments, TheTimeColumnHonoursItsUnit) {
+  folder.with("data.csv", "t [ms],F,x_mm\n0,1,0\n1000,1,250\n2000,1,1000\n");
+  const Comparison c = folder.compared();
+  EXPECT_EQ(c.time, (std::vector<double>{0, 1, 2}));
+  EXPECT_NEAR(c.signals[0].rmse, 0, 1e-9) << "x = t^2/4";
+}
+
+TEST_F(Experiments, AUnitThatContradictsTheHeadingNamesBoth) {
+  folder.with("data.csv", "t,F,x_mm [mm]\n0,1,1\n1,1,1\n2,1,1\n");
+  folder.experiment(drive, R"("stage.position": {"column": "x_mm", "unit": "m"})");
+  expect_refusal({"e.json:1:", "another unit in its file", "[mm] in data.csv:1:5", "found: m"});
+}
+
+TEST_F(Experiments, AUnitInTheHeadingMustFitThePort) {
+  folder.with("data.csv", "t,F [A],x_mm\n0,1,1\n1,1,1\n2,1,1\n");
+  folder.experiment(R"("stage.force": {"column": "F"})");
+  expect_refusal({"A", "stage"});
+}
+
+TEST_F(Experiments, ALogWhoseTimesHideItsLostSamplesIsRefused) {
+  folder.with("data.csv", "t,F,x_mm,loop.lost\n0,1,1,0\n1,1,1,0\n2,1,1,2\n3,1,1,0\n");
+  expect_refusal({"the log counts 2 lost samples, and its times leave out 0"});
+}
+
 TEST_F(Experiments, HolesInTheDataAreAnErrorWithTheirLine) {
   folder.with("data.csv", "t,F,x_mm\n0,1,1\n0.1,nan,1\n0.2,1,1\n");
   expect_refusal({"data.csv:3"});

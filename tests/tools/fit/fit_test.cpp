@@ -37,7 +37,7 @@ class Fitted : public testing::Test {
   }
   /// With normal noise of 1 mm.
   void record(uint64_t seed) {
-    std::string text = "t,u,x\n";
+    std::string text = heading;
     const double m = 2, b = 3, w = 2;
     // v' = (u - b v)/m: v = A sin wt + B (e^{-bt/m} - cos wt) with these factors.
     const double d = b * b + m * m * w * w, sine = b / d, cosine = m * w / d;
@@ -47,7 +47,8 @@ class Fitted : public testing::Test {
                        cosine * m / b * (1 - std::exp(-b * t / m));
       const UniformPair u = uniform_pair(seed, 1, uint64_t(k));
       const double noise = 1e-3 * std::sqrt(-2 * std::log(u.first)) * std::cos(2 * M_PI * u.second);
-      text += fmt::format("{:.2f},{:.12g},{:.9g}\n", t, std::sin(w * t), x + noise);
+      if (loses_every > 0 && k % loses_every == loses_every - 1) continue;
+      text += fmt::format("{:.12g},{:.12g},{:.9g}\n", t / time_unit, std::sin(w * t), x + noise);
     }
     folder.with("data.csv", text);
   }
@@ -55,7 +56,31 @@ class Fitted : public testing::Test {
     return fit(folder.path("axis.json"), folder.path("e.json"), parameters);
   }
   DiagramFolder folder;
+  std::string heading = "t,u,x\n";
+  double time_unit = 1;  ///< s
+  int loses_every = 0;   ///< rows; 0: none
 };
+
+TEST_F(Fitted, LostRowsChangeNoParameterAndAreCounted) {
+  loses_every = 7;
+  record(1);
+  const Fit result = fitted({"mass", "damping"});
+  EXPECT_NEAR(result.parameters[0].value, 2, 0.05);
+  EXPECT_NEAR(result.parameters[1].value, 3, 0.05);
+  EXPECT_NEAR(result.signals[0].after, 1e-3, 1e-4);
+  EXPECT_NE(to_text(result).find("114 samples between the rows of the recording are missing"),
+            std::string::npos)
+      << to_text(result);
+}
+
+TEST_F(Fitted, TimeInMillisecondsIsTheSameRecord) {
+  const Fit seconds = fitted({"mass", "damping"});
+  heading = "t [ms],u,x\n", time_unit = 1e-3;
+  record(1);
+  const Fit milliseconds = fitted({"mass", "damping"});
+  for (size_t i = 0; i < 2; ++i)
+    EXPECT_NEAR(milliseconds.parameters[i].value, seconds.parameters[i].value, 1e-6);
+}
 
 TEST_F(Fitted, ParametersComeBackWithinTheirIntervals) {
   int inside = 0;

@@ -21,7 +21,7 @@ class StageFolder : public DiagramFolder {
   /// disturbance of `lag` ago, and a ripple that is no function of position and velocity.
   StageFolder& pass(const std::string& name, const std::vector<double>& velocities, double lag = 0,
                     const std::function<double(double)>& label = {}) {
-    std::string text = "time [s],x [mm],v [m/s],d [V]\n";
+    std::string text = time_heading + ",x [mm],v [m/s],d [V]\n";
     std::vector<double> xs, vs;
     double x = 0, v = 0;
     for (double wanted : velocities) {
@@ -34,7 +34,8 @@ class StageFolder : public DiagramFolder {
     for (size_t k = 0; k < xs.size(); ++k) {
       const size_t then = k - std::min(k, size_t(std::lround(lag * 1000)));
       const double d = label ? label(1e-3 * double(k)) : disturbance_at(xs[then], vs[then]) + ripple(k);
-      text += fmt::format("{:.3f},{:.9g},{:.9g},{:.9g}\n", 1e-3 * double(k), 1e3 * xs[k], vs[k], d);
+      text +=
+          fmt::format("{:.12g},{:.9g},{:.9g},{:.9g}\n", 1e-3 * double(k) / time_unit, 1e3 * xs[k], vs[k], d);
     }
     with(name, text);
     return *this;
@@ -64,6 +65,8 @@ class StageFolder : public DiagramFolder {
     said = found.text();
     return trained;
   }
+  std::string time_heading = "time [s]";
+  double time_unit = 1;  ///< s
   /// What the last training said.
   std::string said;
 };

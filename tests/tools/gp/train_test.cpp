@@ -24,6 +24,35 @@ TEST(Train, LearnsTheDisturbanceThatIsThere) {
   EXPECT_TRUE(trained->is_structured);
 }
 
+TEST(Train, TakesTimeInTheUnitOfItsHeading) {
+  StageFolder folder;
+  folder.time_heading = "t [ms]", folder.time_unit = 1e-3;
+  folder.pass("pass.csv", four).training(R"(, "kernel": "product", "window_length": 0.2)");
+  const auto trained = folder.train();
+  ASSERT_TRUE(trained) << folder.said;
+  EXPECT_LT(error_of(trained->learned), 0.01);
+  EXPECT_NEAR(trained->samples->sections.front().to - trained->samples->sections.front().from, 2, 0.01)
+      << "0.2 m at 0.1 m/s";
+}
+
+TEST(Train, ANominalMassMustMakeOfMotionWhatTheCommandIs) {
+  StageFolder folder;
+  const char* const label =
+      R"({"command": "d", "mass": {"value": 2, "unit": "kg"}, "damping": {"value": 3, "unit": "V*s/m"}, "cutoff": 900})";
+  folder.pass("pass.csv", four).training("", label);
+  EXPECT_FALSE(folder.train());
+  EXPECT_THAT(folder.said, AllOf(HasSubstr("the nominal mass does not fit the command"), HasSubstr("N")));
+  EXPECT_THAT(folder.said, Not(HasSubstr("damping")));
+}
+
+TEST(Train, AUnitThatContradictsTheHeadingIsAnError) {
+  StageFolder folder;
+  folder.pass("pass.csv", four).training("", R"({"columns": ["d"], "unit": "mV"})");
+  EXPECT_FALSE(folder.train());
+  EXPECT_THAT(folder.said, AllOf(HasSubstr("another unit in its file"), HasSubstr("[V] in "),
+                                 HasSubstr("pass.csv:1:"), HasSubstr("mV")));
+}
+
 TEST(Train, KeepsToItsWindowsAboutTheMiddleOfEachSection) {
   StageFolder folder;
   folder.pass("pass.csv", four).training(R"(, "window_length": {"value": 125, "unit": "mm"})");

@@ -1,0 +1,134 @@
+#include "engine/record/column_units.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include "engine/json/reader.h"
+#include "engine/json/unit_hint.h"
+
+namespace loopwright {
+namespace {
+
+/// "[mm] in data.csv:1:3".
+std::string heading(const Column& column) {
+  return fmt::format("[{}]{}", column.unit, column.origin.empty() ? "" : " in " + column.origin);
+}
+
+bool is_same_unit(const Unit& a, const Unit& b) {
+  constexpr double rounding = 1e-12;
+  return a.fits(b) && a.offset == b.offset && std::abs(a.scale - b.scale) <= rounding * std::abs(b.scale);
+}
+
+/// Without the structure that holds it: "log.time" → "time".
+std::string_view last_part(std::string_view name) {
+  const size_t dot = name.rfind('.');
+  return dot == name.npos ? name : name.substr(dot + 1);
+}
+
+bool is_called_time(std::string_view name) {
+  constexpr std::array<std::string_view, 4> names = {"time", "Time", "TIME", "t"};
+  return std::ranges::find(names, name) != names.end();
+}
+
+void list_names(const Recording& recording, Problem& p) {
+  for (const Column& column : recording.columns)
+    p.expected += (p.expected.empty() ? "one of " : ", ") + column.name;
+}
+
+const Column* find_time(const Recording& recording, const std::string& name, const ColumnError& error) {
+  if (!name.empty()) return find_column(recording, name, error);
+  std::vector<const Column*> called;
+  for (const Column& column : recording.columns)
+    if (is_called_time(recording.is_ordered ? std::string_view(column.name) : last_part(column.name)))
+      called.push_back(&column);
+  if (called.size() == 1) return called.front();
+  if (called.empty() && recording.is_ordered) return &recording.columns.front();
+  auto& p = error(called.empty() ? "it cannot be told which column is the time"
+                                 : fmt::format("\"{}\" and \"{}\" may both be the time", called[0]->name,
+                                               called[1]->name));
+  list_names(recording, p);
+  p.hint = "name it: \"time\": \"…\"";
+  return nullptr;
+}
+
+/// A name that says a unit of time other than seconds, though nothing reads it: "t_ms".
+bool seems_in_another_unit(std::string_view name) {
+  constexpr std::array<std::string_view, 7> endings = {"_ms", "_us", "_ns", "_min", "_h", "_msec", "_usec"};
+  return std::ranges::any_of(endings, [&](std::string_view ending) { return name.ends_with(ending); });
+}
+
+/// Milliseconds are divided by a thousand, not multiplied by its inverse: 0.009, not 0.009000000000000001.
+void scale_time(std::vector<double>& values, double scale) {
+  const double inverse = 1 / scale, whole = std::round(inverse);
+  const bool divides = scale < 1 && std::abs(inverse - whole) <= 1e-9 * whole;
+  for (double& t : values) t = divides ? t / whole : t * scale;
+}
+
+}  // namespace
+
+std::optional<Unit> unit_of(const Column& column, const std::string& stated, const ColumnError& error) {
+  const std::string& text = column.unit.empty() ? stated : column.unit;
+  const auto unit = parse_unit(text);
+  if (!unit) {
+    auto& p = error(fmt::format("the unit \"{}\" cannot be read", text));
+    p.expected = "a unit such as N, mm/s, rpm or degC";
+    if (!column.unit.empty()) p.found = heading(column);
+    p.hint = unit_hint(text);
+    return {};
+  }
+  if (stated.empty() || column.unit.empty()) return unit;
+  const auto own = parse_unit(stated);
+  if (own && is_same_unit(*own, *unit)) return unit;
+  auto& p = error(own ? fmt::format("the column \"{}\" has another unit in its file", column.name)
+                      : fmt::format("the unit \"{}\" cannot be read", stated));
+  p.expected = heading(column);
+  p.found = stated;
+  p.hint = "leave out the \"unit\" if the heading is right; mend the heading if it is not";
+  return {};
+}
+
+Column in_si(const Column& column, const Unit& unit) {
+  Column result = column;
+  for (double& value : result.values) value = unit.to_si(value);
+  result.unit = to_string(unit.in_si());
+  return result;
+}
+
+const Column* find_column(const Recording& recording, const std::string& name, const ColumnError& error) {
+  if (const Column* found = recording.find(name)) return found;
+  auto& p = error(fmt::format("the recording has no column \"{}\"", name));
+  std::vector<std::string> names;
+  for (const Column& column : recording.columns) names.push_back(column.name);
+  KnownNames(names).explain(p, name);
+  return nullptr;
+}
+
+std::optional<Column> time_in_seconds(const Recording& recording, const std::string& name,
+                                      const ColumnError& error) {
+  const Column* found = find_time(recording, name, error);
+  if (!found) return {};
+  Column time = *found;
+  time.unit = "s";
+  if (found->unit.empty()) {
+    if (!seems_in_another_unit(found->name)) return time;
+    auto& p =
+        error(fmt::format("the time \"{}\" has no unit, and its name says another one than s", found->name));
+    const size_t underscore = found->name.rfind('_');
+    p.expected = fmt::format("\"{} [{}]\" as the heading of the column", found->name.substr(0, underscore),
+                             found->name.substr(underscore + 1));
+    if (!found->origin.empty()) p.found = found->origin;
+    return {};
+  }
+  const auto unit = parse_unit(found->unit);
+  if (!unit || !unit->fits(*parse_unit("s")) || unit->offset != 0) {
+    auto& p = error(fmt::format("the column \"{}\" is no time", found->name));
+    p.expected = "a column in s, ms, min, …";
+    p.found = heading(*found);
+    p.hint = "name the column with the time: \"time\": \"…\"";
+    return {};
+  }
+  scale_time(time.values, unit->scale);
+  return time;
+}
+
+}  // namespace loopwright

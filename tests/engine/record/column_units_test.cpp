@@ -1,0 +1,101 @@
+// Units of columns, and which column is the time.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <cmath>
+#include "engine/record/column_units.h"
+#include "engine/record/csv.h"
+
+namespace loopwright {
+namespace {
+
+using testing::HasSubstr;
+
+Recording csv(const std::string& text) {
+  Problems problems;
+  Recording recording = parse_csv(std::make_shared<SourceFile>(SourceFile{"data.csv", text}), problems);
+  EXPECT_EQ(problems.text(), "");
+  return recording;
+}
+/// As from a MAT file: its variables in the order of the alphabet.
+Recording variables(const std::vector<Column>& columns) {
+  Recording recording;
+  recording.columns = columns, recording.is_ordered = false;
+  return recording;
+}
+
+class ColumnUnits : public testing::Test {
+ protected:
+  ColumnError error() {
+    return
+        [this](std::string message) -> Problem& { return problems_.error({}, "", "", std::move(message)); };
+  }
+  std::vector<double> time(const Recording& recording, const std::string& name = "") {
+    const auto found = time_in_seconds(recording, name, error());
+    return found ? found->values : std::vector<double>();
+  }
+  std::optional<Unit> unit(const Column& column, const std::string& stated) {
+    return unit_of(column, stated, error());
+  }
+  std::string text() const { return problems_.text(); }
+
+  Problems problems_;
+};
+
+TEST_F(ColumnUnits, TheHeadingOrTheUserSaysThem) {
+  EXPECT_EQ(unit({"x", "mm", {}}, "")->scale, 1e-3);
+  EXPECT_EQ(unit({"x", "", {}}, "mm")->scale, 1e-3);
+  EXPECT_EQ(unit({"x", "N*m", {}}, "J")->scale, 1) << "the same in other words";
+  EXPECT_EQ(text(), "");
+}
+
+TEST_F(ColumnUnits, AContradictionNamesBothWithThePlaceOfTheHeading) {
+  const Recording recording = csv("# a log\nt [s],x [mm]\n0,1\n1,2\n");
+  EXPECT_FALSE(unit(recording.columns[1], "m"));
+  EXPECT_THAT(text(), HasSubstr("the column \"x\" has another unit in its file"));
+  EXPECT_THAT(text(), HasSubstr("expected: [mm] in data.csv:2:7"));
+  EXPECT_THAT(text(), HasSubstr("found: m"));
+  EXPECT_FALSE(unit(recording.columns[1], "V"));
+}
+
+TEST_F(ColumnUnits, TimeIsTakenInItsOwnUnit) {
+  EXPECT_EQ(time(csv("t [ms],x\n0,1\n9,2\n18,3\n")), (std::vector<double>{0, 0.009, 0.018}))
+      << "to the last bit";
+  EXPECT_EQ(time(csv("time [min],x\n0,1\n2,2\n")), (std::vector<double>{0, 120}));
+  EXPECT_EQ(time(csv("t [h],x\n0,1\n1,2\n")), (std::vector<double>{0, 3600}));
+  EXPECT_EQ(time(csv("clock,x\n0,1\n9,2\n")), (std::vector<double>{0, 9})) << "the first, in s";
+  EXPECT_EQ(time(csv("x,time [us]\n0,0\n1,5\n")), (std::vector<double>{0, 5e-6})) << "by its name";
+  EXPECT_EQ(text(), "");
+}
+
+TEST_F(ColumnUnits, WhatIsNoTimeIsRefused) {
+  EXPECT_TRUE(time(csv("x [mm],y\n0,1\n1,2\n")).empty());
+  EXPECT_THAT(text(), HasSubstr("the column \"x\" is no time"));
+  EXPECT_THAT(text(), HasSubstr("[mm] in data.csv:1:1"));
+}
+
+TEST_F(ColumnUnits, ANameThatSaysMillisecondsIsNotTakenForSeconds) {
+  EXPECT_TRUE(time(csv("t_ms,y\n0,1\n1,2\n")).empty());
+  EXPECT_THAT(text(), HasSubstr("\"t [ms]\" as the heading"));
+  EXPECT_EQ(time(csv("t_s,y\n0,1\n1,2\n")), (std::vector<double>{0, 1}));
+}
+
+TEST_F(ColumnUnits, TheAlphabetDoesNotChooseTheTime) {
+  const Column i{"i", "", {5, 6}}, t{"t", "", {0, 1}}, x{"x", "", {7, 8}};
+  EXPECT_EQ(time(variables({i, t, x})), t.values);
+  EXPECT_EQ(time(variables({{"log.i", "", {5, 6}}, {"log.time", "ms", {0, 1}}})),
+            (std::vector<double>{0, 1e-3}));
+  EXPECT_EQ(text(), "");
+  EXPECT_TRUE(time(variables({i, x})).empty());
+  EXPECT_THAT(text(), HasSubstr("it cannot be told which column is the time"));
+  EXPECT_THAT(text(), HasSubstr("one of i, x"));
+  EXPECT_EQ(time(variables({i, x}), "x"), x.values);
+}
+
+TEST_F(ColumnUnits, TwoTimesAreOneTooMany) {
+  EXPECT_TRUE(time(csv("time,t\n0,1\n1,2\n")).empty());
+  EXPECT_THAT(text(), HasSubstr("\"time\" and \"t\" may both be the time"));
+  EXPECT_EQ(time(csv("time,t\n0,1\n1,2\n"), "t"), (std::vector<double>{1, 2}));
+}
+
+}  // namespace
+}  // namespace loopwright
