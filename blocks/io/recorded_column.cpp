@@ -23,6 +23,7 @@ struct RecordedColumn {
   Joined interpolation = Joined::hold;
   Beyond beyond = Beyond::hold;
   std::shared_ptr<const Table> table;
+  std::optional<Unit> known_unit;  ///< of the file or of `unit`; nothing where neither says one
   struct Out {
     double value;
   };
@@ -49,6 +50,9 @@ struct RecordedColumn {
         output(&Out::value, "value", "$value", "The column in SI units"));
   }
   void check(const Checker& checker);
+  std::vector<UnitClaim> unit_claims() const {
+    return known_unit ? std::vector<UnitClaim>{{"$value", *known_unit, "unit"}} : std::vector<UnitClaim>();
+  }
   void decide(const Instant& now, Mode& mode) const {
     mode.row =
         std::upper_bound(table->begin.begin(), table->begin.end(), now.time) - table->begin.begin() - 1;
@@ -95,6 +99,7 @@ void RecordedColumn::check(const Checker& checker) {
   const auto times = time_in_seconds(recording, time_column, error_at(names_time));
   const auto scale = values ? unit_of(*values, unit, error_at("unit")) : std::nullopt;
   if (!times || !scale) return;
+  if (!unit.empty() || !values->unit.empty()) known_unit = scale->in_si();
   auto loaded = std::make_shared<Table>();
   loaded->time = loaded->begin = times->values;
   loaded->value = in_si(*values, *scale).values;

@@ -16,7 +16,7 @@ std::string heading(const Column& column) {
 
 bool is_same_unit(const Unit& a, const Unit& b) {
   constexpr double rounding = 1e-12;
-  return a.same_dimension(b) && std::abs(a.scale - b.scale) <= rounding * std::abs(b.scale);
+  return a.fits(b) && a.offset == b.offset && std::abs(a.scale - b.scale) <= rounding * std::abs(b.scale);
 }
 
 /// Without the structure that holds it: "log.time" → "time".
@@ -89,8 +89,8 @@ std::optional<Unit> unit_of(const Column& column, const std::string& stated, con
 
 Column in_si(const Column& column, const Unit& unit) {
   Column result = column;
-  for (double& value : result.values) value *= unit.scale;
-  result.unit = to_string(Unit{1, unit.exponents});
+  for (double& value : result.values) value = unit.to_si(value);
+  result.unit = to_string(unit.in_si());
   return result;
 }
 
@@ -120,7 +120,7 @@ std::optional<Column> time_in_seconds(const Recording& recording, const std::str
     return {};
   }
   const auto unit = parse_unit(found->unit);
-  if (!unit || !unit->same_dimension(*parse_unit("s"))) {
+  if (!unit || !unit->fits(*parse_unit("s")) || unit->offset != 0) {
     auto& p = error(fmt::format("the column \"{}\" is no time", found->name));
     p.expected = "a column in s, ms, min, …";
     p.found = heading(*found);

@@ -138,12 +138,13 @@ void analyse_force(Comparison& comparison, const std::string& diagram, const Exp
 
 }  // namespace
 
-Comparison compare_signals(const std::string& diagram_path, const Experiment& experiment,
+Comparison compare_signals(const std::string& diagram_path, const Experiment& recorded,
                            const LoadOptions& options, const RunOptions& run_options) {
   Problems problems;
-  const auto diagram = load_diagram(diagram_path, follow(experiment, options), problems);
+  const auto diagram = load_diagram(diagram_path, follow(recorded, options), problems);
   const auto plan = diagram ? compile(*diagram, problems) : nullptr;
-  if (!plan) explain_failure(diagram_path, {experiment.path}, options, std::move(problems));
+  if (!plan) explain_failure(diagram_path, {recorded.path}, options, std::move(problems));
+  const Experiment experiment = in_units_of_ports(*plan, recorded);
   Comparison comparison;
   comparison.plan = std::make_shared<Plan>(logging(*plan, experiment, problems));
   if (problems.has_errors()) throw InputError(std::move(problems));
@@ -152,13 +153,13 @@ Comparison compare_signals(const std::string& diagram_path, const Experiment& ex
   for (const std::string& warning : comparison.run.warnings) comparison.warnings.push_back(warning);
   comparison.missing_samples = experiment.time.missing;
   comparison.time = experiment.data.columns.front().values;
-  for (const RecordedSignal& recorded : experiment.compared) {
-    const Column& measured = *experiment.data.find(recorded.port);
+  for (const RecordedSignal& compared : experiment.compared) {
+    const Column& measured = *experiment.data.find(compared.port);
     ComparedSignal signal;
-    signal.name = recorded.port, signal.unit = measured.unit, signal.measured = measured.values,
-    signal.resolution = recorded.resolution;
+    signal.name = compared.port, signal.unit = measured.unit, signal.measured = measured.values,
+    signal.resolution = compared.resolution;
     signal.simulated =
-        at_times(comparison.run.recording, *comparison.run.recording.find(recorded.port), comparison.time);
+        at_times(comparison.run.recording, *comparison.run.recording.find(compared.port), comparison.time);
     measure(signal, experiment.hold_out_fraction);
     comparison.signals.push_back(std::move(signal));
   }
@@ -175,7 +176,7 @@ Comparison compare(const std::string& diagram_path, const std::string& experimen
   if (!experiment || problems.has_errors())
     explain_failure(diagram_path, {experiment_path}, options, std::move(problems));
   Comparison comparison = compare_signals(diagram_path, *experiment, options, run_options);
-  analyse_force(comparison, diagram_path, *experiment, options);
+  analyse_force(comparison, diagram_path, in_units_of_ports(*comparison.plan, *experiment), options);
   return comparison;
 }
 

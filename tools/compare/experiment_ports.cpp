@@ -27,11 +27,15 @@ std::optional<Number> find_port(const Plan& plan, const std::string& port,
     return {};
   }
   const auto of_port = plan.unit_of(numbers[0]), of_data = unit ? parse_unit(*unit) : std::nullopt;
-  if (of_port && of_data && !of_port->same_dimension(*of_data)) {
-    auto& p =
-        problems.error(place, pointer, "", fmt::format("\"{}\" is in another unit than its column", port));
-    p.expected = to_string(*of_port), p.found = *unit;
-  }
+  if (!of_port || !of_data) return numbers[0];
+  const Conversion::Kind kind = conversion(*of_data, *of_port).kind;
+  if (kind == Conversion::Kind::none || kind == Conversion::Kind::turns) return numbers[0];
+  auto& p =
+      problems.error(place, pointer, "", fmt::format("\"{}\" is in another unit than its column", port));
+  p.expected = to_string(*of_port), p.found = *unit;
+  if (kind == Conversion::Kind::ambiguous)
+    p.hint =
+        "are these cycles (Hz), radians (rad/s) or plain numbers (1/s)? give the column the unit of the port";
   return numbers[0];
 }
 
@@ -97,6 +101,22 @@ Plan logging(const Plan& plan, const Experiment& experiment, Problems& problems)
     log(experiment.roles.ports[i].second, std::nullopt, experiment.roles.places[i],
         "/roles/" + experiment.roles.ports[i].first);
   return changed;
+}
+
+Experiment in_units_of_ports(const Plan& plan, Experiment experiment) {
+  for (RecordedSignal& signal : experiment.compared) {
+    const std::vector<Number> numbers = plan.find(signal.port);
+    const auto of_port = numbers.size() == 1 ? plan.unit_of(numbers[0]) : std::nullopt;
+    const auto of_data = parse_unit(signal.unit);
+    const auto column = std::ranges::find(experiment.data.columns, signal.port, &Column::name);
+    if (!of_port || !of_data || column == experiment.data.columns.end()) continue;
+    const Conversion to_port = conversion(*of_data, *of_port);
+    if (to_port.kind != Conversion::Kind::turns) continue;
+    for (double& value : column->values) value = to_port(value);
+    column->unit = signal.unit = to_string(of_port->in_si());
+    signal.resolution = to_port(signal.resolution);
+  }
+  return experiment;
 }
 
 void explain_failure(const std::string& path, const std::vector<std::string>& experiments,

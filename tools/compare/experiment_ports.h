@@ -9,6 +9,10 @@ namespace loopwright {
 /// is of another dimension than its column.
 Plan logging(const Plan& plan, const Experiment& experiment, Problems& problems);
 
+/// The experiment with its compared columns in the units of their ports: hertz become radians per second, and
+/// back. Units that do not fit are left; logging() tells of them.
+Experiment in_units_of_ports(const Plan& plan, Experiment experiment);
+
 /// Of a diagram and experiments that do not go together, or of which one cannot be used: adds all that is
 /// wrong with them, and with the ports that the experiments name, to what was found already, and throws
 /// InputError.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include "engine/run/run.h"
+#include "tools/compare/experiment_ports.h"
 #include "tools/compare/machine.h"
 #include "tools/diagnose/injection.h"
 
@@ -69,7 +70,7 @@ AxisModel::AxisModel(const std::string& path, const std::string& experiment_path
   const auto whole = load_diagram(path, options, problems);
   const auto whole_plan = whole ? compile(*whole, problems) : nullptr;
   if (!experiment || !whole_plan || problems.has_errors()) throw InputError(std::move(problems));
-  const Experiment cut = cut_open(*experiment, *whole_plan, problems);
+  const Experiment cut = cut_open(in_units_of_ports(*whole_plan, *experiment), *whole_plan, problems);
   const auto [force_port, force_place] = role(cut, "force");
   if (force_port.empty())
     problems.error({}, "/roles", "", fmt::format("{}: no role \"force\"", experiment_path)).expected =

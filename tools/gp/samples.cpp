@@ -141,7 +141,7 @@ class Collector {
     if (made.same_dimension(*command)) return;
     auto& p = problem(fmt::format("{}: the nominal {} does not fit the command", file, number));
     p.expected = fmt::format("what makes {} of the motion", result_->label_unit);
-    p.found = fmt::format("what makes {}", to_string(Unit{1, made.exponents}));
+    p.found = fmt::format("what makes {}", to_string(made.in_si()));
     p.hint = "divide it by what the command makes of force, such as a force constant";
   }
 
