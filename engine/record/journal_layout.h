@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "engine/record/hash.h"
+#include "engine/file/hash.h"
 
 namespace loopwright::journal {
 

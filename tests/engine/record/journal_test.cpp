@@ -9,7 +9,7 @@
 #include <random>
 #include "engine/json/problem.h"
 #include "engine/record/csv.h"
-#include "engine/record/hash.h"
+#include "engine/file/hash.h"
 #include "engine/record/mat.h"
 #include "tests/engine/diagram/diagram_folder.h"
 
