@@ -41,7 +41,7 @@ LinearAxis balance_of(const LinearAxis& moving, double force_per_input) {
 Eigen::VectorXd AxisModel::sample_from(const Eigen::VectorXd& states, double input, double force) {
   if (force_remembers_) {  // sampled filters and delays as they were, whatever was tried before
     std::ranges::copy(remembered_, run_->arena().begin());
-    run_->restored(plan_->start_tick);
+    run_->restored({plan_->clock.time(plan_->start_tick), plan_->start_tick});
   }
   for (size_t i = 0; i < seen_.size(); ++i) numbers_[plan_->signals + seen_[i]] = states[Eigen::Index(i)];
   step(input, force);
