@@ -130,7 +130,7 @@ class Compiled {
   /// Making a parser costs far more than using it.
   static FormulaParser& parser(Pi pi) {
     thread_local FormulaParser with_constant = make_parser(Pi::is_constant),
-                            with_variable = make_parser(Pi::varies);
+                               with_variable = make_parser(Pi::varies);
     return pi == Pi::is_constant ? with_constant : with_variable;
   }
   static FormulaParser make_parser(Pi pi) {

@@ -137,7 +137,7 @@ std::optional<Unit> Reader::unit(const Value& text) const {
   if (unit) return unit;
   Problem& problem = error(text, fmt::format("there is no unit \"{}\"", text.text));
   problem.hint = unit_hint(text.text);
-  problem.expected = "an SI unit such as \"N*m\", \"V*s^2/m\", \"mm\", \"rad/s\", \"Hz\", or \"1\"";
+  problem.expected = "an SI unit such as \"N*m\", \"V*s^2/m\", \"mm\", \"rad/s\", or \"1\"";
   return {};
 }
 

@@ -6,16 +6,14 @@ namespace {
 
 /// "cutoff: ", of the member that holds the number.
 std::string named(const Value& number) {
-  const std::string pointer = number.place.pointer();
-  size_t end = pointer.size();
-  while (true) {
-    const size_t slash = pointer.rfind('/', end == 0 ? 0 : end - 1);
-    if (slash == pointer.npos) return "";
-    const std::string_view token = std::string_view(pointer).substr(slash + 1, end - slash - 1);
+  std::string pointer = number.place.pointer();
+  for (size_t slash = pointer.rfind('/'); slash != pointer.npos; slash = pointer.rfind('/')) {
+    const std::string token = pointer.substr(slash + 1);
     const bool is_inside = token == "value" || token.find_first_not_of("0123456789") == token.npos;
-    if (!is_inside) return fmt::format("{}: ", token);
-    end = slash;
+    if (!is_inside) return token + ": ";
+    pointer.resize(slash);
   }
+  return "";
 }
 
 std::string shown(double number, const Unit& unit) {

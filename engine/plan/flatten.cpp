@@ -371,10 +371,11 @@ class Flattener {
     Problems unheard;  // told already
     std::swap(unheard, problems_);
     for (Scope& scope : scopes_) {
-      if (!scope.entry) continue;
+      auto& outputs = scope.entry ? flat_.names : flat_.outputs;
       for (const DiagramOutput& output : scope.diagram->outputs)
-        flat_.names.push_back(
+        outputs.push_back(
             {scope.prefix + output.name, resolve(scope, output.source.source, output.source, "", 0)});
+      if (!scope.entry) continue;
       for (const DiagramInput& input : scope.diagram->inputs)
         flat_.names.push_back(
             {scope.prefix + input.name, resolve_input(scope, input.name, "", Wire{input.name, {}}, "", 0)});

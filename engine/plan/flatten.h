@@ -48,7 +48,8 @@ struct FlatDiagram {
   std::vector<FlatBlock> blocks;
   Settings settings;  ///< of the blocks, in their order
   std::vector<FlatLog> log;
-  std::vector<FlatName> names;  ///< those of blocks are plain: path.port
+  std::vector<FlatName> names;    ///< those of blocks are plain: path.port
+  std::vector<FlatName> outputs;  ///< of the outermost diagram
 };
 
 /// `open`: inputs of the outermost diagram may lack a source, as those of a subdiagram looked at alone do.

@@ -106,7 +106,7 @@ End UnitEquations::open_input_end(const FlatWire& wire) {
   return {-1, unit ? constant(unit->in_si()) : nullptr, input.name};
 }
 
-/// Inputs and outputs that subdiagrams declare with a unit.
+/// Inputs and outputs that diagrams declare with a unit.
 void UnitEquations::add_declarations(const Diagram& diagram, const std::string& prefix) {
   const auto declare = [&](const std::string& name, const std::string& unit_text, const Place& place) {
     if (unit_text.empty()) return;
@@ -118,10 +118,9 @@ void UnitEquations::add_declarations(const Diagram& diagram, const std::string& 
                           &place,
                           &declared_paths_.emplace_back(prefix + name)});
   };
-  if (!prefix.empty()) {
+  if (!prefix.empty())
     for (const DiagramInput& input : diagram.inputs) declare(input.name, input.unit, input.place);
-    for (const DiagramOutput& output : diagram.outputs) declare(output.name, output.unit, output.place);
-  }
+  for (const DiagramOutput& output : diagram.outputs) declare(output.name, output.unit, output.place);
   for (const BlockEntry& block : diagram.blocks)
     if (block.subdiagram) add_declarations(*block.subdiagram, prefix + block.name + ".");
 }
@@ -129,7 +128,8 @@ void UnitEquations::add_declarations(const Diagram& diagram, const std::string& 
 /// What a port of a subdiagram leads to.
 const FlatWire* UnitEquations::declared(const std::string& path) {
   if (declared_.empty())
-    for (const FlatName& name : flat_.names) declared_[name.name] = &name.wire;
+    for (const auto* names : {&flat_.names, &flat_.outputs})
+      for (const FlatName& name : *names) declared_[name.name] = &name.wire;
   const auto found = declared_.find(path);
   return found == declared_.end() ? nullptr : found->second;
 }

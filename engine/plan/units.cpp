@@ -139,8 +139,15 @@ class Solver {
     if (unknown) assign(*unknown, *unit);  // the output is a variable of its own
   }
 
+  /// A radius times rad/s is m/s, a torque times rad/s is W; N*m/rad stays.
+  static void drop_radians_of_products(Unit& unit) {
+    Unit others = unit;
+    others.exponents[2] = 0;  // rad/s stays
+    if (unit.radians() > 0 && !others.same_dimension(Unit{})) unit.exponents[Unit::radian] = 0;
+  }
   void assign(const Unknown& unknown, Unit unit) {
     unit.scale = 1;
+    drop_radians_of_products(unit);
     if (unknown.is_position && unit == Unit{}) unit.exponents[Unit::radian] = 1;
     variables_[unknown.variable] = unit;
     const auto readers = readers_[unknown.variable];
