@@ -56,11 +56,10 @@ template <class Real> struct DisturbanceObserver {
     derivative = TustinDerivative<Real>::of(cutoff, sample_time);
   }
   void start(Memory& memory) const { memory.measured = initial; }
-  /// Inlined and, as below, copied number by number: a whole Memory would be written to the stack and copied
-  /// from there.
-  LW_INLINE Memory next(const In& in, const Memory& last) const {
+  /// The memory after this sample.
+  Memory next(const In& in, const Memory& last) const {
     Memory now;
-    now.measured = by_register(in.measured);
+    now.measured = in.measured;
     now.velocity = derivative.next(now.measured, last.measured, last.velocity);
     now.slow_velocity = lag.next(now.velocity, last.velocity, last.slow_velocity);
     now.acceleration = derivative.next(now.velocity, last.velocity, last.acceleration);
@@ -70,26 +69,14 @@ template <class Real> struct DisturbanceObserver {
     now.slower_command = lag.next(now.slow_command, last.slow_command, last.slower_command);
     now.estimate = mass * now.acceleration + damping * now.slow_velocity - now.slower_command;
     now.slow_estimate = lag.next(now.estimate, last.estimate, last.slow_estimate);
-    now.command = by_register(in.command), now.command_before = by_register(last.command);
+    now.command = in.command, now.command_before = last.command;
     return now;
   }
   void outputs(const In& in, const Memory& memory, Out& out) const {
     const Memory now = next(in, memory);
     out.disturbance = relative_degree == 2 ? now.estimate : now.slow_estimate;
   }
-  void update(const In& in, Memory& memory) const {
-    const Memory now = next(in, memory);
-    memory.measured = by_register(now.measured);
-    memory.velocity = by_register(now.velocity);
-    memory.slow_velocity = by_register(now.slow_velocity);
-    memory.acceleration = by_register(now.acceleration);
-    memory.command = by_register(now.command);
-    memory.command_before = by_register(now.command_before);
-    memory.slow_command = by_register(now.slow_command);
-    memory.slower_command = by_register(now.slower_command);
-    memory.estimate = by_register(now.estimate);
-    memory.slow_estimate = by_register(now.slow_estimate);
-  }
+  void update(const In& in, Memory& memory) const { memory = next(in, memory); }
 };
 LOOPWRIGHT_BLOCK(DisturbanceObserver)
 

@@ -66,7 +66,7 @@ template <class Real> struct CoggingForce {
     if (harmonics.size() == 1 && !is_sloped && !is_modulated)
       out.force = term(harmonics.front(), in.position);
     else  // in copies of their own: the single harmonic would store both inputs for this call too
-      out.force = series(by_register(in.position), by_register(in.velocity));
+      out.force = series(in.position, in.velocity);
   }
 
  private:

@@ -39,7 +39,7 @@ template <class Real> struct Mass {
   }
   void outputs(const In& in, Out& out) const { out.acceleration = in.force * per_mass; }
   void derivatives(const In& in, const State& state, State& rate) const {
-    rate.position = by_register(state.velocity);
+    rate.position = state.velocity;
     rate.velocity = in.force * per_mass;
   }
 };

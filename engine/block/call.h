@@ -63,15 +63,15 @@ template <class Real> struct Kernels {
 /// The slope is kept, and nothing else.
 struct KeepSlope {
   template <class Real> LW_INLINE static void take(const Call<Real>& c, int i, const Real& slope) {
-    c.rate[i] = by_register(slope);
+    c.rate[i] = slope;
   }
 };
 /// x = x₀ + weight · slope.
 struct ToNextStage {
   template <class Real> LW_INLINE static void take(const Call<Real>& c, int i, const Real& slope) {
     const Stage<Real>& stage = *c.stage;
-    c.rate[i] = by_register(slope);
-    stage.next[i] = by_register(stage.start[i] + Real(*stage.weight) * slope);
+    c.rate[i] = slope;
+    stage.next[i] = stage.start[i] + Real(*stage.weight) * slope;
   }
 };
 /// x = x₀ + weight · (k₁ + 2 k₂ + 2 k₃ + slope).
@@ -79,9 +79,8 @@ struct ToNextStep {
   template <class Real> LW_INLINE static void take(const Call<Real>& c, int i, const Real& slope) {
     const Stage<Real>& stage = *c.stage;
     const auto& k = stage.earlier;
-    stage.next[i] =
-        by_register(stage.start[i] +
-                    Real(*stage.weight) * (((k[0][i] + Real(2.0) * k[1][i]) + Real(2.0) * k[2][i]) + slope));
+    stage.next[i] = stage.start[i] +
+                    Real(*stage.weight) * (((k[0][i] + Real(2.0) * k[1][i]) + Real(2.0) * k[2][i]) + slope);
   }
 };
 

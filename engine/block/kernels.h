@@ -7,7 +7,7 @@
 
 namespace loopwright {
 
-template <class R> LW_INLINE void attach(R& to, const Port<R>& w) { to = by_register(*w.data); }
+template <class R> LW_INLINE void attach(R& to, const Port<R>& w) { to = *w.data; }
 template <class R> LW_INLINE void attach(Vector<const R>& to, const Port<R>& w) {
   to = {w.data, size_t(w.length)};
 }
@@ -144,7 +144,7 @@ template <class B, class Real, int group> [[gnu::flatten]] uint64_t step_outputs
         for_each<B, is_output>([&](auto o, const auto& entry) {
           if constexpr (group_of_output<B>[o] == group)
             if constexpr (std::is_same_v<std::remove_cvref_t<decltype(out.*entry.member)>, Real>)
-              *c.out[o].data = by_register(out.*entry.member);
+              *c.out[o].data = out.*entry.member;
         });
         return fault;
       });
@@ -177,7 +177,7 @@ template <class B, class Real, class After> [[gnu::flatten]] uint64_t step_deriv
       });
 }
 /// update and accept: the next memory, from frozen inputs.
-template <class B, class Real, auto method> uint64_t step_memory(const Call<Real>& c) {
+template <class B, class Real, auto method> [[gnu::flatten]] uint64_t step_memory(const Call<Real>& c) {
   return guard<B>(
       c, [&](const B& block) __attribute__((always_inline)) {
         const auto in = gather<B>(c, AllInputs{});

@@ -138,7 +138,10 @@ std::string changes_with_build(const Identity& before, const Identity& now) {
 std::vector<FileRead> named_from(const std::string& diagram, std::vector<FileRead> files) {
   const auto folder = std::filesystem::path(diagram).parent_path();
   for (FileRead& file : files)
-    file.path = std::filesystem::path(file.path).lexically_proximate(folder.empty() ? "." : folder).string();
+    file.path = std::filesystem::path(file.path)
+                    .lexically_normal()
+                    .lexically_proximate(folder.empty() ? "." : folder.lexically_normal())
+                    .string();
   const auto both = [](const FileRead& file) { return std::tie(file.path, file.hash); };
   std::ranges::sort(files, {}, both);
   const auto same = [&](const FileRead& a, const FileRead& b) { return both(a) == both(b); };

@@ -1,4 +1,7 @@
+#include <fmt/format.h>
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <stdexcept>
 
 #include "engine/record/atomic_file.h"
@@ -100,7 +103,7 @@ void CsvWriter::commit() {
 void print_csv(std::FILE* stream, const Recording& recording) {
   put(recording, [&](std::string_view text) { std::fwrite(text.data(), 1, text.size(), stream); });
   if (std::fflush(stream) != 0 || std::ferror(stream))
-    throw std::runtime_error("the recording cannot be printed");
+    throw std::runtime_error(fmt::format("the recording cannot be printed: {}", std::strerror(errno ? errno : EIO)));
 }
 
 }  // namespace loopwright

@@ -190,6 +190,13 @@ template <int N, int R = 1> struct Lanes {
   Register registers[R];
 
   Lanes() = default;
+  // Copied register by register, also as a member of a struct: GCC would copy an array of them through
+  // memory.
+  LW_INLINE Lanes(const Lanes& x) { LW_EACH_REGISTER registers[i] = x.registers[i]; }
+  LW_INLINE Lanes& operator=(const Lanes& x) {
+    LW_EACH_REGISTER registers[i] = x.registers[i];
+    return *this;
+  }
   LW_INLINE Lanes(double value) { LW_EACH_REGISTER registers[i] = value - Register{}; }  // - 0 keeps -0
 
 #define LW_ARITHMETIC(op)                                               \
@@ -285,11 +292,6 @@ template <int N, int R = 1> struct Lanes {
   LW_INLINE friend Lanes select(bool condition, const Lanes& yes, const Lanes& no) {
     return condition ? yes : no;
   }
-  LW_INLINE friend Lanes by_register(const Lanes& x) {
-    Lanes y;
-    LW_EACH_REGISTER y.registers[i] = x.registers[i];
-    return y;
-  }
   LW_INLINE friend double lane(const Lanes& x, int index) { return x.registers[index / N][index % N]; }
   LW_INLINE friend void set_lane(Lanes& x, int index, double value) {
     x.registers[index / N][index % N] = value;
@@ -325,8 +327,6 @@ LW_INLINE void set_lane(bool& condition, int, bool value) { condition = value; }
 
 /// f(a, b); for lanes register by register, so that what is called and not inlined gets them in registers.
 template <class F> LW_INLINE double register_by_register(F&& f, double a, double b) { return f(a, b); }
-/// x, copied register by register. A plain copy of lanes is one of memory, for which GCC keeps x in memory.
-LW_INLINE double by_register(double x) { return x; }
 /// |x|.
 LW_INLINE double absolute(double x) { return bits::absolute<Two::Bits>(in_register(x))[0]; }
 /// a < b ? a : b, hence b where either is NaN.

@@ -50,8 +50,8 @@ void answer_text(std::string_view text) { answer_data(printable(text)); }
 bool finish_answers() {
   errno = 0;
   note_failure(!std::cout.flush());
-  note_failure(std::fflush(stdout) != 0 || std::ferror(stdout));
-  if (first_failure == 0) return true;
+  note_failure(std::fflush(stdout) != 0);
+  if (first_failure == 0) return !std::ferror(stdout);  // who printed a recording has told it
   // A reader that took what it wanted and went, such as `head`, needs no explanation.
   if (first_failure != EPIPE) tell("error: the answer cannot be written: {}\n", std::strerror(first_failure));
   return false;

@@ -278,7 +278,7 @@ TEST(CsvProblems, TellFilesThatCannotBeRead) {
   read_csv("/dev/zero", problems);
   EXPECT_THAT(problems.text(), HasSubstr("missing.csv:1:1: error: the file cannot be read: there is no such file"));
   EXPECT_THAT(problems.text(), HasSubstr("it is a folder"));
-  EXPECT_THAT(problems.text(), HasSubstr("/dev/zero:1:1: error: the file cannot be read: it is neither"));
+  EXPECT_THAT(problems.text(), HasSubstr("/dev/zero:1:1: error: the file cannot be read: it is a device"));
 }
 
 TEST(CsvRead, ReadsTheMeasuredEmpsRecording) {

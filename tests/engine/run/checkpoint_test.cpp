@@ -73,7 +73,7 @@ const char* const eventful =
 TEST(Checkpoint, WritingOneChangesNoRun) {
   DiagramFolder folder;
   for (const char* solver : solvers)
-    for (const double every : {0.3, 0.0137}) {
+    for (const double every : {0.3, 0.0937}) {
       const auto plan = plan_of(everything(solver));
       expect_same(simulate(*plan, write_every(every, folder.path("c"))), simulate(*plan), solver);
     }

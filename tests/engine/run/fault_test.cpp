@@ -65,7 +65,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"x", "crossings", bdf, &K::crossings}, Case{"late", "accept", rk4, &K::accept},
                       Case{"late", "accept", dopri5, &K::accept}, Case{"d", "update", rk4, &K::update},
                       Case{"d", "update", dopri5, &K::update}),
-    [](const auto& info) { return fmt::format("{}{}", info.param.method, info.index); });
+    [](const auto& one) { return fmt::format("{}{}", one.param.method, one.index); });
 
 // A block of this test alone, never registered.
 template <class Real> struct Refuses {

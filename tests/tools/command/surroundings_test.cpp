@@ -80,10 +80,11 @@ TEST_F(Surroundings, WhatIsNoFileIsRefusedAtOnce) {
 
 TEST_F(Surroundings, TextOfAFileCannotSteerTheTerminal) {
   folder.with("evil.json", "{\"loopwright\": 1, \"title\": \"\\u001b[2Jgone\", \"solver\": {\"stop\": 1}, "
-                           "\"blocks\": {\"a\\u001b]0;t\\u0007\": {\"type\": \"\\u001b[31mGian\"}}}");
+                           "\"blocks\": {\"a\": {\"type\": \"\\u001b[31mGian\"}}}");
+  folder.with("named.json", "{\"loopwright\": 1, \"solver\": {\"stop\": 1}, \"blocks\": {\"a\\u001b]0;t\\u0007\": {\"type\": \"Clock\"}}}");
   folder.with("titled.json", "{\"loopwright\": 1, \"title\": \"\\u001b[2Jgone\", \"solver\": {\"stop\": 1}, "
                              "\"blocks\": {\"a\": {\"type\": \"Constant\", \"value\": 1}}}");
-  for (const char* command : {"check evil.json", "plan titled.json", "run titled.json"}) {
+  for (const char* command : {"check evil.json", "check named.json", "plan titled.json", "run titled.json"}) {
     shell(std::string("$P ") + command + " >out 2>err");
     EXPECT_EQ((text("out") + text("err")).find_first_of("\x1b\x07"), std::string::npos) << text("out") << text("err");
   }
@@ -119,8 +120,8 @@ TEST_F(Surroundings, TablesOfAnIncompleteSweepAreAFailure) {
   folder.with("sweep.json", R"({"loopwright": 1, "diagram": "small.json",
     "axes": {"c.value": {"linear": {"from": 1, "to": 2, "count": 100}}}, "metrics": {"a": {"final": "x.y"}}})");
   ASSERT_EQ(shell("$P sweep sweep.json -o results --shard 0/2 2>err"), 0) << text("err");
-  EXPECT_EQ(shell("$P sweep merge results 2>err"), 1);
-  EXPECT_NE(text("err").find("are missing"), std::string::npos) << text("err");
+  EXPECT_EQ(shell("$P sweep merge results >out 2>err"), 1);
+  EXPECT_NE(text("out").find("36 are missing"), std::string::npos) << text("out");
   ASSERT_EQ(shell("$P sweep sweep.json -o results --shard 1/2 2>err"), 0) << text("err");
   EXPECT_EQ(shell("$P sweep merge results 2>err"), 0) << text("err");
 }
