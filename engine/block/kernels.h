@@ -295,7 +295,8 @@ Fault start_block(const void* p, Real* state_data, void* memory_data, const Port
   return fault;
 }
 
-/// Whether T has bytes between its members or after them, which assigning to it leaves undetermined.
+/// Whether T, which holds plain numbers, has bytes between its members or after them, which assigning to it
+/// leaves undetermined.
 template <class T> bool has_gaps() {
   if (std::is_empty_v<T>) return false;
   alignas(T) unsigned char bytes[sizeof(T)];
@@ -314,7 +315,7 @@ template <class B, class Real> Kernels<Real> kernels_of() {
   k.memory_size = std::is_same_v<Memory<B>, None> ? 0 : sizeof(Memory<B>),
   k.memory_align = alignof(Memory<B>);
   k.mode_size = std::is_same_v<Mode<B>, None> ? 0 : sizeof(Mode<B>);
-  k.memory_has_gaps = has_gaps<Memory<B>>() || has_gaps<Mode<B>>();
+  k.memory_has_gaps = has_gaps<Memory<scalar_of<B>>>() || has_gaps<Mode<scalar_of<B>>>();
   k.construct = [](void* p) { new (p) B(); };
   k.destroy = [](void* p) { static_cast<B*>(p)->~B(); };
   k.copy = [](void* to, const void* from) {
