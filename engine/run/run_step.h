@@ -65,13 +65,11 @@ template <class Real> void Run<Real>::evaluate_again(uint64_t jumped, const std:
 
 template <class Real> void Run<Real>::keep_numbers() {
   for (size_t a = 0; a < base_.size(); ++a)
-    std::memcpy(&ahead_[a * number_count()], numbers_ + ptrdiff_t(a) * stride_,
-                number_count() * sizeof(Real));
+    std::copy_n(numbers_ + ptrdiff_t(a) * stride_, number_count(), &ahead_[a * number_count()]);
 }
 template <class Real> void Run<Real>::put_numbers_back() {
   for (size_t a = 0; a < base_.size(); ++a)
-    std::memcpy(numbers_ + ptrdiff_t(a) * stride_, &ahead_[a * number_count()],
-                number_count() * sizeof(Real));
+    std::copy_n(&ahead_[a * number_count()], number_count(), numbers_ + ptrdiff_t(a) * stride_);
 }
 
 template <class Real> template <class Record> void Run<Real>::look_ahead(int64_t tick, Record&& record) {
