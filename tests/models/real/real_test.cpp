@@ -23,7 +23,7 @@ static_assert(std::same_as<MaskOf<double>, bool> && std::same_as<MaskOf<Lanes<8,
 static_assert(lanes_of<double> == 1 && lanes_of<Lanes<4>> == 4 && lanes_of<Lanes<8, 4>> == 32 &&
               lanes_of<int> == 0);
 static_assert(Scalar<double> && Scalar<Lanes<2>> && !Scalar<float> && !Scalar<Mask<4, 1>>);
-static_assert(std::is_trivially_copyable_v<Lanes<8, 4>> &&
+static_assert(std::is_trivially_destructible_v<Lanes<8, 4>> &&
               std::is_trivially_default_constructible_v<Lanes<4>>);
 static_assert(sizeof(Lanes<8, 4>) == 32 * sizeof(double));
 

@@ -114,7 +114,7 @@ TEST_F(DeployProgram, AKilledControllerLeavesTheOutputsToTheWatchdog) {
 TEST_F(DeployProgram, ASecondDeployOfACardInUseTouchesNothingAndTheFirstGoesOn) {
   files(patient, "{}");
   unsetenv("HIL_EMU");
-  Daemon card(folder_.path("world"), folder_.path("card.json"));
+  hw::CardDaemon card(folder_.path("world"), folder_.path("card.json"));
   setenv("HIL_EMU_SHARED", folder_.path("world").c_str(), 1);
   Program first(arguments({"--json", folder_.path("figures.json"), "-o", folder_.path("log.csv")}));
   ASSERT_TRUE(wait_for([&] { return card.get("watchdog.armed") == 1; }));
@@ -141,7 +141,7 @@ TEST_F(DeployProgram, ASecondDeployOfACardInUseTouchesNothingAndTheFirstGoesOn) 
 TEST_F(DeployProgram, TakingOverEndsTheOtherProgramWhereSomebodyAgreed) {
   files(patient, "{}");
   unsetenv("HIL_EMU");
-  Daemon card(folder_.path("world"), folder_.path("card.json"));
+  hw::CardDaemon card(folder_.path("world"), folder_.path("card.json"));
   setenv("HIL_EMU_SHARED", folder_.path("world").c_str(), 1);
   Program first(arguments({"--set", "solver.stop=60"}));
   ASSERT_TRUE(wait_for([&] { return card.get("watchdog.armed") == 1; }));
@@ -154,7 +154,7 @@ TEST_F(DeployProgram, TakingOverEndsTheOtherProgramWhereSomebodyAgreed) {
 TEST_F(DeployProgram, ACardLeftOpenByAKilledProgramIsToldFromOneInUse) {
   files(patient, "{}");
   unsetenv("HIL_EMU");
-  Daemon card(folder_.path("world"), folder_.path("card.json"));
+  hw::CardDaemon card(folder_.path("world"), folder_.path("card.json"));
   setenv("HIL_EMU_SHARED", folder_.path("world").c_str(), 1);
   Program killed(arguments());
   ASSERT_TRUE(wait_for([&] { return card.get("watchdog.armed") == 1; }));
