@@ -41,6 +41,13 @@ const BlockType* find_block(std::string_view type) {
   return found == registry().end() ? nullptr : &found->second;
 }
 
+bool is_factor(std::string_view type, std::string_view parameter) {
+  const BlockType* block = find_block(type);
+  return block && std::ranges::any_of(block->info.parameters, [&](const ParameterInfo& info) {
+           return info.name == parameter && info.plain_when_bare;
+         });
+}
+
 void add_block(std::span<const size_t> layout, BlockInfo&& info, const Kernels<double>& kernels) {
   if (!std::ranges::equal(layout, block_layout)) {  // nothing of the block can be read
     if (!loading) throw std::logic_error("a block was compiled against other headers");

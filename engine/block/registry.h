@@ -22,6 +22,8 @@ inline constexpr std::array<size_t, 6> block_layout{sizeof(BlockInfo), sizeof(Ke
 /// Null when there is no such type.
 const BlockType* find_block(std::string_view type);
 const std::map<std::string, BlockType, std::less<>>& all_blocks();
+/// Whether a bare number at this parameter has no unit, instead of the one that fits.
+bool is_factor(std::string_view type, std::string_view parameter);
 /// Registers a type. What a library brings under a name that is taken, or in another layout, is not taken in:
 /// load_block_library tells. Two blocks of one name in the program itself throw std::logic_error.
 void add_block(std::span<const size_t> layout, BlockInfo&& info, const Kernels<double>& kernels);

@@ -112,14 +112,16 @@ static void write_observer_loop(FILE* file, const Controller* c) {
 static void write_cascade_loop(FILE* file, const Controller* c) {
   write_filter(file, "velocity", &c->velocity, "encoder.position");
   fprintf(file,
-          "    \"wanted_velocity\": {\"type\": \"Gain\", \"gain\": %.17g, \"in\": {\"u\": \"error.sum\"}},\n",
+          "    \"wanted_velocity\": {\"type\": \"Gain\", \"gain\": {\"value\": %.17g, \"unit\": \"1/s\"}, "
+          "\"in\": {\"u\": \"error.sum\"}},\n",
           c->position_gain_per_s);
   fputs(
       "    \"velocity_error\": {\"type\": \"Sum\", \"signs\": \"+-\", \"in\": {\"terms\": "
       "[\"wanted_velocity.y\", \"velocity.y\"]}},\n",
       file);
   fprintf(file,
-          "    \"force\": {\"type\": \"Gain\", \"gain\": %.17g, \"in\": {\"u\": \"velocity_error.sum\"}}\n",
+          "    \"force\": {\"type\": \"Gain\", \"gain\": {\"value\": %.17g, \"unit\": \"N*s/m\"}, "
+          "\"in\": {\"u\": \"velocity_error.sum\"}}\n",
           c->velocity_gain_n_s_per_m);
 }
 

@@ -1,6 +1,9 @@
 #include "tools/effects/effect_values.h"
+#include <fmt/format.h>
+#include <algorithm>
 #include <limits>
 #include "engine/diagram/expression.h"
+#include "tools/effects/json_text.h"
 
 namespace loopwright {
 
@@ -29,6 +32,28 @@ double EffectValues::evaluate(const Value& value) const {
   Problems problems;
   const auto result = loopwright::evaluate(formula, site, problems);
   return result ? result->number : unknown;
+}
+
+std::string EffectValues::with_unit(const Value& value, const Effect& effect,
+                                    const MachineUnits& units) const {
+  const std::string number = readable_number(evaluate(value));
+  if (value.kind != Value::Kind::text || !value.text.starts_with('=')) return number;
+  Quantity quantity;
+  ExpressionSite site{value.place, "", {}};
+  site.lookup = [&](const NameUse& use, const Place&) -> const Quantity* {
+    const EffectParameter* parameter = effect.find(use.name);
+    const auto size = std::ranges::find(record_sizes, use.name, &NamedSize::name);
+    const std::string_view by_role = parameter                    ? parameter->unit
+                                     : size != record_sizes.end() ? size->unit
+                                                                  : "";
+    quantity = {at(use.name), by_role.empty() ? std::nullopt : parse_unit(unit_in(by_role, units))};
+    if (quantity.unit) quantity.unit = quantity.unit->in_si();
+    return &quantity;
+  };
+  Problems problems;  // of the effect's own text, which was checked when it was loaded
+  const auto result = loopwright::evaluate(std::string_view(value.text).substr(1), site, problems);
+  if (!result || !result->unit || result->unit->fits(Unit{})) return number;
+  return fmt::format(R"({{"value": {}, "unit": "{}"}})", number, to_string(*result->unit));
 }
 
 EffectValues values_of(const Effect& effect, const RecordSizes& sizes, const std::vector<double>& fitted) {

@@ -17,6 +17,9 @@ class EffectValues {
   void work_out(const Effect& effect);
   /// A number as written, or the result of an expression; NaN where it cannot be worked out.
   double evaluate(const Value& value) const;
+  /// A number or an expression as the text of a quantity with the unit that follows from those of the effect's
+  /// parameters on this machine: {"value": 3, "unit": "N*s/m"}. A bare number where there is none.
+  std::string with_unit(const Value& value, const Effect& effect, const MachineUnits& units) const;
 
  private:
   std::map<std::string, double, std::less<>> numbers_;

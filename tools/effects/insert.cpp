@@ -151,7 +151,7 @@ class Inserter {
         for (const Value::Member& port : member.value.members)
           wires += fmt::format("{}\"{}\": {}", wires.empty() ? "" : ", ", port.name,
                                wires_text(port.value, level));
-      } else if (const std::string value = setting_text(member, path); !value.empty()) {
+      } else if (const std::string value = setting_text(block, member, path); !value.empty()) {
         settings += fmt::format("{}\"{}\": {}", settings.empty() ? "" : ", ", member.name, value);
       }
     }
@@ -174,16 +174,17 @@ class Inserter {
     return fmt::format("\"{}\"", source_of(source, level));
   }
   /// A setting as it stands in the new diagram; empty: it is left out.
-  std::string setting_text(const Value::Member& setting, const std::string& path) {
-    const bool is_start =
-        setting.value.text == "=initial_position" || setting.value.text == "=initial_velocity";
-    if (is_start) return start_of_mass(setting.value.text.substr(1));
-    return value_text(setting.value, path + "." + setting.name);
-  }
-  /// A load begins where its motor does.
-  std::string start_of_mass(const std::string& name) const {
-    const Value::Member* own = mass_ ? mass_->value.find(name) : nullptr;
-    return own ? to_json(own->value) : "";
+  std::string setting_text(const Value::Member& block, const Value::Member& setting,
+                           const std::string& path) {
+    const std::string& text = setting.value.text;
+    if (text == "=initial_position" || text == "=initial_velocity") {  // a load begins where its motor does
+      const Value::Member* start = mass_ ? mass_->value.find(text.substr(1)) : nullptr;
+      return start ? to_json(start->value) : "";
+    }
+    const std::string number = value_text(setting.value, path + "." + setting.name);
+    return is_factor(type_of(block.value), setting.name)
+               ? values_.with_unit(setting.value, effect_, site_.units)
+               : number;
   }
   std::string value_text(const Value& value, const std::string& path) {
     if (value.kind == Kind::text && value.text.starts_with('=')) {

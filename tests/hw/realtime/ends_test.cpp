@@ -22,7 +22,7 @@ using testing::HasSubstr;
 
 /// A computer that does other things meanwhile: what comes late is only counted, the watchdog has time.
 const std::string patient =
-    R"({"clock": {"buffer": 1, "overflow": "overwrite"}, "policy": {"on_overrun": "count"}, "watchdog": {"timeout": 0.4}})";
+    R"({"clock": {"buffer": 1, "overflow": "overwrite"}, "policy": {"on_overrun": "count", "on_lost": "count"}, "watchdog": {"timeout": 0.4}})";
 
 // ---- the child: a deployment that ends as the environment says ----
 

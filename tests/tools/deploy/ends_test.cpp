@@ -27,7 +27,7 @@ using namespace std::chrono_literals;
 const std::string conventional = LOOPWRIGHT_SOURCE "/diagrams/linear_motor/conventional.json";
 /// A computer that does other things meanwhile: what comes late is only counted, the watchdog has time.
 const std::string patient =
-    R"({"clock": {"buffer": 1, "overflow": "overwrite"}, "policy": {"on_overrun": "count"}, "watchdog": {"timeout": 0.4}})";
+    R"({"clock": {"buffer": 1, "overflow": "overwrite"}, "policy": {"on_overrun": "count", "on_lost": "count"}, "watchdog": {"timeout": 0.4}})";
 
 class EndsOfTheProgram : public testing::Test {
  protected:
@@ -311,7 +311,7 @@ TEST_F(EndsOfTheProgram, AKilledProgramLosesAtMostASecondOfItsLog) {
 TEST_F(EndsOfTheProgram, WithoutAWatchdogNothingMovesUnlessItIsAccepted) {
   folder_.with("device.json",
                hw::device_text(R"({"watchdog": null, "clock": {"buffer": 1, "overflow": "overwrite"},
-                                                  "policy": {"on_overrun": "count"}})"));
+                                                  "policy": {"on_overrun": "count", "on_lost": "count"}})"));
   begin(logged("0.5"));
   EXPECT_EQ(wait(), 2);
   EXPECT_THAT(err(), AllOf(HasSubstr("has no watchdog"), HasSubstr("--no-watchdog")));
