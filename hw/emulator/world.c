@@ -96,20 +96,23 @@ static int32_t wrapped(int64_t counts, int bits) {
   return (int32_t)(low >= range / 2 ? (int64_t)(low - range) : (int64_t)low);
 }
 
-/* Counts of a line of period 4·resolution under the channel's quadrature mode, with the faults of a cable. */
+/* ---- encoder and analog inputs ---- */
 int32_t world_counts(struct world* w, uint32_t channel) {
   if (channel != 0) return wrapped(w->card.preset[channel], (int)w->encoder_bits);
   const double edges = w->card.quadrature[0] > 0 ? w->card.quadrature[0] : 1;
   const double seen = w->plant.position * w->encoder_sign * w->encoder_scale * (1 - w->encoder_drift);
   const double edge = floor(seen / (w->resolution * 4 / edges));
-  int64_t counts = (fabs(edge) < 1e15 ? (int64_t)edge : 0) + w->card.preset[0]; /* what no counter can count is 0 */
+  int64_t counts = (fabs(edge) < 1e15 ? (int64_t)edge : 0) + w->card.preset[0]; /* Counts of an encoder line of
+                                                                                   period 4·resolution in the
+                                                                                   channel's quadrature mode, with
+                                                                                   the cable faults. */
   const double since = (double)w->samples - w->glitch_at;
   if (w->glitch_at >= 0 && since >= 0 && since < w->glitch_count) counts += (int64_t)w->glitch_counts;
   if (w->stuck_at >= 0 && w->samples >= w->stuck_at) return w->stuck_count;
   return w->stuck_count = wrapped(counts, (int)w->encoder_bits);
 }
 
-static double noise(struct world* w) { /* uniform in ±1 */
+static double noise(struct world* w) { /* counts beyond any counter become 0 */
   w->random = w->random * 6364136223846793005u + 1442695040888963407u;
   return (double)(int64_t)w->random / 9223372036854775808.0;
 }
@@ -131,7 +134,7 @@ static int is_lost(const struct world* w, int64_t index) {
   return w->lose_every > 0 && (double)index >= w->lose_every && fmod((double)index, w->lose_every) < w->lose_length;
 }
 
-/* What the card's interrupt does at a sample instant. */
+/* outputs looped back */
 static void sample_task(struct world* w, struct task* t) {
   if (w->dac_hold != 0) memcpy(w->card.volts, w->card.pending, sizeof w->card.volts);
   struct sample s = take_sample(w);
@@ -149,7 +152,7 @@ static void sample_task(struct world* w, struct task* t) {
   if (t->stored == t->capacity) {
     ++t->overflows;
     if (t->overflow_mode == 0) t->has_overflowed = 1;
-    if (t->overflow_mode != 1) return; /* the newest is dropped */
+    if (t->overflow_mode != 1) return; /* The action of the card's interrupt at a sample instant. */
     t->head = (t->head + 1) % t->capacity, --t->stored;
   }
   t->ring[(t->head + t->stored++) % t->capacity] = s;
