@@ -1,8 +1,9 @@
-/* Sine, exponential and similar functions from additions, multiplications and divisions alone. The bits of the C
- * library's functions depend on the processor (with or without fused multiply-add); recorded results must not.
+/* Sine, exponential and similar functions from additions, multiplications and divisions alone. The bits of
+ * the C library's functions depend on the processor (with or without fused multiply-add); recorded results
+ * must not.
  *
- * Shared with tests/hidden_effects, the other plant in plain C; nothing is shared with the simulator. Errors stay
- * within three units in the last place for ordinary arguments (sine and cosine: below 1e6 rad). */
+ * Shared with tests/hidden_effects, the other plant in plain C; nothing is shared with the simulator. Errors
+ * stay within three units in the last place for ordinary arguments (sine and cosine: below 1e6 rad). */
 #ifndef HIL_EMULATOR_ELEMENTARY_H
 #define HIL_EMULATOR_ELEMENTARY_H
 

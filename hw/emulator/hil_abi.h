@@ -72,7 +72,7 @@ enum {
   BUFFER_MODE_NOT_SUPPORTED = 1265,
 };
 
-/* Locks the world, advances it to now and records the call by name. Every exported function begins with it. */
+/* Locks the world, advances it to now and records the call by name. Every exported function begins so. */
 struct world* enter(const char* function);
 /* Unlocks and returns the answer. */
 t_error leave(struct world* w, t_error answer);

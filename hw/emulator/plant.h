@@ -1,6 +1,7 @@
 /* The motor on the bench: a linear motor with its amplifier, integrated every 20 us.
  *
- * Written from the laws of physics alone; nothing here is shared with the simulator, which it serves to verify. */
+ * Written from the laws of physics alone; nothing here is shared with the simulator, which it serves to
+ * verify. */
 #ifndef HIL_EMULATOR_PLANT_H
 #define HIL_EMULATOR_PLANT_H
 

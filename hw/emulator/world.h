@@ -1,9 +1,9 @@
 /* The state behind the emulated library: a card, a motor connected to it, and time.
  *
- * No thread runs here. Every call first advances the world to "now": motor, sampling task and watchdog advance in
- * the exact order of their events. So a watchdog expires at its exact instant even if no call was made for some
- * time, and in virtual time every run repeats bit for bit. The world holds no pointers, so it may be in memory that
- * two processes share. */
+ * No thread runs here. Every call first advances the world to "now": motor, sampling task and watchdog
+ * advance in the exact order of their events. So a watchdog expires at its exact instant even if no call was
+ * made for some time, and in virtual time every run repeats bit for bit. The world holds no pointers, so it
+ * may be in memory that two processes share. */
 #ifndef HIL_EMULATOR_WORLD_H
 #define HIL_EMULATOR_WORLD_H
 
@@ -89,7 +89,8 @@ struct world {
   double dac_bits, dac_hold, dac_latched_nan;
   double analog_noise, analog_per_ampere;
   double watchdog_longest, watchdog_zero_only, watchdog_needs_all;
-  double watchdog_write_error; /* error of a write after expiry, unspecified by any source; 0: ignored silently */
+  double watchdog_write_error; /* error of a write after expiry, unspecified by any source; 0: ignored
+                                  silently */
   double refuses_watchdog, refuses_ranges, refuses_options, refuses_termination, refuses_filter, refuses_write,
       refuses_overflow_mode;
   struct fault faults[FAULT_POINTS];
@@ -117,8 +118,8 @@ struct world {
   uint16_t call[CALLS_KEPT];
 };
 
-/* The world of this process, created at the first call: from $HIL_EMU, a settings file, and in memory shared with
- * the daemon when $HIL_EMU_SHARED names its file. */
+/* The world of this process, created at the first call: from $HIL_EMU, a settings file, and in memory shared
+ * with the daemon when $HIL_EMU_SHARED names its file. */
 struct world* world_lock(void); /* at "now" */
 void world_unlock(struct world* w);
 void world_reset(struct world* w);
@@ -126,7 +127,8 @@ void world_reset(struct world* w);
 void world_create_shared(struct world* w);
 
 void world_advance(struct world* w, int64_t to);
-int64_t world_clock(const struct world* w); /* "now" by the system's clock; in virtual time, the world's own time */
+int64_t world_clock(const struct world* w); /* "now" by the system's clock; in virtual time, the world's own
+                                               time */
 int32_t world_counts(struct world* w, uint32_t channel);
 void world_write(struct world* w, uint32_t channel, double volts);
 void world_apply_expiry(struct world* w);
