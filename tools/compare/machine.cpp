@@ -44,8 +44,8 @@ std::vector<double> second_difference(const std::vector<double>& x, double dt) {
   return a;
 }
 
-/// Rows fast enough for the sign of friction to be certain, and 12 ms away from rest and from missing samples:
-/// the range of the filters.
+/// Rows fast enough for the sign of friction to be certain, and 12 ms away from rest and from missing
+/// samples: the range of the filters.
 void find_moving_rows(MeasuredMotion& m) {
   const size_t n = m.rows(), margin = whole_count(std::ceil(0.012 / m.sample_time)),
                ends = std::min(n / 10, whole_count(std::ceil(0.1 / m.sample_time)));
