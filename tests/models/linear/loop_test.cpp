@@ -87,7 +87,7 @@ TEST(Margins, TheDelayMarginIsTheDelayThatEndsStability) {
 }
 
 TEST(Margins, MsIsTheInverseDistanceFromMinusOne) {
-  // L = k/s with delay τ: at k τ = 0.5 the peak of 1/|1 + L| was found by hand on a fine grid.
+  // L = k/s with delay τ: at k τ = 0.5 the peak of 1/|1 + L| was determined separately on a fine grid.
   const StateSpace L = with_delay(first_order(5, 0), 0.1);
   double peak = 0;
   for (double w = 1; w < 60; w += 1e-3)
