@@ -114,7 +114,7 @@ struct Compiled {
         const std::vector<double>& shape = shapes[(first + lane) / per_shape];
         for (size_t i = 0; i < nonlinear.size(); ++i) run.set(nonlinear[i], shape[i], int(lane));
         const double size = linear.empty() ? 1 : run.isolate(linear[(first + lane) % per_shape], int(lane));
-        // The input that the effect adds is force that it does not consume.
+        // What the effect adds to the input counts as negative consumption.
         outputs[lane].factor = (acts == Acts::input ? -1.0 : 1.0) / size;
       }
       run.run(signals, rows, outputs);

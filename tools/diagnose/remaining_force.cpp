@@ -12,7 +12,7 @@ namespace {
 constexpr double turn = 2 * std::numbers::pi;
 double force_cutoff(double sample_time) { return std::min(80.0, 0.08 / sample_time); }
 
-/// Order of zero_phase_low_pass.
+/// Gain of zero_phase_low_pass.
 double gain_of_filter(double frequency, double cutoff, double sample_time) {
   const double ratio =
       std::tan(turn / 2 * frequency * sample_time) / std::tan(turn / 2 * cutoff * sample_time);

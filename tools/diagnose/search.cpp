@@ -33,8 +33,7 @@ class Search {
 
   SearchResult run() {
     bool goes_on = grow(4);
-    // Cogging has many lines, and a map shows little else: as many lines as a start without a name has
-    // levels.
+    // Cogging has many lines, and a map shows little else: as many effects as for a start without a name.
     if (goes_on && is_much_left() && trials_.has_map()) goes_on = grow(2);
     if (is_much_left() || explain_without_name()) {
       start_from_what_has_no_name();
