@@ -1,7 +1,7 @@
 #!/bin/sh
-# The whole cycle on the emulated card:  circle.sh [FOLDER]        (default: build/circle) Deploys on a motor
-# that hides an effect, diagnoses from the log what the model lacks, corrects the model, trains a compensation
-# on the same log, and deploys again. All results are written to FOLDER; see docs/hardware.md.
+# The whole cycle on the emulated card:  circle.sh [FOLDER]        (default: build/circle)
+# Deploys on a motor that hides an effect, diagnoses from the log what the model lacks, corrects the model, trains a
+# compensation on the same log, and deploys again. All results are written to FOLDER; see docs/hardware.md.
 set -eu
 here=$(cd "$(dirname "$0")/.." && pwd)
 out=${1:-$here/build/circle}
