@@ -25,7 +25,7 @@
 ///     double shortest_period() const;                       // s, of a generated signal, so that no step skips it; infinity: none
 ///     std::vector<UnitClaim> unit_claims() const;           // units that come from files (engine/block/instance_units.h)
 ///     double unit_power(int wire) const;                    // the output's unit is the product of the wires' units to these powers
-///     FormulaUnit formula_unit(std::span<const Unit>) const;  // the output's unit from those of the wires
+///     FormulaUnit formula_unit(std::span<const Unit>) const;  // the output's unit as a function of the wires' units
 ///     static constexpr bool has_side_effects = true;        // acts on the external world: never several runs at a time
 ///   };
 ///   LOOPWRIGHT_BLOCK(MyBlock)

@@ -135,7 +135,7 @@ class DiagramReader {
     return taken;
   }
 
-  // ---- Options that nothing used ----
+  // ---- Unused options ----
 
   void report_unused_options() {
     if (instance_.edits.empty() && instance_.variants.empty()) return;

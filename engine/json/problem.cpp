@@ -97,7 +97,7 @@ char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned 
 // Edit costs: a wrong case counts as half a mistake.
 constexpr int case_cost = 1, edit_cost = 2;
 
-/// Damerau-Levenshtein distance (insert, remove, replace, swap of neighbours) in the costs above.
+/// Damerau-Levenshtein distance (insert, remove, replace, swap of neighbors) with the costs above.
 int edit_distance(std::string_view a, std::string_view b) {
   std::vector<int> two_above(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
   for (size_t j = 0; j <= b.size(); ++j) row[j] = static_cast<int>(j) * edit_cost;

@@ -228,7 +228,7 @@ class Solver {
     return rest.same_dimension(Unit{});
   }
 
-  // ---- What does not hold ----
+  // ---- Contradictions ----
 
   std::string name_of(const Equation& equation, const End& end) const {
     if (end.block >= 0) return fmt::format("{}.{}", flat_.blocks[size_t(end.block)].path, end.name);

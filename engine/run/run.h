@@ -6,8 +6,8 @@
 ///   2. jumps of states from frozen inputs; if a state changed, 1 again, at most ten times
 ///   3. accepted memory of continuous blocks; a row of the recording, if one is due
 ///   4. updates of the rates due, from frozen inputs
-///   5. the continuous states advance to the next tick that is due, or by one solver step, sampled signals
-///   held
+///   5. the continuous states advance to the next tick that is due, or by one solver step, with sampled
+///      signals held
 #pragma once
 #include <algorithm>
 #include <array>

@@ -128,7 +128,7 @@ NewtonSolver::Work::Work(const NewtonOptions& options, const AlgebraicSystem& sy
   require(KINSetFuncNormTol(memory, tolerance), "KINSetFuncNormTol");
   require(KINSetMaxSetupCalls(memory, 1),
           "KINSetMaxSetupCalls");  // loops are small: a new Jacobian each time
-  require(KINSetMaxNewtonStep(memory, 1e100), "KINSetMaxNewtonStep");  // else a guess of 0 may change by at most 1
+  require(KINSetMaxNewtonStep(memory, 1e100), "KINSetMaxNewtonStep");  // else 0 may change by at most 1
 }
 
 bool NewtonSolver::Work::evaluate(const double* at, double* into) {

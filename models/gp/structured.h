@@ -2,8 +2,8 @@
 ///
 /// With features Φ (N×m) and a kernel K = Φ S Φᵀ, S = L Lᵀ, everything follows from G = ΦᵀΦ and b = Φᵀy by
 /// the matrix inversion and determinant lemmas (Rasmussen, Williams 2006, appendix A.3):
-///   B = I + LᵀGL/σ_n²,   log|K + σ_n² I| = N log σ_n² + log|B|,   Φᵀ(K + σ_n² I)⁻¹Φ = (G - GL
-///   B⁻¹LᵀG/σ_n²)/σ_n²
+///   B = I + LᵀGL/σ_n²,   log|K + σ_n² I| = N log σ_n² + log|B|,
+///   Φᵀ(K + σ_n² I)⁻¹Φ = (G - GL B⁻¹LᵀG/σ_n²)/σ_n²
 #pragma once
 #include <memory>
 #include "models/gp/statistics.h"
