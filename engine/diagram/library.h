@@ -26,7 +26,7 @@ class DiagramLibrary {
 
   /// The file at a path that is named at `reference`, in the current version of the format.
   const DiagramFile& open(const std::string& path, const Place& reference);
-  /// The same text for every spelling of a path.
+  /// The identifier of a file: the same text for every spelling of its path.
   const std::string& identity(const std::string& path);
   /// The names of the files read, in order.
   std::vector<std::string> take_names() { return std::move(names_); }

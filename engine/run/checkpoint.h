@@ -5,7 +5,7 @@
 
 namespace loopwright {
 
-/// Written completely or not at all. `solver`: a StateArchive of the solver of the run. Throws
+/// Written completely or not at all. `solver`: a StateArchive of the state outside the run, such as the solver. Throws
 /// std::runtime_error if the file cannot be written.
 void write_checkpoint(const std::string& path, Run<double>& run, const RunIdentity& identity,
                       const std::string& solver, Recorder& recorder);

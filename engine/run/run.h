@@ -107,8 +107,8 @@ template <class Real> class Run {
   double next_stop(double time) const;
 
   const Real& number(Number n, int arena = 0) const { return numbers_[n + arena * stride_]; }
-  /// Locations of the parameters, ports, states, memory and mode of a block in the first arena; without a
-  /// step.
+  /// Locations of the parameters, ports, states, memory and mode of a block in the first arena; its `step`
+  /// is null.
   const Call<Real>& call(int block) const { return base_[0][size_t(block)]; }
   std::span<Real> states() { return {numbers_ + plan_.signals, size_t(plan_.states)}; }
   const Instant& now() const { return now_; }

@@ -11,7 +11,7 @@ namespace loopwright {
 ///
 /// The radian is recorded but not checked: v = ω r is valid. The cycle is what hertz counts: Hz = cycle/s,
 /// while rpm, rev and deg are radians. One cycle is 2π rad, so Hz and rad/s convert into each other. Neither
-/// is accepted for a plain 1/s without a conversion decision (`conversion`).
+/// is converted implicitly to a plain 1/s (see `conversion`).
 struct Unit {
   static constexpr size_t checked = 7;  ///< the number of leading exponents that form the dimension
   static constexpr size_t radian = 7, cycle = 8;
