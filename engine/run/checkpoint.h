@@ -5,8 +5,8 @@
 
 namespace loopwright {
 
-/// Written completely or not at all. `solver`: a StateArchive of the state outside the run, such as the solver. Throws
-/// std::runtime_error if the file cannot be written.
+/// Written completely or not at all. `solver`: a StateArchive of the state outside the run, such as the
+/// solver. Throws std::runtime_error if the file cannot be written.
 void write_checkpoint(const std::string& path, Run<double>& run, const RunIdentity& identity,
                       const std::string& solver, Recorder& recorder);
 
