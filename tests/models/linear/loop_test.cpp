@@ -96,8 +96,8 @@ TEST(Margins, MsIsTheInverseDistanceFromMinusOne) {
 }
 
 TEST(Margins, AConditionallyStableLoopHasALowerGainMargin) {
-  // L = 10 (s+1)²/s³: its phase, 2 atan ω - 270°, is -180° at ω = 1, where |L| = 20. Less gain ends it.
-  // = 20.
+  // L = 10 (s+1)²/s³: its phase, 2 atan ω - 270°, is -180° at ω = 1, where |L| = 20. A lower gain makes the
+  // loop unstable.
   const StateSpace pi_part = {
       MatrixXd::Zero(1, 1), MatrixXd::Ones(1, 1), MatrixXd::Ones(1, 1), MatrixXd::Ones(1, 1), 0, {}};
   const Margins m = margins(in_series(in_series(pi_part, pi_part), first_order(10, 0)));
