@@ -39,8 +39,7 @@ struct InputChannel {
   double scale = 1;             ///< unit per raw
   double offset = 0;            ///< unit; of an encoder: the position at which it counts zero (homing)
   int quadrature = 4;           ///< edges counted per period
-  int counter_bits = 24;        ///< wraps at this width are undone; a smaller width than the card's is
-                                ///  harmless
+  int counter_bits = 24;        ///< wraps at this width are undone; less than the card's width is harmless
   int preset = 0;               ///< counts at the start
   double filter = 0;            ///< Hz; 0: the card's own setting
   double maximum_rate = 0;      ///< unit/s; a faster change is a glitch; 0: not checked

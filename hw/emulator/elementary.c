@@ -1,7 +1,6 @@
 #include "elementary.h"
 
-#include <math.h> /* only functions that are exact or correctly rounded in every library: floor, fmod, frexp, ldexp,
-                     fabs */
+#include <math.h> /* only functions exact or correctly rounded in every library: floor, fmod, frexp, ldexp, fabs */
 
 /* Three parts of pi/2 and two of ln 2; products of all but the last part with a small integer are exact. */
 static const double quarter_1 = 0x1.921fb544p0, quarter_2 = 0x1.0b4611a6p-34,

@@ -89,8 +89,7 @@ struct world {
   double dac_bits, dac_hold, dac_latched_nan;
   double analog_noise, analog_per_ampere;
   double watchdog_longest, watchdog_zero_only, watchdog_needs_all;
-  double watchdog_write_error; /* error of a write after expiry, unspecified by any source; 0: ignored
-                                  silently */
+  double watchdog_write_error; /* of a write after expiry, unspecified by any source; 0: silently ignored */
   double refuses_watchdog, refuses_ranges, refuses_options, refuses_termination, refuses_filter, refuses_write,
       refuses_overflow_mode;
   struct fault faults[FAULT_POINTS];
@@ -127,8 +126,7 @@ void world_reset(struct world* w);
 void world_create_shared(struct world* w);
 
 void world_advance(struct world* w, int64_t to);
-int64_t world_clock(const struct world* w); /* "now" by the system's clock; in virtual time, the world's own
-                                               time */
+int64_t world_clock(const struct world* w); /* "now" by the system's clock; in virtual time, by its own */
 int32_t world_counts(struct world* w, uint32_t channel);
 void world_write(struct world* w, uint32_t channel, double volts);
 void world_apply_expiry(struct world* w);

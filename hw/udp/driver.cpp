@@ -105,8 +105,7 @@ class UdpDriver final : public Driver {
     [[maybe_unused]] const ssize_t drained = ::read(stop_event_, &ignored, sizeof ignored);
     exchange(Request::stop, {});
   }
-  void disarm() noexcept override {}  // the device's watchdog stays armed: its values are the device's safe
-                                      // values
+  void disarm() noexcept override {}  // the device's watchdog stays armed: its values are the safe ones
   bool watchdog_took_over() noexcept override { return exchange(Request::stop, {}).code == Code::watchdog; }
   void close() noexcept override {
     if (socket_ >= 0) ::close(socket_);

@@ -7,8 +7,7 @@ namespace loopwright::diagnosis {
 /// The evidence for one member, and its size.
 struct Weight {
   double wald = 0;       ///< χ²: squared distance from zero in standard deviations
-  double force_rms = 0;  ///< of the force it consumes, over the fitted rows; of a sensor: the equivalent
-                         ///  force
+  double force_rms = 0;  ///< of the force it consumes, over the fitted rows; sensor: the equivalent force
   double unique_force = 0;  ///< the part of it that no other member could replace
   double loss = 0;          ///< loss of the criterion without it
 };
@@ -41,8 +40,7 @@ struct Conclusion {
   std::vector<std::vector<Substitute>> substitutes;  ///< within reach, best first
   std::vector<OtherSet> other_sets;                  ///< within reach, best first
   std::vector<double> inclusion;                     ///< probability that the effect is there, calibrated
-  bool is_remainder_noise = true;                    ///< otherwise a slow force remains that is more than
-                                                     ///  noise
+  bool is_remainder_noise = true;                    ///< otherwise a slow force exceeds the noise
   double portmanteau = 0;          ///< n Σ ρ², 40 lags of the whitened errors; 40 when white
   std::vector<std::string> trail;  ///< what was removed, and why
 

@@ -15,8 +15,7 @@ struct DiagnoseOptions {
       catalogues;                ///< folders with effect files; empty: the catalog of the installation
   std::string improved_diagram;  ///< path of the diagram with the effects; empty: not written
   std::function<void(const char* stage, double done)> progress;
-  const std::atomic<bool>* interrupt = nullptr;  ///< when it becomes true, the diagnosis ends soon, without a
-                                                 ///  verdict
+  const std::atomic<bool>* interrupt = nullptr;  ///< once true, the diagnosis ends soon, without a verdict
 };
 
 struct DiagnosedParameter {

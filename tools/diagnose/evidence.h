@@ -24,8 +24,7 @@ std::vector<Shape> shapes_of(const std::vector<Candidate>& candidates, const Mot
 struct Proposal {
   std::vector<size_t> removed;  ///< members removed
   std::vector<Member> added;
-  std::vector<double> step;  ///< of the free parameters of the members that stay, to be applied with the
-                             ///  addition
+  std::vector<double> step;  ///< of the free parameters of the members that stay, to go with `added`
   double gain = 0;           ///< saving in the extended information criterion
 };
 

@@ -7,11 +7,9 @@ namespace loopwright::diagnosis {
 namespace {
 
 constexpr double worse_at_rest = 4;    // than in motion: errors that the set does not explain occur there too
-constexpr double least_freedom = 0.4;  // relative to the motion of a free axis under noise; the controller
-                                       // reduces it
+constexpr double least_freedom = 0.4;  // of the motion of a free axis under noise; reduced by control
 constexpr double most_freedom = 3;     // more is motion
-constexpr size_t apart = 6;            // samples: enough for a deviation, too few for the controller to
-                                       // correct all of it
+constexpr size_t apart = 6;            // samples: enough for a deviation, too few to correct all of it
 constexpr size_t glance = 36;          // samples: enough to average out steps of the encoder
 
 AtRest at_rest(const std::vector<Member>& members) {

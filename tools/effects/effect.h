@@ -68,8 +68,7 @@ struct Attachment {
   enum class Stage { command, amplifier, iron, magnets };
   To to = To::force;
   Stage stage = Stage::magnets;  ///< to the input
-  std::string from;  ///< "friction.force": is subtracted in the sum of forces, or replaces the input or the
-                     ///  measured position
+  std::string from;  ///< "friction.force": subtracted from the forces; or replaces input or measured position
   std::string slope;  ///< "late.slope": change of a held `from` over a sample; empty: not stated
   std::vector<std::string> targets;  ///< to a parameter: "Mass.mass", the first one of the machine
   Value add;                         ///< to a parameter: the value added to it

@@ -11,8 +11,7 @@ struct PortNumber {
   std::string name;                          ///< "stage.position", with [i] if a port has several
   Number number;                             ///< the output of the block there, or what feeds it
   bool is_output = false;                    ///< all readers of the number read this port
-  std::vector<std::pair<int, int>> readers;  ///< of an input: block, and index among the numbers that it
-                                             ///  reads
+  std::vector<std::pair<int, int>> readers;  ///< of an input: block, and index among the numbers it reads
 };
 
 /// The numbers of a port of a block or of a subdiagram, "command.terms[1]" being one of several. Unknown

@@ -71,8 +71,7 @@ struct KickTest {
 };
 
 struct StabilityRequest {
-  std::string disturbance;      ///< input port of the plant among the outermost blocks; empty: found
-                                ///  automatically
+  std::string disturbance;      ///< input port of the plant among the outermost blocks; empty: automatic
   double kick = 5;              ///< in the unit of that port
   double kick_duration = 0.01;  ///< s
   bool kicks = true;

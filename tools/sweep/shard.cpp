@@ -187,8 +187,7 @@ void ShardWriter::write_all(const std::string& bytes) {
       done += size_t(n);
     } else if (errno != EINTR) {
       const int error = errno;
-      [[maybe_unused]] const int cut = ftruncate(file_, end_);  // a part that cannot be cut off is detected
-                                                                // as damaged later
+      [[maybe_unused]] const int cut = ftruncate(file_, end_);  // a part that stays is detected as damaged
       fail("cannot be written", error);
     }
   }

@@ -18,8 +18,7 @@ struct Axis {
   enum class Kind { values, variants, uniform, logarithmic, normal };
   std::string name;  ///< "stage.payload"; for variants the path of the block
   Kind kind = Kind::values;
-  std::string unit;                   ///< of the numbers below; empty: as `--set` interprets a number without
-                                      ///  unit
+  std::string unit;                   ///< of the numbers below; empty: as `--set` reads a bare number
   std::vector<double> values;         ///< of kind values
   std::vector<std::string> variants;  ///< of kind variants
   double low = 0, high = 0;           ///< of a distribution; normal: mean and standard deviation

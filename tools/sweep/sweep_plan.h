@@ -13,8 +13,7 @@ struct World {
   std::shared_ptr<const Plan> plan;
   Observed observed;
   std::string
-      lanes_forbidden;  ///< why its runs are made one by one, each with a plan of its own; empty: they are
-                        ///  not
+      lanes_forbidden;  ///< why each run is made alone, with its own plan; empty: they share this plan
   std::vector<std::string> tuned;  ///< paths of the numbers that differ from run to run
   /// How a number depends on the axes: `scale` times one of them, or through the loader (axis -1).
   struct Source {

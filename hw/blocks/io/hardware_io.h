@@ -12,8 +12,7 @@ struct HardwareIo {
   double position = 0, velocity = 0;  // as read; written by the loop before every step
   double period = 0;
   std::shared_ptr<const hw::DeviceDescription> device;
-  int position_channel = -1, velocity_channel = -1, command_channel = -1;  // index among the device's
-                                                                           // channels
+  int position_channel = -1, velocity_channel = -1, command_channel = -1;  // index among those of the device
   struct In {
     double command;
   };
