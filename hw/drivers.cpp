@@ -7,7 +7,7 @@
 namespace loopwright::hw {
 namespace {
 
-// To add hardware: a folder with a Driver, and a line here.
+// To add hardware: add a folder with a Driver, and a line here.
 const DriverType types[] = {
     {"quanser", "Cards behind Quanser's HIL library",
      [](const DeviceDescription& device, Problems& problems) { quanser::read_settings(device, problems); },

@@ -1,4 +1,4 @@
-"""Prints the tests that took longest: slowest.py BUILD_FOLDER [COUNT]."""
+"""Prints the slowest tests: slowest.py BUILD_FOLDER [COUNT]."""
 
 import json
 import pathlib
@@ -10,7 +10,7 @@ for file in (build / "test_times").glob("*.json"):
     for suite in json.loads(file.read_text())["testsuites"]:
         times += [(float(test["time"].rstrip("s")), f"{file.stem}: {suite['name']}.{test['name']}")
                   for test in suite["testsuite"] if test["status"] == "RUN"]
-# Tests of other kinds, as ctest timed them.
+# Other tests, with the times of ctest.
 log = build / "Testing" / "Temporary" / "CTestCostData.txt"
 programs = {file.stem for file in (build / "test_times").glob("*.json")}
 for line in log.read_text().splitlines() if log.exists() else []:

@@ -1,7 +1,7 @@
 #!/bin/bash
-# Builds the benchmarks and runs them: writes build/benchmarks.json and ends with 1 when a figure misses its bar.
-# Ratios are measured in one process with both sides in turn, so that a busy machine disturbs them little; still, a quiet
-# one gives the true figures. Arguments go to Google Benchmark, for example --benchmark_filter=common_job.
+# Builds and runs the benchmarks: writes build/benchmarks.json and exits with 1 if a figure misses its limit. Ratios are
+# measured in one process, alternating between both sides, so that other load affects them little. The most accurate
+# figures still require an idle machine. Arguments go to Google Benchmark, for example --benchmark_filter=common_job.
 set -euo pipefail
 
 root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)

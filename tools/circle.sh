@@ -1,14 +1,14 @@
 #!/bin/sh
-# The whole circle on the emulated card:  circle.sh [FOLDER]        (build/circle when left out)
-# deploy on a motor that hides an effect, see in the log what the model lacks, mend the model, learn a compensation from
-# the same log, deploy again. Everything lands in FOLDER; docs/hardware.md tells the story.
+# The whole cycle on the emulated card:  circle.sh [FOLDER]        (default: build/circle)
+# Deploys on a motor that hides an effect, diagnoses from the log what the model lacks, corrects the model, trains a
+# compensation on the same log, and deploys again. All results are written to FOLDER; see docs/hardware.md.
 set -eu
 here=$(cd "$(dirname "$0")/.." && pwd)
 out=${1:-$here/build/circle}
 mkdir -p "$out"
 out=$(cd "$out" && pwd)
 cd "$here"
-# Without a program and a library of the caller's: those of this tree, built where they are missing or old.
+# If the caller gives no program and library: those of this tree, built if missing or outdated.
 if [ -z "${LOOPWRIGHT_PROGRAM-}" ] || [ -z "${HIL_LIBRARY-}" ]; then
   tools/setup.sh
   [ -f build/release/build.ninja ] || cmake --preset release >build/cmake_release.log 2>&1 || { cat build/cmake_release.log; exit 1; }
@@ -44,7 +44,7 @@ say "6  the test motion without and with it"
 $loopwright deploy $motor/conventional.json $device -o "$out/conventional.csv" --report "$out/conventional.html"
 $loopwright deploy $motor/ps.json $device --set "model=$out/learned.model.json" --set "compensation.lead=2.6 ms" \
   -o "$out/compensated.csv" --report "$out/compensated.html"
-# Root of the mean square of the column error.sum [m], in micrometres.
+# Root mean square of the column error.sum [m], in micrometers.
 tracking_error() {
   awk -F, '/^#/ { next } !column { for (i = 1; i <= NF; ++i) if ($i ~ /^error.sum/) column = i; next }
            { sum += $column * $column; ++rows } END { printf "%.2f µm", 1e6 * sqrt(sum / rows) }' "$1"

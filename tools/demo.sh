@@ -1,7 +1,6 @@
 #!/bin/bash
-# Sets up, builds, and shows what Loopwright does: a linear-motor loop simulated, a hidden effect found and added, and a
-# model held against measurements.
-# The pages end up in build/demo/.
+# Sets up, builds, and demonstrates Loopwright: a linear-motor loop simulated, a hidden effect found and added, and a
+# model compared with measurements. The pages are written to build/demo/.
 set -euo pipefail
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
 export LOOPWRIGHT_DATA=${LOOPWRIGHT_DATA:-$PWD/../shared/data}

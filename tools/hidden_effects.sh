@@ -1,7 +1,8 @@
 #!/bin/bash
-# Judges the diagnosis: N plants with hidden effects, drawn blind, diagnosed, and scored against the truth.
+# Evaluates the diagnosis: N plants with hidden effects, drawn at random, diagnosed blind, and compared with
+# the truth.
 #   tools/hidden_effects.sh 300 --seed-base 900000     see --help; docs/hidden_effects.md explains the table
-# An interrupted batch goes on where it was.
+# An interrupted batch continues where it stopped.
 set -euo pipefail
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
 

@@ -1,8 +1,8 @@
 #!/bin/sh
-# Real time on the emulated card:  real_time.sh [SECONDS] [FOLDER]     (60 s, build/real_time when left out)
-# The card lives in a process of its own, another process keeps a core busy. First a whole run at 1 kHz: no row of its log
-# may be lost. Then the same killed by kill -9 half way: the card's watchdog must have the output, and the log must reach
-# to the last second. Exit code 1 where one of these fails; how late the loop was is only reported.
+# Real time on the emulated card:  real_time.sh [SECONDS] [FOLDER]     (default: 60 s, build/real_time)
+# The card runs in a process of its own; another process keeps a core busy. First a complete run at 1 kHz: no row of its
+# log may be lost. Then the same run killed by kill -9 halfway: the card's watchdog must have set the output, and the log
+# must extend to the last second. Exit code 1 if one of these fails; the lateness of the loop is only reported.
 set -eu
 here=$(cd "$(dirname "$0")/.." && pwd)
 seconds=${1:-60}
@@ -15,7 +15,7 @@ export HIL_LIBRARY=$build/lib/libhil_emulator.so
 export HIL_EMU_SHARED=$out/world
 rm -f "$out"/log.csv* "$out"/killed.csv* "$out"/to_card
 
-# An ordinary kernel is late by milliseconds now and then: the card buffers 100 samples, late commands are counted.
+# An ordinary kernel is sometimes late by milliseconds: the card buffers 100 samples, late commands are counted.
 sed -e 's/"buffer": 2/"buffer": 100/' -e 's/"on_overrun": "fault"/"on_overrun": "count"/' \
   -e 's/"timeout": 0.01/"timeout": 0.2/' hw/devices/qpid_e.json > "$out/device.json"
 echo '{"plant.cogging": 0, "plant.tilt": 0.2}' > "$out/card.json"   # the weight must be held: the output is never 0 V
@@ -29,7 +29,7 @@ load=$!
 trap 'kill $load 2> /dev/null; exec 3>&-; wait $card 2> /dev/null || true' EXIT
 until grep -q ready "$out/from_card" 2> /dev/null; do sleep 0.05; done
 
-ask() {   # a number from behind the card
+ask() {   # an internal number of the card
   lines=$(wc -l < "$out/from_card")
   echo "get $1" >&3
   while [ "$(wc -l < "$out/from_card")" -le "$lines" ]; do sleep 0.01; done

@@ -1,6 +1,6 @@
 #!/bin/bash
-# From nothing to the tables and figures of the linear-motor paper: sets up, builds, runs the identification experiment,
-# trains, simulates, and writes build/paper/report.html and build/paper/tables.json.
+# Generates the tables and figures of the linear-motor paper: sets up, builds, runs the identification experiment, trains,
+# simulates, and writes build/paper/report.html and build/paper/tables.json.
 #   tools/reproduce_paper.sh [--runs N]      N runs with different noise for every number (5)
 set -euo pipefail
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."

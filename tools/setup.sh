@@ -1,6 +1,6 @@
 #!/bin/bash
-# Makes this machine able to build Loopwright: installs the packages of tools/dependencies.txt that are missing, and
-# the plotting library of report pages. Safe to run again: what is there is left alone.
+# Prepares this machine to build Loopwright: installs the missing packages of tools/dependencies.txt, and the plotting
+# library of report pages. It may be run repeatedly: installed packages are left unchanged.
 set -euo pipefail
 export DEBIAN_FRONTEND=noninteractive
 
@@ -11,7 +11,7 @@ as_root=()
 say() { echo "setup: $*"; }
 installed() { dpkg-query --show --showformat '${db:Status-Status}\n' "$1" 2>/dev/null | grep -qx installed; }
 
-# Node.js comes from many sources, some without a package npm: there the command counts, not the package.
+# Node.js has many sources, some without a package npm: there the command decides, not the package.
 present() {
   case $1 in
     nodejs) command -v node >/dev/null || installed nodejs ;;
@@ -29,14 +29,14 @@ install_packages() {
 
   say "installing ${missing[*]}"
   local install=("${as_root[@]}" apt-get install -qq -y --no-install-recommends "${missing[@]}")
-  # Lists of packages may be old or absent: fetch them only when the first try fails.
+  # Package lists may be outdated or absent: they are fetched only if the first attempt fails.
   if ! "${install[@]}" >/dev/null 2>&1; then
     "${as_root[@]}" apt-get update -qq
     "${install[@]}" >/dev/null
   fi
 }
 
-# A copy of the lock file beside what it installed tells whether the lock file has changed since.
+# A copy of the lock file beside the installed files shows whether the lock file has changed since.
 install_plotting_library() {
   local stamp=$tools/report/node_modules/.installed-lock
   ! cmp -s "$tools/report/package-lock.json" "$stamp" || return 0

@@ -1,9 +1,9 @@
 #!/bin/bash
-# Sets up, builds and runs all tests: optimised, then those of what reads files and drives machines under sanitizers.
+# Sets up, builds and runs all tests: optimized, then the tests of file readers and hardware under sanitizers.
 #   tools/test.sh            everything
 #   tools/test.sh --quick    without the sanitizers
-# Ends with where the time went. Measured data is looked for in $LOOPWRIGHT_DATA (default ../shared/data); tests that need
-# it say when it is absent.
+# Prints the time of each part at the end. Measured data is searched in $LOOPWRIGHT_DATA (default ../shared/data); tests
+# that need it report when it is absent.
 set -euo pipefail
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
 
@@ -18,7 +18,7 @@ export LOOPWRIGHT_DATA=${LOOPWRIGHT_DATA:-$PWD/../shared/data}
 jobs=$(nproc)
 times=()
 
-# What it does, then the command, timed.
+# Description, then the command, timed.
 timed() {
   local name=$1 begin=$SECONDS code=0
   shift

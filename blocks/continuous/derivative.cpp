@@ -1,8 +1,8 @@
 /// Y/U = ω s/(s+ω)
 ///
-/// No causal block gives the derivative of a signal it does not know ahead: this one lags by 1/ω and
-/// amplifies noise up to ω. It starts as if the signal had been `initial` for ever; another first value gives
-/// a peak of ω times the step.
+/// A causal block cannot give the exact derivative of an unknown signal: this one lags by 1/ω and amplifies
+/// noise up to ω. It starts as if the signal had always been `initial`. Any other first value gives a peak of
+/// ω times the step.
 #include "engine/block.h"
 
 namespace loopwright::blocks {

@@ -26,7 +26,7 @@ template <class Real> struct Integrator {
                  input(&In::reset, "reset", "$reset", "Rising through zero sets the value").otherwise(-1.0),
                  input(&In::reset_value, "reset_value", "$y", "What reset sets the value to").otherwise(0.0),
                  output(&State::y, "y", "$y", "The integral"),
-                 crossing(&Crossings::reset, "reset"),  // its fall too: only then may it rise again
+                 crossing(&Crossings::reset, "reset"),  // also its fall: only then may it rise again
                  crossing(&Crossings::low, "low", Crossing::falling),
                  crossing(&Crossings::high, "high", Crossing::rising),
                  crossing(&Crossings::release, "release"));
@@ -46,7 +46,7 @@ template <class Real> struct Integrator {
   }
   void start(Mode& mode) const {
     mode.trigger_is_high = Real(1.0);
-  }  // a trigger that is high at the start has not risen
+  }  // a trigger that is high at the start is no rising edge
   void jump(const In& in, const Mode& mode, State& state) const {
     const Real y = select(mode.fires > 0.5, in.reset_value, state.y);
     state.y = minimum(maximum(y, low), high);

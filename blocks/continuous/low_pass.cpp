@@ -1,8 +1,8 @@
 /// critically damped: Y/U = (ω/(s+ω))ⁿ;  Butterworth: |Y/U|² = 1/(1 + (w/ω)²ⁿ)
 ///
-/// ω is the corner of each factor: the Butterworth filter (S. Butterworth, 1930) passes 1/√2 of a sine at ω
-/// whatever its order, the critically damped one 2^(-n/2), but never overshoots a step. Factors of second
-/// order are cascaded.
+/// ω is the corner frequency of each factor. At ω the Butterworth filter (S. Butterworth, 1930) has gain 1/√2
+/// for every order. The critically damped filter has gain 2^(-n/2), but never overshoots a step. Factors of
+/// second order are cascaded.
 #include "engine/block.h"
 
 namespace loopwright::blocks {
@@ -16,13 +16,13 @@ template <class Real> struct LowPass {
   int order = 2;
   Real cutoff, initial = 0.0;
   LowPassShape shape = LowPassShape::butterworth;
-  std::vector<double> damping;  // of each factor of second order
+  std::vector<double> damping;  // of each second-order factor
   struct In {
     Real u;
   };
   struct State {
     Vector<Real> x;
-  };  // an odd order: one lag; then value and scaled rate of each factor
+  };  // odd order: one lag first; then value and scaled rate of each factor
   struct Out {
     Real y;
   };

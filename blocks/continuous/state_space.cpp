@@ -1,7 +1,6 @@
 /// dx/dt = A x + B u,  y = C x + D u
 ///
-/// Inputs act on the outputs at once through D. Where D is zero use StrictlyProperStateSpace, which may stand
-/// in a loop.
+/// D is direct feedthrough. If D is zero, use StrictlyProperStateSpace, which may be part of a loop.
 #include "blocks/continuous/state_space_check.h"
 
 namespace loopwright::blocks {

@@ -1,4 +1,4 @@
-/// The rules between the matrices of a state space, shared by its three blocks.
+/// The conditions on the matrices of a state space, shared by its three blocks.
 #pragma once
 #include "engine/block.h"
 #include "models/signal/matrix_rows.h"
@@ -18,7 +18,7 @@ inline void check_matrix(const Checker& checker, const char* name, const MatrixR
     }
 }
 
-/// dx/dt = A x + B u, y = C x (+ D u), all from the file.
+/// dx/dt = A x + B u, y = C x (+ D u), all given in the file.
 inline void check_state_space(const Checker& checker, const MatrixRows<double>& A,
                               const MatrixRows<double>& B, const MatrixRows<double>& C,
                               const MatrixRows<double>* D, const std::vector<double>& initial) {

@@ -1,6 +1,6 @@
 /// dx/dt = A x + B u,  y = C x
 ///
-/// The outputs depend on the states alone: the block may stand in a loop.
+/// The outputs depend only on the states: the block may be part of a loop.
 #include "blocks/continuous/state_space_check.h"
 
 namespace loopwright::blocks {

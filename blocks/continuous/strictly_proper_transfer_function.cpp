@@ -1,8 +1,9 @@
 /// Y(s)/U(s) = (b₁ sⁿ⁻¹ + … + bₙ) / (a₀ sⁿ + … + aₙ)
 ///
-/// The output depends on the states alone: the block may stand in a loop. It is a type of its own beside
-/// TransferFunction because what feeds through is a property of a type, known before any coefficient is. The
-/// states are a controllable canonical form; from about the sixth order on, split into factors of low order.
+/// The output depends only on the states: the block may be part of a loop. It is a type separate from
+/// TransferFunction because feedthrough is a property of the type, known before the coefficients. The states
+/// are in controllable canonical form. From about the sixth order on, split the function into factors of low
+/// order.
 #include "engine/block.h"
 #include "models/signal/canonical_form.h"
 

@@ -1,9 +1,9 @@
 /// Y(s)/U(s) = (b₀ sⁿ + … + bₙ) / (a₀ sⁿ + … + aₙ)
 ///
-/// The input acts on the output at once, so it cannot stand in a loop without another state: for a numerator
-/// of lower degree than the denominator use StrictlyProperTransferFunction, which can. The states are a
-/// controllable canonical form; from about the sixth order on, split into factors of low order, whose
-/// coefficients do not cancel.
+/// The block has direct feedthrough, so it cannot be part of a loop without another state. For a numerator of
+/// lower degree than the denominator use StrictlyProperTransferFunction, which can. The states are in
+/// controllable canonical form. From about the sixth order on, split the function into factors of low order,
+/// whose coefficients do not cancel.
 #include "engine/block.h"
 #include "models/signal/canonical_form.h"
 

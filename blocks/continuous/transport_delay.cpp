@@ -1,9 +1,9 @@
-/// y(t) = u(t - delay), until then initial
+/// y(t) = u(t - delay); before that, initial
 ///
-/// The history is kept at accepted solver steps, thinned to points at most delay/points or one step apart,
-/// and read by straight lines: the error is at most gap²/8 · max|d²u/dt²|; a jump of u may be smeared over
-/// one gap. A solver step is never longer than the delay. The output needs no present input: the block may
-/// stand in a loop.
+/// The history consists of points at accepted solver steps, at most delay/points or one step apart, and is
+/// interpolated linearly. The error is at most gap²/8 · max|d²u/dt²|; a jump of u may be smeared over one
+/// gap. A solver step is never longer than the delay. The output does not depend on the present input: the
+/// block may be part of a loop.
 #include "engine/block.h"
 
 namespace loopwright::blocks {
@@ -18,7 +18,7 @@ struct TransportDelay {
     double y;
   };
   struct Memory {
-    Vector<double> time, value;  // rings
+    Vector<double> time, value;  // ring buffers
     double begin;                // s
     int newest, count;
   };
@@ -42,12 +42,12 @@ struct TransportDelay {
         buffer(&Memory::time, &TransportDelay::capacity), buffer(&Memory::value, &TransportDelay::capacity),
         crossing(&Crossings::arrival, "arrival", Crossing::rising));
   }
-  // Of any three points in a row the outer ones are at least delay/points apart, jumps excepted.
+  // Of any three consecutive points the outer ones are at least delay/points apart, except at jumps.
   int capacity() const { return 2 * points + 16; }
   double until_arrival(const Instant& now, const Memory& memory) const {
     return memory.count ? (memory.begin + delay) - now.time : delay;
   }
-  /// By how much now - delay may differ from the very time that is meant, s: each is rounded.
+  /// Largest rounding error of now - delay, s.
   static double rounding(const Instant& now) { return 0x1p-50 * std::abs(now.time); }
   void decide(const Instant& now, const Memory& memory, Mode& mode) const {
     mode.has_arrived = until_arrival(now, memory) <= std::max(1e-12 * delay, rounding(now)) ? 1.0 : 0.0;
@@ -94,9 +94,10 @@ struct TransportDelay {
     memory.count = std::min(memory.count + 1, capacity());
     memory.time[size_t(memory.newest)] = time, memory.value[size_t(memory.newest)] = value;
   }
-  /// A time within rounding of one that is kept is that one: what was kept comes back unchanged.
+  /// A time that agrees with a stored time within rounding is that time: stored values are returned
+  /// unchanged.
   double interpolate(const Memory& memory, double wanted, double rounding) const {
-    int near = 0, far = memory.count - 1;  // how far back: time[near] > last >= time[far]
+    int near = 0, far = memory.count - 1;  // number of points back: time[near] > last >= time[far]
     if (far < 0) return initial;
     const double last = wanted + rounding;
     if (last >= memory.time[slot(memory, near)]) return memory.value[slot(memory, near)];

@@ -1,8 +1,8 @@
 /// g[k] = a g[k-1] + (1-a) w[k-1] u[k-1],  a = e^(-ωT);  w rises from 0 to `weight` during `ramp_time` after
 /// `start_time`
 ///
-/// Brings the prediction of a learned disturbance into a loop: softly, late by 1/ω and one sample, without an
-/// algebraic loop. Give `command` of a DisturbanceObserver this output too.
+/// Brings the prediction of a learned disturbance into a loop gradually, with a delay of 1/ω and one sample
+/// and without an algebraic loop. Connect this output to `command` of a DisturbanceObserver too.
 #include "engine/block.h"
 #include "models/real/exact_times.h"
 

@@ -1,8 +1,8 @@
 /// d̂ = Q Pₙ⁻¹ y - Q u,  Q = (ω/(s+ω))ⁿ,  Pₙ = 1/(M s² + B s)
 ///
-/// Wired as DisturbanceObserver: `command` reads the clipped command plus every compensation that was
-/// subtracted elsewhere. Q u depends on past commands alone, so the loop through the command is no algebraic
-/// one.
+/// Wired as DisturbanceObserver: `command` reads the limited command plus every compensation that was
+/// subtracted elsewhere. Q u depends only on past commands, so the loop through the command is not an
+/// algebraic loop.
 #include "engine/block.h"
 
 namespace loopwright::blocks {
@@ -18,7 +18,7 @@ template <class Real> struct ContinuousDisturbanceObserver {
   };
   struct State {
     Vector<Real> lags;
-  };  // of position, velocity, command, command once more, estimate
+  };  // of position, velocity, command, command again, estimate
   static constexpr auto describe() {
     using B = ContinuousDisturbanceObserver;
     return block(

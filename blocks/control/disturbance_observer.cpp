@@ -1,13 +1,14 @@
 /// d̂ = Q Pₙ⁻¹ y - Q u,  Q = (ω/(s+ω))ⁿ,  Pₙ = 1/(M s² + B s), by Tustin's rule
 ///
-/// Wiring. Subtract `disturbance` from the command. `command` reads what was sent to the plant after
-/// clipping, plus every compensation g that was subtracted elsewhere (learned, for example): u + g. So
-/// observer and compensation do not both cancel the same disturbance; with a perfect g the estimate goes to
-/// zero.
+/// Wiring. Subtract `disturbance` from the command. Connect `command` to u + g: the command sent to the plant
+/// after limiting, u, plus every compensation subtracted elsewhere (a learned one, for example), g. The
+/// observer and the compensation then do not both cancel the same disturbance; with a perfect g the estimate
+/// goes to zero.
 ///
-/// `command_path`. "matched": Q u is Q(z) · 2/(z+1), which fits a plant behind a zero-order hold: its samples
-/// have the same factor (z+1)/2 over Tustin's rule. "delayed": Q(z)/z. Both use past commands alone: no
-/// algebraic loop. After K. Ohnishi, M. Shibata, T. Murakami, IEEE/ASME Trans. Mechatronics 1 (1996).
+/// `command_path`. "matched": Q u is Q(z) · 2/(z+1), which fits a plant behind a zero-order hold, as its
+/// samples have the same factor (z+1)/2 relative to Tustin's rule. "delayed": Q(z)/z. Both use only past
+/// commands, so there is no algebraic loop. After K. Ohnishi, M. Shibata, T. Murakami, IEEE/ASME Trans.
+/// Mechatronics 1 (1996).
 #include "engine/block.h"
 #include "models/signal/first_order.h"
 
@@ -31,7 +32,7 @@ template <class Real> struct DisturbanceObserver {
   struct Memory {
     Real measured, velocity, slow_velocity, acceleration;  // of the last sample, filtered
     Real command, command_before, slow_command, slower_command;
-    Real estimate, slow_estimate;  // of the second and of the third order
+    Real estimate, slow_estimate;  // of second and of third order
   };
   static constexpr auto describe() {
     using B = DisturbanceObserver;
@@ -63,7 +64,7 @@ template <class Real> struct DisturbanceObserver {
     now.velocity = derivative.next(now.measured, last.measured, last.velocity);
     now.slow_velocity = lag.next(now.velocity, last.velocity, last.slow_velocity);
     now.acceleration = derivative.next(now.velocity, last.velocity, last.acceleration);
-    // One lag with both its weights on the last command is (1 + z⁻¹) → 2 z⁻¹, that is 2/(z+1).
+    // A lag with both its weights on the last command means (1 + z⁻¹) → 2 z⁻¹, that is 2/(z+1).
     const Real before = command_path == CommandPath::matched ? last.command : last.command_before;
     now.slow_command = lag.next(last.command, before, last.slow_command);
     now.slower_command = lag.next(now.slow_command, last.slow_command, last.slower_command);

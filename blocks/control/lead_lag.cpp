@@ -1,6 +1,6 @@
 /// Y/U = K (1 + s/ω_z) / (1 + s/ω_p), by Tustin's rule
 ///
-/// A lead, which advances the phase, for ω_z < ω_p; a lag for ω_z > ω_p. K is the gain at rest.
+/// A lead, which advances the phase, for ω_z < ω_p; a lag for ω_z > ω_p. K is the DC gain.
 #include "engine/block.h"
 
 namespace loopwright::blocks {

@@ -1,6 +1,6 @@
 /// u = M a + B v + F sign(v)
 ///
-/// F is the Coulomb friction to overcome; at rest it gives nothing, and its sign changes by a jump.
+/// F is the Coulomb friction. Its term is zero at rest and jumps when the sign of v changes.
 #include "blocks/math/sides.h"
 
 namespace loopwright::blocks {

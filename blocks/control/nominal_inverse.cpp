@@ -1,7 +1,7 @@
 /// û = Q Pₙ⁻¹ y,  Q = (ω/(s+ω))ⁿ,  Pₙ = 1/(M s² + B s), by Tustin's rule
 ///
-/// The command that a nominal mass with viscous friction must have been given, disturbance included, to move
-/// as it was measured; late by n/ω. It starts at rest at `initial`.
+/// The command, disturbance included, that moves a nominal mass with viscous friction as measured; delayed by
+/// n/ω. It starts at rest at `initial`.
 #include "engine/block.h"
 #include "models/signal/first_order.h"
 

@@ -1,7 +1,7 @@
 /// Y/U = (s² + 2 ζ₀ ω s + ω²) / (s² + 2 ζ₁ ω s + ω²), by Tustin's rule with ω mapped exactly
 ///
-/// At ω the gain is ζ₀/ζ₁: `depth_damping` 0 removes it altogether; `width_damping` sets how wide the notch
-/// is. The gain at rest is 1. ω must lie below half the sampling frequency, π/T.
+/// At ω the gain is ζ₀/ζ₁: with `depth_damping` 0 it is zero. `width_damping` sets the width of the notch.
+/// The DC gain is 1. ω must be less than half the sampling frequency, π/T.
 #include "engine/block.h"
 
 namespace loopwright::blocks {

@@ -1,6 +1,6 @@
 /// u = Kp e + Kd ω s/(s+ω) e,  e = reference - measured, by Tustin's rule
 ///
-/// With "measurement" the derivative acts on -measured alone, so that a jump of the reference gives no peak.
+/// With "measurement" the derivative acts only on -measured, so that a jump of the reference gives no peak.
 #include "engine/block.h"
 #include "models/signal/first_order.h"
 

@@ -1,9 +1,9 @@
 /// v = Kp (b r - y) + Ki ∫(r - y) dt + Kd ω s/(s+ω) (c r - y),  u = v within [low, high], by Tustin's rule
 ///
-/// Against windup, while v lies outside the limits: "back_calculation" draws the integral by tracking_gain ·
-/// (u - v), in 1/s; "clamping" stops it where the error would drive v further out. Parallel form with
-/// setpoint weights b and c after K. J. Åström, T. Hägglund, Advanced PID Control (2006), sections 3.3
-/// to 3.5.
+/// Anti-windup, while v is outside the limits: "back_calculation" changes the integral at the rate
+/// tracking_gain · (u - v), with tracking_gain in 1/s; "clamping" stops the integral where the error would
+/// drive v further out. Parallel form with setpoint weights b and c after K. J. Åström, T. Hägglund, Advanced
+/// PID Control (2006), sections 3.3 to 3.5.
 #include "engine/block.h"
 #include "models/signal/first_order.h"
 
@@ -19,7 +19,7 @@ template <class Real> struct PidController {
                                     initial = 0.0;
   AntiWindup anti_windup = AntiWindup::clamping;
   TustinDerivative<Real> filter;
-  Real integral_step, tracked;  // Ki T/2; share of the excess that one sample takes off the integral
+  Real integral_step, tracked;  // Ki T/2; fraction of the excess removed from the integral per sample
   struct In {
     Real reference, measured;
   };

@@ -1,6 +1,6 @@
 /// Y/U = (ω/(s+ω))ⁿ, by Tustin's rule
 ///
-/// The gain at rest is exactly 1: a constant passes unchanged. The group delay at low frequencies is n/ω.
+/// The DC gain is exactly 1: a constant passes unchanged. The group delay at low frequencies is n/ω.
 #include "engine/block.h"
 #include "models/signal/first_order.h"
 
@@ -18,7 +18,7 @@ template <class Real> struct QFilter {
   };
   struct Memory {
     Real signal[5];
-  };  // input, then what each lag makes of the one before
+  };  // the input, then the output of each lag
   static constexpr auto describe() {
     return block(
         "The low-pass filter of a disturbance observer, sampled.",

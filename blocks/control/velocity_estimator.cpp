@@ -1,8 +1,8 @@
 /// filtered_derivative: V/X = ω s/(s+ω), by Tustin's rule;  backward_difference: v[k] = (x[k] - x[k-n]) / (n
 /// T)
 ///
-/// The backward difference is the mean velocity of the last n samples: it lags by n T/2, and an encoder step
-/// of δ shows as δ/(n T). The filter lags by 1/ω. Both start at rest at `initial`.
+/// The backward difference is the mean velocity over the last n samples. It lags by n T/2, and an encoder
+/// step of δ appears as δ/(n T). The filter lags by 1/ω. Both start at rest at `initial`.
 #include "engine/block.h"
 #include "models/signal/first_order.h"
 

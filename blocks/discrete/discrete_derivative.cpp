@@ -1,6 +1,6 @@
 /// y[k] = (u[k] - u[k-1]) / T
 ///
-/// An encoder step of δ shows as δ/T; VelocityEstimator filters.
+/// An encoder step of δ appears as δ/T; VelocityEstimator filters.
 #include "engine/block.h"
 
 namespace loopwright::blocks {

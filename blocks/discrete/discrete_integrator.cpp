@@ -1,9 +1,9 @@
 /// forward: y[k] = y[k-1] + T u[k-1];  backward: y[k] = y[k-1] + T u[k];  trapezoidal: y[k] = y[k-1] + T/2
 /// (u[k-1] + u[k])
 ///
-/// Where it stands in a loop, wire `before`, which needs no present input: with "forward" it is equal to `y`.
-/// The signal is taken as zero before the start. A reset sets y at its sample ("forward": at the next, as all
-/// inputs).
+/// In a loop, connect `before`, which does not depend on the present input; with "forward" it equals `y`. The
+/// signal is taken as zero before the start. A reset sets y at its sample (with "forward" at the next sample,
+/// like all inputs).
 #include "engine/block.h"
 
 namespace loopwright::blocks {
@@ -53,7 +53,7 @@ template <class Real> struct DiscreteIntegrator {
   }
   void start(Memory& memory) const {
     memory = {initial, Real(1.0)};
-  }  // a trigger that is high at the start has not risen
+  }  // a trigger that is high at the start is no rising edge
   Real limited(const Real& y) const { return minimum(maximum(y, low), high); }
   auto fires(const In& in, const Memory& memory) const {
     return (in.reset > 0.0) & (memory.trigger_was_high < 0.5);

@@ -1,6 +1,6 @@
 /// Y(z)/U(z) = (b₀ + b₁ z⁻¹ + …) / (a₀ + a₁ z⁻¹ + …), in transposed direct form II
 ///
-/// The input acts at once, also where b₀ is zero. To stand in a loop, take out one z⁻¹ and put a UnitDelay in
+/// The block has direct feedthrough, even if b₀ is zero. In a loop, factor out one z⁻¹ and put a UnitDelay in
 /// front.
 #include "engine/block.h"
 

@@ -4,10 +4,10 @@
 
 namespace loopwright::blocks {
 
-/// Between samples y holds the mean of what the late staircase would have been: what an integrating plant
-/// feels of a held command that comes late by any time, at every sample. What it also feels is the slope: how
-/// much the straight line with the same first moment changes over a sample. TransportDelay delays a
-/// continuous signal.
+/// Between samples, y is the mean of the exactly delayed staircase. It therefore has, at every sample, the
+/// same effect on an integrating plant as a held command with any delay. `slope` is the other effect on such
+/// a plant: the change over one sample of the straight line with the same first moment. TransportDelay delays
+/// a continuous signal.
 struct FractionalDelay {
   double delay = 0, initial = 0;
   int samples = 100;
@@ -19,7 +19,7 @@ struct FractionalDelay {
     double y, slope;
   };
   struct Memory {
-    Vector<double> line;  // a ring
+    Vector<double> line;  // a ring buffer
     int64_t newest;
   };
   static constexpr auto describe() {
@@ -60,7 +60,7 @@ struct FractionalDelay {
   }
 
  private:
-  /// A delay of whole samples is one of whole samples, although delay and period are rounded.
+  /// A delay of an integer number of samples gives an integer, although delay and period are rounded.
   double in_samples() const {
     constexpr double rounding = 1e-12;
     const double late = delay / period, whole = std::round(late);

@@ -1,9 +1,9 @@
 /// y[k] = (u[k] + u[k-1] + … + u[k-n+1]) / n
 ///
-/// Nothing is ever subtracted, so no rounding error builds up and an outlier is forgotten after n samples to
-/// the last bit. The samples are taken in rounds of n: the window is the first part of this round, a running
-/// sum, and the last part of the round before, one of its sums from the end (the van Herk and Gil-Werman
-/// scheme, 1992). One addition a sample, and n more when a round ends.
+/// Nothing is ever subtracted: rounding errors do not accumulate, and after n samples an outlier has no
+/// effect to the last bit. The samples are processed in rounds of n. The window is the first part of this
+/// round, a running sum, and the last part of the round before, one of its sums from the end (van Herk and
+/// Gil-Werman, 1992). The cost is one addition per sample, and n more at the end of a round.
 #include "engine/block.h"
 
 namespace loopwright::blocks {
@@ -18,8 +18,8 @@ template <class Real> struct MovingAverage {
     Real y;
   };
   struct Memory {
-    Vector<Real> line;  // up to `place` the samples of this round; from there on, sums from the end of the
-                        // round before
+    Vector<Real> line;  // up to `place` the samples of this round; after it, sums from the end of the round
+                        // before
     Real sum;           // of this round
     int64_t place;
   };

@@ -1,6 +1,6 @@
 /// y(t) = u(t_k) for t_k ≤ t < t_{k+1}
 ///
-/// Put it where a continuous signal enters a sampled controller, with the controller's sample time.
+/// Place it where a continuous signal enters a sampled controller, with the sample time of the controller.
 #include "engine/block.h"
 
 namespace loopwright::blocks {
@@ -14,7 +14,7 @@ template <class Real> struct ZeroOrderHold {
   };
   struct Memory {
     Real held;
-  };  // what has memory must be given a sample time: without one it would hold nothing
+  };  // a block with memory must have a sample time; otherwise it would hold nothing
   static constexpr auto describe() {
     return block("Samples a signal and holds the sample until the next.", input(&In::u, "u", "$u", "Signal"),
                  output(&Out::y, "y", "$u", "The signal at the last sample"));

@@ -3,9 +3,9 @@
 
 namespace loopwright::blocks {
 
-/// The way in for a program that steps a run itself: it sets the parameters between steps, and the signal
-/// follows at once. Slope and bend let a signal that is known at samples move on within them. In a run from a
-/// file it is the parabola that the file says.
+/// The input for a program that steps a run itself. The program sets the parameters between steps, and the
+/// signal follows immediately. Slope and bend let a signal that is known at samples change within them. In a
+/// run from a file the signal is the parabola given by the parameters.
 template <class Real> struct ExternalSignal {
   Real value = 0.0, slope = 0.0, bend = 0.0, since = 0.0;
   struct Out {

@@ -1,7 +1,7 @@
-/// value = column(t) of a recording, held from sample to sample or joined by straight lines
+/// value = column(t) of a recording, held from sample to sample or interpolated linearly
 ///
-/// The file is read once, at check time. A sample counts as reached a millionth of its interval early: times
-/// that were printed with a few digits must not be late by a tick.
+/// The file is read once, during the check. A sample takes effect a millionth of its interval early, so that
+/// times printed with few digits are not late by a tick.
 #include <algorithm>
 #include <memory>
 #include "engine/block.h"
@@ -17,13 +17,13 @@ constexpr auto names_of(Beyond) { return std::array<std::string_view, 2>{"hold",
 
 struct RecordedColumn {
   struct Table {
-    std::vector<double> time, begin, value;  // s, s, SI; begin: from when on the sample counts
+    std::vector<double> time, begin, value;  // s, s, SI; begin: time from which the sample is valid
   };
   std::string file, column, time_column, unit;
   Joined interpolation = Joined::hold;
   Beyond beyond = Beyond::hold;
   std::shared_ptr<const Table> table;
-  std::optional<Unit> known_unit;  ///< of the file or of `unit`; nothing where neither says one
+  std::optional<Unit> known_unit;  ///< of the file or of `unit`; nothing if neither has one
   struct Out {
     double value;
   };

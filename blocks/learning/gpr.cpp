@@ -2,8 +2,8 @@
 ///
 /// The model comes from `loopwright gp train` and is read once, when the diagram is compiled. Bring the
 /// prediction into a loop through a CompensationFilter, which also has the weight and its ramp. A prediction
-/// is a few table look-ups, off by less than a millionth of the prior deviation (see models/gp/table.h);
-/// "exact" evaluates the kernel instead.
+/// takes a few table look-ups; its error is less than a millionth of the prior deviation (see
+/// models/gp/table.h). "exact" evaluates the kernel instead.
 #include "blocks/learning/learned_disturbance.h"
 
 namespace loopwright::blocks {
@@ -17,7 +17,7 @@ struct Gpr {
   Untrained untrained = Untrained::hold;
   Prediction prediction = Prediction::table;
   std::shared_ptr<const ReadyModel> ready;
-  const gp::MeanTable* table = nullptr;  // of the model that is ready
+  const gp::MeanTable* table = nullptr;  // table of `ready`
   double homing_offset = 0;
   gp::Range trained;
   struct In {
@@ -53,7 +53,7 @@ struct Gpr {
     homing_offset = ready->learned.model.homing_offset;
     trained = ready->learned.model.trained[1];
   }
-  /// The first evaluation on a thread makes room for its sums; steps then allocate nothing.
+  /// The first evaluation on a thread allocates its buffers, so that steps allocate nothing.
   void prepare(double) {
     if (prediction == Prediction::exact) ready->posterior.mean({});
   }

@@ -1,7 +1,7 @@
-/// deviation = √var[d(x + v·lead, v)], how unsure a Gaussian process is of its prediction
+/// deviation = √var[d(x + v·lead, v)], the standard deviation of a Gaussian process prediction
 ///
-/// Of the disturbance itself, without the noise of an observation. It knows where there were no samples; it
-/// cannot know a wrong phase, payload or homing.
+/// It is the deviation of the disturbance itself, without the observation noise. It is large where there were
+/// no samples. It does not detect a wrong phase, payload or homing.
 #include <cmath>
 #include "blocks/learning/learned_disturbance.h"
 
@@ -46,7 +46,7 @@ struct GprDeviation {
     homing_offset = ready->learned.model.homing_offset;
     trained = ready->learned.model.trained[1];
   }
-  /// The first evaluation on a thread makes room for its sums; steps then allocate nothing.
+  /// The first evaluation on a thread allocates its buffers, so that steps allocate nothing.
   void prepare(double) { ready->posterior.variance({}); }
   Fault outputs(const In& in, Out& out) const {
     out.deviation = 0;

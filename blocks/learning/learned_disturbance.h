@@ -1,13 +1,13 @@
-/// What the blocks on learned models share: where they look, and what holds beyond the trained velocities.
+/// Shared by the blocks on learned models: the model inputs, and the behavior outside the trained velocities.
 #pragma once
 #include "blocks/learning/ready_model.h"
 
 namespace loopwright::blocks {
 
-/// - hold: the velocity is taken as the nearest trained one;
-/// - posterior: the kernel decides, which falls back to the mean and to what does not depend on velocity;
-/// - fault: the run stops when the velocity leaves the trained ones and rest by more than a twentieth of
-///   their span.
+/// - hold: the velocity is replaced by the nearest trained one;
+/// - posterior: the kernel decides; it returns to the mean and to the terms that do not depend on velocity;
+/// - fault: the run stops if the velocity is outside the range of rest and the trained velocities by more
+///   than a twentieth of their span.
 enum class Untrained { hold, posterior, fault };
 constexpr auto names_of(Untrained) { return std::array<std::string_view, 3>{"hold", "posterior", "fault"}; }
 
@@ -21,7 +21,7 @@ struct ModelInput {
     const double x = position - homing_offset + velocity * lead;
     return {x, untrained == Untrained::hold ? trained.clamp(velocity) : velocity};
   }
-  /// Of inputs that no model can say anything of. Then nothing is predicted.
+  /// For inputs that are not finite: no prediction is possible.
   static Fault not_finite(double position, double velocity) {
     return fault_if(!(std::isfinite(position) && std::isfinite(velocity)),
                     "the position or the velocity that a learned model is asked at is no finite number");

@@ -11,7 +11,7 @@
 namespace loopwright {
 namespace {
 
-// The file as structs whose descriptions serve reading and writing alike.
+// The file as structs. Their descriptions serve reading and writing.
 
 struct ShapeEntry {
   gp::Shape::Kind kind = gp::Shape::Kind::constant;
@@ -177,7 +177,7 @@ std::string checksum_of(Value file) {
   return content_hash(to_json(file));
 }
 
-// Between entries and the model.
+// Conversion between entries and the model.
 
 ShapeEntry entry_of(const gp::Shape& s) { return {s.kind, s.length, s.period}; }
 gp::Shape shape_of(const ShapeEntry& e) { return {e.kind, e.length, e.period}; }
@@ -249,8 +249,8 @@ LearnedModel model_of(const ModelEntry& e) {
   return learned;
 }
 
-/// What no single entry can say: that lists fit each other. A file with a right checksum fails here only when
-/// a program wrote it wrong.
+/// Checks that no single entry allows: that the lists fit each other. A file with a valid checksum fails here
+/// only if a program wrote it incorrectly.
 std::string contradiction(const ModelEntry& e) {
   const auto equally_long = [](const SamplesEntry& s) {
     return s.position.size() == s.label.size() && s.velocity.size() == s.label.size();
@@ -289,7 +289,7 @@ std::string contradiction(const ModelEntry& e) {
   return "";
 }
 
-/// Whether this is a model file of this version that nobody has touched.
+/// Whether this is an unmodified model file of this version.
 bool is_intact(const Value& file, const Reader& reader) {
   const Value::Member* version = file.find("loopwright_gp_model");
   if (!version || version->value.kind != Value::Kind::number) {

@@ -1,4 +1,4 @@
-/// Learned disturbances as files: JSON, versioned, with a checksum over all that follows from training.
+/// Learned disturbances as files: JSON, versioned, with a checksum over all results of training.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,30 +8,30 @@
 
 namespace loopwright {
 
-/// A model with what a reader wants to know about it.
+/// A model with the information about it that a reader needs.
 struct LearnedModel {
   gp::Model model;
   std::string title;
   std::string position_unit = "m", velocity_unit = "m/s", label_unit;  ///< SI
-  std::vector<std::string> files;                                      ///< recordings it was trained on
-  std::string data_hash;  ///< of the samples, as content_hash() gives it
+  std::vector<std::string> files;                                      ///< recordings used for training
+  std::string data_hash;  ///< of the samples, by content_hash()
   size_t sample_count = 0;
   std::vector<gp::Prior> priors;      ///< in the order of gp::parameters_of()
   double log_evidence = 0;            ///< log marginal likelihood at the hyper-parameters
   double residual_rms = 0;            ///< label unit, over the samples
-  std::vector<std::string> warnings;  ///< that training gave
-  gp::Samples shown;                  ///< some of the samples, for pictures
+  std::vector<std::string> warnings;  ///< given by training
+  gp::Samples shown;                  ///< some of the samples, for plots
 };
 
 inline constexpr int model_file_version = 1;
 
-/// Problems are placed in the model file, or at `reference` when it cannot be read at all. The result is of
-/// use only when no error was added.
+/// Problems have their source location in the model file, or at `reference` if the file cannot be read at
+/// all. The result is valid only if no error was added.
 LearnedModel read_model(const std::string& path, const Place& reference, Problems& problems);
-/// The same from what the file holds.
+/// The same for a file already in memory.
 LearnedModel read_model(std::shared_ptr<const SourceFile> file, Problems& problems);
 
-/// Whole or not at all; throws std::runtime_error as write_file().
+/// Writes the file completely or not at all; throws std::runtime_error as write_file().
 void write_model(const std::string& path, const LearnedModel& model);
 
 }  // namespace loopwright

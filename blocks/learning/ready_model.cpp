@@ -7,7 +7,7 @@
 namespace loopwright {
 namespace {
 
-/// Null after a problem, also one of reading the source.
+/// Null after a problem, including a problem in reading the source.
 std::shared_ptr<const ReadyModel> prepare(const Checker& checker, std::string_view name,
                                           const std::string& file,
                                           const std::shared_ptr<const SourceFile>& source) {
@@ -47,17 +47,17 @@ std::vector<UnitClaim> ReadyModel::unit_claims() const {
 std::shared_ptr<const ReadyModel> ready_model(const Checker& checker, std::string_view name,
                                               const std::string& file) {
   static std::mutex mutex;
-  static std::map<std::string, std::weak_ptr<const ReadyModel>> in_use;  // by what the file holds
+  static std::map<std::string, std::weak_ptr<const ReadyModel>> in_use;  // by content of the file
   const std::string path = checker.resolve_file(name, file);
   const auto source = read_source(path, checker.place(name), checker.problems());
-  const std::string key = source ? checker.problems().files().back().hash : "";  // just noted
+  const std::string key = source ? checker.problems().files().back().hash : "";  // just added
   const std::lock_guard lock(mutex);
   std::erase_if(in_use, [](const auto& entry) { return entry.second.expired(); });
   if (const auto found = in_use.find(key); found != in_use.end())
     if (auto model = found->second.lock()) return model;
   const size_t before = checker.problems().list().size();
   auto model = prepare(checker, name, file, source);
-  // What was said of a model is said again each time.
+  // A model with problems is not kept: its problems are reported for each use.
   if (model && checker.problems().list().size() == before) in_use[key] = model;
   return model;
 }

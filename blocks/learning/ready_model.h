@@ -1,4 +1,4 @@
-/// Learned models made ready to predict, shared by all blocks that name the same file.
+/// Learned models prepared for prediction, shared by all blocks that name the same file.
 #pragma once
 #include <memory>
 #include <mutex>
@@ -11,12 +11,12 @@ namespace loopwright {
 
 struct ReadyModel {
   explicit ReadyModel(LearnedModel m) : learned(std::move(m)), posterior(learned.model) {}
-  /// Made when it is first asked for.
+  /// Built on first use.
   const gp::MeanTable& table() const {
     std::call_once(tabulated_, [this] { table_.emplace(posterior); });
     return *table_;
   }
-  /// Of the ports of a block that predicts by it.
+  /// For the ports of a block that predicts with this model.
   std::vector<UnitClaim> unit_claims() const;
   const LearnedModel learned;
   const gp::Posterior posterior;
@@ -26,8 +26,8 @@ struct ReadyModel {
   mutable std::optional<gp::MeanTable> table_;
 };
 
-/// The model that the parameter `name` names; null after a problem. A file that is in use and has not changed
-/// is not made ready again: a sweep loads its diagram for many runs.
+/// The model named by the parameter `name`; null after a problem. A file that is in use and has not changed
+/// is not prepared again: a sweep loads its diagram for many runs.
 std::shared_ptr<const ReadyModel> ready_model(const Checker& checker, std::string_view name,
                                               const std::string& file);
 

@@ -1,17 +1,17 @@
 /// y = formula(names[0], names[1], …)
 ///
-/// The formula is muParser's: + - * / ^, comparisons, && || !, c ? a : b, sin, cos, tan, asin, acos, atan,
-/// atan2, sinh, cosh, tanh, exp, ln, log2, log10, sqrt, abs, sign, rint, min, max, sum, avg; `pi`, and `_e`
-/// for Euler's number. Units are checked as in the expression of a parameter; π is a half cycle in radians. A
-/// variable-step solver is not told of its kinks and jumps: where that matters, blocks serve better. A result
-/// that is infinite or no number stops the run.
+/// The formula is evaluated by muParser: + - * / ^, comparisons, && || !, c ? a : b, sin, cos, tan, asin,
+/// acos, atan, atan2, sinh, cosh, tanh, exp, ln, log2, log10, sqrt, abs, sign, rint, min, max, sum, avg;
+/// `pi`, and `_e` for Euler's number. Units are checked as in the expression of a parameter; π is a half
+/// cycle in radians. A variable-step solver does not locate the kinks and jumps of the formula; where that
+/// matters, use blocks instead. An infinite or NaN result stops the run.
 #include <algorithm>
 #include "engine/block.h"
 #include "engine/diagram/formula_parser.h"
 
 namespace loopwright::blocks {
 
-/// A compiled formula with places for its variables. A copy is empty: the compiled code points into its own
+/// A compiled formula with storage for its variables. A copy is empty, as the compiled code points to its own
 /// variables.
 struct Formula {
   FormulaParser parser;
@@ -20,7 +20,7 @@ struct Formula {
   Formula(const Formula&) {}
   Formula& operator=(const Formula&) { return *this; }
 
-  /// Throws mu::ParserError. `half_turn` takes the place of π, for one who asks what it does to the result.
+  /// Throws mu::ParserError. `half_turn` replaces π, to determine its effect on the result.
   void compile(const std::string& text, const std::vector<std::string>& names, double* half_turn = nullptr) {
     parser = FormulaParser();
     if (half_turn)
@@ -30,14 +30,14 @@ struct Formula {
     variables.assign(names.size(), 1.0);
     for (size_t i = 0; i < names.size(); ++i) parser.DefineVar(names[i], &variables[i]);
     parser.set_formula(text);
-    parser.Eval();  // compiles: later calls do not allocate
+    parser.Eval();  // compiles the formula, so that later calls do not allocate
   }
 };
 
 struct Expression {
   std::string formula;
   std::vector<std::string> names;
-  mutable Formula compiled;  // belongs to one run: muParser evaluates with a stack of its own
+  mutable Formula compiled;  // belongs to one run: muParser has its own evaluation stack
   struct In {
     Many<double> arguments;
   };
@@ -76,7 +76,7 @@ struct Expression {
   FormulaUnit formula_unit(std::span<const Unit> of_wires) const {
     FormulaUnit result;
     result.parameter = "formula";
-    if (of_wires.size() != names.size()) return result;  // told where the shapes are checked
+    if (of_wires.size() != names.size()) return result;  // reported by the check of shapes
     std::vector<Quantity> arguments;
     for (size_t i = 0; i < of_wires.size(); ++i) {
       arguments.push_back({1.0, of_wires[i]});
@@ -92,7 +92,7 @@ struct Expression {
     try {
       rescaled.compile(formula, names, &half_turn);
       result.finding = find_unit(at, arguments, result.unit);
-    } catch (const mu::ParserError&) {  // told by check
+    } catch (const mu::ParserError&) {  // reported by check
     }
     return result;
   }

@@ -1,9 +1,9 @@
-/// y = table(u): straight lines or monotone cubic pieces through given points
+/// y = table(u): linear or monotone cubic interpolation of given points
 ///
 /// The cubic pieces are smooth (once differentiable) and do not overshoot the points: slopes by F. N. Fritsch
-/// and J. Butland, SIAM J. Sci. Stat. Comput. 5, 1984, ends by three-point differences limited as in C.
-/// Moler, Numerical Computing with MATLAB, 2004. Beyond the ends: the last value, the straight continuation,
-/// or a stop of the run.
+/// and J. Butland, SIAM J. Sci. Stat. Comput. 5, 1984; at the ends three-point differences, limited as in C.
+/// Moler, Numerical Computing with MATLAB, 2004. Outside the breakpoints: the last value, linear
+/// extrapolation, or a fault that stops the run.
 #include "blocks/math/table.h"
 
 namespace loopwright::blocks {

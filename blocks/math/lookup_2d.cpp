@@ -1,7 +1,7 @@
 /// y = table(u, v), bilinear between the four points around (u, v)
 ///
-/// `values` has a row for each breakpoint of u and a column for each breakpoint of v. Beyond the ends: the
-/// value at the edge, the continuation of the outermost cell, or a stop of the run.
+/// `values` has a row for each breakpoint of u and a column for each breakpoint of v. Outside the
+/// breakpoints: the value at the edge, extrapolation of the outermost cell, or a fault that stops the run.
 #include "blocks/math/table.h"
 
 namespace loopwright::blocks {

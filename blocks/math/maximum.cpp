@@ -34,7 +34,7 @@ template <class Real> struct Maximum {
       greatest = maximum(in.terms[i], greatest);
     }
   }
-  /// How far the greatest is above all others.
+  /// Difference between the greatest term and the greatest of the others.
   void crossings(const In& in, const Mode& mode, Crossings& value) const {
     Real others = -1e300, chosen = 0.0;
     for (int i = 0; i < in.terms.size(); ++i) {

@@ -33,7 +33,7 @@ template <class Real> struct Minimum {
       least = minimum(in.terms[i], least);
     }
   }
-  /// How far the least is below all others.
+  /// Difference between the least of the other terms and the least term.
   void crossings(const In& in, const Mode& mode, Crossings& value) const {
     Real others = 1e300, chosen = 0.0;
     for (int i = 0; i < in.terms.size(); ++i) {

@@ -1,7 +1,7 @@
 /// product = factor₁ ×/÷ factor₂ …
 ///
-/// Factors may have different units. Division by exactly zero stops the run; near zero the result is as IEEE
-/// 754 has it.
+/// Factors may have different units. Division by exactly zero stops the run; near zero the result follows
+/// IEEE 754.
 #include "engine/block.h"
 
 namespace loopwright::blocks {

@@ -1,8 +1,8 @@
 /// y = q · round(u / q), halves to even
 ///
 /// With a sample time it rounds at its samples. Without one it is continuous, and a variable-step solver
-/// stops at every step of the staircase that reaches a state: a sensor that a sampled controller reads is
-/// given the sample time of its reader.
+/// stops at every step of the staircase that affects a state. Give a sensor that is read by a sampled
+/// controller the sample time of this controller.
 #include "blocks/math/sides.h"
 
 namespace loopwright::blocks {

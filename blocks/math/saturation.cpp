@@ -29,7 +29,7 @@ template <class Real> struct Saturation {
   }
   void outputs(const In& in, Out& out) const { out.y = minimum(maximum(in.u, low), high); }
   void crossings(const In& in, Crossings& value) const {
-    value.low = minimum(Real(in.u - low), Real(1e300));  // finite without a limit, too
+    value.low = minimum(Real(in.u - low), Real(1e300));  // finite also without a limit
     value.high = maximum(Real(in.u - high), Real(-1e300));
   }
 };

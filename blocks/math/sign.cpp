@@ -1,7 +1,7 @@
 /// y = 1 for u > 0, -1 for u < 0, 0 for u = 0
 ///
-/// In a loop that pushes u back to zero (dry friction) it chatters: a friction block with a smooth or a
-/// sticking law serves there.
+/// In a loop that drives u back to zero (dry friction) it chatters. Use a friction block with a smooth law or
+/// with sticking there.
 #include "blocks/math/sides.h"
 
 namespace loopwright::blocks {

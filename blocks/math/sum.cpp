@@ -42,7 +42,7 @@ template <class Real> struct Sum {
 
  private:
   bool is_added(int term) const { return signs.empty() || signs[size_t(term)] == '+'; }
-  /// Few terms, added without a loop.
+  /// Few terms: added without a loop.
   template <int count> LW_INLINE void add(const Many<Real>& terms, Out& out) const {
     Real sum = 0.0;
 #pragma GCC unroll 4

@@ -1,24 +1,24 @@
-/// What tables over breakpoints share.
+/// Shared by the tables over breakpoints.
 #pragma once
 #include <algorithm>
 #include "blocks/math/sides.h"
 
 namespace loopwright::blocks {
 
-/// What a table answers outside of its breakpoints.
+/// The result of a table outside its breakpoints.
 enum class Outside { hold, extrapolate, fault };
 constexpr auto names_of(Outside) { return std::array<std::string_view, 3>{"hold", "extrapolate", "fault"}; }
 
-/// The interval of u: i for breakpoints[i] ≤ u < breakpoints[i+1], -1 below all, size - 1 from the last one
-/// on.
+/// The interval of u: i for breakpoints[i] ≤ u < breakpoints[i+1], -1 below the first breakpoint, size - 1
+/// from the last one on.
 inline int interval_of(const std::vector<double>& breakpoints, double u) {
   return int(std::upper_bound(breakpoints.begin(), breakpoints.end(), u) - breakpoints.begin()) - 1;
 }
-/// The interval whose formula serves at u, from 0 to size - 2: outside, that of the first or last interval.
+/// The interval whose formula applies at u, from 0 to size - 2; outside, the first or last interval.
 inline size_t inner_interval(const std::vector<double>& breakpoints, double u) {
   return size_t(std::clamp(interval_of(breakpoints, u), 0, int(breakpoints.size()) - 2));
 }
-/// The distance of u to the borders of an interval; where there is none, a number of constant sign.
+/// The distance of u from the borders of an interval; where there is no border, a number of constant sign.
 inline double above_border(const std::vector<double>& breakpoints, int interval, double u) {
   return interval < 0 ? 1.0 : not_below_zero(u - breakpoints[size_t(interval)]);
 }

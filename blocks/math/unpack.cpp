@@ -1,4 +1,4 @@
-/// y = u[index], counted from 0
+/// y = u[index], index from 0
 #include "engine/block.h"
 
 namespace loopwright::blocks {

@@ -3,10 +3,10 @@
 
 namespace loopwright::blocks {
 
-/// What a loose gear does to a slow position: the output waits until the input has crossed the gap. Rate
-/// independent and without inertia; BacklashCoupling is the physical one. The last output y₋ is renewed at
-/// samples, fixed steps and events, and is exact there as long as the input does not turn round in between. A
-/// variable-step solver that meets neither samples nor events within a reversal would not see it: give the
+/// A gear with play at slow motion: the output does not move until the input has crossed the gap. It is rate
+/// independent and without inertia; BacklashCoupling is the physical model. The last output y₋ is updated at
+/// samples, fixed steps and events, and is exact there if the input does not reverse in between. A
+/// variable-step solver with neither samples nor events during a reversal would miss the reversal: give the
 /// block a sample_time there, or use BacklashCoupling.
 template <class Real> struct Backlash {
   Real gap, initial = 0.0;

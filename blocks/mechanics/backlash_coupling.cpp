@@ -4,8 +4,8 @@
 
 namespace loopwright::blocks {
 
-/// The physical backlash: two masses, each a block of its own, that touch after a gap. Subtract the force at
-/// the motor, add it at the load. Touching and parting are events for variable-step solvers.
+/// Physical backlash: two masses, each a block of its own, that touch after a gap. Subtract the force at the
+/// motor and add it at the load. Contact and separation are events for variable-step solvers.
 template <class Real> struct BacklashCoupling {
   Real gap, stiffness, damping = 0.0;
   GapContact<Real> contact;

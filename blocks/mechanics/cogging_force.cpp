@@ -3,9 +3,9 @@
 
 namespace loopwright::blocks {
 
-/// The attraction between magnets and teeth of an iron-core motor. Slope and modulation are optional: the
-/// slope lets the amplitude change with speed, the modulation lets it vary slowly along the track, from
-/// magnet to magnet.
+/// The attraction between magnets and teeth of an iron-core motor. Slope and modulation are optional. The
+/// slope changes the amplitude with speed. The modulation varies it slowly along the track, from magnet to
+/// magnet.
 template <class Real> struct CoggingForce {
   struct Harmonic {
     int order = 1;
@@ -65,7 +65,7 @@ template <class Real> struct CoggingForce {
   void outputs(const In& in, Out& out) const {
     if (harmonics.size() == 1 && !is_sloped && !is_modulated)
       out.force = term(harmonics.front(), in.position);
-    else  // in copies of their own: the single harmonic would store both inputs for this call too
+    else  // copies: otherwise the case of a single harmonic would store both inputs for this call too
       out.force = series(in.position, in.velocity);
   }
 
@@ -73,7 +73,7 @@ template <class Real> struct CoggingForce {
   LW_INLINE Real term(const Harmonic& h, const Real& position) const {
     return h.amplitude * sine(h.wave_number * position + h.phase);
   }
-  /// Not inlined: it would take the registers of the single harmonic.
+  /// Not inlined, as it would use the registers of the single harmonic.
   [[gnu::noinline]] Real series(Real position, Real velocity) const {
     Real sum = 0.0;
     for (const Harmonic& h : harmonics) sum += term(h, position);

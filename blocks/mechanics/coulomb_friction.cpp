@@ -5,10 +5,10 @@
 namespace loopwright::blocks {
 
 /// Dry friction with true sticking (models/friction/stiction.h). `applied` is the sum of all other forces on
-/// the mass, driving ones positive and resisting ones negative; it must not contain this friction. Left
-/// unwired, friction can only react to the velocity: the mass then creeps at F T/m instead of resting under a
-/// force F below the breakaway force. The settling time should not be shorter than a fixed solver step; the
-/// velocity at rest decays with it.
+/// the mass: driving forces positive, resisting forces negative. It must not contain this friction. If it is
+/// not wired, friction can only react to the velocity: under a force F below the breakaway force the mass
+/// then creeps at F T/m instead of resting. The settling time should not be shorter than a fixed solver step;
+/// it is the time constant of the velocity at rest.
 template <class Real> struct CoulombFriction {
   Real level, static_level = 0.0, mass, settling_time = 1e-3;
   Stiction<Real> stiction;

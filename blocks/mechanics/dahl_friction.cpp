@@ -3,10 +3,10 @@
 
 namespace loopwright::blocks {
 
-/// Hysteresis in position: after a reversal, friction goes over to its other value along exp(-|Δx| / x_c),
-/// whatever the speed. P. R. Dahl, "A Solid Friction Model", Aerospace Corporation, 1968. Holds a resting
-/// mass like a spring of stiffness Fc/x_c does; that spring on the moving mass must not be too stiff for a
-/// fixed step (Fc/x_c h² ≪ m), nor |v|/x_c (|v| h < 2 x_c with rk4).
+/// Hysteresis in position: after a reversal, friction approaches its other value as exp(-|Δx| / x_c), at any
+/// speed. P. R. Dahl, "A Solid Friction Model", Aerospace Corporation, 1968. It holds a mass at rest like a
+/// spring of stiffness Fc/x_c. For a fixed step, this spring must not be too stiff for the moving mass
+/// (Fc/x_c h² ≪ m), and |v|/x_c must not be too large (|v| h < 2 x_c with rk4).
 template <class Real> struct DahlFriction {
   Real level, transition_distance;
   Real per_distance;

@@ -5,10 +5,10 @@
 
 namespace loopwright::blocks {
 
-/// Dry and viscous friction that differ with the direction, as a preloaded screw or a one-sided seal has
-/// them, with true sticking (models/friction/stiction.h); about `applied` and the settling time see
-/// CoulombFriction. With both levels 0 (the default) it is viscous only. A damping may be negative: beside a
-/// viscous friction of its own it is what one direction lacks.
+/// Direction-dependent dry and viscous friction, as of a preloaded screw or a one-sided seal, with true
+/// sticking (models/friction/stiction.h). For `applied` and the settling time see CoulombFriction. With both
+/// levels 0 (the default) it is viscous only. A damping may be negative: beside a separate viscous friction
+/// it is then the reduction in one direction.
 template <class Real> struct DirectionDependentFriction {
   Real level_forward = 0.0, level_backward = 0.0, damping_forward, damping_backward, mass = 1.0,
        settling_time = 1e-3;

@@ -3,8 +3,8 @@
 
 namespace loopwright::blocks {
 
-/// Viscous below the critical speed, where it peaks at c v_c / 2; falling above, as the induced currents
-/// shield themselves from the field (J. H. Wouterse, IEE Proc. B 138(4), 1991).
+/// Viscous below the critical speed, with a peak of c v_c / 2 at it. Above it the force falls, as the induced
+/// currents shield themselves from the field (J. H. Wouterse, IEE Proc. B 138(4), 1991).
 template <class Real> struct EddyCurrentDrag {
   Real damping, critical_speed;
   Real per_speed;

@@ -3,7 +3,7 @@
 
 namespace loopwright::blocks {
 
-/// Joins two masses, each a block of its own; TwoMass is the same in one block, BacklashCoupling has a gap.
+/// Couples two masses, each a block of its own. TwoMass is the same in one block; BacklashCoupling has a gap.
 template <class Real> struct ElasticCoupling {
   Real stiffness, damping = 0.0;
   struct In {

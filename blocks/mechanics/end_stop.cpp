@@ -4,8 +4,8 @@
 
 namespace loopwright::blocks {
 
-/// One stop or two: a limit that is left out is not there. The stop pushes and never pulls. Reaching and
-/// leaving it are events for variable-step solvers; a fixed step h should be well below √(m/k).
+/// One stop or two: a limit that is not given does not exist. The stop pushes and never pulls. Contact and
+/// separation are events for variable-step solvers. A fixed step h should be well below √(m/k).
 template <class Real> struct EndStop {
   Real low = -infinity, high = infinity, stiffness, damping = 0.0;
   GapContact<Real> contact;

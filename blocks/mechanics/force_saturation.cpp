@@ -3,8 +3,9 @@
 
 namespace loopwright::blocks {
 
-/// The iron of a motor saturates: force falls behind its command with the square, until it stays. The curve
-/// is smooth, and straight in s below its end. Saturation is the hard limit of an amplifier.
+/// Saturation of the iron of a motor: the deviation of the force from its command grows with the square of
+/// the command, until the force is constant. The curve is smooth, and linear in s below its end. Saturation
+/// is the hard limit of an amplifier.
 template <class Real> struct ForceSaturation {
   Real droop;
   Real end;

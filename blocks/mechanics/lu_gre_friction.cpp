@@ -4,12 +4,13 @@
 
 namespace loopwright::blocks {
 
-/// Bristles of deflection z: presliding, breakaway, Stribeck and frictional lag in one state. C. Canudas de
-/// Wit, H. Olsson, K. J. Åström, P. Lischinsky, "A New Model for Control of Systems with Friction", IEEE TAC
-/// 40(3), 1995. As published (κ = 1) the rate λ grows with speed without bound and breaks every explicit
-/// solver. Here κ = min(1, 1/(λ T)): bristles never settle faster than T, while the steady force g(v) sign(v)
-/// + σ₂ v is the same at every speed. κ acts only where |v| > g/(σ₀ T). Choose T at least half the solver
-/// step. Little σ₁ keeps it dissipative; σ₁ near 2 √(σ₀ m) damps the bristles critically.
+/// Bristle model with deflection z: presliding, breakaway, Stribeck effect and frictional lag in one state.
+/// C. Canudas de Wit, H. Olsson, K. J. Åström, P. Lischinsky, "A New Model for Control of Systems with
+/// Friction", IEEE TAC 40(3), 1995. As published (κ = 1), the rate λ grows with speed without bound, so that
+/// every explicit solver becomes unstable. Here κ = min(1, 1/(λ T)): the bristles never settle faster than T,
+/// while the steady force g(v) sign(v) + σ₂ v is unchanged at every speed. κ acts only where |v| > g/(σ₀ T).
+/// Choose T at least half the solver step. A small σ₁ keeps the model dissipative; σ₁ near 2 √(σ₀ m) damps
+/// the bristles critically.
 template <class Real> struct LuGreFriction {
   Real stiffness, bristle_damping = 0.0, damping = 0.0, level, static_level, stribeck_speed,
                   settling_time = 1e-4;

@@ -3,10 +3,10 @@
 
 namespace loopwright::blocks {
 
-/// Dahl's friction in closed form between accepted steps (x₋, z₋ belong to the last one): exact while the
-/// motion does not turn round within a step, stable for any step and any speed, and at rest it holds without
-/// creeping. With a transition distance of micrometres it is Coulomb friction; with Stribeck's falling curve
-/// on top it is what dry contacts do. Wire the velocity: reversals are then events for variable-step solvers.
+/// Dahl's friction in closed form between accepted steps (x₋, z₋ are the values of the last one). It is exact
+/// if the motion does not reverse within a step, stable for any step and any speed, and at rest it holds
+/// without creep. With a transition distance of micrometers it is Coulomb friction. With the falling Stribeck
+/// curve it models dry contacts. Wire the velocity: reversals are then events for variable-step solvers.
 template <class Real> struct PreslidingFriction {
   Real level, static_level = 0.0, stribeck_speed = 1.0, exponent = 2.0, transition_distance;
   Real rise, per_speed, per_distance;

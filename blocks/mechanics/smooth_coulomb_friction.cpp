@@ -3,8 +3,8 @@
 
 namespace loopwright::blocks {
 
-/// Smooth, hence light on solvers and right while sliding; but it cannot hold: under a force below F₀ the
-/// mass creeps. CoulombFriction holds.
+/// Smooth, so it costs solvers little, and it is accurate while sliding. It cannot hold: under a force below
+/// F₀ the mass creeps. CoulombFriction holds.
 template <class Real> struct SmoothCoulombFriction {
   Real level, transition_speed;
   Real per_speed;

@@ -4,8 +4,8 @@
 
 namespace loopwright::blocks {
 
-/// Stribeck's falling curve (Bo and Pavelescu 1982; δ = 1 Tustin, δ = 2 Gauss) with true sticking
-/// (models/friction/stiction.h); about `applied` and the settling time see CoulombFriction.
+/// The falling Stribeck curve (Bo and Pavelescu 1982; δ = 1 Tustin, δ = 2 Gauss) with true sticking
+/// (models/friction/stiction.h). For `applied` and the settling time see CoulombFriction.
 template <class Real> struct StribeckFriction {
   Real level, static_level, stribeck_speed, exponent = 2.0, mass, settling_time = 1e-3;
   Real per_speed;

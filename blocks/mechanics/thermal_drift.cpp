@@ -3,7 +3,7 @@
 
 namespace loopwright::blocks {
 
-/// A gain that changes while the machine warms up: the force constant of a magnet, the viscosity of grease.
+/// A gain that changes as the machine warms up: the force constant of a magnet, the viscosity of grease.
 template <class Real> struct ThermalDrift {
   Real drift, time_constant, cold = 1.0;
   Real rate_constant;

@@ -3,8 +3,8 @@
 
 namespace loopwright::blocks {
 
-/// As every block here that resists motion, it gives a force that is positive for motion in positive
-/// direction: subtract it in the sum of forces.
+/// The force is positive for motion in the positive direction, as for every block here that resists motion:
+/// subtract it in the sum of forces.
 template <class Real> struct ViscousFriction {
   Real damping;
   struct In {

@@ -3,10 +3,10 @@
 
 namespace loopwright::blocks {
 
-/// A position encoder: counts of width q (half to even), an offset, and an error that repeats with the
-/// grating. A sensor without counting has resolution 0. Noise is a block of its own. It is read at samples:
-/// give it the sample_time of the controller. Without one, every count is an event for a variable-step
-/// solver, and the count is held within a fixed step.
+/// A position encoder with counts of width q (rounded half to even), an offset, and an error that is periodic
+/// in the grating. Use resolution 0 for a sensor without counts. Noise is a separate block. The encoder is
+/// read at samples: give it the sample_time of the controller. Without one, every count is an event for a
+/// variable-step solver, and the count is held within a fixed step.
 template <class Real> struct Encoder {
   struct Harmonic {
     int order = 1;

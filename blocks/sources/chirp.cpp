@@ -1,7 +1,7 @@
 /// y = bias + amplitude · sin(2π ∫ f dt + phase),  f = f₀ + (f₁ - f₀) t/T  or  f₀ (f₁/f₀)^(t/T)
 ///
-/// The phase is the closed integral of the frequency, not a sum over steps. A logarithmic sweep spends equal
-/// time on every octave. After its duration T the signal rests at the bias, or starts anew.
+/// The phase is the closed-form integral of the frequency, not a sum over steps. A logarithmic sweep takes
+/// the same time for every octave. After its duration T the signal stays at the bias or starts again.
 #include "blocks/sources/turns.h"
 
 namespace loopwright::blocks {
@@ -80,7 +80,7 @@ template <class Real> struct Chirp {
   }
 
  private:
-  /// (eˣ - 1) / x, also near x = 0: there eˣ - 1 = 2 tanh(x/2) / (1 - tanh(x/2)) cancels nothing.
+  /// (eˣ - 1) / x, also near x = 0, where eˣ - 1 = 2 tanh(x/2) / (1 - tanh(x/2)) has no cancellation.
   static Real mean_growth(const Real& x) {
     const Real t = hyperbolic_tangent(Real(0.5 * x));
     const Real growth = select(absolute(x) < 1.0, 2.0 * t / (1.0 - t), exponential(x) - 1.0);

@@ -1,4 +1,4 @@
-/// Velocity through given values, joined by ramps; position and acceleration are its closed integral and
+/// Velocity through given values, joined by ramps. Position and acceleration are its closed-form integral and
 /// derivative.
 ///
 /// With s = t/T running from 0 to 1 over a segment, the velocity is v₀ + (v₁ - v₀) w(s):
@@ -6,7 +6,7 @@
 ///   cubic          w = 3s² - 2s³            continuous acceleration, 5 % less peak
 ///   linear         w = s                    least peak acceleration, jumps at the borders
 /// A pass ends at the velocity of its last segment. With `returns` the same path is run back in mirrored
-/// time; passes follow each other `passes` times, after that the last velocity is kept.
+/// time. There are `passes` consecutive passes; after them the last velocity is held.
 #include "blocks/sources/turns.h"
 #include "models/real/whole.h"
 
@@ -27,7 +27,7 @@ template <class Real> struct MotionProfile {
   };
   struct Piece {
     Real begin, position, velocity, change, duration;
-  };  // begin, in units, and position count from the start of a pass
+  };  // begin, in units, and position are relative to the start of a pass
   std::vector<Segment> segments;
   RampShape shape = RampShape::raised_cosine;
   Real start_position = 0.0, start_velocity = 0.0, start_time = 0.0;
@@ -41,7 +41,7 @@ template <class Real> struct MotionProfile {
   };
   struct Mode {
     Real pass, piece;
-  };  // piece -1: not started yet
+  };  // piece -1: not started
   static constexpr auto describe() {
     return block(
         "A smooth motion through given velocities.",
@@ -147,7 +147,7 @@ template <class Real> void MotionProfile<Real>::prepare(double) {
   distance = returns ? Real(0.0) : position;
   if (returns)
     for (size_t i = segments.size(); i-- > 0;) {
-      const Piece there = pieces[i];  // a copy: the list grows under it
+      const Piece there = pieces[i];  // a copy: the list grows in this loop
       const Real end = i + 1 < segments.size() ? pieces[i + 1].position : position;
       pieces.push_back({time, end, -(there.velocity + there.change), there.change, there.duration});
       time = time + lengths[i];

@@ -1,8 +1,8 @@
 /// y = bias + Σ Aᵢ sin(2π fᵢ t + φᵢ)
 ///
-/// Components stand one by one, or as a band of equal amplitudes at equal spacing, or both. A band takes
-/// Schroeder's phases φₖ = -π k (k - 1) / n, k = 1 … n, which keep the peaks low (M. R. Schroeder, IEEE
-/// Trans. Inf. Theory 16, 1970). The signal has a period where all frequencies are multiples of one.
+/// Components are given individually, or as a band of equal amplitudes at equal spacing, or both. A band uses
+/// Schroeder's phases φₖ = -π k (k - 1) / n, k = 1 … n, which give low peaks (M. R. Schroeder, IEEE Trans.
+/// Inf. Theory 16, 1970). The signal is periodic if all frequencies are multiples of one frequency.
 #include "blocks/sources/turns.h"
 
 namespace loopwright::blocks {
@@ -32,7 +32,7 @@ template <class Real> struct Multisine {
   std::vector<Component> components;
   Band band;
   Real bias = 0.0;
-  std::vector<Component> tones;  // components and band
+  std::vector<Component> tones;  // components and the band
   struct Out {
     Real y;
   };

@@ -1,9 +1,9 @@
 /// y[k] = mean + standard_deviation · n[k],  n white, normal (Box-Muller) or uniform
 ///
-/// The k-th number is a function of the diagram's seed, the run, the block's path and k alone: the same on
-/// every machine, at every lane width, however runs are ordered, and after a restart from a checkpoint. A
-/// noise of one-sided density S (unit²/Hz) up to half the sample rate has the standard deviation √(S / (2 ·
-/// sample_time)).
+/// The k-th number is a function only of the seed of the diagram, the run, the path of the block and k. It is
+/// the same on every machine, at every vector width, for any order of runs, and after a restart from a
+/// checkpoint. Noise of one-sided density S (unit²/Hz) up to half the sample rate has the standard deviation
+/// √(S / (2 · sample_time)).
 #include "engine/block.h"
 #include "models/random/philox.h"
 
@@ -37,7 +37,7 @@ template <class Real> struct Noise {
         output(&Out::y, "y", "$y", "The noise").from_memory());
   }
   void prepare(const Setup& setup) {
-    // A multiplication by an odd number loses nothing and keeps seeds 1, 2, 3 from meeting neighbouring
+    // Multiplication by an odd number is invertible. It keeps seeds 1, 2, 3 from coinciding with neighboring
     // paths.
     key = (setup.seed * 0x9E3779B97F4A7C15) ^ setup.block_key ^ (uint64_t(stream) << 32);
     first_run = uint64_t(setup.run);

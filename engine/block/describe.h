@@ -1,7 +1,7 @@
-/// The language in which a block describes itself: a constexpr list of entries that point at its members.
+/// The constexpr description of a block: a list of entries that point at its members.
 ///
-/// From this one list come the JSON Schema, the reference page, error texts, unit checks, feedthrough, sweep
-/// axes.
+/// The JSON Schema, the reference page, error texts, unit checks, feedthrough and sweep axes are all derived
+/// from this list.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -18,8 +18,8 @@
 
 namespace loopwright {
 
-/// When a method is called. Time is tick · base period at a tick, and lies between ticks inside a solver
-/// step.
+/// The time at which a method is called. At a tick it is tick · base period; inside a solver step it lies
+/// between ticks.
 struct Instant {
   double time = 0;   ///< s
   int64_t tick = 0;  ///< base periods since the start
@@ -36,8 +36,8 @@ template <class Real> struct Many {
   LW_INLINE const Real& operator[](int i) const { return *wire[i]; }
 };
 
-/// What a method may answer: `return fault_if(in.x <= 0.0, "the logarithm of …");` stops those lanes, others
-/// go on.
+/// The optional result of a method: `return fault_if(in.x <= 0.0, "the logarithm of …");` stops these lanes,
+/// the others continue.
 struct Fault {
   uint64_t lanes = 0;
   const char* reason = "";
@@ -49,7 +49,7 @@ template <int N, int R> LW_INLINE Fault fault_if(const Mask<N, R>& failed, const
   return fault;
 }
 
-/// What a block may want to know before a run starts; `prepare` takes this, or the sample time alone.
+/// Information for a block before a run starts; `prepare` takes this or only the sample time.
 struct Setup {
   double sample_time = 0;  ///< s; 0: continuous
   uint64_t seed = 0;       ///< of the diagram
@@ -60,10 +60,11 @@ struct Setup {
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 struct None {};
 
-/// The unit of an input that takes any, each wire its own: factors of a product, arguments of an expression.
+/// The unit of an input that accepts any unit, each wire its own: factors of a product, arguments of an
+/// expression.
 inline constexpr std::string_view any_unit = "?";
 
-/// A number, flag, text or table from the file. The default is the member's initialiser in the block.
+/// A number, flag, text or table from the file. The default is the initializer of the member in the block.
 template <class Owner, class T> struct ParameterEntry {
   using Type = T;
   T Owner::*member;
@@ -100,14 +101,14 @@ template <class Owner, class T> struct ParameterEntry {
     p.is_file = true;
     return p;
   }
-  /// An amplitude, a resolution, a width: of temperatures it takes K, and refuses degC.
+  /// For an amplitude, a resolution, a width: of temperatures it accepts K and rejects degC.
   constexpr ParameterEntry difference() const {
     auto p = *this;
     p.is_difference = true;
     return p;
   }
-  /// A bare number has no unit, so that a bare gain keeps the unit of its input. Elsewhere a bare number has
-  /// whatever unit the wires ask for.
+  /// A bare number is dimensionless, so that a bare gain keeps the unit of its input. Without this, a bare
+  /// number has the unit that the wires require.
   constexpr ParameterEntry factor() const {
     auto p = *this;
     p.plain_when_bare = true;
@@ -115,7 +116,7 @@ template <class Owner, class T> struct ParameterEntry {
   }
 };
 
-/// What the block reads. An optional input that is not wired reads `otherwise`.
+/// An input of the block. An optional input that is not wired reads `otherwise`.
 template <class Owner, class T, class Length = None> struct InputEntry {
   using Type = T;
   T Owner::*member;
@@ -129,7 +130,7 @@ template <class Owner, class T, class Length = None> struct InputEntry {
     p.otherwise_value = value;
     return p;
   }
-  /// Vector wires of a Many port are strung together instead of making one block an element.
+  /// Vector wires of a Many port are concatenated. Without this, the block is repeated for each element.
   constexpr InputEntry joins() const {
     auto p = *this;
     p.joins_vectors = true;
@@ -141,7 +142,7 @@ template <class Owner, class T, class Length = None> struct InputEntry {
   }
 };
 
-/// What the block offers. Fed by every input, unless `.from(…)` says by which.
+/// An output of the block. Every input feeds through to it, unless `.from(…)` lists the inputs.
 template <class Owner, class T, class From = void, class Length = None> struct OutputEntry {
   using Type = T;
   T Owner::*member;
@@ -161,14 +162,14 @@ template <class Owner, class T, class Length> struct OutputEntry<Owner, T, void,
     return OutputEntry<Owner, T, std::tuple<I...>, Length>{
         member, name, unit, sentence, std::tuple<I...>(inputs...), size};
   }
-  /// Fed by no input directly: read from state, memory or time.
+  /// No direct feedthrough: read from state, memory or time.
   constexpr auto from_memory() const { return from(); }
   template <class L> constexpr auto length(L l) const {
     return OutputEntry<Owner, T, void, L>{member, name, unit, sentence, l};
   }
 };
 
-/// A sized part of Memory or State; the length is a member or a member function of the block.
+/// A part of Memory or State with a given length: a member or a member function of the block.
 template <class Owner, class T, class Length> struct Buffer {
   T Owner::*member;
   Length length;
@@ -178,7 +179,7 @@ template <class Owner, class T, class Length> struct StateVector {
   Length length;
 };
 
-/// A function whose passage through zero is an event.
+/// A function whose zero crossing is an event.
 template <class Owner, class T> struct CrossingEntry {
   T Owner::*member;
   std::string_view name;
@@ -216,11 +217,11 @@ template <class... E> struct Description {
   std::string_view sentence;
   std::tuple<E...> entries;
 };
-/// `describe()` of a block returns this.
+/// The result of `describe()` of a block.
 template <class... E> constexpr Description<E...> block(std::string_view sentence, E... entries) {
   return {sentence, std::tuple<E...>(entries...)};
 }
-/// `describe()` of a struct inside a parameter returns this.
+/// The result of `describe()` of a struct inside a parameter.
 template <class... E> constexpr Description<E...> fields(E... entries) {
   return {"", std::tuple<E...>(entries...)};
 }
@@ -240,7 +241,7 @@ template <class O, class T> struct is_crossing<CrossingEntry<O, T>> : std::true_
 
 template <class B> inline constexpr auto description = B::describe();
 
-/// f(rank among its kind as an integral_constant, entry), for each entry of one kind.
+/// f(index among entries of its kind as an integral_constant, entry), for each entry of one kind.
 template <class B, template <class> class Is, class F> LW_INLINE constexpr void for_each(F&& f) {
   using Tuple = std::remove_cvref_t<decltype(description<B>.entries)>;
   [&]<size_t... I>(std::index_sequence<I...>) {
@@ -265,7 +266,7 @@ inline constexpr size_t count_of = [] {
   return n;
 }();
 
-// The nested structs of a block; None where it has none.
+// The nested structs of a block; None if it has none.
 template <class B> struct in_of { using type = None; };
 template <class B>
 requires requires { typename B::In; }
@@ -314,7 +315,7 @@ template <class B> struct scalar { using type = B; };
 template <template <class> class B, class R> struct scalar<B<R>> { using type = B<double>; };
 template <class B> using scalar_of = typename scalar<B>::type;
 
-// Feedthrough: a mask of inputs per output, and outputs grouped by equal masks: one call serves a group.
+// Feedthrough: a mask of inputs for each output. Outputs with equal masks form a group with one call.
 template <class A, class B> constexpr bool same_member(A a, B b) {
   if constexpr (std::is_same_v<A, B>)
     return a == b;
@@ -336,7 +337,7 @@ inline constexpr auto feedthrough = [] {
   });
   return mask;
 }();
-/// -1: an output bound to a state is a wire to it, never computed.
+/// -1: an output bound to a state is that state and is never computed.
 template <class B>
 inline constexpr auto group_of_output = [] {
   std::array<int, count_of<B, is_output> + 1> group{};

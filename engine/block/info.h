@@ -1,4 +1,4 @@
-/// What the engine knows of a block type: the same for every scalar.
+/// The properties of a block type, independent of the scalar.
 #pragma once
 #include "engine/block/instance_units.h"
 #include "engine/block/kernels.h"
@@ -11,8 +11,8 @@ struct PortInfo {
   std::string_view name, unit, sentence;
   Shape shape = Shape::scalar;
   uint64_t fed_by = 0;       ///< outputs: mask of the inputs that feed through
-  int group = -1;            ///< outputs: which call computes it; -1: it is a state
-  int state = -1;            ///< outputs that are states: which
+  int group = -1;            ///< outputs: the call that computes it; -1: it is a state
+  int state = -1;            ///< outputs that are states: which state
   int length_of_input = -1;  ///< vector outputs: as long as this input
   bool is_optional = false, joins_vectors = false;
   double otherwise_value = 0;
@@ -29,25 +29,25 @@ struct BlockInfo {
   std::vector<ParameterInfo> parameters;
   std::vector<CrossingInfo> crossings;
   int buffers = 0, groups = 0, state_vectors = 0, fixed_states = 0;
-  bool uses_time = false;           ///< its outputs take the time
-  bool is_sampled = false;          ///< has discrete memory: must have a sample time
-  bool is_continuous = false;       ///< has states, or modes of its own: must not have one
+  bool uses_time = false;           ///< its outputs depend on time
+  bool is_sampled = false;          ///< has discrete memory: requires a sample time
+  bool is_continuous = false;       ///< has states, or modes of its own: must not have a sample time
   std::vector<int> memory_numbers;  ///< words of Memory, 8 bytes each, that are numbers; others are indices
   bool lane_wise = true;            ///< a template on the scalar: runs on SIMD lanes
-  bool has_side_effects = false;    ///< acts on the world outside: never several runs at a time
+  bool has_side_effects = false;    ///< acts on the external world: never several runs at a time
   void (*read)(void* block, const Value& settings, const std::string& path, Problems&);
   void (*check)(void* block, const Checker&);
   int (*input_length)(const void* block, int input);    ///< -1: any
   int (*output_length)(const void* block, int output);  ///< -1: by length_of_input
   int (*buffer_length)(const void* block, int buffer);
   int (*state_length)(const void* block);  ///< all states, fixed and sized
-  bool (*may_cross)(const void* block);    ///< whether its crossings need to be watched; null: always
+  bool (*may_cross)(const void* block);    ///< whether its crossings must be monitored; null: always
   double (*next_stop)(const void* block,
                       double now);  ///< the next time at which it is not smooth; null: always smooth
-  double (*shortest_period)(const void* block);  ///< s, of what it puts out by itself; null: it has none
-  // Units, each null where the description says all.
+  double (*shortest_period)(const void* block);  ///< s, of a signal that it generates; null: none
+  // Units, each null if the description is complete.
   std::vector<UnitClaim> (*unit_claims)(const void* block);
-  /// The output is the product of the wires of the first input, each to this power.
+  /// The output is the product of the wires of the first input, each raised to this power.
   double (*unit_power)(const void* block, int wire);
   FormulaUnit (*formula_unit)(const void* block, std::span<const Unit> of_wires);
 };

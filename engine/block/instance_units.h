@@ -1,4 +1,4 @@
-/// What an instance of a block knows of its units beyond the block's description.
+/// The units of a block instance that its description does not give.
 #pragma once
 #include <string>
 #include <string_view>
@@ -6,12 +6,12 @@
 
 namespace loopwright {
 
-/// `std::vector<UnitClaim> unit_claims() const` of a block: units that come from files, such as that of a
+/// `std::vector<UnitClaim> unit_claims() const` of a block: units that come from files, such as the unit of a
 /// recorded column.
 struct UnitClaim {
-  std::string_view unit;       ///< as the description writes it: "$value"
-  Unit is;                     ///< its scale is not looked at: signals are in SI
-  std::string_view parameter;  ///< that led to it, for messages
+  std::string_view unit;       ///< as in the description: "$value"
+  Unit is;                     ///< its scale is ignored: signals are in SI
+  std::string_view parameter;  ///< the parameter that determines it, for messages
 };
 
 /// `FormulaUnit formula_unit(std::span<const Unit> of_wires) const` of a block whose only output is a
@@ -19,8 +19,8 @@ struct UnitClaim {
 struct FormulaUnit {
   UnitFinding finding = UnitFinding::no_result;
   Unit unit;
-  std::string_view parameter;  ///< that holds the function, for messages
-  std::string found;           ///< the function and the units of its arguments, where they are mixed
+  std::string_view parameter;  ///< the parameter that holds the function, for messages
+  std::string found;           ///< the function and the units of its arguments, if they are mixed
 };
 
 }  // namespace loopwright

@@ -1,4 +1,4 @@
-/// A block's methods as the step calls them, made from its description, for one scalar type.
+/// The methods of a block as a step calls them, generated from its description, for one scalar type.
 #pragma once
 #include <algorithm>
 #include <cstring>
@@ -14,7 +14,8 @@ template <class R> LW_INLINE void attach(Vector<const R>& to, const Port<R>& w) 
 template <class R> LW_INLINE void attach(Vector<R>& to, const Port<R>& w) { to = {w.data, size_t(w.length)}; }
 template <class R> LW_INLINE void attach(Many<R>& to, const Port<R>& w) { to = {w.many, w.length}; }
 
-/// The inputs in the mask; any other scalar reads NaN, so that an undeclared feedthrough shows at once.
+/// The inputs in the mask; any other scalar reads NaN, so that an undeclared feedthrough is detected
+/// immediately.
 template <class B, class Real> LW_INLINE In<B> gather(const Call<Real>& c, auto mask) {
   In<B> in;
   for_each<B, is_input>([&](auto i, const auto& entry) {
@@ -27,8 +28,7 @@ template <class B, class Real> LW_INLINE In<B> gather(const Call<Real>& c, auto 
 }
 using AllInputs = std::integral_constant<uint64_t, ~uint64_t(0)>;
 
-/// A view of the states at `data`: the struct itself where all members are Reals, spans into it where they
-/// are sized.
+/// A view of the states at `data`: the struct itself if all members are Reals, spans if they are sized.
 template <class B, class Real> LW_INLINE decltype(auto) view_state(const B& block, Real* data) {
   if constexpr (count_of < B, is_state_vector >> 0) {
     State<B> state;
@@ -57,7 +57,7 @@ template <class B, class Real> LW_INLINE Memory<B>& stored_memory(const Call<Rea
 template <class B, class Real> LW_INLINE Mode<B>& stored_mode(const Call<Real>& c) {
   return *static_cast<Mode<B>*>(c.mode);
 }
-/// f(memory): in place, or on a copy with its buffers attached, so that the arena never holds a pointer.
+/// f(memory): in place, or on a copy with its buffers attached, so that the arena never contains a pointer.
 template <class B, class Real> LW_INLINE auto with_memory(const Call<Real>& c, bool writes, auto&& f) {
   if constexpr (count_of<B, is_buffer> == 0) {
     return f(stored_memory<B>(c));
@@ -73,7 +73,7 @@ template <class B, class Real> LW_INLINE auto with_memory(const Call<Real>& c, b
   }
 }
 
-/// What a method asks for by type: `const State&` is the present state, `State&` the result to fill in.
+/// The argument that a method requests by type: `const State&` is the present state, `State&` the result.
 template <class Argument, class B, class Result>
 LW_INLINE decltype(auto) pick(const Instant& now, const In<B>& in, const State<B>& state,
                               const Memory<B>& memory, const Mode<B>& mode, Result& result) {
@@ -114,7 +114,7 @@ LW_INLINE Fault invoke(Answer (B::*method)(Argument...) const, const B& block, c
   return fault.lanes;
 }
 
-/// f(block): the lanes that faulted, after their report.
+/// f(block): reports faults and returns the lanes that faulted.
 template <class B, class Real> LW_INLINE uint64_t guard(const Call<Real>& c, auto&& f) {
   Fault fault = f(*static_cast<const B*>(c.block));
   if (!fault.lanes) [[likely]]
@@ -123,7 +123,8 @@ template <class B, class Real> LW_INLINE uint64_t guard(const Call<Real>& c, aut
   return report_fault(c.report, c.index, fault);
 }
 
-/// Flattened: what the method calls is inlined too, else inputs and outputs go through memory on their way.
+/// Flattened: otherwise functions called by the method are not inlined, and inputs and outputs pass through
+/// memory.
 template <class B, class Real, int group> [[gnu::flatten]] uint64_t step_outputs(const Call<Real>& c) {
   return guard<B>(
       c, [&](const B& block) __attribute__((always_inline)) {
@@ -218,7 +219,7 @@ template <class Real, class T> uint64_t differing_lanes(const T& a, const T& b) 
   }
   return lanes;
 }
-/// Tells the lanes whose states changed: their signals must then be computed again.
+/// Returns the lanes whose states changed: their signals must be computed again.
 template <class B, class Real> uint64_t step_jump(const Call<Real>& c) {
   return guard<B>(c, [&](const B& block) {
     const auto in = gather<B>(c, AllInputs{});
@@ -248,14 +249,14 @@ template <class B, class Real> uint64_t step_crossings(const Call<Real>& c) {
       });
 }
 
-/// What a method answers that may return a Fault or nothing.
+/// The result of a method that may return a Fault or nothing.
 template <class F> Fault fault_of(F&& f) {
   if constexpr (std::is_void_v<decltype(f())>)
     return f(), Fault{};
   else
     return f();
 }
-/// Both; the reason is that of the first.
+/// Combines both; the reason is that of the first.
 inline Fault joined(const Fault& first, const Fault& second) {
   return {first.lanes | second.lanes, first.lanes ? first.reason : second.reason};
 }
@@ -295,8 +296,8 @@ Fault start_block(const void* p, Real* state_data, void* memory_data, const Port
   return fault;
 }
 
-/// Whether T, which holds plain numbers, has bytes between its members or after them, which assigning to it
-/// leaves undetermined.
+/// Whether T, which holds plain numbers, has padding bytes between or after its members. Assignment leaves
+/// them undetermined.
 template <class T> bool has_gaps() {
   if (std::is_empty_v<T>) return false;
   alignas(T) unsigned char bytes[sizeof(T)];

@@ -1,9 +1,9 @@
-/// Which words of a block's Memory are numbers, rather than indices or views of buffers: what a small
-/// deviation can be given to when a diagram is linearized.
+/// Determines which words of a block's Memory are numbers, rather than indices or views of buffers. These are
+/// the words that a linearization can perturb.
 ///
-/// C++20 cannot list the members of a struct. But a struct can be built with a value that converts to
-/// `double` alone in one place and with anything in the others; where that compiles, the place is a number,
-/// and the word that then holds it is where the number lies.
+/// C++20 cannot list the members of a struct. But a struct can be initialized with a value that converts only
+/// to `double` at one position and with values that convert to anything at the others. If this compiles, the
+/// member at this position is a number, and the word that holds the value afterwards is its location.
 #pragma once
 #include <concepts>
 #include <cstring>
@@ -18,11 +18,11 @@ namespace memory_layout {
 struct Anything {
   template <class T> constexpr operator T() const { return T{}; }
 };
-struct One {  // for a double alone
+struct One {  // converts only to double
   template <std::same_as<double> T> constexpr operator T() const { return 1.0; }
 };
 
-/// How many initialisers M takes; each element of an array counts.
+/// The number of initializers that M takes; each element of an array counts.
 template <class M, class... Before> constexpr size_t initialisers() {
   if constexpr (requires { M{Before{}..., Anything{}}; })
     return initialisers<M, Before..., Anything>();
@@ -45,8 +45,8 @@ void add_word(std::vector<int>& words, std::index_sequence<all...>) {
 
 }  // namespace memory_layout
 
-/// The words of 8 bytes of M, a plain struct of numbers, integers, views and arrays of them, that are
-/// numbers.
+/// The 8-byte words of M that are numbers. M is a plain struct of numbers, integers, views and arrays of
+/// them.
 template <class M> std::vector<int> number_words() {
   std::vector<int> words;
   constexpr size_t count = memory_layout::initialisers<M>();

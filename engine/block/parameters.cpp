@@ -61,7 +61,7 @@ static std::string range_text(const Range& r) {
 }
 static bool wrong_kind(const Value& v, std::string expected, const std::string& block, Problems& problems,
                        std::string_view sentence = {}) {
-  if (v.is_broken) return false;  // told when it was loaded
+  if (v.is_broken) return false;  // reported when it was loaded
   auto& p = problems.error(v.place, v.place.pointer(), block, "wrong kind of value");
   p.expected = std::move(expected);
   p.found = kind_of(v);
@@ -71,7 +71,7 @@ static bool wrong_kind(const Value& v, std::string expected, const std::string& 
   return false;
 }
 
-/// Whether the number of a value with a unit can be used as it stands. Most can: this is asked of every one.
+/// Whether a number with a unit can be used without conversion. This fast check covers most numbers.
 static bool as_described(const Value& v, const Range& range) {
   if (range.is_difference && v.unit->is_point) return false;
   const bool counts_cycles = range.unit.find("Hz") != range.unit.npos;
@@ -89,7 +89,7 @@ static bool take(Value& v, const Range& range, const Reader& reader) {
   }
   const auto unit = parse_unit(range.unit);
   const UnitTaken taken = unit ? take_unit(v, *unit, reader) : UnitTaken::no;
-  if (taken == UnitTaken::no) v.unit = {};  // told where the units of all wires are checked
+  if (taken == UnitTaken::no) v.unit = {};  // reported where the units of all wires are checked
   return taken != UnitTaken::told;
 }
 

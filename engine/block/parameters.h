@@ -1,4 +1,4 @@
-/// Parameters of a block: read from a file, spread over lanes, found by path ("harmonics.0.amplitude"),
+/// Parameters of a block: read from a file, copied to lanes, found by path ("harmonics.0.amplitude"),
 /// described.
 #pragma once
 #include <array>
@@ -11,22 +11,22 @@
 
 namespace loopwright {
 
-/// Where messages about a block's parameters go; handed to `check(const Checker&)` after all parameters are
+/// Collects messages about a block's parameters; passed to `check(const Checker&)` after all parameters are
 /// read.
 class Checker {
  public:
   Checker(const Value& settings, std::string block, Problems& problems)
       : settings_(settings), block_(std::move(block)), problems_(problems) {}
-  /// An error at the parameter's place in the file (or at the block, where the parameter was left out).
+  /// An error at the source location of the parameter (or of the block, if the parameter was omitted).
   Problem& error(std::string_view parameter, std::string message) const;
   Problem& warning(std::string_view parameter, std::string message) const;
-  /// A path that a parameter names, relative to the file that names it. The file's contents become part of the
-  /// plan's identity, however the block reads them.
+  /// Resolves a path given by a parameter, relative to the file that contains it. The contents of that file
+  /// become part of the identity of the plan, however the block reads them.
   std::string resolve_file(std::string_view parameter, std::string_view path) const;
   const Value& settings() const { return settings_; }
   const std::string& block() const { return block_; }
   Problems& problems() const { return problems_; }
-  /// The place of a parameter, or of the block.
+  /// The source location of the parameter, or of the block.
   Place place(std::string_view parameter) const;
 
  private:
@@ -35,17 +35,17 @@ class Checker {
   Problems& problems_;
 };
 
-/// A `file` is a text that names a file, relative to the one in which it stands.
+/// A `file` is a text that names a file, relative to the file in which it stands.
 enum class ParameterKind { number, whole, flag, text, file, choice, list, object };
 
-/// A parameter as the schema, the reference, error texts and sweeps see it.
+/// A parameter as used by the schema, the reference, error texts and sweeps.
 struct ParameterInfo {
   std::string_view name, unit, sentence;
   ParameterKind kind = ParameterKind::number;
   double low = -infinity, high = infinity;
   bool low_is_open = false, has_default = false;
-  bool is_difference = false;             ///< of two values: takes K, no degC
-  bool plain_when_bare = false;           ///< a bare number has no unit, instead of the one that fits
+  bool is_difference = false;             ///< difference of two values: K, not degC
+  bool plain_when_bare = false;           ///< a bare number is dimensionless
   bool tunable = false;                   ///< may differ between the runs of a sweep
   std::string default_text;               ///< as JSON; empty without default
   std::vector<std::string_view> choices;  ///< of a choice
@@ -70,7 +70,7 @@ concept List = requires(T t) {
 }
 &&!std::same_as<T, std::string>;
 
-/// Scalar block → block on any Real; derived constants are not copied, `prepare` makes them.
+/// Copies a scalar block to a block on any Real. Derived constants are not copied; `prepare` computes them.
 template <class D, class S> void spread(D& to, const S& from) {
   if constexpr (Described<D>) {
     for_each<D, is_parameter>([&](auto i, const auto& d) {
@@ -86,7 +86,7 @@ template <class D, class S> void spread(D& to, const S& from) {
   }
 }
 
-/// The tunable number at a path, or null: no such, or structural (whole numbers, flags, texts, choices,
+/// The tunable number at a path; null if there is none or it is structural (integers, flags, texts, choices,
 /// tables).
 template <class Real, class T> Real* tunable(T& at, std::string_view path) {
   if constexpr (std::is_same_v<T, Real>) {
@@ -115,7 +115,7 @@ template <class Real, class T> Real* tunable(T& at, std::string_view path) {
   }
 }
 
-// One message a kind of mistake; the wording lives in parameters.cpp.
+// One message for each kind of mistake; the texts are in parameters.cpp.
 namespace reading {
 struct Range {
   double low = -infinity, high = infinity;

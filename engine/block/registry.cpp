@@ -17,7 +17,7 @@ std::map<std::string, BlockType, std::less<>>& registry() {
   return types;
 }
 
-/// What a library did while it was loaded: nothing may be thrown out of its initialisers.
+/// The result of loading a library: its initializers must not throw.
 struct Loading {
   const FileRead* library;
   std::vector<std::string> added, refused;
@@ -49,7 +49,7 @@ bool is_factor(std::string_view type, std::string_view parameter) {
 }
 
 void add_block(std::span<const size_t> layout, BlockInfo&& info, const Kernels<double>& kernels) {
-  if (!std::ranges::equal(layout, block_layout)) {  // nothing of the block can be read
+  if (!std::ranges::equal(layout, block_layout)) {  // no part of the block can be read
     if (!loading) throw std::logic_error("a block was compiled against other headers");
     loading->refused.emplace_back();
     return;
@@ -63,9 +63,9 @@ void add_block(std::span<const size_t> layout, BlockInfo&& info, const Kernels<d
 
 void load_block_library(const std::string& path, Problems& problems) {
   static std::set<void*> loaded;
-  // A bare file name would be searched for in the system's folders only.
+  // A bare file name would be searched only in the system folders.
   const std::string file = path.find('/') == path.npos ? "./" + path : path;
-  static std::deque<FileRead> libraries;  // block types point at them
+  static std::deque<FileRead> libraries;  // block types point to them
   std::string bytes;
   const std::string reason = read_regular_file(file, std::numeric_limits<uint32_t>::max(), bytes);
   if (!reason.empty()) {

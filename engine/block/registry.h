@@ -10,34 +10,35 @@ namespace loopwright {
 struct BlockType {
   BlockInfo info;
   Kernels<double> kernels;
-  const FileRead* library = nullptr;  ///< that brought the type; null: the program did
+  const FileRead* library = nullptr;  ///< the library of the type; null: the program
 };
 
-/// Sizes of what crosses the border between a library of blocks and the program: they differ when the library
-/// was compiled against another version of the headers.
+/// Sizes of the types shared by a library of blocks and the program. They differ if the library was compiled
+/// against another version of the headers.
 inline constexpr std::array<size_t, 6> block_layout{sizeof(BlockInfo), sizeof(Kernels<double>),
                                                     sizeof(PortInfo),  sizeof(ParameterInfo),
                                                     sizeof(Value),     sizeof(Problem)};
 
-/// Null when there is no such type.
+/// Null if there is no such type.
 const BlockType* find_block(std::string_view type);
 const std::map<std::string, BlockType, std::less<>>& all_blocks();
 /// Whether a bare number at this parameter has no unit, instead of the one that fits.
 bool is_factor(std::string_view type, std::string_view parameter);
-/// Registers a type. What a library brings under a name that is taken, or in another layout, is not taken in:
-/// load_block_library tells. Two blocks of one name in the program itself throw std::logic_error.
+/// Registers a type. A type from a library with a name already in use, or with another layout, is not
+/// registered: load_block_library reports it. Two blocks of the same name in the program itself throw
+/// std::logic_error.
 void add_block(std::span<const size_t> layout, BlockInfo&& info, const Kernels<double>& kernels);
-/// Loads a shared library whose blocks register themselves; once, however often it is named. A problem when
-/// it cannot be loaded, has no block, or one whose name is taken: then none of its blocks is kept. What its
-/// bytes say becomes part of the identity of every plan that uses its blocks.
+/// Loads a shared library whose blocks register themselves; only once, even if it is named repeatedly. It is
+/// a problem if the library cannot be loaded, has no block, or has a block whose name is already in use; then
+/// none of its blocks is registered. Its contents become part of the identity of every plan that uses its
+/// blocks.
 void load_block_library(const std::string& path, Problems& problems);
 
-/// What was probably meant by a type that does not exist: a block that does what the name says elsewhere
-/// ("PID", "Scope"), or one that is written nearly so.
+/// The block probably meant by a type that does not exist: the equivalent of a block with this name elsewhere
+/// ("PID", "Scope"), or one with a similar name.
 std::string block_type_hint(std::string_view type);
 
-/// Kernels on SIMD lanes, one table a lane type, filled in the module that is compiled for an instruction
-/// set.
+/// Kernels on SIMD lanes, one table for each lane type, filled in the module compiled for an instruction set.
 template <class Real> std::map<std::string, Kernels<Real>, std::less<>>& lane_kernels();
 
 }  // namespace loopwright

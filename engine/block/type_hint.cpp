@@ -6,9 +6,9 @@
 namespace loopwright {
 namespace {
 
-/// What other programs call it, in small letters without spaces; the block that does it here, if one does;
-/// and what else there is to say. A name stands here where the block that is written most nearly so is
-/// another one.
+/// The name in other programs, in lower case without spaces; the equivalent block here, if there is one;
+/// additional information. A name is listed only if the block with the
+/// most similar name is a different one.
 struct Alias {
   std::string_view name, block, note;
 };

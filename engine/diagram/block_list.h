@@ -1,15 +1,15 @@
-/// The blocks as a diagram's file has them.
+/// The blocks in a diagram's file.
 #pragma once
 #include "engine/json/tokens.h"
 #include "engine/json/value.h"
 
 namespace loopwright {
 
-/// Their values are there already, or made one by one and given back when they are read: those of a large
-/// diagram at once would not fit into the caches.
+/// Their values either exist already, or are created one by one and freed after reading: all values of a
+/// large diagram at once would exceed the caches.
 class BlockList {
  public:
-  /// Of the object "blocks"; null: it is absent.
+  /// From the member "blocks"; null: it is absent.
   explicit BlockList(const Value::Member* blocks) : values_(blocks ? &blocks->value : nullptr) {}
   explicit BlockList(const JsonTokens& tokens)
       : tokens_(&tokens), token_(tokens.find("blocks").value_or(0)) {}
@@ -19,7 +19,7 @@ class BlockList {
     return values_ ? values_->members.size() : 0;
   }
 
-  /// Calls read(member) for every block until it answers false.
+  /// Calls read(member) for every block until it returns false.
   template <class Read> void each(Read&& read) const {
     if (tokens_) {
       for (size_t i = token_ + 1; i < end(); i = tokens_->after(i))

@@ -79,7 +79,7 @@ class BlockReader {
     read_type(body, entry);
   }
 
-  /// Keys of the engine that are of no use where they stand.
+  /// Keys of the engine that have no effect here.
   bool is_misplaced_key(const Value::Member& member, bool is_variant) const {
     if (member.name == "parameters") {
       reader_.error(member, "only a subdiagram has \"parameters\"").hint =
@@ -147,7 +147,7 @@ class BlockReader {
       } else {
         if (edit.is_last())
           edit.value =
-              around_.scope.evaluate(edit.value, reader_.block);  // over the names outside, as an override is
+              around_.scope.evaluate(edit.value, reader_.block);  // over the outer names, like an override
         inner.edits.push_back(std::move(edit));
       }
     }
@@ -176,7 +176,7 @@ class BlockReader {
     return list;
   }
 
-  /// `--variant` for a block that has none.
+  /// `--variant` for a block without variants.
   void reject_choices(std::vector<VariantChoice>& choices) {
     std::erase_if(choices, [&](const VariantChoice& choice) {
       if (!choice.is_here()) return false;

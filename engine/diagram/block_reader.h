@@ -1,4 +1,4 @@
-/// One entry of "blocks": a block, or a subdiagram in its place.
+/// One entry of "blocks": a block or a subdiagram.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,15 +7,15 @@
 
 namespace loopwright {
 
-/// The diagram in which a block stands.
+/// The diagram that contains a block.
 struct Surroundings {
   DiagramLoad& load;
   ParameterScope& scope;
   const std::string& path;  ///< of the diagram's file
 };
 
-/// Fills everything but the name. `edits` and `variants` are the options that lead to this block or inside
-/// it.
+/// Fills everything except the name. `edits` and `variants` are the options whose path leads to this block or
+/// into it.
 void read_block(const Value::Member& member, std::vector<Edit> edits, std::vector<VariantChoice> variants,
                 const Surroundings& around, const Reader& reader, BlockEntry& entry);
 

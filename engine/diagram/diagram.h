@@ -1,9 +1,8 @@
-/// A diagram as its file says it, after parameters, variants, overrides and expressions are resolved; still
-/// nested.
+/// A diagram as in its file, after resolving parameters, variants, overrides and expressions; still nested.
 ///
 /// The file (docs/diagram_format.md) is JSON. `load_diagram` reads it and every subdiagram that it names, and
-/// collects all problems. What needs knowledge of particular blocks is left to the plan: whether a type
-/// exists, whether its settings fit, whether a wire's source exists and has the right unit.
+/// collects all problems. Checks that need knowledge of particular blocks are left to the plan: whether a
+/// type exists, whether its settings fit, whether the source of a wire exists and has the right unit.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -22,28 +21,27 @@ namespace loopwright {
 
 struct Diagram;
 
-/// One end of a wire as the reader names it: "feedback.command", "gain.y[2]", or the name of an input of the
-/// diagram.
+/// One end of a wire as written: "feedback.command", "gain.y[2]", or the name of an input of the diagram.
 struct Wire {
   std::string source;
   Place place;
 };
 
-/// What feeds one input port of a block.
+/// The wires into one input port of a block.
 struct PortWires {
   std::string port;
   Place place;           ///< of the port's name
-  bool is_list = false;  ///< written as a list, even of one wire
+  bool is_list = false;  ///< written as a list, even if of one wire
   std::vector<Wire> wires;
 };
 
-/// A block, or a subdiagram in the place of a block. Of a block with variants only the active one is kept.
+/// A block, or a subdiagram in place of a block. Of a block with variants only the active variant is kept.
 struct BlockEntry {
   std::string name;
   Place place;       ///< of the name
   std::string type;  ///< empty for a subdiagram, and for an entry with errors
   Place type_place;
-  Value settings;  ///< object: every member but the engine's own keys; expressions evaluated, units attached
+  Value settings;  ///< object: all but the keys of the engine; expressions evaluated, units attached
   Boxed<Value> sample_time, sample_offset;  ///< numbers in s
   std::vector<PortWires> in;
   std::shared_ptr<const Diagram> subdiagram;
@@ -51,17 +49,17 @@ struct BlockEntry {
 };
 
 struct DiagramInput {
-  std::string name, unit, description;  ///< empty unit: whatever the wire brings
+  std::string name, unit, description;  ///< empty unit: that of the wire
   Place place;
 };
 
 struct DiagramOutput {
-  std::string name, unit, description;  ///< empty unit: whatever the source has
+  std::string name, unit, description;  ///< empty unit: that of the source
   Place place;
   Wire source;
 };
 
-/// A named value. Numbers are in SI, whatever unit the file used.
+/// A named value. Numbers are in SI, for any unit in the file.
 struct Parameter {
   std::string name, description;
   Value value;               ///< number, boolean, text, or a list of them
@@ -69,7 +67,7 @@ struct Parameter {
   Place place;               ///< of the name
 };
 
-/// One key of "solver", with its place for messages.
+/// One key of "solver", with its source location for messages.
 template <class T> struct Setting {
   T value{};
   bool is_given = false;
@@ -79,7 +77,7 @@ template <class T> struct Setting {
 struct SolverSettings {
   Setting<std::string> method{"rk4"};  ///< euler, heun, rk4, dopri5, cvode-bdf or cvode-adams
   Setting<double> start{0.0};          ///< s
-  Setting<double> stop{0.0};           ///< s; not given: the caller must say when to stop
+  Setting<double> stop{0.0};           ///< s; not given: the caller must decide when to stop
   Setting<double> step{0.0};           ///< s; of a fixed-step method; not given: the plan decides
   Setting<double> maximum_step{std::numeric_limits<double>::infinity()};  ///< s; of a variable-step method
   Setting<double> relative_tolerance{1e-6};
@@ -87,7 +85,7 @@ struct SolverSettings {
   Setting<double> record_step{0.0};  ///< s between rows of the recording; not given: the plan decides
   Setting<std::string> algebraic_loops{"error"};  ///< or "solve"
   Setting<uint64_t> seed{1};                      ///< of every random source
-  Place place;                                    ///< of the object, or of the diagram where it has none
+  Place place;                                    ///< of the object, or of the diagram if it has none
 };
 
 struct Diagram {
@@ -95,17 +93,17 @@ struct Diagram {
   std::string path;  ///< of the file, as it was opened
   std::vector<Parameter> parameters;
   SolverSettings
-      solver;  ///< counts for the outermost diagram; that of a subdiagram serves when it is run alone
+      solver;  ///< applies to the outermost diagram; that of a subdiagram applies when it is run alone
   std::vector<BlockEntry> blocks;
   std::vector<DiagramInput> inputs;
   std::vector<DiagramOutput> outputs;
-  std::vector<Wire> log;  ///< also ports of nested blocks, "stage.mass.velocity", and patterns, "stage.*"
+  std::vector<Wire> log;  ///< ports, also nested, "stage.mass.velocity", and patterns, "stage.*"
   std::vector<std::string>
       files;  ///< outermost diagram: every diagram file that was read, in order of reading
   std::vector<FileRead> files_read;  ///< outermost diagram: the subdiagrams' files
 };
 
-/// Replaces what feeds an input port by the output of a new block at the top.
+/// Replaces the source of an input port by the output of a new block at the top level.
 struct Drive {
   /// "axis.force", also nested, "stage.mass.force"; "command.terms[1]" for one wire of a list;
   /// "force" for an input of the outermost diagram.
@@ -115,21 +113,21 @@ struct Drive {
 };
 
 struct LoadOptions {
-  /// `--set path=value`: a parameter of the diagram ("observer_cutoff"), of a subdiagram ("stage.payload"), a
-  /// setting of a block ("cogging.harmonics.0.amplitude"), or a key of the solver ("solver.stop"). The value
-  /// is JSON, an expression ("=2*pi"), a number with a unit ("25 mm"), or else plain text.
+  /// `--set path=value`: a parameter of the diagram ("observer_cutoff") or of a subdiagram ("stage.payload"),
+  /// a setting of a block ("cogging.harmonics.0.amplitude"), or a key of the solver ("solver.stop"). The
+  /// value is JSON, an expression ("=2*pi"), a number with a unit ("25 mm"), or otherwise plain text.
   std::vector<std::pair<std::string, std::string>> set;
   std::map<std::string, std::string>
       variants;  ///< `--variant stage=quanser`: block path → name of the variant
   std::vector<Drive> drives;
 };
 
-/// Reads a diagram and its subdiagrams. With errors the result is what could be read, or null when nothing
-/// could.
+/// Reads a diagram and its subdiagrams. With errors the result is the readable part, or null if nothing could
+/// be read.
 std::shared_ptr<const Diagram> load_diagram(const std::string& path, const LoadOptions& options,
                                             Problems& problems);
 
-/// A path that stands in a file, relative to the folder of that file.
+/// Resolves a path given in a file, relative to the folder of that file.
 std::string resolve_relative(const Place& place, std::string_view path);
 
 }  // namespace loopwright

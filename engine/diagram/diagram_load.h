@@ -1,4 +1,4 @@
-/// Diagrams in diagrams, while they are loaded.
+/// Nested diagrams during loading.
 #pragma once
 #include <memory>
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace loopwright {
 
-/// One use of a diagram file: what its surroundings ask of it.
+/// One use of a diagram file, with the options that apply to it.
 struct Instance {
   std::string block;  // path of the subdiagram block; empty at the top
   std::vector<Override> overrides;
@@ -20,7 +20,7 @@ struct Instance {
   std::vector<VariantChoice> variants;
 };
 
-/// What all diagrams of one load share.
+/// State shared by all diagrams of one load.
 struct DiagramLoad {
   Problems& problems;
   DiagramLibrary library{problems};
@@ -29,7 +29,7 @@ struct DiagramLoad {
   size_t block_count = 0;                 // of all diagrams
 
   std::shared_ptr<Diagram> load(const std::string& path, const Place& reference, Instance instance);
-  /// A diagram that stands in the file at `path` where others name a file.
+  /// A diagram that is defined in the file at `path`, where other diagrams name a file.
   std::shared_ptr<Diagram> read(const Value& root, const BlockList& blocks, const std::string& path,
                                 Instance instance);
 };

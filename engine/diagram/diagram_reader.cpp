@@ -10,7 +10,7 @@
 namespace loopwright {
 namespace {
 
-constexpr size_t most_blocks = 200'000;  // a few small files can name each other into billions
+constexpr size_t most_blocks = 200'000;  // a few small files can name each other and give billions of blocks
 
 /// Reads one use of a diagram file.
 class DiagramReader {
@@ -122,7 +122,7 @@ class DiagramReader {
     read_block(member, std::move(edits), std::move(variants), {load_, scope_, path_}, reader, entry);
   }
 
-  /// The options whose path leads through a block, as they look from inside it.
+  /// The options whose path leads through a block, as seen from inside it.
   template <class Option>
   static std::vector<Option> take_options(std::vector<Option>& options, const std::string& block) {
     std::vector<Option> taken;
@@ -135,7 +135,7 @@ class DiagramReader {
     return taken;
   }
 
-  // ---- Options that nothing used ----
+  // ---- Unused options ----
 
   void report_unused_options() {
     if (instance_.edits.empty() && instance_.variants.empty()) return;

@@ -10,7 +10,7 @@
 namespace loopwright {
 namespace {
 
-/// A name that none of the lists has.
+/// A name that occurs in none of the lists.
 template <class... Entries> std::string unused_name(std::string name, const Entries&... lists) {
   const auto is_in = [&](const auto& list) {
     return std::ranges::any_of(list, [&](const auto& entry) { return entry.name == name; });
@@ -23,7 +23,7 @@ class Driver {
  public:
   Driver(const Drive& drive, Problems& problems) : drive_(drive), problems_(problems) {}
 
-  /// The block that plays the column goes to `columns`: nobody means it by a name.
+  /// The block that provides the column is added to `columns`; no other name refers to it.
   void apply(Diagram& top, std::vector<BlockEntry>& columns) {
     if (!is_port(drive_.port)) {
       error("\"" + drive_.port + "\" names no input port", "").expected =
@@ -62,7 +62,7 @@ class Driver {
     names.explain(error(std::move(message), std::move(block)), wrong);
   }
 
-  /// An input of the outermost diagram goes; its readers read the column.
+  /// Removes an input of the outermost diagram; its readers read the column.
   bool replace_input(Diagram& top, const std::string& name, const Wire& wire) const {
     const auto input = std::ranges::find(top.inputs, name, &DiagramInput::name);
     if (input == top.inputs.end()) {
@@ -83,7 +83,7 @@ class Driver {
     return true;
   }
 
-  /// Leads a wire to the port at the end of `path`, whose first name is a block of `diagram`.
+  /// Connects a wire to the port at the end of `path`, whose first name is a block of `diagram`.
   bool lead(Diagram& diagram, std::span<const std::string> path, const std::string& block,
             const std::string& passage, const Wire& wire) const {
     const auto entry = std::ranges::find(diagram.blocks, path[0], &BlockEntry::name);

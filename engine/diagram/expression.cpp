@@ -12,12 +12,12 @@
 namespace loopwright {
 namespace {
 
-constexpr size_t longest_expression = 1000;  // characters; bounds the work on hostile input
+constexpr size_t longest_expression = 1000;  // characters; limits the work for hostile input
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 
-/// The end of a number such as 1.5e-3, so that its e is not taken for a name.
+/// The end of a number such as 1.5e-3, so that its e is not read as a name.
 size_t end_of_number(std::string_view text, size_t at) {
   const auto skip_digits = [text](size_t i) {
     while (i < text.size() && is_digit(text[i])) ++i;
@@ -45,7 +45,7 @@ size_t find_assignment(std::string_view text) {
   return std::string_view::npos;
 }
 
-/// The first character that no expression has; npos: none.
+/// The first character that is not allowed in an expression; npos: none.
 size_t find_foreign(std::string_view text) {
   for (size_t at = 0; at < text.size();) {
     const size_t end = is_digit(text[at]) || text[at] == '.' ? end_of_number(text, at) : at;
@@ -91,10 +91,10 @@ std::string plain_words(const mu::ParserError& error) {
   }
 }
 
-/// An expression compiled by muParser, with the numbers of its parameters at hand.
+/// An expression compiled by muParser, with storage for the numbers of its parameters.
 class Compiled {
  public:
-  /// Where π varies, products with it are not folded: the last bits of a result may differ.
+  /// If π varies, products with it are not folded: the last bits of a result may differ.
   enum class Pi { is_constant, varies };
   Compiled(std::string_view expression, const std::vector<std::string>& names, Pi pi = Pi::is_constant)
       : parser_(parser(pi)), numbers_(names.size()) {
@@ -127,7 +127,7 @@ class Compiled {
   }
 
  private:
-  /// Making a parser costs far more than using it.
+  /// Creating a parser costs far more than using it.
   static FormulaParser& parser(Pi pi) {
     thread_local FormulaParser with_constant = make_parser(Pi::is_constant),
                                with_variable = make_parser(Pi::varies);
@@ -160,7 +160,7 @@ class Evaluator {
       return value_with_unit();
     } catch (const mu::ParserError& error) {
       report(plain_words(error), static_cast<size_t>(std::max(error.GetPos(), 0)));
-    } catch (const std::exception&) {  // muParser lets some errors of the standard library through
+    } catch (const std::exception&) {  // muParser passes some exceptions of the standard library through
       report("the expression cannot be read", 0);
     }
     return {};
@@ -170,7 +170,7 @@ class Evaluator {
   Place place_of(size_t offset) const {
     Place place = site_.place;
     constexpr size_t quote_and_equals = 2;
-    // With escapes in the text, offsets in the file are not those in the expression.
+    // If the text has escapes, offsets in the file differ from those in the expression.
     const bool stands_there =
         place.file && std::string_view(place.file->text)
                           .substr(std::min<size_t>(place.offset, place.file->text.size()))
@@ -258,7 +258,7 @@ class Evaluator {
         find_unit([&f](const std::vector<double>& at, double pi) { return f(at, pi); }, parameters_, unit);
     if (finding == UnitFinding::known) result.unit = unit;
     if (finding == UnitFinding::known || finding == UnitFinding::zero)
-      return result;  // a zero fits every unit
+      return result;  // zero fits every unit
     Problem& problem =
         report(finding == UnitFinding::mixed         ? "the expression mixes units"
                : finding == UnitFinding::mixed_turns ? "the expression adds Hz and rad/s"

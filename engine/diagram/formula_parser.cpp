@@ -7,7 +7,8 @@
 namespace loopwright {
 namespace {
 
-/// muParser does not let its ^ be replaced, so that formulas reach it with an operator that it has not.
+/// muParser does not allow its ^ to be replaced. Formulas are therefore passed to it with an operator that it
+/// does not define.
 constexpr char written_power = '^', parsed_power = '~';
 
 }  // namespace

@@ -4,14 +4,14 @@
 
 namespace loopwright {
 
-/// muParser with the functions of models/real and powers of our own: those of the C library, which it would
-/// call, have other bits on other processors. Everything else is as muParser has it.
+/// muParser with the functions of models/real and its own power function. muParser would call the C library,
+/// whose bits differ between processors. Everything else is unchanged muParser.
 class FormulaParser : public mu::Parser {
  public:
   FormulaParser();
-  /// Takes the place of SetExpr. Throws mu::ParserError, as Eval does.
+  /// Replaces SetExpr. Throws mu::ParserError, as Eval does.
   void set_formula(const std::string& text);
-  /// What muParser says about a formula, with its operators as they were written.
+  /// The message of muParser about a formula, with the operators as they were written.
   static std::string message_of(const mu::ParserError& error);
 };
 

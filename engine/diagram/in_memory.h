@@ -1,11 +1,11 @@
-/// Diagrams that a program put together, or changed, without writing them to a file.
+/// Diagrams that a program created or changed without writing them to a file.
 #pragma once
 #include "engine/diagram/diagram.h"
 
 namespace loopwright {
 
 /// Reads a diagram from its JSON value, as `load_diagram` does from a file. `path` is the file that it would
-/// be: what the diagram names is looked for beside the files in which the names stand.
+/// be: files named in the diagram are relative to the folder of the file in which the name stands.
 std::shared_ptr<const Diagram> read_diagram(const Value& root, const std::string& path,
                                             const LoadOptions& options, Problems& problems);
 

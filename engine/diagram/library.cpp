@@ -11,7 +11,7 @@ namespace loopwright {
 namespace {
 
 constexpr int current_version = 1;
-/// migrations[i] turns what a file of version i + 1 says into version i + 2.
+/// migrations[i] converts a file of version i + 1 to version i + 2.
 using Migration = Value (*)(Value);
 constexpr std::array<Migration, current_version - 1> migrations = {};
 
@@ -22,7 +22,7 @@ const DiagramFile& DiagramLibrary::open(const std::string& path, const Place& re
   DiagramFile& file = entry->second;
   if (!is_new) {
     if (!file.source)
-      read_source(path, reference, problems_);  // every reference to what is not there is told
+      read_source(path, reference, problems_);  // every reference to a missing file is reported
     return file;
   }
   file.source = read_source(path, reference, problems_);
@@ -57,7 +57,7 @@ const std::string& DiagramLibrary::identity(const std::string& path) {
   return entry->second;
 }
 
-/// The current one where none is told; nothing after a problem that makes the rest meaningless.
+/// The current version if none is given; nothing after a problem that makes the rest meaningless.
 std::optional<int> DiagramLibrary::version_of(const Value& root) {
   const Reader reader{problems_, {}};
   if (!reader.expect(root, Value::Kind::object, "the diagram", "an object: { \"loopwright\": 1, … }"))

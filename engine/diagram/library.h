@@ -1,4 +1,4 @@
-/// The diagram files of one load, each read once, however many blocks name it.
+/// The diagram files of one load. Each is read once, even if many blocks name it.
 #pragma once
 #include <memory>
 #include <optional>
@@ -14,8 +14,8 @@ namespace loopwright {
 
 struct DiagramFile {
   std::shared_ptr<const SourceFile> source;  ///< null: cannot be read
-  std::optional<JsonTokens> tokens;          ///< nothing: has errors, or is of an older version
-  Value root;  ///< no object: has errors, which are reported; where there are tokens, it lacks the blocks
+  std::optional<JsonTokens> tokens;          ///< nothing: has errors, or has an older version
+  Value root;  ///< not an object: has errors, already reported; if there are tokens, it lacks the blocks
 
   BlockList blocks() const { return tokens ? BlockList(*tokens) : BlockList(root.find("blocks")); }
 };
@@ -24,11 +24,11 @@ class DiagramLibrary {
  public:
   explicit DiagramLibrary(Problems& problems) : problems_(problems) {}
 
-  /// The file at a path that stands at `reference`, in the current version of the format.
+  /// The file at a path that is named at `reference`, in the current version of the format.
   const DiagramFile& open(const std::string& path, const Place& reference);
-  /// The same for every spelling of a path.
+  /// The identifier of a file: the same text for every spelling of its path.
   const std::string& identity(const std::string& path);
-  /// The files read, in order.
+  /// The names of the files read, in order.
   std::vector<std::string> take_names() { return std::move(names_); }
 
  private:

@@ -9,7 +9,7 @@
 
 namespace loopwright {
 
-constexpr size_t deepest_nesting = 32;  // subdiagrams in subdiagrams
+constexpr size_t deepest_nesting = 32;  // nesting of subdiagrams
 
 std::shared_ptr<Diagram> DiagramLoad::load(const std::string& path, const Place& reference,
                                            Instance instance) {
@@ -40,7 +40,7 @@ std::shared_ptr<Diagram> DiagramLoad::load(const std::string& path, const Place&
 
 namespace {
 
-/// A diagram that is used many times tells the same problem only once.
+/// A diagram that is used many times reports the same problem only once.
 void add_without_repetition(const Problems& found, Problems& problems) {
   std::set<std::tuple<const SourceFile*, uint32_t, std::string_view>> told;
   for (const Problem& problem : found.list())
@@ -48,7 +48,7 @@ void add_without_repetition(const Problems& found, Problems& problems) {
       problems.add(problem);
 }
 
-/// What the options ask of the outermost diagram.
+/// The options that apply to the outermost diagram.
 Instance top_instance(const LoadOptions& options, Problems& problems) {
   Instance top;
   for (const auto& option : options.set)
@@ -59,7 +59,7 @@ Instance top_instance(const LoadOptions& options, Problems& problems) {
   return top;
 }
 
-/// Reads the outermost diagram by `read` and does to it what the options ask.
+/// Reads the outermost diagram by `read` and applies the options.
 template <class Read>
 std::shared_ptr<const Diagram> with_options(const LoadOptions& options, Problems& problems, Read&& read) {
   Problems found;

@@ -29,7 +29,7 @@ std::string_view without_spaces(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(' ') + 1 - begin);
 }
 
-/// A bare number takes the unit.
+/// Gives a bare number this unit.
 void give_unit(Value& number, const Unit& unit) {
   number.number = unit.to_si(number.number);
   number.whole &= unit.scale == 1 && unit.offset == 0;
@@ -128,7 +128,7 @@ void ParameterScope::resolve() {
     if (entries_[i].progress == Progress::untouched) resolve_from(i);
 }
 
-/// Depth first, with a stack of its own: chains of parameters may be as long as a file.
+/// Depth first with an explicit stack: a chain of parameters may be as long as a file.
 void ParameterScope::resolve_from(size_t first) {
   std::vector<size_t> stack = {first};
   const auto start = [this](Entry& entry) {
@@ -150,7 +150,7 @@ void ParameterScope::resolve_from(size_t first) {
       stack.push_back(need);
     } else if (entries_[need].progress == Progress::in_work) {
       report_cycle(stack, need);
-      for (const size_t member : stack) {  // those above the cycle depend on it
+      for (const size_t member : stack) {  // members below the cycle depend on it
         entries_[member].parameter.value = broken(entries_[member].written);
         entries_[member].progress = Progress::done;
       }
@@ -209,7 +209,8 @@ void ParameterScope::work_out(Entry& entry) {
     entry.quantity = Quantity{parameter.value.number, parameter.value.unit};
 }
 
-/// Numbers, flags, texts, and lists of them; an object is none, as nothing could refer to a part of it.
+/// Numbers, flags, texts, and lists of them. Objects are not allowed, as no expression could refer to a part
+/// of one.
 bool ParameterScope::fits(const Value& value, const Entry& entry) {
   using enum Value::Kind;
   if (value.is_broken) return false;
@@ -223,7 +224,8 @@ bool ParameterScope::fits(const Value& value, const Entry& entry) {
   return std::ranges::all_of(value.items, [&](const Value& item) { return fits(item, entry); });
 }
 
-/// Bare numbers take the unit and go to SI; numbers that bring a unit must have the same dimension.
+/// A bare number gets this unit and is converted to SI. A number with its own unit must have the same
+/// dimension.
 void ParameterScope::convert(Value& value, const std::optional<Unit>& unit, const std::string& name) {
   for (Value& item : value.items) convert(item, unit, name);
   if (value.kind != Value::Kind::number) return;
@@ -264,7 +266,7 @@ Value ParameterScope::evaluate(const Value& value, const std::string& block) {
   return result;
 }
 
-/// A text keeps the place where it was written: a path is relative to that file. An option stands in none.
+/// A text keeps its source location, as a path is relative to that file. The value of an option has none.
 static bool stands_in_file(const Value& text) {
   return text.place.file && !text.place.file->name.starts_with("--set ");
 }
@@ -272,7 +274,7 @@ static bool stands_in_file(const Value& text) {
 Value ParameterScope::evaluate_text(const Value& text, const std::string& block) {
   const std::string_view expression = std::string_view(text.text).substr(1);
   const std::string_view name = without_spaces(expression);
-  if (is_name(name) && !is_constant_name(name)) {  // hands on a text or a list as well
+  if (is_name(name) && !is_constant_name(name)) {  // passes on texts and lists as well
     Place place = text.place;
     const Entry* entry = find({name, 0, false}, place, text, block);
     if (!entry || entry->parameter.value.is_broken) return broken(text);
@@ -293,7 +295,7 @@ Value ParameterScope::evaluate_text(const Value& text, const std::string& block)
   };
   const auto quantity = loopwright::evaluate(expression, {text.place, block, lookup}, reader_.problems);
   if (!quantity) return broken(text);
-  Value value = text;  // its text stays: the expression
+  Value value = text;  // keeps its text: the expression
   value.kind = Value::Kind::number;
   value.number = quantity->number;
   value.unit = quantity->unit;

@@ -9,7 +9,7 @@
 
 namespace loopwright {
 
-/// A value that takes the place of a parameter's own.
+/// A value that replaces the value of a parameter.
 struct Override {
   std::string name;
   Place place;  ///< of the name
@@ -18,22 +18,21 @@ struct Override {
 
 class ParameterScope {
  public:
-  /// `block`: path of the subdiagram whose parameters these are, empty at the top.
+  /// `block`: path of the subdiagram that has these parameters, empty at the top level.
   ParameterScope(std::string block, Problems& problems) : reader_{problems, std::move(block)} {}
 
-  /// Reads the object "parameters" of a diagram file. It must outlive the scope.
+  /// Reads the object "parameters" of a diagram file, which must outlive the scope.
   void declare(const Value& parameters);
-  /// Gives a declared parameter another value; expressions in it are over the names of this scope.
+  /// Gives a declared parameter another value; an expression in it may use the names of this scope.
   void override_with(Override replacement);
   bool declares(std::string_view name) const { return index_.contains(std::string(name)); }
-  /// What a declared parameter is given so far, in the file or by an override; expressions are not worked
-  /// out.
+  /// The present value of a declared parameter, from the file or an override; expressions are not evaluated.
   const Value& given_value(std::string_view name) const;
-  /// Works out every parameter. Before this, `evaluate` knows no names.
+  /// Evaluates every parameter. Before this, `evaluate` knows no names.
   void resolve();
 
-  /// The value with every expression in it replaced by its result. {"value": 25, "unit": "mm"} is the number
-  /// 0.025.
+  /// The value with every expression in it replaced by its result. {"value": 25, "unit": "mm"} becomes the
+  /// number 0.025.
   Value evaluate(const Value& value, const std::string& block);
   std::vector<Parameter> take_parameters();
   const std::vector<std::string>& names() const { return names_; }
@@ -45,9 +44,9 @@ class ParameterScope {
     Value written;  // without its unit
     std::optional<Override> replacement;
     Progress progress = Progress::untouched;
-    std::vector<size_t> needs;  // other parameters, in work
+    std::vector<size_t> needs;  // indices of other parameters, during resolution
     size_t next_need = 0;
-    std::optional<Quantity> quantity;  // of a number, for expressions
+    std::optional<Quantity> quantity;  // of a number, for use in expressions
   };
 
   void declare_one(const Value::Member& member);

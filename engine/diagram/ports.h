@@ -1,4 +1,4 @@
-/// What a diagram that is used as a block shows outside: its inputs and outputs.
+/// The inputs and outputs of a diagram that is used as a block.
 #pragma once
 #include <vector>
 #include "engine/diagram/diagram.h"
@@ -10,8 +10,8 @@ namespace loopwright {
 std::vector<DiagramInput> read_inputs_of_diagram(const Value& root, const Reader& reader);
 
 /// The key "outputs": `"position": "mass.position"` or
-/// `"position": {"source": "mass.position", "unit": "m", "description": "…"}`. One without a source is left
-/// out.
+/// `"position": {"source": "mass.position", "unit": "m", "description": "…"}`. An output without a source is
+/// omitted.
 std::vector<DiagramOutput> read_outputs_of_diagram(const Value& root, const Reader& reader);
 
 }  // namespace loopwright

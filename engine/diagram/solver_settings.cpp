@@ -34,7 +34,7 @@ class SettingsReader {
   void whole(std::string_view key, Setting<uint64_t>& to) {
     const Value value = evaluated(key, to);
     if (!to.is_given || !is_number(value, key, Unit{})) return;
-    constexpr double largest = 9007199254740992.0;  // 2^53: every whole number up to here is a double
+    constexpr double largest = 9007199254740992.0;  // 2^53: every integer up to this is a double
     if (value.number < 0 || value.number > largest || value.number != std::floor(value.number)) {
       Problem& problem = reader_.error(value, fmt::format("\"{}\" is out of range", key));
       problem.expected = "a whole number from 0 to 2^53";

@@ -5,10 +5,10 @@
 
 namespace loopwright {
 
-/// Reads every key, checks its range and unit, and rejects what it does not know.
+/// Reads every key, checks its range and unit, and rejects unknown keys.
 SolverSettings read_solver_settings(const Value& object, ParameterScope& scope, const Reader& reader);
 
-/// A number in s: sample times, steps. Nothing after a problem.
+/// A number in s, for sample times and steps. Nothing after a problem.
 std::optional<Value> read_time(const Value& value, std::string_view what, ParameterScope& scope,
                                const Reader& reader);
 

@@ -6,8 +6,7 @@
 namespace loopwright {
 namespace {
 
-/// What must hold for variants that are not active, too; their files are not opened, as hardware may be
-/// absent.
+/// Conditions that also apply to inactive variants. Their files are not opened, as hardware may be absent.
 void check_variant(const Value::Member& variant, const Reader& reader) {
   reader.check_name(variant, "a variant");
   const std::string_view expected = "an object: {\"type\": …} or {\"diagram\": …}";

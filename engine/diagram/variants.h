@@ -1,5 +1,4 @@
-/// Blocks that can be one of several: {"variants": {"simulated": {…}, "quanser": {…}}, "variant":
-/// "simulated", "in": {…}}.
+/// Blocks with variants: {"variants": {"simulated": {…}, "quanser": {…}}, "variant": "simulated", "in": {…}}.
 #pragma once
 #include <optional>
 #include <string>
@@ -9,10 +8,10 @@
 
 namespace loopwright {
 
-/// `--variant stage=quanser`, seen from one diagram in the nest.
+/// `--variant stage=quanser`, seen from one diagram of the nesting.
 struct VariantChoice {
   std::vector<std::string> path;
-  size_t depth = 0;  ///< names that lead to the diagram in hand, or to the block when it is all of them
+  size_t depth = 0;  ///< names that lead to the present diagram, or to the block if it is all of them
   std::string variant;
   Place place;
 
@@ -23,9 +22,9 @@ struct VariantChoice {
 std::optional<VariantChoice> read_variant_choice(const std::string& path, const std::string& variant,
                                                  Problems& problems);
 
-/// The body of the active variant, whose name goes into `entry`; null after a problem. Active is what the
-/// caller chose, else what "variant" says, else the first. Choices for this block are taken out of `choices`,
-/// the others lead deeper.
+/// The body of the active variant, whose name is stored in `entry`; null after a problem. The active variant
+/// is the one chosen by the caller, otherwise by "variant", otherwise the first. Choices for this block are
+/// removed from `choices`; the others lead deeper.
 const Value* active_variant(const Value& block, BlockEntry& entry, std::vector<VariantChoice>& choices,
                             const Reader& reader);
 

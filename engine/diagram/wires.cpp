@@ -6,7 +6,7 @@
 namespace loopwright {
 namespace {
 
-/// Takes "[12]" off the end of a port; false when brackets stand there that are none.
+/// Removes "[12]" from the end of a port; false if its brackets are malformed.
 bool drop_element(std::string_view& text) {
   const size_t bracket = text.find('[');
   if (bracket == text.npos) return true;
@@ -32,7 +32,7 @@ PortWires read_port(const Value::Member& member, const Reader& reader) {
       port.wires.push_back(wire_at(value));
     else
       read_wire(value, fmt::format("the wire of the input \"{}\"", member.name),
-                reader);  // tells what is wrong
+                reader);  // reports the mistake
   };
   if (!port.is_list) {
     add(member.value);

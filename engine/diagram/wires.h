@@ -1,4 +1,4 @@
-/// Wires as they stand in a diagram file: where each input of a block gets its numbers from.
+/// Wires in a diagram file: the sources of the inputs of a block.
 #pragma once
 #include <vector>
 #include "engine/diagram/diagram.h"

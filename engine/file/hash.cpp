@@ -7,7 +7,7 @@
 namespace loopwright {
 namespace {
 
-/// The remainder of every byte.
+/// The remainder for every byte.
 constexpr std::array<uint32_t, 256> crc32c_table = [] {
   std::array<uint32_t, 256> table{};
   for (uint32_t byte = 0; byte < 256; ++byte) {

@@ -1,4 +1,4 @@
-/// A fingerprint of parameters, plans and files that is the same on every machine and in every version.
+/// Hashes of parameters, plans and files, the same on every machine and in every version.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -6,13 +6,13 @@
 
 namespace loopwright {
 
-/// FNV-1a, 64 bits: h ← (h ⊕ byte) · 0x100000001b3, from h = 0xcbf29ce484222325, over all bytes in order.
-/// It tells contents apart; it does not protect against someone who wants two contents to look alike.
-/// Source: Fowler, Noll, Vo, draft-eastlake-fnv.
+/// FNV-1a, 64 bits: h ← (h ⊕ byte) · 0x100000001b3, from h = 0xcbf29ce484222325, over all bytes in order. It
+/// distinguishes contents, but does not protect against collisions made on purpose. Source: Fowler, Noll, Vo,
+/// draft-eastlake-fnv.
 class ContentHash {
  public:
-  /// Bytes added in parts hash as if they had been one: put a separator where parts could run into each
-  /// other.
+  /// Bytes added in parts give the hash of their concatenation: add a separator where different parts could
+  /// give the same concatenation.
   ContentHash& add(std::string_view bytes);
   uint64_t value() const { return value_; }
   std::string text() const;  ///< 16 hexadecimal digits, lower case
@@ -24,9 +24,9 @@ class ContentHash {
 /// The hash of all these bytes as 16 hexadecimal digits.
 std::string content_hash(std::string_view bytes);
 
-/// CRC-32C, which finds every damage of up to 32 bits in a row: the remainder by the Castagnoli polynomial,
-/// reflected 0x82f63b78, as RFC 3720 has it ("123456789" → 0xe3069283). `before`: the result for the bytes in
-/// front of these.
+/// CRC-32C, which detects every error burst of up to 32 bits: the remainder by the Castagnoli polynomial,
+/// reflected 0x82f63b78, as in RFC 3720 ("123456789" → 0xe3069283). `before`: the result for the preceding
+/// bytes.
 uint32_t crc32c(std::string_view bytes, uint32_t before = 0);
 
 }  // namespace loopwright

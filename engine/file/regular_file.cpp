@@ -21,7 +21,8 @@ std::string kind_of(mode_t mode) {
 }
 
 /// An open regular file, or the reason why there is none. Opening a named pipe would wait for its writer, and
-/// opening a device can act on it: so the kind is asked for first, and again of what was opened.
+/// opening a device can act on it. The kind is therefore checked before opening, and again on the opened
+/// file.
 class OpenFile {
  public:
   explicit OpenFile(const std::string& path) {
@@ -71,8 +72,8 @@ std::string read_regular_file(const std::string& path, size_t largest, std::stri
   const OpenFile file(path);
   if (!file.reason().empty()) return file.reason();
   if (file.size() > largest) return too_large(largest);
-  // Files of /proc announce no length, and others grow: read to the end. With room beyond the announced end,
-  // the last read finds it at once.
+  // Files in /proc report no length, and other files grow: read to the end. With space beyond the reported
+  // end, the last read detects it immediately.
   constexpr size_t chunk = 1 << 16;
   size_t length = 0;
   bytes.resize(file.size() + chunk);

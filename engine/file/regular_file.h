@@ -1,16 +1,17 @@
-/// Whole files into memory, and only files: what has no end, or makes its reader wait, is refused at once.
+/// Reads whole regular files into memory. A file without end, or one that makes its reader wait, is refused
+/// immediately.
 #pragma once
 #include <cstddef>
 #include <string>
 
 namespace loopwright {
 
-/// Why a path names no regular file that can be opened ("it is a named pipe"); empty when it does. It never
-/// waits for another process.
+/// The reason why a path does not name a regular file that can be opened ("it is a named pipe"); empty if it
+/// does. Never waits for another process.
 std::string why_not_regular(const std::string& path);
 
-/// Puts the contents of a regular file of at most `largest` bytes into `bytes`. Returns why it could not; empty
-/// when all went well.
+/// Reads a regular file of at most `largest` bytes into `bytes`. Returns the reason for a failure; empty on
+/// success.
 std::string read_regular_file(const std::string& path, size_t largest, std::string& bytes);
 
 }  // namespace loopwright

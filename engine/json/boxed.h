@@ -1,4 +1,4 @@
-/// A value that is mostly absent, kept elsewhere: what holds it grows by a pointer only.
+/// A value that is mostly absent, stored on the heap: its owner grows only by a pointer.
 #pragma once
 #include <memory>
 #include <optional>
@@ -6,7 +6,7 @@
 
 namespace loopwright {
 
-/// Copied with what is in it, and read as std::optional is.
+/// Copies its contents; the interface is that of std::optional.
 template <class T> class Boxed {
  public:
   Boxed() = default;

@@ -1,4 +1,4 @@
-/// `--set path=value`: a change to what a diagram file says, made before its expressions are worked out.
+/// `--set path=value`: a change to the contents of a diagram file, made before its expressions are evaluated.
 #pragma once
 #include <optional>
 #include <string>
@@ -11,7 +11,7 @@ namespace loopwright {
 
 struct Edit {
   std::vector<std::string> path;  ///< "stage", "payload"
-  size_t depth = 0;               ///< names that lead to the diagram in hand
+  size_t depth = 0;               ///< number of names that lead to the present diagram
   Value value;
 
   const std::string& head() const { return path[depth]; }
@@ -23,8 +23,8 @@ struct Edit {
 /// Nothing after a problem.
 std::optional<Edit> read_edit(const std::pair<std::string, std::string>& option, Problems& problems);
 
-/// Sets the member or item of `value` that the rest of the path, from `depth` on, leads to. A member that is
-/// not there is added, as it may have a default; an index must be one of the list.
+/// Sets the member or item of `value` at the remaining path, from `depth` on. A missing member is added, as
+/// it may have a default; an index must exist in the list.
 void apply_edit(const Edit& edit, Value& value, const Reader& reader);
 
 }  // namespace loopwright

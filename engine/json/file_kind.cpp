@@ -11,7 +11,7 @@ struct TellingKey {
   std::string_view key;
   FileKind kind;
 };
-/// The first that a file has decides: an effect has "blocks" too, a sweep a "diagram".
+/// The first key present in a file decides: an effect also has "blocks", a sweep also "diagram".
 constexpr TellingKey telling_keys[] = {
     {"loopwright_gp_model", FileKind::model},
     {"effect", FileKind::effect},
@@ -26,7 +26,7 @@ constexpr TellingKey telling_keys[] = {
     {"drive", FileKind::experiment},
 };
 
-/// Who takes a file of the kind.
+/// The program that reads a file of this kind.
 std::string_view user_of(FileKind kind) {
   switch (kind) {
     case FileKind::diagram:

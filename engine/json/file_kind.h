@@ -1,4 +1,4 @@
-/// What a JSON file is, told by its keys: so that a file in the wrong place is named for what it is.
+/// The kind of a JSON file, determined by its keys, so that messages can name the kind of a wrong file.
 #pragma once
 #include <string>
 #include <string_view>
@@ -12,13 +12,13 @@ enum class FileKind { unknown, diagram, experiment, sweep, training, effect, dev
 /// "a diagram", "an experiment", …
 std::string_view with_article(FileKind kind);
 
-/// By the keys that no other kind has; `unknown` when there is none.
+/// Determined by keys that no other kind has; `unknown` if there is none.
 FileKind kind_of(const Value& file);
 
-/// The same of a file, which is read no further than it must be; problems when it cannot be read.
+/// The same for a file, which is read only as far as necessary; problems if it cannot be read.
 FileKind kind_of_file(const std::string& path, Problems& problems);
 
-/// False, and a problem at the key that tells, when a file is plainly of another kind than the reader's.
+/// If a file is clearly of another kind than `wanted`: false, and a problem at the key that shows it.
 bool expect_kind(const Value& file, FileKind wanted, Problems& problems);
 
 }  // namespace loopwright

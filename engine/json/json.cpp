@@ -73,7 +73,8 @@ void write(const Value& value, std::string& to) {
 std::shared_ptr<const SourceFile> read_source(const std::string& path, const Place& reference,
                                               Problems& problems) {
   const auto fail = [&](std::string reason) {
-    // A file named on the command line has no place of reference: then the message stands at its own name.
+    // A file named on the command line has no source location of its reference: the message then shows its
+    // own name.
     const Place place =
         reference.file ? reference : Place{std::make_shared<SourceFile>(SourceFile{path, {}}), 0};
     problems.error(place, {}, {}, fmt::format("the file \"{}\" cannot be read: {}", path, reason));

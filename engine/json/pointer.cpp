@@ -26,7 +26,7 @@ uint32_t hexadecimal(std::string_view digits) {
   return code;
 }
 
-/// What a good JSON text token says, quotes taken off.
+/// The content of a valid JSON text token, without the quotes.
 std::string unquoted(std::string_view token) {
   std::string text;
   for (size_t i = 1; i + 1 < token.size(); ++i) {
@@ -41,7 +41,7 @@ std::string unquoted(std::string_view token) {
     } else if (c == 'u') {
       uint32_t code = hexadecimal(token.substr(i + 1, 4));
       i += 4;
-      if (code >= 0xD800 && code < 0xDC00) {  // the second half of a pair follows
+      if (code >= 0xD800 && code < 0xDC00) {  // the second half of a surrogate pair follows
         code = 0x10000 + ((code - 0xD800) << 10) + (hexadecimal(token.substr(i + 3, 4)) - 0xDC00);
         i += 6;
       }
@@ -77,7 +77,7 @@ class PointerTable {
         name = nothing;
       }
       const size_t end = end_of(at);
-      if (end == text_.npos || end <= at) break;  // the text goes wrong here
+      if (end == text_.npos || end <= at) break;  // the text is invalid from here on
       at = end;
     }
   }
@@ -99,7 +99,7 @@ class PointerTable {
 
  private:
   struct Entry {
-    uint32_t begin;   // of its name, where it has one
+    uint32_t begin;   // of its name, if it has one
     uint32_t offset;  // of the value
     uint32_t parent, name, index;
     uint32_t items = 0;  // so far

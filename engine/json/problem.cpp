@@ -8,7 +8,7 @@
 namespace loopwright {
 namespace {
 
-/// Walks forward through one text and counts lines and characters, so that many places cost one pass.
+/// Scans a text forward and counts lines and characters, so that many locations need only one pass.
 class LineCounter {
  public:
   explicit LineCounter(std::string_view text) : text_(text) {
@@ -72,7 +72,7 @@ std::string counted(size_t number, std::string_view noun) {
 
 bool is_error(const Problem& problem) { return problem.severity == Problem::Severity::error; }
 
-/// Length in bytes of the UTF-8 character that the text begins with; 0: none.
+/// Length in bytes of the UTF-8 character at the start of the text; 0: none.
 size_t length_of_character(std::string_view text) {
   const auto byte = [&](size_t i) { return static_cast<unsigned char>(text[i]); };
   const size_t length = byte(0) < 0x80 ? 1 : byte(0) < 0xC2 ? 0 : byte(0) < 0xE0 ? 2 : byte(0) < 0xF0 ? 3
@@ -86,7 +86,7 @@ size_t length_of_character(std::string_view text) {
   return is_overlong || is_surrogate || is_beyond ? 0 : length;
 }
 
-/// Controls of ASCII and of Latin-1 (U+0080 to U+009F, among them a second way to begin an escape sequence).
+/// Control characters of ASCII and of Latin-1 (U+0080 to U+009F, which can also begin an escape sequence).
 bool is_control(std::string_view character) {
   const auto first = static_cast<unsigned char>(character[0]);
   return first < 0x20 || first == 0x7F || (first == 0xC2 && static_cast<unsigned char>(character[1]) < 0xA0);
@@ -94,10 +94,10 @@ bool is_control(std::string_view character) {
 
 char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
 
-// Edit costs: a slip in upper or lower case is half a mistake.
+// Edit costs: a wrong case counts as half a mistake.
 constexpr int case_cost = 1, edit_cost = 2;
 
-/// Damerau-Levenshtein distance (insert, remove, replace, swap of neighbours) in the costs above.
+/// Damerau-Levenshtein distance (insert, remove, replace, swap of neighbors) with the costs above.
 int edit_distance(std::string_view a, std::string_view b) {
   std::vector<int> two_above(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
   for (size_t j = 0; j <= b.size(); ++j) row[j] = static_cast<int>(j) * edit_cost;
@@ -201,13 +201,13 @@ void Problems::note_file(const std::string& path, std::string_view bytes) {
 }
 
 std::string nearest_name(std::string_view wrong, const std::vector<std::string>& candidates) {
-  constexpr size_t longest_name = 64;  // bounds the work on hostile input
+  constexpr size_t longest_name = 64;  // limits the work for hostile input
   if (wrong.empty() || wrong.size() > longest_name) return {};
   std::string_view nearest;
   int nearest_distance = 0;
   for (std::string_view candidate : candidates) {
     if (candidate.empty() || candidate.size() > longest_name) continue;
-    // One mistake in three letters is still the same word; more is a guess.
+    // One mistake in three letters is accepted as the same word; more would be a guess.
     const int allowed = edit_cost * static_cast<int>(std::max(wrong.size(), candidate.size()) + 1) / 3;
     const int length_difference =
         std::abs(static_cast<int>(wrong.size()) - static_cast<int>(candidate.size()));

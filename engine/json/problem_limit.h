@@ -1,4 +1,4 @@
-/// Keeps a thousand problems of one kind from hiding the first.
+/// Prevents a thousand problems of one kind from hiding the first.
 #pragma once
 #include <string>
 
@@ -6,7 +6,7 @@
 
 namespace loopwright {
 
-/// Passes the first problems on and counts the rest; the destructor reports the count.
+/// Passes on the first problems and counts the rest; the destructor reports the count.
 class ProblemLimit {
  public:
   ProblemLimit(Problems& problems, int most) : problems_(problems), room_(most) {}
@@ -17,7 +17,7 @@ class ProblemLimit {
   void error(Place place, std::string message, std::string expected = {}, std::string found = {},
              std::string hint = {});
   void warning(Place place, std::string message, std::string hint = {});
-  /// Counts an error that would only repeat one already shown.
+  /// Counts an error that would only repeat one already reported.
   void count(Place place);
   bool has_errors() const { return errors_ > 0; }
 

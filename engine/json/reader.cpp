@@ -24,7 +24,7 @@ std::string shown(const Value& value) {
   }
   if (value.text.size() <= longest) return fmt::format("the text \"{}\"", value.text);
   size_t end = longest;
-  while (end > 0 && (value.text[end] & 0xC0) == 0x80) --end;  // not in the middle of a UTF-8 character
+  while (end > 0 && (value.text[end] & 0xC0) == 0x80) --end;  // do not cut inside a UTF-8 character
   return fmt::format("the text \"{}…\"", value.text.substr(0, end));
 }
 

@@ -55,14 +55,14 @@ class Explainer {
     return problem;
   }
 
-  /// The word or the character at a place, for "found".
+  /// The word or the character at a position, for "found".
   std::string shown(size_t at) const {
     constexpr size_t longest = 40;
     size_t end = at;
     while (end < text_.size() && is_word(text_[end]) && end - at < longest) ++end;
     if (end == at && at < text_.size())
       for (++end; end < text_.size() && (text_[end] & 0xC0) == 0x80; ++end)
-        continue;  // a whole UTF-8 character
+        continue;  // the rest of a UTF-8 character
     return std::string(text_.substr(at, end - at));
   }
 
@@ -95,7 +95,7 @@ class Explainer {
     return say(quote, "a text has no closing quote", "a second \" in the same line");
   }
 
-  /// Four hexadecimal digits; halves of surrogate pairs must come in the right order.
+  /// Four hexadecimal digits; halves of surrogate pairs must be in the right order.
   bool is_code_point(size_t& backslash) const {
     const auto code_at = [this](size_t at) {
       if (text_.substr(at, 2) != "\\u" || at + 6 > text_.size()) return -1;
@@ -183,7 +183,7 @@ class Explainer {
     return say(at, std::string(what), fmt::format("\",\" or \"{}\"", closing), shown(at));
   }
 
-  /// "01" or "truely": a good token with more behind it.
+  /// "01" or "truely": a valid token followed directly by more characters.
   bool is_glued(size_t at) const {
     return at == site_.cursor && at > 0 && at < text_.size() && is_word(text_[at]) && is_word(text_[at - 1]);
   }
@@ -249,8 +249,8 @@ size_t find_bad_byte(std::string_view text) {
       continue;
     }
     const size_t length = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : 2;
-    // Second bytes that would spell a character in more bytes than it needs, a surrogate, or one beyond
-    // U+10FFFF.
+    // Second bytes that would encode a character in more bytes than necessary, a surrogate, or a code point
+    // beyond U+10FFFF.
     const unsigned low = lead == 0xE0 ? 0xA0 : lead == 0xF0 ? 0x90 : 0x80;
     const unsigned high = lead == 0xED ? 0x9F : lead == 0xF4 ? 0x8F : 0xBF;
     if (lead < 0xC2 || lead > 0xF4 || byte(at + 1) < low || byte(at + 1) > high) return at;

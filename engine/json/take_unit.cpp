@@ -4,7 +4,7 @@
 namespace loopwright {
 namespace {
 
-/// "cutoff: ", of the member that holds the number.
+/// "cutoff: ", the member that holds the number.
 std::string named(const Value& number) {
   std::string pointer = number.place.pointer();
   for (size_t slash = pointer.rfind('/'); slash != pointer.npos; slash = pointer.rfind('/')) {
@@ -42,7 +42,7 @@ void tell_ambiguity(const Value& number, const Unit& wanted, const Reader& reade
   auto& p = reader.error(
       number, fmt::format("{}{} can mean two numbers here", named(number), shown(number.number, given)));
   p.expected = fmt::format("a number in {}", to_string(wanted));
-  Unit other = given;  // the same with radians for cycles
+  Unit other = given;  // the same with radians instead of cycles
   other.exponents[Unit::cycle] = wanted.cycles();
   other.exponents[Unit::radian] += given.cycles() - wanted.cycles();
   const double converted = conversion(given, other)(number.number);

@@ -12,10 +12,10 @@ namespace {
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 constexpr size_t largest_memory = 512u << 20;  // bytes, of the values in one text
 constexpr size_t deepest_nesting = 64;
-constexpr int most_duplicates = 100;  // reported; each costs a walk through the text
+constexpr int most_duplicates = 100;  // reported; each needs a pass over the text
 
-/// Receives the events of nlohmann's parser. It tells no positions, so a cursor walks through the text along
-/// with it: at each event the token starts at the next character that is no white space, comma or colon.
+/// Receives the events of nlohmann's parser. The parser gives no positions, so a cursor follows it through
+/// the text: at each event the token starts at the next character that is not white space, comma or colon.
 class Tokenizer {
  public:
   using number_integer_t = nlohmann::json::number_integer_t;
@@ -48,7 +48,7 @@ class Tokenizer {
     token.text = piece_of(text);
     return end_leaf();
   }
-  bool binary(binary_t&) { return false; }  // of other formats than JSON
+  bool binary(binary_t&) { return false; }  // occurs only in formats other than JSON
 
   bool start_object(size_t) { return open(Value::Kind::object, Awaited::first_name); }
   bool start_array(size_t) { return open(Value::Kind::list, Awaited::first_item); }
@@ -86,7 +86,7 @@ class Tokenizer {
     if (c == 'f') return cursor_ + 5;              // false
     return end_of_number(text_, cursor_);
   }
-  /// What the quoted token at the cursor says: a piece of the file, unless it is written with escapes.
+  /// The content of the quoted token at the cursor: a piece of the file, unless it is written with escapes.
   JsonToken::Piece piece_of(std::string_view content) {
     const auto size = static_cast<uint32_t>(content.size());
     if (end_of_token() - cursor_ == content.size() + 2) return {static_cast<uint32_t>(cursor_ + 1), size};
@@ -170,8 +170,8 @@ class Tokenizer {
         if (tokens_.text(list_[j].name) == tokens_.text(list_[i].name)) return true;
     return false;
   }
-  /// No two names share a hash: then none is there twice. Numbers in a row are sooner sorted than a table is
-  /// filled.
+  /// True if no two names share a hash; then no name occurs twice. For consecutive numbers sorting is faster
+  /// than a hash table.
   bool have_own_hashes(size_t object) const {
     std::vector<size_t> hashes;
     hashes.reserve(list_[object].inside.values);
@@ -181,9 +181,9 @@ class Tokenizer {
     return std::ranges::adjacent_find(hashes) == hashes.end();
   }
 
-  /// At the end of the object, whose values are the last in the list.
+  /// Called at the end of the object, whose values are the last in the list.
   void reject_duplicates(size_t object) {
-    constexpr size_t few = 8;  // sooner compared each with each
+    constexpr size_t few = 8;  // faster to compare pairwise
     const size_t values = list_[object].inside.values;
     if (values <= few ? !has_duplicates(object) : have_own_hashes(object)) return;
     std::unordered_map<std::string_view, const JsonToken*> first;
@@ -207,14 +207,14 @@ class Tokenizer {
   std::deque<JsonToken>& list_;
   size_t cursor_ = 0;
   Awaited awaited_ = Awaited::value;
-  std::vector<size_t> open_;  // brackets, outer ones first
-  JsonToken::Piece name_{};   // of the member whose value comes next
+  std::vector<size_t> open_;  // outermost first
+  JsonToken::Piece name_{};   // of the member whose value follows
   uint32_t name_offset_ = 0;
   size_t memory_ = 0;
   int duplicates_ = 0;
 };
 
-/// Texts that nlohmann's parser need not see. True after a problem.
+/// Texts that can be rejected without nlohmann's parser. True after a problem.
 bool reject_text(const std::shared_ptr<const SourceFile>& file, Problems& problems) {
   const std::string_view text = file->text;
   const auto reject = [&](size_t at, std::string message) -> Problem& {
@@ -316,7 +316,8 @@ std::optional<JsonTokens> read_tokens(std::shared_ptr<const SourceFile> file, Pr
   JsonTokens tokens{std::move(file), {}, {}};
   Problems found;
   Tokenizer tokenizer(tokens, found);
-  // What the standard library throws for want of memory is the only exception here: errors arrive as events.
+  // The only exceptions possible here come from the standard library when memory is exhausted; errors arrive
+  // as events.
   const bool is_complete = nlohmann::json::sax_parse(tokens.file->text, &tokenizer);
   const bool is_good = is_complete && !found.has_errors();
   for (const Problem& problem : found.list()) problems.add(problem);

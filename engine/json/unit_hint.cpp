@@ -9,7 +9,7 @@
 namespace loopwright {
 namespace {
 
-/// Units that motion control writes, the likelier one of two that differ in case only first.
+/// Usual units in motion control; of two that differ only in case the more likely one comes first.
 const std::vector<std::string>& usual_units() {
   static const std::vector<std::string> units{
       "m",   "mm", "um",   "nm",   "km", "kg",  "g",    "N",   "mN",     "kN",  "V",   "mV",
@@ -19,7 +19,7 @@ const std::vector<std::string>& usual_units() {
   return units;
 }
 
-/// What people write that no misspelling explains.
+/// Common notations that are not explained by a misspelling.
 struct Alias {
   std::string_view written, meant;
 };

@@ -1,11 +1,11 @@
-/// What was probably meant by a unit that does not exist.
+/// The unit probably meant by a unit that does not exist.
 #pragma once
 #include <string>
 #include <string_view>
 
 namespace loopwright {
 
-/// "did you mean "kg"?" for "Kg", "did you mean "N*m"?" for "Nm"; empty when no unit is written nearly so.
+/// "did you mean "kg"?" for "Kg", "did you mean "N*m"?" for "Nm"; empty if no unit is similar.
 std::string unit_hint(std::string_view text);
 
 }  // namespace loopwright

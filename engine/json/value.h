@@ -1,5 +1,5 @@
-/// A parameter value as it stands in a file, with its place and unit. Light: block files do not pay for a
-/// JSON parser.
+/// A parameter value from a file, with its source location and unit. It is lightweight, so that block files
+/// do not include a JSON parser.
 #pragma once
 #include <string>
 #include <string_view>
@@ -16,13 +16,13 @@ struct Value {
   struct Member;
   Kind kind = Kind::null;
   bool is_broken =
-      false;  ///< a null in place of what could not be worked out: the problem is reported already
+      false;  ///< a null in place of a value that could not be computed: the problem is already reported
   bool boolean = false;
   bool whole = false;        ///< the number was written without fraction or exponent
-  bool is_computed = false;  ///< the unit is that of an expression: taken as it is, not converted
+  bool is_computed = false;  ///< the unit comes from an expression: no conversion
   double number = 0;
   std::string text;  ///< of a text; for numbers from an expression, the expression
-  Boxed<Unit> unit;  ///< known for numbers that come from parameters with units
+  Boxed<Unit> unit;  ///< set for numbers that come from parameters with units
   std::vector<Value> items;
   std::vector<Member> members;
   Place place;

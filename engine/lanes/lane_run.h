@@ -1,9 +1,9 @@
-/// Many runs of one plan side by side on SIMD lanes: sweeps, fits and ensembles. Each lane has its own
-/// parameters and noise, and gives the bits that a scalar run gives.
+/// Many runs of one plan in parallel on SIMD lanes, for sweeps, fits and ensembles. Each lane has its own
+/// parameters and noise, and gives the same bits as a scalar run.
 ///
-/// Lanes live in modules, one an instruction set, that are loaded when the machine has it: no code for a wide
-/// machine is ever linked into the program itself. Plain structs and blocks from libraries of blocks run lane
-/// by lane.
+/// Lanes are implemented in modules, one for each instruction set, loaded only if the machine supports it:
+/// code for wide vectors is never linked into the program itself. Plain structs and blocks from libraries run
+/// lane by lane.
 #pragma once
 #include <array>
 #include <functional>
@@ -14,37 +14,37 @@
 
 namespace loopwright {
 
-/// Why a lane stopped.
+/// The reason why a lane stopped.
 struct LaneFailure {
   double time = 0;               ///< s
-  int block = -1;                ///< that faulted, or holds the number that is not finite
-  Number number = -1;            ///< that is not finite; -1: it was a fault, or a state that is no output
-  const char* reason = nullptr;  ///< of a fault; null: the run diverged
+  int block = -1;                ///< that faulted, or that holds the non-finite number
+  Number number = -1;            ///< that is non-finite; -1: a fault, or a state that is no output
+  const char* reason = nullptr;  ///< of a fault; null: a number became non-finite
 };
 
 class LaneRun {
  public:
   virtual ~LaneRun() = default;
   virtual int lanes() const = 0;
-  /// Whether a block of the plan runs on SIMD lanes; else it runs lane by lane.
+  /// Whether a block of the plan runs on SIMD lanes; otherwise it runs lane by lane.
   virtual bool is_lane_wise(int block) const = 0;
-  /// A tunable number of one lane by path, "stage.cogging.harmonics.0.amplitude", to be written before reset;
-  /// null: no such, or structural. It stays where it is as long as the run lives.
+  /// A tunable number of one lane by path, "stage.cogging.harmonics.0.amplitude", to be set before reset;
+  /// null if there is none or it is structural. The pointer is valid for the lifetime of the run.
   virtual double* parameter(std::string_view path, int lane) = 0;
-  /// Back to the start with the present parameters. Lane l is run number `identity.run` + l.
+  /// Returns to the start with the present parameters. Lane l is run number `identity.run` + l.
   virtual void reset(const RunIdentity& identity) = 0;
-  /// From the present time to the stop. `row(time)`, if given, is called at every row of the recording, and
-  /// may end the run by answering false. Ends early when all lanes have failed.
+  /// Runs from the present time to the stop time. `row(time)`, if given, is called at every row of the
+  /// recording and may end the run by returning false. The run ends early if all lanes have failed.
   virtual void run(const std::function<bool(double time)>& row = {}) = 0;
   virtual double time() const = 0;  ///< s
-  // The step in parts, for a program that feeds the signals itself.
+  // The parts of a step, for a program that sets the signals itself.
   /// Decisions, outputs and sampled updates at the present tick, as if the time were `at` [s].
   virtual void evaluate(double at) = 0;
-  /// The states advance by a solver step, at most by `ticks`; returns the ticks that have passed.
+  /// Advances the states by a solver step of at most `ticks`; returns the number of ticks advanced.
   virtual int64_t integrate(int64_t ticks) = 0;
-  /// Signals and states as they are now: to[i · lanes() + lane]. Without meaning in a lane that has failed.
+  /// The present signals and states: to[i · lanes() + lane]. Undefined in a lane that has failed.
   virtual void read(std::span<const Number> numbers, double* to) const = 0;
-  /// Lanes that have failed, a bit each; the others go on.
+  /// Lanes that have failed, one bit each; the others continue.
   virtual uint64_t failed() const = 0;
   virtual LaneFailure failure(int lane) const = 0;
 };
@@ -52,29 +52,30 @@ class LaneRun {
 enum class InstructionSet { scalar, avx2, avx512 };
 inline constexpr std::array all_instruction_sets{InstructionSet::scalar, InstructionSet::avx2,
                                                  InstructionSet::avx512};
-/// Runs in one arena, which every block computes at once: on several registers, so that the units of
-/// arithmetic always have an operation that waits for no other.
+/// The number of runs in one arena, which every block computes together: on several registers, so that the
+/// arithmetic units always have independent operations.
 constexpr int lanes_in_arena(InstructionSet set) { return set == InstructionSet::scalar ? 1 : 32; }
 constexpr std::string_view to_name(InstructionSet set) {
   return set == InstructionSet::avx512 ? "avx512" : set == InstructionSet::avx2 ? "avx2" : "scalar";
 }
 
-/// Most lanes that one run may have: a bit each in a mask of lanes.
+/// The maximum number of lanes of one run: one bit each in a mask.
 inline constexpr int most_lanes = 64;
 
-/// Why the plan cannot run side by side with a fixed step: which block or setting needs runs one by one.
-/// Empty: it can.
+/// The reason why the plan cannot run in parallel with a fixed step: the block or setting that requires
+/// separate runs. Empty: it can.
 std::string lanes_forbidden_by(const Plan& plan);
 
-/// Why lanes of this set cannot run here: the processor lacks it, or the module is not there. Empty: they
-/// can.
+/// The reason why lanes of this set cannot run here: the processor does not support it, or the module is
+/// missing. Empty: they can.
 std::string lanes_unavailable(InstructionSet set);
 
-/// The set with the most lanes that runs here.
+/// The set with the most lanes that this machine can run.
 InstructionSet widest_instruction_set();
 
-/// Room for lanes_in_arena · arenas runs; the plan must outlive it. A scalar run has one. Throws
-/// std::runtime_error with the reason where the plan forbids lanes, they are unavailable, or too many.
+/// A run with lanes_in_arena · arenas lanes; the plan must outlive it. A scalar run has one lane. Throws
+/// std::runtime_error with the reason if the plan does not allow lanes, if they are unavailable, or if they
+/// are too many.
 std::unique_ptr<LaneRun> make_lane_run(const Plan& plan, InstructionSet set, int arenas);
 
 /// "coulomb" stopped the run at t = 0.2 s: …

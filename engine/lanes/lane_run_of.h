@@ -65,7 +65,7 @@ template <class Real> class LaneRunOf final : public LaneRun {
  private:
   static constexpr int width = lanes_of<Real>;
 
-  /// 0·x summed over numbers is no number as soon as one of them is not finite.
+  /// 0·x, summed over numbers, is NaN if any of them is non-finite.
   Real log_of(int r) const {
     Real sum = 0.0;
     for (const Plan::Logged& logged : plan_.log) sum = sum + 0.0 * run_.number(logged.number, r);
@@ -95,7 +95,7 @@ template <class Real> class LaneRunOf final : public LaneRun {
       fail(lane, {run_.now().time, run_.fault(lane).block, -1, run_.fault(lane).reason});
     }
   }
-  /// As for one run: after the step that began with a row.
+  /// As for one run: after a step that began with a row.
   void note_divergence() {
     for (int r = 0; r < arenas_; ++r) look_for_non_finite(r, states_of(r));
     for (uint64_t fresh = not_finite_ & ~failed_; fresh; fresh &= fresh - 1) {
@@ -103,7 +103,7 @@ template <class Real> class LaneRunOf final : public LaneRun {
       fail(lane, culprit(lane));
     }
   }
-  /// The first output in order that is no finite number, or else the first state.
+  /// The first output in order that is non-finite, or else the first state.
   LaneFailure culprit(int lane) const {
     const double now = run_.now().time;
     for (const Plan::Entry& entry : plan_.order) {

@@ -1,11 +1,10 @@
-/// What a lane module hands to the program: the only thing that it exports.
+/// The interface of a lane module to the program: its only export.
 #pragma once
 #include "engine/lanes/lane_run.h"
 
 namespace loopwright {
 
-/// Sizes of what crosses the border between program and module. They differ when the two are not of one
-/// build.
+/// Sizes of the types shared by program and module. They differ if the two are not from the same build.
 inline constexpr std::array<size_t, 6> lane_layout{sizeof(Plan),         sizeof(Plan::Block),
                                                    sizeof(BlockType),    sizeof(FaultReport),
                                                    sizeof(Call<double>), sizeof(LaneFailure)};

@@ -9,8 +9,8 @@
 
 namespace loopwright {
 
-/// A slot is a block and what its name's hash begins with, eight bytes in all: of a hundred thousand blocks
-/// the table still fits into a cache, and names are compared where they stand anyway.
+/// A slot holds a block and the beginning of the hash of its name, eight bytes in total. A table for a
+/// hundred thousand blocks therefore fits into a cache. Names are compared in the diagram.
 class BlockTable {
  public:
   explicit BlockTable(const std::vector<BlockEntry>& blocks)
@@ -20,7 +20,7 @@ class BlockTable {
     const std::string_view name = blocks_[block].name;
     slots_[slot_of(name)] = {hash_of(name), int32_t(block)};
   }
-  /// Its index in the diagram; -1: there is none.
+  /// Its index in the diagram; -1: not found.
   int find(std::string_view name) const { return slots_[slot_of(name)].block; }
 
  private:
@@ -29,7 +29,7 @@ class BlockTable {
     int32_t block = -1;  // none
   };
   static uint32_t hash_of(std::string_view name) { return uint32_t(std::hash<std::string_view>()(name)); }
-  /// Where the name stands, or would stand.
+  /// The slot of the name, or the free slot for it.
   size_t slot_of(std::string_view name) const {
     const uint32_t hash = hash_of(name);
     for (size_t i = hash;; ++i) {
@@ -40,7 +40,7 @@ class BlockTable {
   }
 
   const std::vector<BlockEntry>& blocks_;
-  std::vector<Slot> slots_;  // a power of two, of which half are free
+  std::vector<Slot> slots_;  // the size is a power of two; at least half are free
 };
 
 }  // namespace loopwright

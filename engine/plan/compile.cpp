@@ -16,8 +16,8 @@
 namespace loopwright {
 namespace {
 
-/// What a diagram without "log" records: all outputs of its blocks; of a subdiagram its outputs, or where it
-/// declares none, those of the blocks in it by the same rule.
+/// The default recording of a diagram without "log": all outputs of its blocks. Of a subdiagram it has the
+/// declared outputs, or if there are none, the outputs of its blocks by the same rule.
 class LogOfEverything {
  public:
   explicit LogOfEverything(FlatDiagram& flat) : flat_(flat) {
@@ -53,7 +53,7 @@ class LogOfEverything {
 
   FlatDiagram& flat_;
   std::unordered_map<std::string, const FlatWire*> names_;
-  size_t next_ = 0;  // flat blocks stand in the order of the diagrams
+  size_t next_ = 0;  // flat blocks are in the order of the diagrams
 };
 
 Rate rate_of_number(const Plan& plan, Number number, const std::vector<Rate>& rate_of_signal) {
@@ -106,10 +106,10 @@ void add_rates_to_log(Plan& plan) {
   for (Plan::Logged& logged : plan.log) logged.rate = rate_of_number(plan, logged.number, rate_of_signal);
 }
 
-/// Who computes each number, and in which unit.
+/// The source of each number, and its unit.
 void add_sources(const PortUnits& units, const std::vector<int>& flat_of_block, Plan& plan,
                  Plan::Lists& lists) {
-  lists.output_units.reserve(lists.outputs.size());  // the blocks point into it while it grows
+  lists.output_units.reserve(lists.outputs.size());  // blocks point into it, so it must not reallocate
   plan.sources.assign(size_t(plan.signals + plan.states), {-1, -1});
   for (size_t b = 0; b < plan.blocks.size(); ++b) {
     Plan::Block& block = plan.blocks[b];
@@ -123,8 +123,8 @@ void add_sources(const PortUnits& units, const std::vector<int>& flat_of_block, 
   }
 }
 
-/// Every port by path, sorted by name. Names and numbers are gathered side by side and sorted there: to
-/// compare and to build them all over memory takes the longer the more there are.
+/// Every port by path, sorted by name. Names and numbers are collected contiguously and sorted there, as
+/// comparing and building them across scattered memory becomes slow for many ports.
 class PortList {
  public:
   explicit PortList(const Layout& layout) : layout_(layout) {}
@@ -135,8 +135,8 @@ class PortList {
     ports_.push_back({text_.size(), path.size() + dot.size() + port.size(), first, numbers_.size() - first});
     text_.append(path).append(dot).append(port);
   }
-  /// The ports since the last end are neighbours in the order of names: so many letters at their beginning
-  /// are the same, and tell where they stand among the others.
+  /// The ports added since the last end are neighbors in the order of names. Their names share this many
+  /// characters at the beginning, which determine the position of the group among the others.
   void end_group(size_t same_letters) {
     const size_t first = groups_.empty() ? 0 : groups_.back().end;
     if (first == ports_.size()) return;
@@ -242,7 +242,7 @@ std::string hash_of_structure(const Plan& plan) {
   return hash.text();
 }
 
-/// Files that a block named and read by its own means are read once more for their contents.
+/// Files that a block named but read by itself are read again for their contents.
 std::vector<FileRead> with_contents(std::vector<FileRead> files) {
   std::set<std::string> known;
   for (const FileRead& file : files)
@@ -257,7 +257,7 @@ std::vector<FileRead> with_contents(std::vector<FileRead> files) {
   return files;
 }
 
-/// `first_file`: those that `problems` had before belong to something else.
+/// `first_file`: the files that `problems` had before belong to something else.
 Identity identity_of(const Plan& plan, const Diagram& diagram, const Problems& problems, size_t first_file) {
   std::vector<FileRead> files = diagram.files_read;
   files.insert(files.end(), problems.files().begin() + ptrdiff_t(first_file), problems.files().end());
@@ -278,7 +278,7 @@ std::shared_ptr<const Plan> compile(const Diagram& diagram, Problems& problems) 
   const PortUnits units = check_units(flat, diagram, problems);
   auto plan = std::make_shared<Plan>();
   plan->title = diagram.title;
-  if (problems.has_errors()) {  // times are still worth checking
+  if (problems.has_errors()) {  // the times are still checked
     find_times(diagram, flat, {}, *plan, problems);
     return nullptr;
   }

@@ -9,13 +9,13 @@
 namespace loopwright {
 namespace {
 
-/// One diagram in the nest: where its names lead.
+/// One diagram of the nesting, with the meaning of its names.
 struct Scope {
   const Diagram* diagram;
   std::string prefix;       // "" or "stage."
-  const BlockEntry* entry;  // in the parent; null at the top
+  const BlockEntry* entry;  // in the parent; null at the top level
   Scope* parent;
-  /// What became of a block: one in the flat list, a subdiagram, or, with errors, nothing.
+  /// The result for a block: an index in the flat list, a subdiagram, or nothing after errors.
   struct Part {
     int flat_block = -1;
     Scope* inner = nullptr;
@@ -24,7 +24,7 @@ struct Scope {
   BlockTable blocks{diagram->blocks};
 };
 
-/// The scalar blocks of a diagram, one after the other in memory. They live as long as any of them is held.
+/// The scalar blocks of a diagram, contiguous in memory. They exist as long as any of them is in use.
 class BlockValues {
  public:
   BlockValues() = default;
@@ -54,7 +54,7 @@ class Flattener {
     flat_.settings.effective.reserve(diagram.parameters.size() + 2 * diagram.blocks.size());
     flat_.settings.add(diagram.parameters);
     Scope& top = add_scope(diagram, "", nullptr, nullptr);
-    for (size_t i = 0; i < scopes_.size(); ++i) wire_blocks(scopes_[i]);  // the deque does not grow any more
+    for (size_t i = 0; i < scopes_.size(); ++i) wire_blocks(scopes_[i]);  // the deque no longer grows
     for (size_t i = 0; i < scopes_.size(); ++i) check_subdiagram_wires(scopes_[i]);
     add_log(top);
     add_names();
@@ -70,7 +70,7 @@ class Flattener {
       Scope::Part part;
       if (block.subdiagram)
         part.inner = &add_scope(*block.subdiagram, scope.prefix + block.name + ".", &block, &scope);
-      else if (!block.type.empty())  // else told when it was loaded
+      else if (!block.type.empty())  // otherwise reported when it was loaded
         part.flat_block = add_block(scope, block);
       scope.parts.push_back(part);
     }
@@ -158,8 +158,7 @@ class Flattener {
     if (!near.empty()) p.hint = fmt::format("did you mean \"{}\"?", near);
   }
 
-  /// Follows a name to the block output behind it: through inputs of the diagram, outputs of subdiagrams,
-  /// deep paths.
+  /// Follows a name to its block output, through diagram inputs, subdiagram outputs and nested paths.
   FlatWire resolve(Scope& scope, std::string_view text, const Wire& at, const std::string& reader,
                    int depth) {
     if (depth > 200)
@@ -176,7 +175,7 @@ class Flattener {
       const auto& [flat_block, inner] = scope.parts[size_t(block)];
       if (inner) return resolve_inside(*inner, rest, at, reader, depth);
       if (flat_block >= 0) return resolve_port(flat_block, rest, at, reader, depth);
-      return unresolved(at);  // already told
+      return unresolved(at);  // already reported
     }
     std::vector<std::string> names;
     for (const BlockEntry& entry : scope.diagram->blocks) names.push_back(entry.name);
@@ -210,7 +209,7 @@ class Flattener {
                 resolve(*scope.parent, wires.wires[0].source, wires.wires[0], scope.prefix + name, depth + 1);
             return with_element(wire, element, at, reader);
           }
-        return {};  // told by check_subdiagram_wires
+        return {};  // reported by check_subdiagram_wires
       }
       names.push_back(input.name);
     }
@@ -221,7 +220,7 @@ class Flattener {
         names, name, outputs_of(scope, name));
   }
 
-  /// Of a block whose name stands where one of its outputs is wanted.
+  /// The outputs of a block whose name stands in place of one of its outputs.
   static std::string outputs_of(const Scope& scope, const std::string& name) {
     const int block = scope.blocks.find(name);
     if (block < 0) return "";
@@ -271,7 +270,7 @@ class Flattener {
         wire.block = block, wire.output = int(o), wire.at = &at;
         return with_element(std::move(wire), element, at, reader);
       }
-    if (reader == "log")  // an input may be looked at: what feeds it
+    if (reader == "log")  // an input may be logged: this records its source
       for (const PortWires& wires : flat.entry->in)
         if (wires.port == name && wires.wires.size() == 1)
           return with_element(
@@ -298,7 +297,7 @@ class Flattener {
   FlatWire fail(const Wire& at, const std::string& reader, std::string message,
                 std::vector<std::string> names, const std::string& wrong, std::string hint = "") {
     if (!told_.insert(at.place.pointer() + message).second)
-      return {};  // one wire into a subdiagram may have many readers
+      return {};  // a wire into a subdiagram may have many readers
     auto& p = problems_.error(at.place, at.place.pointer(), reader, std::move(message));
     p.found = "\"" + at.source + "\"";
     const std::string near = wrong.empty() ? "" : nearest_name(wrong, names);
@@ -311,7 +310,7 @@ class Flattener {
     return {};
   }
 
-  /// Wires into a subdiagram: every input has one, and no wire leads to an input that does not exist.
+  /// Checks the wires into a subdiagram: one for every input, and none to an input that does not exist.
   void check_subdiagram_wires(Scope& scope) {
     if (!scope.entry) return;
     const std::string path = scope.prefix.substr(0, scope.prefix.size() - 1);
@@ -368,7 +367,7 @@ class Flattener {
 
   /// Outputs and inputs of subdiagrams by full path.
   void add_names() {
-    Problems unheard;  // told already
+    Problems unheard;  // already reported
     std::swap(unheard, problems_);
     for (Scope& scope : scopes_) {
       auto& outputs = scope.entry ? flat_.names : flat_.outputs;

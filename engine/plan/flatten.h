@@ -1,4 +1,4 @@
-/// Subdiagrams dissolved: a flat list of blocks with their types, parameters and resolved wires.
+/// Flattened diagrams: a list of blocks with their types, parameters and resolved wires, without subdiagrams.
 #pragma once
 #include <memory_resource>
 #include "engine/block/registry.h"
@@ -7,27 +7,27 @@
 
 namespace loopwright {
 
-/// A wire's source: an output of a flat block, or one element of it. Points into the diagram.
+/// The source of a wire: an output of a flat block, or one element of it. Points into the diagram.
 struct FlatWire {
   int block = -1, output = -1;
   int element = -1;          ///< -1: the whole port
-  const Wire* at = nullptr;  ///< as the reader wrote it; null: nobody did
+  const Wire* at = nullptr;  ///< as written in the file; null: not from a file
   bool is_resolved() const { return block >= 0; }
-  /// Which input of the outermost diagram this is, looked at as a part; -1: none.
+  /// The input of the outermost diagram, if that is examined as a part; -1: none.
   int open_input() const { return block < 0 ? output : -1; }
 };
 
-/// What feeds the ports of a block, a list each, in the memory of its diagram; empty: not wired.
+/// The wires of the ports of a block, one list for each port, in the memory of its diagram; empty: not wired.
 using FlatInputs = std::pmr::vector<std::pmr::vector<FlatWire>>;
 
 struct FlatBlock {
   std::string path;
   const BlockEntry* entry = nullptr;
   const BlockType* type = nullptr;
-  std::shared_ptr<void> value;  ///< scalar block, parameters read
+  std::shared_ptr<void> value;  ///< scalar block with its parameters
   FlatInputs inputs;
-  int width = 1;                         ///< elements, when scalar ports are wired with vectors
-  std::pmr::vector<int> output_lengths;  ///< of one element's port; 1 until the shapes are found
+  int width = 1;                         ///< number of elements, if scalar ports are wired with vectors
+  std::pmr::vector<int> output_lengths;  ///< of the port of one element; 1 until the shapes are known
 };
 
 struct FlatLog {
@@ -35,24 +35,24 @@ struct FlatLog {
   FlatWire wire;
 };
 
-/// A port of a subdiagram, under which what it leads to can be asked for.
+/// A port of a subdiagram, which can be requested by its name.
 struct FlatName {
   std::string name;
   FlatWire wire;
 };
 
 struct FlatDiagram {
-  /// Of the lists of blocks: one after the other, and given back at once.
+  /// Memory of the lists of blocks: contiguous and freed together.
   std::unique_ptr<std::pmr::monotonic_buffer_resource> memory =
       std::make_unique<std::pmr::monotonic_buffer_resource>();
   std::vector<FlatBlock> blocks;
   Settings settings;  ///< of the blocks, in their order
   std::vector<FlatLog> log;
-  std::vector<FlatName> names;    ///< those of blocks are plain: path.port
+  std::vector<FlatName> names;    ///< ports of blocks have plain names: path.port
   std::vector<FlatName> outputs;  ///< of the outermost diagram
 };
 
-/// `open`: inputs of the outermost diagram may lack a source, as those of a subdiagram looked at alone do.
+/// `open`: inputs of the outermost diagram may have no source, as for a subdiagram examined alone.
 FlatDiagram flatten(const Diagram& diagram, Problems& problems, bool open = false);
 
 }  // namespace loopwright

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::string_view file_fact = "file ";
 
-/// Copies the identifier out of the notes of the first object that is loaded: the program itself.
+/// Copies the build identifier from the notes of the first loaded object, the program itself.
 int take_build_id(dl_phdr_info* object, size_t, void* to) {
   for (int i = 0; i < object->dlpi_phnum; ++i) {
     const ElfW(Phdr)& part = object->dlpi_phdr[i];
@@ -39,19 +39,19 @@ int take_build_id(dl_phdr_info* object, size_t, void* to) {
       at = bytes + padded(note->n_descsz);
     }
   }
-  return 1;  // only the first object is asked
+  return 1;  // stop after the first object
 }
 
 std::string find_build() {
   std::string identifier;
   dl_iterate_phdr(take_build_id, &identifier);
-  // A linker that writes no identifier leaves the program's bytes.
+  // If the linker writes no identifier, use the bytes of the program.
   if (identifier.empty())
     read_regular_file("/proc/self/exe", std::numeric_limits<uint32_t>::max(), identifier);
   return content_hash(identifier);
 }
 
-/// The contents that each name stands for: the same name may be read from several folders.
+/// The contents of each name: files of the same name may be read from several folders.
 std::map<std::string, std::set<std::string>> by_name(const Identity& identity) {
   std::map<std::string, std::set<std::string>> contents;
   for (const FileRead& file : identity.files) contents[file.path].insert(file.hash);
@@ -114,7 +114,7 @@ std::vector<std::string> changes(const Identity& before, const Identity& now) {
   const auto old_contents = by_name(before), new_contents = by_name(now);
   for (const auto& [name, contents] : old_contents)
     if (const auto found = new_contents.find(name); found == new_contents.end()) {
-      if (!has_contents(now, contents))  // else it has moved
+      if (!has_contents(now, contents))  // otherwise it was moved
         list.push_back(fmt::format("the file \"{}\" is not read any more", name));
     } else if (found->second != contents) {
       list.push_back(fmt::format("the file \"{}\" has changed", name));

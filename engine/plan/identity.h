@@ -1,5 +1,5 @@
-/// What made a result: the diagram with its parameters, the contents of every file that was read, the program.
-/// Results belong together, and a run can be gone on with, only where all of it is the same.
+/// The inputs that determine a result: the diagram with its parameters, the contents of every file that was
+/// read, the program. Results are comparable, and a run can be continued, only if all of them are the same.
 #pragma once
 #include <span>
 #include <string>
@@ -14,30 +14,32 @@ using Facts = std::vector<std::pair<std::string, std::string>>;
 struct Identity {
   std::string structure;        ///< hash of the plan's blocks, wires, times and effective parameters
   std::string build;            ///< of the program, as program_build() gives it
-  std::vector<FileRead> files;  ///< besides the diagram itself, which the structure covers; sorted
+  std::vector<FileRead> files;  ///< sorted; without the diagram itself, which the structure covers
 
-  /// Of all of it but the names of files, 16 hexadecimal digits: results may move to another folder or machine.
+  /// Hash of everything except the names of files, 16 hexadecimal digits: results may move to another folder
+  /// or machine.
   std::string hash() const;
-  /// As recordings and checkpoints carry it: "plan", "plan structure", "build", and "file NAME" for each file.
+  /// As in recordings and checkpoints: "plan", "plan structure", "build", and "file NAME" for each file.
   Facts facts() const;
 };
 
-/// Reads back what Identity::facts() wrote; what is not there stays empty.
+/// Reads back the output of Identity::facts(); missing facts give empty members.
 Identity identity_of(const Facts& facts);
 
-/// One fact a line, and back. What follows the last line that is a fact is left out.
+/// One fact per line, and back. Text after the last line that is a fact is ignored.
 std::string to_text(const Facts& facts);
 Facts facts_of(std::string_view text);
 
-/// In what two identities differ besides the build, a sentence each: `the file "track.csv" has changed`.
+/// The differences between two identities except the build, one sentence each: `the file "track.csv" has
+/// changed`.
 std::vector<std::string> changes(const Identity& before, const Identity& now);
-/// The same, with the program's build as the last; empty: nothing has changed.
+/// The same, followed by the build of the program; empty: no change.
 std::string changes_with_build(const Identity& before, const Identity& now);
 
-/// Sorted, each once, named relative to the folder of the diagram.
+/// Sorted, without duplicates, with names relative to the folder of the diagram.
 std::vector<FileRead> named_from(const std::string& diagram, std::vector<FileRead> files);
 
-/// Tells builds of this program apart: the identifier that the linker works out from its contents. The same
+/// Distinguishes builds of this program: the identifier that the linker computes from its contents. The same
 /// program has the same build on every machine.
 const std::string& program_build();
 

@@ -18,7 +18,8 @@ Layout::Layout(const FlatDiagram& flat, Plan& plan, Plan::Lists& lists)
   hand_out_inputs();
 }
 
-/// Blocks point into the lists while they grow, so there must be room for the rows that may be made as well.
+/// Blocks point into the lists while these grow, so the lists must also have room for the rows that may be
+/// added.
 void Layout::reserve() {
   size_t blocks = 0, outputs = 0, buffers = 0, inputs = 0, rows = 0;
   for (const FlatBlock& flat : flat_.blocks) {
@@ -57,7 +58,7 @@ void Layout::add_blocks() {
   }
 }
 
-/// The first element takes the signals of all. A state is -1-k, until the number of signals is known.
+/// The first element has the signals of all elements. A state is -1-k until the number of signals is known.
 void Layout::add_outputs(const FlatBlock& flat, int element, Plan::Block& block) {
   const auto& ports = flat.type->info.outputs;
   for (size_t o = 0; o < ports.size(); ++o) {
@@ -75,7 +76,7 @@ void Layout::add_outputs(const FlatBlock& flat, int element, Plan::Block& block)
   block.output_lengths = std::span(lists_.output_lengths).last(ports.size());
 }
 
-/// Optional inputs without a wire read constants, one signal a distinct value.
+/// Optional inputs without a wire read constants, one signal for each distinct value.
 void Layout::number_constants() {
   for (const FlatBlock& flat : flat_.blocks)
     for (size_t i = 0; i < flat.inputs.size(); ++i) {
@@ -153,7 +154,7 @@ void Layout::wire_port(const FlatBlock& flat, size_t port, int element) {
   }
 }
 
-/// In the place of scattered numbers their copies, side by side, made by a Pack that nobody wrote.
+/// Replaces scattered numbers by contiguous copies, made by an additional Pack block.
 void Layout::put_in_a_row(size_t first, const Plan::Block& reader, std::string_view port) {
   const auto numbers = std::span(lists_.inputs).subspan(first);
   bool in_a_row = !numbers.empty() && numbers[0] >= 0;
@@ -178,7 +179,7 @@ void Layout::put_in_a_row(size_t first, const Plan::Block& reader, std::string_v
   plan_.blocks.push_back(std::move(pack));
 }
 
-/// States come after the signals: -1-k becomes signals+k, now that the number of signals is known.
+/// States follow the signals: -1-k becomes signals+k, as the number of signals is now known.
 void Layout::settle_states() {
   const auto settle = [this](Number& n) {
     if (n < 0) n = plan_.signals + (-1 - n);

@@ -1,17 +1,18 @@
-/// Where every number of a run stands: blocks on vectors taken apart into blocks on scalars, wires turned
-/// into numbers.
+/// Assigns every number of a run its index: blocks on vectors are split into blocks on scalars, wires become
+/// numbers.
 #pragma once
 #include "engine/plan/flatten.h"
 #include "engine/plan/plan.h"
 
 namespace loopwright {
 
-/// Fills Plan::blocks with one block an element, gives every output its numbers, and wires the inputs.
+/// Fills Plan::blocks with one block for each element, assigns every output its numbers, and connects the
+/// inputs.
 class Layout {
  public:
-  /// The shapes of the flat diagram are found. The blocks point into `lists`.
+  /// The shapes of the flat diagram must be known. The blocks point into `lists`.
   Layout(const FlatDiagram& flat, Plan& plan, Plan::Lists& lists);
-  /// Adds the numbers that a wire carries to a list.
+  /// Appends the numbers of a wire to a list.
   void append_numbers(const FlatWire& wire, std::vector<Number>& to) const;
 
  private:
@@ -31,12 +32,12 @@ class Layout {
   Plan& plan_;
   Plan::Lists& lists_;
   std::vector<int> first_instance_;  // of each flat block
-  /// Of scalar ports of blocks that stand once, which most are: every wire asks for its number, and finds it
-  /// here sooner than in the blocks.
+  /// Numbers of scalar ports of blocks with one element, which are most blocks: a faster look-up than in the
+  /// blocks, as every wire needs its number.
   std::vector<std::optional<Number>> scalars_;
   std::vector<size_t> first_scalar_;            // of each flat block
-  std::vector<size_t> end_of_input_;            // of each input port, in the numbers of all
-  std::vector<std::vector<Number>> scattered_;  // what the blocks read that put it in a row
+  std::vector<size_t> end_of_input_;            // of each input port, as an index into all numbers
+  std::vector<std::vector<Number>> scattered_;  // inputs of the blocks that make them contiguous
 };
 
 }  // namespace loopwright

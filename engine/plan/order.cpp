@@ -12,7 +12,7 @@ namespace {
 using Graph = boost::compressed_sparse_row_graph<boost::directedS>;
 using Kind = Plan::Entry::Kind;
 
-/// A vertex is what one call computes: a group of outputs of a block, or its decision. An edge means "needs".
+/// A vertex is the result of one call: a group of outputs of a block, or its decision. An edge means "needs".
 struct Vertex {
   int block;
   int group;  // -1: the decision
@@ -29,7 +29,7 @@ class Order {
     std::vector<int> component(vertices_.size());
     const int components = boost::strong_components(
         graph_, boost::make_iterator_property_map(component.begin(), get(boost::vertex_index, graph_)));
-    // Tarjan numbers a component only after all that it needs: the numbers are the order.
+    // Tarjan's algorithm numbers a component after all components that it needs: the numbers give the order.
     const Groups members(size_t(components), [&](const auto& tell) {
       for (size_t v = 0; v < vertices_.size(); ++v) tell(size_t(component[v]), int(v));
     });
@@ -86,14 +86,14 @@ class Order {
         for (Number n : inputs[i]) f(int(i), n);
   }
   void add_edges() {
-    std::vector<std::pair<size_t, size_t>> edges;  // sorted by the vertex that needs
+    std::vector<std::pair<size_t, size_t>> edges;  // sorted by the vertex that needs the other
     edges.reserve(vertices_.size() * 2);
     for (size_t v = 0; v < vertices_.size(); ++v) {
       for_each_need(int(v), [&](int, Number n) {
         if (n < plan_.signals && vertex_of_number_[size_t(n)] >= 0)
           edges.emplace_back(v, size_t(vertex_of_number_[size_t(n)]));
       });
-      // What depends on the inputs reads the mode decided from them; what does not was settled before.
+      // Outputs that depend on the inputs read the mode decided from them; other outputs are computed before.
       const Vertex& vertex = vertices_[v];
       const int decision = decision_[size_t(vertex.block)];
       if (vertex.group >= 0 && decision >= 0 && (mask(vertex) != 0 || info(vertex.block).inputs.empty()))
@@ -149,7 +149,7 @@ class Order {
             members, text, "It holds a block that switches; such an algebraic loop cannot be solved.");
     Plan::AlgebraicLoop loop;
     loop.text = text;
-    // Tears: outputs taken out one by one, most wanted first, until what is left has no cycle.
+    // Tears: outputs are removed one by one, the most needed first, until no cycle remains.
     std::vector<int> left = members;
     std::vector<int> sorted;
     std::vector<bool> torn(vertices_.size(), false);
@@ -175,7 +175,7 @@ class Order {
       n += component[boost::target(*e, graph_)] == component[size_t(v)];
     return n;
   }
-  /// Members in order, edges to torn vertices ignored; false if a cycle is left.
+  /// Members in order, ignoring edges to torn vertices; false if a cycle remains.
   bool sort_acyclic(const std::vector<int>& members, const std::vector<int>& component,
                     const std::vector<bool>& torn, std::vector<int>& sorted) const {
     sorted.clear();
@@ -197,7 +197,7 @@ class Order {
     return true;
   }
 
-  /// One closed walk through the component, port by port.
+  /// One closed path through the component, port by port.
   std::string ring_text(const std::vector<int>& members, const std::vector<int>& component) const {
     std::vector<std::string> steps;
     std::vector<int> seen_at(vertices_.size(), -1);
@@ -262,7 +262,7 @@ class Order {
       }
   }
 
-  /// Backwards from derivatives, and from crossings, decisions, jumps and accepted memory.
+  /// Propagates backwards from derivatives, crossings, decisions, jumps and accepted memory.
   void mark_needed() {
     std::vector<bool> for_stages(vertices_.size(), false), for_events(vertices_.size(), false);
     for (size_t b = 0; b < plan_.blocks.size(); ++b) {
@@ -272,7 +272,8 @@ class Order {
         need_inputs(int(b), for_events);
       if (decision_[b] >= 0 && plan_.blocks[b].period == 0) for_events[size_t(decision_[b])] = true;
     }
-    // A loop is solved from its last solution on: how often must not depend on who looks at it.
+    // A loop is solved starting from its last solution: the number of solutions must not depend on the
+    // recording.
     for (size_t v = 0; v < vertices_.size(); ++v)
       if (is_in_algebraic_loop(v)) for_events[v] = true, need_inputs(vertices_[v].block, for_events);
     for (size_t v = 0; v < vertices_.size(); ++v) {
@@ -313,7 +314,7 @@ class Order {
   std::vector<Vertex> vertices_;
   std::vector<int> first_vertex_, decision_, vertex_of_number_;
   std::vector<Rate> rate_of_;
-  std::vector<int> entry_of_vertex_;  // -1: of an algebraic loop that is an error
+  std::vector<int> entry_of_vertex_;  // -1: part of an algebraic loop that is an error
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-/// In which order outputs and decisions are computed, how often, and where algebraic loops stand in the way.
+/// The order and rate of outputs and decisions, and the algebraic loops among them.
 #pragma once
 #include "engine/plan/plan.h"
 

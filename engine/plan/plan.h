@@ -1,5 +1,5 @@
-/// A diagram made flat: which method of which block runs when, on which numbers. Immutable; shared by runs
-/// and threads.
+/// A flat diagram: the methods of the blocks with their times and numbers. Immutable; shared by runs and
+/// threads.
 #pragma once
 #include <memory>
 #include <optional>
@@ -15,32 +15,33 @@
 
 namespace loopwright {
 
-/// The place of one number in the arena of a run: signals first, then continuous states.
+/// The index of one number in the arena of a run: signals first, then continuous states.
 using Number = int32_t;
 
-/// How often something runs: constants once, continuous at every stage, else every `period` ticks from
+/// How often a call is made: constants once, continuous at every stage, otherwise every `period` ticks from
 /// `offset` on.
 struct Rate {
   enum class Kind : uint8_t { constant, sampled, continuous };
   Kind kind = Kind::constant;
   int64_t period = 0, offset = 0;
   bool operator==(const Rate&) const = default;
-  /// Of a sampled rate: whether a sample falls on the tick.
+  /// For a sampled rate: whether the tick is a sample.
   bool is_due(int64_t tick) const { return tick >= offset && (tick - offset) % period == 0; }
 };
 
 struct Plan {
-  /// What blocks and ports point into: list after list. Thousands of small vectors would lie all over memory.
+  /// Storage for blocks and ports, as contiguous lists: thousands of small vectors would be scattered over
+  /// memory.
   struct Lists {
     std::vector<Number> inputs, outputs;               ///< of all blocks
-    std::vector<std::span<const Number>> input_ports;  ///< of all blocks, in the inputs
+    std::vector<std::span<const Number>> input_ports;  ///< of all blocks, pointing into the inputs
     std::vector<int> output_lengths, buffer_lengths;   ///< of all blocks
     std::vector<std::optional<Unit>> output_units;     ///< of all blocks
     std::string port_names;
     std::vector<Number> port_numbers;
   };
 
-  /// One block on scalars; a block wired with vectors of n elements stands n times.
+  /// One block on scalars; a block wired with vectors of n elements occurs n times.
   struct Block {
     std::string path;  ///< "stage.friction", "gain[2]"
     const BlockType* type = nullptr;
@@ -48,13 +49,13 @@ struct Plan {
     Place place;                                      ///< of its name in the file
     int64_t period = 0, offset = 0;                   ///< ticks; period 0: not sampled
     double sample_time = 0;                           ///< s; 0: not sampled
-    std::span<const std::span<const Number>> inputs;  ///< a port each
-    std::span<const Number> outputs;                  ///< first number of each port
+    std::span<const std::span<const Number>> inputs;  ///< one span for each port
+    std::span<const Number> outputs;                  ///< the first number of each port
     std::span<const int> output_lengths;
-    std::span<const std::optional<Unit>> output_units;  ///< nothing: could not be worked out
+    std::span<const std::optional<Unit>> output_units;  ///< nothing: could not be determined
     int first_state = 0, states = 0;
     int first_crossing = 0;
-    int first_buffer = 0;  ///< in numbers from the start of the buffers
+    int first_buffer = 0;  ///< as an offset from the start of the buffers
     std::span<const int> buffer_lengths;
   };
 
@@ -69,10 +70,10 @@ struct Plan {
     bool for_events = false;  ///< a crossing function needs it
   };
 
-  /// An algebraic loop (blocks of direct feedthrough in a cycle), solved by Newton's method on the tear
+  /// An algebraic loop (a cycle of blocks with direct feedthrough), solved by Newton's method for the tear
   /// numbers.
   struct AlgebraicLoop {
-    std::vector<Entry> entries;  ///< in order, tears taken as known
+    std::vector<Entry> entries;  ///< in order, with known tears
     std::vector<Number> tears;
     std::string text;  ///< the loop port by port, for messages
   };
@@ -91,7 +92,7 @@ struct Plan {
     Rate rate;
   };
 
-  /// A port of a block or a subdiagram under its full path.
+  /// A port of a block or a subdiagram with its full path.
   struct Port {
     std::string_view name;
     std::span<const Number> numbers;
@@ -100,26 +101,26 @@ struct Plan {
   std::string title;
   std::shared_ptr<const Lists> lists;  ///< shared by copies of the plan
   std::vector<Block> blocks;
-  std::vector<Entry> order;  ///< every output and decision, sorted once
+  std::vector<Entry> order;  ///< every output and decision in order of evaluation
   std::vector<AlgebraicLoop> algebraic_loops;
   std::vector<Rate> rates;  ///< the distinct sampled rates
   std::vector<Crossing> crossings;
   std::vector<Logged> log;
   std::vector<std::pair<std::string, std::string>> parameters;  ///< effective values: path → value with unit
-  std::vector<std::pair<Number, double>> unwired;  ///< optional inputs that nobody wired, and what they read
+  std::vector<std::pair<Number, double>> unwired;  ///< unwired optional inputs and their values
 
   TickClock clock;
   int64_t start_tick = 0, stop_tick = 0;
   int64_t step_ticks = 0;    ///< of a fixed-step method
-  double typical_step = 0;   ///< s; the step, or what a fixed-step method would take: what is short or long
-  int64_t record_ticks = 0;  ///< a row of the recording every so often
+  double typical_step = 0;   ///< s; the step, or a suitable fixed step: the reference for short and long
+  int64_t record_ticks = 0;  ///< ticks between rows of the recording
   Method method = Method::rk4;
   double relative_tolerance = 1e-6, absolute_tolerance = 1e-9, maximum_step = infinity;
   uint64_t seed = 1;
 
   int signals = 0, states = 0, buffer_numbers = 0;
-  /// Whether what happens between samples depends on where the steps lie: there are states, decisions,
-  /// accepted memories or algebraic loops that no sample time drives.
+  /// Whether the computation between samples depends on the solver steps: there are states, decisions,
+  /// accepted memories or algebraic loops without a sample time.
   bool steps_between_samples = false;
   std::vector<int> block_of_state;
   std::vector<Problem> warnings;
@@ -127,13 +128,13 @@ struct Plan {
   Identity identity;
   std::string hash;  ///< of the identity
 
-  /// The numbers of a port, "stage.position" or "gain.y[2]", inputs too; empty if there is none.
+  /// The numbers of a port, "stage.position" or "gain.y[2]", also of inputs; empty if there is none.
   std::vector<Number> find(std::string_view port) const;
-  /// The unit of the port that computes a number; nothing: not known.
+  /// The unit of the port that computes a number; nothing if it is not known.
   std::optional<Unit> unit_of(Number number) const;
-  /// Who computes a number, as "stage.position".
+  /// The output that computes a number, as "stage.position".
   std::string name_of(Number number) const;
-  /// Which block and output computes a number; {-1, -1} for a constant.
+  /// The block and output that compute a number; {-1, -1} for a constant.
   std::pair<int, int> source_of(Number number) const;
   std::vector<std::pair<int, int>> sources;  ///< block and output of every number
   std::vector<Port> ports;                   ///< sorted by name
@@ -142,13 +143,13 @@ struct Plan {
 /// Compiles a loaded diagram. Null when there are errors (all of them are in `problems`).
 std::shared_ptr<const Plan> compile(const Diagram& diagram, Problems& problems);
 
-/// Looks at a subdiagram on its own: everything that does not need the wires into it.
+/// Checks a subdiagram on its own: everything that does not depend on the wires into it.
 WiresWithoutUnit check_part(const Diagram& diagram, Problems& problems);
 
-/// Loads and compiles; throws InputError with every problem found. Warnings end in Plan::warnings.
+/// Loads and compiles; throws InputError with every problem found. Warnings are stored in Plan::warnings.
 std::shared_ptr<const Plan> load_plan(const std::string& path, const LoadOptions& options = {});
 
-/// Order, rates, states and algebraic loops as text for a person.
+/// Order, rates, states and algebraic loops as text for the user.
 std::string describe(const Plan& plan);
 
 }  // namespace loopwright

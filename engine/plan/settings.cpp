@@ -5,7 +5,7 @@
 namespace loopwright {
 namespace {
 
-/// A matrix of zeros, which has any unit.
+/// A matrix of zeros, which fits any unit.
 bool is_zeros(const Value& value) {
   if (value.kind == Value::Kind::list) return std::ranges::all_of(value.items, is_zeros);
   return value.kind == Value::Kind::number && value.number == 0;
@@ -17,8 +17,8 @@ bool has_fixed_unit(const ParameterInfo& info) {
   return !info.unit.empty() && info.unit.find('$') == info.unit.npos;
 }
 
-/// Whether a block reads another number than the one that stands there: hertz where radians are meant, or the
-/// other way round.
+/// Whether a block reads a different number than the one written: hertz where radians are expected, or vice
+/// versa.
 bool is_converted(const Value& value, const ParameterInfo& info) {
   if (value.unit && has_fixed_unit(info))
     return !value.is_computed && (value.unit->cycles() != 0 || info.unit.find("Hz") != info.unit.npos);

@@ -1,5 +1,5 @@
-/// What a plan keeps of the blocks' settings as the diagram has them. It is gathered when a block is read: in
-/// a large diagram, settings that are looked at again come from memory again.
+/// The parts of the block settings that a plan needs. They are collected when a block is read: in a large
+/// diagram, reading the settings a second time would load them from memory again.
 #pragma once
 #include <string>
 #include <string_view>
@@ -10,24 +10,24 @@
 
 namespace loopwright {
 
-/// A number that was written with a unit, or comes from a parameter with one, or is bare where bare numbers
-/// have none. Points into the diagram.
+/// A number written with a unit, or from a parameter with a unit, or a bare number where bare numbers are
+/// dimensionless. Points into the diagram.
 struct NumberWithUnit {
-  int block;                  ///< flat
-  const ParameterInfo* info;  ///< of the number, also inside a list or an object
-  std::string_view name;      ///< of the parameter that holds it
-  const Value* value;         ///< null: left out
+  int block;                  ///< index of the flat block
+  const ParameterInfo* info;  ///< of the number, which may be inside a list or an object
+  std::string_view name;      ///< of the parameter that has it
+  const Value* value;         ///< null: omitted
 
   Unit unit() const { return value && value->unit ? *value->unit : Unit{}; }
 };
 
 struct Settings {
   std::vector<std::pair<std::string, std::string>> effective;  ///< path → value with unit
-  std::vector<NumberWithUnit> with_units;                      ///< block by block, and without units too
+  std::vector<NumberWithUnit> with_units;                      ///< by block; includes those without units
 
-  /// The parameters of a diagram.
+  /// Adds the parameters of a diagram.
   void add(const std::vector<Parameter>& parameters);
-  /// Every setting of a block as evaluated, and the defaults of what was left out.
+  /// Adds every evaluated setting of a block, and the defaults of omitted ones.
   void add(int block, const BlockType& type, const BlockEntry& entry, const std::string& path);
 
  private:

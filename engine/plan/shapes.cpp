@@ -33,7 +33,7 @@ static int total_length(const FlatDiagram& flat, std::span<const FlatWire> wires
   return int(std::min<int64_t>(n, longest_vector + 1));
 }
 
-/// The block's width and output lengths from its inputs as they are now; true if anything grew.
+/// Updates the width and output lengths of the block from its present inputs; true if anything grew.
 static bool update_shape(FlatDiagram& flat, FlatBlock& block) {
   const BlockInfo& info = block.type->info;
   const int old_width = block.width;
@@ -53,7 +53,7 @@ static bool update_shape(FlatDiagram& flat, FlatBlock& block) {
   return grew;
 }
 
-/// The setting that says how many wires there are: "signs" of a Sum, "names" of an Expression.
+/// The setting that determines the number of wires: "signs" of a Sum, "names" of an Expression.
 static std::string who_asks_for(int wires, const Value& settings) {
   for (const Value::Member& member : settings.members) {
     const bool is_text = member.value.kind == Value::Kind::text;
@@ -107,7 +107,7 @@ static void check_port(const FlatDiagram& flat, const FlatBlock& block, size_t i
   }
 }
 
-/// An element that a wire names must be there. A wire has many readers; it is told once.
+/// The element named by a wire must exist. A wire with many readers is reported once.
 static void check_element(const FlatDiagram& flat, const FlatWire& wire, const std::string& reader,
                           std::set<std::string>& told, Problems& problems) {
   if (!wire.is_resolved() || wire.element < 0) return;
@@ -123,15 +123,15 @@ static void check_element(const FlatDiagram& flat, const FlatWire& wire, const s
       .found = "\"" + wire.at->source + "\"";
 }
 
-/// All numbers of a run must fit into memory, and their places into a Number; told at the block that takes
-/// the most.
+/// All numbers of a run must fit into memory, and their indices into a Number. Too many are reported at the
+/// block that needs the most.
 static void check_size(const FlatDiagram& flat, Problems& problems) {
   int64_t total = 0, greatest = -1;
   const FlatBlock* greediest = nullptr;
   for (const FlatBlock& block : flat.blocks) {
     const BlockInfo& info = block.type->info;
     int64_t numbers =
-        5 * int64_t(info.state_length(block.value.get()));  // with what a solver keeps of each state
+        5 * int64_t(info.state_length(block.value.get()));  // including a solver's copies of each state
     for (int length : block.output_lengths) numbers += length;
     for (int i = 0; i < info.buffers; ++i) numbers += info.buffer_length(block.value.get(), i);
     numbers *= block.width;
@@ -155,7 +155,7 @@ static Groups readers_of_blocks(const FlatDiagram& flat) {
 }
 
 void find_shapes(FlatDiagram& flat, Problems& problems) {
-  std::optional<Groups> readers;  // listed once a vector is found
+  std::optional<Groups> readers;  // built only if a vector is found
   std::vector<int> todo(flat.blocks.size());
   std::iota(todo.rbegin(), todo.rend(), 0);
   std::vector<int> visits(flat.blocks.size(), 0);

@@ -1,13 +1,13 @@
-/// How wide every port is.
+/// The vector lengths of all ports.
 #pragma once
 #include "engine/plan/flatten.h"
 
 namespace loopwright {
 
-/// Works out FlatBlock::width and output_lengths from the wires; clashes are problems.
+/// Computes FlatBlock::width and output_lengths from the wires; contradictions are problems.
 void find_shapes(FlatDiagram& flat, Problems& problems);
 
-/// Elements that a wire carries.
+/// Number of elements of a wire.
 int length_of(const FlatDiagram& flat, const FlatWire& wire);
 
 }  // namespace loopwright

@@ -86,7 +86,7 @@ class Times {
     if (!is_fixed_step(plan_.method)) {
       check_tolerance(solver.relative_tolerance, "relative_tolerance", smallest_relative_tolerance, 1);
       check_tolerance(solver.absolute_tolerance, "absolute_tolerance", 1e-100,
-                      infinity);  // solvers square its inverse
+                      infinity);  // solvers square its reciprocal
     }
     plan_.relative_tolerance = solver.relative_tolerance.value;
     plan_.absolute_tolerance = solver.absolute_tolerance.value;
@@ -151,7 +151,7 @@ class Times {
       if (!fastest_ || period->value() < fastest_->value()) fastest_ = *period;
     }
   }
-  /// A sample time in milliseconds that was meant in seconds, or the other way round.
+  /// A sample time given in milliseconds instead of seconds, or vice versa.
   void warn_of_few_samples(const Fraction& period, const FlatBlock& block) {
     constexpr double few = 10;
     const double duration = stop_ ? stop_->value() - start_.value() : 0;
@@ -166,7 +166,7 @@ class Times {
     p.hint = "is the sample time, or \"stop\", in another unit than seconds?";
   }
 
-  /// 1, 2 or 5 times a power of ten, near x from below.
+  /// The largest 1, 2 or 5 times a power of ten that is not above x.
   static Fraction round_time(double x) {
     const double power = any_power(10, std::floor(decimal_logarithm(x)));
     const double digit = x / power >= 5 ? 5 : x / power >= 2 ? 2 : 1;
@@ -195,7 +195,8 @@ class Times {
       return stop_->value() / tick.value() * double(tick.numerator) < 9e15 &&
              tick.denominator < int64_t(9e15);
     };
-    // The stop need not fall on a tick of the rates; a finer base costs nothing as long as it can be counted.
+    // The stop time need not be a tick of the rates. A finer base costs nothing as long as ticks can be
+    // counted.
     if (!whole_ratio(*stop_, base)) {
       const auto finer = common_divisor(base, *stop_);
       if (finer && are_counted(*finer)) plan_.clock.base = base = *finer;
@@ -248,9 +249,9 @@ class Times {
   Plan& plan_;
   Problems& problems_;
   std::vector<std::optional<std::pair<Fraction, Fraction>>> sample_times_;
-  Fraction start_{0, 1}, shared_{1, 1};  // shared_: the base period of all but the stop
+  Fraction start_{0, 1}, shared_{1, 1};  // shared_: the base period of all times except the stop time
   std::optional<Fraction> stop_, step_, record_, fastest_;
-  std::vector<Fraction> told_;  // sample times that were warned of
+  std::vector<Fraction> told_;  // sample times already warned about
 };
 
 }  // namespace

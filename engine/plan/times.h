@@ -6,7 +6,7 @@
 namespace loopwright {
 
 /// Fills clock, start, stop, step and record ticks, method and tolerances of the plan, and period and offset
-/// of its blocks. `flat_of_block[i]` is the flat block behind plan.blocks[i], or -1.
+/// of its blocks. `flat_of_block[i]` is the index of the flat block of plan.blocks[i], or -1.
 void find_times(const Diagram& diagram, const FlatDiagram& flat, const std::vector<int>& flat_of_block,
                 Plan& plan, Problems& problems);
 

@@ -46,7 +46,7 @@ void UnitEquations::add_block(int b) {
     add_number(numbers[next_number_]);
 }
 
-/// Most of them are settled already; they would only fill memory.
+/// Equations that are already settled would only use memory; they are most of the equations.
 void UnitEquations::add_equation(const Equation& equation) {
   if (!equation.is_settled()) equations_.push_back(equation);
 }
@@ -125,7 +125,7 @@ void UnitEquations::add_declarations(const Diagram& diagram, const std::string& 
     if (block.subdiagram) add_declarations(*block.subdiagram, prefix + block.name + ".");
 }
 
-/// What a port of a subdiagram leads to.
+/// The wire behind a port of a subdiagram.
 const FlatWire* UnitEquations::declared(const std::string& path) {
   if (declared_.empty())
     for (const auto* names : {&flat_.names, &flat_.outputs})

@@ -25,7 +25,7 @@ const UnitExpression& TypeUnits::add(std::string_view text) {
   return entry->second;
 }
 
-/// "$command*s^2/m": factors split at * and /, those with $ are variables.
+/// "$command*s^2/m": factors separated by * and /; those with $ are variables.
 UnitExpression TypeUnits::parse(std::string_view text) {
   UnitExpression expression;
   if (text.find('$') == text.npos) {

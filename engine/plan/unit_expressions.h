@@ -1,4 +1,4 @@
-/// The units in a block type's description: products of SI units and $names.
+/// Unit expressions in the description of a block type: products of SI units and $names.
 #pragma once
 #include <deque>
 #include <string_view>
@@ -12,13 +12,13 @@ struct UnitFactor {
   int variable;  // of the block type
   double exponent;
 };
-/// constant · Π variable^exponent, as a port's description says it.
+/// constant · Π variable^exponent, as in the description of a port.
 struct UnitExpression {
   Unit constant;
   std::vector<UnitFactor> factors;
 };
 
-/// The units that a block type's description names; their variables are counted.
+/// The unit variables in the description of a block type, numbered.
 class TypeUnits {
  public:
   explicit TypeUnits(const BlockInfo& info);
@@ -26,7 +26,7 @@ class TypeUnits {
   const UnitExpression& of_output(size_t output) const { return *outputs_[output]; }
   const UnitExpression& of(std::string_view unit) const { return parsed_.at(unit); }
   size_t variables() const { return names_.size(); }
-  /// Whether a variable is the position of a part that moves: without a dimension it is an angle.
+  /// Whether a variable is the position of a moving part. If it is dimensionless, it is an angle.
   bool is_position(int variable) const { return variable == position_; }
 
  private:

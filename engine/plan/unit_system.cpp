@@ -31,7 +31,7 @@ void UnitSystem::add(std::vector<Term> terms, const Unit& unit, int equation) {
   rows_.push_back(std::move(row));
 }
 
-/// The representative of the unknowns that hang together with one.
+/// The representative of the group of connected unknowns.
 int UnitSystem::group_of(int index) {
   while (groups_[size_t(index)] != index) {
     groups_[size_t(index)] = groups_[size_t(groups_[size_t(index)])];
@@ -55,12 +55,12 @@ int UnitSystem::index_of(size_t unknown) {
   return entry->second;
 }
 
-/// The root; on the way there every node is hung below it.
+/// The root, with path compression: every node on the path is attached to it.
 int UnitSystem::find(int index) {
   std::vector<int> path;
   int root = index;
   while (nodes_[size_t(root)].parent != root) path.push_back(root), root = nodes_[size_t(root)].parent;
-  for (size_t i = path.size(); i-- > 1;) {  // from the root outwards; the first hangs there already
+  for (size_t i = path.size(); i-- > 1;) {  // from the root outwards; the first is already attached
     Node& node = nodes_[size_t(path[i - 1])];
     const Node& above = nodes_[size_t(path[i])];
     add_to(node.powers, above.powers, node.exponent);
@@ -101,7 +101,7 @@ void UnitSystem::know(int root, const Powers& powers) {
   nodes_[size_t(root)].is_known = true;
 }
 
-/// A reduced row of at most two terms.
+/// Adds a reduced row of at most two terms.
 void UnitSystem::join(const Row& row) {
   if (row.terms.empty()) {
     const Unit rest = unit_of(row.powers);
@@ -120,7 +120,7 @@ void UnitSystem::join(const Row& row) {
 void UnitSystem::solve() {
   std::vector<Row> rows = std::move(rows_);
   rows_.clear();
-  constexpr int most_passes = 50;  // what then still changes is left to the elimination
+  constexpr int most_passes = 50;  // remaining changes are left to the elimination
   for (int pass = 0; pass < most_passes; ++pass) {
     std::vector<Row> left;
     for (Row& row : rows)
@@ -132,9 +132,9 @@ void UnitSystem::solve() {
   eliminate(std::move(rows));
 }
 
-/// Gauss and Jordan on rows of three and more unknowns.
+/// Gauss-Jordan elimination on rows of three or more unknowns.
 void UnitSystem::eliminate(std::vector<Row> rows) {
-  std::map<size_t, Row> solved;  // by the unknown that it is solved for
+  std::map<size_t, Row> solved;  // by the unknown for which it is solved
   size_t work = 0;
   const auto subtract = [&work](Row& from, const Row& row, double times) {
     for (const Term& term : row.terms) {

@@ -21,8 +21,9 @@ class Solver {
   }
 
   PortUnits run() {
-    // A clash shows at the wire that joins its ends: what is written at blocks and borders counts first, then
-    // what sources say to their readers, then what readers ask of their sources.
+    // A contradiction is reported at the wire that connects its ends. Units written at blocks and
+    // declarations are used first, then units passed from sources to readers, then units required by readers
+    // of their sources.
     for (const Phase phase : {Phase::written, Phase::forward, Phase::any}) propagate(phase);
     solve_together();
     for (const Equation& equation : equations_) check(equation);
@@ -48,7 +49,7 @@ class Solver {
     if (equation.rule)
       for (const Rule::Argument& argument : equation.rule->arguments) f(argument.end, -argument.power);
   }
-  /// Variables, and the equations that they occur in.
+  /// Variables with the equations in which they occur.
   template <class F> void each_occurrence(const F& f) const {
     for (size_t i = 0; i < equations_.size(); ++i)
       each_end(equations_[i], [&](const End& end, double) {
@@ -66,7 +67,7 @@ class Solver {
     }
     return unit;
   }
-  /// Of the right end, or what the rule makes of its arguments.
+  /// The unit of the right end, or the result of its rule.
   std::optional<Unit> right_value(const Equation& equation) const {
     if (!equation.rule) return value(equation.right);
     if (equation.rule->is_formula) {
@@ -82,7 +83,7 @@ class Solver {
     return product;
   }
 
-  /// The unit of a formula, once those of its arguments are known.
+  /// The unit of a formula, once the units of its arguments are known.
   void find_formula_unit(const Equation& equation) {
     Rule& rule = *equation.rule;
     if (rule.unit) return;
@@ -136,13 +137,13 @@ class Solver {
     find_formula_unit(equation);
     const auto unit = right_value(equation);
     const auto unknown = unit ? only_unknown(equation) : std::nullopt;
-    if (unknown) assign(*unknown, *unit);  // the output is a variable of its own
+    if (unknown) assign(*unknown, *unit);  // the output is a separate variable
   }
 
-  /// A radius times rad/s is m/s, a torque times rad/s is W; N*m/rad stays.
+  /// A radius times rad/s is m/s, and a torque times rad/s is W; N*m/rad is kept.
   static void drop_radians_of_products(Unit& unit) {
     Unit others = unit;
-    others.exponents[2] = 0;  // rad/s stays
+    others.exponents[2] = 0;  // rad/s is kept
     if (unit.radians() > 0 && !others.same_dimension(Unit{})) unit.exponents[Unit::radian] = 0;
   }
   void assign(const Unknown& unknown, Unit unit) {
@@ -168,7 +169,7 @@ class Solver {
 
   // ---- Many unknowns at once ----
 
-  /// What is left when every equation has several unknowns, or none.
+  /// Solves the remaining equations, each with several unknowns or none.
   void solve_together() {
     while (true) {
       UnitSystem system;
@@ -183,14 +184,14 @@ class Solver {
         }
       tell_contradictions(system);
       if (!found) return;
-      drain(Phase::any);  // formulas whose arguments are known now
+      drain(Phase::any);  // formulas whose arguments are now known
     }
   }
   void add_unsolved(UnitSystem& system) const {
     for (size_t i = 0; i < equations_.size(); ++i) {
       const Equation& equation = equations_[i];
       const bool is_one_way = equation.is_bare || (equation.rule && equation.rule->is_formula);
-      if (is_one_way) continue;  // x' = -2 x with a bare gain is a diagram without units, not a wrong one
+      if (is_one_way) continue;  // x' = -2 x with a bare gain is a diagram without units, not a mistake
       std::vector<UnitSystem::Term> terms;
       Unit known;
       each_end(equation, [&](const End& end, double end_power) {
@@ -221,13 +222,13 @@ class Solver {
       p.hint = "the numbers with units around it cannot all be right";
     }
   }
-  /// What a diagram without units comes to, in which an oscillator is two integrators in a loop.
+  /// The typical remainder of a diagram without units, in which an oscillator is two integrators in a loop.
   static bool is_power_of_time(Unit rest) {
     rest.exponents[2] = 0;
     return rest.same_dimension(Unit{});
   }
 
-  // ---- What does not hold ----
+  // ---- Contradictions ----
 
   std::string name_of(const Equation& equation, const End& end) const {
     if (end.block >= 0) return fmt::format("{}.{}", flat_.blocks[size_t(end.block)].path, end.name);
@@ -296,7 +297,7 @@ class Solver {
   UnitEquations said_;
   const std::vector<Equation>& equations_;
   std::vector<std::optional<Unit>> variables_;  // of all blocks
-  Groups readers_;                              // of each variable; equations
+  Groups readers_;                              // equations of each variable
   std::vector<int> todo_;
   std::set<std::pair<const SourceFile*, uint32_t>> told_;
 };

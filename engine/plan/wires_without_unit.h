@@ -1,4 +1,4 @@
-/// Wires whose unit nothing in a diagram decides.
+/// Wires whose unit is not determined by the diagram.
 #pragma once
 #include <string>
 #include <vector>
@@ -16,10 +16,10 @@ struct WiresWithoutUnit {
   std::vector<Wire> named;  ///< the first of them
 };
 
-/// "3 wires without a unit: push.y, net_force.sum, mass.position"; empty when there are none.
+/// "3 wires without a unit: push.y, net_force.sum, mass.position"; empty if there are none.
 std::string to_string(const WiresWithoutUnit& wires);
 
-/// An error for each of them, as --strict-units asks for.
+/// Reports an error for each of them, for --strict-units.
 void refuse(const WiresWithoutUnit& wires, Problems& problems);
 
 }  // namespace loopwright

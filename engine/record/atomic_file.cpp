@@ -38,8 +38,8 @@ std::string folder_of(const std::string& path) {
   return slash == 0 ? "/" : path.substr(0, slash);
 }
 
-/// Beside the target, so that the rename stays on one file system; hidden, so that globs over results miss
-/// it.
+/// In the folder of the target, so that the rename stays on one file system; hidden, so that glob patterns
+/// over results do not match it.
 std::string temporary_prefix(const std::string& target) {
   return fmt::format(".{}.", target.substr(target.rfind('/') + 1, 200));  // npos + 1 = 0
 }
@@ -49,7 +49,7 @@ std::string temporary_name(const std::string& target) {
                      counter++);
 }
 
-/// The process in the "1234-5" at the end of a temporary name; 0: the text is not like that.
+/// The process in the "1234-5" at the end of a temporary name; 0: the text has another form.
 pid_t process_of(std::string_view ending) {
   pid_t process = 0;
   unsigned number = 0;
@@ -60,8 +60,8 @@ pid_t process_of(std::string_view ending) {
   return second.ec == std::errc() && second.ptr == end ? process : 0;
 }
 
-/// The hidden files that a folder held when this program first wrote into it: folders of many results are listed
-/// once.
+/// The hidden files of a folder when this program first wrote into it: a folder of many results is listed
+/// only once.
 std::vector<std::string> hidden_files(const std::string& folder) {
   static std::mutex mutex;
   static std::map<std::string, std::vector<std::string>> of_folder;
@@ -75,8 +75,8 @@ std::vector<std::string> hidden_files(const std::string& folder) {
   return entry->second;
 }
 
-/// Takes away what killed programs left half-written beside the target. A temporary file is locked as long as its
-/// program writes it, on whatever machine, and names the program's process: both must be gone.
+/// Removes partial files that terminated programs left beside the target. A temporary file is locked while
+/// its program writes it, on any machine, and its name has the process of the program: both must be gone.
 void remove_left_behind(const std::string& target) {
   const std::string folder = folder_of(target), prefix = temporary_prefix(target);
   for (const std::string& name : hidden_files(folder)) {
@@ -105,13 +105,13 @@ AtomicFile::AtomicFile(std::string path) : path_(std::move(path)), target_(follo
   constexpr int flags = O_WRONLY | O_CLOEXEC;
   const std::optional<struct stat> existing = status_of(target_);
   if (existing && S_ISDIR(existing->st_mode)) fail(EISDIR);
-  // Neither a pipe nor a file without a name (standard output that was deleted meanwhile) can be replaced.
+  // A pipe, or a file without a name (deleted standard output), cannot be replaced.
   if (existing && (!S_ISREG(existing->st_mode) || existing->st_nlink == 0)) {
     file_ = ::open(path_.c_str(), flags);
     if (file_ < 0) fail(errno);
     return;
   }
-  // A file that its owner protected against writing must not be replaced behind his back.
+  // A file that its owner has write-protected must not be replaced.
   if (existing && ::access(target_.c_str(), W_OK) != 0) fail(errno);
   remove_left_behind(target_);
   do {
@@ -149,8 +149,7 @@ void AtomicFile::commit() {
   if (!replaces) return;
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
   temporary_.clear();
-  // The rename itself reaches the disk with its folder; where a folder cannot be synchronised, nothing is
-  // lost yet.
+  // The rename reaches the disk with its folder. If the folder cannot be synchronized, no data is lost yet.
   const int folder = ::open(folder_of(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder >= 0) {
     (void)::fsync(folder);

@@ -1,17 +1,17 @@
-/// Files that are there whole or not at all.
+/// Files that are written completely or not at all.
 #pragma once
 #include <string>
 #include <string_view>
 
 namespace loopwright {
 
-/// Writes to a temporary file in the target's folder; commit() brings it to the disk and renames it over the
-/// target. Without commit() the target stays as it was and the temporary file is removed; one that a killed
-/// program left is removed by the next that writes the same target.
+/// Writes to a temporary file in the folder of the target; commit() synchronizes it to disk and renames it to
+/// the target. Without commit() the target is unchanged and the temporary file is removed. A temporary file
+/// left by a terminated program is removed when the same target is written again.
 ///
-/// A symbolic link is followed, and permissions of a replaced file are kept. A target that is no regular
-/// file, such as /dev/stdout or a pipe, is written to directly: it cannot be replaced. Every failure throws
-/// std::runtime_error naming the target and the reason (full disk, no permission, …).
+/// A symbolic link is followed, and the permissions of a replaced file are kept. A target that is not a
+/// regular file, such as /dev/stdout or a pipe, is written directly, as it cannot be replaced. Every failure
+/// throws std::runtime_error with the target and the reason (full disk, no permission, …).
 class AtomicFile {
  public:
   explicit AtomicFile(std::string path);
@@ -31,7 +31,7 @@ class AtomicFile {
   int file_ = -1;
 };
 
-/// The whole file in one call.
+/// Writes a whole file in one call.
 void write_file(const std::string& path, std::string_view bytes);
 
 }  // namespace loopwright

@@ -19,7 +19,7 @@ bool is_same_unit(const Unit& a, const Unit& b) {
   return a.fits(b) && a.offset == b.offset && std::abs(a.scale - b.scale) <= rounding * std::abs(b.scale);
 }
 
-/// Without the structure that holds it: "log.time" → "time".
+/// The name without its structure: "log.time" → "time".
 std::string_view last_part(std::string_view name) {
   const size_t dot = name.rfind('.');
   return dot == name.npos ? name : name.substr(dot + 1);
@@ -51,13 +51,13 @@ const Column* find_time(const Recording& recording, const std::string& name, con
   return nullptr;
 }
 
-/// A name that says a unit of time other than seconds, though nothing reads it: "t_ms".
+/// A name that suggests a unit of time other than seconds, although it is not interpreted: "t_ms".
 bool seems_in_another_unit(std::string_view name) {
   constexpr std::array<std::string_view, 7> endings = {"_ms", "_us", "_ns", "_min", "_h", "_msec", "_usec"};
   return std::ranges::any_of(endings, [&](std::string_view ending) { return name.ends_with(ending); });
 }
 
-/// Milliseconds are divided by a thousand, not multiplied by its inverse: 0.009, not 0.009000000000000001.
+/// Milliseconds are divided by a thousand, not multiplied by the reciprocal: 0.009, not 0.009000000000000001.
 void scale_time(std::vector<double>& values, double scale) {
   const double inverse = 1 / scale, whole = std::round(inverse);
   const bool divides = scale < 1 && std::abs(inverse - whole) <= 1e-9 * whole;

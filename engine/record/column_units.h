@@ -1,4 +1,4 @@
-/// Columns of recordings as quantities: which unit they are in, and which of them is the time.
+/// Columns of recordings as quantities: their units, and which of them is the time.
 #pragma once
 #include <functional>
 #include <optional>
@@ -9,23 +9,22 @@
 
 namespace loopwright {
 
-/// Makes a problem at the place where the user names the column.
+/// Creates a problem at the source location where the user names the column.
 using ColumnError = std::function<Problem&(std::string message)>;
 
-/// The unit of the column's numbers: that of its heading, or `stated` where the heading has none. Nothing,
-/// and a problem, when a unit cannot be read, or when the two differ: one of them is wrong then, and nobody
-/// can know which.
+/// The unit of the numbers of the column: from its heading, or `stated` if the heading has none. Nothing, and
+/// a problem, if a unit cannot be read or if the two differ, as it is then unknown which is right.
 std::optional<Unit> unit_of(const Column& column, const std::string& stated, const ColumnError& error);
 
-/// The same column in SI, its unit written so.
+/// The same column in SI, with its SI unit.
 Column in_si(const Column& column, const Unit& unit);
 
-/// The column of a name; null, and a problem with the names that there are, when there is none.
+/// The column with this name; if there is none, null and a problem with the existing names.
 const Column* find_column(const Recording& recording, const std::string& name, const ColumnError& error);
 
-/// The time in s, from whatever unit its heading says (t [ms], time [min]); without a unit it is in s. `name`
-/// empty: a column called time or t, or else the first, if the file has its columns in an order. Nothing, and
-/// a problem, when it cannot be told which column is the time, or when its unit is none of time.
+/// The time in s, converted from the unit in its heading (t [ms], time [min]); without a unit it is in s.
+/// `name` empty: a column named time or t, or otherwise the first, if the columns of the file are ordered.
+/// Nothing, and a problem, if the time column cannot be determined or its unit is not a unit of time.
 std::optional<Column> time_in_seconds(const Recording& recording, const std::string& name,
                                       const ColumnError& error);
 

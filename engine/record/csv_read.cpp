@@ -21,8 +21,8 @@ std::string counted(size_t count, std::string_view noun) {
 
 bool is_comment(std::string_view line) { return trim(line).starts_with('#'); }
 
-/// One pass over the text, line by line. Rows of plain numbers take the fast way, read_numbers(); any other
-/// row is split into fields and each field is judged by itself.
+/// One pass over the text, line by line. Rows of plain numbers use the fast path read_numbers(). Any other
+/// row is split into fields, each of which is checked separately.
 class CsvReader {
  public:
   CsvReader(std::shared_ptr<const SourceFile> source, Problems& problems, const ReadOptions& options)
@@ -69,7 +69,7 @@ class CsvReader {
   char separator_ = ',';
   bool signed_ = false;  ///< begins with csv::signature: names and facts are escaped
   std::string_view comment_above_;
-  std::string_view empty_line_;  ///< the last one within the table; an error when rows follow
+  std::string_view empty_line_;  ///< the last one within the table; an error if rows follow
   bool header_was_last_ = false;
   bool told_decimal_comma_ = false;
   std::vector<double> row_;
@@ -101,7 +101,7 @@ Recording CsvReader::read() {
   return problems_.has_errors() ? Recording{} : std::move(recording_);
 }
 
-/// Says what the file is when it is no text; sets the cursor behind a byte order mark.
+/// Reports a file that is not text; moves the cursor past a byte order mark.
 bool CsvReader::check_text() {
   if (text_.starts_with("\xFF\xFE") || text_.starts_with("\xFE\xFF")) {
     problems_.error(start(), "the file is UTF-16 text", "UTF-8", {}, "save it again as \"CSV UTF-8\"");
@@ -118,7 +118,7 @@ bool CsvReader::check_text() {
   }
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   if (text_.starts_with(byte_order_mark)) cursor_ = byte_order_mark.size();
-  if (text_.find('\n') == std::string_view::npos) line_end_ = '\r';  // of the old Macintosh
+  if (text_.find('\n') == std::string_view::npos) line_end_ = '\r';  // line ends of classic Mac OS
   return true;
 }
 
@@ -129,7 +129,7 @@ void CsvReader::take_signature() {
   if (!signed_) cursor_ = start_of_line;
 }
 
-/// The next line without its end; false at the end of the text.
+/// The next line without its line end; false at the end of the text.
 bool CsvReader::next_line(std::string_view& line) {
   if (cursor_ >= text_.size()) return false;
   const size_t end = std::min(text_.find(line_end_, cursor_), text_.size());
@@ -151,7 +151,7 @@ void CsvReader::read_comment(std::string_view comment) {
   const std::string_view content = trim(comment.substr(1));
   if (recording_.columns.empty()) comment_above_ = content;
   const auto literal = [this](std::string_view text) { return signed_ ? unescape(text) : std::string(text); };
-  // The colon of "10:30:00" or "http://…" ends no key.
+  // The colon of "10:30:00" or "http://…" does not end a key.
   size_t colon = content.find(':');
   while (colon != content.npos && colon + 1 != content.size() && content[colon + 1] != ' ')
     colon = content.find(':', colon + 1);
@@ -163,7 +163,7 @@ void CsvReader::read_comment(std::string_view comment) {
   }
 }
 
-/// The first line of the table: names, or already the first row.
+/// The first line of the table: the names, or already the first row.
 void CsvReader::begin_table(std::string_view line) {
   separator_ = signed_ ? ',' : csv::find_separator(line, next_table_line());
   const std::vector<csv::Field> fields = csv::split(line, separator_);
@@ -180,7 +180,7 @@ void CsvReader::begin_table(std::string_view line) {
   read_row(line);
 }
 
-/// Looks ahead for the line after the header; empty when there is none.
+/// The line after the header, without moving the cursor; empty if there is none.
 std::string_view CsvReader::next_table_line() const {
   for (size_t from = cursor_; from < text_.size();) {
     const size_t end = std::min(text_.find(line_end_, from), text_.size());
@@ -192,7 +192,7 @@ std::string_view CsvReader::next_table_line() const {
   return {};
 }
 
-/// More words than numbers: a first row with one damaged cell must not pass for a header.
+/// More words than numbers: a first row with one damaged cell must not be taken as a header.
 bool CsvReader::is_header(const std::vector<csv::Field>& fields) const {
   if (signed_) return true;
   ptrdiff_t words = 0, numbers = 0;
@@ -202,7 +202,7 @@ bool CsvReader::is_header(const std::vector<csv::Field>& fields) const {
   return words > numbers || numbers == 0;
 }
 
-/// Names as gnuplot and numpy.savetxt write them: in the comment just above the rows.
+/// Names as written by gnuplot and numpy.savetxt: in the comment directly above the rows.
 bool CsvReader::take_header_from_comment() {
   const std::vector<csv::Field> fields = csv::split(comment_above_, separator_);
   const bool fits = fields.size() == row_.size() && fields.size() > 1 && !recording_.facts.empty() &&
@@ -234,7 +234,7 @@ void CsvReader::name_columns(const std::vector<csv::Field>& fields) {
   }
 }
 
-/// Every cell takes two bytes of text or more: what is reserved stays in proportion to the file.
+/// Every cell needs at least two bytes of text: the reserved memory is proportional to the file.
 void CsvReader::reserve_rows() {
   const std::string_view rest = text_.substr(std::min(cursor_, text_.size()));
   const size_t lines = static_cast<size_t>(std::ranges::count(rest, line_end_)) + 2;
@@ -253,7 +253,7 @@ void CsvReader::read_row(std::string_view line) {
   header_was_last_ = false;
 }
 
-/// The fast way: true when the line is nothing but finite numbers, one for each column.
+/// The fast path: true if the line has only finite numbers, one for each column.
 bool CsvReader::read_numbers(std::string_view line) {
   const char* at = line.data();
   const char* const end = at + line.size();
@@ -276,8 +276,8 @@ bool CsvReader::read_numbers(std::string_view line) {
   return at == end;
 }
 
-/// Field by field: true when the row is right after all (quoted numbers, a leading plus), else says what is
-/// wrong.
+/// Field by field: true if the row is valid after all (quoted numbers, a leading plus); otherwise reports the
+/// mistake.
 bool CsvReader::read_fields(std::string_view line) {
   const std::vector<csv::Field> fields = csv::split(line, separator_);
   if (fields.size() != row_.size()) {
@@ -311,7 +311,7 @@ void CsvReader::explain_length(std::string_view line, const std::vector<csv::Fie
   problems_.error(at(line), message, counted(row_.size(), "cell"), counted(fields.size(), "cell"), hint);
 }
 
-/// Puts the number of a cell into the row; false when there is none, with the reason told.
+/// Stores the number of a cell in the row; false if there is none, after reporting the reason.
 bool CsvReader::read_cell(const csv::Field& field, size_t column) {
   const std::string where = fmt::format("column \"{}\": ", excerpt(recording_.columns[column].name));
   if (field.text.empty()) {
@@ -335,7 +335,7 @@ bool CsvReader::read_cell(const csv::Field& field, size_t column) {
 
 void CsvReader::explain_text(const csv::Field& field, const std::string& where) {
   if (csv::has_decimal_comma(field.text)) {
-    // One export has them everywhere: once said is enough.
+    // Such a file has them everywhere: one report is enough.
     if (told_decimal_comma_) return problems_.count(at(field.text));
     told_decimal_comma_ = true;
     problems_.error(at(field.text), where + "a decimal comma", "a decimal point, such as 1.5",

@@ -39,7 +39,7 @@ bool has_decimal_comma(std::string_view text) {
 
 namespace {
 
-/// Reads from `at` to the separator that ends the field, or to the end of the line.
+/// Reads from `at` to the separator at the end of the field, or to the end of the line.
 Field next_field(std::string_view line, size_t& at, char separator) {
   const auto skip_blanks = [&] {
     while (at < line.size() && (line[at] == ' ' || line[at] == '\t') && line[at] != separator) ++at;

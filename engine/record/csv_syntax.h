@@ -1,4 +1,4 @@
-/// What reading and writing of CSV agree on: headings, numbers, fields.
+/// Shared by reading and writing of CSV: headings, numbers, fields.
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -8,38 +8,38 @@
 
 namespace loopwright::csv {
 
-/// The first line of a file whose names and facts are escaped.
+/// The first line of a file with escaped names and facts.
 inline constexpr std::string_view signature = "# loopwright recording: 1";
 
-/// "stage.position [m]" → name and unit. The unit may follow without a blank ("t[s]"), unless it is a number:
-/// then it is an index. No brackets: no unit.
+/// "stage.position [m]" → name and unit. The unit may follow without a blank ("t[s]"). A number in brackets
+/// is an index. No brackets: no unit.
 struct Heading {
   std::string_view name, unit;
 };
 Heading split_heading(std::string_view text);
 
-/// The number that is the whole of `text`, blanks around it and a leading + aside; nothing when it is
-/// something else or beyond the range of a double.
+/// The number that makes up the whole of `text`, except for surrounding blanks and a leading +; nothing if
+/// the text is not a number or is beyond the range of a double.
 std::optional<double> parse_number(std::string_view text);
 
-/// A number, be it with a decimal comma.
+/// A number, possibly with a decimal comma.
 bool looks_like_number(std::string_view text);
-/// Would be a number if its one comma were a point.
+/// True if replacing its single comma by a point gives a number.
 bool has_decimal_comma(std::string_view text);
 
 struct Field {
-  std::string_view text;    ///< without blanks around it and without its quotes
-  bool quoted = false;      ///< a doubled quote inside stands for one
+  std::string_view text;    ///< without surrounding blanks and without its quotes
+  bool quoted = false;      ///< a doubled quote inside means one quote
   bool open_quote = false;  ///< the closing quote is missing
 };
-/// The fields of a line. A blank as separator means: any number of blanks.
+/// The fields of a line. A blank as separator means any number of blanks.
 std::vector<Field> split(std::string_view line, char separator);
 
-/// What a field says, with doubled quotes made single.
+/// The content of a field, with doubled quotes reduced to single ones.
 std::string content(const Field& field);
 
 /// The separator that gives header and first row the same number of fields, tried in the order tab,
-/// semicolon, comma, blanks; if none does, the first of them (but no blanks) that the header has; else a
+/// semicolon, comma, blanks. If none does, the first of them (except blanks) in the header; otherwise a
 /// comma.
 char find_separator(std::string_view header, std::string_view first_row);
 

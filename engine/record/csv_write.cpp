@@ -12,7 +12,7 @@
 namespace loopwright {
 namespace {
 
-/// Would be read as something else if it stood in a file without the signature.
+/// Would be read differently in a file without the signature.
 bool needs_signature(const Column& column) {
   return escape(column.name) != column.name || escape(column.unit, "[]") != column.unit ||
          csv::looks_like_number(column.name);
@@ -50,9 +50,9 @@ std::string header(const Recording& recording) {
   return text += '\n';
 }
 
-constexpr size_t chunk = 1 << 20;  // [bytes] bounds the memory; longer writes are not faster
+constexpr size_t chunk = 1 << 20;  // [bytes] limits the memory; longer writes are not faster
 
-/// Hands the text to `write(std::string_view)` in pieces.
+/// Passes the text to `write(std::string_view)` in pieces.
 template <class Write> void put(const Recording& recording, Write&& write) {
   check_recording(recording);
   std::string text = header(recording);

@@ -1,4 +1,4 @@
-/// Where the program lies, and with it what came with it: it may be moved, or installed, as a whole.
+/// The location of the program and of the files installed with it, which may be moved as a whole.
 #pragma once
 #include <string>
 #include <string_view>
@@ -8,7 +8,7 @@ namespace loopwright {
 /// `PREFIX/lib/<name>` for a program PREFIX/bin/loopwright.
 std::string library_file(std::string_view name);
 
-/// `PREFIX/share/loopwright/<name>`; in a build tree the link `share/loopwright` leads to the sources.
+/// `PREFIX/share/loopwright/<name>`; in a build tree the link `share/loopwright` points to the sources.
 std::string shared_file(std::string_view name);
 
 }  // namespace loopwright

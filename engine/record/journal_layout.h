@@ -1,4 +1,4 @@
-/// What writing and reading of journals agree on; see journal.h.
+/// Shared by writing and reading of journals; see journal.h.
 #pragma once
 #include <bit>
 #include <cstddef>
@@ -15,7 +15,7 @@ static_assert(std::endian::native == std::endian::little, "numbers are written a
 
 inline constexpr std::string_view magic = "LWJRNL1\n";
 enum Kind : uint32_t { heading = 1, rows = 2, end = 3 };
-/// [bytes] a payload is never larger: what claims to be is damaged.
+/// [bytes] upper limit of a payload; a larger value means damage.
 inline constexpr uint64_t largest_payload = 64u << 20;
 
 struct ChunkHead {

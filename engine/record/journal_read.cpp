@@ -20,7 +20,7 @@ namespace {
   throw InputError(std::move(problems));
 }
 
-/// All bytes asked for; false: there are not as many.
+/// Reads exactly this number of bytes; false: the file has fewer.
 bool read_at(int file, int64_t offset, char* to, size_t bytes) {
   while (bytes > 0) {
     const ssize_t got = ::pread(file, to, bytes, offset);
@@ -31,7 +31,7 @@ bool read_at(int file, int64_t offset, char* to, size_t bytes) {
   return true;
 }
 
-/// Numbers and texts one after the other; nothing is taken beyond the end.
+/// Consecutive numbers and texts; never reads beyond the end.
 class Texts {
  public:
   explicit Texts(std::string_view bytes) : rest_(bytes) {}
@@ -110,7 +110,7 @@ bool JournalReader::read_chunk(int64_t offset, Chunk& chunk, std::string& payloa
   return true;
 }
 
-/// The offset of the first chunk from there on that checks out; the size of the file when there is none.
+/// The offset of the first valid chunk from there on; the size of the file if there is none.
 int64_t JournalReader::find_chunk(int64_t from, Chunk& chunk, std::string& payload) const {
   constexpr size_t window = 1 << 20;
   constexpr uint32_t marker = journal::ChunkHead{}.marker;
@@ -125,7 +125,7 @@ int64_t JournalReader::find_chunk(int64_t from, Chunk& chunk, std::string& paylo
   return size_;
 }
 
-/// From chunk to chunk through the whole file, noting where rows stand and what is missing between them.
+/// Scans the chunks of the whole file and records the locations of rows and the gaps between them.
 void JournalReader::look_through() {
   Chunk chunk;
   std::string payload;
@@ -138,8 +138,7 @@ void JournalReader::look_through() {
       if (found == size_) break;
     }
     survey_.dropped_rows = std::max(survey_.dropped_rows, int64_t(chunk.dropped));
-    // Every chunk tells how many rows came before it. Rows in front of the first heading that checks out are
-    // lost too.
+    // Every chunk has the number of rows before it. Rows before the first valid heading are lost too.
     if (chunk.rows_before > next_row) {
       survey_.lost_rows += int64_t(chunk.rows_before - next_row);
       next_row = chunk.rows_before;

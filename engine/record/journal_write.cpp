@@ -25,7 +25,7 @@ void append_facts(std::string& to, const Facts& facts) {
   for (const auto& [key, value] : facts) append_text(to, key), append_text(to, value);
 }
 
-/// The name itself reaches the disk with its folder; not every file system can.
+/// The name reaches the disk with its folder; not every file system supports this.
 void sync_folder_of(const std::string& path) {
   const size_t slash = path.rfind('/');
   const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
@@ -98,7 +98,7 @@ int JournalWriter::put(uint32_t kind, std::string_view payload, int64_t dropped)
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) {
       const int error = errno;
-      (void)!::ftruncate(file_, size_);  // half a chunk would only be skipped by readers
+      (void)!::ftruncate(file_, size_);  // readers would only skip half a chunk
       return error;
     }
     for (size_t rest = size_t(written); i < 2; ++i) {

@@ -39,7 +39,7 @@ Layout outline_of_version_5(std::string_view bytes, bool swapped) {
 }
 
 /// A variable of version 4: header of five words (type, rows, columns, imaginary, length of name), name,
-/// numbers. The digits of the type, MOPT, are: byte order, zero, precision, kind.
+/// numbers. The digits of the type, MOPT, are byte order, zero, precision and kind.
 struct OldVariable {
   uint32_t type, rows, columns, imaginary, name;
   bool plausible() const {
@@ -47,7 +47,7 @@ struct OldVariable {
     return order <= 1 && zero == 0 && precision <= 5 && kind <= 2 && imaginary <= 1 && name >= 1 &&
            name <= 256;
   }
-  /// [bytes] of name and numbers; in double, as a damaged header can ask for more than 64 bits hold
+  /// [bytes] of name and numbers; a double, as a damaged header can give more than 64 bits can hold
   double size() const {
     constexpr std::array<int, 6> bytes_of_precision = {8, 4, 4, 2, 2, 1};
     return name + double(rows) * columns * bytes_of_precision[type / 10 % 10] * (1 + imaginary);
@@ -68,7 +68,7 @@ std::optional<Layout> outline_of_version_4(std::string_view bytes, bool swapped)
     }
     if (left < header || !variable.plausible() || variable.size() > double(left - header)) {
       if (count == 0)
-        return std::nullopt;  // there is no signature: only a sound first variable makes it a MAT file
+        return std::nullopt;  // no signature exists: only a valid first variable identifies a MAT file
       layout.damage = "the file is cut off or damaged";
       layout.damage_offset = at;
       return layout;

@@ -23,7 +23,8 @@ bool is_keyword(std::string_view name) {
   return std::ranges::find(keywords, name) != keywords.end();
 }
 
-/// Whatever is no letter or digit becomes one underscore: "motor.force[2]" → "motor_force_2".
+/// Every sequence of characters other than letters and digits becomes one underscore: "motor.force[2]" →
+/// "motor_force_2".
 std::string legal_name(std::string_view name) {
   std::string legal;
   for (const char c : name) {

@@ -1,4 +1,4 @@
-/// The names under which a recording lives in a MAT file.
+/// The names of a recording in a MAT file.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,8 +9,8 @@ inline constexpr const char* names_variable = "loopwright_names";
 inline constexpr const char* units_variable = "loopwright_units";
 inline constexpr const char* facts_variable = "loopwright_facts";
 
-/// One legal and unused MATLAB variable name for each name: [A-Za-z][A-Za-z0-9_]*, at most 63 characters, no
-/// keyword. Depends on the names alone, so that reading finds again what writing chose.
+/// One legal and unused MATLAB variable name for each name: [A-Za-z][A-Za-z0-9_]*, at most 63 characters, not
+/// a keyword. Depends only on the names, so that reading finds the names that writing chose.
 std::vector<std::string> legal_names(const std::vector<std::string>& names);
 
 }  // namespace loopwright::mat

@@ -45,8 +45,8 @@ class Assembly {
   ProblemLimit& problems_;
   const ReadOptions& options_;
   size_t rows_ = 0;                           ///< of the longest variable
-  std::map<std::string, size_t> our_places_;  ///< from the name in MATLAB to the place in our list of names
-  std::map<size_t, Column> ours_;             ///< in the order of our list; gaps where a variable was removed
+  std::map<std::string, size_t> our_places_;  ///< from the MATLAB name to the index in our list of names
+  std::map<size_t, Column> ours_;             ///< in the order of our list, with gaps for removed variables
   std::vector<Column> others_;
   std::vector<std::pair<std::string, std::string>> facts_, our_names_;
 };
@@ -74,8 +74,8 @@ Recording Assembly::assemble(std::vector<Variable>& variables) {
   return problems_.has_errors() ? Recording{} : std::move(recording);
 }
 
-/// Names, units and facts of a file of write_mat(). Lists that contradict each other are treated as any other
-/// cell.
+/// Names, units and facts of a file of write_mat(). Lists that contradict each other are treated like any
+/// other cell.
 void Assembly::restore_our_lists(const std::vector<Variable>& variables) {
   const auto find = [&](const char* name) -> const Variable* {
     const auto found = std::ranges::find(variables, name, &Variable::name);
@@ -93,7 +93,7 @@ void Assembly::restore_our_lists(const std::vector<Variable>& variables) {
   for (size_t i = 0; i < facts->rows; ++i)
     facts_.emplace_back(facts->texts[i], facts->texts[facts->rows + i]);
   for (const char* const name : {mat::names_variable, mat::units_variable, mat::facts_variable})
-    our_places_[name] = our_names_.size();  // known, but no column
+    our_places_[name] = our_names_.size();  // known, but not a column
 }
 
 void Assembly::add(Variable& variable) {
@@ -137,7 +137,8 @@ void Assembly::add_numbers(Variable& variable) {
   }
 }
 
-/// `upright`: a row of the matrix is a row of the recording; lying matrices come from Simulink's "To File".
+/// `upright`: a row of the matrix is a row of the recording. Transposed matrices come from Simulink's "To
+/// File".
 void Assembly::add_matrix(const Variable& variable, bool upright) {
   const size_t count = upright ? variable.columns : variable.rows;
   for (size_t i = 0; i < count; ++i) {
@@ -178,7 +179,7 @@ Recording read_mat(const std::string& path, Problems& problems, const ReadOption
   const std::shared_ptr<const SourceFile> file = read_recorded_bytes(path, problems);
   if (!file) return {};
 
-  // A place without text: lines and columns mean nothing in a binary file.
+  // A location without text: lines and columns have no meaning in a binary file.
   const Place place{std::make_shared<SourceFile>(SourceFile{path, {}}), 0};
   const auto damaged = [&](const std::string& what, std::string hint = {}) {
     problems.error(place, {}, {}, what).hint = std::move(hint);

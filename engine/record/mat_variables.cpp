@@ -35,7 +35,7 @@ Variable unusable(std::string name, std::string reason) {
   return variable;
 }
 
-/// The number of elements when the dimensions are those of a matrix and the data is there for all of them.
+/// The number of elements, if the dimensions are those of a matrix and the data is complete.
 std::optional<size_t> count_elements(const matvar_t& source) {
   if (source.rank != 2 || !source.dims) return std::nullopt;
   size_t count = 0, bytes = 0;
@@ -85,7 +85,7 @@ bool copy_numbers_of_any_class(const matvar_t& source, size_t count, std::vector
   }
 }
 
-/// Eight-bit text is UTF-8, or else Latin-1.
+/// Eight-bit text is UTF-8, otherwise Latin-1.
 std::string as_utf8(std::string_view text) {
   if (find_not_text(text) == std::string_view::npos) return std::string(text);
   std::u16string units;
@@ -199,7 +199,7 @@ class Packer {
   int file_;
 };
 
-/// Trusts nothing: a child whose memory matio overwrote may still have ended in good order.
+/// Checks everything: a child whose memory matio overwrote may still exit normally.
 class Unpacker {
  public:
   explicit Unpacker(std::string_view bytes) : bytes_(bytes) {}
@@ -253,7 +253,7 @@ class Unpacker {
 // ----------------------------------------------------------------------------------------------
 
 #if !defined(__SANITIZE_ADDRESS__)
-/// [bytes] What this process has mapped: the child inherits it.
+/// [bytes] The mapped memory of this process, which the child inherits.
 size_t address_space() {
   size_t pages = 0;
   if (FILE* const file = std::fopen("/proc/self/statm", "r")) {
@@ -267,13 +267,12 @@ size_t address_space() {
 void limit_this_process(int time_limit, [[maybe_unused]] size_t memory_limit) {
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
-#if !defined(__SANITIZE_ADDRESS__)  // the sanitizer maps terabytes of address space for itself
+#if !defined(__SANITIZE_ADDRESS__)  // the sanitizer itself maps terabytes of address space
   const size_t most = address_space() + memory_limit;
   const rlimit memory{most, most};
   ::setrlimit(RLIMIT_AS, &memory);
 #endif
-  // An endless loop uses up its computing time however busy the machine is; the alarm is for a child that
-  // waits.
+  // The limit of computing time ends an endless loop, even on a busy machine; the alarm ends a waiting child.
   const auto seconds = static_cast<rlim_t>(time_limit);
   const rlimit computing{seconds, seconds};
   ::setrlimit(RLIMIT_CPU, &computing);
@@ -285,12 +284,13 @@ void limit_this_process(int time_limit, [[maybe_unused]] size_t memory_limit) {
   }
   ::sigprocmask(SIG_UNBLOCK, &deadlines, nullptr);
   ::alarm(20 * static_cast<unsigned>(time_limit));
-  // The death cries of the C library or of a sanitizer would only confuse: the parent tells what happened.
+  // Messages of the C library or a sanitizer about a crash would only confuse: the parent reports the
+  // failure.
   const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
   if (nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
 }
 
-/// The work of the child; its result is the exit code: 0 when everything was handed over.
+/// The work of the child. It returns the exit code: 0 if everything was transferred.
 int read_in_child(const std::string& path, int result) {
   mat_t* const file = Mat_Open(path.c_str(), MAT_ACC_RDONLY);
   if (!file) return 1;
@@ -338,7 +338,7 @@ bool unpack(int file, Variables& variables) {
 
 Variables read_variables(std::string_view file, const std::string& hdf5_path, const ReadOptions& options) {
   Variables variables;
-  // A file in memory holds the very bytes that were checked, even if they came through a pipe.
+  // A file in memory holds exactly the bytes that were checked, even if they came through a pipe.
   const int input = ::memfd_create("mat file", MFD_CLOEXEC),
             result = ::memfd_create("mat variables", MFD_CLOEXEC);
   const bool ready = input >= 0 && result >= 0 && Packer(input).put(file.data(), file.size());
@@ -350,7 +350,7 @@ Variables read_variables(std::string_view file, const std::string& hdf5_path, co
     try {
       limit_this_process(time_limit, options.memory_limit + 64 * file.size());
       code = read_in_child(path, result);
-    } catch (...) {  // out of memory: the exit code tells
+    } catch (...) {  // out of memory: reported by the exit code
     }
     ::_exit(code);
   }

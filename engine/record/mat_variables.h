@@ -1,4 +1,4 @@
-/// The variables of a MAT file as plain values, read where a crash of matio does no harm.
+/// The variables of a MAT file as plain values, read in a process in which a crash of matio is harmless.
 #pragma once
 #include <string>
 #include <string_view>
@@ -15,19 +15,19 @@ struct Variable {
   size_t rows = 0, columns = 0;  ///< of the numbers or texts
   std::vector<double> numbers;   ///< column by column
   std::vector<std::string>
-      texts;  ///< a text: one; a cell of texts: column by column; other: why it cannot be used
+      texts;  ///< a text: one; a cell of texts: column by column; other: the reason why it cannot be used
 };
 
 struct Variables {
   std::vector<Variable> list;
-  size_t count = 0;     ///< variables of the file, a structure being one
-  std::string failure;  ///< why nothing could be read; empty: all went well
+  size_t count = 0;     ///< variables in the file; a structure counts as one
+  std::string failure;  ///< reason why nothing could be read; empty: success
 };
 
-/// Forks a child that reads the bytes of a file with matio and hands over what it found. The child dies when
-/// it exceeds options.time_limit or options.memory_limit, or when matio crashes; this process only sees the
-/// failure.
-/// HDF5 insists on a file with a path: version 7.3 is read from `hdf5_path`, which is empty for the other
+/// Starts a child process that reads the bytes of a file with matio and returns the result. The child is
+/// terminated if it exceeds options.time_limit or options.memory_limit, or if matio crashes; this process
+/// only receives the failure.
+/// HDF5 requires a file with a path: version 7.3 is read from `hdf5_path`, which is empty for the other
 /// versions.
 Variables read_variables(std::string_view file, const std::string& hdf5_path, const ReadOptions& options);
 

@@ -28,7 +28,7 @@ matvar_t* new_text(const std::string& text) {
   return Mat_VarCreate(nullptr, MAT_C_CHAR, MAT_T_UTF16, 2, size.data(), units.data(), 0);
 }
 
-/// `texts` column by column.
+/// A cell of `texts`, column by column.
 Matvar cell(const char* name, size_t rows, size_t columns, const std::vector<std::string>& texts) {
   std::vector<matvar_t*> cells;
   for (const std::string& text : texts) cells.push_back(new_text(text));
@@ -44,9 +44,9 @@ Matvar upright_vector(const std::string& name, const std::vector<double>& values
           &Mat_VarFree};
 }
 
-/// All variables into the file at `path`; false when matio failed.
+/// Writes all variables to the file at `path`; false if matio failed.
 bool write_variables(const std::string& path, const Recording& recording, bool compressed) {
-  // A header without date: equal recordings give equal files.
+  // A header without a date: equal recordings give equal files.
   mat_t* const file = Mat_CreateVer(path.c_str(), "MATLAB 5.0 MAT-file, Loopwright recording", MAT_FT_MAT5);
   if (!file) return false;
   bool all = true;
@@ -70,8 +70,7 @@ bool write_variables(const std::string& path, const Recording& recording, bool c
   return (Mat_Close(file) == 0) && all;
 }
 
-/// A file in memory: matio does not notice when a disk is full, so the bytes take the careful way to the
-/// disk.
+/// A file in memory. matio does not detect a full disk, so the bytes are written to disk by AtomicFile.
 class MemoryFile {
  public:
   MemoryFile() : file_(::memfd_create("mat file", MFD_CLOEXEC)) {
@@ -110,7 +109,7 @@ void write_mat(const std::string& path, const Recording& recording, bool compres
         fmt::format("cannot write \"{}\": {} rows are more than the 2 GiB that a variable of "
                     "a MAT 5 file can hold; write CSV",
                     path, recording.rows()));
-  AtomicFile file(path);  // first, so that an unwritable folder is told before the work is done
+  AtomicFile file(path);  // first, so that an unwritable folder is reported before the work is done
   MemoryFile memory;
   const bool written = write_variables(memory.path(), recording, compressed);
   const std::string_view bytes = memory.bytes();

@@ -7,8 +7,8 @@
 
 namespace loopwright {
 
-/// The bytes of a regular file of at most 4 GiB, which is as far as a Place can point; null after a problem. The
-/// file is noted in `problems` as one that was read.
+/// The bytes of a regular file of at most 4 GiB, the range of a Place; null after a problem. The file is
+/// recorded in `problems` as read.
 std::shared_ptr<const SourceFile> read_recorded_bytes(const std::string& path, Problems& problems);
 
 }  // namespace loopwright

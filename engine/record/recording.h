@@ -1,4 +1,4 @@
-/// Numbers over time, column by column: what a run leaves behind and what a measurement brings.
+/// Numbers over time, column by column: the result of a run or of a measurement.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -12,36 +12,36 @@ struct Column {
   std::string name;  ///< "stage.position", "motor.force[2]"
   std::string unit;  ///< SI unit; empty: not known
   std::vector<double> values;
-  std::string origin;  ///< file:line:column of its heading, or its file; empty: it comes from no file
+  std::string origin;  ///< file:line:column of its heading, or its file; empty: not from a file
 };
 
-/// All columns have the same length and names of their own. The first column of a run is "time" in s.
+/// All columns have the same length and distinct names. The first column of a run is "time" in s.
 struct Recording {
   std::vector<Column> columns;
-  /// Facts that belong to the numbers: title, plan hash, effective parameters ("parameter stage.mass.mass" →
-  /// "0.2621 kg").
+  /// Facts about the numbers: title, plan hash, effective parameters ("parameter stage.mass.mass" → "0.2621
+  /// kg").
   std::vector<std::pair<std::string, std::string>> facts;
-  /// The order of the columns is that of their maker: the first may be the time. Variables of a MAT file have
-  /// none.
+  /// The order of the columns is the original order, so that the first may be the time. Variables of a MAT
+  /// file are unordered.
   bool is_ordered = true;
 
-  const Column* find(std::string_view name) const;  ///< nothing when there is no such column
+  const Column* find(std::string_view name) const;  ///< null if there is no such column
   size_t rows() const { return columns.empty() ? 0 : columns.front().values.size(); }
 };
 
-/// Throws std::invalid_argument when columns differ in length, have no name or share one: a recording made by
-/// a program must be right before it is written.
+/// Throws std::invalid_argument if columns differ in length, have no name or share a name: a recording
+/// created by a program must be valid before it is written.
 void check_recording(const Recording& recording);
 
-/// How strictly a recording is read. Every default refuses what would mislead later.
+/// How strictly a recording is read. Every default rejects data that could mislead later.
 struct ReadOptions {
-  bool allow_not_finite = false;   ///< a NaN is a hole in a measurement: it spoils every sum it enters
-  int most_problems = 20;          ///< one screenful shows what is wrong; the rest is counted
-  size_t longest_line = 1 << 20;   ///< [bytes] CSV: some 50,000 columns; beyond that it is no table
-  bool leave_out_misfits = false;  ///< MAT: a variable that fits no column is an error, not lost unseen
-  /// MAT: one flipped bit can make matio compute for minutes and take gigabytes for a file of a kilobyte.
+  bool allow_not_finite = false;   ///< a NaN is a gap in a measurement and spoils every sum
+  int most_problems = 20;          ///< enough for one screen; the rest is counted
+  size_t longest_line = 1 << 20;   ///< [bytes] CSV: about 50,000 columns; longer is not a table
+  bool leave_out_misfits = false;  ///< MAT: otherwise a variable that fits no column is an error
+  /// MAT: one flipped bit can make matio compute for minutes and use gigabytes for a file of a kilobyte.
   int time_limit = 10;              ///< [s of computing] and 1 s more per 4 MB of file
-  size_t memory_limit = 2ul << 30;  ///< [bytes] and 64 more per byte of file, which may be compressed
+  size_t memory_limit = 2ul << 30;  ///< [bytes] and 64 more per byte of file, as it may be compressed
 };
 
 }  // namespace loopwright

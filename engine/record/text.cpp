@@ -64,7 +64,7 @@ int hexadecimal_digit(char c) {
 size_t find_not_text(std::string_view text) {
   size_t at = 0;
   while (at < text.size()) {
-    // Recordings are nearly all ASCII: eight bytes at a time that have no high bit and no zero byte.
+    // Recordings are almost entirely ASCII: check eight bytes at a time for high bits and zero bytes.
     uint64_t eight;
     while (at + sizeof eight <= text.size()) {
       std::memcpy(&eight, text.data() + at, sizeof eight);
@@ -139,13 +139,13 @@ std::string excerpt(std::string_view text) {
 
 std::string_view trim(std::string_view text) {
   const size_t first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return text.substr(0, 0);  // still a place in the text
+  if (first == std::string_view::npos) return text.substr(0, 0);  // still points into the text
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
 void append_number(std::string& text, double value) {
   char digits[32];                        // the longest is 24 characters: -2.2250738585072014e-308
-  constexpr double longest_count = 1e15;  // beyond that nobody counts; all below are exact
+  constexpr double longest_count = 1e15;  // larger counts do not occur; all below are exact
   const bool is_count = std::abs(value) < longest_count && value == std::trunc(value);
   const auto [end, error] =
       is_count ? std::to_chars(digits, digits + sizeof digits, value, std::chars_format::fixed)

@@ -15,7 +15,7 @@
 namespace loopwright {
 namespace {
 
-/// Errors for times that are no numbers or do not grow; false if there are any.
+/// Reports times that are non-finite or not increasing; false if there are any.
 bool check_growth(const Column& time, ProblemLimit& problems, const Place& place) {
   const std::string name = excerpt(time.name);
   double last = -std::numeric_limits<double>::infinity();
@@ -24,7 +24,7 @@ bool check_growth(const Column& time, ProblemLimit& problems, const Place& place
     const double now = time.values[i];
     if (!std::isfinite(now)) {
       problems.error(place, fmt::format("time \"{}\", row {}: {} is no time", name, i + 1, now));
-      continue;  // the rows around it are compared with each other
+      continue;  // the rows before and after it are compared with each other
     }
     if (now == last) {
       problems.error(place, fmt::format("time \"{}\", row {}: the time {} s of row {} again", name, i + 1,
@@ -49,8 +49,8 @@ double median_step(std::span<const double> times) {
   return *middle;
 }
 
-/// The time from the first to the last row, evenly divided into steps. Times are mostly written as decimals:
-/// a step of 12 digits is taken instead where rounding of the last time cannot tell the two apart.
+/// The time from the first to the last row divided by the number of steps. Times are mostly written as
+/// decimals: a step of 12 digits is used instead if the rounding of the last time cannot distinguish the two.
 double mean_step(std::span<const double> times, double steps) {
   const double mean = (times.back() - times.front()) / steps;
   const double decimal = csv::parse_number(fmt::format("{:.12g}", mean)).value_or(mean);
@@ -59,7 +59,8 @@ double mean_step(std::span<const double> times, double steps) {
   return std::abs(decimal - mean) * steps <= rounding ? decimal : mean;
 }
 
-/// [sample times] How far the worst time lies from the grid; `sample_of(row)` is the row's place on it.
+/// [sample times] The largest deviation of a time from the grid; `sample_of(row)` is the sample number of the
+/// row.
 template <class SampleOf>
 double worst_deviation(std::span<const double> times, double sample_time, SampleOf&& sample_of) {
   double worst = 0;
@@ -68,8 +69,8 @@ double worst_deviation(std::span<const double> times, double sample_time, Sample
   return worst / sample_time;
 }
 
-/// The median of steps that tremble is off by as much as drifts by many samples over a long record; their
-/// mean is not, and a short decimal that the last time cannot tell from it is what was meant.
+/// The error of the median of jittering steps adds up to many samples over a long record; the mean has no
+/// such error. A short decimal that the last time cannot distinguish from the mean is the intended step.
 double plain_step(double mean, double median, double steps) {
   constexpr double alike = 0.02, least_told = 0.5;  // of the step
   if (!(std::abs(mean - median) <= alike * median)) return median;
@@ -77,7 +78,7 @@ double plain_step(double mean, double median, double steps) {
   return std::abs(decimal - mean) * steps <= least_told * mean ? decimal : mean;
 }
 
-/// An axis that is even but for samples without a row; without `on_grid` where it is not.
+/// A grid that is even except for missing samples; without `on_grid` if it is not even.
 TimeAxis even_but_for_gaps(std::span<const double> times, double median, double tolerance) {
   TimeAxis axis{times.front(), median, false};
   const std::vector<int64_t> sample = sample_numbers(times, median);
@@ -123,11 +124,11 @@ TimeAxis check_time(const Column& time, Problems& problems, const TimeOptions& o
 }
 
 std::vector<int64_t> sample_numbers(std::span<const double> times, double sample_time) {
-  constexpr size_t looked_ahead = 20;  // rows: a burst of late stamps has caught up by then
-  constexpr double followed = 0.05;    // of a row's deviation: stamps tremble, clocks drift
-  constexpr double longest_gap = 1e9;  // samples: so many in each of a billion rows can be counted
+  constexpr size_t looked_ahead = 20;  // rows: a burst of late time stamps is over by then
+  constexpr double followed = 0.05;    // of the deviation of a row: stamps jitter, clocks drift
+  constexpr double longest_gap = 1e9;  // samples: with a billion such rows the count still fits
   std::vector<int64_t> sample(times.size());
-  double expected = times.empty() ? 0 : times.front();  // of the present row
+  double expected = times.empty() ? 0 : times.front();  // expected time of the present row
   for (size_t row = 1; row < times.size(); ++row) {
     expected += sample_time;
     double skipped = longest_gap;

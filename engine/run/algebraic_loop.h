@@ -1,5 +1,4 @@
-/// An algebraic loop at its place in the order: the tear numbers y that reproduce themselves,
-/// G(y) = y.
+/// An algebraic loop in the order of evaluation: finds the tear numbers y with G(y) = y.
 #pragma once
 #include <cmath>
 #include <memory>
@@ -14,11 +13,11 @@ inline constexpr const char *loop_not_solved = "Newton's method did not converge
                             *loop_is_singular =
                                 "its algebraic loop is singular: the equations do not determine the signals";
 
-/// Newton's method on y - G(y), from the values of the last solution; lane after lane, as each takes steps of
-/// its own.
+/// Newton's method on y - G(y), starting from the last solution. Lanes are solved one after another, as each
+/// needs its own steps.
 template <class Real> class AlgebraicLoopSolver {
  public:
-  /// `numbers`: of the arena.
+  /// `numbers`: those of the arena.
   void build(std::vector<Call<Real>> calls, Real* numbers, const std::vector<Number>& tears, int first_lane) {
     calls_ = std::move(calls);
     first_lane_ = first_lane;
@@ -41,7 +40,7 @@ template <class Real> class AlgebraicLoopSolver {
 
  private:
   static constexpr int width = lanes_of<Real>;
-  /// A bit a lane.
+  /// One bit for each lane.
   struct Unsolved {
     uint64_t not_solved = 0, singular = 0;
   };
@@ -52,7 +51,7 @@ template <class Real> class AlgebraicLoopSolver {
     for (lane_ = 0; lane_ < width; ++lane_) f();
   }
 
-  /// The lanes without a solution; in the others the tears and all that hangs on them hold it.
+  /// The lanes without a solution. In the other lanes the tears and all dependent numbers have the solution.
   Unsolved solve() {
     each_lane([&] {
       for (size_t i = 0; i < tears_.size(); ++i) {
@@ -70,7 +69,7 @@ template <class Real> class AlgebraicLoopSolver {
     evaluate();
     return unsolved;
   }
-  /// Lanes in which a block faulted. A step of the search may well lead to where one does.
+  /// Lanes in which a block faulted. A trial step of the search may well lead to a fault.
   uint64_t evaluate() {
     std::fill(faults_.begin(), faults_.end(), FaultReport{});
     uint64_t bad = 0;
@@ -90,8 +89,8 @@ template <class Real> class AlgebraicLoopSolver {
 
   std::vector<Call<Real>> calls_;
   std::vector<Real*> tears_;
-  std::vector<FaultReport> faults_;  // of all lanes up to the last
-  std::vector<double> y_;            // by lane of the arena
+  std::vector<FaultReport> faults_;  // of all lanes of the run
+  std::vector<double> y_;            // of each lane of the arena
   std::unique_ptr<NewtonSolver> newton_;
   int first_lane_ = 0, lane_ = 0;
 };

@@ -1,5 +1,4 @@
-/// A block of the plan as one run holds it: its parameters for every lane, and its methods for the run's
-/// scalar.
+/// A block of the plan in one run: its parameters for every lane, and its methods for the scalar of the run.
 #pragma once
 #include <memory>
 #include "engine/plan/plan.h"
@@ -7,7 +6,7 @@
 
 namespace loopwright {
 
-/// Key of a block's random streams.
+/// Key of the random streams of a block.
 inline uint64_t hash_of_path(std::string_view path) { return ContentHash().add(path).value(); }
 
 template <class Real> class BlockInstance;
@@ -35,7 +34,7 @@ template <> class BlockInstance<double> {
   size_t memory_bytes() const { return kernels_->memory_size; }
   size_t mode_bytes() const { return kernels_->mode_size; }
   double* tunable(std::string_view path, int) { return kernels_->tunable(memory_.get(), path); }
-  /// Prepares and starts the block; the lanes that faulted.
+  /// Prepares and starts the block; returns the lanes that faulted.
   uint64_t start(const Call<double>& call, const Setup& setup) {
     return start_by(*kernels_, memory_.get(), call, setup);
   }

@@ -1,4 +1,5 @@
-/// Calls by the set of rates that are due: made once for every set while there are few rates, filtered else.
+/// Calls selected by the set of rates that are due. With few rates there is one list for every set; otherwise
+/// calls are filtered.
 #pragma once
 #include <utility>
 #include <vector>

@@ -1,4 +1,4 @@
-/// Counts events, and notices when they come without end: a switch that flips itself back at once.
+/// Counts events and detects chattering, for example a switch that immediately reverses its own change.
 #pragma once
 #include <array>
 #include <span>
@@ -10,12 +10,12 @@ namespace loopwright {
 
 class Chattering {
  public:
-  static constexpr int most = 100;  ///< events in a row, within a ten-thousandth of the plan's typical step
+  static constexpr int most = 100;  ///< consecutive events in a ten-thousandth of the typical step
 
   explicit Chattering(const Plan& plan)
       : plan_(plan), events_(plan.crossings.size(), 0), window_(1e-4 * plan.typical_step) {}
 
-  /// Notes the crossings that fired at t; false when the last hundred events lie within the window.
+  /// Records the crossings that fired at t; false if the last hundred events lie within the window.
   bool count(double t, std::span<const int8_t> fired) {
     for (size_t i = 0; i < fired.size(); ++i)
       if (fired[i]) ++events_[i], worst_ = i;

@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::string_view magic = "loopwright checkpoint 2\n";
 
-/// Then follow the facts of the plan's identity, the arena, the rows of each column, and the hash of it all.
+/// Followed by the facts of the plan's identity, the arena, the rows of each column, and the hash of
+/// everything.
 struct Header {
   uint64_t seed;
   int64_t run, tick;
@@ -67,7 +68,7 @@ std::string read_checkpoint(const std::string& path, Run<double>& run, RunIdenti
   if (content_hash(left) != hash) refuse(path, "the checkpoint is damaged", "start the run anew");
   std::memcpy(&header, left.data() + magic.size(), sizeof header);
   left.remove_prefix(magic.size() + sizeof header);
-  // The hash holds, so these lengths are as they were written; yet nothing is read that they cannot reach.
+  // The hash is valid, so these lengths are as written. They are still checked before reading.
   const auto take = [&](size_t length) {
     if (length > left.size()) refuse(path, "the checkpoint is damaged", "start the run anew");
     const std::string_view part = left.substr(0, length);

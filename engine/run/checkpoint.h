@@ -1,17 +1,17 @@
-/// A run set aside in a file: the arena, the instant, the solver and the rows so far. It belongs to one plan,
-/// told by its identity: the same diagram, parameters, contents of files, and program.
+/// Checkpoint of a run in a file: the arena, the instant, the solver and the rows so far. It belongs to one
+/// plan, determined by its identity: the same diagram, parameters, contents of files, and program.
 #pragma once
 #include "engine/run/recorder.h"
 
 namespace loopwright {
 
-/// Written whole or not at all. `solver`: a StateArchive of what goes on beside the run. Throws
-/// std::runtime_error when the file cannot be written.
+/// Written completely or not at all. `solver`: a StateArchive of the state outside the run, such as the
+/// solver. Throws std::runtime_error if the file cannot be written.
 void write_checkpoint(const std::string& path, Run<double>& run, const RunIdentity& identity,
                       const std::string& solver, Recorder& recorder);
 
-/// Puts run, identity and recorder where they were; returns what was given as `solver`. Throws InputError
-/// when the file is damaged, or with what has changed since.
+/// Restores run, identity and recorder; returns what was passed as `solver`. Throws InputError if the file is
+/// damaged, or with the changes since it was written.
 std::string read_checkpoint(const std::string& path, Run<double>& run, RunIdentity& identity,
                             Recorder& recorder);
 

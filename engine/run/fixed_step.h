@@ -1,12 +1,11 @@
-/// The loop of a fixed-step run, for one run and for lanes: the same steps and rows, so that both give the
-/// same bits.
+/// The loop of a fixed-step run, shared by scalar runs and lanes: the same steps and rows give the same bits.
 #pragma once
 #include <algorithm>
 #include "engine/run/run.h"
 
 namespace loopwright {
 
-/// Whether every row falls on the end of a step, so that none must look inside one.
+/// Whether every row coincides with the end of a step, so that no values inside a step are needed.
 inline bool rows_meet_steps(const Plan& plan) {
   if (!plan.steps_between_samples) return true;
   const auto is_whole = [&](int64_t ticks) { return ticks % plan.step_ticks == 0; };
@@ -15,9 +14,9 @@ inline bool rows_meet_steps(const Plan& plan) {
          });
 }
 
-/// Steps from the present tick to the plan's stop. `row()` is called at `first_row`, every `record_ticks`
-/// after it, and at the stop; rows inside a step do not change it. After each step `go_on(has_row)` may end
-/// the run. True: the stop was reached.
+/// Steps from the present tick to the stop of the plan. `row()` is called at `first_row`, every
+/// `record_ticks` after it, and at the stop; rows inside a step do not change the step. After each step,
+/// `go_on(has_row)` may end the run. Returns true if the stop was reached.
 template <class Real, class Row, class GoOn>
 bool run_fixed_steps(Run<Real>& run, int64_t first_row, Row&& row, GoOn&& go_on) {
   const Plan& plan = run.plan();

@@ -1,4 +1,4 @@
-/// A block in a run of many lanes: by its own lane kernels where the module has them, else lane by lane.
+/// A block in a run of many lanes: with its lane kernels if the module has them, otherwise lane by lane.
 #pragma once
 #include <array>
 #include <memory>
@@ -7,9 +7,9 @@
 
 namespace loopwright {
 
-/// A block without lane kernels, a plain struct or one from a library of blocks: a scalar copy for every
-/// lane, called one after the other. Signals, states and modes are handed over through scalar ports; memory
-/// and buffers stay where they are, as each lane has a part of the group's room for its own.
+/// A block without lane kernels (a plain struct, or a block from a library): a scalar copy for every lane,
+/// called one after the other. Signals, states and modes are passed through scalar ports. Memory and buffers
+/// are used in place, as each lane has its own part of the arena for them.
 template <class Real> class LaneByLane {
  public:
   static constexpr int width = lanes_of<Real>;
@@ -21,7 +21,7 @@ template <class Real> class LaneByLane {
         state_(size_t(block.states)),
         rate_(state_.size()),
         mode_(whole(kernels_.mode_size, sizeof(double)) / sizeof(double)) {
-    mode_.reserve(1);  // a block without modes binds a reference to their place all the same
+    mode_.reserve(1);  // a block without modes also binds a reference to this storage
     for (int l = 0; l < width; ++l) lanes_.push_back(std::make_unique<BlockInstance<double>>(block));
     for (const auto& wires : block.inputs) {
       const auto& values = in_values_.emplace_back(std::make_unique<double[]>(wires.size()));
@@ -61,7 +61,7 @@ template <class Real> class LaneByLane {
   }
 
   template <Step<double> Kernels<double>::*method> bool has() const { return kernels_.*method != nullptr; }
-  /// A method of the scalar block in every lane. The answer: faults, a bit a lane.
+  /// A method of the scalar block in every lane. Returns the faults, one bit for each lane.
   template <Step<double> Kernels<double>::*method> static uint64_t step(const Call<Real>& call) {
     return of(call).each_lane(call, of(call).kernels_.*method);
   }
@@ -85,7 +85,7 @@ template <class Real> class LaneByLane {
     uint64_t answer = 0;
     for (int lane = 0; lane < width; ++lane) {
       if (call.report[call.first_lane + lane].block >= 0)
-        continue;  // nothing counts any more in a lane that has failed
+        continue;  // the results of a lane that has failed are not used
       take(call, lane);
       jumped_ = 0;
       answer |= uint64_t(method(scalar_call(call, lane)) != 0) << (call.first_lane + lane);
@@ -108,7 +108,7 @@ template <class Real> class LaneByLane {
     return scalar;
   }
 
-  /// What the scalar block reads, from the lane.
+  /// Copies the inputs of the scalar block from the lane.
   void take(const Call<Real>& call, int l) {
     for (size_t p = 0; p < in_.size(); ++p)
       for (int i = 0; i < in_[p].length; ++i)
@@ -117,13 +117,13 @@ template <class Real> class LaneByLane {
     for (size_t i = 0; i < mode_.size(); ++i) mode_[i] = lane(static_cast<const Real*>(call.mode)[i], l);
     each_computed(call, [&](double& mine, Real& theirs) { mine = lane(theirs, l); });
   }
-  /// What it may have written, to the lane.
+  /// Copies the values that the block may have written to the lane.
   void put(const Call<Real>& call, int l) {
     for (size_t i = 0; i < state_.size(); ++i) set_lane(call.state[i], l, state_[i]);
     for (size_t i = 0; i < mode_.size(); ++i) set_lane(static_cast<Real*>(call.mode)[i], l, mode_[i]);
     each_computed(call, [&](double& mine, Real& theirs) { set_lane(theirs, l, mine); });
   }
-  /// Outputs that are not states, and rates: what one method writes the others must find again.
+  /// Outputs that are not states, and rates: values written by one method must be available to the others.
   template <class F> void each_computed(const Call<Real>& call, F&& f) {
     for (size_t p = 0; p < out_.size(); ++p)
       for (int i = 0; i < out_[p].length && info_.outputs[p].group >= 0; ++i)
@@ -139,12 +139,12 @@ template <class Real> class LaneByLane {
   std::vector<std::vector<const double*>> in_places_;
   std::vector<Port<double>> in_, out_, buffers_;
   std::vector<double> state_, rate_;
-  std::vector<double> mode_;  // its bytes travel as doubles; nothing is computed with them
-  uint64_t jumped_ = 0;       // of the lane whose turn it is
+  std::vector<double> mode_;  // its bytes, stored as doubles; not used for computation
+  uint64_t jumped_ = 0;       // of the present lane
 };
 
-/// A block that nothing but the time has an effect on, such as a reference: as long as nobody has asked for a
-/// parameter of one lane, the scalar block works its outputs out once for all lanes.
+/// A block that depends only on time, such as a reference. As long as no parameter of a single lane has been
+/// requested, the scalar block computes its outputs once for all lanes.
 template <class Real> class OnceForAll {
  public:
   static bool suits(const Plan::Block& block) {
@@ -164,7 +164,7 @@ template <class Real> class OnceForAll {
       out_.push_back(port);
     }
   }
-  /// From now on every lane has parameters of its own, from the next start.
+  /// After this, every lane has its own parameters, starting with the next start.
   void part() { lanes_part_ = true; }
   void start(const Call<Real>& call, const Setup& setup) {
     is_once_ = !lanes_part_;
@@ -186,7 +186,7 @@ template <class Real> class OnceForAll {
     Call<double> scalar;
     scalar.block = scalar_.block(), scalar.index = call.index, scalar.now = call.now;
     scalar.report = &report, scalar.out = out_.data(), scalar.mode = mode_.data();
-    scalar.memory = mode_.data();  // an empty struct is bound there, as kernels bind what they do not use
+    scalar.memory = mode_.data();  // bound to an empty struct, as kernels bind unused arguments
     return scalar;
   }
   uint64_t step(const Call<Real>& call, Step<double> once, Step<Real> in_lanes) {
@@ -211,7 +211,7 @@ template <class Real> class OnceForAll {
   BlockInstance<double> scalar_;
   std::vector<std::unique_ptr<double[]>> values_;
   std::vector<Port<double>> out_;
-  std::vector<double> mode_;  // its bytes; nothing is computed with them
+  std::vector<double> mode_;  // its bytes; not used for computation
   bool lanes_part_ = false, is_once_ = false;
 };
 
@@ -241,14 +241,14 @@ template <class Real> class BlockInstance {
   bool is_lane_wise() const { return kernels_ != nullptr; }
   size_t memory_bytes() const { return kernels_ ? kernels_->memory_size : lane_by_lane_->memory_bytes(); }
   size_t mode_bytes() const { return kernels_ ? kernels_->mode_size : lane_by_lane_->mode_bytes(); }
-  /// A tunable number of one lane; null: no such, or structural.
+  /// A tunable number of one lane; null if there is none or it is structural.
   double* tunable(std::string_view path, int lane) {
     if (!kernels_) return lane_by_lane_->tunable(path, lane);
     Real* found = kernels_->tunable(block_.get(), path);
     if (found && once_for_all_) once_for_all_->part();
     return found ? reinterpret_cast<double*>(found) + lane : nullptr;
   }
-  /// Prepares and starts the block; the lanes that faulted.
+  /// Prepares and starts the block; returns the lanes that faulted.
   uint64_t start(const Call<Real>& call, const Setup& setup) {
     if (!kernels_) return lane_by_lane_->start(call, setup);
     if (once_for_all_) once_for_all_->start(call, setup);
@@ -275,7 +275,7 @@ template <class Real> class BlockInstance {
   Step<Real> update() const { return step<&Kernels<Real>::update, &Kernels<double>::update>(); }
   Step<Real> accept() const { return step<&Kernels<Real>::accept, &Kernels<double>::accept>(); }
   Step<Real> jump() const { return step<&Kernels<Real>::jump, &Kernels<double>::jump>(); }
-  /// None: events are located by variable-step methods, which run scalar.
+  /// None: only variable-step methods locate events, and these run scalar.
   Step<Real> crossings() const { return nullptr; }
 
  private:
@@ -297,7 +297,7 @@ template <class Real> class BlockInstance {
   const Kernels<Real>* kernels_ = nullptr;  // null: lane by lane
   std::unique_ptr<char, Destroy> block_;
   std::unique_ptr<LaneByLane<Real>> lane_by_lane_;
-  std::unique_ptr<OnceForAll<Real>> once_for_all_;  // beside the lane kernels
+  std::unique_ptr<OnceForAll<Real>> once_for_all_;  // in addition to the lane kernels
 };
 
 }  // namespace loopwright

@@ -6,7 +6,7 @@ namespace loopwright {
 
 FastestPole fastest_pole(Run<double>& run) {
   const int n = run.plan().states;
-  if (n == 0 || n > 200) return {};  // the cost grows with n³
+  if (n == 0 || n > 200) return {};  // the cost grows as n³
   const std::vector<double> x(run.states().begin(), run.states().end());
   const double time = run.now().time;
   Eigen::MatrixXd jacobian(n, n);
@@ -20,7 +20,7 @@ FastestPole fastest_pole(Run<double>& run) {
     shifted[size_t(j)] = x[size_t(j)];
     for (int i = 0; i < n; ++i) jacobian(i, j) = (above[size_t(i)] - below[size_t(i)]) / (2 * h);
   }
-  run.derivatives_at(time, x.data(), above.data());  // signals as they were
+  run.derivatives_at(time, x.data(), above.data());  // restores the signals
   if (!jacobian.allFinite()) return {};
   const auto [values, vectors] = eigensystem(jacobian);
   FastestPole fastest;

@@ -1,4 +1,4 @@
-/// Rows of logged signals. Room for all rows is taken before the run; a row allocates nothing.
+/// Rows of logged signals. Memory for all rows is allocated before the run; adding a row allocates nothing.
 #pragma once
 #include "engine/record/recording.h"
 #include "engine/run/run.h"
@@ -7,11 +7,11 @@ namespace loopwright {
 
 class Recorder {
  public:
-  /// Throws InputError when the rows would not fit into memory.
+  /// Throws InputError if the rows do not fit into memory.
   explicit Recorder(const Plan& plan);
 
   void record(const Run<double>& run);
-  /// The first logged signal of the last row that is not a finite number; -1: all are.
+  /// The first logged signal of the last row that is non-finite; -1: none.
   int first_non_finite() const;
   int64_t rows() const { return int64_t(recording_.columns[0].values.size()); }
   Recording& recording() { return recording_; }

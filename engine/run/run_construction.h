@@ -1,4 +1,4 @@
-/// How a run comes to be: its arena, the calls that its blocks answer to, and its start.
+/// Construction of a run: its arena, the calls of its blocks, and its start.
 #pragma once
 #include "engine/run/run.h"
 
@@ -15,7 +15,7 @@ Run<Real>::Run(const Plan& plan, int arenas)
   reset({plan.seed, 0});
 }
 
-/// signals | x | modes | slopes | x of stages | crossings | buffers | memories, in every arena.
+/// Layout of every arena: signals | x | modes | slopes | x of stages | crossings | buffers | memories.
 template <class Real> void Run<Real>::lay_out() {
   const size_t align = std::max<size_t>(64, sizeof(Real));
   const auto reals = [](size_t bytes) { return (bytes + sizeof(Real) - 1) / sizeof(Real); };
@@ -48,7 +48,7 @@ template <class Real> void Run<Real>::lay_out() {
   crossing_ = numbers_ + crossings, buffers_ = numbers_ + buffers;
 }
 
-/// Calls of the blocks that are wanted, which read their own states and those of others at `states`, a place
+/// Calls of the selected blocks. They read their own states and those of other blocks at `states`, a location
 /// in the first arena.
 template <class Real>
 template <class Wanted>
@@ -60,7 +60,7 @@ std::vector<Call<Real>> Run<Real>::connect(size_t arena, Wires& wires, Real* sta
     ports += block.inputs.size() + block.outputs.size() + block.buffer_lengths.size();
     for (const auto& port : block.inputs) many += port.size();
   }
-  wires.ports.reserve(ports), wires.many.reserve(many);  // calls point into both
+  wires.ports.reserve(ports), wires.many.reserve(many);  // calls point to both
   const ptrdiff_t offset = ptrdiff_t(arena) * stride_;
   char* const bytes = arena_.get() + arena * bytes_ / size_t(arenas_);
   states += offset;
@@ -137,11 +137,11 @@ Call<Real> Run<Real>::call_of(const Plan::Entry& entry, const std::vector<Call<R
   return call;
 }
 
-/// Arenas take turns, call by call, each two calls behind the one before it: so the short blocks of one,
-/// which wait for memory, stand among the long ones of another, which wait for arithmetic.
+/// Interleaves the calls of the arenas. Each arena is two calls behind the previous one, so that short blocks
+/// of one arena, which wait for memory, alternate with long blocks of another, which wait for arithmetic.
 template <class Real> template <class T> void Run<Real>::take_turns(std::vector<T>& calls) const {
   constexpr size_t behind = 2;
-  const size_t arenas = size_t(arenas_), each = calls.size() / arenas;  // one arena after the other
+  const size_t arenas = size_t(arenas_), each = calls.size() / arenas;  // still arena by arena
   std::vector<T> turns;
   turns.reserve(calls.size());
   for (size_t turn = 0; turn < each + behind * (arenas - 1); ++turn)
@@ -192,8 +192,8 @@ template <class Real> void Run<Real>::schedule_arena(const std::vector<Call<Real
   }
 }
 
-/// A sampled block that reads inputs waits for its first sample. What reads memory alone shows it, and what
-/// has no sample time of its own is computed from what it reads.
+/// A sampled block that reads inputs is not evaluated before its first sample. A block that reads only memory
+/// outputs its memory, and a block without its own sample time is computed from its inputs.
 template <class Real> bool Run<Real>::is_evaluated_early(const Plan::Entry& entry) const {
   if (entry.rate.kind != Rate::Kind::sampled || entry.rate.is_due(plan_.start_tick)) return false;
   const auto waits = [&](const Plan::Entry& e) {

@@ -1,12 +1,12 @@
-/// Fixed-step methods. Every stage of a step has states of its own: a block that has found its slope writes
-/// its states of the next stage at once, from the registers in which the slope lies, and no other block
-/// misses the states that it still has to read.
+/// Fixed-step methods. Every stage of a step has its own states. A block that has computed its slope
+/// immediately writes its states of the next stage, while the slope is in registers. No other block loses the
+/// states that it still has to read.
 #pragma once
 #include "engine/run/run.h"
 
 namespace loopwright {
 
-/// Blocks with states, and those whose outputs their slopes need.
+/// Blocks with states, and the blocks whose outputs the slopes need.
 template <class Real> std::vector<bool> Run<Real>::blocks_in_stages() const {
   std::vector<bool> found(plan_.blocks.size(), false);
   for (const Plan::Entry& entry : plan_.order) {
@@ -22,11 +22,11 @@ template <class Real> std::vector<bool> Run<Real>::blocks_in_stages() const {
   return found;
 }
 
-/// The first stage finds its signals computed, and reads the states where all others do.
+/// The signals of the first stage are already computed; it reads the states at their usual location.
 template <class Real> void Run<Real>::schedule_stages() {
   const size_t stages = plan_.method == Method::rk4 ? 4 : plan_.method == Method::heun ? 2 : 1;
   const std::vector<bool> is_in_stages = blocks_in_stages();
-  stage_of_.reserve(stages * size_t(plan_.states) * base_.size());  // calls point into it
+  stage_of_.reserve(stages * size_t(plan_.states) * base_.size());  // calls point to it
   stage_wires_.resize(base_.size());
   for (size_t a = 0; a < base_.size(); ++a) {
     std::array<std::vector<Call<Real>>, 2> moved;
@@ -37,7 +37,7 @@ template <class Real> void Run<Real>::schedule_stages() {
   take_turns(stages_);
 }
 
-/// Each stage has a time of its own, as arenas are not all in the same.
+/// Each stage has its own time, as the arenas are not all in the same stage.
 template <class Real>
 void Run<Real>::schedule_stage(size_t stage, size_t stages, std::vector<Call<Real>> base) {
   for (Call<Real>& call : base) call.now = &stage_now_[stage];

@@ -1,4 +1,4 @@
-/// What a run does in a step: signals in order, and what a variable-step solver asks for.
+/// The computations of a run in a step: signals in order, and functions for a variable-step solver.
 #pragma once
 #include "engine/run/run.h"
 
@@ -27,8 +27,8 @@ template <class Real> void Run<Real>::evaluate(uint64_t due_rates, bool everythi
   if (!jumps_.empty()) repeat_after_jumps(calls);
 }
 
-/// A jump changes states that others have read: all signals again, until no state jumps any more. Who goes on
-/// jumping after that is to blame.
+/// A jump changes states that other blocks have read. All signals are computed again until no state jumps. A
+/// block that still jumps after the maximum number of repetitions is reported.
 template <class Real> void Run<Real>::repeat_after_jumps(const std::vector<Call<Real>>& calls) {
   constexpr int most = 10;
   for (int round = 0;; ++round) {
@@ -51,7 +51,7 @@ template <class Real> void Run<Real>::repeat_after_jumps(const std::vector<Call<
 }
 
 template <class Real> void Run<Real>::evaluate_again(uint64_t jumped, const std::vector<Call<Real>>& calls) {
-  // A lane without a jump must not decide twice: its modes and signals are put back.
+  // A lane without a jump must not decide twice: its modes and signals are restored.
   const size_t count = evaluated_ * width;
   const auto numbers_of = [&](int a) { return reinterpret_cast<double*>(numbers_ + a * stride_); };
   for (int a = 0; a < arenas_; ++a)
@@ -125,7 +125,7 @@ template <class Real> double Run<Real>::next_stop(double time) const {
   double next = infinity;
   for (const auto& [block, stop] : stops_)
     if (const double at = stop(block, time); at > time)
-      next = std::min(next, at);  // stops closer than rounding are none
+      next = std::min(next, at);  // stops closer than rounding are ignored
   return next;
 }
 

@@ -67,8 +67,8 @@ class Simulation {
         });
     if (reached_stop) run_.failed() ? fail_by_fault() : check_finite();
   }
-  /// The first tick, now or later, that has a row: rows are counted from the start. A checkpoint holds no row
-  /// of its tick.
+  /// The first tick, now or later, with a row; rows are counted from the start. A checkpoint does not contain
+  /// the row of its tick.
   int64_t first_row() const {
     const int64_t since_start = run_.now().tick - plan_.start_tick, every = plan_.record_ticks;
     return plan_.start_tick + (since_start + every - 1) / every * every;
@@ -82,7 +82,7 @@ class Simulation {
     options.absolute_tolerance = plan_.absolute_tolerance;
     options.maximum_step =
         std::isfinite(plan_.maximum_step) ? plan_.maximum_step : default_maximum_step(run_);
-    if (std::isfinite(options.maximum_step))  // many short steps are no sign of being stuck
+    if (std::isfinite(options.maximum_step))  // many short steps do not mean that the solver is stuck
       options.maximum_steps_between_stops += int64_t(
           std::fmin(1e15, 10 * plan_.clock.time(plan_.stop_tick - plan_.start_tick) / options.maximum_step));
     const OdeSystem system{&run_, plan_.states, int(plan_.crossings.size()),
@@ -116,7 +116,7 @@ class Simulation {
                       "\"cvode-bdf\" would take longer steps",
                       block_of_state(stiffest_state_), to_name(plan_.method)));
   }
-  /// Parts 1 to 4 of the step, at a tick. False: the run has failed.
+  /// Parts 1 to 4 of the step, at a tick. Returns false if the run has failed.
   bool begin_at_tick() {
     const int64_t tick = run_.now().tick;
     const uint64_t due = run_.due();
@@ -140,7 +140,8 @@ class Simulation {
     if (s.stiff) stiffest_state_ = s.stiffest_state;
   }
 
-  /// From the present tick to the next at which something is due, over events and known discontinuities.
+  /// Advances from the present tick to the next one at which something is due, through events and known
+  /// discontinuities.
   bool advance(Solver& solver, int64_t next) {
     const double end = plan_.clock.time(next);
     while (solver.t() < end) {
@@ -148,7 +149,7 @@ class Simulation {
       const Advance step = solver.step(stop, directions_.empty() ? nullptr : directions_.data());
       if (!succeeded(step.status)) return fail_by_solver(solver, step);
       if (!record_between(solver, next)) return false;
-      if (!accept_at(solver)) return false;  // before a jump too: a delay keeps both sides of it
+      if (!accept_at(solver)) return false;  // also before a jump: a delay stores both sides of it
       if (step.status == SolverStatus::stepped) {
         checkpoint_inside(solver);
         if (!go_on()) return false;
@@ -171,7 +172,8 @@ class Simulation {
     run_.move_to(next);
     return true;
   }
-  /// Signals at an event or a known discontinuity: decisions, jumps, and the solver starts anew from there.
+  /// Computes the signals at an event or a known discontinuity: decisions, jumps, and a restart of the
+  /// solver.
   void handle_event(Solver& solver) {
     run_.look_at(solver.t(), solver.x().data());
     run_.evaluate(0, true);
@@ -186,10 +188,10 @@ class Simulation {
     run_.accept();
     return !run_.failed() || fail_by_fault();
   }
-  /// Where a crossing was seen on the other side of zero at one look alone, others will have been missed.
+  /// If a crossing had the other sign at only one sample, others have probably been missed: reports this.
   void tell_narrow_passages(const Solver& solver, double maximum_step) {
     constexpr int64_t few = 2;
-    constexpr double share = 0.05;  // of its events: what is rare says little about the steps
+    constexpr double share = 0.05;  // of its events: rare cases say little about the steps
     for (size_t i = 0; i < plan_.crossings.size(); ++i) {
       const int64_t seen = solver.narrow_passages()[i];
       if (seen < few || double(seen) < share * double(chattering_.events(i))) continue;
@@ -201,7 +203,7 @@ class Simulation {
           std::isfinite(maximum_step) ? fmt::format(" shorter than {:.3g} s,", maximum_step) : ""));
     }
   }
-  /// Rows that fall inside the last step, from the solver's dense output.
+  /// Records rows inside the last step, from the dense output of the solver.
   bool record_between(Solver& solver, int64_t next) {
     for (; next_row_ < next && plan_.clock.time(next_row_) <= solver.t(); next_row_ += plan_.record_ticks) {
       const double time = plan_.clock.time(next_row_);
@@ -237,14 +239,15 @@ class Simulation {
     next_checkpoint_ = plan_.clock.time(plan_.start_tick) +
                        (std::floor(since_start / checkpoint_every_ + 1e-9) + 1) * checkpoint_every_;
   }
-  /// `solver`: null for a fixed step.
+  /// `solver`: null for a fixed-step method.
   void checkpoint(Solver* solver) {
     StateArchive state;
     archive(state, solver);
     write_checkpoint(options_.checkpoint_file, run_, identity_, state.bytes(), recorder_);
     plan_next_checkpoint(run_.now().time);
   }
-  /// Between ticks. It changes nothing: where the solver cannot be set aside, the checkpoint comes later.
+  /// Checkpoint between ticks. It changes nothing: if the solver cannot be archived here, the checkpoint is
+  /// written later.
   void checkpoint_inside(Solver& solver) {
     if (solver.t() < next_checkpoint_ || !solver.can_be_archived()) return;
     run_.set_time(solver.t());
@@ -299,8 +302,8 @@ class Simulation {
                     "block hysteresis, smooth the switch, or give it a sample_time",
                     chattering_.name(chattering_.worst()), Chattering::most, chattering_.span(), t));
   }
-  /// Every logged signal and state must be a number; if not, the first block in order that is to blame is
-  /// named.
+  /// Every logged signal and state must be finite; otherwise the first block in order with a non-finite value
+  /// is named.
   bool check_finite() {
     bool finite = recorder_.first_non_finite() < 0;
     for (double x : run_.states()) finite &= std::isfinite(x);
@@ -338,11 +341,11 @@ class Simulation {
   RunResult result_;
   std::vector<Crossing> directions_;
   std::vector<double> x_, between_;
-  std::string solver_bytes_;                                  // of the checkpoint that the run goes on from
+  std::string solver_bytes_;                                  // from the checkpoint to resume
   double checkpoint_every_ = 0, next_checkpoint_ = infinity;  // s
   int64_t next_row_ = 0;
-  bool is_between_ticks_ = false;  // where a checkpoint was taken
-  int stiffest_state_ = -1;        // the first that made the solver stiff; -1: none
+  bool is_between_ticks_ = false;  // at the time of the checkpoint
+  int stiffest_state_ = -1;        // at the first detection of stiffness; -1: none
   uint32_t since_progress_ = 0;
 };
 

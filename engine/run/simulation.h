@@ -8,13 +8,13 @@
 namespace loopwright {
 
 struct RunOptions {
-  int64_t run = 0;              ///< number of the run: another one has other noise
-  std::string checkpoint_file;  ///< written while running; empty: none
-  double checkpoint_every = 0;  ///< [s] of simulated time; at the end of the next step. They change no step
+  int64_t run = 0;              ///< number of the run: each run has different noise
+  std::string checkpoint_file;  ///< written during the run; empty: none
+  double checkpoint_every = 0;  ///< [s] of simulated time; written after the next step, without changing it
   std::string resume_file;      ///< continue from this checkpoint
   const std::atomic<bool>* interrupt = nullptr;            ///< set by a signal handler: stop after this step
-  std::function<void(double time, double stop)> progress;  ///< called now and then between steps
-  std::function<void(Run<double>&)> at_stop;  ///< called with the run at its stop time, signals computed
+  std::function<void(double time, double stop)> progress;  ///< called occasionally between steps
+  std::function<void(Run<double>&)> at_stop;  ///< called at the stop time, with signals computed
 };
 
 enum class RunStatus { finished, failed, interrupted };
@@ -37,15 +37,15 @@ struct RunStatistics {
 
 struct RunResult {
   RunStatus status = RunStatus::finished;
-  double time = 0;      ///< [s] how far it came
-  std::string message;  ///< why it did not finish: block, time, reason, what may help
-  Recording recording;  ///< what was computed, also when it failed
+  double time = 0;      ///< [s] time reached
+  std::string message;  ///< why the run did not finish: block, time, reason, possible remedy
+  Recording recording;  ///< the computed rows, also after a failure
   RunStatistics statistics;
   std::vector<std::string> warnings;
 };
 
-/// Runs the plan from its start to its stop time. Numerical failures end in the result; a checkpoint file
-/// that cannot be read or does not belong to the plan throws InputError.
+/// Runs the plan from its start to its stop time. Numerical failures are reported in the result. A checkpoint
+/// file that cannot be read or does not belong to the plan throws InputError.
 RunResult simulate(const Plan& plan, const RunOptions& options = {});
 
 }  // namespace loopwright

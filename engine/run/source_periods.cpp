@@ -5,8 +5,8 @@
 namespace loopwright {
 namespace {
 
-constexpr double steps_in_period = 4;  // a crossing is looked at four times in each, so 16 times in a period
-constexpr double samples_in_period = 2;  // fewer show another frequency
+constexpr double steps_in_period = 4;  // a crossing is sampled four times in each, so 16 times per period
+constexpr double samples_in_period = 2;  // fewer show an aliased frequency
 
 /// s; infinity: none.
 double shortest_period(const Run<double>& run, size_t block) {

@@ -1,5 +1,5 @@
-// CVODE, one internal step a call: Hindmarsh et al., ACM Trans. Math. Softw. 31 (2005), and the guide to
-// version 6.
+// CVODE, one internal step per call: Hindmarsh et al., ACM Trans. Math. Softw. 31 (2005), and the user guide
+// of version 6.
 #include "engine/solve/cvode_stepper.h"
 
 #include <cvode/cvode.h>
@@ -21,7 +21,7 @@ struct ReleaseCvode {
   void operator()(void* memory) const { CVodeFree(&memory); }
 };
 
-/// CVODE speaks through return codes; whatever it would print is dropped.
+/// Errors of CVODE are handled by its return codes; its messages are discarded.
 void say_nothing(int, const char*, const char*, char*, void*) {}
 
 class CvodeStepper final : public Stepper {
@@ -29,7 +29,7 @@ class CvodeStepper final : public Stepper {
   CvodeStepper(const SolverOptions& options, const OdeSystem& system);
   SolverStatus step(double t_stop) override;
   int worst_state() const override;
-  /// CVODE's history lies in memory of its own: only where it has none yet.
+  /// CVODE keeps its history in its own memory: archiving is only possible before it has one.
   bool can_be_archived() const override { return fresh_; }
   void archive(StateArchive& a) override {
     Stepper::archive(a);
@@ -61,17 +61,17 @@ class CvodeStepper final : public Stepper {
                       N_Vector, N_Vector);
 
   double t_stop_ = 0.0;
-  bool rehearsing_ = false;  ///< the constructor makes a step, without the system
-  bool fresh_ = true;        ///< CVODE has not seen the present state yet
+  bool rehearsing_ = false;  ///< the constructor makes a step without the system
+  bool fresh_ = true;        ///< CVODE has not yet received the present state
   bool nudged_ = false;      ///< the last step was made without CVODE
   int non_finite_state_ = -1;
-  double failed_at_ = std::numeric_limits<double>::infinity();  ///< [s] where an evaluation failed last
+  double failed_at_ = std::numeric_limits<double>::infinity();  ///< [s] time of the last failed evaluation
   SolverStatus failed_as_ = SolverStatus::non_finite;
-  long error_test_failures_ = 0, convergence_failures_ = 0;  ///< as CVODE counted them last
+  long error_test_failures_ = 0, convergence_failures_ = 0;  ///< at the last query of CVODE
   std::vector<double> trial_, nudge_rate_;
   mutable std::vector<double> errors_;
 
-  // In the order of their making; the context outlives the rest.
+  // In order of creation; the context must outlive the rest.
   Owner<SUNContext> context_ = sundials::make_context();
   Owner<N_Vector> end_, view_;
   Owner<SUNMatrix> jacobian_;
@@ -115,7 +115,7 @@ void CvodeStepper::attach_newton() {
   linear_solver_ = own(SUNLinSol_Dense(end_.get(), jacobian_.get(), context_.get()));
   require(CVodeSetLinearSolver(cvode_.get(), linear_solver_.get(), jacobian_.get()), "CVodeSetLinearSolver");
   require(CVodeSetJacFn(cvode_.get(), jacobian),
-          "CVodeSetJacFn");  // its own differences allocate on every call
+          "CVodeSetJacFn");  // its own difference quotients allocate on every call
 }
 
 void CvodeStepper::attach_fixed_point() {
@@ -123,7 +123,8 @@ void CvodeStepper::attach_fixed_point() {
   require(CVodeSetNonlinearSolver(cvode_.get(), nonlinear_solver_.get()), "CVodeSetNonlinearSolver");
 }
 
-/// CVODE allocates some of its memory in its first step: makes one on x' = 0, so that no run has to.
+/// CVODE allocates some of its memory in its first step. This makes a step on x' = 0, so that no run has to
+/// allocate.
 void CvodeStepper::rehearse() {
   rehearsing_ = true;
   double t = 0.0;
@@ -133,7 +134,8 @@ void CvodeStepper::rehearse() {
 
 SolverStatus CvodeStepper::step(double t_stop) {
   t_stop_ = t_stop;
-  // CVODE refuses intervals of a few roundings, and takes a stop time for reached from about there.
+  // CVODE rejects intervals of a few rounding errors, and treats a stop time as reached from about this
+  // distance.
   if (t_stop - t_end_ <= 200.0 * rounding(t_end_, t_stop)) return nudge(t_stop);
   void* const cvode = cvode_.get();
   if (fresh_) {
@@ -148,7 +150,7 @@ SolverStatus CvodeStepper::step(double t_stop) {
   const int flag = CVode(cvode, t_stop, end_.get(), &t, CV_ONE_STEP);
   count();
   if (flag < 0) return fail(failure(flag));
-  if (!(t > t_end_)) return fail(swallowed());  // success, says CVODE
+  if (!(t > t_end_)) return fail(swallowed());  // CVODE reported success
   if (std::fabs(t - t_stop) <= 8.0 * rounding(t, t_stop)) {
     t = t_stop;
   } else if (flag == CV_TSTOP_RETURN) {
@@ -193,7 +195,7 @@ SolverStatus CvodeStepper::failure(int flag) {
   }
 }
 
-/// The step has become too small for t: because evaluations just ahead fail, if they do, else for its error.
+/// The step has become too small for t: because evaluations just ahead fail, or else because of its error.
 SolverStatus CvodeStepper::swallowed() {
   const bool just_ahead = std::fabs(failed_at_ - t_end_) < 1e4 * rounding(t_end_, failed_at_);
   trouble_ = just_ahead ? failed_as_ : SolverStatus::step_too_small;
@@ -210,7 +212,7 @@ void CvodeStepper::count() {
   convergence_failures_ = failures;
 }
 
-/// As evaluate(), and every rate is finite: CVODE itself would carry a NaN on.
+/// As evaluate(), but every rate must be finite: CVODE itself would propagate a NaN.
 bool CvodeStepper::evaluate_finite(double t, const double* x, double* rate) {
   if (evaluate(t, x, rate)) {
     size_t i = 0;
@@ -227,7 +229,7 @@ bool CvodeStepper::evaluate_finite(double t, const double* x, double* rate) {
 int CvodeStepper::derivatives(double t, N_Vector x, N_Vector rate, void* self) {
   auto& stepper = *static_cast<CvodeStepper*>(self);
   if (stepper.rehearsing_) return N_VConst(0.0, rate), 0;
-  // CVODE's last step may end a rounding past the stop time, where the right-hand side may be another one.
+  // The last step of CVODE may exceed the stop time by rounding, where the right-hand side may be different.
   const double within = std::fmin(t, stepper.t_stop_);
   return stepper.evaluate_finite(within, N_VGetArrayPointer(x), N_VGetArrayPointer(rate)) ? 0 : 1;
 }
@@ -242,8 +244,8 @@ int CvodeStepper::jacobian(double t, N_Vector x, N_Vector rate, SUNMatrix jacobi
   return good ? 0 : 1;
 }
 
-/// ∂f/∂x by forward differences. Each increment is the larger of √ε |x| and what moves f visibly over the
-/// next step.
+/// ∂f/∂x by forward differences. Each increment is the larger of √ε |x| and a value that changes f
+/// significantly over the next step.
 bool CvodeStepper::difference_quotients(double* x, const double* rate, SUNMatrix jacobian, double t,
                                         double* trial_rate) {
   constexpr double epsilon = std::numeric_limits<double>::epsilon();

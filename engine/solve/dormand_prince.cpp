@@ -11,8 +11,8 @@ namespace loopwright {
 
 namespace {
 
-// Nodes, stages, the fifth-order solution (which is also the seventh stage), its distance to the embedded
-// solution of fourth order, and the weights of the dense output's last term.
+// Nodes, stages, the fifth-order solution (which is also the seventh stage), its difference from the embedded
+// fourth-order solution, and the weights of the last term of the dense output.
 constexpr double c2 = 1.0 / 5, c3 = 3.0 / 10, c4 = 4.0 / 5, c5 = 8.0 / 9;
 constexpr double a21 = 1.0 / 5;
 constexpr double a31 = 3.0 / 40, a32 = 9.0 / 40;
@@ -28,11 +28,11 @@ constexpr double d1 = -12715105075.0 / 11282082432, d3 = 87487479700.0 / 3270041
                  d6 = -1453857185.0 / 822651844, d7 = 69997945.0 / 29380423;
 
 constexpr double safety = 0.9, smallest_factor = 0.2, largest_factor = 10.0, retreat_factor = 0.25;
-constexpr double stiff_limit = 3.25;  // a little inside the stability limit on the real axis, 3.3066
+constexpr double stiff_limit = 3.25;  // slightly less than the stability limit on the real axis, 3.3066
 constexpr int stiff_check_interval = 16, stiff_steps_to_conclude = 15, calm_steps_to_forget = 6;
 
 /// x^(1/20) to 0.01 % for x > 0: two exact square roots, then Newton's method for the fifth root. Unlike
-/// std::pow it gives the same bits with every mathematics library, hence the same steps.
+/// std::pow it is bit-identical for every mathematics library, and so are the steps.
 double twentieth_root(double x) {
   constexpr int64_t one = std::bit_cast<int64_t>(1.0);
   const double fourth_root = std::sqrt(std::sqrt(x));
@@ -67,7 +67,7 @@ class DormandPrince final : public Stepper {
   }
 
  private:
-  enum class Rate : uint8_t { unknown, in_k1, in_k7 };  ///< where f(t_end, x_end) lies
+  enum class Rate : uint8_t { unknown, in_k1, in_k7 };  ///< where f(t_end, x_end) is stored
 
   void forget_all() override {
     step_size_ = initial_step_;
@@ -88,15 +88,15 @@ class DormandPrince final : public Stepper {
   void interpolate_within(double t, double* x) const override;
 
   const double initial_step_, maximum_step_;
-  double step_size_ = 0.0;   ///< [s] what accuracy asks for, not what stop times leave; 0: not known
+  double step_size_ = 0.0;   ///< [s] as required by accuracy, not limited by stop times; 0: not known
   double error_root_ = 1.0;  ///< twentieth root of the last accepted error
-  double tried_step_ = 0.0;  ///< [s] the last one
+  double tried_step_ = 0.0;  ///< [s] length of the last trial step
   Rate rate_ = Rate::unknown;
   int stiff_streak_ = 0, calm_streak_ = 0;
   std::vector<double> storage_;
   double *k1_, *k2_, *k3_, *k4_, *k5_, *k6_, *k7_;
-  std::vector<double> stage_;  ///< where the last evaluated stage but one was taken
-  std::vector<double> trial_;  ///< the end of the tried step
+  std::vector<double> stage_;  ///< state of the second to last evaluated stage
+  std::vector<double> trial_;  ///< end of the trial step
 };
 
 SolverStatus DormandPrince::step(double t_stop) {
@@ -108,7 +108,7 @@ SolverStatus DormandPrince::step(double t_stop) {
     double h = std::fmin(step_size_, maximum_step_), t_new = t_end_ + h;
     if (remaining <= maximum_step_ && remaining <= 1.01 * step_size_) {
       h = remaining, t_new = t_stop;
-    } else if (remaining < 2.0 * h) {  // two halves rather than a whole and a crumb
+    } else if (remaining < 2.0 * h) {  // two halves instead of a whole step and a tiny one
       h = 0.5 * remaining, t_new = t_end_ + h;
     }
     if (step_size_ < remaining && step_size_ < 4.0 * rounding(t_end_, t_new)) return fail(reason);
@@ -117,7 +117,7 @@ SolverStatus DormandPrince::step(double t_stop) {
     trouble_ = SolverStatus::non_finite;
     const double error = try_step(h, t_new) ? error_norm(h) : std::numeric_limits<double>::quiet_NaN();
     if (!std::isfinite(
-            error)) {  // perhaps the trial went where f does not exist: come nearer in shorter steps
+            error)) {  // f may not exist at the trial point: approach it in shorter steps
       ++statistics.convergence_failures;
       reason = trouble_;
       step_size_ = retreat_factor * h;
@@ -139,7 +139,7 @@ SolverStatus DormandPrince::step(double t_stop) {
       statistics.smallest_step = std::fmin(statistics.smallest_step, h);
       step_size_ = proposal;
       error_root_ =
-          std::fmax(root, 0.63);  // that of an error of 1e-4: an almost exact step says nothing of the next
+          std::fmax(root, 0.63);  // error of 1e-4: an almost exact step does not predict the next
     }
     if (statistics.steps % stiff_check_interval == 0 || stiff_streak_ > 0) check_stiffness(h);
     accept(t_new, trial_);
@@ -148,7 +148,7 @@ SolverStatus DormandPrince::step(double t_stop) {
   }
 }
 
-/// Brings f(t_end, x_end) into k1. The last stage of an accepted step has it already.
+/// Computes f(t_end, x_end) in k1. After an accepted step it is already the last stage.
 bool DormandPrince::know_rate() {
   if (rate_ == Rate::in_k7) std::swap(k1_, k7_);
   if (rate_ == Rate::unknown) {
@@ -157,7 +157,7 @@ bool DormandPrince::know_rate() {
     double zero = 0.0;
     for (size_t i = 0; i < states_; ++i) zero += 0.0 * k1_[i];
     if (zero != 0.0) {
-      tried_step_ = 1.0;  // so that worst_state finds the culprit in k1 alone
+      tried_step_ = 1.0;  // so that worst_state uses k1 only
       for (double* stale : {k2_, k3_, k4_, k5_, k6_, k7_}) std::fill_n(stale, states_, 0.0);
       return false;
     }
@@ -166,8 +166,8 @@ bool DormandPrince::know_rate() {
   return true;
 }
 
-/// A first step that changes x by about a hundredth of its size, and whose error of fifth order is about a
-/// hundredth of the tolerance, judged by one explicit Euler step. No longer than `longest` [s].
+/// A first step that changes x by about a hundredth of its size and whose fifth-order error is about a
+/// hundredth of the tolerance, estimated by one explicit Euler step. At most `longest` [s].
 double DormandPrince::starting_step(double longest) {
   if (states_ == 0) return longest;
   const double count = static_cast<double>(states_);
@@ -190,7 +190,7 @@ double DormandPrince::starting_step(double longest) {
   return std::fmin(std::fmin(100.0 * h, accurate), longest);
 }
 
-/// The stages of a step of h to t_new, its end in trial_. Returns false if a block faulted.
+/// The stages of a step of length h to t_new, with its end in trial_. Returns false if a block faulted.
 bool DormandPrince::try_step(double h, double t_new) {
   const size_t n = states_;
   const double t = t_end_;
@@ -215,8 +215,8 @@ bool DormandPrince::try_step(double h, double t_new) {
   return evaluate(t_new, end, k7_);
 }
 
-/// The root mean square over the states of error / tolerance: at most 1 is good. Not finite if anything is
-/// not.
+/// The root mean square over the states of error / tolerance: acceptable up to 1. Non-finite if any value is
+/// non-finite.
 double DormandPrince::error_norm(double h) const {
   if (states_ == 0) return 0.0;
   double sum = 0.0, zero = 0.0;
@@ -224,7 +224,7 @@ double DormandPrince::error_norm(double h) const {
     const double error =
         h * (e1 * k1_[i] + e3 * k3_[i] + e4 * k4_[i] + e5 * k5_[i] + e6 * k6_[i] + e7 * k7_[i]);
     sum += square(error / scale(i, x_end_[i], trial_[i]));
-    zero += 0.0 * trial_[i];  // an infinite end would make its own tolerance infinite
+    zero += 0.0 * trial_[i];  // an infinite end would have an infinite tolerance
   }
   return std::sqrt(sum / static_cast<double>(states_)) + zero;
 }
@@ -242,8 +242,8 @@ int DormandPrince::worst_state() const {
   return worst;
 }
 
-/// Two evaluations at the same time show the fastest mode: h|λ| ≈ h |k7 - k6| / |difference of their states|.
-/// Where that stays at the stability limit, stability and not accuracy holds the step down.
+/// Two evaluations at the same time give the fastest mode: h|λ| ≈ h |k7 - k6| / |difference of their states|.
+/// If this stays at the stability limit, the step is limited by stability and not by accuracy.
 void DormandPrince::check_stiffness(double h) {
   double rates = 0.0, states = 0.0;
   for (size_t i = 0; i < states_; ++i) {
@@ -262,7 +262,7 @@ void DormandPrince::check_stiffness(double h) {
   }
 }
 
-/// Fourth order over the whole step, continuous in value and slope at its ends.
+/// Fourth order over the whole step; value and slope are continuous at its ends.
 void DormandPrince::interpolate_within(double t, double* x) const {
   const double h = t_end_ - t_begin_, s = (t - t_begin_) / h, r = 1.0 - s;
   for (size_t i = 0; i < states_; ++i) {

@@ -9,8 +9,8 @@
 namespace loopwright {
 
 namespace {
-// Widths in roundings of t. The bracket is narrow enough for any physics and wide enough to hold simultaneous
-// events whose crossing functions round differently.
+// Widths in rounding units of t. The bracket is narrow compared with all physical time scales, and wide
+// enough for simultaneous events whose crossing functions round differently.
 constexpr double bracket_width = 8.0;
 constexpr double simultaneous_width = 64.0;
 constexpr double departure_growth = 8.0;
@@ -93,7 +93,7 @@ bool EventFinder::any_changed(const Sample& sample, const Crossing* wanted) cons
   return false;
 }
 
-/// Takes over the signs of a sample without an event: those that changed were not wanted.
+/// Takes over the signs of a sample without an event: the crossings that changed sign were not requested.
 void EventFinder::pass(const Sample& sample) {
   leaving_zero_ = false;
   for (size_t i = 0; i < sign_.size(); ++i) {
@@ -106,9 +106,9 @@ void EventFinder::pass(const Sample& sample) {
   }
 }
 
-/// The next time to look at: evenly over the step, and before that at growing distances from an event,
-/// because a crossing that has just fired may leave zero and come back long before the step ends (a ball that
-/// hardly bounces).
+/// The next time to sample: evenly spaced over the step. After an event, additional samples at growing
+/// distances come first, because a crossing that has just fired may leave zero and return long before the
+/// step ends (a ball that hardly bounces).
 double EventFinder::next_sample(double from, double to, double& departure) const {
   int index = 1;
   double even = to;
@@ -141,7 +141,7 @@ EventFinder::Found EventFinder::scan(Stepper& stepper, double from, double to, c
   return Found::nothing;
 }
 
-/// Whether what changed at the last look has changed back at this one.
+/// Whether a crossing that changed at the last sample has changed back at this one.
 void EventFinder::note_returns(const Sample& sample) {
   for (size_t i = 0; i < sign_.size(); ++i) {
     const bool flips = sign_of(sample.value[i]) * sign_[i] < 0;
@@ -150,11 +150,12 @@ void EventFinder::note_returns(const Sample& sample) {
   }
 }
 
-/// Before an event is located, which ends the step: whether the next look would see its crossing back.
+/// Called before an event is located, which ends the step: checks whether the next sample would show its
+/// crossing changed back.
 void EventFinder::look_beyond(Stepper& stepper, double from, double to, double departure) {
   note_returns(right_);
   if (leaving_zero_ || right_.t >= to) return;
-  std::swap(left_.t, right_.t);  // next_sample looks on from the left end
+  std::swap(left_.t, right_.t);  // next_sample continues from the left end
   const double next = next_sample(from, to, departure);
   std::swap(left_.t, right_.t);
   if (look(stepper, next, trial_) != Found::nothing) return;
@@ -166,7 +167,7 @@ void EventFinder::archive(StateArchive& a) {
   a.members(sign_, zero_band_, side_, flipped_, narrow_, leaving_zero_, left_.t, left_.x, left_.value);
 }
 
-/// Where the first crossing goes through zero by the secant; the weights are those of the Illinois method.
+/// The first zero of a crossing by the secant; the weights are those of the Illinois method.
 double EventFinder::secant(double left_weight, double right_weight, const Crossing* wanted) const {
   double earliest = 1.0;
   for (size_t i = 0; i < sign_.size(); ++i) {
@@ -179,8 +180,8 @@ double EventFinder::secant(double left_weight, double right_weight, const Crossi
   return left_.t + earliest * (right_.t - left_.t);
 }
 
-/// Narrows (left_, right_] about the first change of sign: secant steps after Illinois (Dowell & Jarratt, BIT
-/// 11, 1971), a bisection whenever three of them did not halve the bracket.
+/// Narrows (left_, right_] around the first change of sign: secant steps with the Illinois modification
+/// (Dowell & Jarratt, BIT 11, 1971), and a bisection whenever three of them did not halve the bracket.
 EventFinder::Found EventFinder::locate(Stepper& stepper, double to, const Crossing* wanted) {
   const double tolerance = bracket_width * rounding(left_.t, right_.t);
   double left_weight = 1.0, right_weight = 1.0, width_before = right_.t - left_.t;
@@ -193,7 +194,7 @@ EventFinder::Found EventFinder::locate(Stepper& stepper, double to, const Crossi
     if (any_changed(trial_, wanted)) {
       std::swap(right_, trial_);
       right_weight = 1.0;
-      if (moved_right) left_weight *= 0.5;  // the left end stays too long: pull the secant towards it
+      if (moved_right) left_weight *= 0.5;  // the left end has stayed for long: move the secant towards it
       moved_right = true, moved_left = false;
     } else {
       pass(trial_);
@@ -211,7 +212,7 @@ EventFinder::Found EventFinder::locate(Stepper& stepper, double to, const Crossi
   return Found::event;
 }
 
-/// Moves the right end a little further if still more crossings have changed there and none has changed back.
+/// Moves the right end slightly further if more crossings have changed there and none has changed back.
 EventFinder::Found EventFinder::gather_simultaneous(Stepper& stepper, double to, const Crossing* wanted) {
   const double t = std::fmin(to, right_.t + simultaneous_width * rounding(left_.t, right_.t));
   if (t <= right_.t || sign_.size() == 1) return Found::nothing;
@@ -226,18 +227,18 @@ EventFinder::Found EventFinder::gather_simultaneous(Stepper& stepper, double to,
   return Found::nothing;
 }
 
-/// Notes the crossings that changed in (left_, right_] and goes on from the right end.
+/// Records the crossings that changed in (left_, right_] and continues from the right end.
 void EventFinder::report(const Crossing* wanted) {
   for (size_t i = 0; i < sign_.size(); ++i) {
     const bool fires = changed(i, right_, wanted);
     fired_[i] = fires ? sign_of(right_.value[i]) : int8_t{0};
     if (fires && sign_[i] != 0) {
-      // What the value varies over the bracket is rounding and its slope; a few times that is as good as
-      // zero.
+      // The variation of the value over the bracket is due to rounding and its slope. A few times that counts
+      // as zero.
       zero_band_[i] = zero_band_factor * std::fmax(std::fabs(left_.value[i]), std::fabs(right_.value[i]));
     } else if (sign_[i] != 0) {
       zero_band_[i] = 0.0;
-    }  // else it leaves zero, or is about to: a wider band would hide how it chatters
+    }  // otherwise it leaves zero or soon will: a wider band would hide chattering
   }
   pass(right_);
   left_.t = right_.t;

@@ -1,4 +1,4 @@
-/// Finds where crossing functions change sign within a step, on the step's dense output.
+/// Finds the sign changes of crossing functions within a step, on the dense output of the step.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -11,11 +11,11 @@ namespace loopwright {
 class StateArchive;
 class Stepper;
 
-/// Keeps for every crossing the sign it last had, so that a value of exactly zero is neither lost nor counted
-/// twice: an event is a change from one sign to the other, at the first time where the new sign is seen. A
-/// touch without a change of sign is no event. A crossing that has just fired stands within rounding of zero;
-/// if it leaves on the other side than the one it stood on at the restart, that is an event like any other:
-/// what was decided on that side holds no more.
+/// Stores the last nonzero sign of every crossing, so that a value of exactly zero is neither lost nor
+/// counted twice. An event is a change from one sign to the other, at the first time with the new sign.
+/// Touching zero without a change of sign is no event. A crossing that has just fired is within rounding of
+/// zero. If it leaves on the side opposite to its side at the restart, that is an event like any other, as
+/// the decision made on that side is no longer valid.
 class EventFinder {
  public:
   EventFinder(const OdeSystem& system, int samples_per_step);
@@ -23,26 +23,26 @@ class EventFinder {
   bool empty() const { return sign_.empty(); }
   std::span<const int8_t> fired() const { return fired_; }
 
-  /// Forgets every sign: a new solution begins.
+  /// Forgets every sign, for a new solution.
   void forget();
 
   enum class Found : uint8_t { nothing, event, fault, non_finite };
 
-  /// Takes the values afresh at (t, x), after a start or restart. Returns nothing, fault or non_finite.
+  /// Evaluates the crossings at (t, x), after a start or restart. Returns nothing, fault or non_finite.
   Found begin(Stepper& stepper, double t, const double* x);
 
-  /// Looks for the first event in (from, to] of the stepper's last step, the values at `from` being known. If
-  /// there is one, time() and state() are those of the right end of its bracket, a few roundings of t wide,
-  /// and fired() lists every crossing that changed sign in the bracket.
+  /// Searches for the first event in (from, to] of the last step of the stepper; the values at `from` are
+  /// known. If there is one, time() and state() are those of the right end of its bracket, which is a few
+  /// rounding units of t wide, and fired() lists every crossing that changed sign in the bracket.
   Found scan(Stepper& stepper, double from, double to, const Crossing* wanted);
   double time() const { return right_.t; }
   const double* state() const { return right_.x.data(); }
 
-  /// Says that nothing has fired since the last scan.
+  /// Clears the record of fired crossings.
   void clear_fired();
 
-  /// How often each crossing went through zero and back between two looks, with one look in between: as often
-  /// it may have done so between looks, unseen.
+  /// How often each crossing changed sign and back with only one sample in between. It may have crossed
+  /// between samples as often, undetected.
   std::span<const int64_t> narrow_passages() const { return narrow_; }
 
   void archive(StateArchive& a);
@@ -69,14 +69,14 @@ class EventFinder {
 
   OdeSystem system_;
   int samples_per_step_;
-  std::vector<int8_t> sign_;       ///< the last sign that was not zero; 0: none yet
+  std::vector<int8_t> sign_;       ///< the last nonzero sign; 0: none yet
   std::vector<int8_t> fired_;      ///< at the last event: +1 rose, -1 fell
-  std::vector<int8_t> flipped_;    ///< whether it changed its sign at the last look
-  std::vector<int64_t> narrow_;    ///< how often it changed back at the next
-  std::vector<double> zero_band_;  ///< a crossing that just fired counts as zero up to this size
-  std::vector<int8_t> side_;       ///< of zero on which it stood, within that band, at the restart
+  std::vector<int8_t> flipped_;    ///< whether it changed its sign at the last sample
+  std::vector<int64_t> narrow_;    ///< how often it changed back at the next sample
+  std::vector<double> zero_band_;  ///< a crossing that has just fired counts as zero up to this size
+  std::vector<int8_t> side_;       ///< its side of zero, within that band, at the restart
   bool leaving_zero_ = false;      ///< some crossing has just fired and has no sign yet
-  Sample left_, right_, trial_;    ///< left_: where the signs were taken last
+  Sample left_, right_, trial_;    ///< left_: time of the present signs
 };
 
 }  // namespace loopwright

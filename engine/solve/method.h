@@ -1,4 +1,4 @@
-/// The integration methods that a diagram may ask for in "solver": {"method": …}.
+/// The integration methods that a diagram can select in "solver": {"method": …}.
 #pragma once
 #include <array>
 #include <optional>
@@ -15,21 +15,20 @@ enum class Method {
   cvode_adams  ///< CVODE's Adams-Moulton formulas: smooth systems that are not stiff
 };
 
-/// What there is to know of a method before it runs. A mode e^(λt), Re λ < 0, is kept stable by a step h if
-/// h|λ| lies below the limit: `real` for a real λ, `any` whatever the angle of λ. 0 means that there is no
-/// such limit to state.
+/// Properties of a method. A mode e^(λt), Re λ < 0, is stable with a step h if h|λ| is below the limit:
+/// `real` for a real λ, `any` for any angle of λ. 0 means that there is no such limit.
 struct MethodFacts {
   Method method;
   std::string_view name;  ///< as written in a diagram
-  bool fixed_step;        ///< the diagram gives the step; else an error estimate chooses it
-  int order;              ///< the highest, for a method of variable order
+  bool fixed_step;        ///< the diagram gives the step; otherwise an error estimate chooses it
+  int order;              ///< for a variable-order method the highest
   double real_stability_limit;
   double any_stability_limit;
 };
 
 /// Limits of the stability functions 1 + z, 1 + z + z²/2, … (Hairer & Wanner, Solving Ordinary Differential
-/// Equations II, section IV.2). Euler's and Heun's regions only touch the imaginary axis: no step suits every
-/// lightly damped mode.
+/// Equations II, section IV.2). The stability regions of Euler's and Heun's methods only touch the imaginary
+/// axis: no step is suitable for every lightly damped mode.
 inline constexpr std::array<MethodFacts, 6> all_methods{{
     {Method::euler, "euler", true, 1, 2.0, 0.0},
     {Method::heun, "heun", true, 2, 2.0, 0.0},
@@ -43,7 +42,7 @@ constexpr const MethodFacts& facts(Method method) { return all_methods[static_ca
 constexpr std::string_view to_name(Method method) { return facts(method).name; }
 constexpr bool is_fixed_step(Method method) { return facts(method).fixed_step; }
 
-/// The method of that name, or nothing.
+/// The method with this name, or nothing.
 constexpr std::optional<Method> method_from_name(std::string_view name) {
   for (const MethodFacts& candidate : all_methods) {
     if (candidate.name == name) return candidate.method;

@@ -37,7 +37,7 @@ namespace {
 using sundials::own;
 using sundials::Owner;
 
-/// A solution smaller than this part of its typical size counts as zero.
+/// A solution smaller than this fraction of its typical size counts as zero.
 constexpr double negligible_part = 1e-3;
 
 struct ReleaseKinsol {
@@ -87,11 +87,11 @@ struct NewtonSolver::Work {
   const double tolerance;
   const std::vector<double> typical;
   std::vector<double> y, scale, residual, beside, weight;
-  bool was_determined = false;                      ///< some solution has been looked at
+  bool was_determined = false;                      ///< the determinacy of some solution has been checked
   NewtonStatus trouble = NewtonStatus::non_finite;  ///< of the last failed evaluation
   int evaluations = 0;
 
-  // In the order of their making; the context outlives the rest.
+  // In order of creation; the context must outlive the rest.
   Owner<SUNContext> context = sundials::make_context();
   Owner<N_Vector> y_vector, scale_vector;
   Owner<SUNMatrix> jacobian;
@@ -123,12 +123,12 @@ NewtonSolver::Work::Work(const NewtonOptions& options, const AlgebraicSystem& sy
   require(KINSetUserData(memory, this), "KINSetUserData");
   require(KINSetLinearSolver(memory, linear_solver.get(), jacobian.get()), "KINSetLinearSolver");
   require(KINSetJacFn(memory, jacobian_function),
-          "KINSetJacFn");  // its own differences allocate on every call
+          "KINSetJacFn");  // its own difference quotients allocate on every call
   require(KINSetNumMaxIters(memory, options.maximum_iterations), "KINSetNumMaxIters");
   require(KINSetFuncNormTol(memory, tolerance), "KINSetFuncNormTol");
   require(KINSetMaxSetupCalls(memory, 1),
-          "KINSetMaxSetupCalls");  // loops are small: a fresh Jacobian each time
-  require(KINSetMaxNewtonStep(memory, 1e100), "KINSetMaxNewtonStep");  // else a guess of 0 may only move by 1
+          "KINSetMaxSetupCalls");  // loops are small: a new Jacobian each time
+  require(KINSetMaxNewtonStep(memory, 1e100), "KINSetMaxNewtonStep");  // else 0 may change by at most 1
 }
 
 bool NewtonSolver::Work::evaluate(const double* at, double* into) {
@@ -151,8 +151,9 @@ int NewtonSolver::Work::jacobian_function(N_Vector y_vector, N_Vector residual, 
   return good ? 0 : 1;
 }
 
-/// ∂residual/∂y, forward differences, backward where a step forward leaves the domain. Where no residual
-/// moves at all, the typical size was too small a guess for the size of the residual: longer steps are tried.
+/// ∂residual/∂y by forward differences, or backward differences if a forward step leaves the domain. If no
+/// residual changes at all, the typical size was too small compared with the residual: longer steps are
+/// tried.
 bool NewtonSolver::Work::difference_quotients(double* at, const double* value, SUNMatrix into,
                                               double* trial) {
   const double relative = std::sqrt(std::numeric_limits<double>::epsilon());
@@ -173,12 +174,13 @@ bool NewtonSolver::Work::difference_quotients(double* at, const double* value, S
   return true;
 }
 
-/// Whether the solution is the only one nearby: the Jacobian there has full rank. Gaussian elimination; a
-/// pivot counts as zero where it is lost in the rounding of the difference quotients that it was made of.
+/// Whether the solution is locally unique: the Jacobian there has full rank. Gaussian elimination; a pivot
+/// counts as zero if it is less than the rounding errors of the difference quotients from which it was
+/// computed.
 bool NewtonSolver::Work::is_determined() {
-  constexpr double lost = 1e-7;  // difference quotients have half of a double's digits
+  constexpr double lost = 1e-7;  // difference quotients have half the digits of a double
   if (!difference_quotients(y.data(), residual.data(), jacobian.get(), beside.data()))
-    return true;  // not to be told here
+    return true;  // cannot be decided here
   double** const column = SUNDenseMatrix_Cols(jacobian.get());
   const auto weight_at = [&](size_t i, size_t j) -> double& { return weight[j * n + i]; };
   for (size_t j = 0; j < n; ++j)  // the residual is a difference: G(y) - y
@@ -205,8 +207,8 @@ bool NewtonSolver::Work::is_determined() {
   return true;
 }
 
-/// The residual with unknown j moved by a distance up or, if that fails, down. Returns by how much; 0: both
-/// fail.
+/// The residual with unknown j increased by a distance or, if that fails, decreased. Returns the change; 0:
+/// both fail.
 double NewtonSolver::Work::evaluate_beside(double* at, size_t j, double distance, double* trial) {
   const double here = at[j];
   for (const double there : {here + distance, here - distance}) {
@@ -218,7 +220,7 @@ double NewtonSolver::Work::evaluate_beside(double* at, size_t j, double distance
   return 0.0;
 }
 
-/// Notes the residual at y, if it is the smallest so far.
+/// Records the residual at y if it is the smallest so far.
 void NewtonSolver::Work::measure(NewtonResult& result) {
   if (!evaluate(y.data(), residual.data())) return;
   double norm = 0.0;
@@ -253,7 +255,7 @@ NewtonResult NewtonSolver::Work::solve(std::span<double> guess) {
   result.residual_norm = std::numeric_limits<double>::infinity();
   evaluations = 0;
   std::copy_n(guess.begin(), n, y.begin());
-  // Scales come from the guess; a solution of quite another size is polished with scales of its own.
+  // Scales come from the guess. A solution of very different size is refined with its own scales.
   for (int pass = 0; pass < 3; ++pass) {
     for (size_t i = 0; i < n; ++i) scale[i] = 1.0 / size(i);
     const int flag =
@@ -261,13 +263,13 @@ NewtonResult NewtonSolver::Work::solve(std::span<double> guess) {
     long iterations = 0;
     KINGetNumNonlinSolvIters(kinsol.get(), &iterations);
     result.iterations += static_cast<int>(iterations);
-    // KINSOL also calls it success when its steps have become short: only the residual tells.
+    // KINSOL also reports success if its steps have become short: only the residual is conclusive.
     result.status = flag < 0 ? status_of(flag) : NewtonStatus::no_solution_found;
     measure(result);
     if (result.residual_norm <= tolerance) result.status = NewtonStatus::converged;
     if (flag < 0 || result.status == NewtonStatus::converged) break;
   }
-  // A guess that is a solution at once has met no Jacobian yet.
+  // If the guess is already a solution, no Jacobian has been computed yet.
   if (result.status == NewtonStatus::converged && (result.iterations == 0 || !was_determined)) {
     was_determined = is_determined();
     if (!was_determined) result.status = NewtonStatus::singular_jacobian;

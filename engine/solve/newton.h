@@ -1,4 +1,4 @@
-/// Systems of nonlinear equations, solved in place: algebraic loops.
+/// Systems of nonlinear equations, solved in place, for algebraic loops.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -8,8 +8,8 @@
 
 namespace loopwright {
 
-/// n equations residual(y) = 0 in n unknowns. For a loop, y are the torn signals and the residual is what one
-/// pass around the loop changes them by. Side-effect free; returns false if a block faulted at y.
+/// n equations residual(y) = 0 in n unknowns. For a loop, y are the torn signals and the residual is their
+/// change in one pass around the loop. Must have no side effects; returns false if a block faulted at y.
 struct AlgebraicSystem {
   void* self = nullptr;
   int unknowns = 0;
@@ -17,9 +17,9 @@ struct AlgebraicSystem {
 };
 
 struct NewtonOptions {
-  double tolerance = 1e-10;      ///< greatest |residual| of a solution, as part of |y| or of 0.001 typical
+  double tolerance = 1e-10;      ///< largest |residual| of a solution, relative to |y| or 0.001 typical
   int maximum_iterations = 100;  ///< a loop that needs more has no solution near the guess
-  std::vector<double> typical;   ///< usual sizes of y, one an unknown, for difference quotients; empty: 1
+  std::vector<double> typical;   ///< usual magnitude of each unknown, for difference quotients; empty: 1
 };
 
 enum class NewtonStatus : uint8_t {
@@ -27,30 +27,30 @@ enum class NewtonStatus : uint8_t {
   too_many_iterations,
   no_solution_found,  ///< the residual cannot be made smaller from here
   singular_jacobian,  ///< the equations do not determine the unknowns
-  non_finite,         ///< a residual became infinite or not a number
-  block_fault         ///< a block refused to be evaluated
+  non_finite,         ///< a residual became non-finite
+  block_fault         ///< a block refused the evaluation
 };
 std::string_view to_text(NewtonStatus status);
 
 struct NewtonResult {
   NewtonStatus status = NewtonStatus::converged;
   int iterations = 0;
-  int evaluations = 0;         ///< of the residual, those for Jacobians too
-  double residual_norm = 0.0;  ///< greatest |residual| at the best y found, scaled as the tolerance is
-  int worst_unknown = -1;      ///< where it stands
+  int evaluations = 0;         ///< of the residual, including those for Jacobians
+  double residual_norm = 0.0;  ///< largest |residual| at the best y found, scaled like the tolerance
+  int worst_unknown = -1;      ///< the unknown with this residual
 };
 
-/// KINSOL's Newton method with line search and a dense Jacobian by differences. After construction nothing of
-/// its own allocates, throws or formats.
+/// KINSOL's Newton method with line search and a dense Jacobian by differences. After construction the solver
+/// itself does not allocate, throw or format text.
 class NewtonSolver {
  public:
-  /// Throws std::invalid_argument if the options or the system make no sense.
+  /// Throws std::invalid_argument if the options or the system are invalid.
   NewtonSolver(const NewtonOptions& options, const AlgebraicSystem& system);
   NewtonSolver(NewtonSolver&&) noexcept;
   NewtonSolver& operator=(NewtonSolver&&) noexcept;
   ~NewtonSolver();
 
-  /// y: the guess, best the last solution; becomes the solution. Left as it was unless converged.
+  /// y: the initial guess, best the last solution; replaced by the solution. Unchanged unless converged.
   NewtonResult solve(std::span<double> y);
 
  private:

@@ -1,12 +1,12 @@
-/// What a solver needs to know of a system: dx/dt = f(t, x) between discontinuities, and where they are.
+/// The system for a solver: dx/dt = f(t, x) between discontinuities, and the locations of these.
 #pragma once
 #include <cstdint>
 
 namespace loopwright {
 
-/// The continuous part of a run, seen by a variable-step solver. Plain function pointers: no allocation, no
-/// exception. The system owns nothing of the solver; `self` is handed back on every call. Both functions are
-/// side-effect free, for solvers try values that never become part of the solution. Both return false if a
+/// The continuous part of a run as seen by a variable-step solver. Plain function pointers: no allocation, no
+/// exception. The system owns nothing of the solver; `self` is passed to every call. Both functions must have
+/// no side effects, as solvers also try values that never become part of the solution. Both return false if a
 /// block faulted at (t, x).
 struct OdeSystem {
   void* self = nullptr;
@@ -14,12 +14,12 @@ struct OdeSystem {
   int crossings = 0;
   /// rate[states] := f(t, x[states]).
   bool (*derivatives)(void* self, double t, const double* x, double* rate) = nullptr;
-  /// value[crossings] := the crossing functions at (t, x[states]), piecewise constants held; a change of sign
-  /// is an event.
+  /// value[crossings] := the crossing functions at (t, x[states]), with piecewise constants held; a change of
+  /// sign is an event.
   bool (*crossing_values)(void* self, double t, const double* x, double* value) = nullptr;
 };
 
-/// Which way a crossing function must go through zero to count.
+/// The direction in which a crossing function must pass through zero to count.
 enum class Crossing : int8_t { falling = -1, either = 0, rising = 1 };
 
 }  // namespace loopwright

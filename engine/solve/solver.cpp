@@ -79,7 +79,7 @@ void throw_if_any_problem(const SolverOptions& options, const OdeSystem& system)
 }
 
 std::unique_ptr<Stepper> make_stepper(const SolverOptions& options, const OdeSystem& system) {
-  // Without states there is nothing implicit to solve, and CVODE wants at least one.
+  // Without states there are no implicit equations, and CVODE requires at least one.
   if (options.method == Method::dopri5 || system.states == 0) return make_dormand_prince(options, system);
   return make_cvode_stepper(options, system);
 }
@@ -165,7 +165,7 @@ Advance Solver::step(double t_stop, const Crossing* wanted) {
     if (status != SolverStatus::stepped) return {status, t_};
     signs_known_ = true;
   }
-  // After an event without a restart, the rest of the integrator's step still waits to be looked through.
+  // After an event without a restart, the rest of the integrator's step has not been searched yet.
   if (t_ == stepper_->t_end()) {
     const SolverStatus status = take_step(t_stop);
     if (status != SolverStatus::stepped) return {status, t_};
@@ -179,8 +179,8 @@ Advance Solver::step(double t_stop, const Crossing* wanted) {
   return stand_at(to, t_stop);
 }
 
-/// One step of the integrator, whose word is not taken for it: the time must have moved, not too far, the
-/// state be finite. (CVODE has been seen to return success with a step of zero.)
+/// One step of the integrator, with a check of its result: the time must have moved, not too far, and the
+/// state must be finite. (CVODE has returned success with a step of zero.)
 SolverStatus Solver::take_step(double t_stop) {
   if (statistics().trials() - trials_at_stop_ >= maximum_trials_) return SolverStatus::too_many_steps;
   const SolverStatus status = stepper_->step(t_stop);

@@ -1,4 +1,4 @@
-/// Every mutable number of an object as bytes: one list of members serves to write and to read.
+/// Serializes every mutable number of an object: one list of members serves for writing and reading.
 #pragma once
 #include <array>
 #include <cstring>
@@ -11,16 +11,16 @@ namespace loopwright {
 
 class StateArchive {
  public:
-  /// Writes.
+  /// For writing.
   StateArchive() = default;
-  /// Reads; the bytes must outlive it.
+  /// For reading; the bytes must outlive the archive.
   explicit StateArchive(std::string_view bytes) : from_(bytes), reads_(true) {}
 
-  /// Members of plain types without gaps between their parts.
+  /// Members of plain types without padding.
   template <class... T> void members(T&... member) { (one(member), ...); }
 
   bool reads() const { return reads_; }
-  /// Whether all that was asked for was there, and no more.
+  /// Whether all requested data existed, and no more.
   bool is_whole() const { return good_ && from_.empty(); }
   const std::string& bytes() const { return to_; }
 
@@ -29,7 +29,7 @@ class StateArchive {
     static_assert(std::has_unique_object_representations_v<T> || std::is_same_v<T, double>);
     copy(&value, sizeof value);
   }
-  /// Their length is known on both sides.
+  /// The length is known on both sides.
   template <class T> void one(std::vector<T>& values) {
     for (T& value : values) one(value);
   }

@@ -1,5 +1,4 @@
-/// One accepted step after the other, without events: what the integration methods have in common for the
-/// Solver.
+/// Accepted steps without events: the common interface of the integration methods for the Solver.
 #pragma once
 #include <cmath>
 #include <cstring>
@@ -11,8 +10,8 @@
 
 namespace loopwright {
 
-/// The solution over the last accepted step, and how to make the next. Steppers live on the heap and stay
-/// where they are, for integrators keep their address.
+/// The solution over the last accepted step, and the computation of the next. Steppers are allocated on the
+/// heap and not moved, as integrators store their address.
 class Stepper {
  public:
   Stepper(const SolverOptions& options, const OdeSystem& system)
@@ -28,23 +27,23 @@ class Stepper {
   Stepper& operator=(const Stepper&) = delete;
   virtual ~Stepper() = default;
 
-  /// Forgets the past and every estimate.
+  /// Clears the history and every estimate.
   void start(double t, const double* x) {
     statistics = {};
     stand_at(t, x);
     forget_all();
   }
 
-  /// Forgets the past; an estimate of the step size may stay.
+  /// Clears the history; an estimate of the step size may be kept.
   void restart(double t, const double* x) {
     ++statistics.restarts;
     stand_at(t, x);
     forget_history();
   }
 
-  /// Takes one accepted step from t_end() to at most t_stop > t_end(). Returns `stepped`, or why it could
-  /// not; then the solution stands at t_end() as before, without its last step. The state at the old t_end()
-  /// stays where it lies in memory, as that at the new t_begin().
+  /// Makes one accepted step from t_end() to at most t_stop > t_end(). Returns `stepped`, or the reason for a
+  /// failure; the solution is then at t_end() as before, without its last step. The state at the old t_end()
+  /// stays at its address, as the state at the new t_begin().
   virtual SolverStatus step(double t_stop) = 0;
 
   /// The state at t in [t_begin(), t_end()].
@@ -56,9 +55,9 @@ class Stepper {
 
   virtual int worst_state() const = 0;
 
-  /// Whether the solution can be set aside where it stands, and go on elsewhere with the same bits.
+  /// Whether the solution can be archived at this point and continued elsewhere with the same bits.
   virtual bool can_be_archived() const { return false; }
-  /// Everything that the next steps depend on.
+  /// Everything on which the next steps depend.
   virtual void archive(StateArchive& a) {
     auto& s = statistics;
     a.members(t_begin_, t_end_, x_begin_, x_end_);
@@ -87,7 +86,7 @@ class Stepper {
     if (states_ > 0) std::memmove(to, from, states_ * sizeof(double));
   }
 
-  /// The end of the last step becomes the begin of this one, `x` (exchanged, not copied) its end at t.
+  /// The end of the last step becomes the beginning of this one, `x` (swapped, not copied) its end at t.
   void accept(double t, std::vector<double>& x) {
     ++statistics.steps;
     t_begin_ = t_end_;
@@ -96,14 +95,14 @@ class Stepper {
     x_end_.swap(x);
   }
 
-  /// The step that failed leaves no dense output behind.
+  /// After a failed step there is no dense output.
   SolverStatus fail(SolverStatus status) {
     t_begin_ = t_end_;
     x_begin_ = x_end_;
     return status;
   }
 
-  /// rate := f(t, x). Remembers why it failed in `trouble_`.
+  /// rate := f(t, x). Stores the reason of a failure in `trouble_`.
   bool evaluate(double t, const double* x, double* rate) {
     ++statistics.derivative_evaluations;
     if (system_.derivatives(system_.self, t, x, rate)) return true;
@@ -127,8 +126,7 @@ class Stepper {
   }
 };
 
-/// The distance of neighbouring doubles at the larger of |a| and |b|, and no less than the smallest normal
-/// number.
+/// The spacing of doubles at the larger of |a| and |b|, at least the smallest normal number.
 inline double rounding(double a, double b) {
   const double size = std::fmax(std::fabs(a), std::fabs(b));
   return std::fmax(size * std::numeric_limits<double>::epsilon(), std::numeric_limits<double>::min());

@@ -1,4 +1,4 @@
-/// Owners for the objects of SUNDIALS, which are released by functions of their own.
+/// Owners for the objects of SUNDIALS, each released by its own function.
 #pragma once
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_context.h>
@@ -12,7 +12,7 @@
 
 namespace loopwright::sundials {
 
-/// Calls the matching function of SUNDIALS when an owner ends.
+/// Calls the matching function of SUNDIALS when an owner is destroyed.
 struct Release {
   void operator()(SUNContext context) const { SUNContext_Free(&context); }
   void operator()(N_Vector vector) const { N_VDestroy(vector); }
@@ -22,7 +22,7 @@ struct Release {
 };
 template <class Handle> using Owner = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
 
-/// Takes over a handle that SUNDIALS has just made; it returns null only when memory is exhausted.
+/// Takes ownership of a new handle; SUNDIALS returns null only if memory is exhausted.
 template <class Handle> Owner<Handle> own(Handle handle) {
   if (handle == nullptr) throw std::bad_alloc();
   return Owner<Handle>(handle);

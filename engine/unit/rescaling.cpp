@@ -12,7 +12,7 @@ using Function = std::function<double(const std::vector<double>&, double)>;
 
 constexpr double no_power = std::numeric_limits<double>::quiet_NaN();
 
-/// b in f ~ λ^b, a multiple of 1/12; not a number when f is no power of λ.
+/// b in f ~ λ^b, a multiple of 1/12; NaN if f is not a power of λ.
 double exponent_of_growth(double at_one, double at_two, double at_three) {
   const auto rounded = [at_one](double grown, double lambda) {
     const double exponent = natural_logarithm(grown / at_one) / natural_logarithm(lambda);
@@ -23,7 +23,7 @@ double exponent_of_growth(double at_one, double at_two, double at_three) {
   return from_two == from_three ? from_two : no_power;
 }
 
-/// The function around one set of numbers.
+/// The function with one set of argument values.
 class Rescaled {
  public:
   Rescaled(const Function& function, std::span<const Quantity> arguments, std::vector<double> numbers)
@@ -32,7 +32,7 @@ class Rescaled {
   }
   double at_one() const { return at_one_; }
 
-  /// When the units of some exponents become smaller.
+  /// The exponent of the result when the units of these base exponents become smaller.
   double exponent(std::initializer_list<size_t> bases) const {
     const auto grown = [&](double lambda) {
       std::vector<double> rescaled = numbers_;
@@ -61,7 +61,7 @@ class Rescaled {
   double at_one_ = 0;
 };
 
-/// rad, rad/s, Hz, 1/Hz …, nothing else: m ω² is a stiffness.
+/// Only rad, rad/s, Hz, 1/Hz and the like keep turns: m ω² is a stiffness.
 void drop_turns_of_products(Unit& unit) {
   bool is_kinematic = true;
   for (size_t i = 0; i < Unit::checked; ++i) is_kinematic &= i == 2 || unit.exponents[i] == 0;
@@ -81,7 +81,7 @@ UnitFinding find_turns(const Rescaled& f, Unit& unit) {
   return UnitFinding::known;
 }
 
-/// From one set of numbers.
+/// The unit from one set of argument values.
 UnitFinding unit_at(const Rescaled& f, Unit& unit) {
   if (!std::isfinite(f.at_one())) return UnitFinding::no_result;
   if (f.at_one() == 0) return UnitFinding::zero;
@@ -96,8 +96,7 @@ UnitFinding unit_at(const Rescaled& f, Unit& unit) {
 
 }  // namespace
 
-/// Numbers of several magnitudes: beside a small generic number even a small constant of the wrong unit
-/// shows.
+/// Uses values of several magnitudes: a small constant of the wrong unit shows only beside small values.
 UnitFinding find_unit(const Function& function, std::span<const Quantity> arguments, Unit& unit) {
   UnitFinding finding = UnitFinding::no_result;
   for (const double magnitude : {1.0, 1e-6, 1e6}) {

@@ -18,17 +18,18 @@ namespace {
 
 using Exponents = decltype(Unit::exponents);
 
-constexpr std::string_view cycle_symbol = "cycle of Hz";  // no text names it alone
+constexpr std::string_view cycle_symbol = "cycle of Hz";  // not a name that can occur in a text
 constexpr std::array<std::string_view, 9> base_symbols = {"m",   "kg", "s",   "A",         "K",
                                                           "mol", "cd", "rad", cycle_symbol};
 
-/// Sums of exponents land on a multiple of 1/12 again, so that equal dimensions compare equal.
+/// Rounds sums of exponents to a multiple of 1/12, so that equal dimensions compare equal.
 float exact_exponent(double exponent) { return static_cast<float>(std::round(exponent * 12) / 12); }
 
 // ---- udunits2
 // ------------------------------------------------------------------------------------------------
 
-/// Collects the powers of base units while udunits walks through a unit; refuses what is not scale · product.
+/// Collects the powers of base units during a traversal by udunits; rejects units that are not scale ·
+/// product.
 struct Collector {
   Unit unit;
   bool has_offset = false;
@@ -64,7 +65,7 @@ struct Collector {
                                          visit_logarithmic};
 };
 
-/// udunits2 knows Hz as 1/s, which is a radian per second as well. Here it counts cycles.
+/// For udunits2, Hz is 1/s, which also means a radian per second. Here it counts cycles.
 void make_hertz_count_cycles(ut_system* system) {
   ut_unmap_name_to_unit(system, "hertz", UT_UTF8);
   ut_unmap_symbol_to_unit(system, "Hz", UT_UTF8);
@@ -77,7 +78,7 @@ void make_hertz_count_cycles(ut_system* system) {
   for (ut_unit* unit : {cycle, second, hertz}) ut_free(unit);
 }
 
-/// The unit database of udunits2, read once, with the spellings of motion control that it lacks.
+/// The unit database of udunits2, read once, with additional spellings of motion control.
 ut_system* unit_database() {
   static ut_system* const database = [] {
     ut_set_error_message_handler(ut_ignore);
@@ -99,7 +100,7 @@ ut_system* unit_database() {
   return database;
 }
 
-/// Only temperatures have a zero of their own.
+/// Only temperatures have an offset.
 bool read_offset(const ut_unit* parsed, Unit& unit) {
   ut_unit* const kelvin = ut_parse(unit_database(), "K", UT_UTF8);
   cv_converter* const to_kelvin = ut_get_converter(const_cast<ut_unit*>(parsed), kelvin);
@@ -125,12 +126,12 @@ std::optional<Unit> read_by_udunits(const std::string& text) {
   return good ? std::optional(collector.unit) : std::nullopt;
 }
 
-// ---- Roots, which udunits2 does not know
+// ---- Roots, which udunits2 does not support
 // ------------------------------------------------------------------------
 
-/// unit = [scale] factor { ("*" | "/") factor },  factor = ("sqrt" "(" unit ")" | "(" unit ")" | name) [ "^"
-/// exponent
-/// ], exponent = number | "(" integer ["/" integer] ")"
+/// unit = [scale] factor { ("*" | "/") factor },
+/// factor = ("sqrt" "(" unit ")" | "(" unit ")" | name) [ "^" exponent ],
+/// exponent = number | "(" integer ["/" integer] ")"
 class RootReader {
  public:
   explicit RootReader(std::string_view text) : rest_(text) {}
@@ -149,7 +150,7 @@ class RootReader {
 
   std::optional<Unit> product() {
     const bool has_scale =
-        !rest_.empty() && rest_[0] >= '0' && rest_[0] <= '9';  // "0.7 m^(1/2)": the root is of m alone
+        !rest_.empty() && rest_[0] >= '0' && rest_[0] <= '9';  // "0.7 m^(1/2)": the root applies only to m
     std::optional<Unit> result = has_scale ? scaled_factor() : factor();
     while (result) {
       const bool times = take("*") || take("·");
@@ -215,7 +216,7 @@ class RootReader {
   std::string_view rest_;
 };
 
-/// udunits2 reads "Hz^0.5" as Hz^0 times 0.5, so that roots must be seen before it is asked.
+/// udunits2 reads "Hz^0.5" as Hz^0 times 0.5, so roots must be handled before calling it.
 bool has_root(std::string_view text) {
   if (text.find("sqrt(") != text.npos) return true;
   for (size_t at = text.find('^'); at != text.npos; at = text.find('^', at + 1)) {
@@ -228,7 +229,7 @@ bool has_root(std::string_view text) {
 }
 
 std::optional<Unit> read_unit(std::string_view text) {
-  constexpr size_t longest_unit = 200;  // bounds the work and the recursion on hostile input
+  constexpr size_t longest_unit = 200;  // limits the work and the recursion for hostile input
   if (text.size() > longest_unit || text.find('\0') != text.npos) return {};
   const size_t first = text.find_first_not_of(' ');
   if (first == text.npos) return Unit{};
@@ -242,7 +243,7 @@ std::optional<Unit> read_unit(std::string_view text) {
 // ---- Spelling
 // ----------------------------------------------------------------------------------------------
 
-/// Spellings that motion control is used to, where a shorter one exists (kg/s) or none is found by search.
+/// Usual spellings in motion control, where the search finds a shorter one (kg/s) or none.
 constexpr std::string_view customary_spellings[] = {"N*s/m", "V*s^2/m", "ohm", "H", "F", "T", "A", "C"};
 
 struct NamedUnit {
@@ -250,7 +251,7 @@ struct NamedUnit {
   Exponents exponents;  // of m kg s A K mol cd
 };
 
-/// Building blocks of the other spellings. J is none: N*m is as often a torque.
+/// Components of the other spellings. J is not among them: N*m is as often a torque.
 constexpr NamedUnit named_units[] = {
     {"N", {1, 1, -2, 0, 0, 0, 0}},
     {"V", {2, 1, -3, -1, 0, 0, 0}},
@@ -263,8 +264,7 @@ struct Factor {
   float exponent;
 };
 
-/// The length of a spelling as a reader feels it. Amperes cost extra: a gain of a voltage-driven motor reads
-/// V*s/m.
+/// The reading cost of a spelling. Amperes cost extra: a gain of a voltage-driven motor is written V*s/m.
 float reading_cost(const std::vector<Factor>& factors) {
   float cost = 0;
   for (const Factor& factor : factors)
@@ -343,7 +343,7 @@ std::string spelled(const Exponents& exponents) {
   return spelled(shortest_factors(exponents));
 }
 
-/// The SI prefix for a scale; nothing when there is none.
+/// The SI prefix for a scale; nothing if there is none.
 std::string_view prefix_of(double scale) {
   struct Prefix {
     double scale;
@@ -356,7 +356,7 @@ std::string_view prefix_of(double scale) {
   return {};
 }
 
-/// Units that are no product of a prefix and a spelling.
+/// Units that are not a product of a prefix and a spelling.
 std::string_view name_of_scaled(const Unit& unit) {
   if (unit.scale == 1 && unit.offset == 0) return {};
   struct Named {
@@ -407,7 +407,7 @@ Unit power(const Unit& a, double exponent) {
 }
 
 std::optional<Unit> parse_unit(std::string_view text) {
-  // udunits2 parses with global state, and a diagram names the same few units thousands of times.
+  // udunits2 parses with global state, and a diagram uses the same few units thousands of times.
   static std::mutex mutex;
   static std::unordered_map<std::string, std::optional<Unit>> known;
   const std::lock_guard lock(mutex);

@@ -19,7 +19,7 @@ class DeviceReader {
     reader_.check_version(file);
     to.title = reader_.text(file, "title");
     read_driver(file, to);
-    Value without_drivers = file;  // each of which has a key of its own
+    Value without_drivers = file;  // each driver has a key of its own
     std::erase_if(without_drivers.members, [&](const Value::Member& m) { return is_driver(m.name); });
     reader_.reject_unknown(without_drivers,
                            {"$schema", "loopwright", "title", "description", "driver", "inputs", "outputs",

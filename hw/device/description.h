@@ -1,4 +1,4 @@
-/// What a device file says: channels with their physical meaning, limits, clock, watchdog, policies.
+/// Contents of a device file: channels with their physical meaning, limits, clock, watchdog, policies.
 ///
 /// Every channel obeys one equation: value = scale · raw + offset. Raw numbers are counts (encoder), counts/s
 /// (encoder velocity) or volts (analog). See docs/hardware.md for the format.
@@ -37,12 +37,12 @@ struct InputChannel {
   int channel = 0;
   std::string unit;             ///< of the value, SI
   double scale = 1;             ///< unit per raw
-  double offset = 0;            ///< unit; of an encoder: the place where it counts zero (homing)
-  int quadrature = 4;           ///< edges counted a period
-  int counter_bits = 24;        ///< a wrap at this width is undone; fewer than the card has do no harm
+  double offset = 0;            ///< unit; of an encoder: the position at which it counts zero (homing)
+  int quadrature = 4;           ///< edges counted per period
+  int counter_bits = 24;        ///< wraps at this width are undone; less than the card's width is harmless
   int preset = 0;               ///< counts at the start
-  double filter = 0;            ///< Hz; 0: as the card has it
-  double maximum_rate = 0;      ///< unit/s; a faster change is a glitch; 0: not looked at
+  double filter = 0;            ///< Hz; 0: the card's own setting
+  double maximum_rate = 0;      ///< unit/s; a faster change is a glitch; 0: not checked
   double low = -10, high = 10;  ///< V, of an analog input
   static constexpr auto describe() {
     return fields(
@@ -77,8 +77,8 @@ struct OutputChannel {
   std::string unit;
   double scale = 1, offset = 0;                    ///< value = scale · volts + offset
   double low = -10, high = 10;                     ///< V, range of the card
-  double minimum = -infinity, maximum = infinity;  ///< unit; further limits of the value
-  double maximum_rate = 0;                         ///< unit/s; 0: not limited
+  double minimum = -infinity, maximum = infinity;  ///< unit; additional limits of the value
+  double maximum_rate = 0;                         ///< unit/s; 0: unlimited
   double initial = 0, safe = 0;                    ///< unit
   static constexpr auto describe() {
     return fields(
@@ -132,12 +132,11 @@ struct WatchdogSettings {
   }
 };
 
-/// Samples or periods in a row. The diagram is stepped through every instant that has no sample, in the
-/// period in which the next sample came: a longer gap is a fault whatever the policy says.
+/// Consecutive samples or periods. The diagram is stepped through every instant without a sample, in the
+/// period in which the next sample arrives. A longer gap is a fault under every policy.
 inline constexpr int longest_gap = 1000;
 
-/// What the loop makes of samples that come late, not at all, or as numbers that cannot be
-/// (docs/hardware.md).
+/// How the loop treats samples that are late, missing, or implausible (docs/hardware.md).
 struct Policy {
   OnOverrun on_overrun = OnOverrun::fault;
   int most_overruns = 3;
@@ -172,27 +171,27 @@ struct Policy {
             .between(1, longest_gap)
             .optional());
   }
-  /// So many lost in a row end the run.
+  /// Number of consecutive lost samples that ends the run.
   int64_t lost_that_end() const { return on_lost == OnLost::count ? longest_gap : most_lost; }
 };
 
 struct DeviceDescription {
   std::string path, title;
   std::string driver;     ///< "quanser", "udp"
-  Value driver_settings;  ///< the object of that name in the file; an empty object where there is none
+  Value driver_settings;  ///< the object with the driver's name in the file; empty if absent
   std::vector<InputChannel> inputs;
   std::vector<OutputChannel> outputs;
   ClockSettings clock;
   WatchdogSettings watchdog;
   Policy policy;
 
-  /// Place among inputs or outputs; -1: there is none of the name.
+  /// Index among inputs or outputs; -1: no channel has the name.
   int find_input(std::string_view name) const;
   int find_output(std::string_view name) const;
 };
 
-/// Reads a device file; `reference` is where it was named, `drivers` are the names that "driver" may have.
-/// Null when there are errors. Opens no device.
+/// Reads a device file. `reference` is where it was named, `drivers` are the valid values of "driver". Null
+/// when there are errors. Opens no device.
 std::shared_ptr<const DeviceDescription> read_device(const std::string& path, const Place& reference,
                                                      std::span<const std::string> drivers,
                                                      Problems& problems);

@@ -4,14 +4,14 @@
 namespace loopwright::hw {
 namespace {
 
-// A converter may read somewhat beyond its range, by its offset and its noise; a tenth of the range is no
-// such error.
+// A converter may read slightly beyond its range because of offset and noise. A tenth of the range is more
+// than such an error.
 constexpr double beyond_range = 0.1;
 
 // Counters of devices have 32 bits at most, read with or without a sign.
 constexpr double least_counter = -2147483648.0, greatest_counter = 4294967295.0;
 
-/// Within a counter of so many bits, read with or without a sign.
+/// Within the range of a counter with this many bits, read with or without a sign.
 bool fits(int64_t counter, int bits) {
   const int64_t range = int64_t(1) << bits;
   return counter >= -range / 2 && counter < range;
@@ -19,8 +19,8 @@ bool fits(int64_t counter, int bits) {
 
 }  // namespace
 
-/// A counter wider than `counter_bits` is read right as long as it moves on from where it was: then its
-/// difference is the same at both widths. Any other number beyond the width came from no counter.
+/// A counter wider than `counter_bits` is read correctly as long as it continues from its previous value: its
+/// difference is then the same at both widths. Any other number beyond the width did not come from a counter.
 Input::Converted Input::unwrap(double raw) const noexcept {
   if (raw != std::nearbyint(raw)) return {Reading::not_whole};
   if (raw < least_counter || raw > greatest_counter) return {Reading::beyond_counter};
@@ -45,7 +45,8 @@ Input::Converted Input::convert(double raw) const noexcept {
     to = unwrap(raw);
     raw = double(to.counts);
   } else if (channel_->kind == InputKind::encoder_velocity) {
-    // More than half the counter's width in a sample could not be told from the other direction.
+    // A change of more than half the counter's width per sample cannot be distinguished from the opposite
+    // direction.
     const double most = std::ldexp(1.0, channel_->counter_bits - 1);
     if (std::abs(raw) * period_s_ > most) to.reading = Reading::beyond_counter;
   } else {

@@ -6,8 +6,8 @@
 
 namespace loopwright::hw {
 namespace {
-constexpr int most_jumps = 3;          // in a row: then it is no glitch but a broken sensor
-constexpr int most_first_samples = 4;  // of which two in a row must agree
+constexpr int most_jumps = 3;          // consecutive; more indicate a broken sensor, not a glitch
+constexpr int most_first_samples = 4;  // two consecutive ones must agree
 }  // namespace
 
 std::string_view to_name(Code code) {
@@ -64,7 +64,7 @@ Status IoDevice::opened(Status status) {
 
 Status IoDevice::preset() {
   if (stage_ != Stage::open) return {Code::not_open};
-  has_written_ = true, is_stopped_ = false;  // even where it fails half way
+  has_written_ = true, is_stopped_ = false;  // also if it fails halfway
   outputs_safe_ = OutputsSafe::unknown;
   const Status status = driver_->configure(raw_initial_, raw_safe_);
   if (!status.ok()) return latch(status);
@@ -84,7 +84,7 @@ Status IoDevice::start(double period_s) {
   return status;
 }
 
-/// A sample of the driver with its number; nothing is converted yet.
+/// A sample of the driver with its number, not yet converted.
 Status IoDevice::take_sample(Sample& sample) noexcept {
   RawSample raw;
   std::ranges::fill(raw_in_, std::numeric_limits<double>::quiet_NaN());
@@ -109,7 +109,7 @@ Status IoDevice::refuse(size_t i, Reading reading) noexcept {
   return {Code::device_fault};
 }
 
-/// Whether a bad reading may stand for the value before it once more.
+/// Whether the previous value may replace a bad reading once more.
 bool IoDevice::may_hold(const Input& input, Reading reading) const noexcept {
   if (!input.is_known()) return false;
   if (reading == Reading::jump) return input.bad_in_row() < most_jumps;
@@ -117,8 +117,8 @@ bool IoDevice::may_hold(const Input& input, Reading reading) const noexcept {
   return policy.on_invalid == OnInvalid::hold && input.bad_in_row() < policy.most_invalid;
 }
 
-/// Before anything moves, two samples in a row must agree: of a single one nobody can tell whether it is a
-/// glitch. The initial values meanwhile are a sign of life, for devices that want one for every sample.
+/// Before anything moves, two consecutive samples must agree: a single sample cannot be recognized as a
+/// glitch. Meanwhile the initial values are written, for devices that expect a command for every sample.
 Status IoDevice::read_first(Sample& sample) noexcept {
   size_t jumped = 0;
   for (int taken = 0; taken < most_first_samples; ++taken) {
@@ -128,7 +128,7 @@ Status IoDevice::read_first(Sample& sample) noexcept {
     bool agree = taken > 0 || !has_rates_;
     for (size_t i = 0; i < inputs_.size(); ++i) {
       Reading reading = inputs_[i].take(raw_in_[i], sample.lost + 1);
-      if (reading == Reading::jump) {  // one of the two is wrong: the later one is tried
+      if (reading == Reading::jump) {  // one of the two is wrong: keep the later one
         agree = false, jumped = i;
         inputs_[i].forget();
         reading = inputs_[i].take(raw_in_[i], 1);
@@ -189,7 +189,7 @@ Status IoDevice::write(std::span<const double> values) noexcept {
   return latch(send(raw_out_));
 }
 
-/// A value that was on its way when the emergency came must not be the last one.
+/// A value already being written when the emergency stop came must not be the last one.
 Status IoDevice::send(std::span<const double> raw) noexcept {
   const Status status = driver_->write(is_emergency_ ? raw_safe_ : raw);
   return is_emergency_ ? driver_->write(raw_safe_) : status;
@@ -225,8 +225,8 @@ OutputsSafe IoDevice::stop() noexcept {
   if (stage_ == Stage::running) driver_->stop_sampling();
   const bool after = send_safe();
   stage_ = Stage::open, is_stopped_ = true;
-  (void)before;  // a first attempt, while the device still samples; the second one counts
-  // In protected mode a device may take writes without following them.
+  (void)before;  // a first attempt, while the device still samples; the second attempt decides
+  // In protected mode a device may accept writes without applying them.
   if (fault_.code == Code::watchdog && driver_->watchdog_took_over())
     return outputs_safe_ = OutputsSafe::by_watchdog;
   if (after && driver_->capabilities().reads_back) {

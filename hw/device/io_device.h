@@ -1,14 +1,14 @@
-/// The port between a control loop and hardware: physical units, limits, latched faults, a stop that is safe.
+/// The interface between a control loop and hardware: physical units, limits, latched faults, a safe stop.
 ///
 ///   open → preset → start → {read, write, kick}* → stop → close
 ///
 /// 1. Setting up may allocate; read, write and kick are noexcept, bounded and allocate nothing.
-/// 2. A latched fault makes every later write send the safe values and nothing else, until rearm().
-/// 3. A write is all or nothing. A value that is not finite is refused and latches.
-/// 4. stop() and close() may be called in any state, and again.
+/// 2. After a latched fault every write sends only the safe values, until rearm().
+/// 3. A write is all or nothing. A value that is not finite is refused and latches a fault.
+/// 4. stop() and close() may be called in any state and repeatedly.
 /// 5. Whether the outputs are safe is confirmed or unknown, never assumed.
-/// 6. A raw number that cannot be is never a plausible value: it is a fault, or the value before it is
-///    held for a stated number of samples. Nothing begins before two samples have agreed.
+/// 6. An implausible raw number is never used: it is a fault, or the previous value is held for a stated
+///    number of samples. Nothing begins before two samples have agreed.
 #pragma once
 #include <atomic>
 #include "hw/device/driver.h"
@@ -17,10 +17,10 @@
 
 namespace loopwright::hw {
 
-/// When a sample was taken, as far as the device tells.
+/// When a sample was taken, as far as the device reports it.
 struct Sample {
   int64_t sequence = 0;
-  int64_t lost = 0;      ///< numbers missing since the sample before
+  int64_t lost = 0;      ///< missing numbers since the previous sample
   int32_t glitches = 0;  ///< inputs whose reading was refused
 };
 
@@ -36,9 +36,9 @@ class IoDevice {
   std::vector<std::string> facts() const { return driver_->facts(); }
   std::string describe(Status status) const;
 
-  /// `busy`: another program has the device, of which nothing was touched. An open device stays so.
+  /// `busy`: another program has opened the device, which was left untouched. An open device stays open.
   Status open();
-  /// Ends what another program does with the device, and opens it.
+  /// Ends the other program's use of the device and opens it.
   Status take_over();
   /// Encoder counts, ranges, initial outputs, watchdog values.
   Status preset();
@@ -47,19 +47,19 @@ class IoDevice {
   /// Values of all inputs, in the order of the description. On a fault the values are those of the last
   /// sample. The first read takes two samples or more, until two agree, where inputs have a maximum rate.
   Status read(Sample& sample, std::span<double> values) noexcept;
-  /// Values of all outputs; clamped, and moved towards no faster than their maximum rate.
+  /// Values of all outputs; clamped, and changed no faster than their maximum rate.
   Status write(std::span<const double> values) noexcept;
   Status kick() noexcept;
-  /// From any thread or signal handler: the next read answers `stopped`.
+  /// From any thread or signal handler: the next read returns `stopped`.
   void request_stop() noexcept { driver_->request_stop(); }
 
-  /// After a crash, from a thread that does not use the device otherwise: sends the safe values, and from
-  /// then on nothing else leaves, whatever the loop writes.
+  /// After a crash, from a thread that does not use the device otherwise: sends the safe values. After that
+  /// nothing else is sent, whatever the loop writes.
   void emergency_stop() noexcept;
 
-  /// Sends the safe values now; the device goes on sampling.
+  /// Sends the safe values now; the device continues to sample.
   Status safe_outputs() noexcept;
-  /// Safe values, end of sampling, safe values again; the watchdog stays armed unless they were confirmed.
+  /// Safe values, end of sampling, safe values again. The watchdog stays armed unless they were confirmed.
   OutputsSafe stop() noexcept;
   void close() noexcept;
   /// Clears a latched fault. Only between runs.
@@ -67,7 +67,7 @@ class IoDevice {
 
   Status fault() const { return fault_; }
   OutputsSafe outputs_safe() const { return outputs_safe_; }
-  /// What was last sent, in physical units.
+  /// The values last sent, in physical units.
   std::span<const double> applied() const { return applied_; }
   int64_t clamped() const { return clamped_; }
   int64_t rate_limited() const { return rate_limited_; }
@@ -90,7 +90,7 @@ class IoDevice {
   Stage stage_ = Stage::closed;
   Status fault_;
   std::atomic<bool> is_emergency_ = false;
-  OutputsSafe outputs_safe_ = OutputsSafe::confirmed;  // nothing was sent yet
+  OutputsSafe outputs_safe_ = OutputsSafe::confirmed;  // nothing has been sent yet
   bool has_written_ = false, is_stopped_ = false;
   double period_s_ = 0;
   std::vector<Input> inputs_;

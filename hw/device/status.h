@@ -1,16 +1,16 @@
-/// How a call to a device ended, and what is known of its outputs.
+/// Result of a call to a device, and what is known of its outputs.
 #pragma once
 #include <cstdint>
 #include <string_view>
 
 namespace loopwright::hw {
 
-/// From `watchdog` on a code latches: nothing but safe values is sent until rearm().
+/// Codes from `watchdog` on latch: only safe values are sent until rearm().
 enum class Code : uint8_t {
   ok,
   stopped,  ///< the device was asked to stop, or its task ended
-  late,     ///< the sample is there, but its time is over
-  lost,     ///< more samples in a row are missing than the policy allows
+  late,     ///< the sample arrived after its deadline
+  lost,     ///< more consecutive samples are missing than the policy allows
   range,    ///< a number out of range was refused
   watchdog,
   device_fault,
@@ -32,8 +32,8 @@ struct Status {
 
 /// What is known of the outputs after a stop: never assumed.
 enum class OutputsSafe : uint8_t {
-  confirmed,    ///< the device took the safe values
-  by_watchdog,  ///< the device's watchdog has put out its own
+  confirmed,    ///< the device accepted the safe values
+  by_watchdog,  ///< the device's watchdog has output its own
   unknown
 };
 std::string_view to_name(OutputsSafe safe);

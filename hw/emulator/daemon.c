@@ -1,9 +1,10 @@
-/* The world in a process of its own: motor and watchdog go on when the process that controls them is killed.
+/* The world in a process of its own: motor and watchdog continue when the controlling process is killed.
  *
  *   hil_emulator_daemon WORLD_FILE [SETTINGS.json]
  *
  * Programs that load the emulated library with HIL_EMU_SHARED=WORLD_FILE work on this world, in real time. On
- * standard input, "get NAME" and "set NAME VALUE" look behind the card, a line each; its end ends the daemon. */
+ * standard input, "get NAME" and "set NAME VALUE", one per line, access the card's internal state. End of input
+ * ends the daemon. */
 #include <fcntl.h>
 #include <poll.h>
 #include <stdio.h>
@@ -52,7 +53,7 @@ int main(int count, char** arguments) {
   for (;;) {
     struct pollfd input = {STDIN_FILENO, POLLIN, 0};
     if (poll(&input, 1, 20) == 0)
-      world_unlock(world_lock()); /* keeps up with time */
+      world_unlock(world_lock()); /* advances to the present time */
     else if (fgets(line, sizeof line, stdin))
       answer(line);
     else

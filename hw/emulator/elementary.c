@@ -1,8 +1,8 @@
 #include "elementary.h"
 
-#include <math.h> /* only what every library rounds correctly, or that is exact: floor, fmod, frexp, ldexp, fabs */
+#include <math.h> /* only functions exact or correctly rounded in every library: floor, fmod, frexp, ldexp, fabs */
 
-/* Three parts of pi/2 and two of ln 2; the products of all but the last with a small integer are exact. */
+/* Three parts of pi/2 and two of ln 2; products of all but the last part with a small integer are exact. */
 static const double quarter_1 = 0x1.921fb544p0, quarter_2 = 0x1.0b4611a6p-34,
                     quarter_3 = 0x1.3198a2e037073p-69;
 static const double ln2_high = 0x1.62e42fefap-1, ln2_low = 0x1.cf79abc9e3b3ap-40;
@@ -17,7 +17,7 @@ static double polynomial(const double* c, int count, double z) {
   return sum;
 }
 
-/* Taylor's series: of sine after x, of cosine after 1 - x^2/2, for |x| <= pi/4. */
+/* Taylor series: sine after the term x, cosine after 1 - x^2/2, for |x| <= pi/4. */
 static const double of_sine[] = {
     -1 / 6.0,        1 / 120.0,        -1 / 5040.0,          1 / 362880.0,
     -1 / 39916800.0, 1 / 6227020800.0, -1 / 1307674368000.0, 1 / 355687428096000.0};
@@ -42,7 +42,7 @@ static double sine_after(double x, int quarters) {
 double sine_of(double x) { return isfinite(x) ? sine_after(x, 0) : NAN; }
 double cosine_of(double x) { return isfinite(x) ? sine_after(x, 1) : NAN; }
 
-/* e^x - 1 for |x| <= ln 2 / 2: Taylor's series after x. */
+/* e^x - 1 for |x| <= ln 2 / 2: Taylor series after the term x. */
 static const double of_growth[] = {1 / 2.0,          1 / 6.0,        1 / 24.0,        1 / 120.0,
                                    1 / 720.0,        1 / 5040.0,     1 / 40320.0,     1 / 362880.0,
                                    1 / 3628800.0,    1 / 39916800.0, 1 / 479001600.0, 1 / 6227020800.0,

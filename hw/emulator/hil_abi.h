@@ -1,4 +1,4 @@
-/* Types of the emulated interface and what the files that export it share. */
+/* Types of the emulated interface, and what the files that export it share. */
 #ifndef HIL_EMULATOR_ABI_H
 #define HIL_EMULATOR_ABI_H
 
@@ -15,7 +15,7 @@ typedef const uint32_t* channels; /* a list of channel numbers */
 
 #define EXPORT __attribute__((visibility("default")))
 
-/* Error codes, returned negated. */
+/* Error codes, returned negative. */
 enum {
   OUT_OF_MEMORY = 1,
   INVALID_ARGUMENT = 4,
@@ -72,9 +72,9 @@ enum {
   BUFFER_MODE_NOT_SUPPORTED = 1265,
 };
 
-/* The world, locked and at now, with the call noted by its name; every exported function begins so. */
+/* Locks the world, advances it to now and records the call by name. Every exported function begins so. */
 struct world* enter(const char* function);
-/* Unlocks and hands on the answer. */
+/* Unlocks and returns the answer. */
 t_error leave(struct world* w, t_error answer);
 
 /* Whether the card was last opened by this process. */

@@ -7,10 +7,10 @@
 struct tag_card {
   int unused;
 };
-/* A handle serves from its opening to the next one: a program whose card was taken over holds an invalid one. */
+/* A handle is valid until the next opening: a program whose card was taken over holds an invalid handle. */
 enum { CARD_HANDLES = 16 };
 static struct tag_card handles[CARD_HANDLES];
-static int64_t opened_here; /* which opening of the world was this process's last */
+static int64_t opened_here; /* number of the world's opening that was this process's last */
 
 t_error leave(struct world* w, t_error answer) {
   world_unlock(w);
@@ -95,7 +95,7 @@ EXPORT t_error hil_get_version(struct t_version* version) {
   return leave(w, 0);
 }
 
-/* ---- configuration: the next error of the fault point, then the checks ---- */
+/* ---- configuration: first the injected error, then the checks ---- */
 
 static t_error configures(struct world* w, t_card card) {
   const t_error bad = check_card(w, card);
@@ -194,7 +194,7 @@ EXPORT t_error hil_read_analog(t_card card, channels list, uint32_t count, doubl
 
 /* ---- immediate output ---- */
 
-/* A write in protected mode fails or is ignored, as the settings say: of the real card it is not known. */
+/* A write in protected mode fails or is ignored, depending on the settings: the real card's behavior is unknown. */
 static t_error write_analog(struct world* w, t_card card, channels list, uint32_t count, const double volts[]) {
   t_error bad = check_card(w, card);
   if (!bad) bad = world_fault(w, FAULT_WRITE);

@@ -1,10 +1,10 @@
-/* What the library exports but this card does not have: each answers its own "not supported". */
+/* Functions that the library exports but this card lacks: each returns its own "not supported" error. */
 #include <stdio.h>
 #include <string.h>
 
 #include "hil_abi.h"
 
-/* The caller's arguments are not looked at, so one signature serves all. */
+/* The arguments are not read, so one signature fits all. */
 #define REFUSED(name, code) \
   EXPORT t_error name(void) { return leave(enter(#name), -(code)); }
 

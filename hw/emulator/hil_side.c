@@ -1,10 +1,10 @@
-/* Messages, and the side channel by which tests look behind the card. */
+/* Messages, and the side channel through which tests access the card's internal state. */
 #include <stdio.h>
 #include <string.h>
 
 #include "hil_abi.h"
 
-/* Names of the calls made, in order, for tests of their order; known by their place in this table. */
+/* Names of the calls made, in order, for tests of their order; identified by their index in this table. */
 static const char* names[128];
 
 static uint16_t number_of(const char* name) {
@@ -37,7 +37,7 @@ EXPORT int hil_emu_set(const char* name, double value) {
   return found;
 }
 
-/* NaN: there is no such number. */
+/* NaN: there is no number with this name. */
 EXPORT double hil_emu_get(const char* name) {
   struct world* w = world_lock();
   double value = 0;
@@ -46,7 +46,7 @@ EXPORT double hil_emu_get(const char* name) {
   return found ? value : 0.0 / 0.0;
 }
 
-/* "hil_open,hil_watchdog_clear,…": the calls of this process, 2000 at most. Their number. */
+/* "hil_open,hil_watchdog_clear,…": the calls of this process, at most 2000. Returns their number. */
 EXPORT int hil_emu_calls(char* text, size_t size) {
   struct world* w = world_lock();
   size_t used = 0;
@@ -60,7 +60,7 @@ EXPORT int hil_emu_calls(char* text, size_t size) {
   return count;
 }
 
-/* The text last given to hil_set_card_specific_options, and its size as it was told. */
+/* The text last passed to hil_set_card_specific_options, and the size passed with it. */
 EXPORT int hil_emu_options(char* text, size_t size) {
   struct world* w = world_lock();
   snprintf(text, size, "%s", w->card.options);

@@ -1,4 +1,4 @@
-/* Tasks that sample the inputs into a buffer by a clock of the card. */
+/* Tasks that sample the inputs into a buffer, timed by a clock of the card. */
 #include <string.h>
 #include <time.h>
 
@@ -123,7 +123,7 @@ EXPORT t_error hil_task_stop(t_task task) {
   struct world* w = enter("hil_task_stop");
   struct task* t = NULL;
   t_error bad = check_task(w, task, &t);
-  if (t) t->is_running = 0; /* also of an unplugged card: a blocked read ends */
+  if (t) t->is_running = 0; /* also for an unplugged card: a blocked read ends */
   if (!bad) bad = world_fault(w, FAULT_STOP);
   return leave(w, bad);
 }
@@ -189,8 +189,8 @@ static void sleep_ns(int64_t ns) {
   nanosleep(&t, NULL);
 }
 
-/* Lets time come to the next sample: virtual time jumps, real time is waited for, unlocked, in pieces of at most
- * half a millisecond so that a stop from elsewhere is seen. */
+/* Advances time to the next sample. Virtual time jumps. Real time is waited for, unlocked, in pieces of at most
+ * half a millisecond, so that a stop from another thread is noticed. */
 static struct world* pass_time(struct world* w, const struct task* t, int hangs) {
   const int64_t next = t->start_ns + (t->samples + 1) * t->period_ns;
   if (w->is_real_time == 0 && !hangs) {
@@ -225,7 +225,7 @@ static t_error check_buffers(const struct task* t, const struct destination* to)
   return t->counts[3] && !to->other ? -MISSING_OTHER_INPUT_BUFFER : 0;
 }
 
-/* Samples handed over; fewer, even none, once the task is stopped or finished. */
+/* Number of samples returned; fewer, even none, once the task is stopped or finished. */
 static t_error read_task(struct world** world, t_task handle, uint32_t wanted, const struct destination* to) {
   struct task* t = NULL;
   t_error bad = check_task(*world, handle, &t);
@@ -250,7 +250,7 @@ static t_error read_task(struct world** world, t_task handle, uint32_t wanted, c
   return (t_error)row;
 }
 
-/* A stall of the reader's computer: the sample is there, but its reader wakes up late. */
+/* A stall of the reader's computer: the sample is available, but the reader wakes up late. */
 static void stall(struct world* w, int64_t read) {
   if (w->is_real_time == 0 && w->stall_at >= 0 && (double)read == w->stall_at)
     world_advance(w, w->now + (int64_t)(1e9 * w->stall_seconds));

@@ -26,11 +26,11 @@ void plant_reset(struct plant* p) {
 
 static double clamp(double x, double limit) { return x > limit ? limit : x < -limit ? -limit : x; }
 
-/* What stays the same during one call: the series is A sin(n x + phase) = a sin(n x) + b cos(n x). */
+/* Constants during one call: the series is A sin(n x + phase) = a sin(n x) + b cos(n x). */
 struct series {
   double sine[PLANT_HARMONICS], cosine[PLANT_HARMONICS];
   int harmonics;
-  double current_share; /* of the way to its command that the current goes in a step */
+  double current_share; /* fraction of the way to its command that the current covers in a step */
 };
 
 static struct series series_of(const struct plant* p, double h) {

@@ -1,6 +1,7 @@
 /* The motor on the bench: a linear motor with its amplifier, integrated every 20 us.
  *
- * Written from the laws of physics alone; nothing here is shared with the simulator that it serves to prove. */
+ * Written from the laws of physics alone; nothing here is shared with the simulator, which it serves to
+ * verify. */
 #ifndef HIL_EMULATOR_PLANT_H
 #define HIL_EMULATOR_PLANT_H
 
@@ -33,7 +34,7 @@ struct plant {
 };
 
 void plant_reset(struct plant* p);
-/* From `now` (s) on for `seconds`, at a constant voltage of the amplifier's input. */
+/* Advances from `now` (s) by `seconds`, at a constant voltage at the amplifier's input. */
 void plant_advance(struct plant* p, double volts, double now, double seconds);
 
 #endif

@@ -111,7 +111,7 @@ static const struct setting* find(const char* name) {
   return NULL;
 }
 
-static int indexed(const char* name, const char* prefix) { /* "dac.3" → 3; -1: something else */
+static int indexed(const char* name, const char* prefix) { /* "dac.3" → 3; -1: no match */
   const size_t n = strlen(prefix);
   if (strncmp(name, prefix, n) != 0 || !isdigit((unsigned char)name[n]) || name[n + 1]) return -1;
   return name[n] - '0' < CHANNELS ? name[n] - '0' : -1;

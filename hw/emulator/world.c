@@ -88,7 +88,7 @@ int64_t world_clock(const struct world* w) {
   return (int64_t)((double)(system_ns() - w->origin) * (1 + 1e-6 * w->drift_ppm));
 }
 
-/* ---- encoder and analogue inputs ---- */
+/* ---- encoder and analog inputs ---- */
 
 static int32_t wrapped(int64_t counts, int bits) {
   const uint64_t range = (uint64_t)1 << bits;
@@ -96,13 +96,13 @@ static int32_t wrapped(int64_t counts, int bits) {
   return (int32_t)(low >= range / 2 ? (int64_t)(low - range) : (int64_t)low);
 }
 
-/* Counts of a line of period 4·resolution under the channel's quadrature mode, with the faults of a cable. */
+/* Counts of an encoder line of period 4·resolution in the channel's quadrature mode, with the cable faults. */
 int32_t world_counts(struct world* w, uint32_t channel) {
   if (channel != 0) return wrapped(w->card.preset[channel], (int)w->encoder_bits);
   const double edges = w->card.quadrature[0] > 0 ? w->card.quadrature[0] : 1;
   const double seen = w->plant.position * w->encoder_sign * w->encoder_scale * (1 - w->encoder_drift);
   const double edge = floor(seen / (w->resolution * 4 / edges));
-  int64_t counts = (fabs(edge) < 1e15 ? (int64_t)edge : 0) + w->card.preset[0]; /* what no counter can count is 0 */
+  int64_t counts = (fabs(edge) < 1e15 ? (int64_t)edge : 0) + w->card.preset[0]; /* beyond any counter: 0 */
   const double since = (double)w->samples - w->glitch_at;
   if (w->glitch_at >= 0 && since >= 0 && since < w->glitch_count) counts += (int64_t)w->glitch_counts;
   if (w->stuck_at >= 0 && w->samples >= w->stuck_at) return w->stuck_count;
@@ -120,7 +120,7 @@ static struct sample take_sample(struct world* w) {
   for (uint32_t i = 0; i < CHANNELS; ++i) s.encoder[i] = world_counts(w, i);
   s.velocity[0] = w->plant.velocity * w->encoder_sign * w->encoder_scale / w->resolution * w->card.quadrature[0] / 4;
   s.analog[0] = w->plant.current * w->analog_per_ampere;
-  for (int i = 1; i < CHANNELS; ++i) s.analog[i] = w->card.volts[i]; /* outputs led back */
+  for (int i = 1; i < CHANNELS; ++i) s.analog[i] = w->card.volts[i]; /* outputs looped back */
   for (int i = 0; i < CHANNELS; ++i) s.analog[i] += w->analog_noise * noise(w);
   return s;
 }
@@ -131,7 +131,7 @@ static int is_lost(const struct world* w, int64_t index) {
   return w->lose_every > 0 && (double)index >= w->lose_every && fmod((double)index, w->lose_every) < w->lose_length;
 }
 
-/* What the card's interrupt does at a sample instant. */
+/* The action of the card's interrupt at a sample instant. */
 static void sample_task(struct world* w, struct task* t) {
   if (w->dac_hold != 0) memcpy(w->card.volts, w->card.pending, sizeof w->card.volts);
   struct sample s = take_sample(w);

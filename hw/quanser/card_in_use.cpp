@@ -10,7 +10,7 @@
 namespace loopwright::hw::quanser {
 namespace {
 
-/// The path under which a process shows a file that it has mapped.
+/// The path that the process list shows for a file that a process has mapped.
 std::string real_path(const std::string& path) {
   std::error_code code;
   const auto real = std::filesystem::canonical(path, code);
@@ -24,7 +24,7 @@ bool has_mapped(const std::filesystem::path& process, const std::string& path) {
   return false;
 }
 
-/// As it was started, in one line of a length that can be shown.
+/// The command line of a process, in one line of limited length.
 std::string command_line(const std::filesystem::path& process) {
   std::ifstream file(process / "cmdline");
   std::string text((std::istreambuf_iterator<char>(file)), {});

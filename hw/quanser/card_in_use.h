@@ -1,4 +1,4 @@
-/// A card that another program has open: who that may be.
+/// A card that another program has open: which program that may be.
 #pragma once
 #include <string>
 #include <vector>
@@ -10,8 +10,8 @@ namespace loopwright::hw::quanser {
 /// "card qpid_e 0 (-1073, BOARD_ALREADY_OPEN). Nothing of it was touched. Its library is loaded in …"
 std::string who_has(const Settings& settings, const Library& library, int32_t native);
 
-/// Other processes of this computer that have a library loaded, "4711 (loopwright deploy …)" each; those of
-/// other users are seen by root only.
+/// Other processes of this computer that have a library loaded, each as "4711 (loopwright deploy …)".
+/// Processes of other users are visible only to root.
 std::vector<std::string> processes_with(const std::string& library);
 
 }  // namespace loopwright::hw::quanser

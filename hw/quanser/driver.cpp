@@ -13,7 +13,7 @@ namespace {
 
 constexpr int32_t function_not_supported = -94;
 
-/// Channels of one kind, and where their numbers stand among all inputs of the description.
+/// Channels of one kind, and the indices of their numbers among all inputs of the description.
 struct InputGroup {
   std::vector<uint32_t> channels;
   std::vector<size_t> places;
@@ -43,7 +43,7 @@ class QuanserDriver final : public Driver {
   Capabilities capabilities() const override {
     return {device_->clock.source == ClockSource::device, device_->watchdog.timeout > 0,
             device_->clock.source == ClockSource::device, true,
-            false};  // the vendor does not say what may be called at the same time
+            false};  // the vendor does not document which calls may run concurrently
   }
 
   Status open() override {
@@ -53,7 +53,8 @@ class QuanserDriver final : public Driver {
     is_asked_to_stop_ = false, is_armed_ = false;
     return status_of(result, false);
   }
-  /// The library offers no way to close one card of another program: all that it has open are closed.
+  /// The library cannot close a single card of another program: all cards that the program has open are
+  /// closed.
   Status take_over() override {
     step_ = "hil_close_all";
     if (!call().hil_close_all) return {Code::unsupported, function_not_supported};
@@ -107,7 +108,7 @@ class QuanserDriver final : public Driver {
   static Status status_of(t_error result, bool while_open = true) noexcept {
     return result >= 0 ? Status{} : Status{classify(result, while_open), result};
   }
-  /// The status of a set-up call; of one that the card need not have, only when it was `wanted`.
+  /// The status of a set-up call. For a function that the card may lack, an error only if it was `wanted`.
   template <class F, class... A> Status set_up(const char* name, bool wanted, F* function, A... arguments) {
     step_ = name;
     const t_error result = function ? function(arguments...) : function_not_supported;
@@ -132,10 +133,10 @@ class QuanserDriver final : public Driver {
   std::atomic<bool> is_asked_to_stop_ = false;
   bool is_armed_ = false, has_termination_states_ = false;
   int64_t sequence_ = 0;   // samples read
-  const char* step_ = "";  // of the set-up: for messages
+  const char* step_ = "";  // of the set-up, for messages
 };
 
-// ---- set-up, in the order in which the vendor's own generated programs do it ----
+// ---- set-up, in the order used by the vendor's own generated programs ----
 
 Status QuanserDriver::configure(std::span<const double> initial, std::span<const double> safe) {
   const bool has_options = !settings_.options.empty();
@@ -161,7 +162,7 @@ Status QuanserDriver::configure(std::span<const double> initial, std::span<const
                 task_, overwrites ? overflow_drops_oldest : overflow_is_error);
 }
 
-/// Ranges that a file did not change need no function to set them.
+/// Ranges that the file leaves unchanged need no function to set them.
 Status QuanserDriver::set_ranges() {
   std::vector<double> low, high;
   const auto take = [&](const auto& channels, bool (*counts)(InputKind)) {
@@ -212,7 +213,7 @@ Status QuanserDriver::set_encoders() {
   return status;
 }
 
-/// All outputs of the card get a state, ours their safe value: some cards want all or none.
+/// All outputs of the card get a watchdog state, ours their safe value: some cards accept only all or none.
 Status QuanserDriver::set_watchdog(std::span<const double> safe) {
   std::vector<uint32_t> channels;
   std::vector<double> states(size_t(settings_.analog_outputs), 0.0);
@@ -290,8 +291,8 @@ Status QuanserDriver::read(RawSample& sample, std::span<double> raw) noexcept {
   sample.sequence = sequence_++;
   if (device_->clock.overflow == Overflow::overwrite) {
     const t_error dropped = call().hil_task_get_buffer_overflows(task_);
-    if (dropped < 0) return status_of(dropped);  // what time it is cannot be told
-    sample.sequence += dropped;  // all of them before this one, which was taken out of a buffer of newer ones
+    if (dropped < 0) return status_of(dropped);  // the time is unknown
+    sample.sequence += dropped;  // all dropped before this sample, which was read from a buffer of newer ones
   }
   spread(raw);
   return {};
@@ -349,7 +350,7 @@ bool QuanserDriver::watchdog_took_over() noexcept {
 }  // namespace
 
 std::string foreign_code(const DeviceDescription& device) {
-  Problems ignored;  // told when the device was loaded
+  Problems ignored;  // reported when the device was loaded
   return library_to_load(read_settings(device, ignored).library);
 }
 

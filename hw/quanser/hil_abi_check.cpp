@@ -1,14 +1,14 @@
-// Compiled only where the vendor's header is installed: the table of signatures is the header's.
+// Compiled only if the vendor's header is installed: checks the table of signatures against the header.
 #include <hil.h>
 #include <quanser_messages.h>
 #include <type_traits>
-// The header's own types of the same names are hidden in our namespace.
+// In our namespace our types hide the header's types of the same names.
 #include "hw/quanser/hil_functions.h"
 
 namespace loopwright::hw::quanser {
 namespace {
 
-/// Enumerations become the integers they travel as, whole numbers of equal width one type, structs void.
+/// Enumerations become the integers they are passed as, integers of equal width one type, structs void.
 template <class T> struct Travels { using type = T; };
 template <class T>
 requires std::is_enum_v<T>

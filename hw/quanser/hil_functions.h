@@ -1,6 +1,5 @@
-/// The part of the vendor's C interface that is used, in one table: name, signature, and whether a library
-/// without it can serve. hil_abi_check.cpp holds the table against the vendor's header where that is
-/// installed.
+/// The functions used from the vendor's C interface, in one table: name, signature, and whether a library is
+/// usable without it. hil_abi_check.cpp compares the table with the vendor's header where that is installed.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -29,7 +28,7 @@ enum : int32_t { property_encoder_inputs = 17, property_analog_outputs = 20 };
 constexpr uint32_t other_encoder_velocity = 14000;  ///< "other" input 14000 + n: counts/s of encoder n
 constexpr uint32_t until_stopped = UINT32_MAX;
 
-// Enumerations travel as 32-bit integers. Arrays are pointers.
+// Enumerations are passed as 32-bit integers. Arrays are pointers.
 // clang-format off
 #define LOOPWRIGHT_HIL_FUNCTIONS(REQUIRED, OPTIONAL) \
   REQUIRED(hil_open, t_error(const char* type, const char* identifier, t_card* card)) \
@@ -74,7 +73,7 @@ LOOPWRIGHT_HIL_FUNCTIONS(LOOPWRIGHT_HIL_SIGNATURE, LOOPWRIGHT_HIL_SIGNATURE)
 #undef LOOPWRIGHT_HIL_SIGNATURE
 }  // namespace signatures
 
-/// What a library offers; null where it lacks an optional function.
+/// The functions of a library; null if it lacks an optional function.
 struct HilFunctions {
 #define LOOPWRIGHT_HIL_MEMBER(name, ...) signatures::name* name = nullptr;
   LOOPWRIGHT_HIL_FUNCTIONS(LOOPWRIGHT_HIL_MEMBER, LOOPWRIGHT_HIL_MEMBER)

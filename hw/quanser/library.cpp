@@ -19,7 +19,8 @@ namespace {
 #ifdef _WIN32
 const std::vector<std::string> usual_places{"hil.dll", "C:\\Program Files\\Quanser\\HIL SDK\\bin\\hil.dll"};
 void* open_library(const std::string& path, std::string& why) {
-  // The loader would wait for the writer of a pipe. A bare name is looked for in the system's folders.
+  // The loader would block on a pipe until it is written. A bare name is searched for in the system's
+  // folders.
   if (path.find('/') != path.npos)
     if (const std::string reason = why_not_regular(path); !reason.empty() && reason != "there is no such file") {
       why = path + ": " + reason;
@@ -46,7 +47,7 @@ const std::vector<std::string> usual_places{
     "libhil.so.1", "libhil.so", "/usr/lib/" + multiarch + "/libhil.so.1",
     "/opt/quanser/hil_sdk/lib/libhil.so", "/opt/quanser/lib/libhil.so"};
 
-/// Also libraries that leave their own dependencies to the program that loads them.
+/// Also loads libraries whose own dependencies must be loaded by the program.
 void* open_library(const std::string& path, std::string& why) {
   if (void* handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL)) return handle;
   why = dlerror();
@@ -58,7 +59,7 @@ void* open_library(const std::string& path, std::string& why) {
   return handle;
 }
 
-/// The messages may live in a library beside it.
+/// The message functions may be in a separate library.
 void* find_symbol(void* handle, const char* name) {
   if (void* symbol = dlsym(handle, name)) return symbol;
   if (std::strncmp(name, "msg_", 4) != 0) return nullptr;
@@ -66,14 +67,14 @@ void* find_symbol(void* handle, const char* name) {
   return common ? dlsym(common, name) : nullptr;
 }
 
-/// Where the loader found it.
+/// The file in which the loader found the symbol.
 std::string file_of(void* symbol, const std::string& path) {
   Dl_info info{};
   return dladdr(symbol, &info) && info.dli_fname ? info.dli_fname : path;
 }
 
-/// The loader says "no such file" of a library for another processor. Empty: it is for this one, or no
-/// library.
+/// For a library built for another processor the loader reports "no such file". Empty: it is built for this
+/// processor, or it is not a library.
 std::string other_architecture(const std::string& path) {
   Elf64_Ehdr header{};
   if (!why_not_regular(path).empty()) return "";
@@ -94,7 +95,7 @@ std::vector<std::string> places(const std::string& named) {
   return usual_places;
 }
 
-/// Names of required functions that are not there.
+/// Names of required functions that are missing.
 std::vector<std::string> resolve(void* handle, Library& library) {
   std::vector<std::string> required;
 #define LOOPWRIGHT_HIL_RESOLVE(name, missing)                                               \

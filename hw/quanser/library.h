@@ -1,4 +1,4 @@
-/// The vendor's library, loaded while the program runs: nothing of it is needed to build.
+/// The vendor's library, loaded at run time: it is not needed to build.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,23 +8,23 @@ namespace loopwright::hw::quanser {
 
 struct Library {
   HilFunctions functions;
-  std::string path;                  ///< under which it was found
+  std::string path;                  ///< name under which it was found
   std::string file;                  ///< the file itself
-  std::vector<std::string> missing;  ///< optional functions that it lacks
+  std::vector<std::string> missing;  ///< optional functions that are missing
 };
 
-/// What was tried, and why each did not serve.
+/// What was tried, and why each attempt failed.
 struct LibraryProblem {
   std::string message;
   std::string found;
   std::string hint;
 };
 
-/// Which file load_library would load, and who says so: to be told before its code runs. Loads nothing.
+/// The file that load_library would load, and what selected it: shown before its code runs. Loads nothing.
 std::string library_to_load(const std::string& named);
 
-/// $HIL_LIBRARY, else `named` (of a device file), else the usual names and places. Loaded once and never
-/// unloaded: drivers keep threads. False: `problem` says why.
+/// $HIL_LIBRARY, else `named` (by a device file), else the usual names and folders. Loaded once and never
+/// unloaded, because drivers keep threads. False: `problem` states why.
 bool load_library(const std::string& named, Library& library, LibraryProblem& problem);
 
 }  // namespace loopwright::hw::quanser

@@ -41,7 +41,7 @@ class Probe {
   void tell(std::string question, std::string answer, bool is_good = true) {
     answers_.push_back({std::move(question), std::move(answer), is_good});
   }
-  /// A function that the library may lack.
+  /// Calls a function that the library may lack.
   template <class F, class... A> t_error ask(F* function, A... arguments) {
     return function ? function(arguments...) : -94;
   }
@@ -109,7 +109,7 @@ class Probe {
     tell("left to do by hand", "command a voltage, end the program, and measure whether the output stays");
   }
 
-  /// A counter that takes a preset beyond 24 bits has more of them.
+  /// A counter that accepts a preset beyond 24 bits has more than 24 bits.
   void ask_encoder(uint32_t first) {
     for (const int32_t preset : {0x7fffff, 0x800000, 0x7fffffff}) {
       int32_t counts = 0;

@@ -1,4 +1,4 @@
-/// What can only be learnt on a machine with the vendor's library, or with a card.
+/// Facts that can only be found out on a machine with the vendor's library, or with a card.
 #pragma once
 #include <functional>
 #include "hw/quanser/quanser.h"
@@ -10,9 +10,9 @@ struct ProbeAnswer {
   bool is_good = true;
 };
 
-/// Asks the library and the card. With `may_touch` the card is set up too: encoder counts are preset, 0 V put
-/// out, the watchdog is let to expire. Without it nothing but opening and closing happens.
-/// A card in use is opened only where `may_take_over`, told who has it, agrees.
+/// Queries the library and the card. With `may_touch` the card is also set up: encoder counts are preset, 0 V
+/// is output, and the watchdog is allowed to expire. Without it the card is only opened and closed. A card in
+/// use is opened only if `may_take_over`, given its present user, agrees.
 std::vector<ProbeAnswer> probe(const Settings& settings, bool may_touch,
                                const std::function<bool(const std::string&)>& may_take_over);
 

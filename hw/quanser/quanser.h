@@ -8,10 +8,10 @@ namespace loopwright::hw::quanser {
 struct Settings {
   std::string board = "qpid_e";
   std::string identifier = "0";
-  std::string library;     ///< empty: the usual places
-  int clock = 0;           ///< hardware clock that takes the samples
-  int analog_outputs = 8;  ///< of the card: all of them get a watchdog state
-  std::string options;     ///< in the vendor's form, "enc0_filter=1;…"
+  std::string library;     ///< empty: the usual folders
+  int clock = 0;           ///< hardware clock that triggers the samples
+  int analog_outputs = 8;  ///< of the card: each one gets a watchdog state
+  std::string options;     ///< in the vendor's syntax, "enc0_filter=1;…"
   static constexpr auto describe() {
     return fields(
         parameter(&Settings::board, "board", "", "The vendor's name of the card").optional(),
@@ -28,13 +28,13 @@ struct Settings {
   }
 };
 
-/// Reads and checks the driver's part of a device file, with the rules of the card; loads nothing.
+/// Reads the driver's part of a device file and checks it against the rules of the card; loads nothing.
 Settings read_settings(const DeviceDescription& device, Problems& problems);
 
-/// Which library make_driver loads, and who says so.
+/// The library that make_driver loads, and what selected it.
 std::string foreign_code(const DeviceDescription& device);
 
-/// For a person who is to agree to Driver::take_over.
+/// For the person who must agree to Driver::take_over.
 inline constexpr const char* what_taking_over_does =
     "Taking it over closes every card that the vendor's library has open, under whatever program drives it: "
     "that "

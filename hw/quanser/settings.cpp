@@ -7,7 +7,7 @@
 namespace loopwright::hw::quanser {
 namespace {
 
-/// Options of the QPIDe, as its block in the vendor's environment offers them.
+/// Options of the QPIDe, as its block in the vendor's environment provides them.
 std::vector<std::string> known_options() {
   std::vector<std::string> names{
       "ext_int_polarity", "fuse_polarity",  "convert_polarity",  "watchdog_polarity", "ext_int_watchdog",

@@ -1,4 +1,4 @@
-/// The hardware in a plan: which of its blocks are axes of a device, and what connects them.
+/// The hardware in a plan: the blocks that are axes of a device, and what they share.
 #pragma once
 #include "engine/plan/plan.h"
 #include "hw/blocks/io/hardware_io.h"
@@ -12,7 +12,7 @@ struct Axis {
   Number command = -1;
 };
 
-/// All axes of a plan and the one device and period that they share.
+/// All axes of a plan, and the single device and period that they share.
 struct Hardware {
   std::shared_ptr<const DeviceDescription> device;
   std::vector<Axis> axes;
@@ -21,7 +21,7 @@ struct Hardware {
 };
 
 /// Empty `axes`: the plan has no hardware. Problems: several devices or periods, a channel used twice, units
-/// that the device does not have, a solver whose step cannot be told beforehand.
+/// that differ from the device's, a solver whose step is not known in advance.
 Hardware find_hardware(const Plan& plan, Problems& problems);
 
 }  // namespace loopwright::hw

@@ -1,4 +1,4 @@
-/// Whose time the loop lives by.
+/// The clock that times the loop.
 #pragma once
 #include <cerrno>
 #include <cstdint>
@@ -6,7 +6,7 @@
 
 namespace loopwright::hw {
 
-/// Nanoseconds of the computer, for measuring how long something takes.
+/// Nanoseconds of the computer's clock, for measuring durations.
 inline int64_t wall_ns() noexcept {
   timespec t;
   clock_gettime(CLOCK_MONOTONIC, &t);
@@ -17,9 +17,9 @@ class Clock {
  public:
   virtual ~Clock() = default;
   virtual int64_t now_ns() noexcept = 0;
-  /// Where the computer owns time: waits for the next sample instant.
+  /// If the computer is the clock: waits for the next sample instant.
   virtual void sleep_until(int64_t ns) noexcept = 0;
-  /// Where the device owns time: a sample has come that was due then.
+  /// If the device is the clock: a sample that was due then has arrived.
   virtual void sampled(int64_t /*due_ns*/) noexcept {}
 };
 
@@ -33,7 +33,7 @@ class MonotonicClock final : public Clock {
   }
 };
 
-/// Of a device in a simulation, whose time cannot be seen: every sample counts as punctual.
+/// For a device in simulated time, which is not visible here: every sample counts as on time.
 class SimulatedClock final : public Clock {
  public:
   int64_t now_ns() noexcept override { return now_; }

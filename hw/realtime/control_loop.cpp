@@ -76,9 +76,8 @@ Status ControlLoop::read(Sample& sample) noexcept {
   return status;
 }
 
-/// Time since the instant at which the sample was due. Crystals differ: the origin follows the earliest
-/// samples at once and late ones slowly, so that lateness is that of this computer and not of the card's
-/// clock.
+/// Time since the instant at which the sample was due. The clocks drift: the origin follows early samples at
+/// once and late ones slowly, so that the lateness is that of this computer and not of the card's clock.
 int64_t ControlLoop::lateness_of(const Sample& sample) noexcept {
   if (device_is_clock_) {
     due_ns_ = origin_ns_ + sample.sequence * period_ns_;
@@ -93,7 +92,7 @@ int64_t ControlLoop::lateness_of(const Sample& sample) noexcept {
   if (!device_is_clock_) {
     due_ns_ = origin_ns_ + (instant_ + 1) * period_ns_;
     const int64_t late = std::max<int64_t>(0, now - due_ns_);
-    skipped_ = late / period_ns_;  // the sample belongs to the last instant that is over
+    skipped_ = late / period_ns_;  // the sample belongs to the last instant that has passed
     return late;
   }
   const int64_t late = now - due_ns_;
@@ -104,7 +103,7 @@ int64_t ControlLoop::lateness_of(const Sample& sample) noexcept {
 bool ControlLoop::count_missing(const Sample& sample) noexcept {
   LoopStatistics& s = statistics_;
   const Policy& policy = device_.description().policy;
-  const bool is_first = s.cycles == 0;  // the plan begins with it, whatever was lost before
+  const bool is_first = s.cycles == 0;  // the plan begins with it, regardless of earlier losses
   missing_ = is_first ? 0 : sample.lost + skipped_;
   s.lost_samples += is_first ? 0 : sample.lost;
   s.skipped_periods += skipped_;
@@ -138,7 +137,7 @@ Status ControlLoop::write() noexcept {
   return device_.kick();
 }
 
-/// Counts, logs, and says whether to go on.
+/// Counts, logs, and returns whether to continue.
 bool ControlLoop::account_for(int64_t lateness_ns, int64_t step_ns) noexcept {
   LoopStatistics& s = statistics_;
   const CycleAccount account{1e-9 * double(lateness_ns), 1e-9 * double(step_ns), double(missing_)};
@@ -163,7 +162,7 @@ bool ControlLoop::account_for(int64_t lateness_ns, int64_t step_ns) noexcept {
   return stepper_.is_last() ? end_with(LoopEnd::Why::finished) : true;
 }
 
-/// In simulated time nothing is to be on time, and a minute would overrun any log.
+/// In simulated time there are no deadlines, and a minute of model time would overrun any log.
 void ControlLoop::wait_for_log() const noexcept {
   const timespec moment = {0, 100'000};
   while (!log_.has_room() && !is_asked_to_stop_.load(std::memory_order_relaxed)) nanosleep(&moment, nullptr);

@@ -1,4 +1,4 @@
-/// The loop itself: what runs in the real-time thread, cycle for cycle, and keeps accounts.
+/// The loop itself: runs every cycle in the real-time thread and keeps its statistics.
 #pragma once
 #include "hw/realtime/deploy.h"
 #include "hw/realtime/log_columns.h"
@@ -7,7 +7,7 @@
 
 namespace loopwright::hw {
 
-/// How the loop came to its end.
+/// How the loop ended.
 struct LoopEnd {
   enum class Why : uint8_t { running, finished, asked, status, step_failed, overruns, lost, skipped };
   Why why = Why::running;
@@ -19,16 +19,16 @@ class ControlLoop {
   ControlLoop(const Plan& plan, const Hardware& hardware, IoDevice& device, Clock& clock, LogRing& log,
               std::span<const LogColumn> columns);
 
-  /// Two steps at rest that nobody sees, so that nothing is new at the first real one.
+  /// Two steps at rest with discarded outputs, so that code and memory are warm at the first real step.
   void warm_up();
-  /// Cycles until the plan's stop, a fault, or request_stop(). The outputs stay as they are.
+  /// Runs cycles until the plan's stop, a fault, or request_stop(). The outputs keep their values.
   void run() noexcept;
   /// From any thread.
   void request_stop() noexcept {
     is_asked_to_stop_.store(true, std::memory_order_relaxed);
     device_.request_stop();
   }
-  /// How long the present read has been waiting; 0: no read is waiting.
+  /// How long the current read has been waiting; 0: no read is waiting.
   int64_t waiting_ns() const noexcept {
     const int64_t since = reading_since_.load(std::memory_order_relaxed);
     return since ? wall_ns() - since : 0;
@@ -46,7 +46,7 @@ class ControlLoop {
   bool cycle() noexcept;
   Status read(Sample& sample) noexcept;
   int64_t lateness_of(const Sample& sample) noexcept;
-  /// Counts the instants that have no sample. False: too many in a row, or the run is over among them.
+  /// Counts the instants without a sample. False: too many in a row, or the run ends among them.
   bool count_missing(const Sample& sample) noexcept;
   bool step() noexcept;
   Status write() noexcept;
@@ -67,14 +67,14 @@ class ControlLoop {
   const int64_t period_ns_;
   std::vector<double> inputs_, outputs_, row_;
   std::vector<BlockSum> block_sums_;
-  Number error_ = -1;  // of the live view
+  Number error_ = -1;  // for the live view
 
   LoopEnd end_;
   LoopStatistics statistics_;
   int64_t origin_ns_ = 0, due_ns_ = 0, kicked_ns_ = 0, longest_unkicked_ns_ = 0;
   int64_t instant_ = 0;  ///< of the sample, in periods since the first one
-  int64_t skipped_ = 0;  ///< periods before this sample that the computer's clock left out
-  int64_t missing_ = 0;  ///< instants before this sample that have none
+  int64_t skipped_ = 0;  ///< periods before this sample that the computer's clock skipped
+  int64_t missing_ = 0;  ///< instants before this sample without one
   int64_t overruns_in_row_ = 0;
   std::atomic<bool> is_asked_to_stop_ = false;
   std::atomic<int64_t> reading_since_ = 0;

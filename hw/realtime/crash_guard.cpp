@@ -15,7 +15,7 @@ namespace {
 
 constexpr int fatal[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGSYS, SIGTRAP};
 
-// What the handler needs, resolved beforehand. One deployment at a time in a process.
+// Data for the handler, resolved beforehand. One deployment at a time in a process.
 std::atomic<bool> is_guarded = false;
 std::atomic<int> guardian = 0, crashed = 0;  // threads
 std::atomic<const char*> last_words = nullptr;
@@ -25,15 +25,15 @@ std::atomic<void*> last_resort_object = nullptr;
 struct sigaction before[NSIG];
 static_assert(std::atomic<CrashGuard::Stop>::is_always_lock_free);
 
-/// Never waits: a terminal that was stopped must not hold up the end.
+/// Never blocks: a stopped terminal must not delay the end.
 void say(const char* text) {
   pollfd event = {STDERR_FILENO, POLLOUT, 0};
   if (poll(&event, 1, 0) == 1 && (event.revents & POLLOUT))
     (void)!write(STDERR_FILENO, text, std::strlen(text));
 }
 
-/// The guardian's crash leaves nobody: the call is made here, and a second later the process ends if it
-/// hangs.
+/// If the guardian itself crashes, no thread is left to stop the machine: the call is made here, and the
+/// process ends a second later if it hangs.
 void stop_alone() {
   struct sigaction action = {};
   action.sa_handler = SIG_DFL;
@@ -47,12 +47,12 @@ void stop_alone() {
   alarm(0);
 }
 
-/// Of the first that crashes: the machine is stopped. Others wait until the process ends.
+/// Called by the first thread that crashes: stops the machine. Other threads wait until the process ends.
 void stop_machine(const char* what) {
   int nobody = 0;
   const int self = thread_number();
   if (!crashed.compare_exchange_strong(nobody, self)) {
-    if (nobody == self) return;  // for the second time, on the way out
+    if (nobody == self) return;  // second crash, during the shutdown
     poll(nullptr, 0, 2 * CrashGuard::patience_ms);
     return;
   }

@@ -1,10 +1,11 @@
-/// The last stop: what happens between a crash of the process and its end.
+/// The last stop: the actions between a crash of the process and its end.
 ///
 /// A fatal signal (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGSYS, SIGTRAP) may hit any thread anywhere,
-/// with any lock held, so its handler calls no driver and allocates nothing. It wakes a guardian, a healthy
-/// thread that waits for nothing else, lets it stop the machine, waits for it at most `patience_ms`, writes
-/// its last words to standard error, and hands the signal on to whoever had it before: by default it ends the
-/// process, whose exit status so tells the signal. exit() from anywhere takes the same way.
+/// with any lock held, so its handler calls no driver and allocates nothing. It wakes a guardian, an
+/// unaffected thread whose only task this is, and the guardian stops the machine. The handler waits for it at
+/// most `patience_ms`, writes a final message to standard error, and forwards the signal to the previous
+/// handler. By default that ends the process, whose exit status then shows the signal. exit() from any thread
+/// is handled the same way.
 #pragma once
 #include <csignal>
 #include <vector>
@@ -20,24 +21,24 @@ class CrashGuard {
   CrashGuard(const CrashGuard&) = delete;
   CrashGuard& operator=(const CrashGuard&) = delete;
 
-  /// What stops the machine, and answers with last words of static life.
+  /// Stops the machine and returns a final message of static lifetime.
   using Stop = const char* (*)(void* object);
 
-  /// Called by the guardian's thread when it begins. Where the guardian itself crashes, `last_resort` is
-  /// called in the handler, and the process ends after a second if it hangs there.
+  /// Called by the guardian's thread when it begins. If the guardian itself crashes, `last_resort` is called
+  /// in the handler, and the process ends after a second if that hangs.
   void begin_guardian(Stop last_resort, void* object) noexcept;
   /// Called when the guardian ends: a crash after that only ends the process.
   void end_guardian() noexcept;
-  /// Readable from a crash on.
+  /// Becomes readable at a crash.
   int descriptor() const noexcept;
-  /// The thread that crashed; 0: none has.
+  /// The thread that crashed; 0: none.
   static int crashed_thread() noexcept;
-  /// The guardian has done what it could.
+  /// The guardian has finished.
   void release(const char* last_words) noexcept;
 };
 
-/// A stack for the handler, of the calling thread while this lives: a stack that overflowed has no room for
-/// it.
+/// A stack for the signal handler of the calling thread while this object lives: a stack that overflowed has
+/// no room for it.
 class HandlerStack {
  public:
   HandlerStack();
@@ -51,7 +52,7 @@ class HandlerStack {
   bool is_set_ = false;
 };
 
-/// Number of the calling thread in this system.
+/// The system's number of the calling thread.
 int thread_number() noexcept;
 
 }  // namespace loopwright::hw

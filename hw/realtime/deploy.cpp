@@ -16,9 +16,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// After a stop was asked for, the loop has so long to follow; then the next signal ends the process.
+/// Time that the loop has to end after a stop request; then the next signal ends the process.
 constexpr int64_t longest_stop_ns = 2'000'000'000;
-/// The disk has so long to take the end of the log, as long as nobody asks again.
+/// Time that the disk has to write the end of the log, unless a second request comes.
 constexpr int64_t longest_wait_for_disk_ns = 60'000'000'000;
 
 size_t rows_of_run(const Plan& plan, const Hardware& hardware) {
@@ -29,7 +29,7 @@ size_t rows_of_ring(const Plan& plan, const Hardware& hardware, size_t columns, 
   return std::clamp<size_t>(rows_of_run(plan, hardware), 1, most);
 }
 
-/// What an exception says that nobody expected.
+/// The text of an unexpected exception.
 std::string text_of_exception() {
   try {
     throw;
@@ -74,7 +74,7 @@ class Deployment {
     const StopSignals signals;
     const HandlerStack stack;
     SystemRequest request = options_.system;
-    if (is_simulated_) request = {0, -1, false};  // nothing is to be on time
+    if (is_simulated_) request = {0, -1, false};  // there are no deadlines
     const RealTimeProcess process(request, result_.system);
     make_log();
     CrashGuard guard;
@@ -120,13 +120,13 @@ class Deployment {
     begin_.compare_exchange_strong(waits, what);
     begin_.notify_all();
   }
-  /// Ends the loop's thread, wherever it is.
+  /// Ends the loop's thread in whatever state it is.
   void call_off() {
     tell_to(Begin::called_off);
     if (!has_ended_) loop_.request_stop();
   }
 
-  /// The real-time thread, from its scheduling to its safe outputs.
+  /// The real-time thread, from its scheduling to the safe outputs.
   void run_loop(const SystemRequest& request) noexcept {
     const HandlerStack stack;
     try {
@@ -163,7 +163,7 @@ class Deployment {
     return false;
   }
 
-  /// Everything up to the first sample. False: called off, with nothing moved.
+  /// Everything up to the first sample. False: canceled before anything moved.
   bool set_up() {
     if (!exception_in_loop_.empty()) return fail("the loop cannot be prepared: " + exception_in_loop_);
     if (options_.require_real_time && !is_simulated_ && !result_.system.all_granted())
@@ -203,11 +203,12 @@ class Deployment {
                        watchdog);
   }
 
-  // ---- the watcher: signals, reads that do not return, a log that cannot be written, crashes ----
+  // ---- the watcher: signals, reads that do not return, log failures, crashes ----
 
   void watch(const StopSignals& signals, CrashGuard& guard, int priority) noexcept {
     const HandlerStack stack;
-    // Before the loop, so that a loop that spins cannot keep it away; without the right to, as it is.
+    // Priority above the loop's, so that a busy loop cannot block it; without the permission it stays
+    // unchanged.
     const sched_param above{std::min(priority + 1, 99)};
     if (priority > 0) pthread_setschedparam(pthread_self(), SCHED_FIFO, &above);
     guard.begin_guardian([](void* self) { return static_cast<Deployment*>(self)->stop_in_emergency(); },
@@ -237,7 +238,8 @@ class Deployment {
     }
   }
 
-  /// Driver or callback hang and follow no request: safe values from here, within a second, then the end.
+  /// Driver or callback hang and ignore the request: sends safe values from here, within a second, then
+  /// exits.
   [[noreturn]] void end_by_signal(int signal) noexcept {
     for (const int by_default : {SIGALRM, signal}) {
       std::signal(by_default, SIG_DFL);
@@ -250,13 +252,13 @@ class Deployment {
     device_.emergency_stop();
     writer_->wait_for_pass(200);
     raise(signal);
-    _exit(128 + signal);  // somebody ignores it
+    _exit(128 + signal);  // in case the signal is ignored
   }
 
-  /// A thread has crashed and waits in its handler, or is the caller in it.
+  /// A thread has crashed and waits in its handler, or it is the caller itself, in the handler.
   const char* stop_in_emergency() noexcept {
     device_.emergency_stop();
-    loop_.request_stop();  // a healthy loop stops the device itself
+    loop_.request_stop();  // a loop that still runs stops the device itself
     OutputsSafe safe = OutputsSafe::unknown;
     if (device_user_.take_over(CrashGuard::crashed_thread(), CrashGuard::patience_ms / 2)) {
       device_.stop();
@@ -267,7 +269,7 @@ class Deployment {
     return last_words_[size_t(safe)].c_str();
   }
 
-  /// Shows how it goes, until the loop has ended.
+  /// Shows the progress until the loop has ended.
   void follow() {
     for (int turn = 1; !is_done_.try_acquire_for(20ms); ++turn)
       if (options_.progress && turn % 10 == 0) options_.progress(loop_.live());
@@ -286,7 +288,8 @@ class Deployment {
     result_.statistics.longest_log_delay_s = writer_->longest_delay_s();
   }
 
-  /// The machine stands; the disk may take its time, but not for ever, nor against a second signal.
+  /// The machine has stopped. The disk may take its time, but not without limit, and a second signal ends the
+  /// wait.
   void end_log(const Facts& facts) {
     const int64_t begin = wall_ns();
     const int signals_before = signals_;
@@ -370,13 +373,13 @@ class Deployment {
   std::vector<LogColumn> columns_;
   std::shared_ptr<LogRing> ring_;
   std::shared_ptr<LogSink> sink_;
-  std::shared_ptr<MemorySink> memory_;  // the same, where there is no journal
+  std::shared_ptr<MemorySink> memory_;  // the same, if there is no journal
   std::unique_ptr<LogWriter> writer_;
   ControlLoop loop_;
   DeployResult result_;
   Status started_;
   std::string exception_in_loop_;
-  std::vector<std::string> last_words_;  // by OutputsSafe
+  std::vector<std::string> last_words_;  // indexed by OutputsSafe
   DeviceUser device_user_;
   std::binary_semaphore is_prepared_{0}, is_done_{0};
   std::atomic<Begin> begin_ = Begin::waits;

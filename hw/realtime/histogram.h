@@ -1,4 +1,4 @@
-/// How often something took how long, in bins of a microsecond; adding allocates nothing.
+/// Histogram of durations, in bins of a microsecond; adding allocates nothing.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@ namespace loopwright::hw {
 
 class Histogram {
  public:
-  static constexpr int bins = 1000;  ///< [us]; longer ones are counted together
+  static constexpr int bins = 1000;  ///< [us]; longer durations are counted together
 
   void add(int64_t ns, int64_t cycle) noexcept {
     const int64_t positive = std::max<int64_t>(ns, 0);
@@ -22,7 +22,7 @@ class Histogram {
   double mean_us() const { return count_ ? 1e-3 * double(sum_ns_) / double(count_) : 0; }
   int64_t in_bin(int us) const { return counts_[size_t(us)]; }
   int64_t beyond() const { return counts_[bins]; }
-  /// The end of the bin [us] below which the share lies; the longest, where that is beyond all bins.
+  /// The end of the bin [us] below which the share lies; the longest duration if that is beyond all bins.
   double quantile_us(double share) const {
     int64_t seen = 0;
     for (int i = 0; i < bins; ++i)

@@ -1,4 +1,4 @@
-/// What a row of the log holds: the plan's own signals, each axis, and the accounts of the loop.
+/// Contents of a row of the log: the plan's signals, each axis, and the loop's statistics.
 #pragma once
 #include <span>
 #include "engine/record/recording.h"
@@ -16,17 +16,17 @@ struct LogColumn {
   size_t output = 0;   ///< of what was applied
 };
 
-/// What the loop knows of a cycle beside the run and the device.
+/// What the loop knows of a cycle in addition to the run and the device.
 struct CycleAccount {
   double lateness_s = 0, step_time_s = 0;
-  double lost = 0;  ///< instants since the row before that have no row, as no sample of them came
+  double lost = 0;  ///< instants since the previous row without a row, because no sample arrived
 };
 
-/// "time", everything the plan logs, "<axis>.position", "<axis>.command", "<axis>.applied", the accounts. The
-/// measured velocity too, where the device measures one. No name twice.
+/// "time", everything the plan logs, "<axis>.position", "<axis>.command", "<axis>.applied", the statistics.
+/// The measured velocity too, if the device measures one. No name occurs twice.
 std::vector<LogColumn> log_columns(const Plan& plan, const Hardware& hardware);
 
-/// One row; as many numbers as columns.
+/// One row, with as many numbers as columns.
 void fill_row(std::span<double> row, std::span<const LogColumn> columns, const Run<double>& run,
               const IoDevice& device, const CycleAccount& account) noexcept;
 

@@ -1,5 +1,5 @@
-/// Rows of numbers from the loop to whoever writes them down: one producer, one consumer, no lock. The
-/// producer never waits: a row for which there is no room is dropped and counted.
+/// Rows of numbers from the loop to the log writer: one producer, one consumer, no lock. The producer never
+/// waits: a row that does not fit is dropped and counted.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -25,7 +25,7 @@ class LogRing {
     std::memcpy(&numbers_[end % rows_ * columns_], row.data(), columns_ * sizeof(double));
     end_.store(end + 1, std::memory_order_release);
   }
-  /// take(row) for every row there is.
+  /// Calls take(row) for every available row.
   template <class Take> void drain(Take&& take) {
     size_t begin = begin_.load(std::memory_order_relaxed);
     for (const size_t end = end_.load(std::memory_order_acquire); begin != end; ++begin) {
@@ -34,7 +34,7 @@ class LogRing {
     }
   }
   size_t columns() const { return columns_; }
-  /// Rows that nobody has taken yet.
+  /// Number of rows not yet taken.
   size_t waiting() const {
     return end_.load(std::memory_order_acquire) - begin_.load(std::memory_order_acquire);
   }

@@ -1,27 +1,28 @@
-/// Where the rows of the log go once they have left the loop.
+/// Destination of the log rows after they have left the loop.
 #pragma once
 #include <algorithm>
 #include "engine/record/journal.h"
 
 namespace loopwright::hw {
 
-/// Called by one thread, sync() by another. An answer other than 0 is an errno: nothing more is taken.
+/// Called by one thread; sync() by another. A return value other than 0 is an errno, and no more rows are
+/// taken.
 class LogSink {
  public:
   virtual ~LogSink() = default;
-  /// Whole rows. `dropped`: rows that were left out so far.
+  /// Complete rows. `dropped`: number of rows dropped so far.
   virtual int take(std::span<const double> rows, int64_t dropped) = 0;
   virtual int sync() noexcept { return 0; }
-  /// Nothing more comes.
+  /// No more rows follow.
   virtual int end(const Facts&, int64_t /*dropped*/) { return 0; }
 };
 
-/// Into a file that grows; see engine/record/journal.h.
+/// Writes to a growing file; see engine/record/journal.h.
 class JournalSink final : public LogSink {
  public:
   JournalSink(const std::string& path, const Recording& heading) : journal_(path, heading) {}
   int take(std::span<const double> rows, int64_t dropped) override {
-    // The heading stands in the file every so often: a damaged beginning does not make the rest unreadable.
+    // The header is repeated at intervals: a damaged beginning does not make the rest unreadable.
     if (++chunks_ % chunks_between_headings == 0)
       if (const int error = journal_.repeat_heading()) return error;
     return journal_.append(rows, dropped);
@@ -35,7 +36,7 @@ class JournalSink final : public LogSink {
   int64_t chunks_ = 0;
 };
 
-/// Into memory, at most so many bytes; what comes after that is dropped and counted.
+/// Keeps rows in memory, up to a number of bytes; later rows are dropped and counted.
 class MemorySink final : public LogSink {
  public:
   MemorySink(Recording heading, size_t most_bytes, size_t expected_rows) : recording_(std::move(heading)) {

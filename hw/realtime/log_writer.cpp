@@ -11,7 +11,7 @@ namespace loopwright::hw {
 
 using namespace std::chrono_literals;
 
-/// Outlives the writer where a thread hangs.
+/// Outlives the writer if a thread hangs.
 struct LogWriter::Shared {
   std::shared_ptr<LogRing> ring;
   std::shared_ptr<LogSink> sink;
@@ -26,7 +26,7 @@ struct LogWriter::Shared {
     int none = 0;
     if (error) failure.compare_exchange_strong(none, error);
   }
-  /// All that stands in the ring, in chunks.
+  /// Passes on all rows in the ring, in chunks.
   void pass() {
     const auto hand_over = [&] {
       if (!rows.empty() && failure == 0) fail(sink->take(rows, ring->drops()));
@@ -67,7 +67,7 @@ struct LogWriter::Shared {
 LogWriter::LogWriter(std::shared_ptr<LogRing> ring, std::shared_ptr<LogSink> sink)
     : shared_(std::make_shared<Shared>()) {
   constexpr size_t most_numbers =
-      (256 << 10) / sizeof(double);  // of a chunk: lost together where one is damaged
+      (256 << 10) / sizeof(double);  // of a chunk; its rows are lost together if it is damaged
   shared_->rows.reserve(std::max(most_numbers, ring->columns()));
   shared_->ring = std::move(ring), shared_->sink = std::move(sink);
   std::thread([shared = shared_] { shared->write(); }).detach();
@@ -89,7 +89,7 @@ int LogWriter::failure() const noexcept { return shared_->failure; }
 double LogWriter::longest_delay_s() const noexcept { return 1e-9 * double(shared_->longest_delay_ns); }
 
 void LogWriter::wait_for_pass(int milliseconds) const noexcept {
-  const int64_t wanted = shared_->passes + 2;  // the first one may have begun before
+  const int64_t wanted = shared_->passes + 2;  // the first pass may have begun earlier
   const timespec moment = {0, 1'000'000};
   for (int i = 0; i < milliseconds && shared_->passes < wanted && !shared_->is_over; ++i)
     nanosleep(&moment, nullptr);

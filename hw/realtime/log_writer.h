@@ -1,8 +1,9 @@
-/// Carries rows from the loop's ring to where they are kept, in threads of its own.
+/// Moves rows from the loop's ring to their destination, in threads of its own.
 ///
-/// One thread hands over what the ring holds every `every_ms`; another brings it to the disk once a second,
-/// so that a slow disk holds up neither the loop nor what a kill -9 leaves. A disk that stalls fills the
-/// ring, whose rows are then dropped and counted; one that fails ends the writing, and failure() says why.
+/// One thread passes on the rows in the ring every `every_ms`; another flushes them to the disk once a
+/// second. So a slow disk delays neither the loop nor the rows that survive a kill -9. If the disk stalls,
+/// the ring fills, and further rows are dropped and counted. If the disk fails, writing ends, and failure()
+/// states why.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -17,19 +18,19 @@ class LogWriter {
   static constexpr int sync_every_ms = 1000;
 
   LogWriter(std::shared_ptr<LogRing> ring, std::shared_ptr<LogSink> sink);
-  /// Gives up what was not ended: a thread that hangs in a stalled disk is left to itself.
+  /// Abandons a log that was not ended: a thread that hangs on a stalled disk is detached.
   ~LogWriter();
   LogWriter(const LogWriter&) = delete;
   LogWriter& operator=(const LogWriter&) = delete;
 
   /// errno of the first failure; 0: none.
   int failure() const noexcept;
-  /// Waits until all that stood in the ring was handed over, at most so long. Calls nothing that allocates.
+  /// Waits until all rows now in the ring were passed on, at most this long. Calls nothing that allocates.
   void wait_for_pass(int milliseconds) const noexcept;
-  /// Rows still in the ring, then `facts`, then on to the disk. Waits as long as `patience` answers true;
-  /// false: the disk did not take everything.
+  /// Writes the rows left in the ring, then `facts`, and flushes to the disk. Waits as long as `patience`
+  /// returns true. False: the disk did not accept everything.
   bool end(const Facts& facts, const std::function<bool()>& patience);
-  /// [s] the longest time for which a row stood in the ring before it was handed over.
+  /// [s] longest time that a row spent in the ring before it was passed on.
   double longest_delay_s() const noexcept;
 
  private:

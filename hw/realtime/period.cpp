@@ -23,7 +23,7 @@ void PeriodStepper::reset() {
   std::ranges::fill(before_, Measured{});
 }
 
-/// What lies at a share of the way from the sample before to this one.
+/// Sets the measurement interpolated at this fraction between the previous sample and this one.
 void PeriodStepper::set_between(double share) noexcept {
   if (holds_) share = 0;
   for (size_t a = 0; a < measured_.size(); ++a) {
@@ -44,7 +44,7 @@ void PeriodStepper::finish() noexcept {
   int64_t next = std::min(end, run_.next_due());
   if (plan.steps_between_samples) next = std::min(next, run_.now().tick + plan.step_ticks);
   run_.integrate(next - run_.now().tick);
-  while (run_.now().tick < end) run_.step_fixed(end, false, [] {});  // what is faster than the period
+  while (run_.now().tick < end) run_.step_fixed(end, false, [] {});  // blocks faster than the period
 }
 
 std::string PeriodStepper::fault() const { return fault_text(run_.plan(), run_.fault(), run_.now().time); }

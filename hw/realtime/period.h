@@ -1,11 +1,11 @@
-/// One period of a plan on hardware: measured numbers in, commands out. Deployment and replay both step by
-/// this, and it steps by the very Run that a simulation steps by.
+/// One period of a plan on hardware: measured numbers in, commands out. Deployment and replay both use it,
+/// and it uses the same Run as a simulation.
 ///
-/// Model time is the number of the sample. Where samples are missing, the plan is stepped through every
-/// instant that has none, once the next sample has come: so references and counters keep time, slower rates
-/// keep their phase, and differences are taken over one period. What was measured at those instants is
-/// interpolated between the samples before and after, or held with `"on_lost": "hold"`. Commands computed
-/// there went nowhere: the device held the one before.
+/// Model time is the number of the sample. If samples are missing, the plan is stepped through every instant
+/// without one as soon as the next sample has arrived. So references and counters keep time, slower rates
+/// keep their phase, and differences are taken over one period. The measurements at those instants are
+/// interpolated between the samples before and after, or held with `"on_lost": "hold"`. Commands computed for
+/// those instants are not sent: the device held the previous one.
 #pragma once
 #include "engine/run/run.h"
 #include "hw/realtime/axes.h"
@@ -17,12 +17,12 @@ class PeriodStepper {
   PeriodStepper(const Plan& plan, const Hardware& hardware);
 
   void reset();
-  /// What an axis measured at the instant that compute() comes to.
+  /// The measurement of an axis at the instant of the next compute().
   void measure(size_t axis, double position, double velocity) noexcept {
     measured_[axis] = {position, velocity};
   }
-  /// All outputs of this instant; `after(block)` after each of them. `missing` instants without a sample came
-  /// before it. Failed steps end it: see run().failed().
+  /// Computes all outputs of this instant; calls `after(block)` after each block. `missing` instants without
+  /// a sample came before it. A failed step ends it: see run().failed().
   template <class After> void compute(int64_t missing, After&& after) noexcept {
     for (int64_t i = 1; i <= missing; ++i) {
       set_between(double(i) / double(missing + 1));
@@ -34,16 +34,16 @@ class PeriodStepper {
     evaluate(after);
   }
   double command(size_t axis) const { return run_.number(hardware_.axes[axis].command); }
-  /// Memories, and everything between this period and the next; after the commands are out.
+  /// Updates memories and everything between this period and the next; called after the commands are sent.
   void finish() noexcept;
 
   const Run<double>& run() const { return run_; }
   bool is_last() const { return run_.now().tick + hardware_.period_ticks > run_.plan().stop_tick; }
-  /// Whether so many instants on lies beyond the plan's stop.
+  /// Whether the plan's stop is less than this many instants ahead.
   bool ends_within(int64_t instants) const {
     return instants > (run_.plan().stop_tick - run_.now().tick) / hardware_.period_ticks;
   }
-  /// Which block stopped the step and why.
+  /// The block that stopped the step, and why.
   std::string fault() const;
 
  private:

@@ -16,7 +16,7 @@ constexpr int blocked[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP, SIGXCPU, S
 constexpr int ignored[] = {SIGPIPE, SIGXFSZ, SIGTTIN, SIGTTOU};
 constexpr int of_libraries[] = {SIGALRM, SIGVTALRM, SIGPROF, SIGIO, SIGSTKFLT};
 
-std::atomic<int> stray = 0;  // one that came to the handler
+std::atomic<int> stray = 0;  // a signal that reached the handler
 static_assert(std::atomic<int>::is_always_lock_free);
 void note(int signal) { stray = signal; }
 

@@ -1,4 +1,4 @@
-/// Signals that ask a program to end, collected instead of obeyed, so that a machine is stopped first.
+/// Signals that request the end of a program, collected so that the machine is stopped first.
 #pragma once
 #include <csignal>
 #include <utility>
@@ -6,17 +6,16 @@
 
 namespace loopwright::hw {
 
-/// While it lives, no signal that could be blocked or handled ends or halts the process:
+/// While this object lives, no signal that can be blocked or handled ends or halts the process:
 ///
-/// - SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP, SIGXCPU, SIGUSR1, SIGUSR2 and SIGPWR are blocked and wait in
-/// line for
-///   wait(). SIGALRM, SIGVTALRM, SIGPROF, SIGIO, SIGSTKFLT and the real-time signals, which a vendor's
-///   library may use, come to wait() too, unless somebody handles them.
+/// - SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP, SIGXCPU, SIGUSR1, SIGUSR2 and SIGPWR are blocked and queued
+///   for wait(). SIGALRM, SIGVTALRM, SIGPROF, SIGIO, SIGSTKFLT and the real-time signals, which a vendor's
+///   library may use, also reach wait(), unless they have a handler.
 /// - SIGPIPE, SIGXFSZ, SIGTTIN and SIGTTOU are ignored: the call that caused them fails instead.
 ///
-/// What was ignored before (nohup) stays ignored. Make it before other threads begin, as they inherit the
-/// blocking. Those of one process nest; the innermost one gets the signals. Signals of a crash: see
-/// crash_guard.h.
+/// Signals that were ignored before (nohup) stay ignored. Create it before other threads begin, because they
+/// inherit the signal mask. Several objects of one process nest; the innermost one gets the signals. For
+/// crash signals see crash_guard.h.
 class StopSignals {
  public:
   StopSignals();
@@ -24,7 +23,8 @@ class StopSignals {
   StopSignals(const StopSignals&) = delete;
   StopSignals& operator=(const StopSignals&) = delete;
 
-  /// Waits at most so long for a signal, or until `also`, a descriptor, can be read. The signal; 0: none.
+  /// Waits at most this long for a signal, or until the descriptor `also` is readable. Returns the signal; 0:
+  /// none.
   int wait(int milliseconds, int also = -1) const noexcept;
 
  private:
@@ -35,7 +35,7 @@ class StopSignals {
   int queue_ = -1;  // of the blocked ones
 };
 
-/// "SIGINT"; "a signal" where it is an unusual one.
+/// "SIGINT"; "a signal" for an unusual one.
 const char* name_of_signal(int signal) noexcept;
 
 }  // namespace loopwright::hw

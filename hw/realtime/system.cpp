@@ -29,7 +29,7 @@ void tell_kernel(SystemReport& report) {
        fmt::format("{} {}", name.release, is_real_time ? "PREEMPT_RT" : "without PREEMPT_RT"));
 }
 
-/// Touches as much stack as a step could ever need, so that no page of it is missing later.
+/// Touches as much stack as a step could ever need, so that no page fault occurs later.
 [[gnu::noinline]] void touch_stack() {
   volatile char stack[512 * 1024];
   for (size_t i = 0; i < sizeof stack; i += 4096) stack[i] = 0;
@@ -46,7 +46,7 @@ bool SystemReport::all_granted() const {
 RealTimeProcess::RealTimeProcess(const SystemRequest& request, SystemReport& report) {
   tell_kernel(report);
   if (!request.lock_memory) return;
-  mallopt(M_TRIM_THRESHOLD, -1);  // freed memory stays ours
+  mallopt(M_TRIM_THRESHOLD, -1);  // freed memory is not returned to the system
   mallopt(M_MMAP_MAX, 0);
   prctl(PR_SET_THP_DISABLE, 1, 0, 0, 0);
   has_locked_ = mlockall(MCL_CURRENT | MCL_FUTURE) == 0;

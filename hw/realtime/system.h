@@ -1,4 +1,4 @@
-/// What the computer grants a loop that must be on time: asked for, told, never assumed.
+/// What the computer grants to a real-time loop: requested and reported, never assumed.
 #pragma once
 #include <string>
 #include <vector>
@@ -6,12 +6,12 @@
 namespace loopwright::hw {
 
 struct SystemRequest {
-  int priority = 80;   ///< of SCHED_FIFO; 0: the usual scheduling
+  int priority = 80;   ///< of SCHED_FIFO; 0: the default scheduling
   int processor = -1;  ///< the loop runs on this one only; -1: any
   bool lock_memory = true;
 };
 
-/// One thing that was asked for.
+/// One requested item.
 struct Granted {
   std::string what, answer;
   bool is_granted = false;
@@ -21,8 +21,8 @@ struct SystemReport {
   bool all_granted() const;
 };
 
-/// For the whole process: kernel, locked memory, heap that is not given back, no deep sleep of the processor.
-/// What it holds is released at the end of its life.
+/// For the whole process: kernel, locked memory, heap that is not returned, no deep sleep of the processor.
+/// The destructor releases what it holds.
 class RealTimeProcess {
  public:
   RealTimeProcess(const SystemRequest& request, SystemReport& report);
@@ -35,10 +35,10 @@ class RealTimeProcess {
   int latency_file_ = -1;
 };
 
-/// For the calling thread: scheduling, processor, a stack that is there.
+/// For the calling thread: scheduling, processor, a resident stack.
 void make_thread_real_time(const SystemRequest& request, SystemReport& report);
 
-/// One line an item, "SCHED_FIFO 80: granted".
+/// One line per item, "SCHED_FIFO 80: granted".
 std::string to_text(const SystemReport& report);
 
 }  // namespace loopwright::hw

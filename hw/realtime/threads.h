@@ -1,4 +1,4 @@
-/// Threads of a deployment: none is left to itself, and the device belongs to one at a time.
+/// Threads of a deployment: every one is joined, and one thread at a time uses the device.
 #pragma once
 #include <atomic>
 #include <ctime>
@@ -8,7 +8,7 @@
 
 namespace loopwright::hw {
 
-/// A thread that is told to end and joined, whatever is thrown around it.
+/// A thread that is requested to end and joined, also when an exception is thrown.
 class GuardedThread {
  public:
   GuardedThread(std::function<void()> run, std::function<void()> end)
@@ -25,10 +25,11 @@ class GuardedThread {
   std::thread thread_;
 };
 
-/// The thread that uses the device now; 0: none. After a crash the guardian takes it, and keeps it.
+/// The thread that uses the device now; 0: none. After a crash the guardian takes the device and keeps it.
 class DeviceUser {
  public:
-  /// Uses the device while it lives. Where the guardian has it, the process is about to end: nobody returns.
+  /// The thread uses the device while this object lives. If the guardian has it, the process is about to end,
+  /// and the constructor does not return.
   class Use {
    public:
     explicit Use(DeviceUser& user) : user_(user) {
@@ -42,7 +43,8 @@ class DeviceUser {
    private:
     DeviceUser& user_;
   };
-  /// For the guardian: waits at most so long until the device is free, or its user is the one that crashed.
+  /// For the guardian: waits at most this long until the device is free, or until its user is the crashed
+  /// thread.
   bool take_over(int crashed, int milliseconds) noexcept {
     for (int i = 0; i <= milliseconds; ++i) {
       for (int user : {0, crashed})

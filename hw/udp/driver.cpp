@@ -67,12 +67,12 @@ class UdpDriver final : public Driver {
     return {fmt::format("UDP {}:{}", settings_.address, settings_.port)};
   }
 
-  /// The newest sample; those that it overtook are lost.
+  /// Returns the newest sample; older ones still waiting are lost.
   Status read(RawSample& sample, std::span<double> raw) noexcept override {
     FromDevice packet;
     for (;;) {
       if (const Status status = receive(packet); !status.ok()) return status;
-      if (int32_t(packet.sequence - sequence_) > 0) break;  // else an old one, or an answer
+      if (int32_t(packet.sequence - sequence_) > 0) break;  // otherwise an old sample, or an acknowledgment
     }
     for (FromDevice newer; take(newer);)
       if (int32_t(newer.sequence - packet.sequence) > 0) packet = newer;
@@ -83,17 +83,18 @@ class UdpDriver final : public Driver {
     return status_of(packet);
   }
 
-  /// While the device samples, the next sample is the answer. Before and after, the answer is waited for.
+  /// While the device samples, the next sample is the acknowledgment. Before and after, the call waits for
+  /// one.
   Status write(std::span<const double> raw) noexcept override {
     return is_sampling_ ? send(Request::command, raw) : exchange(Request::command, raw);
   }
-  Status kick() noexcept override { return {}; }  // every command is a sign of life
+  Status kick() noexcept override { return {}; }  // every command reloads the watchdog
   void request_stop() noexcept override {
     const uint64_t one = 1;
     [[maybe_unused]] const ssize_t written = ::write(stop_event_, &one, sizeof one);
   }
 
-  /// Three times, as no answer can be waited for and a packet may be lost.
+  /// Sent three times, because no acknowledgment can be waited for and a packet may be lost.
   void emergency_stop(std::span<const double> safe) noexcept override {
     for (int i = 0; i < 3 && socket_ >= 0; ++i) send(Request::command, safe);
   }
@@ -104,7 +105,7 @@ class UdpDriver final : public Driver {
     [[maybe_unused]] const ssize_t drained = ::read(stop_event_, &ignored, sizeof ignored);
     exchange(Request::stop, {});
   }
-  void disarm() noexcept override {}  // the device's watchdog stays: its values are the safe ones that it has
+  void disarm() noexcept override {}  // the device's watchdog stays armed: its values are the safe ones
   bool watchdog_took_over() noexcept override { return exchange(Request::stop, {}).code == Code::watchdog; }
   void close() noexcept override {
     if (socket_ >= 0) ::close(socket_);
@@ -129,7 +130,7 @@ class UdpDriver final : public Driver {
     return {errno == EAGAIN ? Code::busy : Code::disconnected, errno};
   }
 
-  /// A packet, if one is there.
+  /// Reads a packet if one is available.
   bool take(FromDevice& packet) noexcept {
     while (recv(socket_, &packet, sizeof packet, 0) == sizeof packet)
       if (packet.magic == from_device && packet.channels <= most_channels) return true;
@@ -148,7 +149,7 @@ class UdpDriver final : public Driver {
     }
   }
 
-  /// Sends until it is answered: three times at most, once where the device fell silent before.
+  /// Sends until acknowledged: at most three times, once if the device did not respond before.
   Status exchange(Request request, std::span<const double> raw) noexcept {
     Status status;
     const int attempts = is_silent_ ? 1 : 3;

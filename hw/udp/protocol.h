@@ -1,12 +1,11 @@
-/// What a device that speaks UDP sends and takes: packets of fixed layout, little-endian, one channel list
-/// each way.
+/// Packets to and from a UDP device: fixed layout, little-endian, one channel list in each direction.
 ///
-///   configure  → the device notes safe values and timeout          ← sample with sequence 0
+///   configure  → the device stores safe values and timeout         ← sample with sequence 0
 ///   start      → a sample every period, numbered from 1            ← sample, sample, …
-///   command    → outputs, and the sign of life of its watchdog
+///   command    → outputs, and reload of its watchdog
 ///   stop       → no more samples; commands are still answered      ← sample for every command from then on
 ///
-/// Every packet to the device has a number; every sample tells the last number that took effect.
+/// Every packet to the device has a number; every sample contains the last number that took effect.
 #pragma once
 #include <cstdint>
 
@@ -25,7 +24,7 @@ struct ToDevice {
   uint32_t channels = 0;
   double period_s = 0;             ///< of start
   double timeout_s = 0;            ///< of configure; 0: no watchdog
-  double raw[most_channels] = {};  ///< outputs; of configure: the safe ones
+  double raw[most_channels] = {};  ///< outputs; with configure: the safe ones
 };
 
 struct FromDevice {

@@ -1,4 +1,4 @@
-/// Devices that speak UDP: a microcontroller, a rapid-control computer, another program. The example of how
+/// Devices connected by UDP: a microcontroller, a rapid-control computer, another program. An example of how
 /// to add hardware (docs/hardware.md).
 #pragma once
 #include "hw/device/driver.h"

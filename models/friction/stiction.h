@@ -1,15 +1,15 @@
-/// Dry friction that really holds: which way the parts slide, and what force holds them while they stick.
+/// Dry friction with true sticking: the direction of sliding, and the force that holds the parts while they
+/// stick.
 ///
-/// Three pieces, held while a solver integrates: sliding forward (direction 1), sliding backward (-1), stuck
-/// (0). A piece ends where `margin` falls through zero: sliding, when the velocity comes to zero; stuck, when
-/// the force to be held passes the breakaway force. At zero velocity the parts stick unless they are pushed
-/// harder than that; no velocity has to be guessed at which "zero" begins, and there is nothing that could
-/// chatter.
+/// There are three modes, constant during integration: sliding forward (direction 1), sliding backward (-1),
+/// stuck (0). A mode ends where `margin` falls through zero. Sliding ends when the velocity reaches zero.
+/// Sticking ends when the force to be held exceeds the breakaway force. At zero velocity the parts stick
+/// unless they are pushed harder than that. The law needs no velocity threshold and does not chatter.
 ///
-/// While stuck, friction takes up the other forces and in addition settling·v, at most the breakaway force:
-/// the velocity that is left over from the last step decays with time constant mass/settling instead of a
-/// drift for ever. Karnopp (1985), "Computer Simulation of Stick-Slip Friction", has the same pieces with a
-/// band of velocities.
+/// While stuck, friction balances the other forces and adds settling·v, in total at most the breakaway force.
+/// The velocity that remains from the last step therefore decays with time constant mass/settling, so that
+/// there is no lasting drift. Karnopp (1985), "Computer Simulation of Stick-Slip Friction", uses the same
+/// modes with a velocity band.
 #pragma once
 #include "models/real/real.h"
 
@@ -23,13 +23,13 @@ template <Scalar Real> struct Stiction {
   LW_INLINE Real holding_force(const Real& velocity, const Real& applied) const {
     return minimum(maximum(applied + settling * velocity, -backward), forward);
   }
-  /// Which way the parts slide from now on: 1, -1, or 0 when stuck.
+  /// The direction of sliding from now on: 1, -1, or 0 when stuck.
   LW_INLINE Real next_direction(const Real& direction, const Real& velocity, const Real& applied) const {
-    const Real carried = breaks_away(settling * velocity);  // too fast to be caught
+    const Real carried = breaks_away(settling * velocity);  // too fast to be held
     const Real at_rest = select(carried == 0.0, breaks_away(applied), carried);
     return select(direction * velocity > 0.0, direction, at_rest);
   }
-  /// Positive inside a piece; falls through zero where it ends.
+  /// Positive inside a mode; falls through zero at its end.
   LW_INLINE Real margin(const Real& direction, const Real& velocity, const Real& applied) const {
     const Real carried = settling * velocity;
     const Real held = minimum(forward - maximum(applied, carried), backward + minimum(applied, carried));

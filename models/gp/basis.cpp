@@ -10,9 +10,10 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr int most_terms = 1 << 20;  // of a series: lengths of 1e-5 periods need no more
+constexpr int most_terms = 1 << 20;  // terms of a series: enough for lengths of 1e-5 periods
 
-/// I_j(z)/I_{j-1}(z) for j = 1 … count, by its continued fraction from far beyond: stable, never overflows.
+/// I_j(z)/I_{j-1}(z) for j = 1 … count, by the continued fraction started at a large order: stable, never
+/// overflows.
 std::vector<double> bessel_ratios(double z, int count) {
   std::vector<double> ratio(size_t(count) + 1, 0.0);
   double next = 0;
@@ -25,7 +26,7 @@ std::vector<double> bessel_ratios(double z, int count) {
 
 /// e^(-z) I_j(z), j = 0 … count.
 std::vector<double> scaled_bessel(double z, int count) {
-  const int enough = count + whole_between(std::sqrt(80 * z), 0, most_terms) + 20;  // so far the sum below needs its terms
+  const int enough = count + whole_between(std::sqrt(80 * z), 0, most_terms) + 20;  // orders summed below
   const std::vector<double> ratio = bessel_ratios(z, enough);
   double sum = 0, product = 1;
   for (int j = 1; j <= enough; ++j) sum += product *= ratio[size_t(j)];
@@ -47,8 +48,7 @@ int size_for(const Basis& basis, double length) {
     return 2 * j + 1;
   }
   if (basis.kind == Basis::Kind::chebyshev) {
-    // The spectrum of exp(-r²/(2ℓ²)) has fallen to 1e-15 at 8.3/ℓ, and T_n resolves n rad on half the
-    // interval.
+    // The spectrum of exp(-r²/(2ℓ²)) has fallen to 1e-15 at 8.3/ℓ. T_n resolves n rad on half the interval.
     const double needed = 8.3 * 0.5 * (basis.high - basis.low) / length + 14;
     return whole_between(std::ceil(needed / 4), 1, most_terms / 4) * 4;
   }
@@ -137,7 +137,7 @@ void moment_functions(const Basis& basis, std::span<const double> values, int co
 
 namespace {
 
-/// cos or sin of harmonic |j| as a moment, with the sign of sin.
+/// Adds cos or sin of harmonic |j| as a moment, with the sign of the sine.
 void add(Pairing& pairing, bool is_sine, int harmonic, double weight) {
   if (is_sine && harmonic == 0) return;
   const int j = std::abs(harmonic);

@@ -1,5 +1,6 @@
-/// Gaussian-process regression with the whole covariance matrix: O(N³) once, O(N) a mean, O(N²) a variance.
-/// The reference for the structured way, and the way out where that does not apply.
+/// Gaussian-process regression with the full covariance matrix: O(N³) once, O(N) per mean, O(N²) per
+/// variance. It is the reference for the structured method, and the fallback where that method does not
+/// apply.
 #pragma once
 #include "models/gp/kernel.h"
 
@@ -14,9 +15,9 @@ class DensePosterior {
   /// Throws std::domain_error when K + σ_n² I is not positive definite in double precision.
   DensePosterior(Kernel kernel, const Samples& samples);
   double mean(const Point& at) const;
-  /// Of the function, without the noise of an observation; never below 0.
+  /// Variance of the function, without the observation noise; never below 0.
   double variance(const Point& at) const;
-  /// What one term contributes to the mean.
+  /// The contribution of one term to the mean.
   Jet term(size_t index, const Point& at) const;
   /// ‖f_t‖ σ_t, see derivative_bound(); O(N²).
   double term_norm(size_t index) const;

@@ -10,7 +10,7 @@
 namespace loopwright::gp {
 namespace {
 
-/// What NLopt minimises: -(log evidence + log prior) over the logarithms of the parameters.
+/// The function that NLopt minimizes: -(log evidence + log prior) over the logarithms of the parameters.
 struct Objective {
   const EvidenceFunction& evidence;
   const Kernel& kernel;
@@ -20,7 +20,7 @@ struct Objective {
   std::vector<double> best_parameters;
   double scale = 1;
   int evaluations = 0;
-  std::exception_ptr failure;  // must not pass through NLopt, which is C
+  std::exception_ptr failure;  // NLopt is C: exceptions must not pass through it
 
   double operator()(std::span<const double> logarithms, double* gradient) {
     ++evaluations;
@@ -61,7 +61,7 @@ Fit fit(const EvidenceFunction& evidence, const Kernel& from, std::span<const Pr
     high.push_back(natural_logarithm(priors[i].high));
     x[i] = std::clamp(natural_logarithm(x[i]), low[i], high[i]);
   }
-  // SLSQP's first step is the gradient itself, which is 10⁶ for 10⁶ samples: scaled to 1.
+  // The first step of SLSQP is the gradient itself, about 10⁶ for 10⁶ samples. It is scaled to 1.
   std::vector<double> slope(x.size());
   objective(x, slope.data());
   double steepest = 1;
@@ -86,7 +86,7 @@ Fit fit(const EvidenceFunction& evidence, const Kernel& from, std::span<const Pr
   nlopt_set_lower_bounds(search.get(), low.data());
   nlopt_set_upper_bounds(search.get(), high.data());
   nlopt_set_ftol_abs(search.get(), options.tolerance * objective.scale);
-  nlopt_set_ftol_rel(search.get(), 1e-13);  // rounding
+  nlopt_set_ftol_rel(search.get(), 1e-13);  // limit set by rounding
   nlopt_set_maxeval(search.get(), options.most_evaluations);
   double least = 0;
   const nlopt_result result = nlopt_optimize(search.get(), x.data(), &least);
@@ -101,8 +101,7 @@ std::vector<Prior> default_priors(const Kernel& kernel, const DataScale& scale) 
   const double s = scale.label_deviation;
   std::vector<Prior> priors;
   const auto add = [&](double median, double log_deviation, double low = 0) {
-    // Long lengths and large deviations are harmless, as the prior keeps them in check; short lengths are
-    // not.
+    // Long lengths and large deviations are harmless, as the prior limits them. Short lengths are not.
     priors.push_back({median, log_deviation, std::max(low, median * exponential(-4 * log_deviation)),
                       median * exponential(8 * log_deviation)});
   };
@@ -115,7 +114,7 @@ std::vector<Prior> default_priors(const Kernel& kernel, const DataScale& scale) 
       add(scale.velocity_range / 3, 0.5, scale.velocity_step);
   }
   add(0.3 * s, 0.7);
-  // Noise may be much smaller than the labels when these were filtered.
+  // Noise may be much smaller than the labels if these were filtered.
   priors.back().low = std::min(priors.back().low, 1e-3 * s);
   for (Prior& prior : priors) prior.high = std::max(prior.high, 2 * prior.low);
   return priors;

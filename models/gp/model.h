@@ -1,4 +1,4 @@
-/// A learned disturbance d(x, v): what a model file holds, and predictions from it.
+/// A learned disturbance d(x, v): the contents of a model file, and predictions from it.
 #pragma once
 #include <variant>
 #include "models/gp/dense.h"
@@ -11,15 +11,15 @@ struct Range {
   double clamp(double x) const { return x < low ? low : x > high ? high : x; }
 };
 
-/// Inputs and labels are in SI units.
+/// A trained model. Inputs and labels are in SI units.
 struct Model {
   Kernel kernel;
-  double label_mean = 0;     ///< taken out of the labels before the regression
-  double homing_offset = 0;  ///< position reading at the origin of the model; taken out of positions
-  double label_lag = 0;      ///< s: labels were moved ahead by this before training
+  double label_mean = 0;     ///< subtracted from the labels before the regression
+  double homing_offset = 0;  ///< position reading at the origin of the model; subtracted from positions
+  double label_lag = 0;      ///< s: labels were advanced by this before training
   std::array<Range, 2> trained;
-  /// What the samples said: sums where the kernel has structure, else the samples themselves, without mean
-  /// and offset.
+  /// The training data: statistics if the kernel has structure, otherwise the samples themselves, without
+  /// mean and offset.
   std::variant<Statistics, Samples> data;
 };
 
@@ -28,9 +28,9 @@ class Posterior {
  public:
   /// Throws std::domain_error when a dense covariance matrix is not positive definite.
   explicit Posterior(const Model& model);
-  /// Label mean included.
+  /// Posterior mean, label mean included.
   double mean(const Point& at) const;
-  /// Of the function, without the noise of an observation.
+  /// Variance of the function, without the observation noise.
   double variance(const Point& at) const;
 
   const std::vector<Term>& terms() const { return terms_; }

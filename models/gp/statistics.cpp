@@ -10,7 +10,7 @@ using Eigen::MatrixXd;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 constexpr const char* input_names[] = {"position", "velocity"};
 
-/// The distinct values along an input, rising; nothing when there are more than `most_levels`.
+/// The distinct values along an input, ascending; nothing if there are more than `most_levels`.
 std::vector<double> distinct(const Samples& samples, size_t input) {
   std::vector<double> values;
   double last = samples.inputs[0][input] + 1;
@@ -25,7 +25,7 @@ std::vector<double> distinct(const Samples& samples, size_t input) {
   return values;
 }
 
-/// The basis that serves every term along an input.
+/// A basis that serves every term along an input.
 std::optional<Basis> choose(const Kernel& kernel, size_t input, double shortest, const Samples& samples,
                             std::string& why_not) {
   Basis basis;
@@ -56,12 +56,13 @@ std::optional<Basis> choose(const Kernel& kernel, size_t input, double shortest,
   return basis;
 }
 
-/// How many rows or columns of moments the features themselves need (with the constant for levels).
+/// The number of rows or columns of moments that the features themselves need (for levels including the
+/// constant).
 int feature_count(const Basis& basis) {
   return basis.kind == Basis::Kind::levels ? basis.size + 1 : basis.size;
 }
 
-/// Adds up in parts, each of samples with the same level where the velocity has levels.
+/// Adds up in parts. Where the velocity has levels, each part has samples of one level.
 class Summation {
  public:
   Summation(Statistics& to, const Samples& samples)
@@ -131,7 +132,7 @@ double resolved_length(const Basis& basis) {
   if (basis.kind != Basis::Kind::chebyshev && basis.kind != Basis::Kind::fourier) return 0;
   if (basis.kind == Basis::Kind::chebyshev)
     return 8.3 * 0.5 * (basis.high - basis.low) / std::max(basis.size - 14, 1);
-  double low = 1e-3, high = 1e3;  // size_for falls with the length: bisection
+  double low = 1e-3, high = 1e3;  // size_for decreases with the length: bisection
   for (int i = 0; i < 60; ++i) {
     const double middle = std::sqrt(low * high);
     (size_for(basis, middle) > basis.size ? low : high) = middle;

@@ -19,7 +19,7 @@ Basis basis_of(const Statistics& statistics, const Shape& shape, size_t input) {
   return cut(statistics.bases[input], shape.length);
 }
 
-/// L with L Lᵀ = K to rounding, of as few columns as that takes (pivoted Cholesky).
+/// L with L Lᵀ = K to rounding, with as few columns as necessary (pivoted Cholesky).
 MatrixXd low_rank_root(MatrixXd k) {
   const Index n = k.rows();
   MatrixXd root = MatrixXd::Zero(n, n);
@@ -36,7 +36,8 @@ MatrixXd low_rank_root(MatrixXd k) {
   return root;
 }
 
-/// Correlation and its slope by log ℓ between the functions of a basis; a diagonal is a single column.
+/// Correlation and its derivative with respect to log ℓ between the functions of a basis. A diagonal matrix
+/// is a single column.
 struct AxisMatrix {
   bool diagonal = true;
   MatrixXd value, slope, root;
@@ -66,7 +67,7 @@ AxisMatrix axis_matrix(const Basis& basis, const Shape& shape) {
   return result;
 }
 
-/// S_t = σ² K₀ ⊗ K₁ over the features (a₀, a₁), a₁ running fastest, which begin at `begin`.
+/// S_t = σ² K₀ ⊗ K₁ over the features (a₀, a₁), a₁ varying fastest. The features begin at `begin`.
 struct TermMatrix {
   double deviation;
   std::array<AxisMatrix, 2> axis;
@@ -76,7 +77,7 @@ struct TermMatrix {
   bool diagonal() const { return axis[0].diagonal && axis[1].diagonal; }
 };
 
-/// X (R₀ ⊗ R₁) for X with as many columns as the term has features.
+/// X (R₀ ⊗ R₁). X has as many columns as the term has features.
 MatrixXd times_axes(const TermMatrix& term, const MatrixXd& x) {
   const auto& [first, second] = term.axis;
   const Index n0 = first.size(), n1 = second.size(), r0 = first.rank(), r1 = second.rank();
@@ -102,12 +103,12 @@ MatrixXd times_axes(const TermMatrix& term, const MatrixXd& x) {
 /// The features and labels of the statistics for one choice of sizes: G = ΦᵀΦ and b = Φᵀy.
 struct Gram {
   std::vector<std::array<Basis, 2>> bases;  ///< of each term
-  std::vector<Index> begin;                 ///< where its features begin; last: how many there are
+  std::vector<Index> begin;                 ///< first feature of each term; last: number of features
   MatrixXd g;
   VectorXd b;
 };
 
-/// Turns features T_k into the cardinal functions of the Chebyshev nodes, for the rows of one term.
+/// Transforms features T_k into the cardinal functions of the Chebyshev nodes, for the rows of one term.
 void to_nodes(MatrixXd& x, Index begin, const std::array<Basis, 2>& bases) {
   const Index n0 = bases[0].size, n1 = bases[1].size;
   for (size_t d = 0; d < 2; ++d) {
@@ -129,7 +130,7 @@ void to_nodes(MatrixXd& x, Index begin, const std::array<Basis, 2>& bases) {
   }
 }
 
-/// The place of a feature in the row or column of moments that belongs to its axis; constants stand as -1.
+/// The index of a feature in the row or column of moments of its axis; -1 for constants.
 int place(const Basis& of_term, Index feature) {
   return of_term.kind == Basis::Kind::constant ? -1 : int(feature);
 }
@@ -187,7 +188,7 @@ std::vector<std::array<Basis, 2>> bases_of(const Statistics& statistics, const K
   return bases;
 }
 
-/// What evidence and posterior have in common, at one kernel.
+/// The quantities that evidence and posterior share, for one kernel.
 struct Solution {
   Solution(const Statistics& statistics, const Gram& gram, const Kernel& kernel);
 
@@ -237,7 +238,7 @@ Solution::Solution(const Statistics& statistics, const Gram& gram, const Kernel&
   trace = (double(statistics.count) - double(rank) + inverse_diagonal.sum()) / noise_square;
 }
 
-/// Σ Z∘(X₀ ⊗ X₁) over one term, where one factor is a slope.
+/// Σ Z∘(X₀ ⊗ X₁) over one term, where one factor is a derivative.
 double contracted(const Solution& solution, const MatrixXd& g, const TermMatrix& term, const MatrixXd& x0,
                   const MatrixXd& x1) {
   const Index n0 = term.axis[0].size(), n1 = term.axis[1].size();
@@ -348,7 +349,7 @@ StructuredPosterior::StructuredPosterior(const Kernel& kernel, const Statistics&
 
 double StructuredPosterior::mean(const Point& at) const {
   double sum = 0;
-  thread_local std::vector<double> x, v;  // a step of a run does not allocate
+  thread_local std::vector<double> x, v;  // avoids allocation during the steps of a run
   for (const TermFeatures& term : terms_) {
     x.resize(term.size(0)), v.resize(term.size(1));
     correlations(term, 0, at[0], x.data());
@@ -377,7 +378,7 @@ double StructuredPosterior::variance(const Point& at) const {
       for (const double d : v) seen(i++) = term.variance * c * d;
   }
   const Eigen::Map<const MatrixXd> z(precision_.data(), i, i);
-  double explained = 0;  // by columns below the diagonal: half of the work
+  double explained = 0;  // by columns below the diagonal: half the operations
   for (Index j = 0; j < i; ++j)
     explained += seen(j) * (z(j, j) * seen(j) + 2 * z.col(j).tail(i - j - 1).dot(seen.tail(i - j - 1)));
   return std::max(0.0, prior_ - explained);

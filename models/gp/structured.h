@@ -2,8 +2,8 @@
 ///
 /// With features Φ (N×m) and a kernel K = Φ S Φᵀ, S = L Lᵀ, everything follows from G = ΦᵀΦ and b = Φᵀy by
 /// the matrix inversion and determinant lemmas (Rasmussen, Williams 2006, appendix A.3):
-///   B = I + LᵀGL/σ_n²,   log|K + σ_n² I| = N log σ_n² + log|B|,   Φᵀ(K + σ_n² I)⁻¹Φ = (G - GL
-///   B⁻¹LᵀG/σ_n²)/σ_n²
+///   B = I + LᵀGL/σ_n²,   log|K + σ_n² I| = N log σ_n² + log|B|,
+///   Φᵀ(K + σ_n² I)⁻¹Φ = (G - GL B⁻¹LᵀG/σ_n²)/σ_n²
 #pragma once
 #include <memory>
 #include "models/gp/statistics.h"
@@ -11,12 +11,12 @@
 
 namespace loopwright::gp {
 
-/// Evaluates one set of statistics at many hyper-parameters.
+/// Evaluates one set of statistics for many hyper-parameters.
 class StructuredEvidence {
  public:
   explicit StructuredEvidence(const Statistics& statistics);
   ~StructuredEvidence();
-  /// As dense_evidence(). The kernel has the structure that the statistics were made for.
+  /// See dense_evidence(). The kernel must have the structure for which the statistics were made.
   Evidence operator()(const Kernel& kernel);
 
  private:
@@ -28,7 +28,7 @@ class StructuredPosterior {
  public:
   StructuredPosterior(const Kernel& kernel, const Statistics& statistics);
   double mean(const Point& at) const;
-  /// Of the function, without the noise of an observation; never below 0.
+  /// Variance of the function, without the observation noise; never below 0.
   double variance(const Point& at) const;
   /// As in DensePosterior.
   Jet term(size_t index, const Point& at) const;

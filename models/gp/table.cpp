@@ -22,7 +22,7 @@ bool MeanTable::Axis::find(double value, int& cell, double& place) const {
   } else if (!(at >= 0 && at <= cells)) {
     return false;
   }
-  cell = whole_between(at, 0, cells - 1);  // of a NaN the first; the NaN stays in the place
+  cell = whole_between(at, 0, cells - 1);  // the first cell for NaN; `place` stays NaN
   place = at - cell;
   return true;
 }
@@ -37,7 +37,7 @@ double MeanTable::TermTable::along_one(const Point& at) const {
 }
 
 namespace {
-/// Weights of f(0), f(1), h f'(0), h f'(1) at place s of a cubic Hermite piece.
+/// Weights of f(0), f(1), h f'(0), h f'(1) at position s of a cubic Hermite piece.
 std::array<double, 4> hermite(double s) {
   const double t = 1 - s;
   return {t * t * (1 + 2 * s), s * s * (1 + 2 * t), t * t * s, -s * s * t};
@@ -80,7 +80,7 @@ MeanTable::TermTable MeanTable::tabulate(const Posterior& posterior, size_t inde
       axis.high = posterior.trained()[d].high + margin;
       bound_ += tail * reach;
     }
-    // Half the tolerance for the interpolation, shared by the axes of a pair.
+    // Half the tolerance for the interpolation; the two axes of a pair share it.
     const double curvature = norm * derivative_bound(shape, 4) * (is_pair ? 2 : 1);
     const double step = any_power(384 * 0.5 * tolerance / std::max(curvature, 1e-300), 0.25);
     const double cells = std::ceil((axis.high - axis.low) / step);
@@ -140,7 +140,7 @@ MeanTable::MeanTable(const Posterior& posterior, double tolerance) : constant_(p
     else
       constant_ += posterior.term(t, {0, 0})[0];
   }
-  bound_ += 1e-10 * size;  // rounding, mostly of sums of large coefficients of both signs
+  bound_ += 1e-10 * size;  // rounding, mainly from sums of large coefficients of both signs
 }
 
 size_t MeanTable::bytes() const {
@@ -151,8 +151,8 @@ size_t MeanTable::bytes() const {
 }
 
 SlopeBounds slope_bounds(const Posterior& posterior) {
-  // Each term alone, over its period or interval; the sum over terms is an upper bound and, as terms of one
-  // structure see one input each, close to the truth.
+  // Each term separately, over its period or interval. The sum over terms is an upper bound. It is tight, as
+  // terms of one structure depend on one input each.
   SlopeBounds total;
   total.mean = std::abs(posterior.label_mean());
   for (size_t t = 0; t < posterior.terms().size(); ++t) {
@@ -180,7 +180,7 @@ SlopeBounds slope_bounds(const Posterior& posterior) {
         seen.by_velocity = std::max(seen.by_velocity, std::abs(jet[2]));
       }
     const double norm = posterior.term_norm(t);
-    const auto beyond = [&](int a, int b) {  // what ∂ᵃ∂ᵇf may grow by between a point and the next node
+    const auto beyond = [&](int a, int b) {  // largest change of ∂ᵃ∂ᵇf from a point to its nearest node
       const double by_x = derivative_bound(term.along[0], a + 1) * derivative_bound(term.along[1], b);
       const double by_v = derivative_bound(term.along[0], a) * derivative_bound(term.along[1], b + 1);
       return 0.5 * norm *

@@ -1,10 +1,10 @@
-/// The posterior mean as tables of cubic Hermite pieces: a few nanoseconds a prediction, with a bound on the
-/// error that holds everywhere.
+/// The posterior mean as tables of cubic Hermite pieces: a few nanoseconds per prediction, with an error
+/// bound that holds everywhere.
 ///
-/// Each term of the kernel gets a table over the inputs that it looks at: a period or an interval along the
-/// position, an interval along the velocity. A term's mean f lies in the Hilbert space of its kernel, so
-/// |∂ᵃ∂ᵇf| ≤ ‖f‖ σ √(c₀⁽²ᵃ⁾(0) c₁⁽²ᵇ⁾(0)), and a cubic Hermite piece of width h is off by at most
-/// h⁴/384 max|f⁗|. Beyond an interval a term is taken as zero; |f| ≤ σ² Σ|w_i| c(distance) bounds that.
+/// Each term of the kernel has a table over the inputs on which it depends: a period or an interval along the
+/// position, an interval along the velocity. The mean f of a term lies in the Hilbert space of its kernel, so
+/// |∂ᵃ∂ᵇf| ≤ ‖f‖ σ √(c₀⁽²ᵃ⁾(0) c₁⁽²ᵇ⁾(0)). The error of a cubic Hermite piece of width h is at most h⁴/384
+/// max|f⁗|. Outside its interval a term is taken as zero; |f| ≤ σ² Σ|w_i| c(distance) bounds this error.
 /// Steinwart, Christmann, Support Vector Machines, 2008, corollary 4.36; Davis, Interpolation and
 /// Approximation, 1975, theorem 3.5.1.
 #pragma once
@@ -14,7 +14,7 @@ namespace loopwright::gp {
 
 class MeanTable {
  public:
-  /// `tolerance` in the unit of the labels; 0: a millionth of the kernel's prior deviation.
+  /// `tolerance` in the unit of the labels; 0: a millionth of the prior deviation of the kernel.
   explicit MeanTable(const Posterior& posterior, double tolerance = 0);
 
   double operator()(const Point& at) const {
@@ -23,7 +23,7 @@ class MeanTable {
       sum += table.is_flat() ? table.along_one(at) : table.along_both(at);
     return sum;
   }
-  /// |table - Posterior::mean| is nowhere greater: interpolation, cut-off tails and rounding.
+  /// Upper bound of |table - Posterior::mean| everywhere: interpolation, cut-off tails and rounding.
   double bound() const { return bound_; }
   size_t bytes() const;
 
@@ -32,13 +32,13 @@ class MeanTable {
     bool is_seen = false, wraps = false;
     double low = 0, high = 0, step = 1, per_step = 1;
     int cells = 1;
-    /// The cell of a value and the place in it, 0 … 1; false beyond the interval.
+    /// The cell of a value and the position in it, 0 … 1; false outside the interval.
     bool find(double value, int& cell, double& place) const;
   };
   struct TermTable {
     std::array<Axis, 2> axis;
-    std::vector<Jet> nodes;                     ///< both inputs: rows of velocities
-    std::vector<std::array<double, 4>> pieces;  ///< one input: polynomial in the place
+    std::vector<Jet> nodes;                     ///< two inputs: rows of velocities
+    std::vector<std::array<double, 4>> pieces;  ///< one input: polynomial in the position in the cell
     bool is_flat() const { return nodes.empty(); }
     double along_one(const Point& at) const;
     double along_both(const Point& at) const;
@@ -49,8 +49,8 @@ class MeanTable {
   std::vector<TermTable> tables_;
 };
 
-/// Greatest slopes of the mean over the trained velocities and all positions, as upper bounds: those seen
-/// on a grid plus what the curvature allows in between.
+/// Upper bounds of the slopes of the mean over the trained velocities and all positions: the largest values
+/// on a grid plus the largest change between grid points according to the curvature.
 struct SlopeBounds {
   double by_position = 0;  ///< label unit per m
   double by_velocity = 0;  ///< label unit per m/s

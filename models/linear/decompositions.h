@@ -1,5 +1,5 @@
-/// Decompositions of dense matrices, compiled once for all: each costs a compiler ten to twenty seconds a
-/// file.
+/// Decompositions of dense matrices, compiled in one place: each takes ten to twenty seconds of compile time
+/// in a file.
 #pragma once
 #include <Eigen/Core>
 
@@ -12,7 +12,7 @@ struct Eigensystem {
 };
 Eigensystem eigensystem(const Eigen::MatrixXd& A);
 
-/// The same values without their vectors, for half of the work.
+/// The eigenvalues without the vectors, for half the cost.
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A);
 
 /// A = U T U*, T upper triangular, U unitary.
@@ -24,7 +24,7 @@ Triangularised triangularised(const Eigen::MatrixXd& A);
 /// Zero for an empty matrix.
 double largest_singular_value(const Eigen::MatrixXcd& G);
 
-/// Moore and Penrose's.
+/// The Moore-Penrose pseudo-inverse.
 Eigen::MatrixXcd pseudo_inverse(const Eigen::MatrixXcd& A);
 
 }  // namespace loopwright

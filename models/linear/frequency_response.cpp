@@ -68,8 +68,8 @@ std::vector<double> interesting_frequencies(const StateSpace& system, int count,
   const auto is_seen = [&](const Pole& pole) {
     return pole.frequency < nyquist && std::isfinite(pole.frequency);
   };
-  // Integrators stand at 0 but for rounding, of which several in a row leave a root: their loop crosses
-  // above.
+  // The poles of integrators are at 0 except for rounding. Several integrators in series give a root of the
+  // rounding error. Their loop crosses over above it.
   const double rounding =
       1e-5 * (is_sampled ? lifted / system.sample_time : largest_entry(balanced(system).A));
   for (const Pole& pole : all)

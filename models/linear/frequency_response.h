@@ -1,20 +1,20 @@
-/// How a linear system answers sines.
+/// Frequency responses of linear systems.
 #pragma once
 #include "models/linear/state_space.h"
 
 namespace loopwright {
 
-/// G at s = jω of a continuous system, its delays exact, or at z = e^(jωT) of a sampled one. After one
-/// reduction to triangular form every frequency costs n² operations.
+/// G at s = jω of a continuous system, with exact delays, or at z = e^(jωT) of a sampled one. One reduction
+/// to triangular form; then each frequency costs n² operations.
 ///
-/// A system of `lifted` samples in a period answers a sine with that sine and others, folded at the period:
-/// what is given is the share of the sine itself.
+/// A system of `lifted` samples in a period responds to a sine with this sine and with others, folded at the
+/// period. The result is the component at the frequency of the input.
 class FrequencyResponse {
  public:
   explicit FrequencyResponse(const StateSpace& system, int lifted = 1);
   /// Outputs by inputs; `frequency` in rad/s.
   Eigen::MatrixXcd at(double frequency) const;
-  /// The largest frequency that samples can tell from smaller ones, rad/s; infinity for a continuous system.
+  /// The Nyquist frequency, rad/s; infinity for a continuous system.
   double nyquist() const;
 
  private:
@@ -24,8 +24,8 @@ class FrequencyResponse {
   Eigen::MatrixXcd T_, B_, C_;
 };
 
-/// `count` frequencies (rad/s), equally spaced in their logarithm from a decade below the slowest pole to a
-/// decade above the fastest, or to Nyquist's, and more of them around every lightly damped pole.
+/// `count` frequencies (rad/s), spaced logarithmically from a decade below the slowest pole to a decade above
+/// the fastest, or to the Nyquist frequency, and more of them around every lightly damped pole.
 std::vector<double> interesting_frequencies(const StateSpace& system, int count, int lifted = 1);
 
 }  // namespace loopwright

@@ -12,7 +12,7 @@ using Complex = std::complex<double>;
 using std::numbers::pi;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// Where f changes its sign between a and b.
+/// The zero of f between a and b, where its sign changes.
 template <class F> double root(F&& f, double a, double b) {
   const bool rises = f(a) < 0;
   for (int i = 0; i < 60; ++i) {
@@ -22,7 +22,7 @@ template <class F> double root(F&& f, double a, double b) {
   return 0.5 * (a + b);
 }
 
-/// Where f is largest between a and b, one hill assumed.
+/// The maximum of f between a and b, assumed unimodal.
 template <class F> double summit(F&& f, double a, double b) {
   constexpr double golden = 0.6180339887498949;
   double c = b - golden * (b - a), d = a + golden * (b - a);
@@ -51,7 +51,7 @@ class MarginSearch {
         add_crossover(m, root([&](double f) { return std::abs(L(f)) - 1; }, a, b));
       add_sensitivity(m, b);
     }
-    if (std::isfinite(response_.nyquist())) add_real(m, response_.nyquist());  // real there by itself
+    if (std::isfinite(response_.nyquist())) add_real(m, response_.nyquist());  // always real there
     refine_peak(m);
   }
 
@@ -67,7 +67,7 @@ class MarginSearch {
     if (factor < 1 && factor > m.lower_gain) m.lower_gain = factor, m.lower_gain_frequency = frequency;
   }
   void add_crossover(Margins& m, double frequency) {
-    const double above = pi + std::arg(L(frequency));  // 0 … 2π: the lag that is left
+    const double above = pi + std::arg(L(frequency));  // 0 … 2π: the remaining phase lag
     const double phase = std::min(above, 2 * pi - above);
     if (phase < m.phase) m.phase = phase, m.phase_frequency = frequency;
     if (above / frequency < m.delay) m.delay = above / frequency, m.delay_frequency = frequency;

@@ -64,8 +64,8 @@ std::vector<double> frequencies_at(const StateSpace& s, double level) {
   return found;
 }
 
-/// A gain whose sum would take longer is given up as soon as its decay shows that: looked at every so many
-/// samples.
+/// Sums that would take more samples are abandoned. The decay of the response is checked once per
+/// `look_ahead` samples to detect this early.
 constexpr long most_samples = 20'000'000, look_ahead = 64 * 4096;
 
 }  // namespace

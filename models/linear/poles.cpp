@@ -13,8 +13,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Complex = std::complex<double>;
 
-/// Powers of two d so that diag(d)⁻¹ A diag(d) has rows and columns of like sums, `more` rows and columns
-/// counted too (B. N. Parlett, C. Reinsch, Numerische Mathematik 13, 1969).
+/// Powers of two d such that the rows and columns of diag(d)⁻¹ A diag(d) have similar sums, including the
+/// rows and columns `more` (B. N. Parlett, C. Reinsch, Numerische Mathematik 13, 1969).
 std::vector<double> balancing_scales(MatrixXd A, MatrixXd more_columns, MatrixXd more_rows) {
   const Index n = A.rows();
   std::vector<double> scale(size_t(n), 1.0);
@@ -42,7 +42,7 @@ Pole pole_at(Complex value, double sample_time) {
   pole.continuous = sample_time > 0 ? std::log(value) / sample_time : value;
   pole.frequency = std::abs(pole.continuous);
   const bool forgets_at_once =
-      std::abs(value) < 1e-6;  // a few rounding errors, their root for chains of delays
+      std::abs(value) < 1e-6;  // a few rounding errors, or their root for chains of delays
   if (sample_time > 0 && forgets_at_once) pole.frequency = std::numeric_limits<double>::infinity();
   if (std::isfinite(pole.frequency) && pole.frequency > 0)
     pole.damping = -pole.continuous.real() / pole.frequency;
@@ -66,8 +66,8 @@ std::vector<Pole> poles(const StateSpace& system) {
   if (n == 0) return {};
   StateSpace alone{system.A, MatrixXd::Zero(n, 0), MatrixXd::Zero(0, n), {}, system.sample_time, {}};
   const auto [values, right] = eigensystem(balanced(alone).A);
-  // Defective matrices, such as a chain of delays, have no inverse of the eigenvectors: the pseudo-inverse
-  // then.
+  // The eigenvector matrix of a defective matrix, such as a chain of delays, has no inverse. The
+  // pseudo-inverse is used then.
   const Eigen::MatrixXcd left = pseudo_inverse(right);
   std::vector<Pole> result;
   for (Index k = 0; k < n; ++k) {
@@ -99,7 +99,7 @@ bool is_stable(const StateSpace& system) {
 
 namespace {
 
-/// Removes what a D without full row rank hides, until it has full row rank: the zeros stay.
+/// Reduces the system until D has full row rank; the zeros do not change.
 StateSpace with_full_row_rank(StateSpace s, double tolerance) {
   for (;;) {
     const Index n = s.states(), m = s.B.cols(), p = s.C.rows();
@@ -109,19 +109,19 @@ StateSpace with_full_row_rank(StateSpace s, double tolerance) {
     for (Index i = 0; i < of_D.singularValues().size(); ++i) rank += of_D.singularValues()[i] > tolerance;
     if (m == 0) rank = 0;
     if (rank == p) return s;
-    // Rotate the outputs: the last p - rank see no input at once.
+    // Rotate the outputs: the last p - rank have no direct feedthrough.
     const MatrixXd U = m == 0 ? MatrixXd(MatrixXd::Identity(p, p)) : MatrixXd(of_D.matrixU());
     const MatrixXd C = U.transpose() * s.C, D = U.transpose() * s.D;
     const MatrixXd hidden = C.bottomRows(p - rank);
     const Eigen::JacobiSVD<MatrixXd> of_C(hidden, Eigen::ComputeFullV);
     Index seen = 0;
     for (Index i = 0; i < of_C.singularValues().size(); ++i) seen += of_C.singularValues()[i] > tolerance;
-    if (seen == 0) {  // those outputs are zero always
+    if (seen == 0) {  // those outputs are always zero
       s.C = C.topRows(rank), s.D = D.topRows(rank);
       return s;
     }
-    // Rotate the states: only the first `seen` show there. They must be zero, and so must their rates, which
-    // become outputs in their place.
+    // Rotate the states: only the first `seen` affect these outputs. These states must be zero. Their
+    // derivatives must be zero too and become the new outputs.
     MatrixXd V = of_C.matrixV();
     const MatrixXd A = V.transpose() * s.A * V, B = V.transpose() * s.B, rest = C.topRows(rank) * V;
     const Index kept = n - seen;
@@ -147,7 +147,7 @@ std::vector<Complex> transmission_zeros(const StateSpace& system, double toleran
                            system.D.topLeftCorner(system.outputs(), system.inputs()),
                            system.sample_time,
                            {}});
-  // Inputs and outputs of size one with respect to the states: ranks are decided by one tolerance.
+  // Scale inputs and outputs to size one relative to the states: one tolerance then decides all ranks.
   const double size = std::max(s.A.norm(), 1e-300);
   for (Index j = 0; j < s.B.cols(); ++j) {
     const double by = s.B.col(j).norm() + s.D.col(j).norm();

@@ -43,7 +43,7 @@ StateSpace with_approximate_delays(const StateSpace& system, int order) {
     A.block(i * order, i * order, order, order) = pade.A, B.block(i * order, i, order, 1) = pade.B;
     C.block(i, i * order, 1, order) = pade.C;
   }
-  // What enters the delays is v = Cv x + Dvu u + Dvw w, what leaves them w = C p, p' = A p + B v.
+  // The delays have the input v = Cv x + Dvu u + Dvw w and the output w = C p, p' = A p + B v.
   const MatrixXd Cv = system.C.bottomRows(delays), Dvu = system.D.bottomLeftCorner(delays, inputs),
                  Dvw = system.D.bottomRightCorner(delays, delays);
   StateSpace result;
@@ -97,7 +97,8 @@ StateSpace in_parallel(const StateSpace& first, const StateSpace& second, double
 
 namespace {
 
-/// Zeroes what rounding left where no path in A leads: cut parts of a system stay cut.
+/// Sets entries to zero where no path in A leads, as rounding may leave others: separate parts of a system
+/// stay separate.
 void keep_structure(const MatrixXd& A, MatrixXd& exponential) {
   const Index n = A.rows();
   Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic> leads = A.array() != 0;

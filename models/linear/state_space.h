@@ -9,8 +9,8 @@ namespace loopwright {
 /// Continuous, with sample_time 0:  x' = A x + B u,  y = C x + D u.
 /// Sampled:  x[k+1] = A x[k] + B u[k],  y[k] = C x[k] + D u[k].
 ///
-/// Delays of a continuous system are channels of their own: its last inputs are what the last outputs were
-/// `delays[i]` seconds ago, in the same order. What is left are the inputs and outputs proper.
+/// Delays of a continuous system are separate channels: its last inputs are its last outputs delayed by
+/// `delays[i]` seconds, in the same order. The remaining channels are the actual inputs and outputs.
 struct StateSpace {
   Eigen::MatrixXd A, B, C, D;
   double sample_time = 0;      ///< s; 0: continuous
@@ -21,8 +21,9 @@ struct StateSpace {
   Eigen::Index outputs() const { return C.rows() - Eigen::Index(delays.size()); }
 };
 
-/// The system with every delay replaced by Padé's approximation with a numerator one degree below the
-/// denominator, so that nothing passes at once. It is good to 1 % in gain and phase up to about ω τ = order.
+/// The system with every delay replaced by a Padé approximation. Its numerator has one degree less than its
+/// denominator, so that it has no direct feedthrough. It is accurate to 1 % in gain and phase up to about ω τ
+/// = order.
 StateSpace with_approximate_delays(const StateSpace& system, int order);
 
 /// One input to one output of a system.
@@ -41,11 +42,11 @@ struct Propagation {
 };
 
 /// Both from one matrix exponential of [A B; 0 0] T (C. F. Van Loan, IEEE Trans. Automatic Control 23, 1978);
-/// exact but for rounding, also for singular A.
+/// exact except for rounding, also for singular A.
 Propagation propagate(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, double duration);
 
-/// The sampled system that a continuous one is to who writes its inputs through a zero-order hold and reads
-/// its outputs at the same samples, T seconds apart. Exact. Throws std::invalid_argument for a system with
+/// The exact sampled equivalent of a continuous system whose inputs come through a zero-order hold and whose
+/// outputs are read at the same samples, T seconds apart. Throws std::invalid_argument for a system with
 /// delays: replace them by `with_approximate_delays` first.
 StateSpace hold_discretization(const StateSpace& system, double sample_time);
 

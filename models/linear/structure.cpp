@@ -5,7 +5,7 @@ namespace {
 
 using Eigen::Index;
 
-/// States that can be reached along A (from column to row) from those that `starts` marks.
+/// States that can be reached along A (from column to row) from the states in `marked`.
 std::vector<bool> reached(const Eigen::MatrixXd& A, std::vector<bool> marked) {
   for (bool grows = true; grows;) {
     grows = false;

@@ -1,11 +1,12 @@
-/// What of a system lies between its inputs and its outputs at all.
+/// The part of a system that connects its inputs to its outputs.
 #pragma once
 #include "models/linear/state_space.h"
 
 namespace loopwright {
 
-/// The system without states that no input reaches or that no output sees, by the pattern of its matrices
-/// alone: blocks behind a cut wire go, however unstable, and no rank has to be decided. Not always minimal.
+/// The system without the states that no input reaches or that affect no output, by the sparsity pattern
+/// alone. Blocks behind a disconnected wire are removed even if they are unstable, and no rank has to be
+/// decided. The result is not always minimal.
 StateSpace connected_part(const StateSpace& system);
 
 }  // namespace loopwright

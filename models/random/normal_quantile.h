@@ -1,4 +1,4 @@
-/// From uniform to normal random numbers, with the same bits on every processor.
+/// Uniform to normal random numbers, bit-identical on every processor.
 #pragma once
 #include <cmath>
 #include "models/real/functions.h"
@@ -14,7 +14,7 @@ inline double quotient(const double (&above)[8], const double (&below)[7], doubl
 }
 }  // namespace detail
 
-/// What a standard normal number is less than with probability p, 0 < p < 1; to 1e-15 of its size (M. J.
+/// The quantile of the standard normal distribution for probability p, 0 < p < 1; relative error 1e-15 (M. J.
 /// Wichura, Algorithm AS 241: The percentage points of the normal distribution, Applied Statistics 37, 1988).
 inline double normal_quantile(double p) {
   static constexpr double middle_above[] = {

@@ -1,5 +1,5 @@
-/// Random numbers by counting: each number is a function of its place, so that runs, lanes and restarts need
-/// no state.
+/// Counter-based random numbers: each number is a function of its index, so that runs, lanes and restarts
+/// need no state.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -7,8 +7,8 @@
 namespace loopwright {
 
 /// Philox4x32 with 10 rounds (J. K. Salmon et al., Parallel random numbers: as easy as 1, 2, 3, SC 2011): a
-/// keyed bijection of 128-bit counters. It passes all tests of BigCrush; streams of different keys are
-/// independent in practice. Words are in the order of the publication, the least significant first.
+/// keyed bijection of 128-bit counters. It passes all tests of BigCrush. Streams of different keys are
+/// independent in practice. Words are in the order of the publication, least significant first.
 constexpr std::array<uint32_t, 4> philox(std::array<uint32_t, 4> counter, std::array<uint32_t, 2> key) {
   for (int round = 0; round < 10; ++round) {
     const uint64_t a = uint64_t{0xD2511F53} * counter[0], b = uint64_t{0xCD9E8D57} * counter[2];

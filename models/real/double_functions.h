@@ -1,6 +1,6 @@
-/// Elementary functions of one double beyond those of functions.h, for formulas and for what is worked out
-/// before a run. They too have the same bits on every processor, which those of libm have not. Errors are in
-/// units in the last place (ulp), the greatest seen; the tests hold the bounds. NaN gives NaN; outside of its
+/// Elementary functions of one double that functions.h does not have, for formulas and for precomputation
+/// before a run. They too are bit-identical on every processor, unlike those of libm. Errors are the largest
+/// observed, in units in the last place (ulp); the tests enforce the bounds. NaN gives NaN; outside its
 /// domain a function is NaN.
 #pragma once
 #include <cmath>
@@ -20,7 +20,7 @@ inline double arc_cosine(double x) {
   return std::fabs(x) <= 1 ? arc_tangent2(std::sqrt((1 - x) * (1 + x)), x) : std::nan("");
 }
 
-/// eˣ - 1, exact to the last places also where x is small. Error ≤ 2 ulp.
+/// eˣ - 1, accurate also for small x. Error ≤ 2 ulp.
 inline double exponential_less_one(double x) {
   if (!(std::fabs(x) < 40)) return exponential(x) - 1;
   const double n = detail::nearest_integer(x * detail::per_ln2);
@@ -30,11 +30,11 @@ inline double exponential_less_one(double x) {
   const double scale = power_of_two(n);
   return scale * small + (scale - 1);
 }
-/// ln(1 + x), exact to the last places also where x is small. Error ≤ 3 ulp.
+/// ln(1 + x), accurate also for small x. Error ≤ 3 ulp.
 inline double logarithm_of_one_plus(double x) {
   const double sum = 1 + x;
   if (sum == 1 || !(std::fabs(sum) < detail::infinity)) return sum == 1 ? x : natural_logarithm(sum);
-  return natural_logarithm(sum) * (x / (sum - 1));  // the rounding of the sum cancels
+  return natural_logarithm(sum) * (x / (sum - 1));  // cancels the rounding error of the sum
 }
 
 /// sinh x. Error ≤ 3 ulp.
@@ -75,7 +75,7 @@ inline double area_tangent(double x) {
 }
 
 namespace detail {
-/// ln x / ln b; the reciprocal of ln b is given in two parts. Whole powers of b give whole numbers.
+/// ln x / ln b; the reciprocal of ln b is given in two parts. Integer powers of b give integers.
 inline double logarithm_to_base(double x, double per_high, double per_low) {
   if (!(x > 0 && x < infinity) || x == 1) return natural_logarithm(x);
   const auto logarithm = precise_logarithm(x);
@@ -94,7 +94,7 @@ inline double decimal_logarithm(double x) {
 }
 
 namespace detail {
-/// xⁿ by squaring in twice the precision; of no use where that overflows.
+/// xⁿ by squaring in double-double precision; not valid where that overflows.
 inline double whole_power(double x, int n) {
   const auto times = [](const Pair<double>& a, const Pair<double>& b) {
     const auto product = exact_product(a.high, b.high);
@@ -112,8 +112,8 @@ inline double whole_power(double x, int n) {
 }
 }  // namespace detail
 
-/// xʸ as formulas mean it: of negative x too where y is a whole number; 1 for y = 0. Correctly rounded for y
-/// = ½ and, far from overflow, for whole y up to 64; else as power().
+/// xʸ as in formulas: also for negative x if y is an integer; 1 for y = 0. Correctly rounded for y = ½ and,
+/// far from overflow, for integer y up to 64; otherwise as power().
 inline double any_power(double x, double y) {
   if (y == 0) return 1;
   if (y == 2) return x * x;

@@ -1,5 +1,5 @@
-/// Times given by parameters, made exact: a source that switches every 3 ms switches at sample 3 k of a
-/// millisecond grid, for any k, although 0.003 k is rounded.
+/// Exact times from parameters: a source that switches every 3 ms switches at sample 3 k of a millisecond
+/// grid for every k, although 0.003 k is rounded.
 #pragma once
 #include <span>
 #include "models/real/fraction.h"
@@ -7,8 +7,8 @@
 
 namespace loopwright {
 
-/// The fraction that was meant by a time [s] >= 0, if any: a simple one that twelve digits give, or one that
-/// rounding alone keeps from being equal. A time that is none, such as 1/π, keeps its digits.
+/// The fraction intended by a time [s] >= 0, if any: a simple fraction given by twelve digits, or one that
+/// differs from it only by rounding. A time without such a fraction, such as 1/π, is left unchanged.
 [[maybe_unused]] static std::optional<Fraction> meant_fraction(double time) {
   constexpr int64_t simple = 100'000;
   constexpr double rounding = 0x1p-50;
@@ -16,12 +16,12 @@ namespace loopwright {
   return near && near->denominator <= simple ? near : to_fraction(time, rounding);
 }
 
-/// Makes times [s] whole counts of one unit, and returns how many units a second has. A time made of such
-/// counts, (a + k b) / units_per_second, is then the nearest number to its exact value, as the times of
-/// samples are (TickClock): both are equal if and only if the exact times are. Lanes in which the times share
-/// no unit keep seconds, and get 1.
+/// Converts times [s] to integer counts of one unit and returns the number of units per second. A time
+/// computed from such counts, (a + k b) / units_per_second, is then the double nearest to its exact value, as
+/// are the times of samples (TickClock): the two are equal if and only if the exact times are. Lanes in which
+/// the times have no common unit keep seconds, and the result is 1.
 template <class Real> Real to_counts(std::span<Real* const> times) {
-  constexpr double finest = 1e12;  // units a second: counts stay whole for more than two hours
+  constexpr double finest = 1e12;  // units per second: counts stay integers for more than two hours
   Real units = 1.0;
   for (int l = 0; l < lanes_of<Real>; ++l) {
     int64_t common = 1;
@@ -49,7 +49,7 @@ template <class Real> Real to_counts(std::span<Real* const> times) {
   return units;
 }
 
-/// The nearest number to the exact time that was meant: 0.0003, not 3 * 0.0001.
+/// The double nearest to the intended exact time: 0.0003, not 3 * 0.0001.
 template <class Real> Real exact_time(const Real& time) {
   Real count = time;
   Real* const all[] = {&count};
@@ -57,15 +57,15 @@ template <class Real> Real exact_time(const Real& time) {
   return count / units;
 }
 
-/// Periods that follow each other from a start on.
+/// Consecutive periods from a start time on.
 template <class Real> struct Periods {
-  Real start = 0.0, period = 1.0, units = 1.0;  ///< start and period in units, units a second
+  Real start = 0.0, period = 1.0, units = 1.0;  ///< start and period in units; units per second
 
-  /// The time [s] that many units after the start of period k.
+  /// The time [s] `units_later` units after the start of period k.
   LW_INLINE Real time(const Real& k, const Real& units_later = 0.0) const {
     return ((start + k * period) + units_later) / units;
   }
-  /// The greatest whole k whose period has begun at this time [s].
+  /// The largest integer k whose period has begun at this time [s].
   LW_INLINE Real at(const Real& now) const {
     const Real k = floor_of((now * units - start) / period);
     return select(time(k) > now, k - 1.0, select(time(k + 1.0) <= now, k + 1.0, k));

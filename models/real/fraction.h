@@ -1,4 +1,4 @@
-/// Times as exact fractions of whole numbers.
+/// Times as exact fractions of integers.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -16,17 +16,17 @@ struct Fraction {
 
 inline constexpr int64_t largest_denominator = 2'000'000'000, largest_numerator = 2'000'000'000'000;
 
-// Static, so that no function compiled for one instruction set is handed to code for another.
+// Static, so that a function compiled for one instruction set is never linked into code for another.
 
-/// The simplest fraction within that relative distance, and within a nanosecond, of x >= 0: 0.001 is 1/1000,
-/// 1.0/3 is 1/3. Nothing if x is not finite, negative, beyond 2e12, or needs more than nine digits
-/// below.
+/// The simplest fraction within this relative distance, and within a nanosecond, of x >= 0: 0.001 gives
+/// 1/1000, 1.0/3 gives 1/3. Nothing if x is not finite, negative, above 2e12, or needs a denominator of more
+/// than nine digits.
 [[maybe_unused]] static std::optional<Fraction> to_fraction(double x, double relative = 1e-12) {
-  constexpr double nearest = 1e-9;  // s: times that differ by more are meant to differ
+  constexpr double nearest = 1e-9;  // s: times that differ by more are regarded as different
   if (!std::isfinite(x) || x < 0) return {};
   if (x == 0) return Fraction{0, 1};
   const double distance = std::fmin(relative * x, nearest);
-  // Continued fraction: convergents p/q until one is near enough.
+  // Continued fraction: convergents p/q until one is close enough.
   int64_t p0 = 0, q0 = 1, p1 = 1, q1 = 0;
   double rest = x;
   for (int i = 0; i < 40; ++i) {
@@ -44,7 +44,7 @@ inline constexpr int64_t largest_denominator = 2'000'000'000, largest_numerator 
   return {};
 }
 
-/// The greatest common divisor of two times; nothing if it needs numbers beyond 64 bits.
+/// The greatest common divisor of two times; nothing if it needs integers beyond 64 bits.
 [[maybe_unused]] static std::optional<Fraction> common_divisor(Fraction a, Fraction b) {
   if (a.numerator == 0) return b;
   if (b.numerator == 0) return a;
@@ -70,7 +70,7 @@ inline constexpr int64_t largest_denominator = 2'000'000'000, largest_numerator 
   return Fraction{int64_t(numerator), int64_t(reduced)};
 }
 
-/// time / base when that is whole.
+/// time / base if it is an integer.
 [[maybe_unused]] static std::optional<int64_t> whole_ratio(Fraction time, Fraction base) {
   __extension__ using Wide = __int128;
   const Wide above = Wide(time.numerator) * base.denominator, below = Wide(time.denominator) * base.numerator;

@@ -1,10 +1,11 @@
-/// Elementary functions of a simulation's scalar, with the same bits for double and for every lane width.
+/// Elementary functions of a simulation's scalar, bit-identical for double and for every vector width.
 ///
-/// Own polynomials instead of libm: its bits depend on the processor and differ from vector libraries', and
-/// it serves one lane at a time. All reduce the argument to a small interval (W. J. Cody, W. Waite, Software
-/// Manual for the Elementary Functions, 1980) and evaluate a near-minimax polynomial there. Errors are in
-/// units in the last place (ulp) of the result, the greatest seen over millions of arguments; the tests hold
-/// the bounds. NaN gives NaN everywhere; infinities give what libm gives.
+/// These polynomials replace libm, whose bits depend on the processor and differ from vector libraries', and
+/// which computes one lane at a time. Each function reduces the argument to a small interval (W. J. Cody, W.
+/// Waite, Software Manual for the Elementary Functions, 1980) and evaluates a near-minimax polynomial there.
+/// Errors are in units in the last place (ulp) of the result, the largest observed over millions of
+/// arguments; the tests enforce the bounds. NaN gives NaN everywhere; infinities give the same results as
+/// libm.
 #pragma once
 #include "models/real/far_angle.h"
 #include "models/real/real.h"
@@ -13,8 +14,8 @@ namespace loopwright {
 namespace detail {
 
 template <class Real> struct Powers { Real first, second, fourth, eighth; };
-/// Coefficients c[first] … c[first + count - 1] by Estrin's scheme: the two halves wait for nothing but each
-/// other, so that one run is not held up by a chain of additions as in Horner's.
+/// Coefficients c[first] … c[first + count - 1] by Estrin's scheme. The two halves are independent, so that a
+/// scalar run does not wait for a chain of additions as in Horner's scheme.
 template <const auto& c, int first, int count, class Real> LW_INLINE Real estrin(const Powers<Real>& x) {
   if constexpr (count == 1) {
     return c[first];
@@ -30,7 +31,7 @@ template <const auto& c, class Real> LW_INLINE Real polynomial(const Real& x) {
   return estrin<c, 0, sizeof(c) / sizeof(c[0])>(Powers<Real>{x, second, fourth, fourth * fourth});
 }
 
-/// x rounded half to even, for |x| < 2⁵¹; shorter than round_even, loses the sign of zero.
+/// x rounded half to even, for |x| < 2⁵¹; faster than round_even, but loses the sign of zero.
 template <class Real> LW_INLINE Real nearest_integer(const Real& x) {
   return (x + bits::integer_shift) - bits::integer_shift;
 }
@@ -43,31 +44,31 @@ inline constexpr double infinity = __builtin_huge_val();
 
 namespace detail {
 
-/// (sin(√z)/√z - 1)/z on [0, (π/2)²], fitted with each coefficient rounded before the next.
+/// (sin(√z)/√z - 1)/z on [0, (π/2)²], fitted with each coefficient rounded before the next is fitted.
 inline constexpr double sine_series[] = {
     -0x1.5555555555555p-3,  0x1.11111111110c8p-7,  -0x1.a01a01a014d6fp-13, 0x1.71de3a52a0b17p-19,
     -0x1.ae6454d4747d8p-26, 0x1.6123cd07433e1p-33, -0x1.ae4384694746cp-41, 0x1.8832a5724f56cp-49};
 
-inline constexpr double sine_limit = 1e6;  // rad; the reduction holds for k below 2²⁰
+inline constexpr double sine_limit = 1e6;  // rad; the reduction is valid for k below 2²⁰
 
-/// sin(x - kπ) for integral or half-integral k, |x - kπ| ≤ π/2. π is in three parts whose products with k are
-/// exact but for the last.
+/// sin(x - kπ) for integer or half-integer k, |x - kπ| ≤ π/2. π is split into three parts; the products of
+/// the first two with k are exact.
 template <class Real> LW_INLINE Real sine_of_remainder(const Real& x, const Real& k) {
   const Real r = ((x - k * 0x1.921fb544p1) - k * 0x1.0b4611a6p-33) - k * 0x1.3198a2e037073p-68;
   const Real z = r * r;
   const Real y = r + r * z * polynomial<sine_series>(z);
-  return lesser(Real(1.0), greater(Real(-1.0), y));  // never rounded beyond ±1
+  return lesser(Real(1.0), greater(Real(-1.0), y));  // rounding must not exceed ±1
 }
 /// sin(x + quarters π/2) for x > 1.
 LW_INLINE double sine_of_far(double x, int quarters) {
   if (!(x < infinity)) return __builtin_nan("");
   const FarAngle angle = far_angle(x);
   const int turn = (angle.quarters + quarters) & 3;
-  const double y = turn & 1 ? sine_of_remainder(-absolute(angle.rest), -0.5)  // a cosine: even
+  const double y = turn & 1 ? sine_of_remainder(-absolute(angle.rest), -0.5)  // cosine, even
                             : sine_of_remainder(angle.rest, 0.0);
   return turn & 2 ? -y : y;
 }
-// Static, as they are not inlined: see LW_INLINE.
+// Static because these functions are not inlined: see LW_INLINE.
 template <int quarters, class Real> [[gnu::noinline, gnu::cold]] static Real with_far_lanes(Real x, Real y) {
   for (int l = 0; l < lanes_of<Real>; ++l) {
     const double angle = absolute(lane(x, l));
@@ -78,7 +79,7 @@ template <int quarters, class Real> [[gnu::noinline, gnu::cold]] static Real wit
 
 }  // namespace detail
 
-/// sin x, x in rad. Error ≤ 3 ulp; lane by lane for |x| > 10⁶. Odd to the bit; |sin x| ≤ 1.
+/// sin x, x in rad. Error ≤ 3 ulp; computed lane by lane for |x| > 10⁶. Exactly odd; |sin x| ≤ 1.
 template <Scalar Real> LW_INLINE Real sine(const Real& x) {
   const Real magnitude = absolute(x);
   const Real half_turns = detail::nearest_integer(magnitude * 0x1.45f306dc9c883p-2);
@@ -89,7 +90,7 @@ template <Scalar Real> LW_INLINE Real sine(const Real& x) {
   return flip_sign(y, x);
 }
 
-/// cos x = sin(x + π/2), x in rad. Error ≤ 3 ulp; lane by lane for |x| > 10⁶. Even; at most 1.
+/// cos x = sin(x + π/2), x in rad. Error ≤ 3 ulp; computed lane by lane for |x| > 10⁶. Even; at most 1.
 template <Scalar Real> LW_INLINE Real cosine(const Real& x) {
   const Real magnitude = absolute(x);
   const Real half_turns = detail::nearest_integer(magnitude * 0x1.45f306dc9c883p-2 + 0.5);
@@ -100,7 +101,7 @@ template <Scalar Real> LW_INLINE Real cosine(const Real& x) {
 }
 
 template <Scalar Real> struct SineCosine { Real sine, cosine; };
-/// sin x and cos x, the same bits as each alone; the two polynomials are evaluated side by side.
+/// sin x and cos x, bit-identical to the separate functions; the two polynomials are evaluated in parallel.
 template <Scalar Real> LW_INLINE SineCosine<Real> sine_cosine(const Real& x) { return {sine(x), cosine(x)}; }
 
 // ---- exponential, hyperbolic tangent ----------------------------------------------------------------------
@@ -114,16 +115,16 @@ inline constexpr double exponential_series[] = {
     0x1.27e4db6760171p-22, 0x1.af4ddeb6edd5ap-26, 0x1.1f72fd22159cdp-29};
 
 inline constexpr double per_ln2 = 0x1.71547652b82fep0;
-inline constexpr double ln2_high = 0x1.62e42fefap-1, ln2_low = 0x1.cf79abc9e3b3ap-40;  // 38 bits and the rest
+inline constexpr double ln2_high = 0x1.62e42fefap-1, ln2_low = 0x1.cf79abc9e3b3ap-40;  // high: 38 bits
 
-/// e^(x + low) for |low| far below 1, such as the rounding error of x.
+/// e^(x + low) for |low| much smaller than 1, such as the rounding error of x.
 template <class Real> LW_INLINE Real exponential_of_sum(const Real& x, const Real& low) {
   // Beyond these limits the result is 0 or infinite; comparisons let NaN pass.
   const Real limited = lesser(Real(710.0), greater(Real(-746.0), x));
   const Real n = nearest_integer(limited * per_ln2);
   const Real r = (limited - n * ln2_high) - (n * ln2_low - low);
   const Real y = 1.0 + (r + r * r * polynomial<exponential_series>(r));
-  const Real half = nearest_integer(0.5 * n);  // 2ⁿ in two factors: n may lie outside what one double holds
+  const Real half = nearest_integer(0.5 * n);  // 2ⁿ as two factors: n may exceed the exponent range
   return (y * power_of_two(half)) * power_of_two(n - half);
 }
 
@@ -140,7 +141,7 @@ template <Scalar Real> LW_INLINE Real hyperbolic_tangent(const Real& x) {
   const Real t = lesser(Real(44.0), twice);  // tanh 22 rounds to 1
   const Real n = detail::nearest_integer(t * detail::per_ln2);
   const Real high = t - n * detail::ln2_high, low = n * detail::ln2_low;
-  const Real r = high - low, lost = (high - r) - low;  // `lost` keeps the error below 2.5 ulp around t = ½
+  const Real r = high - low, lost = (high - r) - low;  // `lost` keeps the error below 2.5 ulp near t = ½
   const Real small = r + (r * r * detail::polynomial<detail::exponential_series>(r) + lost);
   const Real scale = power_of_two(n);
   const Real e = scale * small + (scale - 1.0);  // e^t - 1 without cancellation
@@ -156,7 +157,7 @@ inline constexpr double logarithm_series[] = {
     0x1.5555555555555p-1, 0x1.9999999999a38p-2, 0x1.2492492476cc5p-2, 0x1.c71c720159da5p-3,
     0x1.745cf9043c834p-3, 0x1.3b1c356bd77a5p-3, 0x1.0fbe940847ce7p-3, 0x1.0c03af318d9a9p-3};
 
-/// x = (1 + fraction)·2^exponent with 1 + fraction in [√½, √2), for positive finite x, denormal too.
+/// x = (1 + fraction)·2^exponent with 1 + fraction in [√½, √2), for positive finite x, also denormal.
 template <class Real> struct Decomposition { Real fraction, exponent; };
 template <class Real> LW_INLINE Decomposition<Real> decompose(const Real& x) {
   const auto denormal = x < 0x1p-1022;
@@ -168,7 +169,7 @@ template <class Real> LW_INLINE Decomposition<Real> decompose(const Real& x) {
 
 }  // namespace detail
 
-/// ln x. Error ≤ 2 ulp, denormal x included; -infinity at ±0, NaN for x < 0.
+/// ln x. Error ≤ 2 ulp, also for denormal x; -infinity at ±0, NaN for x < 0.
 template <Scalar Real> LW_INLINE Real natural_logarithm(const Real& x) {
   const auto [f, k] = detail::decompose(x);
   const Real s = f / (2.0 + f), z = s * s, half_square = 0.5 * f * f;
@@ -182,7 +183,7 @@ template <Scalar Real> LW_INLINE Real natural_logarithm(const Real& x) {
 
 namespace detail {
 
-/// A sum of two doubles, low below half a unit in the last place of high: about 100 bits.
+/// A sum of two doubles, |low| at most half a unit in the last place of high: about 100 bits.
 template <class Real> struct Pair { Real high, low; };
 /// a + b exactly, for |a| ≥ |b| or a = 0.
 template <class Real> LW_INLINE Pair<Real> exact_sum(const Real& a, const Real& b) {
@@ -238,10 +239,10 @@ inline constexpr double arc_tangent_series[] = {
 
 inline constexpr double pi_high = 0x1.921fb54442d18p1, pi_low = 0x1.1a62633145c07p-53;
 
-/// The angle of the point (width, height), both ≥ 0, as high + low: high is 0, π/4 or π/2, rounded to a
-/// double, low the arc tangent of a ratio within ±tan(π/8).
+/// The angle of the point (width, height), both ≥ 0, as high + low. high is 0, π/4 or π/2 rounded to a
+/// double; low is the arc tangent of a ratio within ±tan(π/8).
 template <class Real> LW_INLINE Pair<Real> angle_in_quadrant(const Real& height, const Real& width) {
-  // Brought into a range where sums do not overflow and products keep their bits; the ratio stays.
+  // Scale to a range where sums do not overflow and products keep their bits; the ratio does not change.
   const Real greater = select(height > width, height, width);
   const Real scale =
       select(greater > 0x1p1000, Real(0x1p-60), select(greater < 0x1p-900, Real(0x1p60), Real(1.0)));

@@ -1,8 +1,8 @@
 /// The scalar of a simulation: `double` for one run, `Lanes<N, R>` for N·R runs side by side.
 ///
-/// Block mathematics is written once as a template on `Real` and uses only what stands here and in
-/// functions.h. Every operation is the same IEEE operation in the same order for every Real, so that a lane
-/// gives the bits that double gives (compiled with -ffp-contract=off; the payload of a NaN is not specified).
+/// Block equations are written once as a template on `Real` and use only the operations of this file and of
+/// functions.h. Every operation is the same IEEE operation in the same order for every Real. A lane therefore
+/// gives the same bits as double (compiled with -ffp-contract=off; the payload of a NaN is not specified).
 ///
 ///     const Real force = select(speed > 0.0, 2.0 * speed, 0.0);      // not: if (speed > 0.0)
 ///     const auto stuck = (absolute(speed) < 1e-6) & !moving;         // masks: & | ! for bool too; ! last
@@ -10,24 +10,24 @@
 #include <concepts>
 #include <cstdint>
 #ifdef __AVX__
-#include <immintrin.h>  // where GCC does not find the one instruction by itself
+#include <immintrin.h>  // where GCC does not find the single instruction itself
 #endif
 
-/// All of this is inlined, also without optimisation: no function compiled for one instruction set is left
-/// over for the linker to hand to code that must run on another.
+/// Everything is inlined, even without optimization. Otherwise the linker could use a function compiled for
+/// one instruction set in code that must run on another.
 #define LW_INLINE [[gnu::always_inline]] inline
 
 namespace loopwright {
 
-/// Arithmetic on the bits of IEEE doubles: `Register` is a vector of doubles, `Bits` one of unsigned integers
-/// of the same size. What each does stands at the function of its name below.
+/// Bit operations on IEEE doubles: `Register` is a vector of doubles, `Bits` a vector of unsigned integers of
+/// the same size. Each operation is described at the function of the same name below.
 namespace bits {
 inline constexpr std::uint64_t sign_bit = std::uint64_t(1) << 63;
 /// Adding 1.5·2⁵² to |x| < 2⁵¹ rounds x half to even and leaves the integer in the low bits of the sum.
 inline constexpr double integer_shift = 0x1.8p52;
 
-/// The bits that a and b have in common, and those in which they differ. On registers that GCC 12 would store
-/// to memory for a cast to integers, by the machine's instructions for doubles.
+/// The bits that a and b have in common, and those in which they differ. For registers that GCC 12 would
+/// store to memory for a cast to integers, the machine's instructions for doubles are used.
 template <class Bits, class Register> LW_INLINE Register common(Register a, Register b) {
 #ifdef __AVX512DQ__
   if constexpr (sizeof(Register) == 64) return _mm512_and_pd(a, b);
@@ -67,7 +67,7 @@ template <class Bits, class Register> LW_INLINE Register power_of_two(Register n
 template <class Bits, class Register> LW_INLINE Register upper_half(Register x) {
   return __builtin_bit_cast(Register, __builtin_bit_cast(Bits, x) & ~((std::uint64_t(1) << 27) - 1));
 }
-/// Bits of √½: subtracting them makes the exponent field step where the mantissa passes √2.
+/// Bits of √½: after subtracting them, the exponent field increments where the mantissa passes √2.
 inline constexpr std::uint64_t root_half = 0x3FE6A09E667F3BCD;
 template <class Bits, class Register> LW_INLINE Register exponent(Register x) {
   const Bits field = (__builtin_bit_cast(Bits, x) + ((std::uint64_t(1023) << 52) - root_half)) >> 52;
@@ -77,8 +77,8 @@ template <class Bits, class Register> LW_INLINE Register exponent(Register x) {
 }
 }  // namespace bits
 
-/// The vectors of one register, spelt out: GCC 12 loses a vector_size that depends on a template parameter
-/// when it deduces a type.
+/// The vector types of one register, written explicitly: GCC 12 loses a vector_size that depends on a
+/// template parameter when it deduces a type.
 template <int lanes> struct VectorsOf;
 #define LW_VECTORS(lanes)                                        \
   template <> struct VectorsOf<lanes> {                          \
@@ -91,8 +91,8 @@ LW_VECTORS(4)
 LW_VECTORS(8)
 #undef LW_VECTORS
 
-/// True if any lane of a register of truths is set. Without an instruction for it, the halves are folded onto
-/// each other.
+/// True if any lane of a register of truth values is set. Without an instruction for it, the halves are
+/// combined repeatedly.
 template <int lanes> LW_INLINE bool any_of(typename VectorsOf<lanes>::Truths truths) {
 #ifdef __AVX512DQ__
   if constexpr (lanes == 8) return _mm512_movepi64_mask(__m512i(truths)) != 0;
@@ -111,7 +111,8 @@ template <int lanes> LW_INLINE bool any_of(typename VectorsOf<lanes>::Truths tru
   }
 }
 
-/// a < b ? a : b and a > b ? a : b in each lane, which GCC takes apart when one of them is constant.
+/// a < b ? a : b and a > b ? a : b in each lane. GCC would not emit one instruction if one operand is
+/// constant.
 template <int lanes, class Register> LW_INLINE Register lesser_of(Register a, Register b) {
 #ifdef __AVX512F__
   if constexpr (lanes == 8) return _mm512_mask_min_pd(a, 0xff, a, b);
@@ -131,18 +132,20 @@ template <int lanes, class Register> LW_INLINE Register greater_of(Register a, R
   return a > b ? a : b;
 }
 
-// R is a small constant: without the pragma GCC keeps the loop at -O2 and the registers go through memory.
+// R is a small constant. Without the pragma GCC keeps the loop at -O2 and passes the registers through
+// memory.
 #define LW_EACH_REGISTER _Pragma("GCC unroll 8") for (int i = 0; i < R; ++i)
 
 template <int N, int R> struct Lanes;
 
-/// One truth value a lane. Deliberately not convertible to bool: a lane-wise block cannot branch, it selects.
+/// One truth value per lane. Deliberately not convertible to bool: a lane-wise block cannot branch, it must
+/// select.
 template <int N, int R> struct Mask {
   using Register = typename VectorsOf<N>::Truths;
-  Register registers[R];  // all bits of a lane set, or none
+  Register registers[R];  // all bits of a lane are set, or none
 
   Mask() = default;
-  /// The same truth in all lanes; only from a real bool, so that no number turns into a mask.
+  /// The same truth value in all lanes; only from a bool, so that no number turns into a mask.
   template <std::same_as<bool> Bool> LW_INLINE Mask(Bool all) {
     LW_EACH_REGISTER registers[i] = Register{} - std::int64_t(all);
   }
@@ -181,8 +184,8 @@ template <int N, int R> struct Mask {
   }
 };
 
-/// N·R doubles in R registers of N lanes (N = 2, 4 or 8). Where the machine's registers are narrower than N,
-/// the compiler splits them. A double or an integer converts to the same value in every lane.
+/// N·R doubles in R registers of N lanes (N = 2, 4 or 8). If the registers of the machine are narrower than
+/// N, the compiler splits them. A double or an integer converts to the same value in every lane.
 template <int N, int R = 1> struct Lanes {
   static_assert((N == 2 || N == 4 || N == 8) && R >= 1 && R <= 8);
   using Register = typename VectorsOf<N>::Doubles;
@@ -190,7 +193,7 @@ template <int N, int R = 1> struct Lanes {
   Register registers[R];
 
   Lanes() = default;
-  // Copied register by register, also as a member of a struct: GCC would copy an array of them through
+  // Copied register by register, also as a member of a struct: GCC would copy an array of registers through
   // memory.
   LW_INLINE Lanes(const Lanes& x) { LW_EACH_REGISTER registers[i] = x.registers[i]; }
   LW_INLINE Lanes& operator=(const Lanes& x) {
@@ -299,12 +302,12 @@ template <int N, int R = 1> struct Lanes {
 };
 #undef LW_EACH_REGISTER
 
-/// A double in the lower half of a register of two: for its bits to be worked on where it lies. Cast to an
-/// integer, it would go through the registers of integers and back.
+/// A double in the lower half of a register of two, so that bit operations act on it in place. A cast to an
+/// integer would move it to an integer register and back.
 using Two = VectorsOf<2>;
 LW_INLINE Two::Doubles in_register(double x) { return Two::Doubles{x}; }
 
-/// Runs side by side in one Real: 1 for double, 0 for what is no scalar of a simulation.
+/// The number of runs in one Real: 1 for double, 0 for a type that is no scalar of a simulation.
 template <class Real> inline constexpr int lanes_of = 0;
 template <> inline constexpr int lanes_of<double> = 1;
 template <int N, int R> inline constexpr int lanes_of<Lanes<N, R>> = (N * R);
@@ -312,10 +315,10 @@ template <int N, int R> inline constexpr int lanes_of<Lanes<N, R>> = (N * R);
 template <class Real>
 concept Scalar = (lanes_of<Real> > 0);
 
-/// What a comparison of two Real gives: bool or Mask.
+/// The result type of comparing two Real: bool or Mask.
 template <Scalar Real> using MaskOf = decltype(Real() < Real());
 
-/// `yes` in the lanes where the condition holds, `no` elsewhere. Both are evaluated.
+/// `yes` in the lanes where the condition holds, `no` in the others. Both are evaluated.
 LW_INLINE double select(bool condition, double yes, double no) { return condition ? yes : no; }
 /// True if the condition holds in any lane.
 LW_INLINE bool any(bool condition) { return condition; }
@@ -325,7 +328,8 @@ LW_INLINE bool lane(const bool& condition, int) { return condition; }
 LW_INLINE void set_lane(double& x, int, double value) { x = value; }
 LW_INLINE void set_lane(bool& condition, int, bool value) { condition = value; }
 
-/// f(a, b); for lanes register by register, so that what is called and not inlined gets them in registers.
+/// f(a, b); for lanes register by register, so that a function that is not inlined receives them in
+/// registers.
 template <class F> LW_INLINE double register_by_register(F&& f, double a, double b) { return f(a, b); }
 /// |x|.
 LW_INLINE double absolute(double x) { return bits::absolute<Two::Bits>(in_register(x))[0]; }
@@ -340,7 +344,7 @@ LW_INLINE double minimum(double a, double b) { return a != a ? a : lesser(a, b);
 /// √x, correctly rounded; NaN for x < 0.
 LW_INLINE double square_root(double x) { return __builtin_sqrt(x); }
 
-/// x, negated where the sign bit of y is set: |x| takes the sign of y by flip_sign(absolute(x), y).
+/// x, negated where the sign bit of y is set: flip_sign(absolute(x), y) is |x| with the sign of y.
 LW_INLINE double flip_sign(double x, double y) {
   return bits::flip_sign<Two::Bits>(in_register(x), in_register(y))[0];
 }
@@ -352,7 +356,7 @@ LW_INLINE double negate_if_odd(double x, double n) {
 LW_INLINE double power_of_two(double n) { return bits::power_of_two<Two::Bits>(in_register(n))[0]; }
 /// The exponent k that puts x·2⁻ᵏ into [√½, √2); x normal and positive.
 LW_INLINE double exponent(double x) { return bits::exponent<Two::Bits>(in_register(x))[0]; }
-/// x cut to its upper 26 significant bits, so that products of halves are exact.
+/// x truncated to its upper 26 significant bits, so that products of halves are exact.
 LW_INLINE double upper_half(double x) { return bits::upper_half<Two::Bits>(in_register(x))[0]; }
 
 /// -1, 0 or 1; zeros and NaN as they are.

@@ -1,15 +1,15 @@
-/// First-order filters in discrete time, of which sampled controllers and observers are made.
+/// First-order filters in discrete time, the parts of sampled controllers and observers.
 ///
-/// All by Tustin's rule s = (2/T) (z-1)/(z+1). The image of a product is the product of the images, so
-/// filters of higher order are cascades of these: their polynomials, whose coefficients cancel, are never
+/// All use Tustin's rule s = (2/T) (z-1)/(z+1). The transform of a product is the product of the transforms,
+/// so filters of higher order are cascades of these. Their polynomials, whose coefficients cancel, are never
 /// formed.
 #pragma once
 #include "models/real/real.h"
 
 namespace loopwright {
 
-/// ω/(s+ω). Written as a correction of the last output, so that a signal at rest passes unchanged to the last
-/// bit.
+/// ω/(s+ω). Written as a correction of the last output, so that a constant signal passes unchanged to the
+/// last bit.
 template <class Real> struct TustinLag {
   Real weight;
   /// `cutoff` in rad/s, `sample_time` in s.
@@ -22,7 +22,7 @@ template <class Real> struct TustinLag {
   }
 };
 
-/// ω s/(s+ω): the derivative of a signal at rest is exactly zero.
+/// ω s/(s+ω): the derivative of a constant signal is exactly zero.
 template <class Real> struct TustinDerivative {
   Real keep, slope;
   /// `cutoff` in rad/s, `sample_time` in s.

@@ -1,4 +1,4 @@
-/// Matrices as they stand in a file, a list of rows, and what linear systems do with them.
+/// Matrices as in a file, lists of rows, and their operations for linear systems.
 #pragma once
 #include <span>
 #include <vector>
@@ -8,7 +8,7 @@ namespace loopwright {
 
 template <class Real> using MatrixRows = std::vector<std::vector<Real>>;
 
-/// Number of columns; 0 without rows.
+/// Number of columns; 0 for a matrix without rows.
 template <class Real> int columns_of(const MatrixRows<Real>& m) { return m.empty() ? 0 : int(m[0].size()); }
 
 template <class Real> bool has_shape(const MatrixRows<Real>& m, size_t rows, size_t columns) {

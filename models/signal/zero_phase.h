@@ -1,4 +1,4 @@
-/// Filters without phase, for data that are all there: they look into the future as far as into the past.
+/// Zero-phase filters for complete records: they use future and past samples alike.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 
 namespace loopwright {
 
-/// A second-order Butterworth low pass, run forwards and then backwards: gain 1/(1 + (ω/ω_c)⁴), no phase.
-/// It starts and ends as if the signal had rested at its first and last value; trust nothing closer to the
-/// ends than 4/ω_c. `cutoff` ω_c in rad/s, below π/sample_time; `sample_time` in s.
+/// A second-order Butterworth low pass, run forwards and then backwards: gain 1/(1 + (ω/ω_c)⁴), no phase. It
+/// starts and ends as if the signal had been constant at its first and last value; results closer to the ends
+/// than 4/ω_c are unreliable. `cutoff` ω_c in rad/s, below π/sample_time; `sample_time` in s.
 inline std::vector<double> zero_phase_low_pass(std::vector<double> x, double cutoff, double sample_time) {
   const double w = std::tan(std::min(0.5 * cutoff * sample_time, 0.49 * std::numbers::pi));  // prewarped
   const double scale = 1 / (1 + std::numbers::sqrt2 * w + w * w);

@@ -1,4 +1,4 @@
-/// The engine on the common job against the same job written by hand. Both must give the same motion.
+/// The engine on the common job, compared with the same job written by hand. Both must give the same motion.
 #include <fmt/format.h>
 #include <cmath>
 #include <fstream>
@@ -17,7 +17,7 @@ std::string path_of(const std::string& name) {
   return std::string(LOOPWRIGHT_SOURCE) + "/diagrams/linear_motor/" + name;
 }
 
-/// The sampled job for a variable-step solver, which takes no "step".
+/// The sampled job for a variable-step solver, which accepts no "step".
 std::string with_dormand_prince() {
   std::ifstream file(path_of("common_job.json"));
   auto json = nlohmann::json::parse(file);
@@ -47,7 +47,7 @@ by_hand::Outcome simulated(const Plan& plan) {
   return outcome;
 }
 
-/// Whether both moved alike; if not, the benchmark ends with an error.
+/// Whether both motions agree; otherwise the benchmark ends with an error.
 bool agree(benchmark::State& state, const by_hand::Outcome& engine, const by_hand::Outcome& hand,
            double relative, double absolute = 0) {
   const auto close = [&](double a, double b) {
@@ -62,9 +62,9 @@ bool agree(benchmark::State& state, const by_hand::Outcome& engine, const by_han
           .c_str());
   return false;
 }
-/// [m] Below a count of the encoder nothing feeds back, and the falling slopes of the cogging force drive two
-/// solutions apart: the last bits of two orders of summation grow to some 1e-10 m. Without quantiser they
-/// stay the last bits.
+/// [m] Below a count of the encoder there is no feedback, and the falling slopes of the cogging force let two
+/// solutions diverge: the rounding differences of two orders of summation grow to about 1e-10 m. Without a
+/// quantizer they stay at rounding level.
 constexpr double below_a_count = 2e-9;
 
 void report_pairs(benchmark::State& state, const std::string& key, const Pairs& pairs, double repeats,
@@ -159,7 +159,7 @@ void common_job_dopri5(benchmark::State& state) {
   rows.clear(),
       by_hand::run_dormand_prince(job_without_quantiser(), relative_tolerance, absolute_tolerance, rows);
   if (!agree(state, simulated(*without_quantiser(file.path())), rows.outcome(), 1e-7))
-    return;  // as exact as the tolerance
+    return;  // as accurate as the tolerance
   report_pairs(state, "common_job_dopri5_ratio", pairs, repeats, 2,
                "simulate() with dopri5, 1e-8/1e-10, over a hand-written Dormand-Prince loop that carries its "
                "step across samples; both record five "
@@ -182,7 +182,7 @@ void common_job_cvode(benchmark::State& state) {
         for (int i = 0; i < repeats; ++i)
           rows.clear(), by_hand::run_cvode(job, relative_tolerance, absolute_tolerance, rows);
       });
-  if (!agree(state, engine, rows.outcome(), 1e-6)) return;  // as exact as the tolerance
+  if (!agree(state, engine, rows.outcome(), 1e-6)) return;  // as accurate as the tolerance
   report_pairs(
       state, "common_job_cvode_ratio", pairs, repeats, 1.25,
       "simulate() of diagrams/linear_motor/common_job_continuous.json with cvode-bdf, 1e-8/1e-10, over raw "

@@ -26,7 +26,7 @@ class Reference {
   }
   size_t pieces() const { return pieces_.size() - 1; }
   double end_of(size_t piece) const { return pieces_[piece].end; }
-  /// Time only goes on between calls.
+  /// Only time advances between calls.
   Wanted at(double time) {
     while (time >= pieces_[now_].end) ++now_;
     return within(now_, time);
@@ -72,7 +72,7 @@ struct Section {
   }
 };
 
-/// Quantiser, proportional and derivative feedback, feedforward and disturbance observer, all by Tustin's
+/// Quantizer, proportional and derivative feedback, feedforward and disturbance observer, all by Tustin's
 /// rule.
 class Controller {
  public:
@@ -268,7 +268,7 @@ class Loop {
     return 0;
   }
   Reference reference;
-  size_t piece = 0;  // of the reference, held between borders
+  size_t piece = 0;  // of the reference, held between segment borders
 
  private:
   const Job& job_;

@@ -1,5 +1,5 @@
-/// The common job (diagrams/linear_motor/common_job.json and common_job_continuous.json) as one would write
-/// it without an engine: one loop, one plant, libm. What the engine is measured against.
+/// The common job (diagrams/linear_motor/common_job.json and common_job_continuous.json) written by hand
+/// without an engine: one loop, one plant, libm. It is the reference for the speed of the engine.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -15,7 +15,7 @@ struct Job {
                                 {1.0625, 0.35}, {0.3, 0},    {0.05, 0}};
   double stop = 2.6;                                         ///< [s]
   double sample_time = 0.001;                                ///< [s]
-  double encoder_resolution = 2e-7;                          ///< [m]; 0: not quantised
+  double encoder_resolution = 2e-7;                          ///< [m]; 0: not quantized
   double Kp = 2000, Kd = 30;                                 ///< [N/m], [N s/m]
   double derivative_pole = 1000;                             ///< [rad/s]
   double nominal_mass = 0.2621;                              ///< [kg]
@@ -38,7 +38,7 @@ struct Outcome {
   double peak_error = 0;      ///< [m] largest |reference - position| over the rows
 };
 
-/// The signals that the diagrams log, one value a millisecond. Room is taken before the run.
+/// The signals that the diagrams log, one value a millisecond. Memory is reserved before the run.
 struct Rows {
   explicit Rows(size_t rows) {
     for (auto* column : {&time, &reference, &position, &error, &command, &disturbance}) column->reserve(rows);
@@ -54,15 +54,15 @@ struct Rows {
   std::vector<double> time, reference, position, error, command, disturbance;
 };
 
-/// Sampled controller; the plant by the classical Runge-Kutta method at `steps_per_sample` steps a sample. No
-/// rows.
+/// Sampled controller; the plant by the classical Runge-Kutta method with `steps_per_sample` steps a sample.
+/// No rows.
 Outcome run_rk4(const Job& job, int steps_per_sample);
 
 /// Sampled controller; the plant by Dormand & Prince 5(4). The step size is carried across samples.
 void run_dormand_prince(const Job& job, double relative_tolerance, double absolute_tolerance, Rows& rows);
 
-/// Continuous controller; CVODE, BDF and dense Newton, from one border of the segments to the next, where the
-/// third derivative of the reference jumps: stop time before it, new start after it. Rows are interpolated.
+/// Continuous controller; CVODE, BDF and dense Newton, from one segment border to the next, where the third
+/// derivative of the reference jumps: stop time before it, restart after it. Rows are interpolated.
 void run_cvode(const Job& job, double relative_tolerance, double absolute_tolerance, Rows& rows);
 
 }  // namespace loopwright::by_hand

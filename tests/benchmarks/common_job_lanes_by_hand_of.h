@@ -1,5 +1,5 @@
-/// Compiled once for every instruction set. Everything is inlined, so that the linker finds nothing here to
-/// hand to code for other machines.
+/// Compiled once for every instruction set. Everything is inlined, so that the linker cannot use a function
+/// from here in code for other machines.
 #pragma once
 #include "models/real/functions.h"
 #include "tests/benchmarks/common_job_lanes_by_hand.h"
@@ -27,7 +27,7 @@ template <class Real> struct LaneSection {
   }
 };
 
-/// The controller of run_rk4, a run a lane.
+/// The controller of run_rk4, one run for each lane.
 template <class Real> struct LaneController {
   const Job& job;
   double keep, slope;

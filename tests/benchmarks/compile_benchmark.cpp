@@ -1,4 +1,4 @@
-/// From a file to a plan: how long, and whether a block costs the same in a diagram of any size.
+/// The time from a file to a plan, and whether the cost of a block is independent of the size of the diagram.
 #include <fmt/format.h>
 #include "engine/plan/plan.h"
 #include "tests/benchmarks/diagram_file.h"
@@ -9,7 +9,7 @@ namespace {
 
 constexpr int blocks_of_axis = 10;
 
-/// Motor axes, each following the one before: controllers, friction, forces, with units on the wires.
+/// Motor axes, each following the previous one: controllers, friction, forces, with units on the wires.
 std::string diagram_of(int blocks) {
   std::string text = R"({
   "loopwright": 1,

@@ -1,4 +1,4 @@
-/// What a loop on hardware costs, on the emulated card in virtual time: the paper's controller at 1 kHz.
+/// The cost of a loop on hardware, on the emulated card in virtual time: the paper's controller at 1 kHz.
 #include <cstdlib>
 #include "hw/drivers.h"
 #include "hw/realtime/deploy.h"

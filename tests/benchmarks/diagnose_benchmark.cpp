@@ -1,4 +1,5 @@
-/// How long a diagnosis takes: a record of 56 s at 1 kHz from the judge's generator that hides two effects.
+/// Duration of a diagnosis: a record of 56 s at 1 kHz, from the generator of the hidden-effect benchmark,
+/// with two hidden effects.
 #include <fmt/format.h>
 #include <cstdlib>
 #include <filesystem>

@@ -1,4 +1,4 @@
-/// Learned disturbances: how fast a model is trained and how fast it predicts.
+/// Learned disturbances: speed of training and of prediction.
 #include <fmt/format.h>
 #include <cmath>
 #include <numbers>
@@ -22,7 +22,7 @@ gp::Kernel additive() {
   return {{gp::Term{1, {periodic, gp::Shape{}}}, gp::Term{1, {gp::Shape{}, smooth}}}, 1};
 }
 
-/// Cogging at ten velocities, as the paper's training data.
+/// Cogging at ten velocities, like the paper's training data.
 gp::Samples samples(int count) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> uniform(0, 1);
@@ -92,8 +92,8 @@ void fit_million(benchmark::State& state) {
                  {{"evaluations", fit.evaluations}}});
 }
 
-/// The whole fit against one evaluation with the whole matrix, of which a dense fit would need as many as
-/// the structured one took.
+/// The whole fit against one evaluation with the whole matrix. A dense fit would need as many of these as the
+/// structured fit took.
 void fit_against_dense(benchmark::State& state) {
   const gp::Samples data = samples(1000);
   gp::Fit fit;
@@ -154,8 +154,8 @@ void variance(benchmark::State& state) {
   report(state, {"gp_variance_ns", each, 1000, "posterior variance, exact", {}});
 }
 
-/// The whole controller of the paper with its learned compensation, at 1 kHz; a perfect stage stands in for
-/// the plant, which real hardware would be.
+/// The whole controller of the paper with its learned compensation, at 1 kHz. An ideal stage takes the place
+/// of the plant, which would be real hardware.
 std::string controller_alone() {
   const std::string folder = LOOPWRIGHT_SOURCE "/diagrams/";
   return fmt::format(R"({{

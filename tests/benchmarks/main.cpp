@@ -1,5 +1,5 @@
-/// benchmarks REPORT.json [Google Benchmark's options]: measures, writes the report, ends with 1 when a bar
-/// is missed.
+/// benchmarks REPORT.json [Google Benchmark's options]: measures, writes the report, exit code 1 if a bar is
+/// missed.
 #include <fmt/format.h>
 #include "engine/record/atomic_file.h"
 #include "tests/benchmarks/measure.h"

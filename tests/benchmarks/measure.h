@@ -1,4 +1,4 @@
-/// Times that can be trusted on a busy machine: CPU time, both sides in turn in one process, medians.
+/// Reliable times on a busy machine: CPU time, both sides alternately in one process, medians.
 #pragma once
 #include <benchmark/benchmark.h>
 #include <string>
@@ -18,16 +18,16 @@ template <class F> double seconds_of(F&& f) {
 
 double median(std::vector<double> values);
 
-/// A B A B …: the ratio of every pair, so that what slows the machine for a while slows both.
+/// A B A B …: the ratio of every pair, so that a temporary slowdown of the machine affects both sides.
 struct Pairs {
   std::vector<double> first, second, ratio;
   void add(double a, double b) { first.push_back(a), second.push_back(b), ratio.push_back(a / b); }
 };
-/// Measures one pair an iteration; the benchmark's own time is that of the first side.
+/// Measures one pair for each iteration. The benchmark's own time is that of the first side.
 template <class First, class Second>
 Pairs alternate(benchmark::State& state, First&& first, Second&& second) {
   Pairs pairs;
-  first(), second();  // caches, branch predictors and clock frequency find their state
+  first(), second();  // warms up caches, branch predictors and clock frequency
   for (auto _ : state) {
     const double a = seconds_of(first);
     pairs.add(a, seconds_of(second));
@@ -41,15 +41,15 @@ struct Figure {
   std::string key;
   double value = 0;
   double bar = 0;        ///< 0: reported only
-  std::string measured;  ///< what and how, in a sentence
+  std::string measured;  ///< what is measured and how, in a sentence
   std::vector<std::pair<std::string, double>> details;
   double at_least = 0;  ///< 0: no such bar
 };
 /// Adds it to the report and to the benchmark's line on the terminal.
 void report(benchmark::State& state, Figure figure);
 
-// The benchmarks of each file, to be added in this order: a child process counts the memory of its parent as
-// its own, so memory is measured while this process is small.
+// The benchmarks of each file, to be added in this order: the memory of a child process includes that of its
+// parent, so memory is measured while this process is small.
 void add_memory();
 void add_common_job();
 void add_compile();
@@ -58,9 +58,9 @@ void add_sweep();
 void add_deploy();
 void add_diagnose();
 
-/// The report as JSON: where it was measured, then every figure under its key.
+/// The report as JSON: the machine, then every figure under its key.
 std::string report_text();
-/// Keys of the figures beyond their bar.
+/// Keys of the figures that miss their bar.
 std::vector<std::string> missed_bars();
 
 }  // namespace loopwright::benchmarks

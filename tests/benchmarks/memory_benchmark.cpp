@@ -1,4 +1,4 @@
-/// How much memory the program takes for one run.
+/// The memory that the program needs for one run.
 #include <spawn.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -13,7 +13,7 @@ extern char** environ;
 namespace loopwright::benchmarks {
 namespace {
 
-/// Peak resident memory of `program arguments…` in bytes; throws when it fails.
+/// Peak resident memory of `program arguments…` in bytes. Throws if the program fails.
 double peak_memory(std::vector<std::string> command) {
   std::vector<char*> arguments;
   for (std::string& word : command) arguments.push_back(word.data());

@@ -1,4 +1,4 @@
-/// Many runs of the common job: lanes against the engine's own scalar run, threads against one, a sweep
+/// Many runs of the common job: lanes against the engine's scalar run, several threads against one, a sweep
 /// against its bare runs.
 #include <fmt/format.h>
 #include <algorithm>
@@ -16,9 +16,9 @@ namespace {
 
 const std::string common_job = std::string(LOOPWRIGHT_SOURCE) + "/diagrams/linear_motor/common_job.json";
 
-constexpr int arenas = 2;  // as a sweep of many runs has them
+constexpr int arenas = 2;  // as in a sweep of many runs
 
-/// All lanes with a payload of their own.
+/// All lanes, each with its own payload.
 void run_all(LaneRun& run, const Plan& plan) {
   for (int lane = 0; lane < run.lanes(); ++lane) *run.parameter("stage.payload", lane) = 0.01 * lane;
   run.reset({plan.seed, 0});
@@ -61,7 +61,7 @@ std::vector<double> final_positions(const LaneRun& run, const Plan& plan) {
   return positions;
 }
 
-/// The engine's lanes against loops over the same registers without an engine.
+/// The engine's lanes, compared with loops over the same registers without an engine.
 void lane_ratio(benchmark::State& state, InstructionSet set, const std::string& key) {
   if (const std::string reason = lanes_unavailable(set); !reason.empty()) {
     state.SkipWithError(reason.c_str());
@@ -111,7 +111,7 @@ SweepPlan plan_of(const DiagramFile& file) {
   return SweepPlan(std::move(sweep));
 }
 
-/// A sweep, thread by thread or not, to a folder that goes away.
+/// A sweep, on one or several threads, into a temporary folder.
 double wall_seconds(const SweepPlan& plan, int threads) {
   const std::string folder =
       (std::filesystem::temp_directory_path() / fmt::format("loopwright_sweep_benchmark_{}", getpid()))

@@ -73,7 +73,7 @@ void BlockUnderTest::tune(std::string_view path, double value) {
   restart();
 }
 
-/// Wires point at the vectors as they are now; a test may have resized them.
+/// Wires point to the present vectors, which a test may have resized.
 void BlockUnderTest::connect() {
   const auto& ports = info().inputs;
   in_.resize(ports.size()), many_.resize(ports.size());

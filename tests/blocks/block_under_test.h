@@ -1,4 +1,4 @@
-/// One block on a test bench: read from the registry as a diagram would, run by hand, without plan or solver.
+/// One block on a test bench: read from the registry as by a diagram, run by hand, without plan or solver.
 ///
 ///   BlockUnderTest gain("Gain", R"({"gain": 3})");
 ///   gain.input("u") = 2;
@@ -16,7 +16,7 @@ namespace loopwright {
 class BlockUnderTest {
  public:
   /// Reads, checks, prepares and starts the block. Throws std::invalid_argument for a type that is not
-  /// registered. With errors in the settings nothing is prepared: look at `problems()`.
+  /// registered. If the settings have errors, nothing is prepared: see `problems()`.
   explicit BlockUnderTest(std::string_view type, std::string_view settings = "{}", double sample_time = 0);
   /// The same with a seed, run number and block key; `setup.sample_time` in s.
   BlockUnderTest(std::string_view type, std::string_view settings, const Setup& setup);
@@ -27,22 +27,22 @@ class BlockUnderTest {
   const BlockInfo& info() const { return type_.info; }
   const Problems& problems() const { return problems_; }
 
-  // Wires. An input that was never set reads its default, or 0. A wrong name throws std::invalid_argument.
+  // Wires. An input that was never set reads its default, or 0. An unknown name throws std::invalid_argument.
   double& input(std::string_view name) { return inputs(name).at(0); }
-  /// The numbers on a vector port, or one for each wire of a port that takes many: assign to connect.
+  /// The numbers on a vector port, or one for each wire of a port that accepts several: assign to connect.
   std::vector<double>& inputs(std::string_view name);
   double output(std::string_view name) const { return outputs(name).at(0); }
   const std::vector<double>& outputs(std::string_view name) const;
 
-  // States. By the name of the output that shows the state, or by place.
+  // States, by the name of the output that shows the state, or by index.
   double& state(std::string_view output) { return states_.at(state_of(output)); }
   double rate(std::string_view output) const { return rates_.at(state_of(output)); }
   std::vector<double>& states() { return states_; }
   const std::vector<double>& rates() const { return rates_; }
   double crossing(std::string_view name) const;
 
-  // Methods of the block, as the engine calls them; those that it does not have do nothing.
-  /// Modes are decided, then all outputs computed.
+  // Methods of the block, as the engine calls them. Methods that the block does not have do nothing.
+  /// Decides the modes, then computes all outputs.
   void evaluate(double time = 0, int64_t tick = 0);
   /// All outputs with the modes held, as inside a solver step.
   void evaluate_held(double time);
@@ -55,25 +55,25 @@ class BlockUnderTest {
   void crossings();
   double next_stop(double now) const;
   double shortest_period() const;
-  /// Why a method refused since the start, or nothing.
+  /// The reason of the first fault since the start, or nothing.
   std::string_view fault() const { return fault_.reason; }
 
-  /// Anew from the start, with the present parameters.
+  /// Restarts with the present parameters.
   void restart();
-  /// Sets a tunable number, "harmonics.0.amplitude", and starts anew. Throws std::invalid_argument if there
-  /// is none.
+  /// Sets a tunable number, "harmonics.0.amplitude", and restarts. Throws std::invalid_argument if there is
+  /// none.
   void tune(std::string_view path, double value);
 
   /// One step of the classical Runge-Kutta method, inputs and modes held, then the step is accepted.
   void step(double duration);
   /// Many equal steps.
   void advance(double duration, int steps);
-  /// One sample: outputs at this tick, then the update; the next call is one sample time later.
+  /// One sample: outputs at this tick, then the update. The next call is one sample time later.
   double sample(std::string_view input, double value, std::string_view output);
 
   double time() const { return now_.time; }
 
-  /// Every mutable number, as a checkpoint of a run holds it.
+  /// Every mutable number, as in a checkpoint of a run.
   struct Snapshot {
     std::vector<double> states;
     std::vector<std::byte> memory, mode;
@@ -95,7 +95,7 @@ class BlockUnderTest {
   const BlockType& type_;
   Setup setup_;
   Problems problems_;
-  std::unique_ptr<std::byte[]> storage_;  // over-allocated, block_ is aligned inside
+  std::unique_ptr<std::byte[]> storage_;  // over-allocated, so that block_ can be aligned inside
   void* block_ = nullptr;
   std::vector<std::vector<double>> inputs_, outputs_, buffers_;
   std::vector<std::vector<const double*>> many_;

@@ -1,5 +1,5 @@
-/// How a linear block answers a sine, found from its step alone: no knowledge of what the block should be
-/// enters.
+/// The response of a linear block to a sine, computed from its step alone, without knowledge of the expected
+/// result.
 #pragma once
 #include <complex>
 #include "tests/blocks/block_under_test.h"
@@ -8,7 +8,8 @@ namespace loopwright {
 
 using Complex = std::complex<double>;
 
-/// Y(jw)/U(jw) of a continuous block, w in rad/s: x' = A x + B u is read off unit vectors and solved at jw.
+/// Y(jw)/U(jw) of a continuous block, w in rad/s: x' = A x + B u is determined from unit vectors and solved
+/// at jw.
 inline Complex continuous_response(BlockUnderTest& block, std::string_view input, std::string_view output,
                                    double w) {
   const size_t n = block.states().size();
@@ -27,7 +28,7 @@ inline Complex continuous_response(BlockUnderTest& block, std::string_view input
     for (size_t i = 0; i < n; ++i) rows[i][column] = column < n ? -block.rates()[i] : block.rates()[i];
   }
   for (size_t i = 0; i < n; ++i) rows[i][i] += Complex(0, w);
-  for (size_t k = 0; k < n; ++k) {  // Gauss-Jordan with pivots
+  for (size_t k = 0; k < n; ++k) {  // Gauss-Jordan elimination with pivoting
     size_t best = k;
     for (size_t i = k; i < n; ++i)
       if (std::abs(rows[i][k]) > std::abs(rows[best][k])) best = i;
@@ -43,8 +44,8 @@ inline Complex continuous_response(BlockUnderTest& block, std::string_view input
   return y;
 }
 
-/// Y/U at z = e^(jwT) of a sampled block that starts at zero: the sum over its impulse response, `samples`
-/// long.
+/// Y/U at z = e^(jwT) of a sampled block that starts at zero: the sum over its impulse response of `samples`
+/// values.
 inline Complex sampled_response(BlockUnderTest& block, std::string_view input, std::string_view output,
                                 double w, double sample_time, int samples = 20000) {
   block.restart();
@@ -54,7 +55,7 @@ inline Complex sampled_response(BlockUnderTest& block, std::string_view input, s
   return sum;
 }
 
-/// What Tustin's rule puts in the place of s at z = e^(jwT).
+/// The value that Tustin's rule substitutes for s at z = e^(jwT).
 inline Complex tustin(double w, double sample_time) {
   return {0.0, 2 / sample_time * std::tan(w * sample_time / 2)};
 }

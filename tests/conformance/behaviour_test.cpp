@@ -1,5 +1,5 @@
-// What the engine takes for granted of every block: declared feedthrough is the true one, methods are pure,
-// memory is all in the arena, crossings tell of every change of mode.
+// What the engine requires of every block: declared feedthrough is the actual one, methods are pure, the
+// arena contains all memory, crossings report every change of mode.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -184,7 +184,7 @@ TEST_P(Behaviour, StopsLieStrictlyAhead) {
         ASSERT_GT(next, now) << "stop " << i << " from " << begin;
         if (i % 7 == 3 && next < infinity) {  // also from times between the stops
           const double between = now + 0.5 * (next - now);
-          // TransportDelay announces no discontinuity but keeps steps shorter than its delay.
+          // TransportDelay reports no discontinuity but keeps steps shorter than its delay.
           const bool is_between = between > now && between < next && info().type != "TransportDelay";
           ASSERT_TRUE(!is_between || block->next_stop(between) == next)
               << "not the stop that was announced before it";
@@ -204,7 +204,7 @@ bool crosses(double from, double to, Crossing direction) {
   return direction == Crossing::rising ? rises : direction == Crossing::falling ? falls : rises || falls;
 }
 
-/// What a solver sees of a mode.
+/// The part of a mode that a solver sees.
 std::vector<double> visible(BlockUnderTest& block, double time) {
   block.evaluate_held(time);
   block.derivatives();
@@ -213,8 +213,7 @@ std::vector<double> visible(BlockUnderTest& block, double time) {
   return all;
 }
 
-/// Blocks whose mode also remembers what a solver does not see until later, so that some changes need no
-/// event.
+/// Blocks whose mode also stores values that a solver sees only later, so that some changes need no event.
 bool remembers(std::string_view type) {
   return type == "Backlash" ||           // the last output, which the present one follows in any case
          type == "Integrator" ||         // that the reset fired at the last event, and no more
@@ -222,8 +221,8 @@ bool remembers(std::string_view type) {
          type == "Quantizer";            // zero with its sign
 }
 
-/// Walks the inputs and states of a continuous block at random; counts the changes of its mode, and fails
-/// where one came without a crossing.
+/// Random walk of the inputs and states of a continuous block. Counts the changes of its mode, and fails if
+/// one occurred without a crossing.
 int walk(const Specimen& specimen, double stride, std::mt19937_64& random) {
   auto block = bench(specimen);
   const BlockInfo& info = block->info();
@@ -245,7 +244,7 @@ int walk(const Specimen& specimen, double stride, std::mt19937_64& random) {
     time = step * 1e-3;
     for (const PortInfo& port : info.inputs)
       for (double& number : block->inputs(port.name)) number += stride * uniform(random);
-    for (size_t i = 0; i < block->states().size(); ++i)  // a state that is held by the mode does not move
+    for (size_t i = 0; i < block->states().size(); ++i)  // a state that the mode holds does not move
       if (block->rates()[i] != 0) block->states()[i] += stride * uniform(random);
     const std::vector<double> held = visible(*block, time);
     block->crossings();

@@ -1,5 +1,5 @@
-// Parameters of every block: found by path or refused, held to their ranges, missed and mistyped with good
-// messages.
+// Parameters of every block: found by path or rejected, limited to their ranges; missing and misspelled ones
+// get good messages.
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -36,7 +36,7 @@ void visit_settings(const std::vector<ParameterInfo>& parameters, Value& setting
       if (member.name == info.name) visit_value(info, member.value, member.name, visit);
 }
 
-/// The settings with all optional numbers written out, so that their ranges are tried too.
+/// The settings with all optional numbers written out, so that their ranges are tested too.
 Value with_defaults(const std::vector<ParameterInfo>& parameters, Value settings) {
   for (const ParameterInfo& info : parameters) {
     const bool is_number = info.kind == ParameterKind::number || info.kind == ParameterKind::whole;
@@ -137,7 +137,7 @@ TEST_P(Parameters, OutOfRangeAreRefusedByName) {
   }
 }
 
-/// Looks at a block from all sides: nothing may crash or be undefined, whatever comes out.
+/// Calls all methods of a block: nothing may crash or be undefined, whatever the results.
 void use(const Specimen& specimen, const Value& settings) {
   Specimen changed = specimen;
   changed.settings = to_json(settings);
@@ -232,7 +232,7 @@ LOOPWRIGHT_FOR_EVERY_BLOCK(Parameters);
 
 class Words : public EveryBlock {};
 
-/// A unit with every variable ("$force") replaced by some unit.
+/// A unit with every variable ("$force") replaced by a concrete unit.
 std::string with_variables_filled(std::string_view unit) {
   std::string text;
   for (size_t i = 0; i < unit.size();) {

@@ -20,7 +20,7 @@ inline std::vector<std::string> all_types() {
 
 inline std::string name_of_type(const testing::TestParamInfo<std::string>& type) { return type.param; }
 
-/// Makes the tests of `Suite` run on every type.
+/// Instantiates the tests of `Suite` for every type.
 #define LOOPWRIGHT_FOR_EVERY_BLOCK(Suite) \
   INSTANTIATE_TEST_SUITE_P(Registered, Suite, testing::ValuesIn(all_types()), name_of_type)
 

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A test bench knows no folder: texts that name a file beside the diagram become whole paths.
+/// A test bench has no folder: texts that name a file beside the diagram become absolute paths.
 Value with_whole_paths(Value settings) {
   for (Value::Member& member : settings.members)
     if (member.value.kind == Value::Kind::text && !member.value.text.empty())
@@ -22,14 +22,14 @@ Value with_whole_paths(Value settings) {
   return settings;
 }
 
-/// How many numbers each input of the block gets; a vector output that feeds it counts with its length.
+/// The number of elements of each input of the block. A vector output that feeds it counts with its length.
 std::vector<int> wires_of(const BlockEntry& entry, const Diagram& diagram, const BlockInfo& info) {
   std::vector<int> wires;
   for (const PortInfo& input : info.inputs) {
     int count = input.shape == PortInfo::Shape::scalar ? 1 : 0;
     for (const PortWires& port : entry.in)
       if (port.port == input.name && input.shape == PortInfo::Shape::many) count = int(port.wires.size());
-    // A vector comes from a Pack in the examples: as long as that has elements.
+    // In the examples a vector comes from a Pack and has its number of elements.
     for (const PortWires& port : entry.in)
       for (const BlockEntry& source : diagram.blocks)
         if (port.port == input.name && input.shape == PortInfo::Shape::vector && !port.wires.empty() &&
@@ -40,8 +40,8 @@ std::vector<int> wires_of(const BlockEntry& entry, const Diagram& diagram, const
   return wires;
 }
 
-/// Where the diagrams leave something unseen: systems without direct feedthrough, tables far from zero,
-/// starts and ends that lie outside of a short test.
+/// Cases that the diagrams do not cover: systems without direct feedthrough, tables far from zero, starts and
+/// ends outside a short test.
 const Specimen further[] = {
     {"StateSpace",
      "with direct feedthrough",
@@ -90,7 +90,7 @@ void collect(const Diagram& diagram, const std::string& prefix, Collection& to) 
   }
 }
 
-/// ds.json beside ds.model.json: made of the same blocks as others, but slow to load.
+/// ds.json beside ds.model.json: the same blocks as in others, but slow to load.
 bool has_large_model(const fs::path& diagram) {
   return diagram.parent_path().filename() != "examples" &&
          fs::exists(fs::path(diagram).replace_extension(".model.json"));
@@ -104,7 +104,7 @@ Collection collect_all() {
         !has_large_model(file.path()) &&
         file.path().parent_path().filename() != "effects")  // fragments, tested in tests/tools/effects
       files.push_back(file.path());
-  std::ranges::sort(files);  // examples come before the larger diagrams that use the same blocks
+  std::ranges::sort(files);  // examples come before larger diagrams with the same blocks
   for (const fs::path& file : files) {
     Problems problems;
     if (const auto diagram = load_diagram(file.string(), {}, problems))

@@ -1,4 +1,4 @@
-// A block wired with vectors of n elements is n scalar blocks, bit for bit.
+// A block wired with vectors of n elements is equal to n scalar blocks, bit for bit.
 #include <fmt/format.h>
 #include <algorithm>
 #include "engine/run/simulation.h"

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Runs what README and docs tell a reader to type, in order, as on a fresh clone.
+"""Runs the commands of README and docs in order, as on a fresh clone.
 
-    tests/docs/commands.py            every command; the slow ones shortened as SHORTENED says
-    tests/docs/commands.py --quick    without the slow ones: a part of tools/test.sh
-    tests/docs/commands.py --list     what would be done with each command, and why
+    tests/docs/commands.py            every command; slow ones are shortened according to SHORTENED
+    tests/docs/commands.py --quick    without the slow commands: a part of tools/test.sh
+    tests/docs/commands.py --list     lists what would be done with each command, and why
 
-Blocks marked ```sh are run, one shell a page, in a folder that looks like the root of a clone. A block whose line before it
-ends with "`NAME`:" is the file NAME and is there before the page's first command. JSON that is a whole file (it has a key
-"loopwright") goes through `loopwright check`. Every block must say what it is; those that are neither are ```text.
-Exit code 0: all ran; 1: one failed.
+Blocks marked ```sh are run, one shell for each page, in a folder like the root of a clone. If the line before a block
+ends with "`NAME`:", the block is the file NAME, which is written before the page's first command. JSON that is a whole file (it
+has a key "loopwright") is checked by `loopwright check`. Every block must declare its kind; other blocks are ```text.
+Exit code 0: all commands succeeded; 1: one failed.
 """
 import argparse
 import json
@@ -23,16 +23,16 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 KINDS = ("sh", "json", "cpp", "text", "diff")
-# In the order in which a reader meets them: the README's demo makes what other pages use.
+# In reading order: the README's demo makes files that other pages use.
 FIRST = ["README.md", "docs/diagram_format.md", "docs/hardware.md", "docs/paper.md"]
 
-# A command that begins so is left out, everywhere.
+# Commands with these beginnings are skipped on all pages.
 LEFT_OUT = [
     ("tools/test.sh", "it runs this script"),
     ("srun ", "needs a cluster with Slurm"),
     ("mpirun ", "needs Open MPI; tests/tools/sweep runs it"),
 ]
-# What takes minutes, and by what it is replaced: (as written, as run, why that is the same command).
+# Commands that take minutes, and their replacements: (as written, as run, the difference).
 SHORTENED = [
     ("tools/reproduce_paper.sh", "tools/reproduce_paper.sh --runs 1", "one run for every number instead of five"),
     ("tools/hidden_effects.sh 300", "tools/hidden_effects.sh 4", "4 scenarios instead of 300"),
@@ -43,24 +43,24 @@ SHORTENED = [
     ("loopwright sweep diagrams/linear_motor/controllers.sweep.json -o /tmp/controllers",
      "loopwright sweep diagrams/linear_motor/controllers.sweep.json -o /tmp/controllers --shard 0/20", "a twentieth of the runs"),
 ]
-# Not in the quick part: seconds to minutes each.
+# Skipped by --quick: seconds to minutes each.
 SLOW = ["tools/", "bin/hidden_effects ", "loopwright sweep ", "loopwright gp ", "identification", "loopwright diagnose", "loopwright fit",
         "diagrams/linear_motor/ps.json", "diagrams/linear_motor/beyond.json", "loopwright deploy", "--replay", "g++", "magnetic_pull"]
-# What a page takes for granted that this machine may lack.
+# Preconditions of a page that this machine may lack.
 BEFORE = {
     "docs/hardware.md": "# the emulated card in the place of the real one, in virtual time: this machine may be busy\n"
                         "export HIL_LIBRARY=$PWD/build/release/lib/libhil_emulator.so\n",
     "docs/diagnose.md": "# the record of which the example of a map speaks\n"
                         "awk 'BEGIN { print \"t_s,iq_A,theta_rad\"; for (i = 0; i < 400; ++i) print i \",\" 0.1 * sin(i / 3) \",\" i / 100 }' > map.csv\n",
 }
-# Whole files that stand in a page without a name: where they would lie, and under which name.
+# Whole files that a page shows without a name: their folder and name.
 NAMES = {
     ("docs/diagram_format.md", "A mass on a spring, pushed"): "spring_by_frequency.json",
     ("docs/diagnose.md", "Holding current"): "holding.experiment.json",
     ("docs/effects.md", "A bump on the track"): "bump.json",
     ("docs/sweeps.md", "Payload and cogging"): "diagrams/linear_motor/example.sweep.json",
 }
-# What `check` needs beside the file.
+# Further arguments of `check`.
 CHECKED_WITH = {"magnet.json": "--blocks magnetic_pull.so"}
 
 
@@ -74,7 +74,7 @@ class Block:
             self.name = NAMES.get((page, whole.get("title"))) if whole else None
 
     def whole_file(self):
-        """The JSON, when it is a whole file of Loopwright."""
+        """The JSON, if it is a whole file of Loopwright; else None."""
         try:
             value = json.loads(self.text)
         except ValueError:
@@ -82,7 +82,7 @@ class Block:
         return value if isinstance(value, dict) and "loopwright" in value else None
 
     def commands(self):
-        """Lines of a shell, continued ones joined, without the comments behind them."""
+        """Shell commands, with continuation lines joined and without comment lines."""
         joined = self.text.replace("\\\n", " ")
         return [line for line in joined.splitlines() if line.strip() and not line.lstrip().startswith("#")]
 
@@ -109,14 +109,14 @@ def pages():
 
 
 def missing_record(experiment, folder, data):
-    """The name of the measured record of an experiment that is neither beside it nor below the folder of data; or None."""
+    """The name of an experiment's measured record if it is neither beside it nor below the data folder; else None."""
     name = experiment.get("data", "")
     places = [folder, data, *(data.iterdir() if data.is_dir() else [])]
     return None if not name or any((place / name).is_file() for place in places) else name
 
 
 def decide(command, quick, data):
-    """(what is run, or None; why it is not run as written)"""
+    """(the command to run, or None; the reason why it differs from the page)"""
     text = command.strip()
     for beginning, why in LEFT_OUT:
         if text.startswith(beginning):
@@ -134,13 +134,13 @@ def decide(command, quick, data):
 
 
 def scratch_clone(folder, build):
-    """A folder that looks like the root of a clone that was built, in which commands may write."""
+    """A writable folder like the root of a clone that has been built."""
     for name in ("diagrams", "hw"):
         shutil.copytree(ROOT / name, folder / name)
     for name in ("docs", "engine", "models", "blocks", "tests"):
         (folder / name).symlink_to(ROOT / name)
     (folder / "build").mkdir()
-    (folder / "tmp").mkdir()  # in the place of /tmp
+    (folder / "tmp").mkdir()  # replaces /tmp
     (folder / "build/release").symlink_to(build)
     demo = ROOT / "build/demo"  # made by tools/demo.sh
     (folder / "build/demo").symlink_to(demo)
@@ -152,7 +152,7 @@ def scratch_clone(folder, build):
 
 
 def need_hidden_record(build):
-    """The record of the README's diagnosis, which tools/demo.sh would make."""
+    """Makes the record of the README's diagnosis, as tools/demo.sh does."""
     hidden = ROOT / "build/demo/hidden"
     if not (hidden / "nominal.json").exists():
         hidden.parent.mkdir(parents=True, exist_ok=True)

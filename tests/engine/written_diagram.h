@@ -1,4 +1,4 @@
-/// Diagrams written inside a test: compiled, run, or shown with what is wrong with them.
+/// Diagrams written inside a test: compiled, run, or shown with their problems.
 ///
 ///   const auto plan = plan_of(diagram(R"("a": {"type": "Constant", "value": 3})"));
 ///   EXPECT_EQ(signal(simulate(*plan), "a.y").back(), 3);
@@ -9,7 +9,7 @@
 
 namespace loopwright {
 
-/// A whole file around what stands in "blocks" and in "solver"; `more`: further members, as in R"(, "log":
+/// A whole file around the contents of "blocks" and of "solver"; `more`: further members, as in R"(, "log":
 /// [])".
 inline std::string diagram(std::string_view blocks, std::string_view solver = R"("stop": 1, "step": 0.1)",
                            std::string_view more = "") {
@@ -17,13 +17,13 @@ inline std::string diagram(std::string_view blocks, std::string_view solver = R"
                      more);
 }
 
-/// Throws InputError as load_plan does.
+/// Throws InputError like load_plan.
 inline std::shared_ptr<const Plan> plan_of(std::string_view text, const LoadOptions& options = {}) {
   DiagramFolder folder;
   return load_plan(folder.with("top.json", text).path("top.json"), options);
 }
 
-/// Every problem of loading and compiling, with file names relative to the folder; warnings too.
+/// Every problem of loading and compiling, including warnings, with file names relative to the folder.
 inline std::string problems_in(const DiagramFolder& folder, const std::string& name = "top.json",
                                const LoadOptions& options = {}) {
   Problems problems;
@@ -42,7 +42,7 @@ inline RunResult run_of(std::string_view text, const RunOptions& options = {}) {
   return simulate(*plan_of(text), options);
 }
 
-/// A column of the recording; throws std::invalid_argument when there is none of that name.
+/// A column of the recording. Throws std::invalid_argument if there is none of that name.
 inline const std::vector<double>& signal(const RunResult& result, std::string_view name) {
   for (const Column& column : result.recording.columns)
     if (column.name == name) return column.values;

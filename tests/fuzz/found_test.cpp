@@ -1,4 +1,5 @@
-// What mutants found: each was a crash, an exception, a silent success or a message without a place.
+// Failures found by mutants: each was a crash, an exception, a silent success or a message without source
+// location.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include "engine/run/simulation.h"

@@ -1,4 +1,4 @@
-// Inputs that no mutation finds: without end, without bottom, of the wrong sort, or gone.
+// Inputs that no mutation produces: endless, infinitely nested, of the wrong kind, or missing.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include "tests/engine/diagram/diagram_folder.h"
@@ -11,7 +11,7 @@ namespace {
 class Hostile : public testing::Test {
  protected:
   ~Hostile() override { unwatch(); }
-  /// What comes of a diagram with this text.
+  /// The result of a diagram with this text.
   Outcome run(const std::string& text) {
     folder_.with("top.json", text);
     return run_file("top.json");
@@ -153,7 +153,7 @@ TEST_F(Hostile, DiagramsInsideThemselvesAreRefused) {
   folder_.with("other.json", around(R"("a": {"diagram": "top.json"}, "b": {"diagram": "top.json"})"));
   EXPECT_EQ(run(around(R"("a": {"diagram": "other.json"}, "b": {"diagram": "other.json"})")),
             Outcome::refused);
-  // No diagram contains itself, but each the next one twice: 2^40 blocks.
+  // No diagram contains itself, but each contains the next one twice: 2^40 blocks.
   for (int i = 0; i < 40; ++i)
     folder_.with(
         fmt::format("d{}.json", i),

@@ -5,7 +5,8 @@
 
 namespace loopwright::fuzz {
 
-// Shares: what is written by hand, and names much else, breaks in the most ways. A MAT file costs a process.
+// Shares: files that are written by hand, and name many others, break in the most ways. A MAT file needs a
+// process.
 constexpr KindOfFile kinds[] = {
     {"Diagrams", 50, 0.2, 0.1, open_diagrams},      {"Experiments", 10, 0.2, 0.1, open_experiments},
     {"Sweeps", 6, 0.2, 0.1, open_sweeps},           {"Effects", 8, 0.2, 0.1, open_effects},

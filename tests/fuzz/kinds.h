@@ -1,4 +1,5 @@
-/// The kinds of files that the program reads, each with a way to break them and the functions that read them.
+/// The kinds of files that the program reads, each with a method to damage them and the functions that read
+/// them.
 #pragma once
 #include <memory>
 #include <span>
@@ -12,11 +13,11 @@ namespace loopwright::fuzz {
 class Kind {
  public:
   virtual ~Kind() = default;
-  /// Puts a mutant into a folder and tells of it.
+  /// Puts a mutant into a folder and describes it.
   virtual std::string make(Random& random) = 0;
-  /// Reads it, and uses what was read.
+  /// Reads it, and uses the result.
   virtual Outcome read(const std::string& what) = 0;
-  /// Arguments with which the program reads it, and soon ends; empty: there is no such command.
+  /// Arguments with which the program reads it and ends soon; empty: there is no such command.
   virtual std::vector<std::string> command() { return {}; }
 };
 
@@ -32,7 +33,7 @@ struct Seed {
   std::string name, text;
 };
 
-/// A file in a folder, in the place of which stands a mutant.
+/// A file in a folder, which is replaced by a mutant.
 class FileKind : public Kind {
  public:
   std::string make(Random& random) override {
@@ -45,7 +46,7 @@ class FileKind : public Kind {
 
  protected:
   virtual std::string change(const std::string& text, Random& random) = 0;
-  /// Problems, or none when the file was taken.
+  /// Problems; none if the file was accepted.
   virtual Outcome use(const std::string& path, Problems& problems) = 0;
   std::string path() const { return folder_.path(seed_.name); }
 

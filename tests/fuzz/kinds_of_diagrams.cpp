@@ -13,11 +13,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A copy of diagrams/ to be broken file by file.
+/// A copy of diagrams/ that is damaged file by file.
 struct Corpus {
   struct File {
     std::string name, text;             ///< "emps/axis.json"
-    std::vector<std::string> diagrams;  ///< those that read this file, itself among them
+    std::vector<std::string> diagrams;  ///< those that read this file, including itself
   };
   DiagramFolder folder;
   std::vector<File> files;
@@ -32,7 +32,7 @@ struct Corpus {
     for (const fs::path& path : paths) {
       const std::string name = fs::relative(path, source).string(), text = read_whole(path.string());
       folder.with(name, text);
-      // Larger learned models take a while to load; diagrams/examples/gpr.json stands for them.
+      // Larger learned models are slow to load; diagrams/examples/gpr.json represents them.
       const bool is_slow = text.find(".model.json") != text.npos && !name.starts_with("examples/");
       if (path.extension() == ".json" && !path.stem().has_extension() && !is_slow)
         files.push_back({name, text, {}});
@@ -71,7 +71,7 @@ class Diagrams : public Kind {
   std::string top_;
 };
 
-/// A short recording of the EMPS axis, as the experiments name its columns.
+/// A short recording of the EMPS axis, with the column names of the experiments.
 std::string table() {
   std::string text = "t_s,q_ref_m,F_motor_N,q_meas_m\n";
   for (int i = 0; i < 40; ++i)

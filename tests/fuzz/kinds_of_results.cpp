@@ -1,4 +1,4 @@
-// What the program writes itself and reads again: checkpoints, shards of sweeps, logs, tables, MAT files.
+// Files that the program writes and reads itself: checkpoints, shards of sweeps, logs, tables, MAT files.
 #include <fmt/format.h>
 #include <cmath>
 #include <stdexcept>
@@ -27,8 +27,8 @@ class Checkpoints : public FileKind {
   }
 
  protected:
-  /// Every other mutant has a damaged head and a hash that belongs to it. What stands behind the facts is memory
-  /// of a run, which the hash alone protects.
+  /// Every other mutant has a damaged header and a matching hash. The bytes behind the facts are memory of a
+  /// run, which only the hash protects.
   std::string change(const std::string& text, Random& random) override {
     if (below(random, 2)) return mutate(text, random);
     constexpr size_t hash = 16;
@@ -101,7 +101,7 @@ class Logs : public FileKind {
   Outcome use(const std::string& path, Problems& problems) override {
     const Recording log = read_recording(path, problems, {.allow_not_finite = true});
     if (problems.has_errors()) return Outcome::refused;
-    Problems of_replay;  // they speak of the plan, not of a place in the log
+    Problems of_replay;  // they refer to the plan, not to a location in the log
     const Replay result = replay(*plan_, hardware_, log, of_replay);
     if (of_replay.has_errors()) return Outcome::failed;
     EXPECT_FALSE(to_text(result).empty());

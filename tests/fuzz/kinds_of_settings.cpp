@@ -101,7 +101,7 @@ class Models : public JsonKind {
   std::vector<std::string> command() override { return {"gp", "show", path()}; }
 
  protected:
-  /// Every other mutant gets the checksum that belongs to it, and is looked at in earnest.
+  /// Every other mutant gets a matching checksum, so that its contents are read.
   std::string change(const std::string& text, Random& random) override {
     std::string mutant = mutate_json(text, donors_, random);
     if (below(random, 2)) return mutant;

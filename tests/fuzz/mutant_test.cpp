@@ -1,5 +1,5 @@
-// Wrong files of every kind, the same in every run: each must end in problems that point into a file, or in a
-// result that is one. One that crashes or hangs names itself (watchdog.h).
+// Wrong files of every kind, the same in every run: each must give problems that point into a file, or a
+// valid result. A mutant that crashes or hangs is named (watchdog.h).
 //
 //   test_fuzz                                        5,000 mutants
 //   LOOPWRIGHT_MUTANTS=1000000 test_fuzz             a million, others than those
@@ -15,7 +15,7 @@
 namespace loopwright::fuzz {
 namespace {
 
-constexpr int parts = 4;  // of each kind, to be shared among processes
+constexpr int parts = 4;  // of each kind, to be divided among processes
 
 long mutants() {
   const char* wanted = std::getenv("LOOPWRIGHT_MUTANTS");
@@ -44,7 +44,7 @@ TEST_P(Mutants, EndInProblemsOrInResults) {
   EXPECT_GE(outcomes[Outcome::finished], kind.least_accepted * double(made)) << kind.name;
 }
 
-/// The program itself, on one mutant in a hundred: a process for each takes its time.
+/// The program itself, on one mutant in a hundred, because each needs a process.
 class MutantCommands : public testing::TestWithParam<int> {};
 
 TEST_P(MutantCommands, EndByThemselvesAndNameAPlace) {

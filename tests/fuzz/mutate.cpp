@@ -14,7 +14,7 @@ struct Token {
   size_t begin, end;
 };
 
-/// Roughly as JSON has them; also of texts that are no JSON.
+/// Approximately as in JSON; also for texts that are not JSON.
 std::vector<Token> tokens_of(std::string_view text) {
   const auto is_word = [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '-' || c == '+';
@@ -133,7 +133,7 @@ std::string mutate_tokens(const std::string& text, Random& random) {
 
 namespace {
 
-/// A value in the tree, with the name or place that leads to it.
+/// A value in the tree, with the name or index that leads to it.
 struct Node {
   Json* parent;
   std::string key;
@@ -145,7 +145,7 @@ void collect(Json& parent, std::vector<Node>& nodes) {
     if (value.is_structured()) collect(value, nodes);
   }
 }
-/// The nodes for which `wanted` holds.
+/// The nodes for which `wanted` is true.
 std::vector<Node> nodes_where(Json& root, auto wanted) {
   std::vector<Node> nodes;
   if (root.is_structured()) collect(root, nodes);
@@ -218,7 +218,7 @@ void retype(Json& root, Random& random) {
   const auto blocks = nodes_where(root, is_block);
   if (!blocks.empty()) (*pick(blocks, random).value)["type"] = any_type(random);
 }
-/// A block of another diagram in the place of one of this, wired to what is here.
+/// A block of another diagram replaces one of this diagram, wired to the blocks of this diagram.
 void transplant(Json& root, std::span<const Json> donors, Random& random) {
   const auto blocks = nodes_where(root, is_block);
   if (blocks.empty() || donors.empty()) return;

@@ -1,8 +1,9 @@
-/// Wrong diagrams as people, editors and broken disks make them: the same random numbers give the same
+/// Wrong diagrams as people, editors and damaged disks produce them. The same random numbers give the same
 /// mutant.
 ///
-/// Three depths: bytes (tests/engine/record/mutation.h), tokens of JSON, and the tree of a diagram, whose
-/// mutants are still JSON and get furthest: wires, types, numbers, units, sample times, blocks.
+/// Three depths: bytes (tests/engine/record/mutation.h), tokens of JSON, and the tree of a diagram. Mutants
+/// of
+/// the tree are still JSON and get furthest: wires, types, numbers, units, sample times, blocks.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <random>
@@ -21,14 +22,14 @@ template <class List> const auto& pick(const List& list, Random& random) {
   return list[below(random, std::size(list))];
 }
 
-/// Numbers at which arithmetic, counters and clocks give way.
+/// Numbers at which arithmetic, counters and clocks fail.
 double extreme_number(Random& random);
 
-/// One token of a JSON text replaced, lost, doubled or swapped with another.
+/// One token of a JSON text replaced, removed, doubled or swapped with another.
 std::string mutate_tokens(const std::string& text, Random& random);
 
 /// One to three changes to a diagram or experiment that leave it JSON. `donors` are diagrams whose blocks may
-/// be put in the place of others. A text that is no JSON gets a mutant of its tokens.
+/// replace others. A text that is not JSON gets a mutant of its tokens.
 std::string mutate_tree(const std::string& text, std::span<const Json> donors, Random& random);
 
 /// A mutant of bytes, tokens or tree.

@@ -32,7 +32,7 @@ Outcome outcome_of(const RunResult& result, const std::string& what) {
   return result.status == RunStatus::failed ? Outcome::failed : Outcome::finished;
 }
 
-/// Ends a run at its first word on its progress, which comes after 1024 steps.
+/// Ends a run at its first progress call, which comes after 1024 steps.
 RunResult run_shortly(const Plan& plan) {
   std::atomic<bool> interrupt = false;
   RunOptions options;

@@ -10,12 +10,12 @@ extern "C" void __sanitizer_set_death_callback(void (*)()) __attribute__((weak))
 namespace loopwright::fuzz {
 namespace {
 
-constexpr long most_work = 20, longest_wait = 600;  // s, of processor time and of the clock
+constexpr long most_work = 20, longest_wait = 600;  // s, of processor time and of wall-clock time
 
 const std::string* watched = nullptr;
 unsigned long long watched_seed = 0;
 
-/// Only what a signal handler may call.
+/// Only functions that are allowed in a signal handler.
 void write_text(const char* text, size_t length) {
   while (length > 0) {
     const ssize_t written = write(STDERR_FILENO, text, length);

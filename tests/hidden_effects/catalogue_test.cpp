@@ -1,5 +1,5 @@
-// The catalogue's blocks, put into the nominal diagram with the true parameters, must move as the true plant
-// does: two implementations of each law, by different hands and with different solvers.
+// The catalogue's blocks, inserted into the nominal diagram with the true parameters, must move as the true
+// plant does: two independent implementations of each law, with different solvers.
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -50,7 +50,7 @@ RecordSizes sizes_of(const Scenario& scenario) {
   return sizes;
 }
 
-/// The effect of that name, in the form that is true.
+/// The effect of that name, in its true form.
 loopwright::Effect effect_of(const std::string& name, const nlohmann::json& truth) {
   const std::string form = name == "end_stop" ? "high end"
                            : name == "stribeck_friction"
@@ -63,7 +63,7 @@ loopwright::Effect effect_of(const std::string& name, const nlohmann::json& trut
   return {};
 }
 
-/// The catalogue counts a spring from position zero, the truth from where it rests.
+/// The catalogue measures a spring from position zero, the truth from its rest position.
 double fitted_value(const std::string& effect, const std::string& parameter, const nlohmann::json& truth) {
   if (parameter == "preload" && effect == "spring")
     return -double(truth["stiffness"]) * double(truth["rest_position"]);
@@ -101,8 +101,8 @@ TEST_P(TrueEffect, InTheDiagramMovesAsThePlantDoes) {
   write_text(folder / "improved.json", improved->text);
 
   const double before = loop_error(folder, "nominal.json"), after = loop_error(folder, "improved.json");
-  // True dry friction holds without give, the catalogue's gives over a short way: they differ while the axis
-  // is at rest.
+  // True dry friction holds rigidly, that of the catalogue yields over a short distance: they differ while
+  // the axis is at rest.
   const bool gives = effect_index == COULOMB_FRICTION || effect_index == STRIBECK_FRICTION;
   EXPECT_LT(after, gives ? 0.12 * before : 0.005 * before + scenario.noise.resolution_m)
       << before << " m before";

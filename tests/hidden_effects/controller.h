@@ -1,7 +1,7 @@
 #ifndef HIDDEN_EFFECTS_CONTROLLER_H
 #define HIDDEN_EFFECTS_CONTROLLER_H
 
-/// A sampled transfer function in 1/z, direct form II transposed.
+/// A sampled transfer function in 1/z, transposed direct form II.
 enum { FILTER_ORDER = 4 };
 
 typedef struct {

@@ -1,4 +1,4 @@
-"""A few scenarios of the judge, fixed: every kind of motion, nothing hidden and several effects at once."""
+"""Fixed scenarios of the benchmark: every kind of motion, with no hidden effect and with several effects at once."""
 
 import json
 import pathlib
@@ -12,15 +12,15 @@ import score
 GENERATOR, LOOPWRIGHT = sys.argv[1:3]
 
 SCENARIOS = [
-    (5, "constant_speeds", []),  # coarse counts, which look like a lag to whom takes the noise for too small
+    (5, "constant_speeds", []),  # coarse counts, which look like a lag if the noise is underestimated
     (6, "constant_speeds", ["eddy_current_drag", "thermal_drift"]),
-    (13, "constant_speeds", ["spring"]),  # a slow force that a shift of the input by a tenth of a second would half explain
-    (33, "constant_speeds", ["input_delay", "encoder_periodic_error"]),  # a lag to whom takes the delayed staircase for its mean
+    (13, "constant_speeds", ["spring"]),  # a slow force that a shift of the input by 0.1 s would explain in part
+    (33, "constant_speeds", ["input_delay", "encoder_periodic_error"]),  # a lag, if only the mean of the delayed staircase counts
     (8, "many_speeds", ["presliding_hysteresis", "input_delay"]),
     (3, "many_speeds", ["backlash"]),
     (4, "multisine", ["coulomb_friction", "force_gain"]),
     (9, "multisine", ["flexible_mode", "spring"]),
-    (25, "multisine", ["backlash"]),  # blows whose moments cannot be told
+    (25, "multisine", ["backlash"]),  # impacts at uncertain moments
     (10, "forward", ["cogging", "constant_force"]),
     (11, "paper", ["encoder_periodic_error", "direction_dependent_friction"]),
     (34, "paper", ["input_delay", "coulomb_friction"]),
@@ -48,7 +48,7 @@ class Diagnosis(unittest.TestCase):
                 self.assertEqual(result["answer"]["verdict"], "explained" if effects else "nothing_missing")
 
     def test_finds_the_gap_although_the_moments_of_the_blows_are_hardly_known(self):
-        result = diagnosed(62, "constant_speeds", ["backlash"])  # few blows; a promise at their exact moments is nothing
+        result = diagnosed(62, "constant_speeds", ["backlash"])  # few impacts; their exact moments cannot be predicted
         self.assertEqual(score.found_names(result), ["backlash"])
         gap = result["truth"]["effects"][0]["parameters"]["gap"]
         self.assertAlmostEqual(score.found(result)[0]["parameters"]["gap"]["value"] / gap, 1, delta=0.05)

@@ -4,7 +4,7 @@
 
 static const double two_pi = 6.283185307179586, force_scale_n = 0.6, pole_pitch_m = 0.0225;
 
-/// The parameter that scales the effect's force; none where the magnitude is drawn in units of its own.
+/// The parameter that scales the effect's force; none if the magnitude is drawn in its own units.
 static double* magnitude(Effect effect, Physics* p) {
   switch (effect) {
     case VISCOUS_FRICTION:
@@ -54,7 +54,7 @@ static double* magnitude(Effect effect, Physics* p) {
   }
 }
 
-/// A pitch that the stroke holds at least five times, away from the line that the nominal model already has.
+/// A pitch that fits at least five times into the stroke, different from the line of the nominal model.
 static double free_pitch(const Physics* p, Random* random) {
   double pitch;
   do pitch = random_log_uniform(random, 0.005, 0.08);
@@ -66,7 +66,7 @@ static Periodic periodic_draw(double amplitude, double pitch_m, Random* random) 
   return (Periodic){amplitude, pitch_m, random_uniform(random, 0, two_pi)};
 }
 
-/// Everything but the magnitude.
+/// All parameters except the magnitude.
 static void draw_shape(Effect effect, double duration_s, Random* random, Physics* p) {
   switch (effect) {
     case STRIBECK_FRICTION:
@@ -164,7 +164,7 @@ static bool either_sign(Effect effect) {
   }
 }
 
-/// What a real axis can have: no negative damping or mass, no motor that turns its force round.
+/// Limits of a real axis: no negative damping or mass, no motor that inverts its force.
 static bool admissible(Effect effect, const Path* path, const Physics* p) {
   const double damping = p->damping_n_s_per_m;
   switch (effect) {
@@ -189,7 +189,7 @@ static bool admissible(Effect effect, const Path* path, const Physics* p) {
   }
 }
 
-/// A payload as a share of force, but of no more than twice the mass; now and then less mass than believed.
+/// A payload as a share of force, but at most twice the mass; sometimes less mass than assumed.
 static bool draw_mass(Effect effect, const Path* path, double share, Random* random, Physics* p) {
   const double needed_kg = share * force_scale_n / rms(path->acceleration_m_per_s2, path->count);
   if (effect == UNEVEN_MASS) {
@@ -201,7 +201,7 @@ static bool draw_mass(Effect effect, const Path* path, double share, Random* ran
   return needed_kg < (lighter ? 0.4 : 2) * p->mass_kg;
 }
 
-/// A load of 20 … 50 % of the mass; the total stays.
+/// A load of 20 … 50 % of the mass; the total is unchanged.
 static void draw_load(Effect effect, Random* random, Physics* p) {
   const double backlash_hz = 60;
   p->load_kg = p->mass_kg * random_uniform(random, 0.2, 0.5);
@@ -214,7 +214,7 @@ static void draw_load(Effect effect, Random* random, Physics* p) {
   p->coupling_n_s_per_m = 2 * damping_ratio * frequency * p->load_kg;
 }
 
-/// One try; false if the magnitude is not admissible.
+/// One trial; false if the magnitude is not admissible.
 static bool draw_once(Effect effect, const Path* path, Random* random, Physics* p) {
   const double share = random_log_uniform(random, effect < CATALOGUE ? 0.05 : 0.15, 1);
   switch (effect) {
@@ -246,7 +246,7 @@ static bool draw_once(Effect effect, const Path* path, Random* random, Physics* 
   const double sign = either_sign(effect) ? random_sign(random) : 1, ratio = random_uniform(random, 1.4, 2.5);
   draw_shape(effect, path->time_s[path->count - 1], random, p);
   double* scale = magnitude(effect, p);
-  *scale = 1e-3;  // small, for the laws of the motor multiply each other
+  *scale = 1e-3;  // small, because the laws of the motor multiply each other
   if (effect == STRIBECK_FRICTION) p->stribeck.static_level_n = ratio * *scale;
   *scale *= share * force_scale_n / rms_consumed(path, &before, p);
   if (effect == STRIBECK_FRICTION) p->stribeck.static_level_n = ratio * *scale;

@@ -7,7 +7,7 @@
 #include "motion.h"
 #include "plant.h"
 
-/// What can be hidden in a plant: the 23 effects of the catalogue, then some that no catalogue has.
+/// The effects that a plant can hide: the 23 effects of the catalogue, then some outside the catalogue.
 typedef enum {
   INERTIA,
   VISCOUS_FRICTION,
@@ -43,26 +43,26 @@ typedef enum {
 } Effect;
 
 extern const char* const effect_names[EFFECTS];
-/// For an effect outside the catalogue: what it depends on, as JSON.
+/// For an effect outside the catalogue: the variables on which it depends, as JSON.
 const char* effect_variables(Effect effect);
 
-/// The wanted motion sampled where it moves, with the force that the nominal model needs: what a magnitude is
-/// scaled on.
+/// The reference motion, sampled while it moves, with the force that the nominal model needs: the scale of
+/// magnitudes.
 typedef struct {
   int count;
   double *time_s, *position_m, *velocity_m_per_s, *acceleration_m_per_s2, *force_n;
 } Path;
 
-/// Force that the physics consumes beyond what the motor is asked for; without loads, delay, lag and inertia.
+/// Additional force that the physics requires of the motor; without loads, delay, lag and inertia.
 double consumed_force(const Physics* physics, double position_m, double velocity_m_per_s, double time_s,
                       double input_n);
 
-/// Not drawn together: they look alike, or are one and the same effect.
+/// Not drawn together: they look alike, or are the same effect.
 bool effects_clash(Effect one, Effect other);
 
 /// Adds the effect to the physics, with parameters from the stream; false if no admissible magnitude was
-/// found. Magnitudes are log-uniform: force 5 … 100 % of 0.6 N rms along the path; where a share of force
-/// says nothing, see the source.
+/// found. Magnitudes are log-uniform: force 5 … 100 % of 0.6 N rms along the path. For effects to which a
+/// share of force does not apply, see the source.
 bool effect_draw(Effect effect, const Path* path, Random* random, Physics* physics);
 
 /// Its parameters as a JSON object.

@@ -16,7 +16,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr int substeps = 10;
 
-// ---- The plant against solutions on paper
+// ---- The plant, compared with analytic solutions
 
 struct Open {
   Physics physics{};
@@ -79,7 +79,7 @@ TEST(Plant, StribeckFrictionHoldsAtItsStaticLevelAndFallsWithSpeed) {
   EXPECT_EQ(axis.position(), 0);
   EXPECT_NEAR(plant_dry_friction(&physics, 0.01, 0), 0.1 + 0.15 * std::exp(-1.0), 1e-15);
   axis.push(0.251, 2);
-  EXPECT_GT(axis.velocity(), 0.5);  // off, against little more than the level
+  EXPECT_GT(axis.velocity(), 0.5);  // off, with a force slightly above the level
 }
 
 TEST(Plant, DelayIsExactBetweenSamples) {
@@ -211,7 +211,7 @@ Record run(const Scenario& scenario, const Noise* noise = nullptr, int steps = s
   return record_make(&scenario, scenario_truth(&scenario), &scenario.held_out, noise, 0, "test", steps);
 }
 
-/// Finer steps change less than a tenth of the encoder's noise, whatever is hidden.
+/// Finer steps change the result by less than a tenth of the encoder's noise, for every hidden effect.
 TEST(Scenario, RecordsHaveConverged) {
   for (int effect = 0; effect < EFFECTS; ++effect) {
     const Scenario scenario = hiding(static_cast<Effect>(effect), FORWARD, 11);
@@ -223,8 +223,8 @@ TEST(Scenario, RecordsHaveConverged) {
   }
 }
 
-/// Force that the nominal model cannot account for, from the record alone: central differences and the mean
-/// of the held forces, which act together.
+/// Force that the nominal model cannot explain, from the record alone: central differences and the mean of
+/// the held forces, which act together.
 double residual(const Scenario& s, const Record& r, int k) {
   const Physics& nominal = s.stages[0];
   const double T = sample_time_s;
@@ -234,7 +234,7 @@ double residual(const Scenario& s, const Record& r, int k) {
          periodic(nominal.nominal_cogging, r.position_m[k]);
 }
 
-/// What each effect should look like in that residual, written anew.
+/// The expected form of each effect in that residual, written independently.
 double signature(Effect effect, const Physics& p, double x, double v, double a, double u, double t) {
   const double direction = v < 0 ? -1 : 1, speed = std::fabs(v);
   auto wave = [&](const Periodic& w) { return w.amplitude * std::sin(2 * pi * x / w.pitch_m + w.phase_rad); };
@@ -307,7 +307,7 @@ TEST(Scenario, EachEffectLeavesItsSignatureAndNothingElse) {
   }
 }
 
-/// The exact solution over a sample gives the noise force back from the true velocities.
+/// The exact solution over a sample reproduces the noise force from the true velocities.
 std::vector<double> noise_force(const Scenario& scenario, const Record& r) {
   const Physics& p = scenario.stages[0];
   const double decay = std::exp(-p.damping_n_s_per_m / p.mass_kg * sample_time_s);

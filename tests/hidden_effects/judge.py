@@ -17,12 +17,12 @@ TUNING, JUDGING = 100_000, 900_000
 
 
 def run(command, timeout_s=600):
-    """(ended well, error text, CPU seconds)"""
+    """(success, error text, CPU seconds)"""
     with tempfile.TemporaryFile("w+") as errors:
         process = subprocess.Popen([str(c) for c in command], stdout=subprocess.DEVNULL, stderr=errors)
         limit = threading.Timer(timeout_s, process.kill)
         limit.start()
-        _, status, usage = os.wait4(process.pid, 0)  # rather than wait(), for the CPU time of this child alone
+        _, status, usage = os.wait4(process.pid, 0)  # not wait(): the CPU time of this child alone
         limit.cancel()
         process.returncode = os.waitstatus_to_exitcode(status)
         errors.seek(0)
@@ -35,7 +35,7 @@ def read(path):
 
 
 def write(path, value):
-    """Whole or not at all, so that an interrupted batch resumes."""
+    """Writes the file atomically, so that an interrupted batch can resume."""
     partial = path.with_suffix(".partial")
     partial.write_text(json.dumps(value, indent=1))
     partial.rename(path)
@@ -52,7 +52,7 @@ def ratio(numerator, denominator):
 
 
 def figures(options, folder, truth):
-    """The improved diagram on a record that the diagnosis has not seen, over the least that noise allows."""
+    """Errors of the improved diagram on a record that the diagnosis has not seen, relative to the noise floor."""
     improved = folder / "improved.json"
     if not improved.exists():
         improved = folder / "nominal.json"
@@ -77,7 +77,7 @@ def judge(options, seed):
     if not good:
         sys.exit(f"generator, seed {seed}: {error}")
     truth = read(folder / "truth.json")
-    (folder / "truth.json").unlink()  # what is judged must not read it
+    (folder / "truth.json").unlink()  # the diagnosis must not read it
     answered, error, seconds = run([options.loopwright, "diagnose", folder / "nominal.json", folder / "train.experiment.json",
                                     "--json", folder / "answer.json", "-o", folder / "improved.json"])
     result = {"truth": truth, "answer": read(folder / "answer.json") if answered else None, "time_s": seconds,

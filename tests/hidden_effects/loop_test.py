@@ -1,4 +1,4 @@
-"""Two simulators that share no code agree: the nominal loop in Loopwright leaves the error that the generator's own leaves."""
+"""Two simulators without shared code agree: the nominal loop has the same error in Loopwright and in the generator."""
 
 import json
 import pathlib

@@ -1,4 +1,4 @@
-/// Writes the scenario of a seed into a folder, which is made if it is not there; see usage.
+/// Writes the scenario of a seed into a folder, which is created if necessary; see usage.
 
 #include <stdlib.h>
 #include <string.h>

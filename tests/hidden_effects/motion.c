@@ -19,7 +19,7 @@ static void change_velocity(Motion* motion, double duration_s, double velocity_m
 
 static void rest(Motion* motion, double duration_s) { change_velocity(motion, duration_s, 0.0); }
 
-/// To the right (distance > 0) or left at one speed, and stop; short strokes stay below the speed.
+/// To the right (distance > 0) or left at one speed, and stop. Short strokes stay below the speed.
 static void stroke(Motion* motion, double distance_m, double speed_m_per_s, double ramp_s) {
   const double length = fabs(distance_m), sign = distance_m < 0 ? -1.0 : 1.0;
   const double speed = fmin(speed_m_per_s, length / ramp_s);
@@ -53,7 +53,7 @@ static void make_forward(Motion* motion) {
   rest(motion, 0.3);
 }
 
-/// Nine speeds there and back, and strokes of half a millimetre to eight millimetres in between.
+/// Nine speeds forward and back, and strokes of half a millimetre to eight millimetres in between.
 static void make_many_speeds(Motion* motion, Random* random) {
   static const double speeds[] = {0.02, 0.30, 0.04, 0.40, 0.20, 0.10, 0.35, 0.15, 0.25};
   static const double lengths[] = {0.05, 0.60, 0.10, 0.60, 0.50, 0.20, 0.60, 0.30, 0.50};
@@ -77,7 +77,7 @@ static void make_many_speeds(Motion* motion, Random* random) {
   }
 }
 
-/// Ten constant speeds there and back with ramps of one second: hardly any acceleration.
+/// Ten constant speeds forward and back with ramps of one second: hardly any acceleration.
 static void make_constant_speeds(Motion* motion, Random* random) {
   static const double speeds[] = {0.02, 0.04, 0.07, 0.10, 0.14, 0.18, 0.23, 0.28, 0.34, 0.40};
   static const double lengths[] = {0.05, 0.10, 0.15, 0.20, 0.30, 0.40, 0.50, 0.55, 0.60, 0.60};
@@ -91,7 +91,7 @@ static void make_constant_speeds(Motion* motion, Random* random) {
   }
 }
 
-/// Slow strokes with a multisine on top, whose amplitudes fall with frequency.
+/// Slow strokes with an added multisine whose amplitudes decrease with frequency.
 static void make_multisine(Motion* motion, Random* random) {
   static const double frequencies[] = {0.7, 1.3, 2.3, 3.7, 6.1, 10.3};
   rest(motion, 0.3);
@@ -109,7 +109,7 @@ static void make_multisine(Motion* motion, Random* random) {
   }
 }
 
-/// Speeds that no training record has, there and back, and three short strokes.
+/// Speeds that no training record contains, forward and back, and three short strokes.
 static void make_held_out(Motion* motion) {
   rest(motion, 0.3);
   two_speed_pass(motion, 1.0, 0.12, 0.30);

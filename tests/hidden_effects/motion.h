@@ -3,7 +3,8 @@
 
 #include "random.h"
 
-/// The wanted motion of a record, in pieces of constant or sinusoidally changing velocity, plus a multisine.
+/// The reference motion of a record, in pieces of constant or sinusoidally changing velocity, plus a
+/// multisine.
 enum { MAX_PIECES = 256, MAX_SINES = 8 };
 
 typedef enum { PAPER, MANY_SPEEDS, CONSTANT_SPEEDS, MULTISINE, FORWARD, HELD_OUT, TRAJECTORIES } Trajectory;

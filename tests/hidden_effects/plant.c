@@ -66,7 +66,7 @@ double plant_carriage_mass(const Physics* p, double x) {
   return p->mass_kg + p->added_mass_kg - p->load_kg + p->uneven_mass_kg_per_m * x;
 }
 
-/// All forces on the carriage but dry friction.
+/// All forces on the carriage except dry friction.
 static double applied_force(const Physics* p, const double s[STATES], double t, double input, double noise) {
   const double lagged = p->lag_s > 0 ? s[LAG] : input;
   double force = plant_motor_force(p, lagged, s[POSITION], t) + noise;
@@ -97,7 +97,7 @@ static void slope(const Plant* plant, const double s[STATES], double t, Held hel
   }
 }
 
-/// The classical method of Runge and Kutta.
+/// The classical Runge-Kutta method.
 static void runge_kutta(const Plant* plant, double h, Held held, double result[STATES]) {
   const double *s = plant->state, t = plant->time_s;
   double k1[STATES], k2[STATES], k3[STATES], k4[STATES], at[STATES];
@@ -111,8 +111,7 @@ static void runge_kutta(const Plant* plant, double h, Held held, double result[S
   for (int i = 0; i < STATES; ++i) result[i] = s[i] + h / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
 }
 
-/// What is not negative until something happens: the carriage reverses or breaks away, a contact opens or
-/// closes.
+/// Not negative until an event: the carriage reverses or breaks away, a contact opens or closes.
 enum { REVERSAL, HIGH_STOP, ONSET, FORWARD_GAP, BACKWARD_GAP, FORWARD_PUSH, BACKWARD_PUSH, WATCHES };
 
 static void watch(const Plant* plant, const double s[STATES], double t, Held held, double watched[WATCHES]) {
@@ -141,14 +140,14 @@ static bool differs(const double before[WATCHES], const double after[WATCHES]) {
   return false;
 }
 
-/// At rest: held by dry friction, or off in the direction of the force.
+/// At rest: held by dry friction, or released in the direction of the force.
 static void settle_direction(Plant* plant, Held held) {
   const double force = applied_force(plant->physics, plant->state, plant->time_s, held.input_n, held.noise_n);
   const double dry = plant_dry_friction(plant->physics, 0, plant->state[POSITION]);
   plant->direction = fabs(force) <= dry ? 0 : force > 0 ? 1 : -1;
 }
 
-/// One step of at most h, shorter if something happens inside; returns its length.
+/// One step of at most h, shorter if an event occurs inside; returns its length.
 static double step(Plant* plant, double h, Held held) {
   const double least_s = 1e-9;
   double before[WATCHES], after[WATCHES], reached[STATES];
@@ -165,7 +164,7 @@ static double step(Plant* plant, double h, Held held) {
       watch(plant, reached, plant->time_s + middle, held, after);
       *(differs(before, after) ? &late : &early) = middle;
     }
-    h = fmax(late, least_s);  // never stuck where an event follows itself
+    h = fmax(late, least_s);  // no endless loop if an event follows itself
     runge_kutta(plant, h, held, reached);
     watch(plant, reached, plant->time_s + h, held, after);
   }
@@ -190,7 +189,7 @@ Plant plant_at_rest(const Physics* physics, double sample_time_s, int substeps) 
   return plant;
 }
 
-/// The delay in whole samples and what remains of it.
+/// The delay in whole samples and the remainder.
 static int whole_samples(const Plant* plant, double* rest_s) {
   const int whole = (int)floor(plant->physics->delay_s / plant->sample_time_s);
   *rest_s = plant->physics->delay_s - whole * plant->sample_time_s;

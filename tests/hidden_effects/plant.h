@@ -5,7 +5,7 @@
 
 #include "random.h"
 
-/// The true axis: a carriage with whatever was drawn. Everything that is zero is absent.
+/// The true axis: a carriage with the drawn effects. Every effect that is zero is absent.
 ///
 ///   u → delay → lag → saturation, gain, ripple, drift → force;   m dv/dt = force + noise − resisting forces;
 ///   encoder: x + A sin(2 π x/L + φ).
@@ -14,13 +14,13 @@ typedef struct {
 } Stribeck;
 
 typedef struct {
-  double amplitude, pitch_m, phase_rad;  ///< amplitude in the unit of what is periodic
+  double amplitude, pitch_m, phase_rad;  ///< amplitude in the unit of the periodic quantity
 } Periodic;
 
 typedef enum { DRIFT_OF_FORCE_CONSTANT, DRIFT_OF_DAMPING, DRIFT_OF_OFFSET, DRIFTS } DriftOf;
 
 typedef struct {
-  double mass_kg, damping_n_s_per_m;  ///< what the nominal model has
+  double mass_kg, damping_n_s_per_m;  ///< contained in the nominal model
   Periodic nominal_cogging;           ///< N
 
   // The catalogue.
@@ -51,11 +51,11 @@ typedef struct {
 
   // Outside the catalogue.
   double bump_n, bump_m, bump_width_m;        ///< F exp(−((x − x_b)/w)²/2)
-  double uneven_n, uneven_m;                  ///< dry friction that grows along the track: F x/L sign v
+  double uneven_n, uneven_m;                  ///< dry friction that increases along the track: F x/L sign v
   double hum_n, hum_hz, hum_rad;              ///< sine in time
   double uneven_mass_kg_per_m;                ///< m(x) = m + μ x
-  double step_n, step_s;                      ///< a force that sets in
-  double coupled_n_s_per_m2, coupled_rest_m;  ///< damping that grows along the track: b (x − x_0) v
+  double step_n, step_s;                      ///< a force with an onset
+  double coupled_n_s_per_m2, coupled_rest_m;  ///< damping that increases along the track: b (x − x_0) v
 } Physics;
 
 enum { POSITION, VELOCITY, LAG, DAHL, LOAD_POSITION, LOAD_VELOCITY, STATES };
@@ -72,17 +72,17 @@ typedef struct {
 
 Plant plant_at_rest(const Physics* physics, double sample_time_s, int substeps);
 
-/// Holds the input and the noise force over one sample. Fourth order between events; reversals, contacts,
+/// Holds the input and the noise force over one sample. Fourth order between events. Reversals, contacts,
 /// sticking and the arrival of delayed inputs are located.
 void plant_sample(Plant* plant, double input_n, double noise_n);
 
-/// What the encoder would show without resolution and noise.
+/// The encoder reading without resolution and noise.
 double plant_encoder(const Plant* plant);
 
-/// u as it leaves the delay at the middle of the present sample.
+/// u after the delay, at the middle of the present sample.
 double plant_delayed_input(const Plant* plant);
 
-/// Laws that the scaling of magnitudes and the energy balance need as well.
+/// Laws that the scaling of magnitudes and the energy balance also need.
 double plant_motor_force(const Physics* physics, double lagged_n, double position_m, double time_s);
 double plant_resisting_force(const Physics* physics, double position_m, double velocity_m_per_s,
                              double time_s);

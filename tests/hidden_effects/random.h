@@ -4,7 +4,7 @@
 #include <stdint.h>
 
 /// A stream of random numbers: SplitMix64 (Steele, Lea, Flood 2014). Streams with different names are
-/// independent, so that one more draw for the effects does not change the noise.
+/// independent, so that an additional draw for the effects does not change the noise.
 typedef struct {
   uint64_t state;
 } Random;

@@ -70,9 +70,9 @@ Record record_make(const Scenario* scenario, const Physics* physics, const Motio
   return record;
 }
 
-// ---- What an effect leaves in a record
+// ---- The trace of an effect in a record
 
-/// Force between samples k and k + 1 that is the effect's own and that no simpler effect would explain.
+/// Force between samples k and k + 1 that belongs to the effect and that no simpler effect would explain.
 static double own_force(Effect effect, const Physics* before, const Physics* after, const Record* r, int k) {
   const double x = r->true_position_m[k], v = r->true_velocity_m_per_s[k], t = r->time_s[k];
   const double acceleration = (r->true_velocity_m_per_s[k + 1] - v) / sample_time_s;
@@ -126,7 +126,7 @@ static bool in_control(const Record* record) {
   return true;
 }
 
-/// Noise must not ring through the loop: nobody would run such an axis.
+/// Noise must not make the loop ring: no real axis is operated in this way.
 static bool well_damped(const Record* with_noise, const Record* without) {
   double sum = 0;
   for (int k = 0; k < without->count; ++k) {
@@ -215,7 +215,7 @@ static Noise draw_noise(Random* random) {
   return (Noise){0.01 * level, 0.003 * level, 0.03, 5e-8, resolutions_m[random_below(random, 4)]};
 }
 
-/// All but the effects.
+/// Everything except the effects.
 static void draw_setting(Scenario* scenario, Random* random) {
   scenario->controller = random_below(random, 4) ? PD_WITH_OBSERVER : CASCADE;
   scenario->motion = motion_make(scenario->trajectory, random);

@@ -15,7 +15,7 @@ typedef struct {
   double encoder_m, resolution_m;  ///< white noise before rounding to counts
 } Noise;
 
-/// Everything that a seed decides.
+/// Everything that a seed determines.
 typedef struct {
   uint64_t seed;
   Kind kind;
@@ -25,7 +25,7 @@ typedef struct {
   Noise noise;
   int effect_count;
   Effect effects[MAX_HIDDEN];
-  double effect_force_n[MAX_HIDDEN];  ///< rms while moving, of what sets the effect apart from simpler ones
+  double effect_force_n[MAX_HIDDEN];  ///< rms while moving, beyond that of simpler effects
   Physics stages[MAX_HIDDEN + 1];     ///< nominal, with the first effect, with the first two …
 } Scenario;
 
@@ -50,7 +50,7 @@ bool scenario_hiding(uint64_t seed, Trajectory trajectory, const Effect effects[
 /// The true axis.
 const Physics* scenario_truth(const Scenario* scenario);
 
-/// Runs the loop. No noise at all with noise = NULL; the resolution of the encoder stays unless it is zero.
+/// Runs the loop. noise = NULL: no noise at all. The resolution of the encoder is kept unless it is zero.
 Record record_make(const Scenario* scenario, const Physics* physics, const Motion* motion, const Noise* noise,
                    double resolution_m, const char* stream, int substeps);
 void record_free(Record* record);

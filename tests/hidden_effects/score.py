@@ -1,4 +1,4 @@
-"""What the answers of `loopwright diagnose` are worth, against what is true.
+"""Scores the answers of `loopwright diagnose` against the truth.
 
 A result is a dictionary {"truth", "answer", "held_out_ratio", "closed_loop_ratio", "time_s"}: truth.json of the generator, the JSON
 of `diagnose` (None if it failed), and figures that the judge measured with the improved diagram.
@@ -9,8 +9,8 @@ import math
 
 SPRINGS = {"spring", "hardening_spring"}
 
-# Parameters whose intervals are checked, by the names of the catalogue; where an answer gives a wave by its amplitude,
-# its two parts are not counted again.
+# Parameters whose intervals are checked, by the names of the catalogue; if an answer gives a wave by its amplitude,
+# its two components are not counted again.
 PARAMETERS = {
     "inertia": ["mass"],
     "viscous_friction": ["damping"],
@@ -39,7 +39,7 @@ PARAMETERS = {
 
 
 def quantile(values, share):
-    """Linear between order statistics; None of nothing."""
+    """Linear interpolation between order statistics; None for an empty list."""
     ordered = sorted(v for v in values if v is not None and math.isfinite(v))
     if not ordered:
         return None
@@ -55,7 +55,7 @@ def percent(flags):
 
 
 def comparable(names):
-    """The set that counts: a spring's rest position is an offset, so beside a spring no constant force is asked or blamed."""
+    """The set that counts: a spring's rest position is an offset, so a constant force beside a spring is ignored."""
     names = set(names)
     return frozenset(names - {"constant_force"} if names & SPRINGS else names)
 
@@ -90,7 +90,7 @@ def declared_choices(result):
 
 
 def exact_or_declared(result):
-    """Some declared explanation, with some choice of each named effect or one of its alternatives, is the truth."""
+    """Whether a declared explanation is the truth, for some choice of each named effect or one of its alternatives."""
     if result["answer"] is None:
         return False
     truth = comparable(true_names(result))
@@ -156,7 +156,7 @@ def ratio_bars(name, values, median_most, p90_most):
 
 
 def bars(results):
-    """The table of bars; `met` is None where nothing was measured."""
+    """The table of bars; `met` is None if nothing was measured."""
     clean = [r for r in results if r["truth"]["kind"] == "clean"]
     outside = [r for r in results if r["truth"]["kind"] == "outside"]
     hidden = [r for r in results if r["truth"]["kind"] == "hidden"]
@@ -201,7 +201,7 @@ def breakdown(results, key):
 
 
 def calibration(results):
-    """Of the effects named with this inclusion probability, how many are true."""
+    """The share of true effects among those named with this inclusion probability."""
     rows = []
     for low, high in ((0, 0.2), (0.2, 0.8), (0.8, 0.95), (0.95, 0.99), (0.99, 1.0001)):
         claims = [(e["inclusion"], e["effect"] in true_names(r)) for r in results if r["truth"]["kind"] == "hidden"
@@ -296,7 +296,7 @@ def table(columns, rows):
 
 
 def text(s):
-    """The summary for people, as Markdown tables."""
+    """The summary as Markdown tables."""
     marks = {True: "met", False: "**missed**", None: "not measured"}
     parts = [f"{s['scenarios']} scenarios",
              table(["bar", "measured", "n", "must be", ""],

@@ -1,4 +1,4 @@
-"""The score of answers written by hand."""
+"""The score of hand-written answers."""
 
 import unittest
 

@@ -1,4 +1,4 @@
-/// The emulated card in a process of its own: it can be looked at when the process that drove it is gone.
+/// The emulated card in its own process: it can be inspected after the process that drove it has ended.
 #pragma once
 #include <fcntl.h>
 #include <sys/wait.h>
@@ -12,7 +12,7 @@ namespace loopwright::hw {
 
 class CardDaemon {
  public:
-  /// `world`: a file that is made; programs with HIL_EMU_SHARED=world work on this card. `settings`: as of
+  /// `world`: a file that is created; programs with HIL_EMU_SHARED=world use this card. `settings`: as in
   /// $HIL_EMU.
   CardDaemon(const std::string& world, const std::string& settings) {
     int to[2], from[2];

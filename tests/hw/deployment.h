@@ -1,4 +1,4 @@
-/// A deployment on the emulated card: diagram, device file, and what came of it.
+/// A deployment on the emulated card: diagram, device file, and results.
 #pragma once
 #include "hw/realtime/deploy.h"
 #include "tests/hw/device_file.h"
@@ -7,7 +7,7 @@
 
 namespace loopwright::hw {
 
-/// The emulated card's own time.
+/// The time of the emulated card.
 class EmulatedTime final : public Clock {
  public:
   explicit EmulatedTime(const EmulatedCard& card) : card_(card) {}
@@ -45,7 +45,7 @@ class Deployed {
   DiagramFolder folder_;
 };
 
-/// The device's time is not the computer's.
+/// The device's time differs from the computer's.
 inline const std::string in_virtual_time = R"({"clock": {"time": "simulated"}})";
 
 inline const std::vector<double>& column(const Recording& recording, std::string_view name) {

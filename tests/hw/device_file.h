@@ -8,7 +8,7 @@
 
 namespace loopwright::hw {
 
-/// hw/devices/qpid_e.json with a JSON merge patch: null takes a member out.
+/// hw/devices/qpid_e.json with a JSON merge patch: null removes a member.
 inline std::string device_text(const std::string& patch = "{}") {
   nlohmann::ordered_json device =
       nlohmann::ordered_json::parse(std::ifstream(LOOPWRIGHT_SOURCE "/hw/devices/qpid_e.json"));
@@ -16,7 +16,7 @@ inline std::string device_text(const std::string& patch = "{}") {
   return device.dump(2);
 }
 
-/// Every problem of a device file, with file names relative.
+/// Every problem of a device file, with relative file names.
 inline std::string problems_of_device(const std::string& text) {
   DiagramFolder folder;
   folder.with("device.json", text);
@@ -27,7 +27,7 @@ inline std::string problems_of_device(const std::string& text) {
   return all;
 }
 
-/// The description; fails the test when it has problems.
+/// The description. Fails the test if it has problems.
 inline std::shared_ptr<const DeviceDescription> device_of(const std::string& patch = "{}") {
   DiagramFolder folder;
   folder.with("device.json", device_text(patch));

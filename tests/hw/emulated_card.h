@@ -1,4 +1,4 @@
-/// The emulated card inside this process, seen from behind: what tests set and what they look at.
+/// The emulated card inside this process, accessed directly: settings and observations of tests.
 #pragma once
 #include <dlfcn.h>
 #include <cstdlib>
@@ -17,7 +17,7 @@ inline std::string emulator_library(const std::string& name = "hil_emulator") {
 
 class EmulatedCard {
  public:
-  /// Loads the library, points HIL_LIBRARY at it and starts a new world in virtual time.
+  /// Loads the library, sets HIL_LIBRARY to it and starts a new world in virtual time.
   explicit EmulatedCard(const std::string& name = "hil_emulator") {
     setenv("HIL_LIBRARY", emulator_library(name).c_str(), 1);
     unsetenv("HIL_EMU"), unsetenv("HIL_EMU_SHARED");
@@ -33,7 +33,7 @@ class EmulatedCard {
     if (!set_(name, value)) throw std::invalid_argument(name);
   }
   double get(const char* name) const { return get_(name); }
-  /// Names of the exported functions that were called, in order; repeated ones too.
+  /// Names of the exported functions that were called, in order, including repetitions.
   std::vector<std::string> calls() const {
     std::string text(1 << 17, 0);
     calls_(text.data(), text.size());
@@ -42,7 +42,7 @@ class EmulatedCard {
     for (std::string name; std::getline(stream, name, ',');) names.push_back(name);
     return names;
   }
-  /// The text of the card's options, and the size with which it was handed over.
+  /// The text of the card's options, and the size that was passed with it.
   std::pair<std::string, int> options() const {
     char text[2048];
     const int size = options_(text, sizeof text);

@@ -1,4 +1,4 @@
-"""Numbers of the program against SciPy, against exact fractions and against closed forms that share no code with it.
+"""Compares results of the program with SciPy, exact fractions and closed forms that share no code with it.
 
     /usr/bin/python3 tests/reference/reference_test.py build/release/bin/loopwright
 """
@@ -48,7 +48,7 @@ class Continuous(unittest.TestCase):
         numpy.testing.assert_allclose(out["x.y"], expected, atol=1e-8)
 
     def test_delay_equation(self):
-        """dx/dt = -x(t - 1), x = 1 before 0: polynomials, piece by piece."""
+        """dx/dt = -x(t - 1), x = 1 before 0: piecewise polynomials."""
         def exact(t):
             return sum((-1) ** k * (t - (k - 1)) ** k / math.factorial(k) for k in range(int(t) + 2))
 
@@ -61,7 +61,7 @@ class Continuous(unittest.TestCase):
 
 class Sampled(unittest.TestCase):
     def test_loop_of_a_pi_controller(self):
-        """A plant with two poles behind a hold: scipy's exact discretisation, stepped by hand."""
+        """A plant with two poles behind a hold: scipy's exact discretization, stepped by hand."""
         T, Kp, Ki = 0.05, 3.0, 4.0
         A, B, C = numpy.array([[0.0, 1.0], [-2.0, -0.7]]), numpy.array([[0.0], [1.0]]), numpy.array([[1.0, 0.0]])
         Ad, Bd, *_ = scipy.signal.cont2discrete((A, B, C, numpy.zeros((1, 1))), T)
@@ -106,7 +106,7 @@ class Sampled(unittest.TestCase):
         numpy.testing.assert_allclose(numpy.array([out["x.y[0]"], out["a.y"], out["b.y"]]).T, expected, atol=1e-9)
 
     def test_a_billion_ticks(self):
-        """The last second of a million at 1 kHz, by exact fractions."""
+        """The last of a million seconds at 1 kHz, by exact fractions."""
         start, stop, T = 999_999, 1_000_000, fractions.Fraction(1, 1000)
         blocks = {"pulse": {"type": "PulseTrain", "period": 0.003, "width": 0.001, "sample_time": 0.001},
                   "late": {"type": "PulseTrain", "period": 0.007, "width": 0.002, "start": 0.0005, "sample_time": 0.001},
@@ -150,7 +150,7 @@ class Events(unittest.TestCase):
         numpy.testing.assert_allclose([out["plant.y[0]"][-1], out["plant.y[1]"][-1]], x, atol=1e-7)
 
     def test_bouncing_ball(self):
-        """Bounces by scipy, up to the fifteenth."""
+        """The first fifteen bounces, by scipy."""
         floor = lambda t, x: x[0]
         floor.terminal, floor.direction = True, -1
         time, x = 0.0, [1.0, 0.0]
@@ -169,7 +169,7 @@ class Events(unittest.TestCase):
         self.assertAlmostEqual(out["h.y"][-1], expected, delta=1e-8)
 
     def test_resets_by_a_sine(self):
-        """An integrator of 1 that a sine of 1 Hz resets."""
+        """An integrator of 1 that is reset by a sine of 1 Hz."""
         blocks = {"one": constant(1, "1/s"), "zero": constant(0), "s": {"type": "Sine", "frequency": 1, "phase": 0.3},
                   "i": {"type": "Integrator", "in": {"u": "one.y", "reset": "s.y", "reset_value": "zero.y"}}}
         for method in ("dopri5", "cvode-bdf"):
@@ -180,7 +180,7 @@ class Events(unittest.TestCase):
             self.assertLessEqual(out["i.y"].max(), 1 + 1e-6)
 
     def test_stick_slip(self):
-        """A mass on a belt: sticks until the spring pulls harder than friction holds, slips by a sine, sticks again."""
+        """A mass on a belt: it sticks until the spring force exceeds the holding friction, slips along a sine, sticks again."""
         mass, stiffness, speed, holding, sliding = 1.0, 40.0, 0.1, 3.0, 2.0
 
         def slip(t, x):  # position, velocity while it slides backwards against the belt
@@ -189,7 +189,7 @@ class Events(unittest.TestCase):
         def caught(t, x):
             return x[1] - speed
         caught.terminal, caught.direction = True, 1
-        # From the moment of release: the spring is stretched to the holding force, the mass moves with the belt.
+        # From the moment of release: the spring force equals the holding force, and the mass moves with the belt.
         release = [holding / stiffness, speed]
         piece = scipy.integrate.solve_ivp(slip, (0, 5), [release[0], release[1] - 1e-12], events=caught, rtol=1e-12, atol=1e-14,
                                           max_step=1e-3)

@@ -1,4 +1,4 @@
-"""Runs write the same bytes whatever instructions the C library chooses; so does the judge of the diagnosis."""
+"""Runs write the same bytes whatever instructions the C library selects. So does the hidden-effect generator."""
 
 import os
 import pathlib
@@ -8,7 +8,7 @@ import tempfile
 import unittest
 
 LOOPWRIGHT, GENERATOR, SOURCE = sys.argv[1], sys.argv[2], pathlib.Path(sys.argv[3])
-# The ways in which glibc can be told to leave instructions alone; others ignore the variable.
+# Settings by which glibc avoids certain instructions. Other C libraries ignore the variable.
 CHOICES = ["", "glibc.cpu.hwcaps=-FMA,-AVX2", "glibc.cpu.hwcaps=-AVX2"]
 
 

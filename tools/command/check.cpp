@@ -15,10 +15,10 @@
 namespace loopwright {
 namespace {
 
-/// What there is to say of a file in which nothing is wrong; nothing after an error.
+/// The summary of a file without errors; empty after an error.
 using Verdict = std::optional<std::string>;
 
-/// A line about code that deploy and probe would load and run: told here, where nothing is loaded.
+/// A line about code that deploy and probe would load and run; here nothing is loaded.
 std::string foreign_code(const hw::DeviceDescription* device) {
   const std::string code = device ? hw::foreign_code_of(*device) : "";
   return code.empty() ? code : fmt::format("\n{}; check does not load it", code);
@@ -29,7 +29,7 @@ struct CheckOptions {
   bool strict_units = false;
 };
 
-/// Wires without a unit, which are counted, or refused.
+/// Wires without a unit, counted or rejected.
 std::string look_at_units(const WiresWithoutUnit& wires, const CheckOptions& options, Problems& problems) {
   if (options.strict_units) refuse(wires, problems);
   return wires.count ? "; " + to_string(wires) : "";
@@ -45,7 +45,7 @@ Verdict check_diagram(const std::string& path, const CheckOptions& options, Prob
   const auto plan = compile(*diagram, problems);
   if (!plan) return {};
   const std::string units = look_at_units(plan->without_unit, options, problems);
-  Problems of_deploy;  // told there
+  Problems of_deploy;  // reported by deploy
   return fmt::format("{} blocks, {} states{}{}", plan->blocks.size(), plan->states, units,
                      foreign_code(hw::find_hardware(*plan, of_deploy).device.get()));
 }
@@ -90,7 +90,7 @@ Verdict check_model(const std::string& path, Problems& problems) {
   return fmt::format("a learned model of {} samples", learned.sample_count);
 }
 
-/// Options that change a diagram do nothing to other files: that is said rather than left out.
+/// Options that change a diagram have no effect on other files: this is reported rather than ignored.
 void reject_options(FileKind kind, const std::string& path, const CheckOptions& options,
                     Problems& problems) {
   const bool takes_set = kind == FileKind::diagram || kind == FileKind::training;
@@ -127,7 +127,7 @@ Verdict check_file(const std::string& path, const CheckOptions& options, Problem
   return check_diagram(path, options, problems);
 }
 
-/// Every problem of every file at once.
+/// Reports every problem of every file at once.
 int check(const std::vector<std::string>& paths, const CheckOptions& options) {
   int wrong = 0;
   for (const std::string& path : paths) {

@@ -45,7 +45,7 @@ LoadOptions DiagramArguments::options() const {
 }
 
 void reject_swapped(const std::string& diagram, const std::vector<std::string>& experiments) {
-  Problems unheard;  // what is wrong with the files themselves is told when they are loaded
+  Problems unheard;  // problems of the files themselves are reported when they are loaded
   if (kind_of_file(diagram, unheard) != FileKind::experiment) return;
   for (const std::string& experiment : experiments) {
     if (kind_of_file(experiment, unheard) != FileKind::diagram) continue;

@@ -1,4 +1,4 @@
-/// What the subcommands of `loopwright` share: diagram arguments, exit codes, interruption, progress.
+/// Code shared by the subcommands of `loopwright`: diagram arguments, exit codes, interruption, progress.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <functional>
@@ -13,17 +13,17 @@ namespace loopwright {
 
 enum ExitCode { done = 0, run_failed = 1, input_wrong = 2, interrupted = 130 };
 
-/// A diagram on the command line, with what changes it.
+/// A diagram on the command line, with the options that change it.
 struct DiagramArguments {
   std::string path;
   std::vector<std::string> set, variants, libraries;
 
   void add_to(CLI::App& command);
-  /// Loads block libraries; malformed --set and --variant throw InputError.
+  /// Loads block libraries. Throws InputError for malformed --set and --variant.
   LoadOptions options() const;
 };
 
-/// Adds a subcommand; `action` answers the exit code.
+/// Adds a subcommand; `action` receives the exit code.
 void add_check(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_run(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_plan(CLI::App& app, std::function<void(std::function<int()>)> choose);
@@ -40,11 +40,10 @@ void add_probe(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_linearize(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_stability(CLI::App& app, std::function<void(std::function<int()>)> choose);
 
-/// Arguments in each other's place, `loopwright compare EXPERIMENT DIAGRAM`, are told as that. Throws
-/// InputError.
+/// Reports exchanged arguments, `loopwright compare EXPERIMENT DIAGRAM`, as such. Throws InputError.
 void reject_swapped(const std::string& diagram, const std::vector<std::string>& experiments);
 
-/// A bar on a terminal, a line every tenth elsewhere; on stderr.
+/// A progress bar on a terminal, otherwise a line for every tenth; on stderr.
 class Progress {
  public:
   explicit Progress(std::string what);
@@ -59,22 +58,22 @@ class Progress {
   double started_, last_;
 };
 
-/// The summary for people: on stdout, or on stderr when one of these results goes to stdout ("-").
+/// Prints the summary for people: on stdout, or on stderr if one of these results goes to stdout ("-").
 void give_summary(const std::string& text, std::initializer_list<std::string_view> results);
 
-/// JSON where it is wanted: in a file, or on stdout for "-".
+/// Writes JSON if requested: to a file, or to stdout for "-".
 void write_json(const std::string& path, const std::function<std::string()>& json);
 
-/// An answer as a summary, and as JSON where it is wanted.
+/// Writes a result as a summary, and as JSON if requested.
 void give_answer(const std::string& text, const std::string& json_path,
                  const std::function<std::string()>& json);
 
-/// Two results on stdout could not be told apart. Throws InputError.
+/// Two results on stdout could not be separated. Throws InputError.
 void reject_two_on_stdout(std::initializer_list<std::pair<std::string_view, std::string_view>> options);
 
-/// A path that can be written later: refused before hours of computing. Throws InputError.
+/// Checks before hours of computing that the path can be written later. Throws InputError.
 void require_writable(const std::string& path, std::string_view option);
-/// The same for what is always a file, never stdout.
+/// The same for a result that is always a file, never stdout.
 void require_writable_file(const std::string& path, std::string_view option);
 
 }  // namespace loopwright

@@ -6,7 +6,7 @@
 namespace loopwright {
 namespace {
 
-/// The program, and the commands that were recognised, one in the other.
+/// The program, and the nested commands that were recognized.
 std::vector<const CLI::App*> commands_of(const CLI::App& app) {
   std::vector<const CLI::App*> commands{&app};
   while (!commands.back()->get_subcommands().empty())
@@ -38,7 +38,7 @@ std::vector<std::string> names_of_options(const CLI::App& app) {
 
 bool is_option(const std::string& word) { return word.size() > 1 && word[0] == '-' && word != "--"; }
 
-/// "--report", "-o" or "diagram", as it is written.
+/// "--report", "-o" or "diagram", as the user writes it.
 std::string name_of(const CLI::Option& option) {
   return option.get_positional() ? option.get_name(true) : option.get_name();
 }
@@ -61,7 +61,7 @@ std::string what_it_takes(const CLI::Option& option) {
   return text;
 }
 
-/// The option that CLI11 speaks of: its name stands in its message.
+/// The option that CLI11's message is about: the message contains its name.
 const CLI::Option* option_in(const std::string& message, const CLI::App& command) {
   const CLI::Option* found = nullptr;
   for (const CLI::Option* option : command.get_options()) {
@@ -101,7 +101,7 @@ class Explanation {
       }
   }
 
-  /// A command is missing, or misspelt.
+  /// A command is missing or misspelled.
   bool tell_command() {
     const std::vector<std::string> known = names_of_commands(command_);
     if (known.empty()) return false;
@@ -113,7 +113,8 @@ class Explanation {
       p.hint = help();
       return true;
     }
-    // Where a file may stand in the command's place, a near miss was probably meant as the command.
+    // Where a file may take the command's position, a word close to a command was probably meant as the
+    // command.
     std::string wrong = words.front();
     for (const CLI::Option* option : command_.get_options())
       if (option->get_positional() && option->count() > 0) wrong = option->results().front();
@@ -146,7 +147,7 @@ class Explanation {
     return problems_.has_errors();
   }
 
-  /// A value that is missing, superfluous, or none that the option takes.
+  /// A value that is missing, superfluous, or invalid for the option.
   void tell_value() {
     const std::string message = error_.what();
     const CLI::Option* option = option_in(message, command_);

@@ -1,12 +1,12 @@
-/// What is wrong with a command line, in the words of all other messages.
+/// Describes errors of a command line in the style of all other messages.
 #pragma once
 #include <CLI/CLI.hpp>
 #include "engine/json/problem.h"
 
 namespace loopwright {
 
-/// After `app` could not parse its arguments: every option that does not exist, or else the first other
-/// mistake.
+/// Called after `app` failed to parse its arguments. Returns every unknown option, or else the first other
+/// error.
 Problems explain(const CLI::App& app, const CLI::ParseError& error);
 
 }  // namespace loopwright

@@ -47,7 +47,7 @@ hw::Hardware hardware_of(const Plan& plan, const std::string& diagram) {
   return hardware;
 }
 
-/// One line that is written over on a terminal, a line now and then elsewhere.
+/// One line that is overwritten on a terminal; otherwise a line at intervals.
 void show(const hw::LiveValues& now) {
   const bool on_terminal = isatty(STDERR_FILENO);
   std::string text =
@@ -58,7 +58,8 @@ void show(const hw::LiveValues& now) {
   say(text, 0);
 }
 
-/// Opens a device in use where a person agrees; false: nobody does. Of anything else deploy() speaks.
+/// Opens a device in use if a person agrees; false: nobody agreed. All other problems are reported by
+/// deploy().
 bool take_over(hw::IoDevice& device, const hw::DriverType& driver, const TakeOver& options,
                const hw::StopSignals& signals) {
   if (!options.is_wanted || !driver.taking_over) return true;
@@ -70,7 +71,7 @@ bool take_over(hw::IoDevice& device, const hw::DriverType& driver, const TakeOve
   return true;
 }
 
-/// Without a watchdog a motor stays driven when this process is killed or the computer dies.
+/// Without a watchdog a motor stays driven when this process is killed or the computer fails.
 void require_watchdog(const hw::DeviceDescription& device) {
   if (device.watchdog.timeout > 0) return;
   Problems problems;
@@ -82,10 +83,10 @@ void require_watchdog(const hw::DeviceDescription& device) {
   throw InputError(std::move(problems));
 }
 
-/// For readers of messages, once the machine stands.
+/// For readers of messages, after the machine has stopped.
 constexpr int patience_ms = 2000;
 
-/// What is on the disk becomes the files that were asked for; each is tried, whatever becomes of the others.
+/// Converts the journal on the disk to the requested files; each is tried, even if others fail.
 class Results {
  public:
   Results(const Arguments& a, const hw::StopSignals& signals) : a_(a), signals_(signals) {}
@@ -117,7 +118,7 @@ class Results {
       const JournalReader journal(path);
       if (journal.survey().rows > 0) {
         const int64_t begin = hw::wall_ns();
-        // The second and third of a few hasty signals do not cost the log.
+        // A second and third signal in quick succession do not destroy the log.
         const auto stops = [&] { return signals_.wait(0) != 0 && hw::wall_ns() - begin > 2'000'000'000; };
         if (!a_.output.empty() && !write_journal_as(a_.output, journal, stops))
           return is_good_ = false, say(kept, patience_ms);
@@ -142,7 +143,7 @@ class Results {
     report::write_html(a_.report, page);
   }
 
-  /// A reader that sleeps is waited for until the next signal.
+  /// A reader that does not read is waited for until the next signal.
   void print(const std::string& text) const {
     if (!write_text(STDOUT_FILENO, text, [&] { return signals_.wait(0) != 0; }))
       throw std::runtime_error("the figures cannot be written to the standard output");
@@ -153,13 +154,13 @@ class Results {
   bool is_good_ = true;
 };
 
-/// Where the log grows: beside what will be made of it. Empty: none was asked for, and none is kept.
+/// Path of the growing journal: beside the file made from it. Empty: no log was requested, and none is kept.
 std::string journal_for(const Arguments& a) {
   const std::string& target = a.output.empty() ? a.report : a.output;
   return target.empty() ? "" : journal_of(target);
 }
 
-/// Nothing where a device in use was not taken over.
+/// Empty if a device in use was not taken over.
 std::optional<hw::DeployResult> move(const Arguments& a, const Plan& plan, const hw::Hardware& hardware,
                                      const hw::StopSignals& signals, const std::string& journal) {
   Problems problems;
@@ -194,7 +195,7 @@ int run(const Arguments& a) {
   if (!a.accepts_no_watchdog) require_watchdog(*hardware.device);
   const std::string journal = journal_for(a);
   if (!journal.empty()) require_no_journal(journal);
-  // Until the process has ended: a hasty signal must not come between the last file and the exit code.
+  // Until the process has ended: a repeated signal must not come between the last file and the exit code.
   take_time_after_interruption();
   static const hw::StopSignals& signals = *new hw::StopSignals;
   std::optional<hw::DeployResult> moved = move(a, *plan, hardware, signals, journal);

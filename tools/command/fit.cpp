@@ -16,7 +16,7 @@ struct Arguments {
   int iterations = 40;
 };
 
-/// The fitted text where it is wanted; relative paths in it still lead to their files.
+/// Writes the fitted text to the requested file; relative paths in it still lead to their files.
 void write_fitted(const Arguments& a, const std::string& text) {
   if (a.output == "-") {
     answer_data(text);

@@ -8,14 +8,14 @@
 namespace loopwright {
 namespace {
 
-constexpr long patience_ns = 700'000'000;  // the promise is a second, and ending takes a moment too
+constexpr long patience_ns = 700'000'000;  // the documented limit is a second, and ending takes some time too
 
 std::atomic<bool> asked = false, may_take_time = false;
 static_assert(std::atomic<bool>::is_always_lock_free);
 timer_t deadline;
 bool has_deadline = false;
 
-// Only what a signal handler may call.
+// Calls only functions that a signal handler may call.
 void on_deadline(int) {
   if (may_take_time) return;
   constexpr char text[] = "\ninterrupted\n";

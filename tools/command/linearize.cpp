@@ -16,7 +16,7 @@ struct Arguments {
   double measure = 0, settle = 0.5;
 };
 
-/// Sines over two decades below the highest frequency of the plots that ten rows resolve.
+/// Sine measurements over two decades, below the highest frequency of the plots that ten rows resolve.
 void measure(const Arguments& a, const LinearSystem& system, LinearAnalysis& analysis,
              const RunOptions& options) {
   Problems problems;

@@ -1,4 +1,4 @@
-/// The `loopwright` program: one subcommand a file.
+/// The `loopwright` program: one subcommand per file.
 #include <sys/resource.h>
 #include <exception>
 #include <new>
@@ -54,10 +54,10 @@ int run_program(int count, char** arguments) {
   }
 }
 
-/// Some work needs more room on its stack than a system with small limits gives a program; a thread of its own, and
-/// those that it starts, are given what they need whatever the limit is.
+/// Some work needs a larger stack than a system with small limits provides. A thread of its own, and the
+/// threads that it starts, get a sufficient stack regardless of the limit.
 template <class Work> int with_room_on_the_stack(Work&& work) {
-  constexpr size_t enough = 8u << 20;  // bytes; what Linux gives by default
+  constexpr size_t enough = 8u << 20;  // bytes; the default of Linux
   rlimit limit{};
   if (getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur >= enough) return work();
   pthread_attr_t attributes;

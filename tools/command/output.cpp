@@ -11,7 +11,7 @@
 namespace loopwright {
 namespace {
 
-int first_failure = 0;  // errno of the first answer that got lost
+int first_failure = 0;  // errno of the first output that was lost
 
 void note_failure(bool failed) {
   if (failed && first_failure == 0) first_failure = errno ? errno : EIO;
@@ -22,11 +22,11 @@ void note_failure(bool failed) {
 void prepare_standard_streams() {
   for (int descriptor = 0; descriptor <= STDERR_FILENO; ++descriptor)
     if (fcntl(descriptor, F_GETFD) < 0 && errno == EBADF) {
-      const int opened = open("/dev/null", O_RDWR);  // the least number that is free: this one
+      const int opened = open("/dev/null", O_RDWR);  // open() returns the lowest free number: this one
       if (opened > STDERR_FILENO) close(opened);
     }
-  std::signal(SIGPIPE, SIG_IGN);  // then a write fails with EPIPE
-  std::signal(SIGXFSZ, SIG_IGN);  // and one beyond the limit of file sizes with EFBIG
+  std::signal(SIGPIPE, SIG_IGN);  // a write then fails with EPIPE
+  std::signal(SIGXFSZ, SIG_IGN);  // and a write beyond the file size limit with EFBIG
 }
 
 void tell_terminal(std::string_view text) {
@@ -51,8 +51,8 @@ bool finish_answers() {
   errno = 0;
   note_failure(!std::cout.flush());
   note_failure(std::fflush(stdout) != 0);
-  if (first_failure == 0) return !std::ferror(stdout);  // who printed a recording has told it
-  // A reader that took what it wanted and went, such as `head`, needs no explanation.
+  if (first_failure == 0) return !std::ferror(stdout);  // the code that printed a recording has reported it
+  // A reader that stopped after reading what it needed, such as `head`, needs no message.
   if (first_failure != EPIPE) tell("error: the answer cannot be written: {}\n", std::strerror(first_failure));
   return false;
 }

@@ -34,7 +34,7 @@ void require_units(const Plan& plan) {
   if (problems.has_errors()) throw InputError(std::move(problems));
 }
 
-/// Holds the plan against the log of a deployment.
+/// Compares the plan with the log of a deployment.
 int replay_log(const Arguments& a, const Plan& plan) {
   Problems problems;
   const hw::Hardware hardware = hw::find_hardware(plan, problems);
@@ -49,8 +49,7 @@ int replay_log(const Arguments& a, const Plan& plan) {
   return result.explains() ? done : run_failed;
 }
 
-/// A simulation opens no device: that is said, because a loop whose axis stands still looks like a broken
-/// one.
+/// A simulation opens no device. This is reported, because a loop whose axis does not move looks defective.
 void warn_of_hardware(const Plan& plan) {
   for (const Plan::Block& block : plan.blocks)
     if (block.type->info.type == "HardwareIo")
@@ -66,7 +65,7 @@ int run(const Arguments& a) {
   if (!a.replay.empty()) return replay_log(a, *plan);
   warn_of_hardware(*plan);
   Progress progress("run");
-  take_time_after_interruption();  // what was computed is written
+  take_time_after_interruption();  // the computed results are written
   RunOptions options;
   options.run = a.run;
   options.checkpoint_file = a.checkpoint, options.checkpoint_every = a.checkpoint_every,

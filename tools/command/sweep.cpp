@@ -57,14 +57,14 @@ SweepPlan plan_of(const std::string& file) {
   return SweepPlan(std::move(sweep));
 }
 
-constexpr size_t most_trace_pages = 20;  // more would be neither looked at nor light
+constexpr size_t most_trace_pages = 20;  // more pages would be too large and would not be read
 
 std::string trace_of(const std::string& folder, int64_t run, const char* ending) {
   return fmt::format("{}/traces/run_{}.{}", folder, run, ending);
 }
 
-/// The full recordings of the runs that the sweep file keeps, each made once more by itself, and pages on the
-/// first.
+/// The full recordings of the runs that the sweep file keeps, each simulated once more by itself, and pages
+/// of the first ones.
 void write_traces(const SweepPlan& plan, const std::string& folder, const SweepResults& results) {
   const auto runs = runs_to_keep(plan, results);
   if (runs.empty()) return;
@@ -82,7 +82,7 @@ void write_traces(const SweepPlan& plan, const std::string& folder, const SweepR
   answer("{} traces in {}/traces\n", runs.size(), folder);
 }
 
-/// Answers how many runs are missing in the tables.
+/// Returns the number of runs missing in the tables.
 int64_t write_tables(const SweepPlan& plan, const std::string& folder) {
   const SweepResults results = read_results(plan, folder);
   for (const std::string& note : results.notes) tell("warning: {}\n", note);

@@ -12,7 +12,7 @@ void add_take_over(CLI::App& command, TakeOver& options) {
   command.add_flag("--yes", options.is_agreed, "Answer the question of --take-over with yes");
 }
 
-/// A line from the terminal; empty when it is closed or somebody interrupts.
+/// Reads a line from the terminal; empty when it is closed or the user interrupts.
 static std::string line_of_terminal(const std::function<bool()>& is_interrupted) {
   std::string line;
   for (;;) {

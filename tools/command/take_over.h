@@ -1,4 +1,4 @@
-/// The question before a device is taken from another program.
+/// Asks for agreement before a device is taken over from another program.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <functional>
@@ -13,8 +13,8 @@ struct TakeOver {
 
 void add_take_over(CLI::App& command, TakeOver& options);
 
-/// Says on stderr who has the device and what taking it over does, and asks on the terminal. Without a
-/// terminal only --yes agrees. A question that is interrupted is answered with no.
+/// Reports on stderr which program has the device and what taking it over does, and asks on the terminal.
+/// Without a terminal only --yes agrees. An interrupted question counts as no.
 bool agrees(
     const TakeOver& options, const std::string& who_has_it, const std::string& what_it_does,
     const std::function<bool()>& is_interrupted = [] { return false; });

@@ -7,9 +7,9 @@
 namespace loopwright {
 namespace {
 
-constexpr double moved = 3;  // resolutions: an encoder at rest trembles by one
+constexpr double moved = 3;  // resolutions: an encoder at rest varies by one
 constexpr size_t fewest = 50;
-constexpr double apart_s = 1e-3;  // as the samples of most records, for all that counts in samples
+constexpr double apart_s = 1e-3;  // the sample time of most records, for everything counted in samples
 
 const RecordedSignal* position_of(const Experiment& experiment) {
   for (const auto& [role, port] : experiment.roles.ports)
@@ -25,7 +25,7 @@ struct Stand {
   size_t readings() const { return end - begin; }
 };
 
-/// A place that was read less than half as often as usual was passed through.
+/// A position with less than half the usual number of rows was only passed through.
 void drop_passages(std::vector<Stand>& stands) {
   std::vector<size_t> readings;
   for (const Stand& stand : stands) readings.push_back(stand.readings());

@@ -1,13 +1,14 @@
-/// Records of another kind: where an axis stood in balance, and what held it there.
+/// Another kind of record: the positions at which an axis stood in balance, and the force that held it there.
 #pragma once
 #include "tools/compare/experiment.h"
 
 namespace loopwright {
 
-/// Joins the rows of each stand into one, their mean. A new stand begins where the role "position" has moved
-/// by more than three of its resolution from where the stand began; without a resolution every row is one. A
-/// stand with less than half the usual number of rows is dropped: there the axis only passed. Stands are
-/// put a millisecond apart: the time that was recorded says nothing. A problem without at least fifty.
+/// Joins the rows of each stand into one, their mean. A new stand begins when the role "position" has moved
+/// by more than three of its resolutions from where the stand began; without a resolution every row is a
+/// stand. A stand with less than half the usual number of rows is dropped, because the axis only passed
+/// through. Stands are placed a millisecond apart, because the recorded time has no meaning. Fewer than fifty
+/// stands are a problem.
 void gather_balances(Experiment& experiment, Problems& problems);
 
 }  // namespace loopwright

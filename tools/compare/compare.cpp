@@ -8,8 +8,8 @@
 namespace loopwright {
 namespace {
 
-/// Values of a simulated column at the recorded times: row by row where they coincide, else joined by
-/// straight lines.
+/// Values of a simulated column at the recorded times: the row's value where the times coincide, otherwise
+/// linear interpolation.
 std::vector<double> at_times(const Recording& simulated, const Column& column,
                              const std::vector<double>& times) {
   const std::vector<double>& t = simulated.columns[0].values;
@@ -18,7 +18,7 @@ std::vector<double> at_times(const Recording& simulated, const Column& column,
   size_t i = 0;
   for (double time : times) {
     while (i + 1 < t.size() && t[i + 1] <= time + 1e-9 * std::max(1.0, std::abs(time))) ++i;
-    if (t.empty() || t.back() < time - 1e-6 * std::max(1.0, std::abs(time))) break;  // the run ended before
+    if (t.empty() || t.back() < time - 1e-6 * std::max(1.0, std::abs(time))) break;  // the run ended earlier
     const bool coincides = i + 1 == t.size() || std::abs(t[i] - time) <= 1e-6 * (t[i + 1] - t[i]);
     const double s = coincides ? 0 : (time - t[i]) / (t[i + 1] - t[i]);
     values.push_back(coincides ? column.values[i] : (1 - s) * column.values[i] + s * column.values[i + 1]);
@@ -88,7 +88,7 @@ OpenLoopErrors open_loop_errors(const Machine& machine) {
   return errors;
 }
 
-/// What the nominal damping is, by how the model's acceleration falls with speed.
+/// The nominal damping, from the decrease of the model's acceleration with speed.
 double damping_of(const Machine& machine, const std::vector<double>& acceleration) {
   const MeasuredMotion& m = machine.motion;
   double fv = 0, vv = 0;

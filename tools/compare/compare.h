@@ -1,4 +1,4 @@
-/// A model held against a recording: how far off is it, and where.
+/// Compares a model with a recording: how large the errors are, and where they occur.
 #pragma once
 #include "engine/run/simulation.h"
 #include "tools/compare/excitation.h"
@@ -15,17 +15,17 @@ struct ComparedSignal {
   double rmse = 0, max_abs = 0, mean = 0;
   double relative_percent = 0;  ///< 100 · rms(error) / rms(measured)
   double fit_percent = 0;       ///< 100 · (1 - ‖y - ŷ‖ / ‖y - mean y‖)
-  double held_out_rmse = 0;     ///< over the rows kept out; 0 without
+  double held_out_rmse = 0;     ///< over the held-out rows; 0 without
   double resolution = 0;
 };
 
-/// Root of the mean squared error of the position when the model is driven by the recorded input.
+/// Root mean squared error of the position when the model is driven by the recorded input.
 struct OpenLoopErrors {
-  double whole_record = 0;                           ///< [position] begun once: the errors add up
+  double whole_record = 0;                           ///< [position] started once: the errors accumulate
   std::vector<std::pair<double, double>> restarted;  ///< horizon [s] → error [position] over all of its rows
 };
 
-/// What the machine's record says beyond its signals.
+/// What the machine's record shows in addition to its signals.
 struct ForceAnalysis {
   MeasuredMotion motion;
   double mass = 0;  ///< [force s²/position] of the model
@@ -42,13 +42,13 @@ struct Comparison {
   std::vector<double> time;     ///< s
   int64_t missing_samples = 0;  ///< between rows of the recording: the input was held there
   std::vector<ComparedSignal> signals;
-  std::vector<double> position, velocity;  ///< measured or simulated, by the roles; empty: not known
+  std::vector<double> position, velocity;  ///< measured or simulated, according to the roles; empty: unknown
   std::string position_unit, velocity_unit, position_source, velocity_source;
   RunResult run;
   std::shared_ptr<const Plan> plan;
   std::optional<ForceAnalysis> force;
   std::string why_no_force;     ///< what the experiment lacks for it
-  bool is_closed_loop = false;  ///< the signals above are of the whole loop: its input was not driven
+  bool is_closed_loop = false;  ///< the signals above are those of the whole loop: its input was not driven
   std::vector<std::string> warnings;
 };
 
@@ -56,7 +56,7 @@ struct Comparison {
 Comparison compare(const std::string& diagram, const std::string& experiment, const LoadOptions& options = {},
                    const RunOptions& run_options = {});
 
-/// The same without the analysis of forces: the signals alone.
+/// The same without the analysis of forces: only the signals.
 Comparison compare_signals(const std::string& diagram, const Experiment& experiment,
                            const LoadOptions& options = {}, const RunOptions& run_options = {});
 
@@ -65,7 +65,7 @@ Comparison compare_signals(const std::string& diagram, const Experiment& experim
 /// dependence.<variable>, simulation, excitation and faults.
 std::string to_json(const Comparison& comparison);
 std::string to_text(const Comparison& comparison);
-/// The part of the page that tells of forces; nothing without an analysis.
+/// The part of the page about forces; empty without an analysis.
 std::vector<report::Section> force_sections(const Comparison& comparison);
 report::Page comparison_page(const Comparison& comparison, const std::string& title);
 

@@ -6,10 +6,10 @@
 namespace loopwright {
 namespace {
 
-/// [samples] Where more than a hundredth of the stamps lie farther from the grid, they do not tremble: their
-/// median step is not their mean one. A few may have been held up.
+/// [samples] If more than a hundredth of the time stamps deviate further from the grid, this is not jitter:
+/// their median step is not their mean step. A few rows may have been delayed.
 constexpr double most_tremble = 5, most_held_up = 0.01;
-/// A row that stamps say is farther behind the one before has lost a sample.
+/// A row whose stamp is further behind the previous one follows a lost sample.
 constexpr double gap = 1.5;
 
 }  // namespace
@@ -61,7 +61,7 @@ void EvenGrid::by_time(const std::vector<double>& time) {
   if (!is_any_missing) missing_.clear();
 }
 
-/// Per sample: of the parabola through the row and the two before it, or behind it.
+/// Per sample: slope of the parabola through the row and the two rows before or after it.
 double EvenGrid::slope_at(const std::vector<double>& column, size_t row, bool is_before) const {
   const auto slope = [&](size_t a, size_t b) { return (column[b] - column[a]) / (place_[b] - place_[a]); };
   const size_t last = column.size() - 1;
@@ -84,7 +84,7 @@ std::vector<double> EvenGrid::measured(const std::vector<double>& column) const 
     }
     const double change = column[row + 1] - column[row];
     double value = column[row] + s * change;
-    if (!missing_.empty() && missing_[k]) {  // by Hermite's cubic
+    if (!missing_.empty() && missing_[k]) {  // by a cubic Hermite spline
       const double step = place_[row + 1] - place_[row];
       const double leaves = step * slope_at(column, row, true) - change;
       const double arrives = step * slope_at(column, row + 1, false) - change;

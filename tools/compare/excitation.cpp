@@ -38,7 +38,7 @@ int speeds_in(const MeasuredMotion& m) {
   int count = 0, last = -1000;
   for (const auto& [bin, s] : seconds)
     if (s >= std::max(0.1, 0.02 * moving) && bin > last + 1)
-      ++count, last = bin;  // a speed may straddle two bins
+      ++count, last = bin;  // a speed may fall between two bins
   return count;
 }
 
@@ -54,7 +54,7 @@ int reversals_in(const MeasuredMotion& m) {
   return count;
 }
 
-/// Spread of the force at the same place and in the same direction, against its spread over all.
+/// Spread of the force at the same position and direction, relative to its overall spread.
 bool has_varied_force(const MeasuredMotion& m) {
   constexpr int bins = 50;
   std::vector<double> sum(2 * bins), squares(2 * bins), count(2 * bins);
@@ -70,7 +70,7 @@ bool has_varied_force(const MeasuredMotion& m) {
   return within > 0.05 * all;
 }
 
-/// Rows where the second difference leaps out and comes back: single wrong samples of the position.
+/// Rows where the second difference has a peak and an opposite one: single wrong samples of the position.
 size_t outliers_in(const MeasuredMotion& m) {
   std::vector<double> leap;
   for (size_t k = 1; k + 1 < m.rows(); ++k)
@@ -85,7 +85,7 @@ size_t outliers_in(const MeasuredMotion& m) {
   return count;
 }
 
-/// Part of the rows on which the input stands still at its highest or lowest value.
+/// Fraction of the rows on which the input stays at its highest or lowest value.
 double saturated_part(const MeasuredMotion& m) {
   const auto [low, high] = std::ranges::minmax(m.input);
   if (low == high) return 0;
@@ -99,13 +99,13 @@ double saturated_part(const MeasuredMotion& m) {
   return double(rows) / double(m.rows());
 }
 
-/// The force that the input makes against the force that the model needs: slope, correlation, and by how many
-/// samples it is off.
+/// The force produced by the input compared with the force that the model needs: slope, correlation, and time
+/// shift in samples.
 struct InputMatch {
   double slope = 0, correlation = 0;
   int late_samples = 0;
-  double gained = 0;  ///< part of the squared difference that shifting takes away
-  /// Further still might fit better: no shift in time, but a slow force that is missing.
+  double gained = 0;  ///< fraction of the squared difference removed by the shift
+  /// A larger shift might fit better: then it is not a time shift, but a slow missing force.
   bool is_at_end = false;
 };
 InputMatch match_input(const MeasuredMotion& m, const ForceResidual& residual) {
@@ -155,7 +155,7 @@ void check_input(const MeasuredMotion& m, const ForceResidual& residual, std::ve
         {"unsynchronised", fmt::format("input and motion fit best when shifted by {:.3g} ms", 1e3 * late_s),
          "effects that depend on acceleration or on fast changes of the input cannot be told from this "
          "shift; check that both columns share a clock",
-         late_s < 0,  // no machine moves before its input; but a load on a spring looks so
+         late_s < 0,  // no machine moves before its input, but a load on a spring looks like it
          late_s < 0});
 }
 
@@ -186,7 +186,7 @@ RecordContent content_of(const Machine& machine, const ForceResidual& residual, 
 std::vector<Identifiability> identifiable(const RecordContent& c, const std::vector<Effect>& catalogue) {
   std::vector<Identifiability> result;
   for (const Effect& effect : catalogue) {
-    if (!result.empty() && result.back().effect == effect.name) continue;  // forms need the same
+    if (!result.empty() && result.back().effect == effect.name) continue;  // its forms need the same
     Identifiability entry{effect.name};
     const auto need = [&](bool is_met, std::string what) {
       if (is_met) return;

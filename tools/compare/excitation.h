@@ -1,4 +1,4 @@
-/// What a record contains, hence what can be found in it, and what is wrong with it.
+/// What a record contains, hence which effects can be identified from it, and its faults.
 #pragma once
 #include "tools/compare/missing_force.h"
 #include "tools/effects/effect.h"
@@ -7,30 +7,30 @@ namespace loopwright {
 
 struct RecordContent {
   RecordSizes sizes;
-  int directions = 0;     ///< 1 or 2 that take a twentieth of the moving time or more
-  int speeds = 0;         ///< speeds that differ by a fifth and last a tenth of a second together
-  int accelerations = 0;  ///< 2: speeding up and slowing down well above the noise
+  int directions = 0;     ///< 1 or 2 that take at least a twentieth of the moving time
+  int speeds = 0;         ///< speeds that differ by a fifth and together last a tenth of a second
+  int accelerations = 0;  ///< 2: acceleration and deceleration well above the noise
   int reversals = 0;
-  int passes = 1;             ///< times that the same motion is made
-  bool varied_force = false;  ///< different forces at the same places
+  int passes = 1;             ///< number of times that the same motion is made
+  bool varied_force = false;  ///< different forces at the same positions
 };
 
 RecordContent content_of(const Machine& machine, const ForceResidual& residual, double resolution);
 
-/// Whether an effect could be found in a record, or what is missing for it.
+/// Whether an effect can be identified from a record, or what is missing for it.
 struct Identifiability {
   std::string effect;
   bool can_be_found = true;
-  std::string lacks;  ///< words: "motion in both directions (there is one)"
+  std::string lacks;  ///< in words: "motion in both directions (there is one)"
 };
 std::vector<Identifiability> identifiable(const RecordContent& content, const std::vector<Effect>& catalogue);
 
-/// Something wrong with the record, with what it costs.
+/// A fault of the record, with its consequence.
 struct RecordFault {
   std::string name;  ///< too_short, one_direction, one_speed, unsynchronised, wrong_sign, wrong_unit, gaps,
                      ///< outliers, saturated
-  std::string text;  ///< what was seen
-  std::string cost;  ///< what cannot be relied on because of it
+  std::string text;  ///< what was observed
+  std::string cost;  ///< what is unreliable because of it
   bool is_fatal = false;        ///< no effect can be named from such a record
   bool may_be_physics = false;  ///< unless effects explain all of it: then it was no fault
 };

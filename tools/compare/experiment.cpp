@@ -151,7 +151,7 @@ class Loader {
   }
   void read_time(const Value& file, const Recording& data, const Value::Member& names_data) {
     const Value::Member* named = file.find("time");
-    if (result_->is_map && !named) {  // of its rows, nobody asks when they were read
+    if (result_->is_map && !named) {  // the times of its rows have no meaning
       result_->data.columns.push_back({"time", "s", std::vector<double>(data.rows())});
       return;
     }
@@ -167,7 +167,7 @@ class Loader {
     }
     result_->data.columns.push_back({"time", "s", time->values});
   }
-  /// A log counts the samples that its device lost: its times must show them.
+  /// A log counts the samples that its device lost: its times must be consistent with that.
   void check_lost(const Recording& data, const Place& place) {
     const Column* lost = data.find(hw::lost_column);
     if (!lost || lost->values.empty()) return;
@@ -192,7 +192,7 @@ class Loader {
     p.hint = "shift the time column so that it begins at zero";
   }
   void add_column(const Recording& data, RecordedSignal& signal) {
-    if (signal.column.empty()) return;  // told already
+    if (signal.column.empty()) return;  // already reported
     const Column* found = find_column(data, signal.column, error_at(signal.place, signal.pointer));
     if (!found) return;
     const auto unit = unit_of(*found, signal.unit, error_at(signal.place, signal.pointer));
@@ -249,7 +249,7 @@ LoadOptions follow(const Experiment& experiment, LoadOptions options) {
     const auto add = [&](std::string name, std::string text) {
       drive.settings.members.push_back({std::move(name), signal.place, text_value(std::move(text))});
     };
-    if (experiment.is_map) {  // what balances is set row by row
+    if (experiment.is_map) {  // the quantities in balance are set row by row
       drive.type = "ExternalSignal", drive.output = "y";
       drive.settings.place = signal.place;
       options.drives.push_back(std::move(drive));

@@ -1,4 +1,5 @@
-/// An experiment file ties recorded columns to a diagram: which drive it, which it is held against.
+/// An experiment file relates recorded columns to a diagram: which columns drive it, and which are compared
+/// with it.
 #pragma once
 #include <memory>
 #include <optional>
@@ -8,17 +9,17 @@
 
 namespace loopwright {
 
-/// A recorded column with its unit, in SI once read.
+/// A recorded column with its unit, in SI units once read.
 struct RecordedSignal {
   std::string port;  ///< of the diagram, "axis.position"
   std::string column;
-  std::string unit;       ///< as the experiment says it; numbers below are in SI
+  std::string unit;       ///< as written in the experiment; numbers below are in SI
   double resolution = 0;  ///< SI; 0: not stated
   Place place;
   std::string pointer;
 };
 
-/// Where an effect may read and act: for the diagnosis.
+/// Where an effect may read and act; used by the diagnosis.
 struct Roles {
   std::vector<std::pair<std::string, std::string>> ports;  ///< "position" → "axis.position"
   std::vector<Place> places;
@@ -31,21 +32,22 @@ struct Experiment {
   Recording data;  ///< driving and compared columns in SI, "time" first
   TimeAxis time;
   std::vector<RecordedSignal> drives, compared;
-  std::vector<bool> drive_is_linear;  ///< joined by straight lines; else held
+  std::vector<bool> drive_is_linear;  ///< linear interpolation; otherwise held
   Roles roles;
-  double hold_out_fraction = 0;  ///< of the rows, at the end, kept out of any fit
-  /// Every row is a place where the axis stood in balance, a map of holding forces: see gather_balances.
+  double hold_out_fraction = 0;  ///< fraction of the rows, at the end, held out of any fit
+  /// Every row is a position at which the axis stood in balance, a map of holding forces: see
+  /// gather_balances.
   bool is_map = false;
   Place map_place;
 };
 
-/// Reads the experiment and its data. Data files are looked for beside the experiment, then below
+/// Reads the experiment and its data. Data files are searched beside the experiment, then below
 /// $LOOPWRIGHT_DATA. Null when there are errors.
 std::shared_ptr<const Experiment> load_experiment(const std::string& path, Problems& problems);
-/// With errors the result is what could be read, ports without columns, or null when nothing could.
+/// With errors the result contains what could be read, ports without columns; null if nothing could be read.
 std::shared_ptr<const Experiment> read_experiment(const std::string& path, Problems& problems);
 
-/// A problem when the experiment is a map of balances, which no run in time can follow.
+/// Reports a problem if the experiment is a map of balances, which no simulation in time can follow.
 void reject_map(const Experiment& experiment, Problems& problems);
 
 /// Load options that make a diagram follow the experiment: its drives, and the run's stop and rows.

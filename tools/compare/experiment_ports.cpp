@@ -7,10 +7,11 @@
 namespace loopwright {
 namespace {
 
-/// Blocks that play a recorded column: nobody wrote them, and nobody means them.
+/// Generated blocks that play a recorded column: they are not in the user's diagram and not addressed by
+/// name.
 bool is_driver(std::string_view port) { return port.starts_with("recorded_"); }
 
-/// The port's number; a problem when the diagram has no such port, or one of another dimension.
+/// The port's number. Reports a problem if the diagram has no such port, or one of another dimension.
 std::optional<Number> find_port(const Plan& plan, const std::string& port,
                                 const std::optional<std::string>& unit, const Place& place,
                                 const std::string& pointer, Problems& problems) {
@@ -39,7 +40,7 @@ std::optional<Number> find_port(const Plan& plan, const std::string& port,
   return numbers[0];
 }
 
-/// Something in the place of a recorded column, whether there is one or not.
+/// A constant in place of a recorded column, whether that exists or not.
 Drive placeholder(const RecordedSignal& signal) {
   Drive drive;
   drive.port = signal.port, drive.type = "ExternalSignal", drive.output = "y";
@@ -56,12 +57,12 @@ void add_errors(const std::vector<Problem>& list, size_t from, Problems& to) {
       to.add(list[i]);
 }
 
-/// The drives that lead to ports of the diagram, one by one: a problem for each that does not.
+/// The drives that lead to ports of the diagram; each of the others is a problem.
 LoadOptions with_drives(const std::string& diagram, const Experiment& experiment, LoadOptions options,
                         Problems& problems) {
   const auto [first, last] = std::pair(options.set.begin(), options.set.end());
   if (std::none_of(first, last, [](const auto& option) { return option.first == "solver.stop"; }))
-    options.set.insert(options.set.begin(), {"solver.stop", "1"});  // the experiment would say
+    options.set.insert(options.set.begin(), {"solver.stop", "1"});  // the value from the experiment
   Problems without;
   load_diagram(diagram, options, without);
   const size_t own = without.list().size();

@@ -21,7 +21,7 @@ report::KeyNumbers::Number key(std::string label, double value, const std::strin
 }
 std::string per_second(const std::string& unit) { return unit.empty() || unit == "1" ? "1/s" : unit + "/s"; }
 
-/// The residual where it counts; gaps elsewhere.
+/// The residual on the rows that count; gaps elsewhere.
 std::vector<double> counted(const ForceAnalysis& f) {
   std::vector<double> values = f.residual.value;
   for (size_t k = 0; k < values.size(); ++k)
@@ -29,7 +29,7 @@ std::vector<double> counted(const ForceAnalysis& f) {
   return values;
 }
 
-/// Mean of the residual over small parts of a variable, forward and backward apart.
+/// Mean of the residual over small intervals of a variable, forward and backward separately.
 report::Plot against(const ForceAnalysis& f, std::string title, std::string axis, const std::string& unit,
                      const std::vector<double>& variable, int bins) {
   report::Plot plot;

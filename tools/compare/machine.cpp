@@ -15,7 +15,7 @@ const std::string* port_of(const Experiment& experiment, std::string_view role) 
   return nullptr;
 }
 
-/// The recorded signal of a port: the port itself, or one that is the same number in the plan.
+/// The recorded signal of a port: of the port itself, or of one that is the same number in the plan.
 const RecordedSignal* recorded(const Experiment& experiment, const Plan& plan, const std::string& port,
                                bool also_driven) {
   const std::vector<Number> wanted = plan.find(port);
@@ -44,8 +44,8 @@ std::vector<double> second_difference(const std::vector<double>& x, double dt) {
   return a;
 }
 
-/// Fast enough for the sign of friction to be certain, a twelfth of a tenth of a second away from rest and
-/// from samples that are missing: so far filters reach.
+/// Rows fast enough for the sign of friction to be certain, and 12 ms away from rest and from missing
+/// samples: the range of the filters.
 void find_moving_rows(MeasuredMotion& m) {
   const size_t n = m.rows(), margin = whole_count(std::ceil(0.012 / m.sample_time)),
                ends = std::min(n / 10, whole_count(std::ceil(0.1 / m.sample_time)));
@@ -90,7 +90,7 @@ bool measure_motion(const Experiment& experiment, const Plan& plan, MeasuredMoti
   return true;
 }
 
-/// The solver of the record: fixed steps that divide a sample.
+/// The solver for the record: fixed steps that divide a sample.
 void use_fixed_steps(LoadOptions& options, const Plan& plan, const MeasuredMotion& motion) {
   const double sample_time = motion.sample_time;
   const double wanted = plan.step_ticks > 0 ? plan.clock.time(plan.step_ticks) : sample_time / 10;
@@ -100,7 +100,7 @@ void use_fixed_steps(LoadOptions& options, const Plan& plan, const MeasuredMotio
   options.set.emplace_back("solver.start", fmt::format("{}", motion.start));
 }
 
-/// The diagram with the recorded input in the place of what feeds the input of the machine.
+/// The diagram with the recorded input in place of the signal that feeds the machine's input.
 std::shared_ptr<const Plan> driven_plan(const std::string& diagram, const Experiment& experiment,
                                         const LoadOptions& options, const RecordedSignal& input,
                                         const std::string& port, bool is_driven, const MeasuredMotion& motion,
@@ -132,8 +132,7 @@ bool is_state(const Plan& plan, Number number) {
   return number >= plan.signals && number < plan.signals + plan.states;
 }
 
-/// As the driven plan knows it, or else the diagram as it was written: what drives the input there may say
-/// more.
+/// The unit in the driven plan, else in the original diagram: there the source of the input may determine it.
 std::optional<Unit> unit_of_port(const std::string& port, const Plan& driven, const std::string& diagram,
                                  const LoadOptions& options) {
   const auto unit_in = [&](const Plan& plan) {
@@ -147,7 +146,7 @@ std::optional<Unit> unit_of_port(const std::string& port, const Plan& driven, co
   return plan ? unit_in(*plan) : std::nullopt;
 }
 
-/// The input stays at nothing.
+/// The input stays zero.
 std::shared_ptr<const Plan> without_input(const Plan& plan, const std::string& port) {
   auto changed = std::make_shared<Plan>(plan);
   for (Number number : plan.find(port)) silence(*changed, number);
@@ -181,7 +180,7 @@ class Stepper {
   double sensed() const { return run_.number(machine_.sensor); }
   double velocity() const { return run_.number(machine_.velocity); }
   double net_force() const { return machine_.net_force < 0 ? 0 : run_.number(machine_.net_force); }
-  /// False when a block refused to go on.
+  /// Returns false when a block stopped the run.
   bool step() {
     const int64_t end = run_.now().tick + period_;
     while (run_.now().tick < end && !run_.failed()) run_.step_fixed(end, true, [] {});
@@ -199,8 +198,8 @@ class Stepper {
   int64_t period_;
 };
 
-/// What the model's sensor adds to the position is taken out of what was measured: the machine is then where
-/// the sensor says what it said. Errors far smaller than their period are met in two rounds.
+/// Subtracts the position error of the model's sensor from the measured position. The machine is then where
+/// the sensor would give the measured value. Two iterations suffice for errors far smaller than their period.
 void take_out_sensor_error(Machine& machine) {
   if (is_sampled_between(*machine.plan, machine.position, machine.sensor)) return;
   MeasuredMotion& m = machine.motion;
@@ -244,7 +243,7 @@ void switch_off_noise(Run<double>& run, const Plan& plan) {
 
 Number state_behind(const Plan& plan, Number number) {
   std::vector<Number> todo{number};
-  for (size_t i = 0; i < todo.size(); ++i) {  // the nearest first
+  for (size_t i = 0; i < todo.size(); ++i) {  // nearest first
     if (is_state(plan, todo[i]) && !differ_in_unit(plan, todo[i], number)) return todo[i];
     const int source = plan.source_of(todo[i]).first;
     if (source < 0) continue;
@@ -347,7 +346,7 @@ std::vector<double> driving_force(const std::vector<double>& with_input,
 
 std::string unit_of_force(const std::optional<Unit>& known, const MeasuredMotion& motion) {
   if (known) return to_string(*known);
-  constexpr double rounding = 1e-9;  // of the input, as forces were added to it and taken off again
+  constexpr double rounding = 1e-9;  // of the input, because forces were added to it and subtracted again
   double level = 0, difference = 0;
   for (size_t k = 0; k < motion.input.size(); ++k) {
     level = std::max(level, std::abs(motion.input[k]));
@@ -367,7 +366,7 @@ std::vector<double> model_acceleration(Machine& machine) {
     driven_force.push_back(before), other_force.push_back(undriven.evaluate());
     if (!stepper.step() || !undriven.step()) break;
     acceleration.push_back((stepper.velocity() - m.velocity[k]) / m.sample_time);
-    // The force was read at the last step within the sample, hence in the middle by mean.
+    // The force was read at the last step within the sample, so on average in its middle.
     const double force = 0.5 * (before + stepper.net_force());
     force_by_acceleration += force * acceleration.back();
     squared_acceleration += acceleration.back() * acceleration.back();

@@ -26,11 +26,11 @@ double difference_after(const std::vector<double>& x, size_t lag, size_t step) {
   return n ? std::sqrt(sum / double(n)) : 1e300;
 }
 
-/// Rows after which the motion is the same again, at least a third of the record long; 0: none.
+/// Number of rows after which the motion repeats, over at least a third of the record; 0: it does not repeat.
 size_t find_repeat(const MeasuredMotion& m) {
   const size_t n = m.rows(), coarse = std::max<size_t>(1, whole_count(0.02 / m.sample_time));
   const double allowed = 0.003 * m.stroke();
-  bool has_left = false;  // the motion is like itself after a short time too
+  bool has_left = false;  // the motion is also similar to itself after a short time
   size_t best = 0;
   double least = 1e300;
   for (size_t lag = coarse; lag < 2 * n / 3; lag += coarse) {
@@ -48,7 +48,7 @@ size_t find_repeat(const MeasuredMotion& m) {
   return least < allowed ? fine : 0;
 }
 
-/// Half of the spread between repeats: needs no model at all.
+/// Half of the spread between repetitions; needs no model.
 double floor_of_repeats(const MeasuredMotion& m, const std::vector<double>& r, size_t lag) {
   double sum = 0;
   size_t n = 0;
@@ -71,8 +71,8 @@ ForceResidual force_residual(const Machine& machine, const std::vector<double>& 
   const MeasuredMotion& m = machine.motion;
   ForceResidual result;
   result.cutoff = std::min(80.0, 0.08 / m.sample_time);
-  // The second difference of the position at k is the mean of the accelerations over the two samples beside
-  // it.
+  // The second difference of the position at k is the mean of the accelerations over the two adjacent
+  // samples.
   std::vector<double> model(m.rows());
   for (size_t k = 0; k < m.rows(); ++k) model[k] = 0.5 * (acceleration[k ? k - 1 : 0] + acceleration[k]);
   model = zero_phase_low_pass(model, m.cutoff, m.sample_time);
@@ -131,7 +131,7 @@ std::vector<ResidualShare> where_it_lies(const Machine& machine, const ForceResi
   const std::vector<Segment> parts = segments(m);
   double all = 0;
   for (double r : residual.value) all += r * r;
-  for (int part = 0; part < 5; ++part) {  // segments are of the whole record: rest and reversal too
+  for (int part = 0; part < 5; ++part) {  // segments cover the whole record, including rest and reversal
     ResidualShare share{"segment", std::string(name_of(Segment(part)))};
     for (size_t k = 0; k < m.rows(); ++k)
       if (parts[k] == Segment(part))
@@ -175,7 +175,7 @@ std::vector<Dependence> dependences(const Machine& machine, const ForceResidual&
   const Dependence line = strongest_line(rows, "spatial_frequency", rows.position);
   result.push_back(line);
   if (line.share > result[0].share)
-    result[0].share = line.share;  // a fine pattern is a function of position too
+    result[0].share = line.share;  // a fine pattern is also a function of position
   result.push_back(strongest_line(rows, "temporal_frequency", rows.time));
   return result;
 }

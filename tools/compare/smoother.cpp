@@ -15,7 +15,7 @@ using Vector_ = Eigen::VectorXd;
 
 constexpr int folds = 8, surrogates = 19;
 
-/// Two hats share each value: weights of the left and the right one.
+/// Two hat functions share each value: weights of the left and the right one.
 struct Hats {
   double low = 0, step = 1;
   int count = 2;
@@ -29,7 +29,7 @@ struct Hats {
   }
 };
 
-/// Share of the variance that hats explain on left-out folds, for a residual given by signs per block.
+/// Share of the variance that hat functions explain on left-out folds, for a residual with signs per block.
 double cross_validated(const Rows& rows, const std::vector<double>& variable, int hats_count,
                        const std::vector<double>& sign_of_block) {
   const Hats hats(variable, hats_count);
@@ -65,7 +65,7 @@ double cross_validated(const Rows& rows, const std::vector<double>& variable, in
   return before > 0 ? 1 - after / before : 0;
 }
 
-/// Signs that take every dependence out of a residual but leave each block as it is.
+/// Signs that remove every dependence from a residual but leave each block unchanged.
 std::vector<double> random_signs(int blocks, int surrogate) {
   std::vector<double> signs;
   for (int b = 0; b < blocks; ++b) {
@@ -95,8 +95,8 @@ Line fit_line(const std::vector<double>& residual, const Rows& rows, const std::
   return line;
 }
 
-/// The strongest line on rows of one parity (-1: all), by an even grid of frequencies and a finer look at the
-/// best.
+/// The strongest spectral line on rows of one parity (-1: all), from a uniform grid of frequencies and a
+/// refinement around the best one.
 Line find_line(const std::vector<double>& residual, const Rows& rows, const std::vector<double>& variable,
                int parity) {
   const auto [low, high] = std::ranges::minmax(variable);
@@ -161,7 +161,7 @@ Dependence strongest_line(const Rows& rows, std::string name, const std::vector<
   }
   result.share = before > 0 ? 1 - after / before : 0;
   result.at = line.frequency;
-  result.by_chance = 4.0 / double(rows.blocks);  // two numbers from so many independent pieces
+  result.by_chance = 4.0 / double(rows.blocks);  // two numbers from this many independent pieces
   if (result.share <= std::max(0.005, std::min(result.by_chance, 0.05))) result.share = 0;
   return result;
 }
@@ -204,7 +204,7 @@ double floor_of_smooth_parts(const Rows& rows) {
     std::copy_n(remainder.data(), n, left.begin());
   };
   solve();
-  for (int l = 0; l < lines; ++l) {  // the line itself, and the same growing with speed and with its square
+  for (int l = 0; l < lines; ++l) {  // the line itself, and the line multiplied by speed and by its square
     const Line line = find_line(left, rows, rows.position, -1);
     for (size_t i = 0; i < n; ++i) {
       const double angle = 2 * pi * line.frequency * rows.position[i], v = rows.velocity[i];

@@ -19,7 +19,7 @@ struct Section {
     a1 = 2 * (square - 1) / denominator;
     a2 = (1 - warped / quality + square) / denominator;
   }
-  /// In place; begins settled at the first value.
+  /// In place; starts in steady state at the first value.
   void run(std::vector<double>& values) const {
     double s1 = values.front() * (1 - b0), s2 = values.front() * (b0 - a2);
     for (double& value : values) {

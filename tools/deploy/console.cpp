@@ -9,12 +9,12 @@
 namespace loopwright {
 namespace {
 
-/// False: nothing more is taken. What has no room after so many milliseconds stays in `text`.
+/// False: nothing more is accepted. Text that was not written after this many milliseconds stays in `text`.
 bool write_some(int descriptor, std::string_view& text, int milliseconds) noexcept {
   pollfd event = {descriptor, POLLOUT, 0};
   if (poll(&event, 1, milliseconds) != 1) return true;
   if (!(event.revents & POLLOUT)) return false;
-  // A pipe that can be written to takes this much without waiting.
+  // A pipe that is ready for writing accepts this much without blocking.
   const ssize_t written = write(descriptor, text.data(), std::min<size_t>(text.size(), PIPE_BUF));
   if (written < 0) return errno == EINTR || errno == EAGAIN;
   text.remove_prefix(size_t(written));
@@ -25,7 +25,7 @@ bool write_some(int descriptor, std::string_view& text, int milliseconds) noexce
 
 void hold_standard_descriptors() noexcept {
   for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor)
-    if (fcntl(descriptor, F_GETFD) < 0) (void)!open("/dev/null", O_RDWR);  // takes the least number that is free
+    if (fcntl(descriptor, F_GETFD) < 0) (void)!open("/dev/null", O_RDWR);  // takes the lowest free number
 }
 
 bool write_text(int descriptor, std::string_view text, const std::function<bool()>& gives_up) noexcept {

@@ -30,7 +30,7 @@ std::vector<NamedHistogram> histograms(const hw::LoopStatistics& s) {
 struct Count {
   const char* key;
   const char* title;
-  nlohmann::ordered_json value;  // whole, or a number
+  nlohmann::ordered_json value;  // integer, or a number
 };
 std::vector<Count> counts(const hw::LoopStatistics& s) {
   return {{"cycles", "Cycles", s.cycles},
@@ -72,7 +72,7 @@ report::Plot histogram_plot(const hw::LoopStatistics& s) {
   return plot;
 }
 
-/// Scopes: signals of one unit together, as long as they are of like size.
+/// Scopes: signals of one unit and of similar magnitude share a plot.
 std::vector<report::Plot> scopes(const Recording& recording) {
   std::vector<report::Plot> plots;
   std::vector<double> peaks;

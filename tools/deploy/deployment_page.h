@@ -1,4 +1,4 @@
-/// What came of a deployment: figures for programs, lines for a terminal, a page to look at.
+/// Result of a deployment: JSON for programs, text for a terminal, an HTML page.
 #pragma once
 #include "hw/realtime/deploy.h"
 #include "tools/report/report.h"

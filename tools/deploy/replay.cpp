@@ -9,13 +9,13 @@
 namespace loopwright {
 namespace {
 
-/// What is fed in: the columns of one axis.
+/// The inputs of the replay: the columns of one axis.
 struct Measured {
   const Column* position = nullptr;
-  const Column* velocity = nullptr;  // of the device; null where the block works it out
+  const Column* velocity = nullptr;  // of the device; null if the block computes it
 };
 
-/// A column of the log that the replay computes too.
+/// A column of the log that the replay also computes.
 struct Computed {
   const Column* logged;
   Number number;
@@ -40,8 +40,8 @@ std::vector<Measured> measured_columns(const hw::Hardware& hardware, const Recor
   return measured;
 }
 
-/// What the log says of its origin must be what the plan is. A log without such facts has lost them, or comes from
-/// a version that wrote none: then only its bits can tell.
+/// The origin stored in the log must match the plan. A log without these facts has lost them, or comes from a
+/// version that did not write them; then only its values can be compared.
 void compare_origin(const Plan& plan, const Recording& log, Replay& result, Problems& problems) {
   const Identity before = identity_of(log.facts);
   if (before.structure.empty()) return;
@@ -62,7 +62,7 @@ void compare(double logged, double computed, int64_t row, double time, ReplayedC
   to.largest = std::max(to.largest, std::abs(logged - computed));
 }
 
-/// Instants before a row that have none, as the loop noted them; 0 in logs that do not say.
+/// Instants without a row before this row, as counted by the loop; 0 in logs that do not state it.
 int64_t missing_before(const Column* lost, size_t row, const hw::PeriodStepper& stepper) {
   const double instants = lost && row > 0 ? lost->values[row] : 0;
   if (!(instants >= 0) || instants > hw::longest_gap || instants != std::floor(instants)) return 0;

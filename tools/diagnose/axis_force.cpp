@@ -1,4 +1,4 @@
-/// The forces on the axis along a motion, and what the input makes of force.
+/// The forces on the axis along a motion, and the force produced by the input.
 #include <algorithm>
 #include <cmath>
 #include "engine/run/run.h"
@@ -8,10 +8,10 @@
 namespace loopwright::diagnosis {
 namespace {
 
-/// Of sampled filters between input and force, in a map of balances.
+/// For sampled filters between input and force, in a map of balances.
 constexpr int samples_to_settle = 500;
 
-/// Blocks that the input reaches without going through those of the motion.
+/// Blocks that the input reaches without passing through the blocks of the motion.
 std::vector<bool> blocks_ahead_of(const Plan& plan, Number input, const std::vector<int>& beyond) {
   std::vector<bool> reached(plan.blocks.size(), false);
   const auto reads_it = [&](size_t block) {
@@ -36,7 +36,7 @@ bool remembers_samples(const Plan::Block& block) { return block.period > 0 || !b
 
 }  // namespace
 
-/// Which states and memories the net force hangs on, apart from the motion's own.
+/// The states and memories on which the net force depends, apart from the motion's own.
 void AxisModel::look_between_input_and_force() {
   constexpr int own_states = 2;  // of a mass: position and velocity
   std::vector<int> motion;
@@ -69,7 +69,7 @@ double AxisModel::net_force(double input, double force) {
   return numbers_[force_];
 }
 
-/// Sampled blocks still give what they gave.
+/// Sampled blocks keep their outputs.
 double AxisModel::held_force(double input) {
   numbers_[input_] = input;
   numbers_[injected_] = 0;
@@ -95,7 +95,7 @@ Eigen::VectorXd AxisModel::inner_states_after_sample(double position, double vel
   return next;
 }
 
-/// By Newton's method on what a sample changes; for linear lags and filters in one step.
+/// Newton's method on the change over a sample; one step suffices for linear lags and filters.
 void AxisModel::let_inner_states_rest(double position, double velocity, double input) {
   constexpr int most_rounds = 12;
   constexpr double settled = 1e-9;  // of the states

@@ -22,7 +22,7 @@ Number number_of(const Plan& plan, const std::string& port) {
   return numbers.size() == 1 ? numbers[0] : -1;
 }
 
-/// Only what the axis itself needs is computed: the controller that the cut left behind is not.
+/// Only the blocks that the axis needs are computed; the controller, now disconnected, is not.
 void keep_only(Plan& plan, const std::vector<Number>& wanted) {
   const std::vector<bool> needed = blocks_behind(plan, wanted, {});
   std::erase_if(plan.order, [&](const Plan::Entry& entry) {
@@ -87,7 +87,7 @@ AxisModel::AxisModel(const std::string& path, const std::string& experiment_path
   const auto plan = injected ? compile(*injected, problems) : nullptr;
   if (!plan || problems.has_errors()) throw InputError(std::move(problems));
   auto changed = std::make_shared<Plan>(*plan);
-  std::optional<Unit> force_unit;  // what drives the input in the diagram as written may say more
+  std::optional<Unit> force_unit;  // the source of the input in the original diagram may determine it
   for (const Plan* known : {static_cast<const Plan*>(changed.get()), whole_plan.get()})
     if (const Number number = number_of(*known, force_port); number >= 0 && !force_unit)
       force_unit = known->unit_of(number);
@@ -101,7 +101,7 @@ AxisModel::AxisModel(const std::string& path, const std::string& experiment_path
     return number < 0 ? number : state_behind(*changed, number);
   };
   position_ = moving("position"), velocity_ = moving("velocity");
-  for (MeasuredPort& port : record_.measured) {  // what counts and samples has no slope to be corrected by
+  for (MeasuredPort& port : record_.measured) {  // counters and samplers have no slope for a correction
     const Number behind = port.role == "position" ? position_ : velocity_;
     if (behind >= 0 && is_sampled_between(*changed, behind, port.number)) port.number = behind;
   }
@@ -134,7 +134,7 @@ AxisModel::AxisModel(const std::string& path, const std::string& experiment_path
 AxisModel::~AxisModel() = default;
 AxisModel::AxisModel(AxisModel&&) noexcept = default;
 
-/// Backwards from the measured ports through the linear axis.
+/// Backward from the measured ports through the linear axis.
 void AxisModel::keep_seen_states(const LinearAxis& linear) {
   const size_t n = seen_.size();
   std::vector<bool> seen(n, false);

@@ -1,7 +1,8 @@
-/// The user's diagram, cut open at its input and given one more force: what the predictor steps.
+/// The user's diagram, cut open at its input and with an additional force: the model that the predictor
+/// steps.
 ///
-/// Input and force may be different quantities: a current, and the newtons that a motor makes of it. What
-/// lies between them is the diagram's own: gains, saturations, lags, sampled filters.
+/// Input and force may be different quantities, for example a current and the force that a motor produces
+/// from it. The blocks between them are the diagram's own: gains, saturations, lags, sampled filters.
 #pragma once
 #include <Eigen/Dense>
 #include <memory>
@@ -18,20 +19,20 @@ template <class Real> class Run;
 namespace loopwright::diagnosis {
 
 /// x[k+1] = A x[k] + push F (a force held over the sample), y = C x; small deviations from the recorded
-/// motion. States that the measurement never sees are left out.
+/// motion. Unobservable states are left out.
 struct LinearAxis {
   Eigen::MatrixXd A;           ///< n×n
-  Eigen::VectorXd push;        ///< n; of a unit of force that pushes forward
-  Eigen::VectorXd input_push;  ///< n; of a unit of input
-  /// n; what a force that grows by one unit within the sample, of mean zero, moves: this much of the push.
-  /// ∫ (T - τ)(τ/T - ½) dτ = -T²/12 is a sixth of ∫ (T - τ) dτ: so far the position falls back.
+  Eigen::VectorXd push;        ///< n; effect of a unit of force that pushes forward
+  Eigen::VectorXd input_push;  ///< n; effect of a unit of input
+  /// n; effect of a force that grows by one unit within the sample with zero mean, as a fraction of the push.
+  /// ∫ (T - τ)(τ/T - ½) dτ = -T²/12 is a sixth of ∫ (T - τ) dτ, so the position changes by -1/6 of the push.
   Eigen::VectorXd slope_share;
   Eigen::MatrixXd C;   ///< measured ports × n
-  double inertia = 0;  ///< force per acceleration, of what the force moves
+  double inertia = 0;  ///< force per acceleration, of the driven mass
   double damping = 0;  ///< force per speed
 };
 
-/// The blocks on which these numbers hang, without those of `beyond` and what lies behind them alone.
+/// The blocks on which these numbers depend, without those of `beyond` and those that only lie behind them.
 std::vector<bool> blocks_behind(const Plan& plan, const std::vector<Number>& wanted,
                                 const std::vector<int>& beyond);
 
@@ -45,48 +46,48 @@ class AxisModel {
   const AxisRecord& record() const { return record_; }
   const Plan& plan() const { return *plan_; }
   bool has_position() const { return position_ >= 0; }
-  /// [force] What the recorded input makes of force, row by row: loopwright::driving_force().
+  /// [force] The force produced by the recorded input, row by row: loopwright::driving_force().
   const std::vector<double>& driving_force() const { return driving_force_; }
   /// [force/input] The gain that fits the driving force best.
   double force_per_input() const { return force_per_input_; }
   const std::string& force_unit() const { return force_unit_; }
   const std::string& position_unit() const { return position_unit_; }
 
-  /// Adds to the mass (or moment of inertia) on which the force acts; 0 is the user's own. False when the
-  /// diagram has no such parameter.
+  /// Adds to the mass (or moment of inertia) on which the force acts; 0 is the user's own value. Returns
+  /// false if the diagram has no such parameter.
   bool set_added_inertia(double added);
   /// Of the user's own diagram.
   double nominal_inertia() const { return nominal_inertia_; }
   double nominal_damping() const { return nominal_damping_; }
 
-  /// Back to the start: position and velocity as given, all else as the diagram starts.
+  /// Back to the start: position and velocity as given, everything else at the diagram's initial values.
   void start(double position, double velocity);
-  /// A sample onward with held input and held force (added to the force role; pushes forward).
+  /// Advances by a sample with held input and held force (added to the force role; pushes forward).
   void step(double input, double force);
   double position() const;
   double velocity() const;
   double measured(size_t port) const;
-  /// States that the measurement sees.
+  /// Observable states.
   std::span<const int> states() const { return seen_; }
   double state(int index) const;
   void correct(int index, double by);
-  /// The mean force on the moving part at the present state, the added force included.
+  /// The mean force on the moving part at the present state, including the added force.
   double net_force(double input, double force);
   void place(double position, double velocity);
-  /// The same where a path leads, place by place: dry friction remembers from where it came. Lags and filters
-  /// between input and force have come to rest.
+  /// The same along a path, position by position: dry friction remembers the direction of approach. Lags and
+  /// filters between input and force are in steady state.
   double net_force_at_rest(double position, double velocity, double input, double force);
-  /// At the instant of a row the input changes: the net force from there on, or the mean of before and after.
+  /// At the instant of a row the input changes: the net force after it, or the mean of before and after.
   enum class At { from_there_on, mean };
   /// The net force at every row along a motion. The input is held from its row to the next. Lags and filters
-  /// between input and force follow it; in a map of balances each row stands alone, and they have come to
-  /// rest.
+  /// between input and force follow it; in a map of balances each row is independent, and they are in steady
+  /// state.
   std::vector<double> net_forces(std::span<const double> position, std::span<const double> velocity,
                                  std::span<const double> input, At at);
-  /// Whether a force as small as this moves nothing at rest: something in the diagram holds.
+  /// Whether a small force moves nothing at rest: something in the diagram holds the axis.
   bool holds_at_rest(double small_force);
 
-  /// Linearized around the recorded motion. Of a map: what is left over of the forces, see balance_of.
+  /// Linearized around the recorded motion. For a map: the remaining sum of the forces, see balance_of.
   LinearAxis linearize();
 
  private:
@@ -111,8 +112,8 @@ class AxisModel {
   std::vector<int> seen_;
   std::vector<int> inner_states_;   // between input and force
   bool input_is_filtered_ = false;  // by states, sampled blocks or delays
-  bool force_remembers_ = false;    // the net force hangs on more than motion and input now
-  Eigen::MatrixXd inner_decay_;     // of the inner states over a sample; empty: not yet known
+  bool force_remembers_ = false;    // the net force now depends on more than motion and input
+  Eigen::MatrixXd inner_decay_;     // of the inner states over a sample; empty: not yet computed
   std::vector<char> remembered_;    // the arena at an operating point
   std::vector<double> driving_force_;
   double force_per_input_ = 0;

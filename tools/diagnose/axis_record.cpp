@@ -8,7 +8,7 @@
 namespace loopwright::diagnosis {
 namespace {
 
-/// Port and place of a role; a problem when the experiment does not name it and must.
+/// Port and index of a role. Reports a problem if the experiment lacks a required role.
 const std::string* role_port(const Experiment& experiment, std::string_view role, Place* place) {
   for (size_t i = 0; i < experiment.roles.ports.size(); ++i)
     if (experiment.roles.ports[i].first == role) {

@@ -1,5 +1,5 @@
-/// What was recorded of one axis, in the form that the predictor reads: one input held from sample to sample,
-/// and the measured position and velocity.
+/// The record of one axis in the form that the predictor reads: one input held from sample to sample, and the
+/// measured position and velocity.
 #pragma once
 #include <array>
 #include <string>
@@ -9,13 +9,13 @@
 
 namespace loopwright::diagnosis {
 
-/// A port that was measured.
+/// A measured port.
 struct MeasuredPort {
   std::string role;  ///< "position" or "velocity"
   Number number = -1;
   std::string unit;           ///< SI
-  double resolution = 0;      ///< SI; 0: not known
-  std::vector<double> value;  ///< SI, a sample each
+  double resolution = 0;      ///< SI; 0: unknown
+  std::vector<double> value;  ///< SI, one value per sample
 };
 
 struct AxisRecord {
@@ -26,8 +26,8 @@ struct AxisRecord {
   std::vector<double> input;  ///< SI; held from its sample to the next
   std::string input_unit;
   std::vector<MeasuredPort> measured;  ///< position first; at least one
-  bool is_map = false;                 ///< rows are balances, each by itself: see gather_balances
-  size_t held_out_from = 0;            ///< first row kept out of the identification; rows() without hold-out
+  bool is_map = false;                 ///< rows are independent balances: see gather_balances
+  size_t held_out_from = 0;            ///< first row held out of the identification; rows() without hold-out
 
   size_t rows() const { return input.size(); }
   bool is_missing(size_t row) const { return !missing.empty() && missing[row]; }
@@ -38,15 +38,15 @@ struct AxisRecord {
   }
 };
 
-/// Position, velocity and acceleration below the cut-off, and the input; what it makes of force only the
-/// model knows.
+/// Position, velocity and acceleration below the cut-off, and the input. The force that it produces is known
+/// only to the model.
 MeasuredMotion measured_motion(const AxisRecord& record);
 
-/// The columns that belong to the roles, on an even grid: see EvenGrid.
-/// Problems: roles or columns that are missing, other units than the diagram's.
+/// The columns of the roles, on a uniform grid: see EvenGrid. Problems: missing roles or columns, units that
+/// differ from the diagram's.
 AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Problems& problems);
 
-/// The experiment with the axis cut open at its input: the measured input alone drives the diagram.
+/// The experiment with the axis cut open at its input: only the measured input drives the diagram.
 Experiment cut_open(const Experiment& experiment, const Plan& plan, Problems& problems);
 
 }  // namespace loopwright::diagnosis

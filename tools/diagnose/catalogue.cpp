@@ -32,9 +32,9 @@ bool adds_inertia(const Attachment& attachment) {
 }
 
 constexpr double linear_points = 8;
-constexpr double grid_ratio = 1.7;  // between neighbours on a logarithmic scale, at most
+constexpr double grid_ratio = 1.7;  // between neighbors on a logarithmic scale, at most
 
-/// Where the search looks first. Later shapes of an effect start in the middle: the fit moves them.
+/// Initial values of the search. Later shapes of an effect start in the middle: the fit moves them.
 std::vector<double> grid_of(const CandidateParameter& p, bool is_first, int points) {
   std::vector<double> grid;
   const double low = p.logarithmic ? std::max(p.low, 1e-6 * p.high) : p.low;
@@ -47,7 +47,7 @@ std::vector<double> grid_of(const CandidateParameter& p, bool is_first, int poin
   return grid;
 }
 
-/// The columns that were computed last: fits come back to the same path and shape many times.
+/// The columns computed last: fits return to the same path and shape many times.
 class Remembered {
  public:
   const Columns* find(const Path& path, const std::vector<double>& shape) const {
@@ -71,14 +71,14 @@ class Remembered {
   std::deque<Entry> entries_;
 };
 
-/// An effect with the places of its parameters.
+/// An effect with the indices of its parameters.
 struct Compiled {
   std::shared_ptr<const EffectPlan> plan;
   std::vector<size_t> linear, nonlinear;  // in EffectPlan::fitted
   Acts acts;
   Remembered remembered;
 
-  /// Runs only the shapes that are not remembered.
+  /// Runs only the shapes that are not cached.
   std::vector<Columns> columns(const Path& path, const std::vector<std::vector<double>>& shapes) {
     std::vector<Columns> result(shapes.size());
     std::vector<std::vector<double>> others;
@@ -92,7 +92,7 @@ struct Compiled {
     if (others.empty()) return result;
     std::vector<Columns> computed = run(path, others);
     for (size_t i = 0; i < others.size(); ++i) {
-      if (others.size() < 8) remembered.keep(path, others[i], computed[i]);  // no whole grids
+      if (others.size() < 8) remembered.keep(path, others[i], computed[i]);  // not complete grids
       result[places[i]] = std::move(computed[i]);
     }
     return result;
@@ -114,7 +114,7 @@ struct Compiled {
         const std::vector<double>& shape = shapes[(first + lane) / per_shape];
         for (size_t i = 0; i < nonlinear.size(); ++i) run.set(nonlinear[i], shape[i], int(lane));
         const double size = linear.empty() ? 1 : run.isolate(linear[(first + lane) % per_shape], int(lane));
-        // What it adds to the input it does not consume.
+        // What the effect adds to the input counts as negative consumption.
         outputs[lane].factor = (acts == Acts::input ? -1.0 : 1.0) / size;
       }
       run.run(signals, rows, outputs);
@@ -156,7 +156,7 @@ Candidate candidate_of(const Effect& effect, std::shared_ptr<const EffectPlan> p
       continue;
     }
     candidate.is_periodic |= p.is_period;
-    if (p.is_period) {  // shorter ones pass between two samples
+    if (p.is_period) {  // shorter ones fall between two samples
       const RecordSizes& sizes = compiled->plan->sizes;
       parameter.span = sizes.stroke;
       parameter.low = std::max(parameter.low, 4 * sizes.top_speed * sizes.sample_time);
@@ -166,7 +166,7 @@ Candidate candidate_of(const Effect& effect, std::shared_ptr<const EffectPlan> p
     candidate.nonlinear.push_back(parameter), compiled->nonlinear.push_back(index);
   }
   candidate.amplitude_is_one = candidate.linear.empty();
-  if (candidate.amplitude_is_one) {  // from nothing to full: a shape next to nothing would explain nothing
+  if (candidate.amplitude_is_one) {  // from zero to the full value: a shape near zero would explain nothing
     std::vector<double>& grid = candidate.nonlinear.front().grid;
     const double high = candidate.nonlinear.front().high;
     grid.clear();
@@ -182,7 +182,7 @@ Candidate candidate_of(const Effect& effect, std::shared_ptr<const EffectPlan> p
   return candidate;
 }
 
-/// A range or a value of the effect that these records do not give; empty: all are numbers.
+/// A range or a value of the effect that these records do not determine; empty: all are numbers.
 std::string unknown_number(const Effect& effect, const RecordSizes& sizes) {
   std::vector<double> starts;
   for (const EffectParameter& p : effect.parameters) {
@@ -199,7 +199,7 @@ std::string unknown_number(const Effect& effect, const RecordSizes& sizes) {
   return {};
 }
 
-/// Effects of one reason together, each once.
+/// Effects with the same reason together, each once.
 void leave_out(std::vector<NotLookedFor>& list, const std::string& effect, std::string why) {
   auto same = std::ranges::find(list, why, &NotLookedFor::why);
   if (same == list.end()) same = list.insert(same, {{}, std::move(why)});
@@ -232,7 +232,7 @@ RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
     if (const MeasuredPort* position = models[i]->record().find("position"))
       sizes.resolution = std::max(sizes.resolution, position->resolution);
   }
-  if (!speeds.empty()) {  // a few rows may have been disturbed
+  if (!speeds.empty()) {  // a few rows may be disturbed
     const auto top = speeds.begin() + std::ptrdiff_t(whole_index(0.995 * double(speeds.size() - 1), speeds.size()));
     std::ranges::nth_element(speeds, top);
     sizes.top_speed = *top;

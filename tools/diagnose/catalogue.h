@@ -1,4 +1,4 @@
-/// The catalogue's effects as candidates: each runs its own blocks.
+/// The effects of the catalog as candidates: each runs its own blocks.
 #pragma once
 #include "tools/diagnose/candidate.h"
 #include "tools/diagnose/diagnose.h"
@@ -6,24 +6,24 @@
 
 namespace loopwright::diagnosis {
 
-/// The effects of a catalogue, compiled for a machine.
+/// The effects of a catalog, compiled for a machine.
 struct Catalogue {
   std::vector<Effect> effects;
-  std::vector<Candidate> candidates;  ///< one for each effect, in the same order
+  std::vector<Candidate> candidates;  ///< one per effect, in the same order
   std::vector<NotLookedFor> left_out;
 };
 
-/// Sizes of the records, all together.
+/// Extents over all records.
 RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
                      const std::vector<const AxisModel*>& models);
 
-/// Why an effect cannot be added to the diagram; empty: it can.
+/// Why an effect cannot be added to the diagram; empty: it can be added.
 using WhyNot = std::function<std::string(const Effect&)>;
 
-/// Why a map of balances says nothing about an effect; empty: it does.
+/// Why a map of balances contains no information about an effect; empty: it contains some.
 std::string not_in_a_map(const Effect& effect);
 
-/// Effects that cannot be added, and those whose numbers cannot be worked out for these records, are left
+/// Effects that cannot be added, and effects whose numbers cannot be computed for these records, are left
 /// out. Throws InputError with every problem of the effect files.
 Catalogue make_catalogue(const std::vector<std::string>& folders, const MachineUnits& units,
                          const RecordSizes& sizes, const WhyNot& why_not);

@@ -16,8 +16,8 @@ constexpr double least_force = 0.005;          // of the driving force's rms
 constexpr double least_force_to_noise = 0.25;  // of the white noise
 constexpr double least_unique_force = 0.001;   // of the driving force's rms
 
-/// Places of a member's parameters among the free ones. Only those that say whether it is there: the linear
-/// ones, or the shape of one that has none.
+/// Indices of a member's parameters among the free ones. Only those that decide whether it is present: the
+/// linear ones, or the shape of a member without linear ones.
 std::vector<Eigen::Index> existence(const std::vector<Member>& members, size_t member) {
   std::vector<Eigen::Index> places;
   const std::vector<FreeParameter> free = free_parameters(members);
@@ -41,8 +41,9 @@ double chi_square(const Eigen::MatrixXd& information, const Eigen::VectorXd& the
   return at.dot(covariance.topLeftCorner(n, n).ldlt().solve(at));
 }
 
-/// χ² of the parameters that say whether a member is there; and with all others known. Its own shape is taken
-/// as known: a drift much longer than the record is certain, though its size and time are not one by one.
+/// χ² of the parameters that decide whether a member is present, alone and with all others known. Its own
+/// shape is taken as known: a drift much longer than the record is certain even if its size and time are not
+/// determined separately.
 std::pair<double, double> wald(Estimate& estimate, size_t member) {
   const std::vector<FreeParameter> free = free_parameters(estimate.members);
   const std::vector<Eigen::Index> places = existence(estimate.members, member);
@@ -61,7 +62,7 @@ std::pair<double, double> wald(Estimate& estimate, size_t member) {
   return {chi_square(information, theta, places, shape), chi_square(information, theta, places, others)};
 }
 
-/// Root of the mean square of what a member consumes over the rows that are fitted.
+/// Root mean square of the force that a member consumes over the fitted rows.
 double force_rms(const Trials& trials, const Estimate& estimate, size_t index) {
   const Member& member = estimate.members[index];
   double sum = 0, n = 0;
@@ -112,20 +113,20 @@ bool is_at_limit(const Member& member) {
   return false;
 }
 
-/// What came out, and the sets that may do as well.
+/// The result, and the sets that explain the records as well.
 class Rivals {
  public:
-  /// `reach`: a loss of the criterion that a rival may have.
+  /// `reach`: loss of the criterion that a rival may have.
   Rivals(Trials& trials, const Estimate& estimate, size_t catalogue, double reach)
       : trials_(trials), estimate_(estimate), catalogue_(catalogue), reach_(reach) {}
 
   double reach() const { return reach_; }
-  /// With a proposal carried out and all parameters fitted.
+  /// With a proposal applied and all parameters fitted.
   Estimate fitted(const Proposal& proposal) {
     return fit_members(trials_, applied(proposal, estimate_.members), estimate_.noise, estimate_.motion, 4);
   }
-  /// How much worse its criterion is; nothing: out of reach. A richer set that has this one as a special case
-  /// always comes near: it must explain more to be a rival.
+  /// How much worse its criterion is; empty: out of reach. A larger set that contains this one as a special
+  /// case is always close, so it must explain more to be a rival.
   std::optional<double> loss_of(const Proposal& proposal, const Estimate& other) const {
     if (!other.is_valid) return {};
     size_t before = 0, now = 0;
@@ -145,15 +146,15 @@ class Rivals {
     if (disliked < best_loss_) best_loss_ = disliked, best_ = std::move(other);
     return loss;
   }
-  /// Whether it does as well on the same motion, and not much worse on its own: where the diagram itself
-  /// counts, as an encoder in it does, every run comes out otherwise.
+  /// Whether it is as good on the same motion, and not much worse on its own motion. If the diagram itself
+  /// quantizes, for example with an encoder, every run gives a different result.
   bool is_promised(const Proposal& proposal, const Estimate& other) const {
-    constexpr double much = 20;  // times what is in reach
+    constexpr double much = 20;  // multiple of the reach
     return proposal.gain > 0 && other.is_valid &&
            criterion_of(other) - criterion_of(estimate_) < much * reach_;
   }
-  /// The best that a loss was asked of, if it does better with noise of its own, too: the search compared
-  /// them under the noise that it knew then. `doubt`: what its gain must exceed where the errors are not
+  /// The best of the sets whose loss was computed, if it is also better with noise of its own: the search
+  /// compared them under the noise known then. `doubt`: what its gain must exceed when the errors are not
   /// white.
   std::optional<Estimate> better(double doubt) {
     const auto at_limit = [](const Estimate& e) { return std::ranges::count_if(e.members, is_at_limit); };
@@ -176,21 +177,21 @@ class Rivals {
   Estimate best_;
 };
 
-/// What a set leaves unexplained, in twice the log-likelihood: about what a model of the errors' own
-/// correlation would gain. A set that is worse by less cannot be ruled out. Beyond what counts as white there
-/// is no end to it.
+/// What a set leaves unexplained, in twice the log-likelihood: approximately the gain of a model of the
+/// errors' autocorrelation. A set that is worse by less cannot be excluded. Beyond the limit of white errors
+/// there is no bound.
 double unexplained(double portmanteau) {
   return std::clamp(portmanteau - double(portmanteau_lags), 0.0, most_portmanteau);
 }
 
-/// Whether one candidate comes in the place of the same member.
+/// Whether one candidate replaces the same member.
 bool contains(const std::vector<Proposal>& list, const Proposal& proposal) {
   return std::ranges::any_of(list, [&](const Proposal& p) {
     return p.removed == proposal.removed && p.added[0].candidate == proposal.added[0].candidate;
   });
 }
 
-/// What else would do: every other candidate in the place of a member, its shape and all parameters fitted.
+/// Alternatives: every other candidate in place of a member, with its shape and all parameters fitted.
 std::vector<Substitute> substitutes_of(Rivals& rivals, size_t member,
                                        const std::vector<Proposal>& exchanges) {
   std::vector<Substitute> list;
@@ -203,7 +204,7 @@ std::vector<Substitute> substitutes_of(Rivals& rivals, size_t member,
   return list;
 }
 
-/// The same for several at a time; the most promising are tried.
+/// The same for several members at a time; the most promising are tried.
 std::vector<OtherSet> other_sets(Rivals& rivals, const std::vector<Member>& members,
                                  const std::vector<Proposal>& proposals) {
   constexpr size_t most_tried = 5, most_told = 3;
@@ -227,8 +228,8 @@ std::vector<OtherSet> other_sets(Rivals& rivals, const std::vector<Member>& memb
   return list;
 }
 
-/// A parameter at the end of its range says that something simpler would do: what has fewer parameters, and
-/// is not out of reach.
+/// A parameter at the end of its range indicates that a simpler set is sufficient: one with fewer parameters
+/// that is not out of reach.
 std::optional<Estimate> simplified(Rivals& rivals, const std::vector<Member>& members,
                                    const std::vector<Proposal>& exchanges) {
   for (size_t m = 0; m < members.size(); ++m) {
@@ -245,9 +246,9 @@ std::optional<Estimate> simplified(Rivals& rivals, const std::vector<Member>& me
   return {};
 }
 
-/// Fits all parameters and the noise together, and takes out the members that do not matter: one by one, the
-/// weakest first. The search judged them by noise that it knew in part; one that barely matters must do
-/// better than noise that is fitted without it.
+/// Fits all parameters and the noise together, and removes the members that are not material, one by one, the
+/// weakest first. The search judged them with noise that it knew only partly; a barely material member must
+/// explain more than noise that is fitted without it.
 void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
   constexpr double barely = 2;
   Estimate& estimate = result.estimate;
@@ -278,11 +279,11 @@ void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
   }
 }
 
-/// Fills what else would do, and from it how probable each member is.
+/// Computes the alternatives, and from them the probability of each member.
 void ask_rivals(Conclusion& result, Evidence& evidence, const std::vector<Proposal>& exchanges,
                 const std::vector<Candidate>& candidates, const AxisModel& model, Rivals& rivals, double n) {
   const double reach = rivals.reach();
-  // What a linearization promises far from where it was made may be a hundred off.
+  // Far from its operating point the loss predicted by a linearization may be wrong by a hundred.
   const double far = std::max(100.0, 3 * reach);
   const std::vector<Member>& members = result.estimate.members;
   std::vector<Proposal> several = evidence.exchanges_for_pairs();
@@ -305,8 +306,8 @@ void ask_rivals(Conclusion& result, Evidence& evidence, const std::vector<Propos
   }
 }
 
-/// Joint maximum likelihood, and so on with a set that does as well with less, or better: at most `rounds`
-/// times.
+/// Joint maximum likelihood, repeated with a set that is as good with fewer members, or better: at most
+/// `rounds` times.
 Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
                      const std::vector<Shape>& shapes, Estimate found, int rounds) {
   Conclusion result;
@@ -352,7 +353,7 @@ double material(const Trials& trials, const Estimate& estimate, const Weight& we
   const double n = double(fitted_numbers(trials));
   const double least_force_now =
       std::max(least_force * trials.force_rms, least_force_to_noise * estimate.noise.white);
-  // A delay shows for moments only, yet plainly.
+  // A delay acts only for moments, but is clearly visible.
   const double size = std::max(weight.force_rms / least_force_now, weight.wald / (plain_wald_per_row * n));
   return std::min({weight.wald / std::max(least_wald, least_wald_per_row * n), size,
                    weight.unique_force / (least_unique_force * trials.force_rms)});

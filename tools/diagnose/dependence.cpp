@@ -1,4 +1,4 @@
-/// On which variables the remainder depends: smooth functions of each, fitted on some blocks of time and
+/// The variables on which the remainder depends: smooth functions of each, fitted on some blocks of time and
 /// tested on others.
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 namespace loopwright::diagnosis {
 namespace {
 
-/// What is left as a force, and the variables beside it; means over a few samples.
+/// The remaining force, and the variables with it; means over a few samples.
 struct Remainder {
   std::vector<double> force, position, velocity, acceleration, input, time;
 };
@@ -34,7 +34,7 @@ Remainder remainder_of(const Trials& trials, const std::vector<Fitted>& fitted) 
   return r;
 }
 
-/// Hat functions over the quantiles of a variable: their two that are not zero, and their weights.
+/// Hat functions over the quantiles of a variable: the two nonzero ones, and their weights.
 struct Hats {
   std::vector<double> knots;
   Hats(std::vector<double> values, size_t count) {
@@ -52,7 +52,7 @@ struct Hats {
   }
 };
 
-/// Explained share of the remainder on blocks that the smoother has not seen; `side` splits it in two
+/// Explained share of the remainder on blocks that the smoother was not fitted to; `side` splits it into two
 /// smoothers.
 double explained(const std::vector<double>& force, const std::vector<double>& variable, size_t knots,
                  const std::vector<double>* side) {

@@ -32,8 +32,8 @@ const Effect& effect_of(const Catalogue& catalogue, const Candidate* candidate) 
   return catalogue.effects[size_t(candidate - catalogue.candidates.data())];
 }
 
-/// "(N*m)*s/(rad)" as a person writes it: brackets only around what is made of several units, and not around
-/// the first of the factors.
+/// "(N*m)*s/(rad)" in usual notation: parentheses only around products of several units, and not around the
+/// first factor.
 std::string without_idle_brackets(const std::string& unit) {
   std::string text;
   for (size_t i = 0; i < unit.size(); ++i) {
@@ -49,8 +49,8 @@ std::string without_idle_brackets(const std::string& unit) {
   return text;
 }
 
-/// Whether what was found explains everything, a motion that runs ahead of its input too: only a load that
-/// swings or rattles makes an axis look so.
+/// Whether the result explains everything, including a motion that leads its input: only a load that swings
+/// or rattles makes an axis look like that.
 bool explains_lead(const Conclusion& conclusion) {
   const auto names = [&](std::string_view name) {
     return std::ranges::any_of(conclusion.estimate.members,
@@ -94,7 +94,7 @@ std::string_view name_of(Verdict verdict) {
 
 namespace {
 
-/// The records of one axis, and what can be concluded from them with the names of a catalogue.
+/// The records of one axis, and what can be concluded from them with the effects of a catalog.
 class Inquiry {
  public:
   Inquiry(Trials& trials, const Motion& motion, const Catalogue& catalogue, const RecordSizes& sizes,
@@ -105,7 +105,7 @@ class Inquiry {
         unknown_(unknown_forces(sizes, trials.has_map())),
         progress_(progress) {}
 
-  /// From the rows that are fitted.
+  /// From the fitted rows.
   Conclusion with_names() {
     const std::vector<Shape> shapes = shapes_along_fitted_rows();
     progress_("searching", 0.4);
@@ -124,7 +124,7 @@ class Inquiry {
     look_at_all_rows(conclusion);
     return conclusion;
   }
-  /// Whether the rows that are held out are explained much worse than those that were fitted.
+  /// Whether the held-out rows are explained much worse than the fitted rows.
   bool holds_out_something_else(const Conclusion& conclusion) const {
     constexpr double most_held_out = 1.5;
     return held_out_mean_square() > most_held_out * std::max(1.0, conclusion.estimate.mean_square);
@@ -133,7 +133,7 @@ class Inquiry {
     for (Trial& trial : trials_.list) trial.held_out_from = trial.usable.size();
   }
   double held_out_mean_square() const { return mean_square(trials_, on_all_rows_.fitted, true); }
-  /// That the last conclusion saw, held-out rows too.
+  /// The motion of the last conclusion, including held-out rows.
   const Motion& motion_of_all_rows() const { return on_all_rows_.motion; }
 
  private:
@@ -162,14 +162,13 @@ class Inquiry {
   Estimate on_all_rows_;
 };
 
-/// What can be concluded as far as the records can bear it; what was found to be wrong with them is
-/// corrected.
+/// What can be concluded to the extent that the records permit; faults found in them are corrected.
 Conclusion conclusion_from(Inquiry& inquiry, std::vector<RecordFinding>& findings) {
   const auto is_certain = [](const RecordFinding& f) { return f.is_fatal && !f.may_be_physics; };
   const auto is_doubtful = [](const RecordFinding& f) { return f.is_fatal && f.may_be_physics; };
   if (std::ranges::any_of(findings, is_certain)) return inquiry.without_names();
   Conclusion conclusion = inquiry.with_names();
-  // What is not explained anyway shows there as well.
+  // What remains unexplained anyway also appears there.
   if (conclusion.is_white() && inquiry.holds_out_something_else(conclusion)) {
     inquiry.fit_all_rows();
     findings.push_back({"the part that was to be held out shows something that the other part does not",
@@ -179,12 +178,12 @@ Conclusion conclusion_from(Inquiry& inquiry, std::vector<RecordFinding>& finding
   if (explains_lead(conclusion))
     std::erase_if(findings, is_doubtful);
   else if (std::ranges::any_of(findings, is_doubtful))
-    return inquiry.without_names();  // names from a record that cannot bear them would be guesses
+    return inquiry.without_names();  // names from a record that does not support them would be guesses
   return conclusion;
 }
 
-/// In the order of the staircase, but before what is optional what something else could stand for comes after
-/// what is sure.
+/// In the order of the staircase; but members that another effect could replace come after certain members,
+/// before the optional ones.
 std::vector<size_t> ranked(const Conclusion& conclusion, const Staircase& staircase) {
   constexpr double sure = 0.9;
   size_t needed = 0;
@@ -196,7 +195,7 @@ std::vector<size_t> ranked(const Conclusion& conclusion, const Staircase& stairc
   return order;
 }
 
-/// Effects by rank, what else would do, and the experiments that would decide.
+/// Effects by rank, alternatives, and the experiments that would distinguish them.
 void tell_effects(const Conclusion& conclusion, const std::vector<size_t>& order, const Catalogue& catalogue,
                   const MachineUnits& units, Diagnosis& result) {
   for (size_t index : order) {

@@ -1,4 +1,4 @@
-/// Which physical effect is missing in a diagram, as far as records of the real axis can tell.
+/// Which physical effect a diagram lacks, as far as records of the real axis can show.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -12,8 +12,8 @@ namespace loopwright {
 struct DiagnoseOptions {
   LoadOptions load;  ///< --set, --variant
   std::vector<std::string>
-      catalogues;                ///< folders with effect files; empty: the catalogue of the installation
-  std::string improved_diagram;  ///< where the diagram with the effects goes; empty: nowhere
+      catalogues;                ///< folders with effect files; empty: the catalog of the installation
+  std::string improved_diagram;  ///< path of the diagram with the effects; empty: not written
   std::function<void(const char* stage, double done)> progress;
   const std::atomic<bool>* interrupt = nullptr;  ///< once true, the diagnosis ends soon, without a verdict
 };
@@ -21,19 +21,19 @@ struct DiagnoseOptions {
 struct DiagnosedParameter {
   std::string name, unit;
   double value = 0, low = 0, high = 0;  ///< SI; 95 % interval
-  bool at_limit = false;                ///< the range of the catalogue ends here: a warning, not a result
+  bool at_limit = false;                ///< the range of the catalog ends here: a warning, not a result
 };
 
 struct DiagnosedEffect {
   std::string name, form, title, physics;
   std::vector<DiagnosedParameter> parameters;
-  double inclusion = 0;                   ///< probability that it is there
-  std::vector<std::string> alternatives;  ///< cannot be told apart from it by this record
+  double inclusion = 0;                   ///< probability that it is present
+  std::vector<std::string> alternatives;  ///< indistinguishable from it by this record
   double force_rms = 0;                   ///< SI
-  double evidence = 0;                    ///< what the criterion loses without it
+  double evidence = 0;                    ///< loss of the criterion without it
 };
 
-/// Effects that, in the place of some that were named, explain the records as well.
+/// Effects that explain the records equally well in place of some of the named ones.
 struct OtherExplanation {
   std::vector<std::string> in_place_of, effects;
 };
@@ -43,21 +43,21 @@ struct DiagnosisStep {
   std::vector<std::string> added;
   double force_rmse = 0, held_out_force_rmse = 0,
          simulation_rmse = 0;  ///< held out: see Diagnosis::holds_out
-  bool is_optional = false;    ///< after the knee: improves little
+  bool is_optional = false;    ///< after the knee: small improvement
 };
 
 struct SuggestedExperiment {
   std::string text, between, and_effect;
 };
 
-/// Something about a record that limits what it can say.
+/// A fault of the record that limits the conclusions.
 struct RecordFinding {
   std::string what, cost;
-  bool is_fatal = false;        ///< no confident verdict from it
-  bool may_be_physics = false;  ///< unless effects explain the whole record: then it says nothing
+  bool is_fatal = false;        ///< no confident verdict is possible from it
+  bool may_be_physics = false;  ///< unless effects explain the whole record: then it has no meaning
 };
 
-/// An effect of the catalogue that the diagram or the records leave no room for.
+/// An effect of the catalog that cannot be used with this diagram or these records.
 struct NotLookedFor {
   std::vector<std::string> effects;
   std::string why;
@@ -77,17 +77,17 @@ struct Diagnosis {
   std::string diagram, title;
   std::vector<std::string> experiments;
   std::vector<DiagnosedEffect> effects;              ///< strongest first
-  std::vector<OtherExplanation> other_explanations;  ///< where more than one effect changes
+  std::vector<OtherExplanation> other_explanations;  ///< if more than one effect changes
   std::vector<DiagnosisStep> steps;                  ///< the first is the nominal diagram
-  bool holds_out = false;  ///< else everything about held-out rows is 0 and nobody is told of it
+  bool holds_out = false;  ///< otherwise everything about held-out rows is 0 and not reported
   double error_before = 0, error_after = 0, noise_floor = 0;  ///< force, held out where there is a hold-out
   std::string force_unit, position_unit, measured_unit;
   std::vector<SuggestedExperiment> suggested;
   std::vector<RecordFinding> findings;
   std::vector<NotLookedFor> not_looked_for;
-  std::vector<std::string> remainder_variables;  ///< on which what is left depends
+  std::vector<std::string> remainder_variables;  ///< on which the remainder depends
   std::vector<RemainderShare> dependence;
-  bool was_interrupted = false;  ///< nothing else has a meaning, nothing was written
+  bool was_interrupted = false;  ///< no other member has a meaning, nothing was written
   double mean_square = 0, held_out_mean_square = 0, portmanteau = 0;
   double white_force = 0, slow_force = 0, slow_force_time_s = 0;
   std::vector<double> measurement_noise;

@@ -7,7 +7,7 @@
 namespace loopwright {
 namespace {
 
-/// The catalogue's name as words.
+/// The catalog's name in words.
 std::string words(std::string name) {
   for (char& c : name)
     if (c == '_') c = ' ';
@@ -122,7 +122,7 @@ report::Section what_is_missing(const Diagnosis& d) {
   return section;
 }
 
-/// A column behind that of the fitted rows.
+/// A column after that of the fitted rows.
 void add_held_out(const Diagnosis& d, report::Table& table) {
   constexpr ptrdiff_t behind_fitted = 2;
   table.head.insert(table.head.begin() + behind_fitted, "Residual force, held out");

@@ -6,7 +6,7 @@
 namespace loopwright {
 namespace {
 
-/// A force of position and velocity, which is what a Gpr block learns.
+/// A force of position and velocity, which a Gpr block can learn.
 bool can_be_learned(const Diagnosis& d) {
   return !d.remainder_variables.empty() &&
          std::ranges::all_of(d.remainder_variables, [](const std::string& v) {

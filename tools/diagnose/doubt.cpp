@@ -9,11 +9,11 @@ namespace {
 
 constexpr double kept_error = 0.9;     // of a velocity's error from sample to sample
 constexpr double deviations = 2;       // of the errors that are tried
-constexpr double most_change = 2;      // of the force by them, over the white noise
+constexpr double most_change = 2;      // of the force, caused by them, relative to the white noise
 constexpr double least_left = 0.2;     // of the moving rows
-constexpr double shifts_s[] = {1, 2};  // each gives other errors
+constexpr double shifts_s[] = {1, 2};  // each gives a different error
 
-/// The path as it might as well have been seen.
+/// The path with a different, equally plausible estimation error.
 Path seen_otherwise(const Path& path, double shift_s) {
   Path other = path;
   other.identity = 0;
@@ -30,7 +30,7 @@ Path seen_otherwise(const Path& path, double shift_s) {
   return other;
 }
 
-/// What the members that may be doubtful consume.
+/// The force consumed by the members that may be doubtful.
 std::vector<double> force_along(std::vector<Member> members, const Path& path) {
   std::erase_if(members, [](const Member& m) { return !m.candidate->flies; });
   return drives_of(members, path, path.input).force;
@@ -38,7 +38,7 @@ std::vector<double> force_along(std::vector<Member> members, const Path& path) {
 
 double most_change_of(const Trials& trials) { return most_change * search_noise(trials).white; }
 
-/// Marks the rows at which two forces differ by more than `most`, and those after it.
+/// Marks the rows at which two forces differ by more than `most`, and the rows after them.
 void mark_where_they_differ(const std::vector<double>& one, const std::vector<double>& other, double most,
                             std::vector<char>& rows) {
   int left = 0;
@@ -48,7 +48,7 @@ void mark_where_they_differ(const std::vector<double>& one, const std::vector<do
   }
 }
 
-/// What a candidate consumes at the start of its amplitudes.
+/// The force that a candidate consumes at its initial amplitudes.
 std::vector<double> force_at_start(const Candidate& candidate, const Columns& columns) {
   std::vector<double> force(columns.front().mean->size());
   for (size_t c = 0; c < columns.size(); ++c)
@@ -57,7 +57,7 @@ std::vector<double> force_at_start(const Candidate& candidate, const Columns& co
   return force;
 }
 
-/// Of one candidate. One shift is enough to ask which shape is promised most, and costs half of two.
+/// For one candidate. One shift is enough to rank the shapes, and costs half as much as two.
 void mark_doubtful(std::span<Shape> shapes, const Motion& motion, double most) {
   const Candidate& candidate = *shapes.front().candidate;
   std::vector<std::vector<double>> points;
@@ -114,7 +114,7 @@ void leave_out_doubtful(Trials& trials, Estimate& estimate) {
         if (doubtful[t][k]) usable[t][k] = 0;
         left += size_t(usable[t][k]);
       }
-    // What doubts nearly everything explains nothing.
+    // A shape that makes nearly all rows doubtful explains nothing.
     if (double(left) < least_left * double(moving))
       for (size_t t = 0; t < usable.size(); ++t) usable[t] = trials.list[t].moving;
   }

@@ -52,7 +52,7 @@ std::vector<Member> applied(const Proposal& proposal, std::vector<Member> member
   for (size_t i = proposal.removed.size(); i-- > 0;)
     members.erase(members.begin() + std::ptrdiff_t(proposal.removed[i]));
   const std::vector<FreeParameter> free = free_parameters(members);
-  double fraction = 1;  // all together, as far as the first end of a range
+  double fraction = 1;  // all together, up to the first end of a range
   for (size_t i = 0; i < free.size(); ++i) {
     const CandidateParameter& range = range_of(members, free[i]);
     const double value = value_of(members, free[i]), step = proposal.step[i];
@@ -162,7 +162,7 @@ Evidence::Evidence(const Trials& trials, const Estimate& estimate, const std::ve
   explained_ = solve(member_columns(), b_, squares_).squares;
 }
 
-/// The same shape with all its rows, which has the same responses; without one, itself.
+/// The same shape with all its rows, which has the same responses; if there is none, the shape itself.
 size_t Evidence::without_doubt(size_t shape) const {
   const Shape& s = *shapes_[shape];
   if (s.doubtful.empty()) return shape;
@@ -233,7 +233,7 @@ Evidence::Errors Evidence::errors_without(const std::vector<size_t>& removed) co
   return {removed, b_ + added, squares_ + 2 * theta.dot(b_.head(own)) + theta.dot(added.head(own))};
 }
 
-/// A candidate is a member once; one that repeats along the axis again at another pitch.
+/// A candidate is a member only once; one that repeats along the axis may be added again at another pitch.
 bool Evidence::may_be_added(const Shape& shape, const std::vector<size_t>& removed) const {
   for (size_t m = 0; m < members_.size(); ++m) {
     const Member& member = members_[m];
@@ -263,14 +263,14 @@ std::optional<Proposal> Evidence::with_shapes(const std::vector<size_t>& shapes,
     cost += price(parameters_of(*shapes_[s]->candidate), 1, n_, catalogue_);
   }
   for (size_t m : removed) cost -= price(parameters_of(*members_[m].candidate), 1, n_, catalogue_);
-  // Where the members' shapes are nearly free, the whole step would lead far out of what is linear.
+  // If the members' shapes are poorly determined, the full step would leave the linear range.
   const std::vector<int> columns = with_members(true);
   Proposal proposal = with_step(shapes, removed, solve(columns, errors.b, errors.squares).theta);
   proposal.gain = n_ * std::log(explained_ / solution.squares) - cost;
   return proposal;
 }
 
-/// `theta`: steps of the linear parameters of the members that stay, then the shapes' own.
+/// `theta`: steps of the linear parameters of the members that stay, then of the shapes.
 Proposal Evidence::with_step(const std::vector<size_t>& shapes, const std::vector<size_t>& removed,
                              const Eigen::VectorXd& theta) const {
   Proposal proposal;
@@ -289,7 +289,7 @@ Proposal Evidence::with_step(const std::vector<size_t>& shapes, const std::vecto
   return proposal;
 }
 
-/// Of every candidate that is not a member, the shape that saves most.
+/// For every candidate that is not a member, the shape that saves most.
 std::vector<size_t> Evidence::best_shapes(const Errors& errors) const {
   std::vector<size_t> best;
   std::vector<double> gains;

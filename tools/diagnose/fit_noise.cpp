@@ -1,4 +1,4 @@
-/// The likelihood of the noise, from errors that one set of gains has made.
+/// The likelihood of the noise, from errors produced with one set of gains.
 #include <nlopt.h>
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,10 @@
 namespace loopwright::diagnosis {
 namespace {
 
-/// Of the driving force's rms: a fiftieth of the least force that is material.
+/// Relative to the driving force's rms: a fiftieth of the smallest material force.
 constexpr double least_white = 1e-4;
 
-/// Logarithms of the free numbers of a noise.
+/// Logarithms of the free parameters of a noise.
 struct Coordinates {
   FreeNoise free;
   Noise start;
@@ -79,7 +79,7 @@ Noise fit_noise(const Trials& trials, const std::vector<Fitted>& fitted, const N
   Objective objective{trials, fitted, {free, start}};
   std::vector<double> x = objective.coordinates.of(start), low = x, high = x;
   for (size_t i = 0; i < x.size(); ++i) low[i] -= std::log(30.0), high[i] += std::log(30.0);
-  // Where the sensor's counts are the only noise, that of the force would go to nothing.
+  // If the sensor's quantization is the only noise, the force noise would go to zero.
   low[0] = std::max(low[0], std::log(least_white * trials.force_rms));
   x[0] = std::max(x[0], low[0]), high[0] = std::max(high[0], x[0]);
   nlopt_opt optimiser = nlopt_create(NLOPT_LN_BOBYQA, unsigned(x.size()));
@@ -98,7 +98,7 @@ Noise fit_noise(const Trials& trials, const std::vector<Fitted>& fitted, const N
 Noise fit_noise_alone(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& start,
                       FreeNoise free) {
   constexpr double next_to_nothing = 0.01;
-  // Where little of it is left, or all was put aside, the likelihood is too flat to find it again.
+  // If it is nearly zero, or was set to zero, the likelihood is too flat to recover it.
   Noise from = start;
   from.step = std::max(from.step, usual_slow_noise * from.white * std::sqrt(1 - from.memory * from.memory));
   Noise noise = fit_noise(trials, fitted, from, free);

@@ -21,7 +21,7 @@ std::vector<const Member*> chain_of(const std::vector<Member>& members) {
   return chain;
 }
 
-/// Adds `sign` times what a member consumes; a slope that is not needed stays empty.
+/// Adds `sign` times the force that a member consumes; a slope that is not needed stays empty.
 void add_columns(const Member& member, const Columns& columns, std::vector<double>& mean,
                  std::vector<double>& slope, double sign = 1) {
   for (size_t c = 0; c < columns.size(); ++c) {
@@ -35,7 +35,7 @@ void add_columns(const Member& member, const Columns& columns, std::vector<doubl
   }
 }
 
-/// The input behind a chain, as mean and slope.
+/// The input after a chain of effects, as mean and slope.
 struct ChangedInput {
   std::vector<double> mean, slope;
 };
@@ -50,7 +50,7 @@ ChangedInput through(const std::vector<const Member*>& chain, const Path& path,
   return {std::move(upstream.input), std::move(slope)};
 }
 
-/// A step in a nonlinear parameter for its derivative, inside its range.
+/// A step in a nonlinear parameter for its derivative, within its range.
 double difference_step(const CandidateParameter& range, double at) {
   if (range.span > 0) return 0.003 * at * at / range.span;
   const double step = 1e-3 * (range.logarithmic ? std::abs(at) : range.high - range.low);
@@ -84,7 +84,7 @@ Columns derivatives(const Member& member, const Path& path) {
   return result;
 }
 
-/// The same for a member that does, as consumed input at the end of the chain.
+/// The same for a member that changes the input, as consumed input at the end of the chain.
 Column input_derivative(std::vector<Member> members, const FreeParameter& parameter, const Path& path,
                         const std::vector<double>& raw_input) {
   double& value = value_of(members, parameter);

@@ -45,7 +45,7 @@ std::string write_improved(const std::string& diagram, const std::string& experi
   auto file = read_source(diagram, {}, problems);
   if (!file || !experiment) throw InputError(std::move(problems));
   InsertionSite site{experiment->roles.ports, load.variants, units};
-  std::vector<Member> members = estimate.members;  // along the way of the signal
+  std::vector<Member> members = estimate.members;  // in the direction of the signal
   std::ranges::stable_sort(members, {}, [](const Member& m) { return m.candidate->stage; });
   for (const Member& member : members) {
     if (member.candidate->is_unknown) continue;

@@ -1,4 +1,4 @@
-/// "Add it": the user's diagram with the effects that were found.
+/// Adds the effects that were found to the user's diagram.
 #pragma once
 #include "tools/diagnose/catalogue.h"
 #include "tools/diagnose/maximum_likelihood.h"
@@ -10,7 +10,7 @@ namespace loopwright::diagnosis {
 WhyNot attachable(const std::string& diagram, const std::string& experiment, const LoadOptions& load,
                   const MachineUnits& units, const RecordSizes& sizes);
 
-/// Writes the diagram with every member's blocks to `target`, whole or not at all, and answers its path.
+/// Writes the diagram with every member's blocks to `target`, completely or not at all, and returns its path.
 /// Throws InputError.
 std::string write_improved(const std::string& diagram, const std::string& experiment, const LoadOptions& load,
                            const Catalogue& catalogue, const Estimate& estimate, const MachineUnits& units,

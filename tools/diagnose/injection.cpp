@@ -21,7 +21,7 @@ void set_member(Value& object, const std::string& name, Value value) {
   object.members.push_back({name, object.place, std::move(value)});
 }
 
-/// One more + term.
+/// An additional + term.
 bool extend(BlockEntry& sum) {
   const auto terms = std::ranges::find(sum.in, "terms", &PortWires::port);
   if (sum.type != "Sum" || terms == sum.in.end()) return false;
@@ -33,7 +33,7 @@ bool extend(BlockEntry& sum) {
   return true;
 }
 
-/// Follows "axis.net_force" through outputs of subdiagrams to the block behind it, copying on the way.
+/// Follows "axis.net_force" through outputs of subdiagrams to the block behind it, copying along the way.
 std::shared_ptr<Diagram> inject(const Diagram& diagram, const std::string& port, std::string& parent) {
   auto copy = std::make_shared<Diagram>(diagram);
   const size_t dot = port.find('.');

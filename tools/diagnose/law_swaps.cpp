@@ -5,7 +5,7 @@
 namespace loopwright::diagnosis {
 namespace {
 
-/// One of the three, as what it changes and what the diagram has.
+/// One of the three: its change and the diagram's value.
 struct Term {
   const Candidate* candidate = nullptr;
   size_t member = 0;
@@ -32,7 +32,7 @@ double in_range(const CandidateParameter& range, double value) {
   return std::clamp(value, range.low, range.high);
 }
 
-/// The members without one term, the law multiplied so that this one is the diagram's own.
+/// The members without one term, with the law multiplied so that this term has the diagram's own value.
 Proposal without(const Term& removed, std::span<const Term> terms, const std::vector<Member>& members) {
   const double factor = removed.nominal / removed.whole();
   Proposal proposal{{removed.member}, {}, {}, 0};
@@ -66,7 +66,7 @@ std::vector<Proposal> law_swaps(const std::vector<Member>& members, const std::v
   const auto present = std::ranges::count(terms, true, &Term::is_member);
   std::vector<Proposal> list;
   for (const Term& term : terms) {
-    // A mass or a damping alone is less than a gain and another one.
+    // A mass or a damping alone is less than a gain and one of them.
     const bool is_alike = present == 2 || (present == 1 && &term == &terms[0]);
     if (!term.is_member || !is_alike || !(term.nominal > 0) || !(term.whole() > 0)) continue;
     if (Proposal proposal = without(term, terms, members); !proposal.added.empty())
@@ -76,7 +76,7 @@ std::vector<Proposal> law_swaps(const std::vector<Member>& members, const std::v
 }
 
 double preference(const std::vector<Member>& members, const std::vector<Member>& other) {
-  constexpr double alike = 20;  // the same law under noise that is not quite the same
+  constexpr double alike = 20;  // the same law under slightly different noise
   if (members.size() != other.size()) return 0;
   return alike * (int(has_gain(other)) - int(has_gain(members)));
 }

@@ -7,7 +7,7 @@
 namespace loopwright::diagnosis {
 namespace {
 
-/// Rows spread over the record where the axis moves.
+/// Rows distributed over the record where the axis moves.
 std::vector<size_t> operating_rows(const AxisRecord& record) {
   std::vector<size_t> rows;
   const std::vector<double>& y = record.measured.front().value;
@@ -24,8 +24,8 @@ std::vector<size_t> operating_rows(const AxisRecord& record) {
   return rows;
 }
 
-/// Of a map each row stands alone: one state, the force that the model has left over, and that is measured to
-/// be none.
+/// In a map each row is independent: one state, the remaining sum of the model's forces, which is measured to
+/// be zero.
 LinearAxis balance_of(const LinearAxis& moving, double force_per_input) {
   LinearAxis linear;
   linear.inertia = moving.inertia, linear.damping = moving.damping;
@@ -39,7 +39,7 @@ LinearAxis balance_of(const LinearAxis& moving, double force_per_input) {
 }  // namespace
 
 Eigen::VectorXd AxisModel::sample_from(const Eigen::VectorXd& states, double input, double force) {
-  if (force_remembers_) {  // sampled filters and delays as they were, whatever was tried before
+  if (force_remembers_) {  // sampled filters and delays keep their state, independent of earlier trials
     std::ranges::copy(remembered_, run_->arena().begin());
     run_->restored({plan_->clock.time(plan_->start_tick), plan_->start_tick});
   }
@@ -105,7 +105,7 @@ LinearAxis AxisModel::linearize_motion() {
       }
     }
   }
-  // What samples remember is no state here: effects at the input act as they do in the long run.
+  // Memories of sampled blocks are no states here: effects at the input act as in steady state.
   if (input_is_filtered_ && inner_states_.empty()) linear.input_push = linear.push * force_per_input_;
   const Eigen::Index v = velocity_ - plan_->signals, x = position_ - plan_->signals;
   linear.slope_share = Eigen::VectorXd::Zero(n);

@@ -9,7 +9,7 @@ namespace loopwright::diagnosis {
 namespace {
 
 constexpr double least_gain = 0.01;   // of an iteration, in twice the log-likelihood
-constexpr double same_motion = 0.01;  // two models that differ less in ln(mean square) see the same motion
+constexpr double same_motion = 0.01;  // two models that differ less in ln(mean square) have the same motion
 
 struct NormalEquations {
   Eigen::MatrixXd G;
@@ -43,7 +43,7 @@ NormalEquations normal_equations(const Trials& trials, const std::vector<Member>
   return equations;
 }
 
-/// Solves with columns scaled to one and a ridge that only dependent columns feel.
+/// Solves with columns scaled to one and a ridge that affects only dependent columns.
 Eigen::VectorXd solve(const Eigen::MatrixXd& G, const Eigen::VectorXd& b) {
   const Eigen::VectorXd scale = G.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   Eigen::MatrixXd scaled = scale.asDiagonal() * G * scale.asDiagonal();
@@ -51,8 +51,8 @@ Eigen::VectorXd solve(const Eigen::MatrixXd& G, const Eigen::VectorXd& b) {
   return scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * b);
 }
 
-/// The step inside the ranges of all amplitudes: one that would leave its range goes to the end of it, and
-/// the others make the best of that. To cut it off alone would upset all that balance it.
+/// The step within the ranges of all amplitudes: an amplitude that would leave its range is set to its end,
+/// and the others are solved again. Clipping it alone would disturb all amplitudes that balance it.
 Eigen::VectorXd step_in_range(const NormalEquations& e, std::vector<Member> members,
                               const std::vector<FreeParameter>& free) {
   Eigen::VectorXd step = Eigen::VectorXd::Zero(e.b.size());
@@ -74,7 +74,7 @@ Eigen::VectorXd step_in_range(const NormalEquations& e, std::vector<Member> memb
   return step;
 }
 
-/// The members a step further, inside their ranges; shapes move at most by a third at a time.
+/// The members after a step, within their ranges; shapes move at most by a third at a time.
 std::vector<Member> moved(std::vector<Member> members, const std::vector<FreeParameter>& free,
                           const Eigen::VectorXd& step, double fraction) {
   for (size_t i = 0; i < free.size(); ++i) {
@@ -120,7 +120,7 @@ Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& n
   for (int i = 0; i < iterations && best.is_valid && !free.empty(); ++i) {
     const NormalEquations equations = normal_equations(trials, best.members, best.fitted, best.motion);
     const Eigen::VectorXd step = step_in_range(equations, best.members, free);
-    if (step.dot(equations.b) < least_gain * best.mean_square) break;  // what the step promises
+    if (step.dot(equations.b) < least_gain * best.mean_square) break;  // predicted gain of the step
     const double before = best.profile;
     double fraction = 1;
     for (int shorter = 0; shorter < 4 && best.profile == before; ++shorter, fraction *= 0.35) {
@@ -169,7 +169,7 @@ void work_out_covariance(Trials& trials, Estimate& estimate) {
   const std::vector<FreeParameter> free = free_parameters(estimate.members);
   if (free.empty()) return;
   const NormalEquations e = normal_equations(trials, estimate.members, estimate.fitted, estimate.motion);
-  // A level that no row reaches is not known at all, yet a finite number.
+  // A level that no row reaches is completely unknown, but must be a finite number.
   const auto inverse_root = [](double squares) { return squares > 0 ? 1 / std::sqrt(squares) : 1.0; };
   const Eigen::VectorXd scale = e.G.diagonal().unaryExpr(inverse_root);
   Eigen::MatrixXd scaled = scale.asDiagonal() * e.G * scale.asDiagonal();

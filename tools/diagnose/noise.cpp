@@ -5,8 +5,8 @@
 namespace loopwright::diagnosis {
 namespace {
 
-/// P = A P Aᵀ - A P Cᵀ (C P Cᵀ + R)⁻¹ C P Aᵀ + Q by the structure-preserving doubling algorithm
-/// (Chu, Fan, Lin 2005): converges quadratically, also with poles on the unit circle that noise reaches.
+/// P = A P Aᵀ - A P Cᵀ (C P Cᵀ + R)⁻¹ C P Aᵀ + Q by the structure-preserving doubling algorithm (Chu, Fan,
+/// Lin 2005): converges quadratically, also with poles on the unit circle that are excited by noise.
 Eigen::MatrixXd riccati(const Eigen::MatrixXd& A, const Eigen::MatrixXd& C, const Eigen::MatrixXd& Q,
                         const Eigen::MatrixXd& R) {
   const Eigen::Index n = A.rows();
@@ -35,7 +35,7 @@ Gains gains_of(const LinearAxis& axis, const Noise& noise, double nominal_inerti
   const Eigen::Index n = axis.A.rows(), ports = axis.C.rows();
   const Eigen::VectorXd& push = axis.push;
   const double scale = axis.inertia / nominal_inertia;
-  // In units in which all numbers are of the order of one.
+  // In units in which all numbers are of order one.
   Eigen::VectorXd unit(n + 1), output(ports);
   for (Eigen::Index i = 0; i < n; ++i) unit[i] = std::max(std::abs(push[i]) * noise.white, 1e-300);
   for (Eigen::Index p = 0; p < ports; ++p) output[p] = noise.measurement[size_t(p)];

@@ -1,4 +1,4 @@
-/// Noise of an axis, the Kalman gains that belong to it, and its likelihood.
+/// Noise of an axis, the corresponding Kalman gains, and its likelihood.
 #pragma once
 #include <Eigen/Dense>
 #include <vector>
@@ -6,9 +6,9 @@
 
 namespace loopwright::diagnosis {
 
-/// Noise on an axis: a white force held over each sample, a slow disturbing force
-/// d[k+1] = memory d[k] + step w[k], and white noise on every measured port. Forces are per nominal inertia:
-/// a model with less inertia must not count them as less.
+/// Noise on an axis: a white force held over each sample, a slow disturbing force d[k+1] = memory d[k] + step
+/// w[k], and white noise on every measured port. Forces are per nominal inertia: they must not be smaller for
+/// a model with less inertia.
 struct Noise {
   double white = 0;                 ///< force, standard deviation
   double step = 0;                  ///< force
@@ -19,7 +19,7 @@ struct Noise {
   double slow() const;
 };
 
-/// Steady-state Kalman predictor of the axis with the slow force as last state.
+/// Steady-state Kalman predictor of the axis with the slow force as the last state.
 struct Gains {
   Eigen::MatrixXd K;           ///< (n + 1) × ports
   Eigen::MatrixXd whiten;      ///< ports × ports, lower: whiten · e has unit covariance

@@ -13,9 +13,9 @@ uint64_t next_identity() {
   return ++last;
 }
 
-/// Columns that go through the filter side by side, so that none waits for its own last sample. Vectors of
-/// the compiler, as they become wider instructions in a function that may use them: the same bits, as nothing
-/// is contracted.
+/// Columns filtered in parallel, so that no column waits for its own previous sample. Vector types of the
+/// compiler become wider instructions in a function compiled for them. The bits stay the same, because
+/// nothing is contracted.
 constexpr int side_by_side = 8;
 struct Side {
   using Half = double __attribute__((vector_size(side_by_side * sizeof(double) / 2)));
@@ -29,8 +29,8 @@ struct Side {
   return {a.low - b.low, a.high - b.high};
 }
 
-/// The error filter with states (x, d): how small forces and sensor errors travel into the prediction errors.
-/// Sizes known when compiling make it three times as fast; `States` and `Ports` are 0 for any size.
+/// The error filter with states (x, d): the response of the prediction errors to small forces and sensor
+/// errors. Sizes known at compile time make it three times as fast; `States` and `Ports` are 0 for any size.
 template <int States, int Ports> class ErrorFilter {
  public:
   ErrorFilter(const LinearAxis& axis, const Gains& gains, bool is_input)
@@ -50,14 +50,14 @@ template <int States, int Ports> class ErrorFilter {
     d_ = Side{};
   }
 
-  /// Deviations from what was predicted, in the measured ports.
+  /// Deviations from the prediction, in the measured ports.
   [[gnu::always_inline]] void seen(Side* e) const {
     for (int p = 0; p < ports(); ++p) {
       e[p] = Side{};
       for (int j = 0; j < n(); ++j) e[p] = e[p] + C_[p][j] * x_[j];
     }
   }
-  /// The predictor corrects itself by what it saw, the truth goes on with the forces that are consumed.
+  /// The predictor corrects itself by the measurement; the true state advances with the consumed forces.
   [[gnu::always_inline]] void step(const Side* e, const Side& force, const Side& slope, bool forgets) {
     for (int p = 0; p < ports(); ++p) {
       for (int i = 0; i < n(); ++i) x_[i] = x_[i] - K_[i][p] * e[p];
@@ -89,8 +89,7 @@ template <int States, int Ports> class ErrorFilter {
   Side x_[most_], d_;
 };
 
-/// Some rows of the columns, row by row: numbers that come one by one and are read as vectors at once would
-/// make the processor wait.
+/// Some rows of the columns, row by row: scalar stores followed by a vector load would stall the processor.
 constexpr size_t rows_at_a_time = 64;
 using Block = std::array<Side, rows_at_a_time>;
 
@@ -101,7 +100,7 @@ using Block = std::array<Side, rows_at_a_time>;
   for (size_t r = 0; r < count; ++r) lane[r * side_by_side] = double(numbers[r]);
 }
 
-/// Where the responses of the columns go: each wanted row's ports one after the other.
+/// Destination of the responses of the columns: the ports of each requested row, one after the other.
 struct Rows {
   std::span<const size_t> wanted;  ///< ascending
   std::span<double* const> to;     ///< of each column
@@ -164,7 +163,7 @@ Path Path::first_samples(size_t count) const {
 }
 
 Path creep_along(const AxisRecord& map, size_t rows) {
-  constexpr double creep = 1e-9;  // of the way to the next balance
+  constexpr double creep = 1e-9;  // fraction of the way to the next balance
   const std::vector<double>& position = map.find("position")->value;
   Path path;
   path.identity = next_identity(), path.sample_time = map.sample_time;
@@ -220,7 +219,7 @@ std::vector<double> first_rows(const std::vector<double>& all, size_t rows) {
   return {all.begin(), all.begin() + std::ptrdiff_t(rows)};
 }
 
-/// At the balances of a map the force that the model has left over is the error.
+/// At the balances of a map, the remaining sum of the model's forces is the error.
 Prediction balance(AxisModel& model, const Gains& gains, const Drives& drives) {
   Prediction result;
   Path& path = result.path = creep_along(model.record(), drives.input.size());
@@ -300,7 +299,7 @@ Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains,
 
 namespace {
 
-/// with_gains for sizes known when compiling; 0: any.
+/// with_gains for sizes known at compile time; 0: any.
 template <int States, int Ports>
 void change_gains(const LinearAxis& axis, const Prediction& prediction, const Gains& from, const Gains& to,
                   std::vector<double>& error) {

@@ -8,7 +8,7 @@ namespace loopwright::diagnosis {
 namespace {
 
 constexpr double settling_s = 0.1;  // rows after the start that do not count
-constexpr int memory_of_rest = 50;  // rows after a rest that do not count: the slow force forgets in 30
+constexpr int memory_of_rest = 50;  // rows after a rest that do not count: the slow force decays in 30
 
 double quantile(std::vector<double> values, double fraction) {
   if (values.empty()) return 0;
@@ -30,7 +30,7 @@ std::vector<double> speeds(const AxisRecord& record) {
   return speed;
 }
 
-/// White noise of a measured port: third differences leave little of the motion.
+/// White noise of a measured port: third differences remove most of the motion.
 double measurement_noise(const MeasuredPort& port) {
   std::vector<double> difference;
   for (size_t k = 3; k < port.value.size(); ++k)
@@ -65,7 +65,7 @@ void mark_usable(Trial& trial, const Path& path, bool is_map) {
   trial.usable = trial.moving;
 }
 
-/// The noise of a motion and that of a map have nothing in common.
+/// The noise of a motion and that of a map are not related.
 void reject_mixed(const Trials& trials) {
   Problems problems;
   for (const Trial& trial : trials.list) {

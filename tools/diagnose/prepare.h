@@ -1,11 +1,11 @@
-/// Records ready for the search: noise, rows that count, the motion.
+/// Prepares records for the search: noise, rows that count, the motion.
 #pragma once
 #include "tools/diagnose/maximum_likelihood.h"
 
 namespace loopwright::diagnosis {
 
-/// Reads the experiments, works out which rows count, and estimates the noise with a random walk standing in
-/// for every missing force. `motion` is what that first prediction saw: unbiased whatever is missing.
+/// Reads the experiments, determines which rows count, and estimates the noise with a random walk in place of
+/// every missing force. `motion` is the estimate of that first prediction: unbiased whatever is missing.
 Trials prepare(const std::string& diagram, const std::vector<std::string>& experiments,
                const LoadOptions& options, Motion& motion);
 

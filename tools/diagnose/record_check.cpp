@@ -1,4 +1,4 @@
-/// What is wrong with a record, or missing in it, and what that costs.
+/// Faults of a record and missing excitation, with their consequences.
 #include <fmt/format.h>
 #include "tools/compare/excitation.h"
 #include "tools/diagnose/verdict.h"
@@ -18,7 +18,7 @@ std::vector<RecordFinding> look_at_records(const Trials& trials,
     const RecordContent content = content_of(machine, residual, position ? position->resolution : 0);
     const std::string of = trials.list.size() > 1 ? fmt::format("record {}: ", t + 1) : "";
     for (const RecordFault& fault : faults_of(machine, residual, content)) {
-      if (trials.has_map() && fault.name != "one_direction") continue;  // of time and speed a map has none
+      if (trials.has_map() && fault.name != "one_direction") continue;  // a map has no times and no speeds
       findings.push_back({of + fault.text, fault.cost, fault.is_fatal, fault.may_be_physics});
     }
   }

@@ -12,15 +12,15 @@ namespace {
 constexpr double turn = 2 * std::numbers::pi;
 double force_cutoff(double sample_time) { return std::min(80.0, 0.08 / sample_time); }
 
-/// Of zero_phase_low_pass.
+/// Gain of zero_phase_low_pass.
 double gain_of_filter(double frequency, double cutoff, double sample_time) {
   const double ratio =
       std::tan(turn / 2 * frequency * sample_time) / std::tan(turn / 2 * cutoff * sample_time);
   return 1 / (1 + std::pow(ratio, 8));
 }
 
-/// A value held from its sample on, as the samples around it see it: the mean of before and after. In a map
-/// it belongs to its own balance.
+/// A value held from its sample on, as seen at the sample instants: the mean of before and after. In a map it
+/// belongs to its own balance.
 std::vector<double> at_samples(const std::vector<double>& held, const AxisRecord& record) {
   if (record.is_map) return held;
   std::vector<double> mean = held;
@@ -34,7 +34,7 @@ bool misses_samples(const AxisRecord& record, size_t from, size_t to) {
   return false;
 }
 
-/// Of the model along a path, as the instants of its rows see it.
+/// For the model along a path, at the instants of its rows.
 std::vector<double> net_forces(AxisModel& model, const Path& path, const std::vector<double>& input) {
   return model.net_forces(path.position, path.velocity, input, AxisModel::At::mean);
 }

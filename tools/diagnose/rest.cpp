@@ -6,11 +6,11 @@
 namespace loopwright::diagnosis {
 namespace {
 
-constexpr double worse_at_rest = 4;    // than in motion: whatever the set does not explain is there too
-constexpr double least_freedom = 0.4;  // of what noise makes of a free axis; the controller takes some of it
+constexpr double worse_at_rest = 4;    // than in motion: errors that the set does not explain occur there too
+constexpr double least_freedom = 0.4;  // of the motion of a free axis under noise; reduced by control
 constexpr double most_freedom = 3;     // more is motion
-constexpr size_t apart = 6;            // samples: enough to swerve, too few for the controller to correct all
-constexpr size_t glance = 36;          // samples: so many that steps of the encoder are averaged out
+constexpr size_t apart = 6;            // samples: enough for a deviation, too few to correct all of it
+constexpr size_t glance = 36;          // samples: enough to average out steps of the encoder
 
 AtRest at_rest(const std::vector<Member>& members) {
   AtRest result = AtRest::free;
@@ -21,7 +21,7 @@ AtRest at_rest(const std::vector<Member>& members) {
   return result;
 }
 
-/// Something held what the members let go.
+/// Something held the axis that the members leave free.
 double against_free(const Trials& trials, const std::vector<Fitted>& fitted) {
   double sum = 0, count = 0;
   const size_t ports = trials.ports();
@@ -33,8 +33,9 @@ double against_free(const Trials& trials, const std::vector<Fitted>& fitted) {
   return count > 0 ? count * std::log(std::max(1.0, sum / count / (worse_at_rest * in_motion))) : 0;
 }
 
-/// Mean square of how much farther the axis at rest moved in `lag` samples than in as many before: a creep
-/// at one speed is none of it. The median of means over a glance each, as what is held slips now and then.
+/// Mean square of the increase of the motion of the axis at rest in `lag` samples over that in the previous
+/// `lag` samples: a creep at constant speed does not contribute. Median of means over short intervals,
+/// because a held axis slips now and then.
 struct Swerve {
   double square = 0;
   size_t glances = 0;
@@ -68,7 +69,7 @@ double against_held(const Trials& trials, const Noise& noise) {
   if (swerve.glances == 0) return 0;
   const AxisModel& model = *trials.list.front().model;
   const double T = model.record().sample_time, kick = noise.white / model.nominal_inertia() * T * T;
-  // From sample to sample next to nothing but the sensor changes, its steps included.
+  // From sample to sample hardly anything but the sensor changes, including its steps.
   const double sensor = std::max(swerve_at_rest(trials, 1).square, 6 * std::pow(noise.measurement[0], 2));
   const double free = kick * kick * 2 * std::pow(double(apart), 3) / 3, seen = swerve.square - sensor;
   if (seen < least_freedom * free || seen > most_freedom * free || seen < sensor) return 0;

@@ -16,7 +16,7 @@ namespace {
 constexpr size_t most_effects = 8;
 constexpr size_t tried_extensions = 4;
 constexpr size_t tried_exchanges = 3;
-constexpr double clearly = 3;  // better, in the criterion
+constexpr double clearly = 3;  // improvement, in the criterion
 
 class Search {
  public:
@@ -33,7 +33,7 @@ class Search {
 
   SearchResult run() {
     bool goes_on = grow(4);
-    // Cogging has many lines, and a map shows little else: as many as a start without a name will have.
+    // Cogging has many lines, and a map shows little else: as many effects as for a start without a name.
     if (goes_on && is_much_left() && trials_.has_map()) goes_on = grow(2);
     if (is_much_left() || explain_without_name()) {
       start_from_what_has_no_name();
@@ -64,7 +64,7 @@ class Search {
     trail_.push_back(std::move(line));
   }
 
-  /// What the linearization promises, best first.
+  /// Predictions of the linearization, best first.
   void note(const std::vector<Proposal>& proposals) {
     std::string line = "promised:";
     for (const Proposal& proposal : proposals | std::views::take(8))
@@ -86,11 +86,11 @@ class Search {
     evidence_.reset();
   }
 
-  /// How much lower the criterion of a trial is than that of the best set, on the same rows.
+  /// Improvement of the criterion of a trial over the best set, on the same rows.
   double gain_of(Estimate& trial) {
     if (!trial.is_valid) return -std::numeric_limits<double>::infinity();
     if (!may_be_doubtful(trial.members) || may_be_doubtful(best_.members)) return score(best_) - score(trial);
-    // Without the rows that the trial cannot know, both may come out otherwise.
+    // Without the rows that are doubtful for the trial, both may differ.
     leave_out_doubtful(trials_, trial);
     trial = refined_further(trial), leave_out_doubtful(trials_, trial);
     trial = refined_further(trial);
@@ -100,7 +100,7 @@ class Search {
   }
   Estimate refined_further(const Estimate& e) { return fit_members(trials_, e.members, noise_, e.motion, 2); }
 
-  /// Shapes on the grid, and the pitches that stand out now.
+  /// Shapes on the grid, and the pitches with peaks in the present spectrum.
   std::vector<const Shape*> all_shapes() {
     periodic_ = periodic_shapes(trials_, best_, candidates_);
     std::vector<const Shape*> list;
@@ -108,7 +108,7 @@ class Search {
     for (const Shape& shape : periodic_) list.push_back(&shape);
     return list;
   }
-  /// Of all that has a name, beside the best set.
+  /// All named effects, in addition to the best set.
   Evidence& evidence() {
     if (!evidence_) evidence_.emplace(trials_, best_, all_shapes(), candidates_.size());
     return *evidence_;
@@ -154,7 +154,7 @@ class Search {
     return true;
   }
 
-  /// What would be taken out at the end is not let in.
+  /// A member that would be removed at the end is not accepted.
   bool adds_material(Estimate& trial) {
     leave_out_doubtful(trials_, trial);
     const std::vector<Weight> weights = weigh_all(trials_, trial);
@@ -169,7 +169,7 @@ class Search {
     return true;
   }
 
-  /// What the catalogue does not hold.
+  /// Forces that the catalog does not contain.
   std::vector<const Shape*> shapes_without_name() {
     nameless_ = shapes_of(unknown_, best_.motion);
     std::ranges::move(periodic_shapes(trials_, best_, unknown_, 1), std::back_inserter(nameless_));
@@ -186,13 +186,13 @@ class Search {
     return proposals;
   }
 
-  /// A spline bends itself to what is not quite right in an effect: it must explain a tenth more.
+  /// A spline adapts itself to small errors of an effect: it must explain a tenth more.
   double worth_losing_names() const { return std::max(20.0, 0.1 * double(fitted_numbers(trials_))); }
   static bool has_unknown(const Estimate& e) {
     return std::ranges::any_of(e.members, [](const Member& m) { return m.candidate->is_unknown; });
   }
 
-  /// And the effects that had stood in for it.
+  /// And the effects that had substituted for it.
   bool explain_without_name() {
     Estimate best;
     double best_score = score(best_) - worth_losing_names();
@@ -208,11 +208,11 @@ class Search {
     return true;
   }
 
-  /// Sets to begin with instead: the best function of the variables alone, and with one effect.
+  /// Alternative initial sets: the best function of the variables alone, and with one effect.
   std::vector<std::vector<Member>> starts_without_name() {
     std::vector<std::vector<Member>> starts;
     for (Proposal& proposal : without_name()) starts.push_back(std::move(proposal.added));
-    evidence_.reset();  // its shapes come anew
+    evidence_.reset();  // its shapes are computed again
     std::vector<const Shape*> shapes = shapes_without_name();
     std::ranges::copy(all_shapes(), std::back_inserter(shapes));
     Proposal pair = Evidence(trials_, best_, shapes, candidates_.size()).best_pair(true);
@@ -220,8 +220,8 @@ class Search {
     return starts;
   }
 
-  /// The effects that were found first may only have stood in for what has no name: all over again, with that
-  /// taken in before them.
+  /// The effects found first may only have substituted for an unnamed force: start again with that force
+  /// included first.
   void start_from_what_has_no_name() {
     Estimate best = std::move(best_);
     const Estimate nominal = fit_members(trials_, {}, noise_, motion_, 0);
@@ -235,7 +235,7 @@ class Search {
       if (!best_.is_valid || score(best_) >= score(nominal)) continue;
       note("started without a name");
       grow(4);
-      best = fit_members(trials_, best.members, noise_, best.motion, 1);  // noise as it is now
+      best = fit_members(trials_, best.members, noise_, best.motion, 1);  // noise in its present state
       const double least = has_unknown(best) || !has_unknown(best_) ? 0 : worth_losing_names();
       if (score(best_) < score(best) - least) best = std::move(best_);
     }
@@ -243,7 +243,7 @@ class Search {
     note("best of all");
   }
 
-  /// A member, or two, for another: also one as good, if then others are not needed any more.
+  /// A member, or two, for another: also an equally good one, if it makes others unnecessary.
   void exchange() {
     for (int round = 0; round < 4; ++round) {
       if (best_.members.empty()) return;
@@ -280,7 +280,7 @@ class Search {
     note("removed");
   }
 
-  /// Without the members that are not worth their price.
+  /// Without the members that do not justify their cost.
   Estimate pruned(Estimate estimate) {
     while (estimate.is_valid && estimate.members.size() > 1) {
       const Evidence evidence(trials_, estimate, {}, candidates_.size());
@@ -296,7 +296,7 @@ class Search {
     return estimate;
   }
 
-  /// Once little is left to find, the level of the noise can be told from it.
+  /// Once little is left to find, the noise level can be estimated from the remainder.
   void sharpen_noise() {
     if (is_much_left()) return;
     noise_ = fit_noise_alone(trials_, best_.fitted, noise_, FreeNoise::white_and_slow);
@@ -309,7 +309,7 @@ class Search {
   const std::vector<Candidate>& candidates_;
   const std::vector<Shape>& shapes_;
   Noise noise_;
-  Motion motion_;  // along which the shapes were worked out
+  Motion motion_;  // motion along which the shapes were computed
   std::vector<Shape> periodic_, nameless_;
   Estimate best_;
   std::optional<Evidence> evidence_;  // of best_

@@ -1,17 +1,17 @@
-/// From nothing to a set of effects: extension, exchange and removal, each step confirmed by running the
-/// diagram.
+/// From the empty set to a set of effects: extension, exchange and removal, each step confirmed by running
+/// the diagram.
 #pragma once
 #include "tools/diagnose/evidence.h"
 
 namespace loopwright::diagnosis {
 
 struct SearchResult {
-  Estimate estimate;               ///< noise as in the search
-  std::vector<std::string> trail;  ///< what was tried and taken, for people who want to know
+  Estimate estimate;               ///< noise used in the search
+  std::vector<std::string> trail;  ///< what was tried and accepted, as information for the user
 };
 
-/// From the first prediction's motion, on which the shapes were computed.
-/// `unknown`: forces without a name, tried when no further effect helps; effects that they make worthless go.
+/// Starts from the motion of the first prediction, on which the shapes were computed. `unknown`: unnamed
+/// forces, tried when no further effect helps. Effects that become unnecessary are removed.
 SearchResult search(Trials& trials, const std::vector<Candidate>& candidates,
                     const std::vector<Shape>& shapes, const std::vector<Candidate>& unknown,
                     const Motion& motion);

@@ -30,8 +30,8 @@ struct ErrorSystem {
   }
 };
 
-/// For each sample, how much the explained error would change with what is consumed (or feigned) then: one
-/// run backward through the filter in the place of a run forward for every pitch.
+/// For each sample, the derivative of the explained error with respect to the consumed (or equivalent) force
+/// at that sample: one backward run through the filter instead of a forward run for every pitch.
 std::vector<double> adjoint(const Trial& trial, const Fitted& fitted, Acts acts) {
   const ErrorSystem system(fitted, acts == Acts::input);
   const Path& path = fitted.prediction.path;
@@ -70,7 +70,7 @@ double gain_at(const ErrorSystem& system, const Gains& gains, bool is_sensor, do
 
 /// A uniform grid of spatial frequencies: k / (samples · bin), k = 0 … samples / 2.
 struct SpatialGrid {
-  static constexpr size_t most_bins = 1 << 24;  // finer than any record tells
+  static constexpr size_t most_bins = 1 << 24;  // finer than any record resolves
   double low, bin;
   size_t bins, samples;
 
@@ -85,7 +85,7 @@ struct SpatialGrid {
   }
 };
 
-/// How an effect of unit amplitude swells and fades when it does not repeat: the limit of an endless pitch.
+/// How an effect of unit amplitude rises and decays when it does not repeat: the limit of infinite pitch.
 Column::Numbers envelope(const Candidate& candidate, const Path& path, double stroke) {
   std::vector<double> shape;
   for (const CandidateParameter& p : candidate.nonlinear) shape.push_back(p.grid[p.grid.size() / 2]);
@@ -131,7 +131,7 @@ std::vector<double> spectrum(const Trials& trials, const Estimate& estimate, con
   }
   std::vector<Complex> lines;
   Eigen::FFT<double>().fwd(lines, density);
-  // The filter's gain at the frequency that a pitch has at a speed, from a table.
+  // The filter's gain at the frequency of a pitch at a speed, from a table.
   const Fitted& fitted = estimate.fitted.front();
   const ErrorSystem system(fitted, candidate.acts == Acts::input);
   constexpr size_t table_size = 400;
@@ -154,7 +154,7 @@ std::vector<double> spectrum(const Trials& trials, const Estimate& estimate, con
   return explained;
 }
 
-/// The highest peaks inside the range, apart by more than the stroke can resolve.
+/// The highest peaks within the range, separated by more than the resolution of the stroke.
 std::vector<double> peaks(const std::vector<double>& explained, const SpatialGrid& grid, double low,
                           double high, size_t count) {
   std::vector<double> pitches;

@@ -14,10 +14,10 @@ std::string shown_name(const Candidate& candidate) {
 }
 
 struct Stage {
-  std::vector<size_t> members;  ///< of the conclusion
+  std::vector<size_t> members;  ///< for the conclusion
   Estimate estimate;
   double criterion = 0;
-  double force = 0;  ///< the residual that it leaves, over the fitted rows
+  double force = 0;  ///< the residual that remains, over the fitted rows
 };
 
 class Climb {
@@ -58,7 +58,7 @@ class Climb {
     }
     return with_own_noise(without_idle_corrections(std::move(best), is_correction));
   }
-  /// What this stage lacks is larger than the noise that is left at the end.
+  /// The force that this stage lacks is larger than the final noise.
   Stage with_own_noise(Stage stage) {
     const Estimate& e = stage.estimate;
     const Noise noise = fit_noise_alone(trials_, e.fitted, e.noise, FreeNoise::white_and_slow);
@@ -66,7 +66,7 @@ class Climb {
     stage.force = residual_size(trials_, inverse_, stage.estimate.members).fitted;
     return stage;
   }
-  /// Of what is left, corrections that are worth nothing by themselves go too.
+  /// Of the remaining members, corrections without a benefit of their own are removed too.
   template <class F> Stage without_idle_corrections(Stage stage, F&& is_correction) {
     for (size_t i = 0; i < stage.members.size(); ++i) {
       if (!is_correction(stage.members[i])) continue;
@@ -86,7 +86,7 @@ class Climb {
   const size_t catalogue_;
 };
 
-/// After the largest fall, what improves the error by less than a tenth of it is optional.
+/// After the largest decrease, members that improve the error by less than a tenth of it are optional.
 void mark_knee(std::vector<DiagnosisStep>& steps) {
   const auto error = [](const DiagnosisStep& s) {
     return s.held_out_force_rmse > 0 ? s.held_out_force_rmse : s.force_rmse;

@@ -1,5 +1,5 @@
-/// The effects in the order of their weight, and the error after each: the story that a reader follows. The
-/// order in which the search met them is not shown; it is often a wrong one.
+/// The effects ordered by weight, and the error after each, for presentation. The order in which the search
+/// found them is not shown, because it is often wrong.
 #pragma once
 #include "tools/diagnose/conclude.h"
 #include "tools/diagnose/diagnose.h"
@@ -8,13 +8,13 @@
 namespace loopwright::diagnosis {
 
 struct Staircase {
-  std::vector<size_t> order;         ///< of the members, weightiest first
-  std::vector<DiagnosisStep> steps;  ///< the nominal diagram, then one more step for each
+  std::vector<size_t> order;         ///< of the members, largest weight first
+  std::vector<DiagnosisStep> steps;  ///< the nominal diagram, then one step per effect
 };
 
-/// Takes the members away again, each time the one that is missed least; what is left is fitted anew.
-/// Corrections of the nominal diagram's own mass and damping go with the effect without which they are worth
-/// nothing.
+/// Removes the members again, each time the least important one; the remaining ones are fitted again.
+/// Corrections of the nominal diagram's own mass and damping are removed with the effect without which they
+/// have no benefit.
 Staircase climb(Trials& trials, const Conclusion& conclusion, const std::vector<InverseDynamics>& inverse,
                 size_t catalogue);
 

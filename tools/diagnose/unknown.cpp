@@ -7,7 +7,7 @@
 namespace loopwright::diagnosis {
 namespace {
 
-/// A value for each sample.
+/// One value per sample.
 using Variable = std::function<std::vector<double>(const Path&)>;
 
 template <class F> Variable each_sample(F&& of) {
@@ -25,8 +25,8 @@ double middle_position(const Path& path, size_t k) {
   return path.position[k] + 0.5 * path.sample_time * path.velocity[k];
 }
 
-/// From -1 to 1, turned over a way as short as in the catalogue's dry friction: a function without a name
-/// must not win by its reversals.
+/// From -1 to 1, with a transition as short as in the catalog's dry friction: an unnamed function must not
+/// win by its behavior at reversals.
 Variable direction_of(double transition_distance) {
   return [=](const Path& path) {
     std::vector<double> values(path.samples());
@@ -40,7 +40,7 @@ Variable direction_of(double transition_distance) {
   };
 }
 
-/// Σ level_i · B_i(variable) · factor: a cubic spline over even intervals.
+/// Σ level_i · B_i(variable) · factor: a cubic spline over uniform intervals.
 Candidate spline(std::string variables, size_t levels, double low, double high, Variable variable,
                  Variable factor) {
   Candidate candidate;
@@ -67,7 +67,7 @@ Candidate spline(std::string variables, size_t levels, double low, double high, 
   return candidate;
 }
 
-/// The mean of it acts like a mass, at once.
+/// Its mean acts like a mass, without delay.
 Candidate mass_along(Candidate candidate) {
   candidate.added_inertia = [](const Member& member) {
     return std::accumulate(member.linear.begin(), member.linear.end(), 0.0) / double(member.linear.size());

@@ -1,4 +1,4 @@
-/// What may be said at the end, and what the records cannot support.
+/// The final statements, and what the records do not support.
 #pragma once
 #include "tools/diagnose/conclude.h"
 #include "tools/diagnose/diagnose.h"
@@ -7,19 +7,19 @@
 
 namespace loopwright::diagnosis {
 
-/// What is wrong with the records, or missing in them, and what it costs.
+/// Faults of the records and missing excitation, with their consequences.
 std::vector<RecordFinding> look_at_records(const Trials& trials, const std::vector<InverseDynamics>& inverse);
 
 /// Verdict, remainder and its variables, the latter along `motion`. `tight` is the noise of the search: with
-/// the final one the slow force has taken over what is left.
+/// the final noise, the slow force has absorbed the remainder.
 void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, const Noise& tight,
            Diagnosis& diagnosis);
 
-/// The experiment of the catalogue that tells the two apart.
+/// The experiment of the catalog that distinguishes the two.
 SuggestedExperiment separating_experiment(const Effect& effect, const std::string& other);
 
-/// Shares of the remaining slow force that functions of position, velocity, acceleration, input, time, and of
-/// position or acceleration with the direction explain, on rows left out of their fit.
+/// Shares of the remaining slow force that are explained by functions of position, velocity, acceleration,
+/// input, time, and of position or acceleration with the direction, on rows left out of their fit.
 std::vector<RemainderShare> dependence_of(const Trials& trials, const std::vector<Fitted>& fitted);
 
 }  // namespace loopwright::diagnosis

@@ -1,4 +1,4 @@
-/// How text and page of a diagnosis write quantities and lists.
+/// Formats quantities and lists for text and page of a diagnosis.
 #pragma once
 #include <fmt/format.h>
 #include <cmath>

@@ -14,7 +14,7 @@ RecordSizes example_sizes() {
   return sizes;
 }
 
-/// With every size and its unit.
+/// With every quantity and its unit.
 std::vector<Quantity> example_quantities() {
   const RecordSizes sizes = example_sizes();
   std::vector<Quantity> quantities;

@@ -79,7 +79,7 @@ class Bench {
   bool is(To to) const {
     return std::ranges::any_of(effect_.attachments, [&](const Attachment& a) { return a.to == to; });
   }
-  /// What is read, and what the effect takes the place of.
+  /// The signals that are read, and the one that the effect replaces.
   std::vector<std::string> roles() const {
     std::vector<std::string> roles = effect_.reads;
     const auto add = [&](const char* role) {
@@ -90,7 +90,7 @@ class Bench {
     return roles;
   }
 
-  /// The effect's own blocks, and the sum of what they do.
+  /// The effect's own blocks, and the sum of their outputs.
   Value inside() {
     std::vector<Value::Member> inputs;
     for (const std::string& role : roles())
@@ -136,7 +136,7 @@ void find_bindings(const Value& value, const std::string& path, std::vector<Effe
   if (value.kind == Kind::text && value.text.starts_with('=')) bindings.push_back({path, value});
   if (value.kind == Kind::object) {
     if (const auto* quantity = value.find("value"); quantity && value.find("unit"))
-      return;  // a number with a unit is no expression of the effect's
+      return;  // a number with a unit is not an expression of the effect
     for (const Value::Member& member : value.members)
       find_bindings(member.value, path + "." + member.name, bindings);
   }
@@ -154,8 +154,8 @@ std::vector<EffectPlan::Binding> bindings_of(const Effect& effect) {
   return bindings;
 }
 
-/// Whether anything in it keeps more than what its parameters and inputs say. The given signals count their
-/// time from the sample.
+/// Whether anything in it depends on more than its parameters and inputs. The given signals count time from
+/// the sample.
 bool remembers(const Plan& plan) {
   const bool decides = std::ranges::any_of(
       plan.order, [](const Plan::Entry& e) { return e.kind != Plan::Entry::Kind::outputs; });
@@ -167,7 +167,7 @@ bool remembers(const Plan& plan) {
          });
 }
 
-/// Parameters that change between runs must reach numbers that a run can change.
+/// Parameters that change between runs must lead to numbers that a run can change.
 void check_bindings(const EffectPlan& result, Problems& problems) {
   Run<double> run(result.plan);
   for (const EffectPlan::Binding& binding : result.bindings)
@@ -202,7 +202,7 @@ std::shared_ptr<const EffectPlan> compile_effect(const Effect& effect, const Mac
   result->bindings = bindings_of(effect);
   Bench bench(effect, units, sizes);
   std::shared_ptr<const Plan> plan;
-  // First without an integrator: an effect that has neither states nor rates needs none.
+  // First without an integrator: an effect without states and rates needs none.
   for (std::optional<int> steps :
        {std::optional<int>(), std::optional<int>(1), std::optional<int>(steps_per_sample)}) {
     const auto diagram = read_diagram(bench.diagram(steps), effect.path, {}, own);

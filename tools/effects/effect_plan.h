@@ -8,7 +8,7 @@ namespace loopwright {
 
 /// An effect compiled for a machine and a record; shared by runs and threads.
 struct EffectPlan {
-  /// A number of a block that follows the effect's parameters.
+  /// A number of a block that depends on the effect's parameters.
   struct Binding {
     std::string path;  ///< in the plan, "effect.friction.level"
     Value value;       ///< as written: "=level"
@@ -18,15 +18,15 @@ struct EffectPlan {
   std::vector<std::string> fitted;  ///< the parameters that `EffectRun::set` sets, in their order
   std::vector<Binding> bindings;
   Plan plan;
-  Number output = 0;           ///< what the effect does, at an instant
-  std::vector<Number> slopes;  ///< those that its blocks state, to be added to what is seen of `output`
-  Number integral = -1;        ///< the same, integrated; -1: nothing in it has states or rates of its own
+  Number output = 0;           ///< output of the effect, at an instant
+  std::vector<Number> slopes;  ///< those that its blocks state, to be added to the observed slope of `output`
+  Number integral = -1;        ///< the same, integrated; -1: it has no states or rates of its own
   bool acts_on_sensor = false;
-  bool flies = false;     ///< has states of its own and touches or lets go of them
-  bool remembers = true;  ///< else a sample depends on nothing but itself, not even on time
+  bool flies = false;     ///< has states of its own, and contact that closes and opens
+  bool remembers = true;  ///< otherwise a sample depends only on itself, not even on time
 };
 
-/// Null after a problem: blocks that are not there, units that do not fit the machine's.
+/// Null after a problem: blocks that do not exist, units incompatible with the machine's.
 std::shared_ptr<const EffectPlan> compile_effect(const Effect& effect, const MachineUnits& units,
                                                  const RecordSizes& sizes, Problems& problems);
 

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using Kind = Value::Kind;
 
-/// Reads one form of an effect file: the members of the file, replaced by those of the form.
+/// Reads one form of an effect file: the members of the file, overridden by those of the form.
 class FormReader {
  public:
   FormReader(const Value& file, const Value* form, Problems& problems)
@@ -71,7 +71,7 @@ class FormReader {
     return found;
   }
 
-  /// One word of a list; false, and a problem, if it is none of them.
+  /// One word of a list; false, and a problem, if it is not in the list.
   template <class Meaning>
   bool read_word(const Value& item, const char* key, std::string_view what, const char* problem,
                  const std::vector<std::pair<std::string, Meaning>>& known, Meaning& meaning) {
@@ -270,7 +270,7 @@ class FormReader {
                   path.empty() ? from : path[0]);
   }
 
-  // ---- What a search must know ----
+  // ---- Data for the search ----
 
   void read_needs() {
     const Value* needs = object("needs", "what a record must contain, with a \"text\"");

@@ -23,7 +23,7 @@ RoleSample RoleSignals::at(size_t row) const {
 }
 
 EffectRun::EffectRun(std::shared_ptr<const EffectPlan> plan, int lanes) : plan_(std::move(plan)) {
-  // A whole arena of lanes costs about as much as four scalar runs.
+  // A complete arena of lanes costs about as much as four scalar runs.
   const bool is_wide = lanes > 4 || !plan_->remembers;
   const InstructionSet set = is_wide ? widest_instruction_set() : InstructionSet::scalar;
   const int width = lanes_in_arena(set);
@@ -73,7 +73,7 @@ void EffectRun::give(const RoleSample& s, double now, size_t from, size_t to) {
   const auto give_held = [&](const Wire& wire, double value) {
     if (!wire.value.lanes.empty()) wire.value.set(value, from, to);
   };
-  // What is not set here stays nothing.
+  // Anything not set here stays zero.
   give_line(position_, s.position, s.velocity);
   if (!position_.bend.lanes.empty()) position_.bend.set(0.5 * gain, from, to);
   give_line(velocity_, s.velocity, gain), give_line(acceleration_, s.acceleration, jerk);
@@ -129,8 +129,8 @@ void EffectRun::mean_from(double now) {
   }
 }
 
-/// ∫ (u - ½) f du = mean / 2 - ∫ I du over the sample, u = 0 … 1, with the integral I of f from its start; a
-/// straight line of slope s has s / 12.
+/// ∫ (u - ½) f du = mean / 2 - ∫ I du over the sample, u = 0 … 1, with the integral I of f from its start;
+/// for a straight line of slope s it is s / 12.
 void EffectRun::integrate_sample() {
   const double period = plan_->sizes.sample_time;
   const std::vector<double>& at_start = second_ = integral_;

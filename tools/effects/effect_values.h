@@ -13,9 +13,9 @@ class EffectValues {
   explicit EffectValues(const RecordSizes& sizes);
   void set(std::string_view name, double value) { numbers_[std::string(name)] = value; }
   double at(std::string_view name) const { return numbers_.find(name)->second; }
-  /// Sets every parameter that is not fitted from those that are.
+  /// Computes every parameter that is not fitted from the fitted ones.
   void work_out(const Effect& effect);
-  /// A number as written, or the result of an expression; NaN where it cannot be worked out.
+  /// A number as written, or the result of an expression; NaN if it cannot be computed.
   double evaluate(const Value& value) const;
   /// A number or an expression as the text of a quantity with the unit that follows from those of the effect's
   /// parameters on this machine: {"value": 3, "unit": "N*s/m"}. A bare number where there is none.
@@ -25,7 +25,8 @@ class EffectValues {
   std::map<std::string, double, std::less<>> numbers_;
 };
 
-/// Sizes, the fitted values given (in the order of the fitted parameters), and what follows from them.
+/// Quantities, the given fitted values (in the order of the fitted parameters), and the values computed from
+/// them.
 EffectValues values_of(const Effect& effect, const RecordSizes& sizes, const std::vector<double>& fitted);
 
 }  // namespace loopwright

@@ -13,9 +13,9 @@ namespace fs = std::filesystem;
 using Kind = Value::Kind;
 using OnPath = std::function<void(const Value&)>;
 
-constexpr int deepest_nesting = 32;  // a diagram that contains itself is told when it is loaded
+constexpr int deepest_nesting = 32;  // a diagram that contains itself is reported when it is loaded
 
-/// The name of the diagram's parameter that a text reads, "=model"; empty: it stands for itself.
+/// The name of the diagram's parameter that a text reads, "=model"; empty: it reads none.
 std::string parameter_read_by(const Value& text) {
   return text.text.starts_with('=') ? text.text.substr(text.text.find_first_not_of("= ")) : "";
 }
@@ -68,7 +68,7 @@ class PathFinder {
       inner = PathFinder(diagram, on_path_, depth_ + 1).parameters();
     } else if (diagram.kind == Kind::text && !diagram.text.empty()) {
       on_path_(diagram);
-      Problems unheard;  // what is wrong with it is told when the diagram is loaded
+      Problems unheard;  // its problems are reported when the diagram is loaded
       if (const auto file = read_source(resolve_relative(diagram.place, diagram.text), {}, unheard))
         inner = PathFinder(
                     parse_json(file, unheard), [](const Value&) {}, depth_ + 1)
@@ -90,7 +90,7 @@ class PathFinder {
     }
   }
 
-  /// That of {"value": …} too.
+  /// The same for {"value": …}.
   static const Value& text_of(const Value& parameter) {
     const auto* value = parameter.find("value");
     return value ? value->value : parameter;
@@ -109,7 +109,7 @@ class PathFinder {
   std::set<std::string> parameters_;
 };
 
-/// The folder by its one name, the file in it by the name that the author chose, link or not.
+/// The folder by its canonical name, the file in it by the name that the author chose, symbolic link or not.
 fs::path from_root(const fs::path& file) {
   std::error_code code;
   const fs::path whole = fs::absolute(file);

@@ -1,15 +1,13 @@
-/// Paths of files in a diagram, told by what their place is for, never by what happens to lie in a folder.
+/// Paths of files in a diagram, recognized by the meaning of the setting, never by the contents of a folder.
 #pragma once
 #include "engine/json/value.h"
 #include "tools/effects/json_text.h"
 
 namespace loopwright {
 
-/// Rewrites every relative path in a diagram so that it leads from `folder` to the file to which it leads
-/// now: those of subdiagrams, of parameters of the kind `file`, of the diagram's parameters that such a one
-/// reads
-/// ("=model"), and of "$schema". Whether the file exists does not matter. Texts of further files are not
-/// touched: they keep their own places.
+/// Rewrites every relative path in a diagram so that from `folder` it leads to the same file as before: paths
+/// of subdiagrams, of parameters of the kind `file`, of diagram parameters that such a parameter reads
+/// ("=model"), and of "$schema". The file need not exist. The contents of other files are not changed.
 void rebase_paths(const Value& diagram, const std::string& folder, TextEdits& edits);
 
 }  // namespace loopwright

@@ -51,7 +51,7 @@ class Inserter {
     return "";
   }
 
-  // ---- Where the machine is ----
+  // ---- Location of the machine ----
 
   bool find_sum() {
     const std::string port = port_of("force");
@@ -84,7 +84,7 @@ class Inserter {
     }
   }
 
-  /// What carries a role's signal, as a wire in the diagram of `level`.
+  /// The port that carries a role's signal, as a wire in the diagram of `level`.
   std::string source_of(std::string_view role, const Level& level) {
     std::string path;
     const bool has_acceleration = mass_prefix_.empty();
@@ -103,7 +103,7 @@ class Inserter {
 
   // ---- The effect's blocks ----
 
-  /// Blocks that act themselves; those that only stand for a changed parameter are not needed.
+  /// Blocks that act themselves; blocks that only represent a changed parameter are not needed.
   void need(const std::string& name) {
     const Value::Member* block = effect_.blocks.find(name);
     if (!block || !needed_.insert(name).second) return;
@@ -173,11 +173,11 @@ class Inserter {
     if (source == "input") return fmt::format("\"{}\"", input_source_);
     return fmt::format("\"{}\"", source_of(source, level));
   }
-  /// A setting as it stands in the new diagram; empty: it is left out.
+  /// A setting as written in the new diagram; empty: it is left out.
   std::string setting_text(const Value::Member& block, const Value::Member& setting,
                            const std::string& path) {
     const std::string& text = setting.value.text;
-    if (text == "=initial_position" || text == "=initial_velocity") {  // a load begins where its motor does
+    if (text == "=initial_position" || text == "=initial_velocity") {  // those of the motor
       const Value::Member* start = mass_ ? mass_->value.find(text.substr(1)) : nullptr;
       return start ? to_json(start->value) : "";
     }
@@ -253,7 +253,7 @@ class Inserter {
     if (own && own->value.kind == Kind::text) {  // an input port: the wire into it
       input_source_ = own->value.text;
       readers.push_back({block, &own->value});
-    } else {  // an output, or an input of the diagram: who reads it
+    } else {  // an output, or an input of the diagram: its readers
       input_source_ = block ? found->block + "." + found->port : found->port;
       readers = nearest_readers(found->level, input_source_, block_with_sum(found->level));
       result_.input_behind = joined(found->level.prefix, new_port(attachment.from));
@@ -266,7 +266,7 @@ class Inserter {
     redirect(found->level, readers, new_port(attachment.from));
   }
 
-  /// The block of a level in which the sum of forces is: itself, or the subdiagram that holds it.
+  /// The block of a level that contains the sum of forces: the sum itself, or a subdiagram.
   std::string block_with_sum(const Level& level) const {
     if (sum_level_.prefix == level.prefix) return sum_->name;
     const size_t skip = level.prefix.empty() ? 0 : level.prefix.size() + 1;
@@ -346,7 +346,7 @@ class Inserter {
     if (effect_.find(fitted)) result_.settings.emplace_back(fitted, joined(sum_level_.prefix, name));
   }
 
-  /// The unit that the diagram uses for what is added to, in its own words; else that of the effect.
+  /// The unit that the diagram uses for the changed quantity, as written there; otherwise that of the effect.
   std::string unit_beside(const std::string& expression, const Attachment& attachment) const {
     if (const auto* list = sum_level_.diagram->find("parameters"))
       for (const Value::Member& parameter : list->value.members)
@@ -357,7 +357,7 @@ class Inserter {
       if (attachment.add.text.find(p.name) != std::string::npos) by_role = p.unit;
     return unit_in(by_role, site_.units);
   }
-  /// A new parameter of the diagram that holds the sum of forces.
+  /// A new parameter of the diagram that contains the sum of forces.
   void declare(const std::string& name, double value, const std::string& expression,
                const Attachment& attachment) {
     const std::string unit = unit_beside(expression, attachment);

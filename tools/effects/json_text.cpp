@@ -16,7 +16,7 @@ size_t line_begin(const std::string& text, size_t at) {
   return newline == text.npos ? 0 : newline + 1;
 }
 
-/// From the beginning of names to the beginning of values, where these stand below each other; else 0.
+/// Distance from the start of the names to the start of the values, if the values are aligned; otherwise 0.
 size_t width_of_names(const Value& object) {
   size_t width = 0;
   bool is_aligned = false;

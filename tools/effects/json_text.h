@@ -6,10 +6,10 @@
 
 namespace loopwright {
 
-/// One past the last character of the value that begins at `begin`; the text is known to be JSON.
+/// One past the last character of the value that begins at `begin`; the text must be valid JSON.
 size_t end_of_value(const std::string& text, size_t begin);
 
-/// Edits of one text, collected and then made at once: places stay those of the text as it was read.
+/// Edits of one text, collected and then applied together: offsets are those of the text as it was read.
 class TextEdits {
  public:
   void replace(size_t begin, size_t end, std::string text) {
@@ -27,19 +27,19 @@ class TextEdits {
   std::vector<Edit> edits_;
 };
 
-/// The spaces at the beginning of the line on which a place stands.
+/// The spaces at the beginning of the line of an offset.
 std::string indentation_at(const std::string& text, size_t at);
-/// True if nothing but spaces stands before the place on its line.
+/// True if only spaces precede the offset on its line.
 bool begins_line(const std::string& text, size_t at);
-/// Every line but the first moved to the right.
+/// Every line but the first indented further.
 std::string indented(const std::string& text, const std::string& by);
 
-/// A new member of an object before an existing one: on a line of its own if that one has one, its value in
-/// the same column if those of the object are aligned.
+/// A new member of an object before an existing one: on a line of its own if the existing one has its own
+/// line, and with its value in the same column if those of the object are aligned.
 std::string member_before(const Value& object, const Value::Member& next, const std::string& name,
                           const std::string& value);
 
-/// At most seven digits: more than a fit knows, few enough to read.
+/// At most seven digits: more than a fit determines, few enough to read.
 std::string readable_number(double number);
 
 }  // namespace loopwright

@@ -23,7 +23,7 @@ std::vector<std::string> effect_files(const std::string& folder, Problems& probl
   return files;
 }
 
-/// Effects name each other; a name that is not there is a slip of the pen.
+/// Effects name each other; a name that does not exist is a typing error.
 void check_names(const std::vector<Effect>& effects, Problems& problems) {
   std::vector<std::string> names;
   for (const Effect& effect : effects) names.push_back(effect.name);

@@ -9,7 +9,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// One stroke: v rises by half a cosine, stays, and falls again.
+/// One stroke: v rises along half a cosine, stays constant, and falls again.
 struct Stroke {
   double way, speed, ramp, cruise;  // ramp, cruise: s
 
@@ -42,7 +42,7 @@ void append(Motion& motion, const Stroke& stroke, double pause) {
                          begin + stroke.way);
 }
 
-/// Sweeps through the frequencies evenly in octaves.
+/// Sweeps through the frequencies at constant octaves per time.
 void add_chirp(Motion& motion, const SeparatingExperiment& e, double amplitude) {
   const double duration = double(motion.position.size()) * motion.sample_time;
   const double octaves = std::log(e.chirp_to_hz / e.chirp_from_hz);

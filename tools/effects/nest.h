@@ -1,4 +1,4 @@
-/// A diagram file and the files of its subdiagrams, as texts that change together.
+/// A diagram file and the files of its subdiagrams, as texts that are changed together.
 #pragma once
 #include <memory>
 #include <optional>
@@ -25,10 +25,10 @@ template <class F> void each_wire(const Value& block, F&& f) {
   }
 }
 
-/// Files and diagrams, opened as ports are followed.
+/// Files and diagrams, opened while ports are followed.
 class Nest {
  public:
-  /// A file that takes part: the outermost diagram, and those of the subdiagrams on the way.
+  /// A file of the nest: the outermost diagram, and those of the subdiagrams on the path.
   struct Document {
     std::shared_ptr<const SourceFile> file;
     Value root;
@@ -50,11 +50,11 @@ class Nest {
     }
   };
 
-  /// A port that was followed down to a block, or to an input of the diagram in which it is read.
+  /// A port that was followed to a block, or to an input of the diagram in which it is read.
   struct Port {
     Level level;
     std::string block, port;                // no block: an input of the level's diagram
-    const Value::Member* output = nullptr;  // the last "outputs" entry of a subdiagram on the way
+    const Value::Member* output = nullptr;  // the last "outputs" entry of a subdiagram on the path
     Level output_level{};
     std::string path() const { return joined(joined(level.prefix, block), port); }
   };
@@ -65,18 +65,18 @@ class Nest {
 
   /// The body of a block: of its active variant, if it has several.
   const Value* body(const Level& level, const Value::Member& block) const;
-  /// The diagram inside a block; nothing when it is an ordinary block or cannot be read.
+  /// The diagram inside a block; empty if it is an ordinary block or cannot be read.
   std::optional<Level> inside(const Level& level, const Value::Member& block);
-  /// Follows a port, "axis.position", through outputs of subdiagrams to the block behind it, or to the input
-  /// that it is. Nothing when there is no such port.
+  /// Follows a port, "axis.position", through outputs of subdiagrams to the block behind it, or to the
+  /// diagram input that it denotes. Empty if there is no such port.
   std::optional<Port> follow(const Level& start, const std::string& text);
-  /// The changed text, with changed files written out where they were named.
+  /// The changed text, with changed files inlined where they were named.
   std::string text();
 
  private:
   Document* open(std::shared_ptr<const SourceFile> file, Document* parent, const Value* named_at);
   std::optional<Port> last_step(Port port, const std::string& name);
-  /// Paths in a file that is written out elsewhere.
+  /// Paths in a file that is inlined in another folder.
   void rebase(Document& document) const;
 
   const InsertionSite& site_;

@@ -1,4 +1,4 @@
-/// Who reads a signal, so that something can be put in between.
+/// The readers of a signal, so that a block can be inserted before them.
 #pragma once
 #include <string>
 #include <vector>
@@ -14,20 +14,20 @@ struct WireReader {
 /// "mass" of "mass.position".
 std::string block_of(const std::string& port);
 
-/// Wires from `source` into blocks that lead to the block `target` by the shortest way: an observer that
+/// Wires from `source` into blocks that lead to the block `target` by the shortest path: an observer that
 /// reads the same command still reads the command.
 std::vector<WireReader> nearest_readers(const Nest::Level& level, const std::string& source,
                                         const std::string& target);
 
-/// Wires from `source` into all blocks but the mechanics: a force depends on where the machine is, not on
-/// where it is seen.
+/// Wires from `source` into all blocks but the mechanics: a force depends on the true position of the
+/// machine, not on the measured one.
 std::vector<WireReader> readers_but_mechanics(const Nest& nest, const Nest::Level& level,
                                               const std::string& source);
 
-/// The readers read `source` from now on.
+/// From now on the readers read `source`.
 void redirect(const Nest::Level& level, const std::vector<WireReader>& readers, const std::string& source);
 
-/// A block of this type that a block reads, else any in its diagram; null: there is none.
+/// A block of this type that a block reads, else any in its diagram; null if there is none.
 const Value::Member* block_before(const Nest::Level& level, const Value::Member& reader,
                                   const std::string& type);
 

@@ -42,7 +42,7 @@ class Model {
     return values;
   }
 
-  /// Throws InputError when the blocks refuse the values.
+  /// Throws InputError when the blocks reject the values.
   Comparison simulate(const std::vector<double>& values) {
     LoadOptions options = options_;
     for (size_t i = 0; i < values.size(); ++i)
@@ -56,7 +56,7 @@ class Model {
   }
   size_t rows() const { return experiment_->data.rows(); }
 
-  /// Weighted errors of the rows to fit, signal after signal; empty when the run does not come to its end.
+  /// Weighted errors of the fitted rows, signal after signal; empty when the run does not reach its end.
   std::vector<double> errors(const std::vector<double>& values, const std::vector<double>& weights) {
     std::vector<double> all;
     try {
@@ -82,8 +82,8 @@ class Model {
   int simulations_ = 0;
 };
 
-/// Large: where friction sticks and lets go, errors jump from step to step, and small differences see only
-/// that.
+/// Large steps: where friction sticks and releases, errors jump from step to step, and small differences
+/// measure only these jumps.
 double step_of(const DiagramNumber& number, double value) {
   const double size = std::max(std::abs(value), std::abs(number.value));
   return size > 0 ? 1e-2 * size : 1e-2;
@@ -91,7 +91,7 @@ double step_of(const DiagramNumber& number, double value) {
 
 double scale_of(const DiagramNumber& number) { return number.value != 0 ? std::abs(number.value) : 1.0; }
 
-/// Columns of derivatives of the errors, by differences to both sides; empty after a failed run.
+/// Columns of derivatives of the errors, by central differences; empty after a failed run.
 Eigen::MatrixXd jacobian(Model& model, const std::vector<double>& values, const std::vector<double>& weights,
                          const std::vector<double>& errors) {
   Eigen::MatrixXd result(Eigen::Index(errors.size()), Eigen::Index(values.size()));
@@ -108,7 +108,7 @@ Eigen::MatrixXd jacobian(Model& model, const std::vector<double>& values, const 
   return result;
 }
 
-/// The errors as Ceres wants them; its unknowns are parameters over their scales.
+/// The errors in the form that Ceres needs; its unknowns are the parameters divided by their scales.
 class Errors final : public ceres::CostFunction {
  public:
   Errors(Model& model, std::vector<double> weights, int rows) : model_(model), weights_(std::move(weights)) {
@@ -193,8 +193,8 @@ std::vector<double> weights_of(const Model& model, const Comparison& c) {
   return weights;
 }
 
-/// Covariance by the scatter of gradients between blocks of the record: errors of neighbouring rows hang
-/// together.
+/// Covariance from the scatter of gradients between blocks of the record, because errors of adjacent rows are
+/// correlated.
 Eigen::MatrixXd covariance(const Eigen::MatrixXd& j, const std::vector<double>& errors,
                            size_t rows_of_signal) {
   const Eigen::Index p = j.cols();
@@ -248,7 +248,7 @@ double rms(const std::vector<double>& values, size_t begin, size_t end) {
 
 void check_parameters(const std::string& diagram, const std::vector<std::string>& paths,
                       const LoadOptions& options, Problems& problems) {
-  Problems of_diagram;  // told with those of the experiment
+  Problems of_diagram;  // reported with those of the experiment
   if (const auto loaded = load_diagram(diagram, options, of_diagram))
     for (const std::string& path : paths) find_number(*loaded, path, problems);
 }

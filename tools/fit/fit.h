@@ -1,4 +1,4 @@
-/// Parameters of a diagram chosen so that its simulation comes as close to a recording as it can.
+/// Fits parameters of a diagram so that its simulation comes as close as possible to a recording.
 #pragma once
 #include "tools/compare/compare.h"
 
@@ -14,11 +14,11 @@ struct FittedParameter {
   std::string path, unit;  ///< as for `--set`; unit in SI
   double start = 0, value = 0;
   double low = 0, high = 0;                   ///< 95 % interval, from the scatter between parts of the record
-  double least = -infinity, most = infinity;  ///< what the blocks that it reaches allow
-  bool is_determined = true;                  ///< the record says something about it
+  double least = -infinity, most = infinity;  ///< range allowed by the blocks that use it
+  bool is_determined = true;                  ///< the record contains information about it
 };
 
-/// A compared signal: errors over the rows that were fitted, and over those held out (0: none are).
+/// A compared signal: errors over the fitted rows, and over the held-out rows (0 without).
 struct FittedSignal {
   std::string name, unit;
   double before = 0, after = 0, held_out_before = 0, held_out_after = 0;
@@ -28,19 +28,19 @@ struct Fit {
   std::vector<FittedParameter> parameters;
   std::vector<FittedSignal> signals;
   std::vector<std::string>
-      warnings;  ///< parameters at a limit, combinations that the record cannot tell apart
+      warnings;  ///< parameters at a limit, combinations that the record cannot distinguish
   bool has_converged = false, was_interrupted = false;
   int simulations = 0;
 };
 
-/// Maximum likelihood with independent errors of the compared signals, whose sizes come from the fit itself:
-/// each is weighted by its rms error, twice. Rows held out by the experiment are left out. Throws InputError:
-/// problems of diagram and experiment, parameters that do not exist or are no numbers.
+/// Maximum likelihood with independent errors of the compared signals, whose sizes are estimated by the fit
+/// itself: each signal is weighted by its rms error, twice. Rows held out by the experiment are left out.
+/// Throws InputError: problems of diagram and experiment, parameters that do not exist or are not numbers.
 Fit fit(const std::string& diagram, const std::string& experiment, const std::vector<std::string>& parameters,
         const LoadOptions& options = {}, const FitOptions& fit_options = {});
 
-/// The diagram file with the fitted values in the place of the old ones, otherwise as its author wrote it.
-/// Problems: a value that stands in the file of a subdiagram, or as an expression.
+/// The diagram file with the fitted values in place of the old ones, otherwise as its author wrote it.
+/// Problems: a value in the file of a subdiagram, or written as an expression.
 std::string with_fitted_values(const std::string& diagram, const Fit& fit, Problems& problems);
 
 std::string to_json(const Fit& fit);

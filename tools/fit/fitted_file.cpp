@@ -13,7 +13,7 @@ namespace {
 
 using Kind = Value::Kind;
 
-/// Where in the text a path leads, as `--set` would follow it; nothing when it leaves the file.
+/// The position in the text to which a path leads, as `--set` would follow it; empty when it leaves the file.
 const Value* find_in_file(const Value& diagram, const std::vector<std::string>& path, size_t at) {
   if (at + 1 == path.size())
     if (const auto* parameters = diagram.find("parameters"))

@@ -15,7 +15,7 @@ struct Limits {
   }
 };
 
-/// What a block allows for a number in its settings: the path leads through lists and objects.
+/// The range that a block allows for a number in its settings: the path leads through lists and objects.
 const ParameterInfo* info_of_path(const std::vector<ParameterInfo>& list,
                                   const std::vector<std::string>& path, size_t at) {
   for (const ParameterInfo& info : list) {
@@ -29,7 +29,7 @@ const ParameterInfo* info_of_path(const std::vector<ParameterInfo>& list,
   return nullptr;
 }
 
-/// Every use of a parameter as it stands, "=name", in settings of blocks: their limits hold for it.
+/// Every use of a parameter by itself, "=name", in settings of blocks: their limits apply to it.
 void meet_uses(const Value& value, const std::string& name, const BlockType& type,
                std::vector<std::string>& path, Limits& limits) {
   for (const Value::Member& member : value.members) {

@@ -7,11 +7,11 @@ namespace loopwright {
 
 struct DiagramNumber {
   double value = 0;          ///< SI
-  std::optional<Unit> unit;  ///< scale 1; nothing: a bare number
+  std::optional<Unit> unit;  ///< scale 1; empty: a bare number
   double least = -std::numeric_limits<double>::infinity(), most = std::numeric_limits<double>::infinity();
 };
 
-/// The number that `--set PATH` would change; nothing after a problem, which says what was meant.
+/// The number that `--set PATH` would change; empty after a problem, which suggests a correction.
 std::optional<DiagramNumber> find_number(const Diagram& diagram, const std::string& path, Problems& problems);
 
 /// `--set PATH=VALUE` with a value in SI.

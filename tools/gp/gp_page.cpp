@@ -55,7 +55,7 @@ report::Table parameter_table(const LearnedModel& learned) {
   return table;
 }
 
-/// How long the disturbance is along the position: its period, or what a length scale makes of it.
+/// Characteristic length of the disturbance along the position: its period, or derived from a length scale.
 double wave_length(const gp::Model& model) {
   double wave = 0;
   for (const gp::Term& term : model.kernel.terms) {
@@ -66,7 +66,7 @@ double wave_length(const gp::Model& model) {
   return wave > 0 ? wave : model.trained[0].high - model.trained[0].low;
 }
 
-/// Where the picture looks: some waves that an eye can tell apart, two of them outside of the samples.
+/// Range of the picture: a number of waves that can be distinguished, two of them outside the samples.
 gp::Range pictured_positions(const gp::Model& model) {
   const gp::Range x = model.trained[0];
   const double wave = wave_length(model);

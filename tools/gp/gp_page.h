@@ -1,11 +1,11 @@
-/// What was learned, for a reader: hyper-parameters and priors, the surface, residuals, doubts.
+/// Presents the trained model: hyper-parameters and priors, the surface, residuals, warnings.
 #pragma once
 #include "tools/gp/train.h"
 #include "tools/report/report.h"
 
 namespace loopwright {
 
-/// Samples that a model is shown with, and what they are.
+/// Samples with which a model is shown, and their title.
 struct ShownSamples {
   std::string title;  ///< "Training", "evaluation.training.json"
   gp::Samples samples;

@@ -17,10 +17,10 @@
 namespace loopwright {
 namespace {
 
-/// What one recording gives, row by row.
+/// The samples of one recording, row by row.
 struct Rows {
   std::vector<double> time, position, velocity, label;
-  size_t begin = 0, end = 0;  ///< rows whose label can be trusted
+  size_t begin = 0, end = 0;  ///< rows with a reliable label
   double sample_time = 0;
 };
 
@@ -107,9 +107,9 @@ class Collector {
       label_from_command(recording, name, rows);
     return rows;
   }
-  static constexpr double velocity_cutoff = 60;  // rad/s: below cogging, above changes of the motion
+  static constexpr double velocity_cutoff = 60;  // rad/s: below cogging, above slow changes of the motion
 
-  /// Columns added up, and read where they will say what holds now: later by their lag.
+  /// Columns summed, and read at the time at which they show the present value: later by their lag.
   void observed_label(const Recording& recording, const std::string& name, Rows& rows) {
     std::vector<double> sum(rows.time.size(), 0.0);
     for (const std::string& each : training_.label.columns) {
@@ -132,7 +132,8 @@ class Collector {
     }
   }
 
-  /// The number times acceleration or velocity is what the command is: no kilograms beside amperes.
+  /// The number times acceleration or velocity must have the unit of the command: kilograms do not match
+  /// amperes.
   void check_law(const std::string& file, const char* number, const std::optional<Unit>& unit,
                  const char* per_time) {
     const auto command = parse_unit(result_->label_unit), position = parse_unit(position_unit_);
@@ -146,7 +147,8 @@ class Collector {
   }
 
   /// d = mass·a + damping·v - u. A command held over samples moves a mass so that the second difference of
-  /// its position over T² is the acceleration by the mean of the last two commands: exact, and in phase.
+  /// its position over T² is the acceleration caused by the mean of the last two commands: exact, and in
+  /// phase.
   void label_from_command(const Recording& recording, const std::string& name, Rows& rows) {
     const LabelChoice& label = training_.label;
     const std::vector<double> command =
@@ -189,7 +191,7 @@ class Collector {
     for (size_t which = 0; which < training_.velocities.size(); ++which) add_sections(file, rows, which);
   }
 
-  /// Every stretch of rows that keeps one of the velocities.
+  /// Every section of rows at one of the velocities.
   void add_sections(const std::string& file, const Rows& rows, size_t which) {
     const double wanted = training_.velocities[which];
     const auto keeps = [&](size_t i) {
@@ -201,7 +203,7 @@ class Collector {
       if (keeps(i)) {
         while (next < rows.time.size() && keeps(next)) ++next;
         const size_t first = std::max(i + settled, rows.begin), last = std::min(next, rows.end);
-        // Shorter stretches are ramps that pass through the velocity.
+        // Shorter sections are ramps that pass through the velocity.
         if (last > first + settled + 20) add_window(file, rows, which, first, last - settled);
       }
       i = next;

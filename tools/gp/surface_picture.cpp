@@ -14,7 +14,7 @@ struct Spot {
   double x, y;
 };
 
-/// From the box of position, velocity and label to the paper: velocity goes back and to the right.
+/// From the box of position, velocity and label to the drawing: velocity points back and to the right.
 struct View {
   gp::Range position, velocity, label;
   double along(const gp::Range& range, double value) const {
@@ -26,7 +26,7 @@ struct View {
   }
 };
 
-/// Blue through grey to orange, told apart also by colour-blind readers.
+/// Blue through gray to orange, distinguishable also with color blindness.
 std::string colour(double share) {
   static constexpr double stops[3][3] = {{11, 98, 176}, {214, 214, 210}, {207, 74, 22}};
   const double at = 2 * std::clamp(share, 0.0, 1.0);
@@ -97,7 +97,7 @@ report::Picture surface_picture(const gp::MeanTable& mean, const gp::Samples& sa
   std::string svg = fmt::format(
       "<svg viewBox=\"0 0 {} {}\" xmlns=\"http://www.w3.org/2000/svg\" role=\"img\">\n", width, height);
   add_axes(svg, view, options.label_unit);
-  // From back to front, rows of the mesh and the samples that lie between them.
+  // From back to front, rows of the mesh and the samples between them.
   for (int j = cells_v - 1; j >= 0; --j) {
     const double back = v_at(j + 1), front = v_at(j);
     svg += "<g stroke-width=\"0.3\">\n";

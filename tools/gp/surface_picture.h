@@ -11,8 +11,8 @@ struct SurfaceOptions {
   std::string label_unit;
 };
 
-/// The posterior mean as a mesh seen from above and aside; `samples` as dots, hidden where the surface is in
-/// front of them.
+/// The posterior mean as a mesh seen from above and from the side; `samples` as dots, hidden where the
+/// surface is in front of them.
 report::Picture surface_picture(const gp::MeanTable& mean, const gp::Samples& samples,
                                 const SurfaceOptions& options);
 

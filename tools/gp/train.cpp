@@ -9,7 +9,7 @@
 namespace loopwright {
 namespace {
 
-constexpr size_t most_dense = 3000;  // a whole matrix of that size takes seconds an evaluation
+constexpr size_t most_dense = 3000;  // a full matrix of that size takes seconds per evaluation
 constexpr size_t most_shown = 1500;
 
 struct Interrupted {};
@@ -134,7 +134,7 @@ class Trainer {
 
   gp::Evidence counted(gp::Evidence evidence) {
     ++evaluations_;
-    // Nobody knows how many a search will take: the bar comes closer and closer to its end.
+    // The number of evaluations of a search is unknown: the progress bar approaches its end asymptotically.
     if (progress_ && !progress_(evaluations_, evaluations_ + 20)) throw Interrupted{};
     return evidence;
   }
@@ -161,7 +161,7 @@ class Trainer {
   }
   static std::string_view name(const gp::Basis& basis) { return names_of(basis.kind)[size_t(basis.kind)]; }
 
-  /// Lengths that the features could not resolve are not allowed.
+  /// Lengths that the features could not resolve are excluded.
   void keep_lengths_resolved(const gp::Statistics& statistics) {
     size_t i = 0;
     for (const gp::Term& term : kernel_.terms) {
@@ -193,7 +193,7 @@ class Trainer {
     data_ = centred_;
   }
 
-  /// Log evidence plus prior at the fitted hyper-parameters, with another period.
+  /// Log evidence plus prior at the fitted hyper-parameters, with a different period.
   double at_period(double period) {
     gp::Kernel kernel = result_->fit.kernel;
     for (gp::Term& term : kernel.terms)
@@ -204,11 +204,12 @@ class Trainer {
     return counted(gp::dense_evidence(kernel, centred_)).value;
   }
 
-  /// A grid fine enough that no maximum is missed, then golden sections; hyper-parameters are fitted again.
+  /// A grid fine enough that no maximum is missed, then golden-section search; hyper-parameters are fitted
+  /// again.
   void fit_period() {
     const auto [low, high] = std::ranges::minmax(centred_.inputs);
     const double span = std::max(high[0] - low[0], training_.period);
-    // A change of the period by τ²/span turns the phase by one over the samples.
+    // A change of the period by τ²/span changes the phase by one over the samples.
     const double share = training_.period_search;
     const int steps = whole_between(std::ceil(share * 8 * span / training_.period), 4, 200);
     double best = training_.period, best_value = -1e300;

@@ -11,7 +11,7 @@
 namespace loopwright {
 namespace {
 
-// The file as structs that describe themselves, as blocks do: one list for reading, ranges, units and hints.
+// The file as self-describing structs, as for blocks: one list for reading, ranges, units and hints.
 
 struct ColumnEntry {
   std::string column, unit;
@@ -131,7 +131,7 @@ struct TrainingEntry {
   }
 };
 
-/// Numbers that came with a unit must have that of their place.
+/// Numbers with a unit must have the unit of their setting.
 template <class T> void check_units(const Value& value, std::string_view unit, const Reader& reader) {
   if constexpr (Described<T>) {
     for_each<T, is_parameter>([&](auto, const auto& p) {
@@ -149,7 +149,7 @@ template <class T> void check_units(const Value& value, std::string_view unit, c
   }
 }
 
-/// The kernel needs what only the person knows; velocities and windows must fit.
+/// The kernel needs information that only the user has; velocities and windows must match.
 void check_rules(const TrainingEntry& e, const Value& file, const Reader& reader) {
   const auto at = [&](std::string_view key) -> const Value& {
     const Value::Member* member = file.find(key);

@@ -28,7 +28,7 @@ void warn_of_limits(const TrainedModel& trained, Warnings& to) {
                              trained.fit.evaluations));
 }
 
-/// Lengths so short that the kernel learns every point by itself.
+/// Lengths so short that the kernel fits every point separately.
 void warn_of_collapse(const Training& training, const TrainedModel& trained, Warnings& to) {
   const gp::Kernel& kernel = trained.learned.model.kernel;
   const gp::Range velocities = trained.learned.model.trained[1];
@@ -122,7 +122,7 @@ PeriodCheck check_period(const gp::Samples& samples, double period) {
     variance += y.back() * y.back();
     low = std::min(low, samples.inputs[i][0]), high = std::max(high, samples.inputs[i][0]);
   }
-  // Samples spread over many periods make harmonics nearly orthogonal: their shares add up.
+  // For samples spread over many periods, harmonics are nearly orthogonal: their shares add up.
   const auto share = [&](double tau) {
     double sum = 0;
     for (int h = 1; h <= harmonics; ++h) {

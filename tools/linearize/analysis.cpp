@@ -34,7 +34,7 @@ LoopAnalysis analyse_loop(const LinearDiagram& diagram, const LinearizeRequest& 
   if (problems.has_errors()) throw InputError(std::move(problems));
   Sampling loop = system_between(diagram, {{port}, {port}, {port}}, request);
   loop.system.matrices.C *= -1, loop.system.matrices.D *= -1;
-  if (!loop.system.matrices.delays.empty()) {  // what enters the delays keeps its sign
+  if (!loop.system.matrices.delays.empty()) {  // inputs of the delays keep their sign
     const Index delays = Index(loop.system.matrices.delays.size());
     loop.system.matrices.C.bottomRows(delays) *= -1, loop.system.matrices.D.bottomRows(delays) *= -1;
   }

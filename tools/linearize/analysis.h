@@ -1,4 +1,4 @@
-/// What `loopwright linearize` finds out about a diagram: matrices, poles, zeros, responses, margins.
+/// Results of `loopwright linearize` for a diagram: matrices, poles, zeros, responses, margins.
 #pragma once
 #include <optional>
 #include "models/linear/margins.h"
@@ -13,12 +13,12 @@ struct LinearizeRequest {
   Access access;
   std::optional<double> at;  ///< s; none: the start
   std::string break_point;   ///< port at which the loop is cut for margins; empty: none
-  bool continuous = false;   ///< the continuous part alone, discrete signals held
-  double sample_time = 0;    ///< s; samples a diagram without rates
+  bool continuous = false;   ///< only the continuous part, discrete signals held
+  double sample_time = 0;    ///< s; sample time for a diagram without rates
   int frequencies = 400;     ///< of the plots
 };
 
-/// The loop seen from a break point, with negative feedback: what returns when 1 goes in, times -1.
+/// The loop as seen from a break point, with negative feedback: the response to 1, times -1.
 struct LoopAnalysis {
   std::string port;
   Margins margins;
@@ -32,9 +32,9 @@ struct LinearAnalysis {
   LinearSystem system;
   int lifted = 1;
   std::vector<Pole> poles;
-  std::optional<std::vector<std::complex<double>>> zeros;  ///< none: not a square system, or lifted
+  std::optional<std::vector<std::complex<double>>> zeros;  ///< empty: not a square system, or lifted
   std::vector<double> frequency;                           ///< rad/s
-  std::vector<Eigen::MatrixXcd> response;                  ///< outputs by inputs, a matrix for each frequency
+  std::vector<Eigen::MatrixXcd> response;                  ///< outputs by inputs, one matrix per frequency
   std::optional<LoopAnalysis> loop;
   std::vector<MeasuredPoint> measured;  ///< of the first channel, by simulation
   std::vector<LinearizationNote> notes;
@@ -49,7 +49,7 @@ LinearAnalysis analyse(const Plan& plan, const LinearizeRequest& request, const 
 /// Stable keys: time, sample_time, lifted, states, inputs, outputs, A, B, C, D, delays, poles[], zeros[],
 /// response.{frequency,channels[]}, loop.{port,margins…}, measured[], notes[].
 std::string to_json(const LinearAnalysis& analysis);
-/// One row a frequency: gain, phase of every channel.
+/// One row per frequency: gain, phase of every channel.
 Recording to_recording(const LinearAnalysis& analysis);
 std::string to_text(const LinearAnalysis& analysis);
 report::Page linear_page(const LinearAnalysis& analysis);
@@ -59,7 +59,7 @@ std::vector<double> unwrapped_degrees(const std::vector<std::complex<double>>& r
 /// One channel of the response over frequency.
 std::vector<std::complex<double>> channel_response(const LinearAnalysis& analysis, Eigen::Index input,
                                                    Eigen::Index output);
-/// "feedback.command 62 %, stage.mass.velocity 30 %": who owns a pole.
+/// "feedback.command 62 %, stage.mass.velocity 30 %": participation of the states in a pole.
 std::string owners(const Pole& pole, const std::vector<std::string>& states);
 
 }  // namespace loopwright

@@ -42,7 +42,7 @@ Json response_json(const std::vector<Complex>& response) {
   return {{"gain", gain}, {"phase_deg", unwrapped_degrees(response)}};
 }
 
-/// Numbers that JSON has no word for are left out.
+/// Numbers that JSON cannot represent are left out.
 void put(Json& json, const char* key, double value) {
   if (std::isfinite(value)) json[key] = value;
 }

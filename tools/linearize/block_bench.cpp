@@ -85,7 +85,7 @@ void BlockBench::connect_memory(const Call<double>& original) {
 }
 
 void BlockBench::restore() {
-  inputs_.clear();  // keeps its place
+  inputs_.clear();  // keeps its value
   const auto& ports = block_.type->info.inputs;
   for (size_t i = 0; i < ports.size(); ++i) {
     Port<double> wire = original_.in[i];

@@ -1,4 +1,4 @@
-/// A copy of one block of a run, to be tried with other inputs, states and memory than it has.
+/// A copy of one block of a run, to be evaluated with different inputs, states and memory.
 #pragma once
 #include <span>
 #include <vector>
@@ -18,22 +18,22 @@ class BlockBench {
   bool has_accept() const { return methods_.accept; }
   bool has_decide() const { return methods_.decide; }
 
-  /// What it reads, port after port, and what may be changed to find slopes.
+  /// Its inputs, port after port, and the numbers that may be changed to find slopes.
   std::vector<double>& inputs() { return inputs_; }
   std::vector<double>& states() { return states_; }
   /// Numbers that it remembers: those of its Memory, then the buffers.
   std::vector<double*>& remembered() { return remembered_; }
-  /// What it computes, port after port, outputs bound to states excepted.
+  /// Its outputs, port after port, except outputs bound to states.
   std::vector<Number> computed_numbers() const;
   size_t outputs() const { return computed_.size(); }
 
-  /// A tunable parameter of the block; null: no such.
+  /// A tunable parameter of the block; null if there is none with this name.
   const double* parameter(std::string_view path) const;
 
-  /// Back to the block of the run.
+  /// Back to the state of the block in the run.
   void restore();
   bool decide();
-  /// All outputs, mode held; false for a fault.
+  /// All outputs with the mode held; false for a fault.
   bool compute(std::span<double> outputs);
   bool derivatives(std::span<double> rates);
   bool update();

@@ -12,7 +12,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Kind = LinearizationNote::Kind;
 
-/// Blocks that remember more samples than this are refused: matrices are dense.
+/// Blocks that remember more samples than this are rejected: matrices are dense.
 constexpr size_t most_states = 2000;
 
 class BlockSlopes {
@@ -63,7 +63,8 @@ class BlockSlopes {
   }
   std::string output_name(Index row) const { return plan_.name_of(linear_.outputs[size_t(row)]); }
 
-  /// Slopes of `value` when `number`, which is of the bench, moves; into a column each of what `store` takes.
+  /// Slopes of `value` when `number`, which belongs to the bench, changes; one column for each number that
+  /// `store` takes.
   template <class F, class Name>
   void differentiate(double& number, size_t size, F&& value, const Name& name, MatrixXd& into, Index column) {
     const double at = number;
@@ -96,7 +97,7 @@ class BlockSlopes {
     return false;
   }
 
-  /// D, modes held; then quantisers as straight lines, and what the reader must know.
+  /// D, with modes held; then quantizers as straight lines, and notes for the reader.
   void find_outputs() {
     const size_t size = linear_.outputs.size();
     const auto value = [&](std::span<double> y) { return bench_.compute(y); };
@@ -236,8 +237,8 @@ class BlockSlopes {
     linear_.C = MatrixXd(linear_.C(Eigen::all, kept)), linear_.states = names;
   }
 
-  /// A ring buffer does the same at every sample but in other places. Its response to one pulse says what it
-  /// does; its states are the last inputs. False when the response does not end.
+  /// A ring buffer does the same at every sample but at different indices. Its response to one pulse
+  /// determines its behavior; its states are the last inputs. False when the response does not end.
   bool find_finite_response() {
     const size_t length = bench_.remembered().size() + 2, samples = 2 * length, size = size_t(rows());
     std::vector<MatrixXd> response(samples, MatrixXd::Zero(rows(), columns()));

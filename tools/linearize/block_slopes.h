@@ -1,4 +1,4 @@
-/// One block of a run as a linear system around where it stands.
+/// One block of a run as a linear system at its operating point.
 #pragma once
 #include <Eigen/Core>
 #include <string>
@@ -7,14 +7,14 @@
 
 namespace loopwright {
 
-/// Something a reader of linear results must know about a block: what was held, straightened or left out.
+/// A note about a block for the reader of linear results: what was held, linearized or left out.
 struct LinearizationNote {
   enum class Kind {
-    held,       ///< its mode is kept: friction that sticks goes on sticking, a switch does not switch
-    flat,       ///< an output does not follow an input here: saturated, switched away, at rest
-    staircase,  ///< a quantiser, taken as the straight line through its steps
+    held,       ///< its mode is held: sticking friction keeps sticking, a switch does not switch
+    flat,       ///< an output does not depend on an input here: saturated, switched away, at rest
+    staircase,  ///< a quantizer, replaced by the straight line through its steps
     corner,     ///< two one-sided slopes differ; their mean is taken
-    inaccurate  ///< a slope could not be found, or not to six digits
+    inaccurate  ///< a slope could not be determined, or not to six digits
   };
   Kind kind;
   std::string block;  ///< path
@@ -22,8 +22,8 @@ struct LinearizationNote {
   double size = 0;    ///< of a staircase: height of a step, in the unit of the output
 };
 
-/// Rows of C and D are the numbers that the block computes, outputs bound to states excepted; columns of B
-/// and D are the numbers it reads, port after port; states are deviations from where it stands.
+/// Rows of C and D are the numbers that the block computes, except outputs bound to states; columns of B and
+/// D are the numbers it reads, port after port; states are deviations from the operating point.
 struct LinearBlock {
   enum class Kind {
     algebraic,
@@ -36,7 +36,7 @@ struct LinearBlock {
   double delay = 0;  ///< s
   std::vector<std::string> states;
   std::vector<Number> inputs, outputs;
-  std::vector<int> group_of_output;  ///< which call computes the row
+  std::vector<int> group_of_output;  ///< the call that computes the row
 };
 
 /// The slopes of block `index` of a run whose signals are computed, with modes held and at constant time.

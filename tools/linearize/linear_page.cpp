@@ -104,7 +104,7 @@ report::Section loop_section(const LoopAnalysis& loop) {
     Series curve{"L", {}, {}, Series::Shape::line}, point{"-1", {-1}, {0}, Series::Shape::points},
         circle{"Ms", {}, {}, Series::Shape::line};
     for (const Complex& value : loop.response) {
-      const bool is_near = std::abs(value) < 5;  // far away the curve says nothing about margins
+      const bool is_near = std::abs(value) < 5;  // far away the curve contains nothing about margins
       curve.x.push_back(is_near ? value.real() : std::nan("")),
           curve.y.push_back(is_near ? value.imag() : std::nan(""));
     }

@@ -100,7 +100,7 @@ void LinearStep::evaluate_entry(const Plan::Entry& entry) {
   }
 }
 
-/// The tears t are coordinates for a while: t = P t + q has the solution (1 - P)⁻¹ q.
+/// The tears t are temporary coordinates: t = P t + q has the solution (1 - P)⁻¹ q.
 void LinearStep::solve_algebraic_loop(const Plan::AlgebraicLoop& loop) {
   const Index width = numbers.cols(), tears = Index(loop.tears.size());
   const auto widen = [&](MatrixXd& rows, Index by) {

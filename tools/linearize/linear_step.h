@@ -2,7 +2,7 @@
 ///
 /// What a run does with numbers (docs/architecture.md, The step) is done here with rows: each number of the
 /// diagram is a linear form of some coordinates, states and added signals. Following a diagram through one
-/// period of its rates from unit rows yields its matrices, whatever its rates, offsets and delays.
+/// period of its rates from unit rows gives its matrices, for any rates, offsets and delays.
 #pragma once
 #include <Eigen/Core>
 #include "tools/linearize/linear_diagram.h"
@@ -17,7 +17,8 @@ class Taps {
   Taps(const Plan& plan, const Access& access);
   const std::vector<PortNumber>& from() const { return from_; }
   const std::vector<PortNumber>& to() const { return to_; }
-  /// What input `k` of block `b` reads, number `n` of the plan: its row unless cut, and added signals.
+  /// The row that input `k` of block `b` reads, number `n` of the plan: its row unless cut, plus added
+  /// signals.
   struct Reading {
     bool is_cut = false;
     std::vector<int> added;  ///< indices into from()
@@ -36,12 +37,12 @@ class LinearStep {
  public:
   LinearStep(const LinearDiagram& diagram, const Taps& taps, Eigen::Index width);
 
-  Eigen::MatrixXd numbers;              ///< a row for each number of the plan
-  Eigen::MatrixXd added;                ///< a row for each added signal
-  Eigen::MatrixXd delayed;              ///< a row for each transport delay: what leaves it
-  std::vector<Eigen::MatrixXd> memory;  ///< of each block, a row for each of its states
+  Eigen::MatrixXd numbers;              ///< one row for each number of the plan
+  Eigen::MatrixXd added;                ///< one row for each added signal
+  Eigen::MatrixXd delayed;              ///< one row for each transport delay: its output
+  std::vector<Eigen::MatrixXd> memory;  ///< for each block, one row for each of its states
 
-  /// Everything that is due by `is_due(rate)`, in order; constants and continuous parts always are.
+  /// Computes everything for which `is_due(rate)`, in order; constants and continuous parts always.
   template <class Due> void evaluate(Due&& is_due) {
     show_states();
     for (const Plan::Entry& entry : diagram_.plan->order)
@@ -49,7 +50,7 @@ class LinearStep {
   }
   /// A x + B u of a block: its rates, or its next memory.
   Eigen::MatrixXd next(int block) const;
-  /// What input `k` of a block reads.
+  /// The row that input `k` of a block reads.
   Eigen::RowVectorXd read(int block, int k) const;
   /// Blocks that are transport delays, in the order of the rows of `delayed`.
   const std::vector<int>& delays() const { return delays_; }

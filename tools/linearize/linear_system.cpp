@@ -26,7 +26,7 @@ void name_ports(const Plan& plan, const Taps& taps, LinearSystem& system) {
     system.outputs.push_back(port.name), system.output_units.push_back(unit_text(plan, port.number));
 }
 
-/// Puts the rows of a block's states at its place in a matrix of all states.
+/// Inserts the rows of a block's states at their index in a matrix of all states.
 class StatePlaces {
  public:
   StatePlaces(const LinearDiagram& diagram, Kind kind) {
@@ -47,12 +47,12 @@ class StatePlaces {
   std::vector<Place> places_;
 };
 
-/// The continuous part over the coordinates: continuous states | what leaves the delays | added signals |
-/// held numbers (those that a sampled block computes).
+/// The continuous part over the coordinates: continuous states | outputs of the delays | added signals | held
+/// numbers (those computed by sampled blocks).
 struct Continuous {
   Index states = 0, delays = 0, added = 0, held = 0;
   MatrixXd rates;        ///< of the states
-  MatrixXd into_delays;  ///< what enters them
+  MatrixXd into_delays;  ///< inputs of the delays
   MatrixXd outputs;      ///< rows of `to`
   std::vector<Number> held_numbers;
 
@@ -105,8 +105,8 @@ Continuous find_continuous(const LinearDiagram& diagram, const Taps& taps) {
   return part;
 }
 
-/// The diagram with transport delays of signals that are not held replaced by approximations, as continuous
-/// blocks of their own.
+/// The diagram with transport delays of non-held signals replaced by approximations, as additional continuous
+/// blocks.
 LinearDiagram with_rational_delays(const LinearDiagram& diagram, const std::vector<bool>& is_exact) {
   LinearDiagram result = diagram;
   for (size_t b = 0; b < result.blocks.size(); ++b) {
@@ -125,7 +125,7 @@ LinearDiagram with_rational_delays(const LinearDiagram& diagram, const std::vect
   return result;
 }
 
-/// Whether what enters a transport delay stands still between samples.
+/// Whether the input of a transport delay is constant between samples.
 std::vector<bool> exact_delays(const LinearDiagram& diagram) {
   const Plan& plan = *diagram.plan;
   std::vector<bool> is_held(size_t(plan.signals + plan.states), false);
@@ -136,8 +136,8 @@ std::vector<bool> exact_delays(const LinearDiagram& diagram) {
   return result;
 }
 
-/// A transport delay by whole samples and a fraction: between samples its output changes `change` of a period
-/// after the sample, and `line` holds what is under way, the latest last.
+/// A transport delay of whole samples and a fraction: between samples its output changes at the fraction
+/// `change` of a period after the sample, and `line` holds the delayed values, the latest last.
 struct DelayLine {
   int block;
   int whole;      ///< samples
@@ -236,7 +236,7 @@ class Sampler {
       begin = end;
     }
   }
-  /// Sampled numbers that are not computed anew at the first sample of the period.
+  /// Sampled numbers that are not recomputed at the first sample of the period.
   void find_held_states() {
     std::vector<bool> is_new(size_t(plan_.signals), false);
     for (const Plan::Entry& entry : plan_.order) {
@@ -291,7 +291,8 @@ class Sampler {
     return names;
   }
 
-  /// At a sample, a delay shows the oldest of its line; one without whole samples of delay shows the last.
+  /// At a sample, the output of a delay is the oldest value of its line; without whole samples of delay, the
+  /// last one.
   void show_delays(LinearStep& step) const {
     for (size_t d = 0; d < lines_.size(); ++d) step.delayed.row(Index(d)) = queue_[d].row(0);
   }
@@ -335,7 +336,7 @@ class Sampler {
   }
 
   struct Segment {
-    double end;  ///< as a share of the period
+    double end;  ///< as a fraction of the period
     Propagation propagation;
   };
   const LinearDiagram diagram_;
@@ -359,8 +360,8 @@ class Sampler {
 LinearSystem continuous_part(const LinearDiagram& diagram, const Access& access) {
   const Taps taps(*diagram.plan, access);
   const Continuous part = find_continuous(diagram, taps);
-  // Columns: states | delays | added | held; delays are the last inputs and outputs of a system, held ones
-  // rest.
+  // Columns: states | delays | added | held; delays are the last inputs and outputs of a system, held numbers
+  // are constant.
   const auto columns = [&](const MatrixXd& rows) {
     MatrixXd ordered(rows.rows(), part.added + part.delays);
     ordered << rows.middleCols(part.states + part.delays, part.added),

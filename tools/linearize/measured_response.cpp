@@ -25,7 +25,7 @@ std::string unused_name(std::string name, const Diagram& diagram) {
   return name;
 }
 
-/// The wire that a port such as "sum.terms[1]" stands for; null after a problem.
+/// The wire of a port such as "sum.terms[1]"; null after a problem.
 Wire* find_wire(Diagram& diagram, const std::string& port, Problems& problems) {
   const size_t dot = port.find('.'), bracket = port.find('[');
   KnownNames known;
@@ -43,7 +43,7 @@ Wire* find_wire(Diagram& diagram, const std::string& port, Problems& problems) {
   return nullptr;
 }
 
-/// Amplitude of what is common to `y` and e^(jωt), its mean and straight drift taken out.
+/// Amplitude of the component of `y` at e^(jωt), after subtracting mean and linear drift.
 std::complex<double> amplitude_at(double frequency, const std::vector<double>& time,
                                   const std::vector<double>& y) {
   Eigen::MatrixXd base(Eigen::Index(y.size()), 4);
@@ -95,7 +95,7 @@ class SineExperiment {
     if (result.status != RunStatus::finished) throw std::runtime_error(result.message);
     const auto& columns = result.recording.columns;
     const auto rows = whole_between<std::ptrdiff_t>(std::round(window / test_.sample_time), 0, std::ptrdiff_t(columns[0].values.size()) - 1);
-    const auto last = [&](const Column& column) {  // without the last row: it repeats the first of the window
+    const auto last = [&](const Column& column) {  // without the last row, which repeats the first one
       return std::vector<double>(column.values.end() - 1 - rows, column.values.end() - 1);
     };
     time = last(columns[0]);

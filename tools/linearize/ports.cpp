@@ -5,13 +5,13 @@
 namespace loopwright {
 namespace {
 
-/// "gain" and "gain[2]" for "gain": a block wired with vectors stands once for each element.
+/// "gain" and "gain[2]" for "gain": a block wired with vectors occurs once for each element.
 bool is_element_of(std::string_view path, std::string_view block) {
   if (!path.starts_with(block)) return false;
   return path.size() == block.size() || path[block.size()] == '[';
 }
 
-/// An input of blocks, each number with its one reader.
+/// An input of blocks, each number with its single reader.
 std::vector<PortNumber> block_input(const Plan& plan, std::string_view block, std::string_view port) {
   std::vector<PortNumber> found;
   for (size_t b = 0; b < plan.blocks.size(); ++b) {
@@ -36,7 +36,8 @@ bool has_output(const Plan& plan, std::string_view block, std::string_view port)
   return false;
 }
 
-/// A port of a subdiagram dissolved long ago, or an output of a block: told by where its number is computed.
+/// A port of a flattened subdiagram, or an output of a block: identified by the block that computes its
+/// number.
 std::vector<PortNumber> other_port(const Plan& plan, const std::string& name, const std::string& owner) {
   std::vector<PortNumber> found;
   for (Number number : plan.find(name)) {

@@ -12,7 +12,7 @@ class Treads {
   Treads(BlockBench& bench, size_t input) : bench_(bench), input_(input), rest_(bench.inputs()[input]) {}
   double rest() const { return rest_; }
 
-  /// Outputs with the mode decided for this input.
+  /// Outputs with the mode determined for this input.
   Values at(double u) {
     bench_.restore();
     bench_.inputs()[input_] = u;
@@ -20,8 +20,8 @@ class Treads {
     if (!bench_.decide() || !bench_.compute(y)) y.assign(y.size(), std::nan(""));
     return y;
   }
-  /// Where the tread that holds `from` ends on one side (direction 1 or -1): the first number beyond; NaN:
-  /// nowhere.
+  /// End of the tread that contains `from` on one side (direction 1 or -1): the first number beyond; NaN:
+  /// none.
   double end(double from, double direction) {
     const Values here = at(from);
     const double size = std::max(std::abs(rest_), 1.0);

@@ -1,4 +1,4 @@
-/// The straight line through the steps of a quantiser.
+/// The straight line through the steps of a quantizer.
 #pragma once
 #include "tools/linearize/block_bench.h"
 
@@ -6,12 +6,13 @@ namespace loopwright {
 
 struct Staircase {
   double width = 0;           ///< of a step, in the unit of the input
-  std::vector<double> slope;  ///< an element for each output; empty: no staircase
+  std::vector<double> slope;  ///< one element per output; empty: no staircase
 };
 
-/// Outputs that are flat around where the block stands, but rise by equal steps at equal distances on both
-/// sides when the mode is decided anew: three treads are looked at. The derivative of a staircase, 0, would
-/// cut a loop that a quantiser only roughens. A switch, a relay or friction has no second step and is none.
+/// Outputs that are constant around the operating point of the block, but rise by equal steps at equal
+/// distances on both sides when the mode is determined anew: three treads are examined. The derivative of a
+/// staircase, 0, would cut a loop in which a quantizer only adds roughness. A switch, a relay or friction has
+/// no second step and is no staircase.
 Staircase find_staircase(BlockBench& bench, size_t input);
 
 }  // namespace loopwright

@@ -7,7 +7,7 @@ namespace loopwright {
 namespace {
 
 constexpr int levels = 15;
-constexpr double ratio = 7, first_step = 0.7310;  // no period of a block divides them
+constexpr double ratio = 7, first_step = 0.7310;  // does not divide the period of any block
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -49,7 +49,7 @@ Estimate best_estimate(const Samples& s) {
   return best;
 }
 
-/// The two one-sided slopes of a smooth function close in with the step; at a corner they stay apart.
+/// The two one-sided slopes of a smooth function converge with the step; at a corner they stay different.
 bool is_corner(const Samples& s, int level) {
   const int finer = std::min(level + 2, levels - 1);
   const auto gap = [&](int i) { return std::abs(s.forward(i) - s.backward(i)); };
@@ -78,7 +78,7 @@ Slope slope(const FunctionOfNumber& f, double x, size_t size) {
   sample(x, [](Samples& s, double y) { s.centre = y; });
   double step = first_step * std::max(std::abs(x), 1.0);
   for (int level = 0; level < levels; ++level, step /= ratio) {
-    const volatile double right = x + step, left = x - step;  // so that the step is what was taken
+    const volatile double right = x + step, left = x - step;  // so that this is exactly the step taken
     const double taken = (right - left) / 2;
     sample(right, [&](Samples& s, double y) { s.above[level] = y, s.step[level] = taken; });
     sample(left, [&](Samples& s, double y) { s.below[level] = y; });

@@ -64,7 +64,7 @@ std::string feedthrough_text(const BlockInfo& info, const PortInfo& output) {
   return names.empty() ? "from no input directly" : "directly from " + names;
 }
 
-/// From docs/ to the example of a block whose source is blocks/<room>/<name>.cpp.
+/// Path from docs/ to the example of a block whose source is blocks/<room>/<name>.cpp.
 std::string example_of(const BlockInfo& info) {
   const size_t name = info.source.rfind('/') + 1;
   return "../diagrams/examples/" + info.source.substr(name, info.source.rfind('.') - name) + ".json";

@@ -1,4 +1,4 @@
-/// What there is to write in a diagram, generated from the blocks' own descriptions.
+/// Reference of diagram contents, generated from the blocks' own descriptions.
 #pragma once
 #include <string>
 #include "engine/block/registry.h"
@@ -11,7 +11,7 @@ std::string diagram_schema();
 /// One block type for a terminal: sentence, ports, parameters with units, ranges and defaults, events.
 std::string block_text(const BlockInfo& info);
 
-/// All types by room, a line each.
+/// All types by room, one line each.
 std::string block_list();
 
 /// The reference page docs/blocks.md.

@@ -15,7 +15,7 @@
 namespace loopwright::report {
 namespace {
 
-/// A file in memory. Unlike a pipe it is never full, so neither side waits for the other.
+/// A file in memory. Unlike a pipe it never fills up, so neither side waits for the other.
 class MemoryFile {
  public:
   MemoryFile() : descriptor_(memfd_create("child", MFD_CLOEXEC)) {}
@@ -49,10 +49,10 @@ class MemoryFile {
   int descriptor_;
 };
 
-/// Waits for the end of a child; false when the time is over.
+/// Waits for the end of a child; false on timeout.
 bool ends_within(pid_t child, std::chrono::milliseconds time_limit) {
   const int handle = static_cast<int>(syscall(SYS_pidfd_open, child, 0));
-  if (handle < 0) return true;  // cannot watch it: the caller waits without a limit
+  if (handle < 0) return true;  // cannot monitor it: the caller waits without a limit
   const auto deadline = std::chrono::steady_clock::now() + time_limit;
   pollfd watched{handle, POLLIN, 0};
   int ready = 0;

@@ -1,4 +1,4 @@
-/// Runs another program, feeds it text and takes its answer.
+/// Runs another program, passes it text and returns its output.
 #pragma once
 #include <chrono>
 #include <string>
@@ -9,12 +9,12 @@ namespace loopwright::report {
 
 struct ChildResult {
   bool succeeded = false;  ///< started, ended in time, with exit code 0
-  std::string output;      ///< what it wrote to standard output
+  std::string output;      ///< its standard output
   std::string failure;     ///< why it did not succeed, in one line
 };
 
-/// Starts arguments[0] (looked up in PATH, without a shell), gives it `input` and waits for its end. A
-/// program that takes longer than `time_limit` is killed. Never throws for what the program does or for its
+/// Starts arguments[0] (looked up in PATH, without a shell), passes it `input` and waits for its end. A
+/// program that takes longer than `time_limit` is killed. Never throws because of the program's behavior or
 /// absence.
 ChildResult run_program(const std::vector<std::string>& arguments, std::string_view input,
                         std::chrono::milliseconds time_limit);

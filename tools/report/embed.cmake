@@ -1,5 +1,5 @@
-# Writes OUTPUT, a C++ source that holds files as constants. ASSETS: a list of name=file.
-# Bytes go in as numbers, so that no content (quotes, brackets, any length) can break the source.
+# Writes OUTPUT, a C++ source that contains files as constants. ASSETS: a list of name=file. Bytes are written as numbers,
+# so that no content (quotes, brackets, any length) can invalidate the source.
 set(source "// Made by embed.cmake.\n#include \"tools/report/assets.h\"\n\nnamespace loopwright::report::assets {\n")
 foreach(asset IN LISTS ASSETS)
   string(REGEX MATCH "^([a-z_]+)=(.*)$" matched "${asset}")

@@ -26,7 +26,7 @@ std::string dot_string(std::string_view text) {
   return out + '"';
 }
 
-/// A room as a name of a CSS class: letters only.
+/// A room as the name of a CSS class: letters only.
 std::string css_class(std::string_view room) {
   std::string out;
   std::copy_if(room.begin(), room.end(), std::back_inserter(out),
@@ -59,7 +59,7 @@ std::string node_source(const GraphNode& node) {
                      label);
 }
 
-/// Where a wire meets a block: ":i0:w" for the first input. Empty when the block does not list the port.
+/// End point of a wire at a block: ":i0:w" for the first input. Empty when the block does not list the port.
 std::string anchor(const std::vector<std::string>& ports, const std::string& port, char side) {
   const auto found = std::find(ports.begin(), ports.end(), port);
   if (found == ports.end()) return {};
@@ -89,7 +89,7 @@ std::string edge_source(const GraphEdge& edge, const NodesByPath& nodes) {
                      anchor(to->second->inputs, edge.to_port, 'i'), dot_string(tooltip), dot_string(label));
 }
 
-/// A frame and what is in it, by name.
+/// A frame and its contents, by name.
 struct Frame {
   std::map<std::string, Frame> frames;
   std::vector<const GraphNode*> nodes;
@@ -117,7 +117,7 @@ void append_frame(const Frame& frame, std::string& out, int& count) {
   }
 }
 
-/// Cuts every ` name="…"` out of an SVG text.
+/// Removes every ` name="…"` from an SVG text.
 void remove_attribute(std::string& svg, std::string_view name) {
   const std::string start = fmt::format(" {}=\"", name);
   for (std::size_t begin = 0; (begin = svg.find(start, begin)) != svg.npos;) {
@@ -127,8 +127,8 @@ void remove_attribute(std::string& svg, std::string_view name) {
   }
 }
 
-/// dot's answer made part of a page: no prologue, no comments, no names that two pictures would share; fonts
-/// inherited.
+/// The output of dot prepared for a page: without prologue, comments, and names that two pictures would
+/// share; fonts inherited.
 std::string for_page(std::string svg) {
   svg.erase(0, svg.find("<svg"));
   for (std::size_t begin; (begin = svg.find("<!--")) != svg.npos;) {
@@ -136,7 +136,7 @@ std::string for_page(std::string svg) {
     svg.erase(begin, end == svg.npos ? svg.npos : end + 3 - begin);
   }
   for (const std::string_view name : {"id", "font-family", "xlink:href"}) remove_attribute(svg, name);
-  // A wide picture shrinks to the page, but not below half of its size: then it scrolls.
+  // A wide picture shrinks to the page, but at most to half of its size; beyond that it scrolls.
   const std::size_t width = svg.find("width=\"") + 7;
   const double points = std::strtod(svg.c_str() + width, nullptr);
   svg.insert(4, fmt::format(" class=\"diagram\" role=\"img\" style=\"min-width:{:.0f}pt\"", 0.5 * points));
@@ -191,7 +191,7 @@ std::string graph_text(const Graph& graph) {
 }
 
 std::string graph_source(const Graph& graph) {
-  // DejaVu Sans is wide: text measured with it fits its box in whatever font the page has.
+  // DejaVu Sans is wide: text measured with it fits its box in any font of the page.
   std::string out = R"(digraph {
 rankdir=LR; newrank=true; nodesep=0.3; ranksep=0.42; splines=true; nslimit=4; mclimit=0.4; bgcolor="transparent"; pad=0.1;
 fontname="DejaVu Sans"; fontsize=11; style="rounded"; labeljust=l;

@@ -1,10 +1,10 @@
-// Turns the data of every plot on the page into a scope: zoom, pan, cursor read-out, curves to switch off,
-// plots of one group linked along x. Drawing is uPlot's business. One file, because a page carries it whole: numbers, data,
-// drawing, interaction, legend and read-out, then the plot itself.
+// Turns the data of every plot on the page into a scope: zoom, pan, cursor read-out, curves that can be switched off,
+// plots of one group linked along x. uPlot does the drawing. This is one file because a page includes it whole: numbers,
+// data, drawing, interaction, legend and read-out, then the plot itself.
 "use strict";
 (() => {
   const PREFIXES = { "-15": "f", "-12": "p", "-9": "n", "-6": "µ", "-3": "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T" };
-  // A unit takes a prefix when it begins with one of these, standing to the first power.
+  // A unit takes a prefix if it begins with one of these to the first power.
   const PREFIXABLE = /^(m|s|N|V|A|W|Hz|rad|J|Pa|F|H|Ω|T|C)(?=$|[\/·])/;
   const SUPERSCRIPT = "⁰¹²³⁴⁵⁶⁷⁸⁹";
   const HEIGHT = 250, AXIS_WIDTH = 64, SERIES_COLOURS = 8;
@@ -16,13 +16,13 @@
     if (!(largest > 0) || !isFinite(largest)) return 0;
     const exponent = 3 * Math.floor(Math.log10(largest * 1.0000001) / 3);
     if (!PREFIXABLE.test(unit)) return largest < 1e-3 || largest >= 1e6 ? exponent : 0;
-    const highest = /^(s|rad)/.test(unit) ? 0 : 12;  // nobody reads kiloseconds
+    const highest = /^(s|rad)/.test(unit) ? 0 : 12;  // kiloseconds are not in use
     return Math.max(-15, Math.min(highest, exponent));
   }
 
   const superscript = (n) => String(n).replace("-", "⁻").replace(/\d/g, (d) => SUPERSCRIPT[d]);
 
-  /** Unit with its prefix, or behind a power of ten: "µm", "×10⁻⁶ V·s". */
+  /** Unit with its prefix, or after a power of ten: "µm", "×10⁻⁶ V·s". */
   function scaledUnit(exponent, unit) {
     if (exponent === 0) return unit;
     if (PREFIXABLE.test(unit)) return PREFIXES[exponent] + unit;
@@ -31,7 +31,7 @@
 
   const withMinus = (text) => text.replace("-", "−");
 
-  /** Decimals that tell multiples of `step` apart. */
+  /** Number of decimals that distinguishes multiples of `step`. */
   function decimalsFor(step) {
     for (let decimals = 0; decimals < 15; ++decimals) {
       const scaled = step * 10 ** decimals;
@@ -40,7 +40,7 @@
     return 15;
   }
 
-  /** One value as read off the cursor, five significant digits. */
+  /** One value at the cursor, five significant digits. */
   function readOut(value, unit) {
     const exponent = exponentFor(Math.abs(value), unit);
     const scaled = value / 10 ** exponent;
@@ -59,7 +59,7 @@
 
   const rises = (x) => x.every((value, i) => value !== null && (i === 0 || value >= x[i - 1]));
 
-  /** One table over a common rising x, as uPlot wants it. A series without a value at some x has undefined there. */
+  /** One table over a common increasing x, as uPlot requires. A series without a value at some x is undefined there. */
   function align(series) {
     const first = series[0].x;
     if (series.every((s) => s.rises && s.x.length === first.length && s.x.every((x, i) => x === first[i])))
@@ -86,7 +86,7 @@
 
   // ---------- drawing ----------
 
-  /** A cloud of dots. Dense clouds get small, translucent dots. */
+  /** A cloud of dots. Dense clouds use small, translucent dots. */
   function drawPoints(series) {
     return (u) => {
       const path = new Path2D(), radius = series.dot * uPlot.pxRatio;
@@ -100,7 +100,7 @@
     };
   }
 
-  /** A line in the order of its points; x may turn back. */
+  /** A line in the order of its points; x may decrease. */
   function drawTrace(series) {
     return (u) => {
       const path = new Path2D();
@@ -121,7 +121,7 @@
     return series.shape === "steps" ? uPlot.paths.stepped({ align: 1 }) : uPlot.paths.linear();
   }
 
-  /** Colours come from the style sheet, so that they follow the scheme of the screen. */
+  /** Colors come from the style sheet, so that they follow the color scheme of the screen. */
   const variable = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   const font = (size) => `${size}px ${getComputedStyle(document.body).fontFamily}`;
 
@@ -143,7 +143,7 @@
       return description.label && unit ? `${description.label} (${unit})` : description.label || unit;
     };
     const isX = key === "x";
-    const hidden = isX && plot.continues;  // the plot below carries the numbers
+    const hidden = isX && plot.continues;  // the plot below shows the numbers
     return {
       scale: key,
       stroke: () => variable("--soft"),
@@ -167,7 +167,7 @@
     return padding || low === high ? uPlot.rangeNum(low, high, padding || 0.1, true) : [low, high];
   }
 
-  // uPlot asks for the range after every change. Only the whole range gets a margin: what a reader chose is kept.
+  // uPlot requests the range after every change. Only the full range gets a margin; a range chosen by the user is kept.
   function rangeX(plot) {
     const first = plot.table[0][0], last = plot.table[0].at(-1);
     plot.whole = wholeRange(plot.x, plot.cloud ? 0.04 : 0, first, last);
@@ -176,7 +176,7 @@
 
   // ---------- interaction ----------
 
-  /** Among the points of a cloud near the cursor, the nearest one on the screen. */
+  /** The point of a cloud that is nearest to the cursor on the screen. */
   function nearestPoint(u, index, column) {
     const x = u.data[0], y = u.data[column], reach = 20;
     let best = null, least = reach * reach;
@@ -194,7 +194,7 @@
     return best;
   }
 
-  /** The value that a held signal has at the cursor: its last point before. */
+  /** The value of a held signal at the cursor: its last earlier point. */
   function lastPoint(u, index, column) {
     const x = u.data[0], y = u.data[column], here = u.posToVal(u.cursor.left, "x");
     let i = x[index] > here ? index - 1 : index;
@@ -202,7 +202,7 @@
     return i >= 0 ? i : null;
   }
 
-  /** The point of a curve nearest to the cursor along x; rows of other curves are passed over. */
+  /** The point of a curve nearest to the cursor along x; rows of other curves are skipped. */
   function closestPoint(u, index, column) {
     const x = u.data[0], y = u.data[column];
     let before = index, after = index;
@@ -322,7 +322,7 @@
     plot.readOut.style.right = rightHalf ? `${width - left + 14}px` : "auto";
   }
 
-  /** The whole of x; y follows by itself. */
+  /** The full range of x; y follows automatically. */
   const showAll = (u) => u.setScale("x", { min: u.data[0][0], max: u.data[0].at(-1) });
 
   // ---------- a plot ----------
@@ -413,7 +413,7 @@
 
   const redraw = () => charts.forEach(({ chart }) => chart.redraw(false, true));
 
-  // Paper is white and 17 cm wide, whatever the screen was.
+  // Paper is white and 17 cm wide, independent of the screen.
   addEventListener("beforeprint", () => {
     document.documentElement.classList.add("print");
     charts.forEach(({ chart }) => fit(chart, 660));
@@ -434,6 +434,6 @@
                        "double-click for the whole range, click a name to hide its curve.";
     document.querySelector("main").append(hint);
   }
-  // screenshot.sh asks for the height of the drawn page.
+  // screenshot.sh reads the height of the drawn page.
   addEventListener("load", () => { document.documentElement.dataset.height = document.documentElement.scrollHeight; });
 })();

@@ -1,7 +1,8 @@
-/// Results as one page: values that say what to show, and functions that write them as HTML or as plain text.
+/// Results as one page: data structures for its contents, and functions that write them as HTML or as plain
+/// text.
 ///
-/// An HTML page is complete in itself. It loads nothing from a network or from another file, suits light and
-/// dark screens and paper, and lets a reader zoom, pan and read values off every plot.
+/// An HTML page is self-contained. It loads nothing from a network or from another file, suits light and dark
+/// screens and paper, and lets a reader zoom, pan and read values off every plot.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -15,9 +16,9 @@ namespace loopwright::report {
 /// A value that is not finite is a gap, as is one ≤ 0 on a logarithmic axis.
 struct Series {
   enum class Shape {
-    line,    ///< joined in the order given; x may turn back (hysteresis, Nyquist)
+    line,    ///< connected in the given order; x may decrease (hysteresis, Nyquist)
     points,  ///< a cloud: error against position or velocity
-    steps    ///< held until the next point: what a sampled controller puts out
+    steps    ///< held until the next point: the output of a sampled controller
   };
   std::string name;
   std::vector<double> x, y;
@@ -26,17 +27,17 @@ struct Series {
 
 struct Axis {
   std::string label;  ///< "Tracking error"
-  std::string unit;   ///< "m", "N*s/m"; empty or "1": none. The page picks mm, µm … by what is in view
+  std::string unit;   ///< "m", "N*s/m"; empty or "1": none. The page chooses mm, µm … by the visible range
   bool logarithmic = false;  ///< base 10
 };
 
-/// A scope. Plots of one page with the same `group` share their x axis: zoom, pan and cursor move together,
-/// and neighbours are stacked closely.
+/// A scope. Plots of one page with the same `group` share their x axis: zoom, pan and cursor are linked, and
+/// adjacent plots are stacked closely.
 struct Plot {
   std::string title;
   Axis x, y;
   std::vector<Series> series;
-  std::string group;    ///< empty: on its own
+  std::string group;    ///< empty: independent
   std::string caption;  ///< sentences below the plot
 };
 
@@ -51,22 +52,22 @@ struct Paragraph {
   std::string text;  ///< a blank line starts a new paragraph
 };
 
-/// The few numbers that a reader looks for first.
+/// The most important numbers of a page.
 struct KeyNumbers {
   struct Number {
     std::string label;  ///< "Tracking error, RMS"
-    std::string value;  ///< "1.84", as it shall be read
+    std::string value;  ///< "1.84", as displayed
     std::string unit;   ///< "um"; empty or "1": none
     std::string note;   ///< "was 14.2 µm"
   };
   std::vector<Number> numbers;
 };
 
-/// A vector picture. The SVG goes into the page as it is, so it must come from a trusted writer.
+/// A vector picture. The SVG is inserted unchanged, so it must come from a trusted source.
 struct Picture {
   std::string svg;
   std::string caption;
-  std::string text;  ///< what the picture says, for readers of plain text
+  std::string text;  ///< description of the picture, for readers of plain text
 };
 
 struct Code {
@@ -90,21 +91,21 @@ struct Section {
 struct Page {
   std::string title, subtitle;
   std::vector<std::pair<std::string, std::string>>
-      facts;  ///< where the results come from: ("Diagram", "stage.json")
+      facts;  ///< origin of the results: ("Diagram", "stage.json")
   std::vector<Section> sections;
 };
 
-/// The page as HTML. Long series are thinned so that the whole page holds at most 200 000 points; extremes
-/// stay. Throws std::invalid_argument, naming the plot or table, when x and y differ in length or a row is
-/// too long.
+/// The page as HTML. Long series are thinned so that the whole page has at most 200 000 points; extreme
+/// values are kept. Throws std::invalid_argument, naming the plot or table, when x and y differ in length or
+/// a row is too long.
 std::string to_html(const Page& page);
 
-/// Writes to_html(page) under `path`, whole or not at all. Throws as to_html, and when the file cannot be
+/// Writes to_html(page) to `path`, completely or not at all. Throws as to_html, and when the file cannot be
 /// written.
 void write_html(const std::filesystem::path& path, const Page& page);
 
-/// The same story for a terminal: plots become the range, mean and outline of each series.
-/// Throws as to_html.
+/// The same content for a terminal: plots become the range, mean and outline of each series. Throws as
+/// to_html.
 std::string to_text(const Page& page);
 
 }  // namespace loopwright::report

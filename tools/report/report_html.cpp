@@ -12,10 +12,10 @@
 namespace loopwright::report {
 namespace {
 
-/// At about 20 bytes a point, a page stays below 5 MB.
+/// At about 20 bytes per point, a page stays below 5 MB.
 constexpr std::size_t points_per_page = 200'000;
 
-/// Writes one page from top to bottom; figures and tables are numbered through.
+/// Writes one page from top to bottom; figures and tables are numbered consecutively.
 class HtmlWriter {
  public:
   explicit HtmlWriter(const Page& page) : page_(page), point_limit_(point_limit(page)) {}
@@ -62,7 +62,8 @@ std::string axis_json(const Axis& axis) {
                      json_string(readable_unit(axis.unit)), axis.logarithmic);
 }
 
-/// The step of x when it rises evenly, as sampled time does; 0 otherwise. Tolerates the rounding of x itself.
+/// The step of x if it increases uniformly, as sampled time does; 0 otherwise. Tolerates the rounding of x
+/// itself.
 double even_step(std::span<const double> x) {
   if (x.size() < 3 || !std::isfinite(x.front()) || !std::isfinite(x.back())) return 0;
   const double step = (x.back() - x.front()) / static_cast<double>(x.size() - 1);
@@ -88,7 +89,7 @@ std::string numbers_json(std::span<const double> values, bool logarithmic) {
     if (!std::isfinite(value) || (logarithmic && value <= 0))
       out += "null";
     else if (digits > 15)
-      fmt::format_to(std::back_inserter(out), "{}", value);  // the shortest that reads back the same
+      fmt::format_to(std::back_inserter(out), "{}", value);  // the shortest form that reads back the same
     else
       fmt::format_to(std::back_inserter(out), "{:.{}g}", value, digits);
   }
@@ -206,7 +207,7 @@ void HtmlWriter::put_item(const Notice& notice) {
 }
 
 void HtmlWriter::put_head() {
-  // The policy makes the promise "loads nothing" binding, whatever a picture may hold.
+  // The policy enforces that the page loads nothing, whatever a picture contains.
   put(R"(<!DOCTYPE html>
 <html lang="en">
 <head>

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t page_width = 100;    ///< characters
 constexpr std::size_t outline_width = 40;  ///< characters of the small curve beside a series
 
-/// What a line of text can say about a curve.
+/// The summary of a curve in a line of text.
 struct Summary {
   std::size_t samples = 0, gaps = 0;
   double low = INFINITY, high = -INFINITY, mean = 0, rms = 0;
@@ -39,7 +39,7 @@ Summary summarize(std::span<const double> values) {
   return summary;
 }
 
-/// Values as far along an axis as they are drawn; what cannot be drawn is NaN.
+/// Values in drawn coordinates along an axis; values that cannot be drawn are NaN.
 std::vector<double> places(std::span<const double> values, bool logarithmic) {
   std::vector<double> out;
   out.reserve(values.size());
@@ -78,7 +78,7 @@ std::string padded(std::string_view text, std::size_t width, bool right_aligned)
   return right_aligned ? blanks + std::string(text) : std::string(text) + blanks;
 }
 
-/// Breaks a text into lines of at most `width` characters, each behind `indent`.
+/// Breaks a text into lines of at most `width` characters, each after `indent`.
 std::string wrapped(std::string_view text, std::size_t width, std::string_view indent) {
   std::string out;
   std::size_t column = 0;
@@ -143,7 +143,7 @@ std::string table_text(const Table& table) {
   return out;
 }
 
-/// Turns each item into lines without a blank line around them.
+/// Turns each item into lines without surrounding blank lines.
 struct ItemText {
   int figures = 0, tables = 0;
 

@@ -29,7 +29,7 @@ browse() {
 }
 
 if [ -z "$height" ]; then
-  # The page tells its height in an attribute once it is drawn.
+  # The page states its height in an attribute once it is drawn.
   height=$(browse --window-size="$width,900" --dump-dom | sed -n 's/.*<html[^>]* data-height="\([0-9]*\)".*/\1/p' | head -n 1)
   [ -n "$height" ] || { cat "$profile/log" >&2; exit 1; }
 fi

@@ -17,7 +17,7 @@ void append_stretch(std::span<const double> y, std::size_t begin, std::size_t en
       gap = i;
       continue;
     }
-    // A first sample that is a gap loses against every number.
+    // A first sample that is a gap is replaced by any number.
     if (!(y[lowest] <= y[i])) lowest = i;
     if (!(y[highest] >= y[i])) highest = i;
   }
@@ -49,7 +49,7 @@ std::size_t fair_limit(std::vector<std::size_t> lengths, std::size_t budget) {
   std::size_t remaining = lengths.size();
   for (const std::size_t length : lengths) {
     if (length > budget / remaining) return budget / remaining;
-    budget -= length;  // a short list leaves the rest of its share to the longer ones
+    budget -= length;  // a short list leaves its unused share to the longer ones
     --remaining;
   }
   return std::numeric_limits<std::size_t>::max();

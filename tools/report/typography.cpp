@@ -13,14 +13,14 @@ bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_power(char c) { return is_digit(c) || c == '-' || c == '.'; }
 
-/// Cuts `prefix` off the front of `text` if it is there.
+/// Removes `prefix` from the front of `text` if present.
 bool skip(std::string_view& text, std::string_view prefix) {
   if (!text.starts_with(prefix)) return false;
   text.remove_prefix(prefix.size());
   return true;
 }
 
-/// Cuts the longest front part off `text` whose characters all satisfy `belongs`.
+/// Removes the longest prefix of `text` whose characters all satisfy `belongs`.
 template <class Predicate> std::string_view take_while(std::string_view& text, Predicate belongs) {
   const auto end = std::find_if_not(text.begin(), text.end(), belongs);
   const std::string_view front = text.substr(0, static_cast<std::size_t>(end - text.begin()));
@@ -46,7 +46,7 @@ std::string readable_power(std::string_view power) {
   return out;
 }
 
-/// Cuts a number, with its sign, off the front of `text` if there is one.
+/// Removes a number, with its sign, from the front of `text` if present.
 bool skip_number(std::string_view& text) {
   skip(text, "±") || skip(text, "+") || skip(text, "-") || skip(text, "−");
   if (skip(text, "nan") || skip(text, "inf") || skip(text, "∞")) return true;
@@ -139,7 +139,7 @@ bool is_numeric(std::string_view cell) {
     skip(tolerance, " ");
     if (skip_number(tolerance)) cell = tolerance;
   }
-  // What may follow is one short word, the unit.
+  // Only one short word may follow: the unit.
   return cell.empty() || cell == "%" || (skip(cell, " ") && cell.size() < 16 && cell.find(' ') == cell.npos);
 }
 

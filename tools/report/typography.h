@@ -1,4 +1,4 @@
-/// Text made fit for its place: escapes, units and numbers as a reader expects them.
+/// Formats text for display: escapes, units and numbers.
 #pragma once
 #include <string>
 #include <string_view>
@@ -15,24 +15,23 @@ std::string json_string(std::string_view text);
 /// "N*s/m" → "N·s/m", "m/s^2" → "m/s²", "um" → "µm", "ohm" → "Ω", "1" → "".
 std::string readable_unit(std::string_view unit);
 
-/// Label and unit as on an axis: "Speed (m/s)"; the label alone without a unit.
+/// Label and unit of an axis: "Speed (m/s)"; the label alone if there is no unit.
 std::string with_unit(std::string_view label, std::string_view unit);
 
-/// Whether a table cell reads as a number: "12", "-3.4e-5", "12 µm", "98.2 %", "±0.3", "1.2 ± 0.1", "nan".
+/// Whether a table cell is a number: "12", "-3.4e-5", "12 µm", "98.2 %", "±0.3", "1.2 ± 0.1", "nan".
 bool is_numeric(std::string_view cell);
 
 /// 600000 → "600 000" (with narrow no-break spaces).
 std::string grouped(std::size_t number);
 
-/// Significant digits (7 … 17) that resolve a millionth of the span of `values`, also on top of a large
-/// offset.
+/// Significant digits (7 … 17) that resolve a millionth of the span of `values`, also with a large offset.
 int significant_digits(std::span<const double> values);
 
-/// Columns that `text` takes on a terminal: characters, not bytes.
+/// Columns that `text` occupies on a terminal: characters, not bytes.
 std::size_t text_width(std::string_view text);
 
-/// A number as an engineer writes it: 1.789e-6 m → {"1.789", "µm"}. Prefixes go before units that begin with
-/// a plain name (m, N, m/s, N*m …); others, and kg, keep the number as it is.
+/// A number with a unit prefix: 1.789e-6 m → {"1.789", "µm"}. Prefixes are used for units that begin with a
+/// plain name (m, N, m/s, N*m …); with other units, and kg, the number stays unchanged.
 struct Quantity {
   std::string value, unit;
 };

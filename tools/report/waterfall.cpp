@@ -9,7 +9,7 @@
 namespace loopwright::report {
 namespace {
 
-// The picture in its own units: the floor is sheared, y goes up and to the right.
+// The picture in its own coordinates: the floor is sheared, y goes up and to the right.
 constexpr double width = 720, height = 400, left = 62, bottom = 340;
 constexpr double across = 470, shear = 150, depth = 120, rise = 150;
 
@@ -28,7 +28,7 @@ struct Point {
   double x, y;
 };
 
-/// The value at a share of a range, to a hundredth of the range.
+/// The value at a fraction of a range, to a hundredth of the range.
 std::string number(const Range& range, double share) {
   const int decimals = whole_between(2 - std::floor(std::log10(range.high - range.low)), 0, 300);
   std::string text = fmt::format("{:.{}f}", range.low + share * (range.high - range.low), decimals);

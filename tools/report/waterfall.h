@@ -6,24 +6,25 @@
 
 namespace loopwright::report {
 
-/// z(x, y). Heights are given curve by curve, z[j][i] at (x[i], y[j]), with y rising. No curves: points alone.
+/// z(x, y). Heights are given curve by curve, z[j][i] at (x[i], y[j]), with increasing y. No curves: only
+/// points.
 struct Waterfall {
   std::string title;
   Axis x, y, z;
   std::vector<double> x_values, y_values;
   std::vector<std::vector<double>> z_values;
-  /// Points in space: drawn over the curves behind them, under those before them.
+  /// Points in space: drawn over the curves behind them and under the curves in front of them.
   struct Cloud {
     std::string name;
     std::vector<double> x, y, z;
     bool joined = false;  ///< as a line, drawn over everything
   };
   std::vector<Cloud> clouds;
-  double z_low = 0, z_high = 0;  ///< of the axis; equal: as the values ask. For pictures side by side
+  double z_low = 0, z_high = 0;  ///< of the axis; equal: determined by the values. For pictures side by side
   std::string caption;
 };
 
-/// Text of the picture says the ranges. Throws std::invalid_argument when lists do not fit together.
+/// The text of the picture states the ranges. Throws std::invalid_argument for inconsistent list lengths.
 Picture waterfall_picture(const Waterfall& waterfall);
 
 }  // namespace loopwright::report

@@ -14,8 +14,8 @@ double peak_of(const Column& column) {
   return peak;
 }
 
-/// A scope that is being filled: signals of one unit and of like size, so that what should agree can be seen
-/// to agree and a small error does not drown beside a long way.
+/// A scope under construction: signals of one unit and of similar magnitude, so that agreement is visible and
+/// a small error is not hidden by a large motion.
 struct Scope {
   std::string unit;
   double peak;

@@ -1,5 +1,4 @@
-/// What a run looks like: the diagram's picture, scopes of its signals, parameters, solver statistics,
-/// warnings.
+/// Presents a run: the diagram's picture, scopes of its signals, parameters, solver statistics, warnings.
 #pragma once
 #include "engine/run/simulation.h"
 #include "tools/report/graph_picture.h"

@@ -14,7 +14,7 @@ namespace loopwright {
 namespace {
 
 constexpr int subdivisions = 4;              ///< of a sample, for functions of continuous signals
-constexpr double continuous_samples = 1e-4;  ///< s; of a loop without any rate
+constexpr double continuous_samples = 1e-4;  ///< s; for a loop without any rate
 
 class Assessment {
  public:
@@ -60,7 +60,7 @@ class Assessment {
   void linearize_loop() {
     const VisitedRanges visited =
         visit(*plan_, options_, [&](Run<double>& run) { linear_ = linearize(run); });
-    // That run is gone; blocks without memory are the same in a new one.
+    // That run no longer exists; blocks without memory are the same in a new one.
     Run<double> run(*plan_);
     run.evaluate(run.due(), true);
     linear_.plan = plan_.get();
@@ -69,7 +69,7 @@ class Assessment {
     sample_time_ = has_samples(linear_) ? 0 : continuous_samples;
     cut_learned();
   }
-  /// The learned block leaves the linear part; what multiplies it is read from the filter behind it.
+  /// The learned block is removed from the linear part; its factor is read from the filter after it.
   void cut_learned() {
     if (roles_.learned.empty()) return;
     for (size_t b = 0; b < plan_->blocks.size(); ++b)
@@ -146,7 +146,7 @@ class Assessment {
               GainOf::peak);
   }
 
-  /// At the diagram's α, and, with a learned block, at the largest that is certified and at twice that.
+  /// At the diagram's α, and, with a learned block, at the largest certified α and at twice that.
   void kick_all() {
     double floor = 0;
     for (const LinearizationNote& note : linear_.notes)

@@ -30,7 +30,7 @@ double gain_bound(const StateSpace& system, GainOf gain) {
 
 namespace {
 
-/// z = Σ weight · port as the only output; stacked sample after sample where the system is lifted.
+/// z = Σ weight · port as the only output; stacked sample after sample if the system is lifted.
 StateSpace combined(const SampledSystem& system, const FunctionInput& input) {
   const Index ports = Index(input.ports.size());
   StateSpace result = system.matrices;

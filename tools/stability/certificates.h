@@ -1,11 +1,11 @@
-/// Small gain with several functions of bounded slope around one linear system.
+/// Small-gain theorem with several functions of bounded slope around one linear system.
 #pragma once
 #include <Eigen/Core>
 #include "tools/stability/stability.h"
 
 namespace loopwright {
 
-/// An input of a function as a sum of ports, z = Σ weight · port: a prediction with a lead looks at x + T v.
+/// An input of a function as a sum of ports, z = Σ weight · port: a prediction with a lead uses x + T v.
 struct FunctionInput {
   std::vector<std::pair<std::string, double>> ports;
   double slope = 0;  ///< greatest |∂f/∂z|
@@ -21,9 +21,9 @@ struct BoundedFunction {
 enum class GainOf { peak, energy };
 
 /// N at α = 1 for the functions that scale with it: N_ik = Σ_j L_ij ‖z_ij ← w_k‖. The diagram's own slopes of
-/// the functions must have been taken out of `linear` but for what belongs to the linear part; `unit` is what
-/// the diagram multiplies a learned function by. Gains are upper bounds. Functions of continuous signals may
-/// change `subdivisions` times a sample, held in between.
+/// the functions must have been removed from `linear`, except those that belong to the linear part; `unit` is
+/// the factor by which the diagram multiplies a learned function. Gains are upper bounds. Functions of
+/// continuous signals may change `subdivisions` times per sample, held in between.
 Eigen::MatrixXd small_gain_matrix(const LinearDiagram& linear, const std::vector<BoundedFunction>& functions,
                                   double unit, double sample_time, int subdivisions, GainOf gain);
 
@@ -35,7 +35,7 @@ Certificate certify(const Eigen::MatrixXd& gains, const std::vector<BoundedFunct
                     double alpha);
 
 /// Upper bound of the gain between all inputs and outputs of a system, lifted or not: peak to peak over all
-/// of them, or of energy. Infinite for an unstable one.
+/// of them, or of energy. Infinite for an unstable system.
 double gain_bound(const StateSpace& system, GainOf gain);
 
 }  // namespace loopwright

@@ -1,4 +1,4 @@
-/// Perturbation by experiment: does a kick die out?
+/// Perturbation by experiment: whether a pulse decays.
 #pragma once
 #include "engine/diagram/diagram.h"
 #include "tools/stability/stability.h"
@@ -6,8 +6,8 @@
 namespace loopwright {
 
 /// Two runs of a diagram, one with a pulse added at `port` in the middle of its time; `position` is compared.
-/// It decays when over the last tenth of the time left the difference stays below a thousandth of its peak or
-/// below `floor` (counts of an encoder never agree for good), whichever is larger.
+/// The pulse decays if over the last tenth of the remaining time the difference stays below a thousandth of
+/// its peak or below `floor` (encoder counts never agree permanently), whichever is larger.
 KickTest kick(const Diagram& diagram, const std::string& port, const std::string& position, double size,
               double duration, double floor, const RunOptions& options = {});
 

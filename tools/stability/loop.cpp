@@ -9,7 +9,7 @@
 namespace loopwright {
 namespace {
 
-/// The one block of a type, or of its continuous twin; a problem for several.
+/// The single block of a type, or of its continuous counterpart; a problem if there are several.
 std::string only_block(const Plan& plan, std::string_view type, Problems& problems) {
   std::string found;
   for (const Plan::Block& block : plan.blocks) {
@@ -38,7 +38,7 @@ const Plan::Block* feeder(const Plan& plan, const std::string& block, std::strin
 
 std::string outermost(const std::string& path) { return path.substr(0, path.find('.')); }
 
-/// The input of the outermost block with most states, controllers aside.
+/// The input of the outermost block with the most states, except controllers.
 std::string plant_input(const Plan& plan, const Diagram& diagram, const LoopRoles& roles,
                         Problems& problems) {
   std::map<std::string, int> states;
@@ -78,7 +78,7 @@ LoopRoles find_roles(const Plan& plan, const Diagram& diagram, const std::string
   LoopRoles roles;
   roles.observer = only_block(plan, "DisturbanceObserver", problems);
   roles.feedback = only_block(plan, "PdController", problems);
-  // Others that read a model may stand beside the one that compensates.
+  // Besides the compensating block, other blocks may read a model.
   for (const Plan::Block& block : plan.blocks)
     if (block.type->info.type == "CompensationFilter")
       if (const Plan::Block* source = feeder(plan, block.path, "prediction");

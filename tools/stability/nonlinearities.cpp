@@ -19,7 +19,7 @@ double halton(int index, int base) {
 constexpr int primes[] = {2, 3, 5, 7, 11, 13, 17, 19};
 
 struct Box {
-  std::vector<size_t> inputs;  ///< those that move
+  std::vector<size_t> inputs;  ///< those that change
   std::vector<double> low, high;
 };
 
@@ -36,7 +36,7 @@ Box box_of(const LinearBlock& block, const VisitedRanges& visited) {
 
 /// Slopes and values of one output of a block over a box.
 struct Sampled {
-  std::vector<double> lowest, highest;      ///< slopes, an input of the box each
+  std::vector<double> lowest, highest;      ///< slopes, one per input of the box
   std::vector<std::vector<double>> points;  ///< inputs of the box
   std::vector<double> values;
   bool depends_on_past = false;  ///< the same inputs gave another output after other points: hysteresis
@@ -154,7 +154,7 @@ std::vector<Nonlinearity> find_nonlinearities(const Run<double>& run, const Visi
       nonlinearity.source = fmt::format("{} points of what the run visited", points);
       nonlinearity.has_jumps = jumps(fine);
       for (size_t i = 0; i < box.inputs.size(); ++i) {
-        // What jumps is left out altogether: its slopes, steep where it holds, say nothing about it.
+        // A discontinuous function is excluded: its slopes, steep where it holds, do not describe it.
         const double middle = nonlinearity.has_jumps ? 0 : 0.5 * (fine.lowest[i] + fine.highest[i]);
         block.D(Index(o), Index(box.inputs[i])) = middle;
         nonlinearity.inputs.push_back({input_port(plan.blocks[b], box.inputs[i]), middle,

@@ -1,14 +1,14 @@
 /// Whether a loop with a learned compensation is stable, and how much compensation is certified.
 ///
-/// The diagram is linearized but for the learned block and every memoryless block whose slope changes over
-/// what a run visits, such as the plant's cogging: those are functions w = f(z) of bounded slope. What is
-/// left is linear, M: w → z, with all delays, holds and filters of the diagram.
+/// The diagram is linearized except for the learned block and every memoryless block whose slope varies over
+/// the range of a run, such as the plant's cogging: those are functions w = f(z) of bounded slope. The
+/// remainder is linear, M: w → z, with all delays, holds and filters of the diagram.
 ///
 /// Certificate A (bounded input, bounded output): M is stable and the functions are bounded, so every signal
-/// is. Certificate B (incremental small gain): with N_ik = Σ_j L_ij ‖M_{ij←k}‖, L the greatest slopes and ‖·‖
-/// the gain from peak to peak (or of energy), a spectral radius of N below 1 makes the response to given
-/// inputs unique: perturbations die out. For one function this is α (L_x ‖G F‖ + L_v ‖G F F_v‖) < 1. Desoer,
-/// Vidyasagar, Feedback Systems: Input-Output Properties, 1975, chapters III and VI.
+/// is bounded. Certificate B (incremental small gain): with N_ik = Σ_j L_ij ‖M_{ij←k}‖, L the greatest slopes
+/// and ‖·‖ the gain from peak to peak (or of energy), a spectral radius of N below 1 makes the response to
+/// given inputs unique: perturbations decay. For one function this is α (L_x ‖G F‖ + L_v ‖G F F_v‖) < 1.
+/// Desoer, Vidyasagar, Feedback Systems: Input-Output Properties, 1975, chapters III and VI.
 #pragma once
 #include <optional>
 #include "models/linear/margins.h"
@@ -21,23 +21,23 @@ namespace loopwright {
 struct Nonlinearity {
   struct Input {
     std::string port;
-    double slope = 0;          ///< taken into the linear part
-    double deviation = 0;      ///< greatest distance of a slope from that one
-    double low = 0, high = 0;  ///< range that was looked at
+    double slope = 0;          ///< included in the linear part
+    double deviation = 0;      ///< greatest deviation of a slope from that one
+    double low = 0, high = 0;  ///< range that was examined
   };
   std::string block;
   std::string output;  ///< port
   std::vector<Input> inputs;
   double bound = 0;  ///< greatest |f - linear part| over the range
   bool is_learned = false;
-  bool has_jumps = false;  ///< it jumps: no slope bounds it, the certificates leave it out
-  std::string source;      ///< where the slopes come from
+  bool has_jumps = false;  ///< it is discontinuous: no slope bounds it, the certificates exclude it
+  std::string source;      ///< origin of the slopes
 };
 
 struct Certificate {
   bool holds = false;
   double radius = 0;          ///< spectral radius of N at the diagram's α; below 1: certified
-  double radius_without = 0;  ///< at α = 0: what the plant's own functions need
+  double radius_without = 0;  ///< at α = 0: due to the plant's own functions
   double largest_alpha = 0;   ///< largest certified α; infinite without a learned block, 0 for none
 };
 
@@ -56,7 +56,7 @@ struct PaperCondition {
   double rho_corrected = 0;    ///< (58) with ‖Q‖₁ in the place of the second γ_q
   double alpha_printed = 0;    ///< (62) as printed
   double alpha_corrected = 0;  ///< (62) with ‖Q‖₁
-  double least_rho = 0;        ///< what ρ cannot fall below, from gains at rest and the jump of Q Pₙ⁻¹
+  double least_rho = 0;        ///< lower bound of ρ, from gains at rest and the jump of Q Pₙ⁻¹
   double c0_factor = 0;        ///< (60): c₀ = γ_dx γ_q c_u + this · b_μ
 };
 
@@ -65,13 +65,13 @@ struct KickTest {
   double alpha = 0;
   double peak = 0;       ///< largest |difference of position|
   double rest = 0;       ///< the same over the last tenth of the time after the kick
-  double tolerance = 0;  ///< what `rest` may be: counts of the encoder, a thousandth of the peak
+  double tolerance = 0;  ///< limit of `rest`: counts of the encoder, a thousandth of the peak
   bool decays = false;
   std::vector<double> time, difference;
 };
 
 struct StabilityRequest {
-  std::string disturbance;      ///< input port of the plant among the outermost blocks; empty: found
+  std::string disturbance;      ///< input port of the plant among the outermost blocks; empty: automatic
   double kick = 5;              ///< in the unit of that port
   double kick_duration = 0.01;  ///< s
   bool kicks = true;
@@ -88,9 +88,9 @@ struct StabilityReport {
   bool linear_part_is_stable = false;
   Margins margins;  ///< at the plant's input, learned block cut
   std::vector<Nonlinearity> nonlinearities;
-  double displacement = 0;              ///< A: what the learned block can add to the position, at most
+  double displacement = 0;              ///< A: the most that the learned block can add to the position
   Certificate peak, energy;             ///< B with gains from peak to peak, and of energy
-  std::optional<PaperCondition> paper;  ///< with an observer and a feedback only
+  std::optional<PaperCondition> paper;  ///< only with an observer and a feedback
   std::vector<KickTest> kicks;
   std::vector<LinearizationNote> notes;
   std::vector<std::string> warnings;
@@ -98,7 +98,7 @@ struct StabilityReport {
   bool is_certified() const { return linear_part_is_stable && peak.holds; }
 };
 
-/// Runs the diagram once for what it visits, and twice for each kick. Throws InputError, or
+/// Runs the diagram once for the ranges of its signals, and twice for each kick. Throws InputError, or
 /// std::runtime_error when a run fails.
 StabilityReport assess_stability(const std::string& path, const LoadOptions& load,
                                  const StabilityRequest& request, const RunOptions& options = {});

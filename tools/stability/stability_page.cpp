@@ -45,7 +45,7 @@ report::Section summary(const StabilityReport& r) {
   return section;
 }
 
-/// The port as its block knows it.
+/// The port under the name in its block.
 std::string short_name(const Nonlinearity& n, std::string port) {
   for (const std::string& prefix : {n.block + ".in.", n.block + "."})
     if (port.starts_with(prefix)) return port.substr(prefix.size());
@@ -114,7 +114,7 @@ report::Section paper(const PaperCondition& c) {
   return {"The paper's condition", {std::move(notice), std::move(constants)}};
 }
 
-/// From just before the kick to when little of it can be left.
+/// From just before the kick to the time when it should have decayed.
 report::Series around_kick(const KickTest& kick) {
   constexpr double before_s = 0.02, after_s = 0.4;
   report::Series series;

@@ -10,10 +10,10 @@
 namespace loopwright {
 namespace {
 
-/// Streams of the sweep's seed.
+/// Random streams of the sweep's seed.
 enum Stream : uint64_t { random_samples = 0, strata = 1 << 16, within_stratum = 2 << 16, shifts = 3 << 16 };
 
-/// (0, 1), neither end.
+/// (0, 1), both ends excluded.
 double open_uniform(uint64_t bits) { return double((bits >> 12) << 1 | 1) * 0x1p-53; }
 
 /// A permutation of 0 … n - 1 without a table: four Feistel rounds on the next even number of bits, repeated
@@ -87,14 +87,14 @@ double Design::uniform(int64_t sample, size_t rank) const {
   return (stratum + uniform_pair(seed, Stream::within_stratum + rank, s).first) / double(n);
 }
 
-/// Sobol's points without the origin, each digit shifted at random: still a net, but another one for each
-/// seed. For Saltelli's design the first half of the columns is A, the other B; block k of the samples is
-/// A, B, or A with one column of B. Source: A. Saltelli et al., Comput. Phys. Commun. 181 (2010) 259.
+/// Sobol's points without the origin, each digit shifted at random: still a net, but a different one for each
+/// seed. For Saltelli's design the first half of the columns is A, the other B; block k of the samples is A,
+/// B, or A with one column of B. Source: A. Saltelli et al., Comput. Phys. Commun. 181 (2010) 259.
 std::vector<double> Design::sobol(int64_t sample) const {
   const bool is_saltelli = sweep_.samples.method == Sampling::saltelli;
   const size_t axes = sampled_.size(), columns = is_saltelli ? 2 * axes : axes;
   const int64_t block = is_saltelli ? sample / sweep_.samples.count : 0;
-  // The direction numbers take far longer to make than a point.
+  // Computing the direction numbers takes far longer than computing a point.
   thread_local std::unique_ptr<boost::random::sobol> sequence;
   if (!sequence || sequence->dimension() != columns)
     sequence = std::make_unique<boost::random::sobol>(columns);

@@ -56,7 +56,7 @@ std::vector<RunRecord> LaneGroup::make(int64_t first, int64_t end) {
   return records;
 }
 
-/// Lanes beyond `end` repeat the last run and are not looked at.
+/// Lanes beyond `end` repeat the last run; their results are ignored.
 void LaneGroup::make_on_lanes(int64_t first, int64_t end, std::vector<RunRecord>& records) {
   const World& world = plan_.world(world_);
   const int lanes = run_->lanes();

@@ -1,4 +1,4 @@
-/// Runs of a sweep side by side: what one thread holds and uses again from block to block.
+/// Parallel runs of a sweep: the data of one thread, reused from block to block.
 #pragma once
 #include <memory>
 #include "engine/lanes/lane_run.h"
@@ -7,7 +7,7 @@
 
 namespace loopwright {
 
-/// One run by itself, as `loopwright run` makes it.
+/// A single run, as `loopwright run` makes it.
 RunRecord make_alone(const SweepPlan& plan, const LoadOptions& options, int64_t run);
 
 class LaneGroup {

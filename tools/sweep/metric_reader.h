@@ -5,7 +5,7 @@
 
 namespace loopwright {
 
-/// The member "metrics" of the file. A metric with a problem that leaves its kind open is left out.
+/// The member "metrics" of the file. A metric with a problem that leaves its kind undetermined is left out.
 std::vector<Metric> read_metrics(const Reader& reader, const Value& file);
 
 }  // namespace loopwright

@@ -13,7 +13,7 @@ constexpr const char* name_characters = "0123456789_abcdefghijklmnopqrstuvwxyzAB
 
 bool is_expression(const std::string& signal) { return signal.starts_with('='); }
 
-/// The ports that a signal names, in a fixed order.
+/// The ports named by a signal, in a fixed order.
 std::vector<std::string> ports_of(const Metric& metric, Problems& problems) {
   if (!is_expression(metric.signal)) return {metric.signal};
   try {
@@ -76,7 +76,7 @@ Observed observe(const Sweep& sweep, const Plan& plan, Problems& problems) {
   return observed;
 }
 
-/// One metric for all lanes. Without rows in its window a metric is no number.
+/// One metric for all lanes. Without rows in its window a metric is NaN.
 struct MetricBank::Accumulator {
   Accumulator(const Metric& m, std::vector<size_t> of, double unit_scale, int count)
       : metric(m),

@@ -9,7 +9,7 @@
 namespace loopwright {
 namespace {
 
-/// One search: the free axes from 0 to 1, the others as they are.
+/// One search: the free axes from 0 to 1, the others fixed.
 class Search {
  public:
   Search(const SweepPlan& plan, const OptimiseOptions& options, size_t metric, std::vector<double> start,
@@ -36,7 +36,7 @@ class Search {
     const unsigned n = unsigned(free_.size());
     if (n == 0) return void(value_at({}));
     nlopt::opt everywhere(nlopt::GN_DIRECT_L, n), nearby(nlopt::LN_SBPLX, n);
-    nearby.set_initial_step(0.03);  // about what DIRECT leaves between its points
+    nearby.set_initial_step(0.03);  // approximate resolution of DIRECT
     std::vector<double> u(n, 0.5);
     search(everywhere, u, std::max(1, options_.evaluations * 2 / 3));
     if (!best_u_.empty()) search(nearby, best_u_, std::max(1, options_.evaluations - used_));
@@ -63,7 +63,7 @@ class Search {
     try {
       method.optimize(u, least);
     } catch (const nlopt::forced_stop&) {       // interrupted
-    } catch (const nlopt::roundoff_limited&) {  // as near as doubles go
+    } catch (const nlopt::roundoff_limited&) {  // limit of double precision
     }
   }
 

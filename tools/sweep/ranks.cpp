@@ -11,7 +11,7 @@ namespace loopwright {
 
 #ifdef LOOPWRIGHT_MPI
 
-/// A counter in the first rank that every rank can add to without the first one's help.
+/// A counter in the first rank to which every rank can add without the participation of the first one.
 struct Ranks::Window {
   int rank = 0, size = 1;
   int64_t* counter = nullptr;
@@ -29,7 +29,7 @@ struct Ranks::Window {
     MPI_Win_lock_all(0, window);
   }
   ~Window() {
-    // A rank that fails leaves the others in a barrier: all end, and --resume goes on.
+    // A rank that fails leaves the others in a barrier: all ranks end, and --resume continues.
     if (std::uncaught_exceptions() > 0) MPI_Abort(MPI_COMM_WORLD, 1);
     MPI_Win_unlock_all(window);
     MPI_Win_free(&window);
@@ -46,7 +46,7 @@ struct Ranks::Window {
 };
 
 Ranks::Ranks() {
-  // What the launchers of Open MPI, MPICH and Slurm tell a process that they start.
+  // Environment variables that the launchers of Open MPI, MPICH and Slurm set for a process.
   const bool is_launched =
       std::getenv("OMPI_COMM_WORLD_SIZE") || std::getenv("PMI_SIZE") || std::getenv("PMIX_RANK");
   if (is_launched) window_ = std::make_unique<Window>();

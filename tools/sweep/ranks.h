@@ -1,4 +1,4 @@
-/// The processes of one `mpirun`: they share the blocks of a sweep, each writes a file of its own.
+/// The processes of one `mpirun`: they share the blocks of a sweep, and each writes a file of its own.
 #pragma once
 #include <memory>
 #include "tools/sweep/run_sweep.h"
@@ -7,17 +7,17 @@ namespace loopwright {
 
 class Ranks {
  public:
-  /// One process alone, unless an MPI launcher started it and MPI was there when this was built.
+  /// A single process, unless an MPI launcher started it and MPI was available at build time.
   Ranks();
   ~Ranks();
   Ranks(const Ranks&) = delete;
   Ranks& operator=(const Ranks&) = delete;
 
   bool is_first() const;
-  std::string name() const;  ///< "rank 2 of 4: "; empty for a process alone
-  /// Blocks are handed out one by one to whoever asks; nobody writes before all have read.
+  std::string name() const;  ///< "rank 2 of 4: "; empty for a single process
+  /// Blocks are assigned one by one on request; no process writes before all have read.
   void join(SweepOptions& options);
-  /// Until all have come here.
+  /// Waits until all processes have reached this call.
   void wait();
 
  private:

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int most_bins = 12;
 
-/// By nearest rank; sorts.
+/// By nearest rank; sorts the values.
 double quantile(std::vector<double>& values, double share) {
   if (values.empty()) return std::nan("");
   std::sort(values.begin(), values.end());
@@ -52,19 +52,19 @@ Profile profile(const SweepPlan& plan, const Recording& table, size_t metric, si
   return result;
 }
 
-/// One direction of a panel: values to places, and where its ticks are.
+/// One direction of a panel: maps values to coordinates, and gives the positions of its ticks.
 struct Scale {
-  double low = 0, high = 1, start = 0, end = 1;  // start and end: places in the picture
+  double low = 0, high = 1, start = 0, end = 1;  // start and end: coordinates in the picture
   bool is_logarithmic = false;
 
   double share(double value) const {
     return is_logarithmic ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
   }
-  /// What lies outside is drawn at the border.
+  /// Values outside are drawn at the border.
   double at(double value) const {
     return start + (end - start) * (value >= high ? 1 : value <= low ? 0 : share(value));
   }
-  /// 1, 2 and 5 times powers of ten: all of them on a logarithmic scale, else multiples of one.
+  /// 1, 2 and 5 times powers of ten: all of them on a logarithmic scale, otherwise multiples of one.
   std::vector<double> ticks(int about) const {
     std::vector<double> found;
     constexpr std::array<double, 3> steps{1, 2, 5};
@@ -84,8 +84,7 @@ struct Scale {
   }
 };
 
-/// From the least to the greatest finite value of all bands; logarithmic where they reach over a factor of
-/// eight.
+/// From the smallest to the largest finite value of all bands; logarithmic if the ratio exceeds eight.
 Scale scale_of_metric(const std::vector<Profile>& profiles) {
   double low = INFINITY, high = -INFINITY;
   for (const Profile& p : profiles)

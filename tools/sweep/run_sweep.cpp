@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// Holds the path of the sweep file, and then the facts of the identity of the results.
+/// Contains the path of the sweep file, and then the facts of the identity of the results.
 constexpr const char* name_of_sweep_file = "sweep_file.txt";
 
 /// The first line of the file, and the facts below it.
@@ -38,7 +38,7 @@ std::pair<std::string, Facts> read_sweep_file(const std::string& folder) {
   throw std::runtime_error(message);
 }
 
-/// Blocks of all worlds, one after the other; a block never reaches from one world into the next.
+/// Blocks of all worlds, one after the other; a block never spans two worlds.
 struct Blocks {
   explicit Blocks(const Design& design)
       : in_block(runs_in_block(design)),
@@ -70,7 +70,7 @@ std::vector<bool> runs_in_folder(const SweepPlan& plan, const std::string& folde
   return done;
 }
 
-/// What the threads of one process share.
+/// State shared by the threads of one process.
 class Crew {
  public:
   Crew(const SweepPlan& plan, const SweepOptions& options, ShardWriter& writer, std::vector<bool> done)
@@ -150,7 +150,7 @@ class Crew {
   std::string problem_;
 };
 
-/// The column of an axis: numbers as the file states them; variants by their index.
+/// The column of an axis: numbers as written in the file; variants by their index.
 Column axis_column(const Axis& axis) {
   return {axis.name, axis.kind == Axis::Kind::variants ? "" : axis.unit, {}};
 }
@@ -166,8 +166,7 @@ std::vector<std::string> shard_files(const std::string& folder) {
   return files;
 }
 
-/// Relative to the present folder where it lies below: commands and pages that name it shall serve elsewhere
-/// too.
+/// Relative to the present folder if below it: commands and pages that name it must also work elsewhere.
 static std::string from_here(const std::string& path) {
   std::error_code code;
   const std::string relative = fs::path(path).lexically_relative(fs::current_path(code)).string();
@@ -216,8 +215,8 @@ std::vector<RunRecord> make_runs(const SweepPlan& plan, int64_t first, int64_t e
   return LaneGroup(plan, set).make(first, end);
 }
 
-/// Of the results in a folder. Those of another build of the program are read as well, and that is said: there is
-/// nothing to mix them with.
+/// For the results in a folder. Results of another build of the program are also read, with a notice, because
+/// nothing is added to them.
 Identity identity_of_results(const SweepPlan& plan, const std::string& folder, std::vector<std::string>& notes) {
   Identity before = identity_of(read_sweep_file(folder).second);
   if (before.build == plan.identity().build || !changes(before, plan.identity()).empty()) return plan.identity();
@@ -240,7 +239,7 @@ SweepResults read_results(const SweepPlan& plan, const std::string& folder) {
   columns.push_back({"failed", "", {}});
   columns.push_back({"stopped_at", "s", {}});
 
-  // A column has its place for every run at once: shards bring them in any order.
+  // A column has an entry for every run from the start: shards bring the runs in any order.
   const size_t runs = size_t(plan.runs()), failed_column = 1 + axes + metrics;
   for (size_t c = 1 + axes; c < columns.size(); ++c) columns[c].values.assign(runs, std::nan(""));
   for (const std::string& path : shard_files(folder)) {

@@ -1,5 +1,6 @@
-/// Makes the runs of a sweep: on lanes, on threads, in parts on several machines, and on from where it
-/// stopped. A result depends on the run alone, never on who made it, beside whom, or when.
+/// Makes the runs of a sweep: on lanes, on threads, in parts on several machines, and continuing after an
+/// interruption. A result depends only on the run, never on which process made it, with which other runs, or
+/// when.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -12,35 +13,35 @@
 
 namespace loopwright {
 
-/// Runs are handed out in blocks; each is made by one thread. Lanes of two arenas in turn wait less for each
-/// other's results than those of one; but with few runs, large blocks would leave threads without work.
+/// Runs are assigned in blocks; each block is made by one thread. Alternating between the lanes of two arenas
+/// reduces waiting for results; but with few runs, large blocks would leave threads without work.
 inline int64_t runs_in_block(const Design& design) { return design.runs_in_world() < 1024 ? 32 : 64; }
 
 struct SweepOptions {
   int threads = 1;
-  std::optional<InstructionSet> instruction_set;  ///< nothing: the widest that runs here
-  bool resume = false;                            ///< go on with the results in the folder
-  int64_t shard = 0, shards = 1;                  ///< this part of so many
-  std::string writer = "0";                       ///< tells the files of processes in one folder apart
+  std::optional<InstructionSet> instruction_set;  ///< empty: the widest that this machine supports
+  bool resume = false;                            ///< continue with the results in the folder
+  int64_t shard = 0, shards = 1;                  ///< this part of this many
+  std::string writer = "0";                       ///< distinguishes the files of processes in one folder
   /// The next block, shared between processes; empty: every block of this shard in order.
   std::function<int64_t()> next_block;
   std::function<void()>
-      all_have_read;  ///< called before the first run; comes back when every process is there
+      all_have_read;  ///< called before the first run; returns when every process has arrived
   const std::atomic<bool>* interrupt = nullptr;
   std::function<void(int64_t done, int64_t total)> progress;
 };
 
 struct SweepOutcome {
   int64_t runs = 0;    ///< of this shard
-  int64_t done = 0;    ///< with results in the folder, made now or before
-  int64_t made = 0;    ///< now
-  int64_t failed = 0;  ///< of those made now
+  int64_t done = 0;    ///< with results in the folder, from this call or earlier
+  int64_t made = 0;    ///< in this call
+  int64_t failed = 0;  ///< of those made in this call
   bool interrupted = false;
-  std::vector<std::string> notes;  ///< damaged or torn records, runs off lanes
+  std::vector<std::string> notes;  ///< damaged or truncated records, runs not on lanes
 };
 
-/// Results go to files `*.shard` in the folder, which is made. Throws std::runtime_error when the folder
-/// holds other results, is in use or cannot be written; what was appended by then stays.
+/// Results are written to files `*.shard` in the folder, which is created. Throws std::runtime_error if the
+/// folder contains other results, is in use or cannot be written; results appended by then are kept.
 SweepOutcome run_sweep(const SweepPlan& plan, const std::string& folder, const SweepOptions& options);
 
 /// One group of runs [first, end) of one world, at most a block.
@@ -48,7 +49,7 @@ std::vector<RunRecord> make_runs(const SweepPlan& plan, int64_t first, int64_t e
                                  std::optional<InstructionSet> set = {});
 
 /// All results in a folder by their run: number, axes, metrics, whether it failed, when it stopped. Runs
-/// without a result are left out. Throws std::runtime_error when a shard is not of this sweep.
+/// without a result are left out. Throws std::runtime_error if a shard does not belong to this sweep.
 struct SweepResults {
   Recording table;
   std::vector<std::pair<int64_t, std::string>> failures;  ///< run and reason
@@ -57,7 +58,7 @@ struct SweepResults {
 };
 SweepResults read_results(const SweepPlan& plan, const std::string& folder);
 
-/// Where the sweep file of a folder of results lies. Throws InputError when it is no such folder.
+/// Path of the sweep file of a folder of results. Throws InputError if it is no such folder.
 std::string sweep_file_of(const std::string& folder);
 
 /// The shards in a folder, sorted.

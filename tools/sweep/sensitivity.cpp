@@ -18,7 +18,7 @@ struct Moments {
   double deviations() const { return n > 0 ? std::max(0.0, squares - sum * sum / n) : 0; }
 };
 
-/// The variance that bins explain, without what chance alone would seem to explain.
+/// The variance explained by bins, minus the part that chance alone would appear to explain.
 double explained(const std::vector<Moments>& bins, const Moments& all) {
   double within = 0;
   int filled = 0;
@@ -29,7 +29,7 @@ double explained(const std::vector<Moments>& bins, const Moments& all) {
   return std::clamp((between - (filled - 1) * within / (all.n - filled)) / total, 0.0, 1.0);
 }
 
-/// Jansen's estimators over the whole blocks of Saltelli's design, summed over the points of the grid.
+/// Jansen's estimators over the complete blocks of Saltelli's design, summed over the points of the grid.
 void add_saltelli(const SweepPlan& plan, const Recording& table, const std::vector<double>& y,
                   std::vector<AxisEffect>& effects) {
   const auto& axes = plan.sweep().axes;

@@ -1,13 +1,13 @@
-/// Which axis a metric hangs on.
+/// The axes on which a metric depends.
 #pragma once
 #include <optional>
 #include "tools/sweep/run_sweep.h"
 
 namespace loopwright {
 
-/// Values of an axis put together: each value of its own, or shares of equal size of many.
+/// Values of an axis grouped together: each value separately, or quantiles of many values.
 struct Bin {
-  double from = 0, to = 0;  ///< least and greatest value, as the sweep file states them
+  double from = 0, to = 0;  ///< smallest and largest value, as written in the sweep file
   double mean = 0;          ///< of the metric
   int64_t runs = 0;
 };
@@ -15,17 +15,17 @@ struct Bin {
 struct AxisEffect {
   std::string axis;
   std::vector<Bin> bins;  ///< main effect: the mean of the metric along the axis
-  /// First-order Sobol index: the share of the variance that the axis explains by itself. From the bins,
-  /// (SSB - (k - 1) MSW) / SST, not below zero; of Saltelli's design by Jansen's estimator.
+  /// First-order Sobol index: the share of the variance that the axis explains by itself. From the bins, (SSB
+  /// - (k - 1) MSW) / SST, not below zero; for Saltelli's design by Jansen's estimator.
   double first_order = 0;
   double first_order_error = 0;  ///< standard error of the estimate
-  /// With all its interactions; of Saltelli's design only. Source: M. J. W. Jansen, Comput. Phys. Commun. 117
-  /// (1999) 35.
+  /// Including all its interactions; only for Saltelli's design. Source: M. J. W. Jansen, Comput. Phys.
+  /// Commun. 117 (1999) 35.
   std::optional<double> total;
   double total_error = 0;  ///< standard error of the estimate
 };
 
-/// An effect each axis, for one metric. Runs whose metric is no finite number are left out.
+/// One effect per axis, for one metric. Runs whose metric is not finite are left out.
 std::vector<AxisEffect> effects_of(const SweepPlan& plan, const Recording& table, size_t metric);
 
 /// The bin of each run on an axis.

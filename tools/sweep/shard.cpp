@@ -49,7 +49,7 @@ class Window {
     if (why_not_regular(path).empty()) file_.open(path, std::ios::binary);
   }
   bool is_open() const { return file_.is_open(); }
-  /// The next bytes, at least `wanted` where the file has as many.
+  /// The next bytes, at least `wanted` if the file has that many.
   std::string_view at_least(size_t wanted) {
     while (bytes_.size() - used_ < wanted && file_) {
       bytes_.erase(0, used_);
@@ -71,7 +71,7 @@ class Window {
   int64_t position_ = 0;
 };
 
-/// Length of the whole record that the bytes begin with; 0: none.
+/// Length of the complete record at the start of the bytes; 0: none.
 size_t record_length(std::string_view bytes, size_t metrics) {
   if (bytes.size() < head_bytes || !bytes.starts_with(mark)) return 0;
   const char* at = bytes.data() + mark.size();
@@ -101,7 +101,7 @@ ShardState read_head(Window& window, const std::string& expected) {
   const std::string_view head = window.at_least(expected.size()).substr(0, expected.size());
   if (!window.is_open() || head != expected) {
     const bool is_shard = head.starts_with("loopwright sweep shard");
-    state.is_readable = window.is_open() && expected.starts_with(head);  // ended while it was made
+    state.is_readable = window.is_open() && expected.starts_with(head);  // ended while it was being created
     state.problem = !window.is_open() ? "cannot be read"
                     : is_shard        ? "belongs to another sweep"
                                       : "is no shard of a sweep";
@@ -125,7 +125,7 @@ ShardState read_shard(const std::string& path, const std::string& hash, size_t m
                       const std::function<void(const RunRecord&)>& found) {
   Window window(path);
   ShardState state = read_head(window, first_line(hash, metrics));
-  if (state.whole_bytes == 0) return state;  // no shard of this sweep, or one that ended within its head
+  if (state.whole_bytes == 0) return state;  // not a shard of this sweep, or one that ended within its header
   for (int64_t skipped = 0;;) {
     std::string_view bytes = window.at_least(head_bytes);
     if (bytes.size() >= head_bytes && bytes.starts_with(mark)) {
@@ -187,7 +187,7 @@ void ShardWriter::write_all(const std::string& bytes) {
       done += size_t(n);
     } else if (errno != EINTR) {
       const int error = errno;
-      [[maybe_unused]] const int cut = ftruncate(file_, end_);  // what cannot be cut is found torn
+      [[maybe_unused]] const int cut = ftruncate(file_, end_);  // a part that stays is detected as damaged
       fail("cannot be written", error);
     }
   }

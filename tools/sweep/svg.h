@@ -1,4 +1,4 @@
-/// The few words of SVG that the pictures of a sweep are made of.
+/// The SVG elements used in the pictures of a sweep.
 #pragma once
 #include <fmt/format.h>
 #include <string>
@@ -17,7 +17,7 @@ inline std::string line(double x1, double y1, double x2, double y2, std::string_
   return fmt::format(R"(<line x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}" {}/>)", x1, y1, x2, y2, more);
 }
 
-/// The whole picture; it shrinks with the page.
+/// The whole picture; it scales down with the page.
 inline std::string picture(double width, double height, const std::string& inside) {
   return fmt::format(
       R"(<svg viewBox="0 0 {0:.0f} {1:.0f}" width="{0:.0f}" style="max-width:100%" font-size="12" fill="currentColor" role="img">{2}</svg>)",

@@ -1,9 +1,9 @@
 /// A sweep file: which runs of a diagram to make, what to measure in each, what to keep.
 ///
-/// The file (docs/sweeps.md) is JSON and has the error messages of diagrams. Axes with values make a grid;
+/// The file (docs/sweeps.md) is JSON and has the error messages of diagrams. Axes with values form a grid;
 /// axes with a distribution are sampled; every point of the grid gets all samples. Run numbers count the
 /// samples fastest, then the grid in the order of the file, last axis fastest, except that axes which change
-/// the plan stand first.
+/// the plan come first.
 #pragma once
 #include <memory>
 #include <optional>
@@ -13,16 +13,16 @@
 
 namespace loopwright {
 
-/// What differs from run to run: a parameter by its `--set` path, or the variant of a block.
+/// A difference between runs: a parameter by its `--set` path, or the variant of a block.
 struct Axis {
   enum class Kind { values, variants, uniform, logarithmic, normal };
-  std::string name;  ///< "stage.payload"; of variants the path of the block
+  std::string name;  ///< "stage.payload"; for variants the path of the block
   Kind kind = Kind::values;
-  std::string unit;                   ///< of the numbers below; empty: as `--set` takes a bare number
+  std::string unit;                   ///< of the numbers below; empty: as `--set` reads a bare number
   std::vector<double> values;         ///< of kind values
   std::vector<std::string> variants;  ///< of kind variants
   double low = 0, high = 0;           ///< of a distribution; normal: mean and standard deviation
-  int pair = -1;                      ///< steps together with this earlier axis; -1: on its own
+  int pair = -1;                      ///< steps together with this earlier axis; -1: independent
   Place place;
   std::string pointer;
 
@@ -37,13 +37,13 @@ enum class Sampling {
   saltelli  ///< two such designs and their mixtures, for Sobol indices: count · (sampled axes + 2) samples
 };
 
-/// How the samples of all sampled axes lie in the unit cube.
+/// Distribution of the samples of all sampled axes in the unit cube.
 struct Samples {
   Sampling method = Sampling::sobol;
   int64_t count = 1;  ///< 1 without sampled axes
 };
 
-/// One number that a run is judged by, computed while it runs.
+/// One number that evaluates a run, computed while it runs.
 struct Metric {
   enum class Kind {
     rms,
@@ -53,14 +53,14 @@ struct Metric {
     peak,             ///< greatest magnitude
     final,            ///< the last value
     settling_time,    ///< [s] from `from` to the last time outside target ± band
-    overshoot,        ///< how far beyond the target, seen from the first value
+    overshoot,        ///< overshoot beyond the target, relative to the first value
     percentile,       ///< of the values at the rows, by nearest rank
-    first_violation,  ///< [s] when the magnitude first passes `threshold`; NaN: never
+    first_violation,  ///< [s] when the magnitude first exceeds `threshold`; NaN: never
   };
   std::string name;
   Kind kind = Kind::rms;
   std::string signal;                          ///< a port; or with '=' an expression over ports
-  std::string unit;                            ///< the metric is told in; empty: SI of the port
+  std::string unit;                            ///< unit of the metric; empty: SI of the port
   double from = 0;                             ///< s
   double to = infinity;                        ///< s
   double target = 0, band = 0, threshold = 0;  ///< SI
@@ -73,12 +73,12 @@ struct Metric {
   bool is_time() const { return kind == Kind::settling_time || kind == Kind::first_violation; }
 };
 
-/// Of which runs the full traces are written when all are done.
+/// The runs whose full traces are written after all runs are done.
 struct Keep {
   enum class Kind { none, all, failed, worst, selected };
   Kind kind = Kind::none;
   int count = 0;              ///< of worst
-  std::string metric;         ///< of worst: greatest first
+  std::string metric;         ///< for worst: largest first
   std::vector<int64_t> runs;  ///< selected
   Place place;
   std::string pointer;
@@ -96,7 +96,7 @@ struct Sweep {
   std::string text;  ///< of the file
 };
 
-/// Null when there are errors. Whether axes and signals exist in the diagram is looked at by SweepPlan.
+/// Null when there are errors. SweepPlan checks whether axes and signals exist in the diagram.
 std::shared_ptr<const Sweep> load_sweep(const std::string& path, Problems& problems);
 
 std::string_view to_name(Metric::Kind kind);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double most_runs = 1e9;
 
-/// Key by key: what a key may hold, and what is said when it does not, stand together.
+/// Key by key: the permitted contents of a key and the message for invalid contents are in the same place.
 class Loader {
  public:
   Loader(std::string path, Problems& problems) : problems_(problems), reader_{problems, ""} {
@@ -77,7 +77,7 @@ class Loader {
     }
     sweep_->diagram = resolve_relative(diagram->place, name);
   }
-  /// With a sweep that cannot be used what is wrong with its diagram is told as well: all problems at once.
+  /// For an unusable sweep the problems of its diagram are also reported: all problems at once.
   void tell_problems_of_diagram() {
     if (sweep_->diagram.empty()) return;
     Problems own;

@@ -40,7 +40,7 @@ std::string shown(const Axis& axis, double value) {
   return axis.kind == Axis::Kind::variants ? axis.variants[size_t(value)] : fmt::format("{:.5g}", value);
 }
 
-/// The first axis of variants, if there is one: runs are told apart by it.
+/// The first axis of variants, if there is one: it distinguishes the runs.
 std::optional<size_t> axis_of_variants(const Sweep& sweep) {
   for (size_t a = 0; a < sweep.axes.size(); ++a)
     if (sweep.axes[a].kind == Axis::Kind::variants) return a;
@@ -73,7 +73,7 @@ report::Table metrics_table(const SweepPlan& plan, const Recording& table) {
   return shown_table;
 }
 
-/// How often a metric stays below a value, a curve for each variant.
+/// Cumulative distribution of a metric, one curve per variant.
 report::Plot distribution(const SweepPlan& plan, const Recording& table, size_t metric) {
   report::Plot plot;
   const auto& axes = plan.sweep().axes;
@@ -105,7 +105,7 @@ report::Plot distribution(const SweepPlan& plan, const Recording& table, size_t 
   return plot;
 }
 
-/// Means along each axis, from its least (0) to its greatest value (1).
+/// Means along each axis, from its smallest (0) to its largest value (1).
 report::Plot main_effects(const SweepPlan& plan, const std::vector<AxisEffect>& effects, size_t metric) {
   report::Plot plot;
   plot.title = "Main effects on " + plan.sweep().metrics[metric].name;
@@ -125,7 +125,7 @@ report::Plot main_effects(const SweepPlan& plan, const std::vector<AxisEffect>& 
   return plot;
 }
 
-/// An index with twice its standard error, or only a bound where the estimate is not above that.
+/// An index with twice its standard error, or only a bound if the estimate is not above that.
 std::string index_text(double index, double error) {
   const double margin = 2 * error;
   if (index <= margin) return fmt::format("< {:.3f}", std::max(margin, 0.001));

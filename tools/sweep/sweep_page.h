@@ -1,4 +1,4 @@
-/// What a sweep found, as one page.
+/// The results of a sweep as one page.
 #pragma once
 #include <map>
 #include "tools/report/report.h"
@@ -11,7 +11,7 @@ using TracePages = std::map<int64_t, std::string>;
 
 report::Page sweep_page(const SweepPlan& plan, const SweepResults& results, const TracePages& traces = {});
 
-/// Runs by a metric, the worst first: the greatest, or where only a lower limit is set the least.
+/// Runs by a metric, the worst first: the largest, or the smallest if only a lower limit is set.
 std::vector<size_t> worst_rows(const SweepPlan& plan, const Recording& table, size_t metric, size_t most);
 
 /// The rows whose run keeps its trace.

@@ -11,7 +11,7 @@
 namespace loopwright {
 namespace {
 
-/// From dark blue over green to yellow: Viridis at nine places, which also reads in grey. Source: S. van der
+/// From dark blue over green to yellow: Viridis at nine points, also readable in gray. Source: S. van der
 /// Walt, N. Smith, 2015 (CC0).
 std::string colour(double share) {
   constexpr std::array<std::array<double, 3>, 9> places{{{68, 1, 84},
@@ -30,7 +30,7 @@ std::string colour(double share) {
   return fmt::format("rgb({},{},{})", mix(0), mix(1), mix(2));
 }
 
-/// Three digits, without an exponent where thousands do.
+/// Three digits, without an exponent up to thousands.
 std::string short_number(double value) {
   const double size = std::fabs(value);
   return size >= 1000 && size < 1e5 ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);

@@ -6,15 +6,14 @@
 
 namespace loopwright {
 
-/// The mean of a metric over the two axes that it hangs on most.
+/// The mean of a metric over the two axes on which it depends most.
 report::Picture heat_map(const SweepPlan& plan, const Recording& table, size_t metric,
                          const std::vector<AxisEffect>& effects);
 
-/// A line through all axes for each run (300 of them at most), coloured by the rank of a metric.
+/// A line through all axes for each run (at most 300 of them), colored by the rank of a metric.
 report::Picture parallel_coordinates(const SweepPlan& plan, const Recording& table, size_t metric);
 
-/// How often a metric takes which value, and where the worst runs lie, as links to their pages where there
-/// are some.
+/// Histogram of a metric with the worst runs, as links to their pages if these exist.
 report::Picture worst_in_distribution(const SweepPlan& plan, const Recording& table, size_t metric,
                                       const std::vector<size_t>& worst, const TracePages& traces);
 

@@ -14,7 +14,7 @@ namespace {
 constexpr int64_t most_worlds = 1000;
 constexpr int joint_checks = 6;
 
-/// A number as `--set` takes it, read back bit for bit.
+/// A number as `--set` accepts it, read back bit for bit.
 std::string setting(const Axis& axis, double value) {
   return axis.unit.empty() ? fmt::format("{}", value) : fmt::format("{} {}", value, axis.unit);
 }
@@ -25,7 +25,7 @@ std::string quoted(const std::string& text) {
   return in_quotes + "'";
 }
 
-/// Problems with what an axis sets point to the axis.
+/// Problems with the value set by an axis refer to the axis.
 void add_at_axes(const Problems& found, const Sweep& sweep, Problems& problems) {
   for (Problem problem : found.list()) {
     if (problem.severity != Problem::Severity::error) continue;
@@ -68,7 +68,7 @@ SweepPlan::SweepPlan(std::shared_ptr<const Sweep> sweep) : sweep_(std::move(swee
     files.insert(files.end(), of_world.files.begin(), of_world.files.end());
   }
   if (problems.has_errors()) throw InputError(std::move(problems));
-  // The worlds' files are named from the diagram's folder already, the sweep file by its own name.
+  // Files of the worlds are already named relative to the diagram's folder, the sweep file by its own name.
   files.front().path = std::filesystem::path(sweep_->path).filename().string();
   identity_ = {structure.text(), program_build(), named_from("", std::move(files))};
   hash_ = identity_.hash();
@@ -109,7 +109,7 @@ std::shared_ptr<const Plan> SweepPlan::load_or_report(const std::vector<double>&
   }
 }
 
-/// Looks at each axis alone, at both ends of its range.
+/// Examines each axis alone, at both ends of its range.
 std::vector<bool> SweepPlan::find_axes_that_change_the_plan(Problems& problems) const {
   std::vector<bool> changes(sweep_->axes.size());
   const Design design(*sweep_, changes);
@@ -149,8 +149,8 @@ World SweepPlan::make_world(int64_t index, Problems& problems) {
   return world;
 }
 
-/// Which tunable numbers follow each axis, and how. What the ends of the axes show is then checked at runs in
-/// between; where it does not hold, every number comes from the loader.
+/// Determines which tunable numbers depend on each axis, and how. The rule found at the ends of the axes is
+/// then checked at runs in between; if it fails, every number comes from the loader.
 void SweepPlan::bind(World& world, int64_t index, Problems& problems) {
   const int64_t first = index * design_->runs_in_world(), count = design_->runs_in_world();
   const auto start = design_->point(first);
@@ -195,7 +195,7 @@ void SweepPlan::bind(World& world, int64_t index, Problems& problems) {
 /// Whether the sources give every tunable number of a run as the loader does.
 bool SweepPlan::predicts(const World& world, int64_t run, Problems& problems) const {
   const auto plan = load_or_report(design_->point(run), problems);
-  if (!plan) return true;  // told
+  if (!plan) return true;  // reported
   auto expected = tunable_numbers(*world.plan);
   const auto point = design_->point(run);
   const auto actual = tunable_numbers(*plan);

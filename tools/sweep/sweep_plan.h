@@ -1,5 +1,5 @@
-/// A sweep made ready to run: its diagram compiled once for every point of the axes that change the plan, and
-/// for every run the tunable numbers that its axes set.
+/// A sweep ready to run: its diagram compiled once for every point of the axes that change the plan, and for
+/// every run the tunable numbers set by its axes.
 #pragma once
 #include <map>
 #include <mutex>
@@ -13,15 +13,15 @@ struct World {
   std::shared_ptr<const Plan> plan;
   Observed observed;
   std::string
-      lanes_forbidden;  ///< why its runs go one by one, each with a plan of its own; empty: they do not
+      lanes_forbidden;  ///< why each run is made alone, with its own plan; empty: they share this plan
   std::vector<std::string> tuned;  ///< paths of the numbers that differ from run to run
-  /// How a number follows from the axes: `scale` times one of them, or through the loader (axis -1).
+  /// How a number depends on the axes: `scale` times one of them, or through the loader (axis -1).
   struct Source {
     int axis = -1;
     double scale = 1;
   };
   std::vector<Source> sources;
-  bool needs_loader = false;  ///< some number hangs on an expression over axes
+  bool needs_loader = false;  ///< some number depends on an expression over axes
 };
 
 class SweepPlan {
@@ -33,24 +33,24 @@ class SweepPlan {
   const Sweep& sweep() const { return *sweep_; }
   const Design& design() const { return *design_; }
   int64_t runs() const { return design_->runs(); }
-  /// Whether the values of an axis need plans of their own: variants, structural settings.
+  /// Whether the values of an axis need separate plans: variants, structural settings.
   bool changes_plan(size_t axis) const { return changes_plan_[axis]; }
   const World& world(int64_t index) const { return worlds_[size_t(index)]; }
   const World& world_of(int64_t run) const { return world(run / design_->runs_in_world()); }
 
-  /// What makes `loopwright run` repeat this run; its number gives the noise.
+  /// The options with which `loopwright run` repeats this run; its number determines the noise.
   LoadOptions options(int64_t run) const { return options_at(design_->point(run)); }
   LoadOptions options_at(const std::vector<double>& point) const;
   std::string command(const LoadOptions& options, int64_t run) const;
   /// "loopwright run 'loop.json' --set 'stage.payload=0.5 kg' --run 17"
   std::string command(int64_t run) const { return command(options(run), run); }
-  /// The plan of one run alone, as that command makes it; one call at a time. Throws InputError.
+  /// The plan of a single run, as that command makes it; one call at a time. Throws InputError.
   std::shared_ptr<const Plan> plan_of(int64_t run) const { return load(options(run)); }
   std::shared_ptr<const Plan> load(const LoadOptions& options) const;
-  /// The numbers at World::tuned for a run. Throws InputError where the diagram refuses its parameters.
+  /// The numbers at World::tuned for a run. Throws InputError if the diagram rejects its parameters.
   std::vector<double> tuned(int64_t run) const;
 
-  /// Of the sweep file and every plan: results belong together when it is the same.
+  /// Hash of the sweep file and every plan: results belong together if it is equal.
   const Identity& identity() const { return identity_; }
   const std::string& hash() const { return hash_; }
   const std::vector<std::string>& warnings() const { return warnings_; }
@@ -63,13 +63,13 @@ class SweepPlan {
   bool predicts(const World& world, int64_t run, Problems& problems) const;
 
   std::shared_ptr<const Sweep> sweep_;
-  std::vector<bool> changes_plan_;  // an axis each
+  std::vector<bool> changes_plan_;  // one per axis
   std::unique_ptr<Design> design_;
   std::vector<World> worlds_;
   Identity identity_;
   std::string hash_;  // of the identity
   std::vector<std::string> warnings_;
-  mutable std::mutex loading_;  // units and expressions are read by libraries that know no threads
+  mutable std::mutex loading_;  // units and expressions are read by libraries that are not thread-safe
 };
 
 }  // namespace loopwright

@@ -30,7 +30,7 @@ void each_number(const Plan::Block& block, const std::string& path, const Parame
   }
 }
 
-/// The JSON text of a setting with its tunable numbers struck out.
+/// The JSON text of a setting with its tunable numbers removed.
 void strike_out(const Plan::Block& block, const std::string& path, Value& value) {
   if (value.kind == Value::Kind::number && find(block, path)) value = Value{};
   for (size_t i = 0; i < value.items.size(); ++i)

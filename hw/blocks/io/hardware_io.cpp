@@ -7,7 +7,8 @@
 namespace loopwright::blocks {
 namespace {
 
-/// The channel of a name; of no name, the first that `serves`. A problem when there is none.
+/// The channel with this name; without a name, the first one for which `serves` is true. Reports a problem if
+/// there is none.
 template <class Channel, class Serves>
 int choose(const Checker& checker, const char* parameter, const std::string& name,
            const std::vector<Channel>& channels, Serves&& serves) {

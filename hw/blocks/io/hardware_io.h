@@ -1,4 +1,4 @@
-/// The block that stands where the plant stood: one axis of a device.
+/// The block that replaces the plant: one axis of a device.
 #pragma once
 #include <memory>
 #include "engine/block.h"
@@ -9,10 +9,10 @@ namespace loopwright::blocks {
 struct HardwareIo {
   static constexpr bool has_side_effects = true;
   std::string device_file, position_input, velocity_input, command_output;
-  double position = 0, velocity = 0;  // as read; the loop writes here before every step
+  double position = 0, velocity = 0;  // as read; written by the loop before every step
   double period = 0;
   std::shared_ptr<const hw::DeviceDescription> device;
-  int position_channel = -1, velocity_channel = -1, command_channel = -1;  // among those of the device
+  int position_channel = -1, velocity_channel = -1, command_channel = -1;  // index among those of the device
   struct In {
     double command;
   };
@@ -45,7 +45,7 @@ struct HardwareIo {
             .from_memory());
   }
   void check(const Checker& checker);
-  /// Those of the channels.
+  /// The units of the channels.
   std::vector<UnitClaim> unit_claims() const;
   void prepare(double sample_time) { period = sample_time; }
   void outputs(const Memory& memory, Out& out) const {

@@ -67,7 +67,7 @@ TEST(Integrator, IsResetOnceWhenTheTriggerRises) {
   block.input("reset_value") = 99;
   block.evaluate();
   block.jump();
-  EXPECT_EQ(block.state("y"), 10);  // the limits hold for the reset value too
+  EXPECT_EQ(block.state("y"), 10);  // the limits apply to the reset value too
 }
 
 TEST(Integrator, ATriggerThatIsHighAtTheStartHasNotRisen) {

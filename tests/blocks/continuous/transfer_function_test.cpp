@@ -28,7 +28,7 @@ TEST(TransferFunction, FollowsTheClosedFormOfALeadsStep) {
   BlockUnderTest block("TransferFunction", R"({"numerator": [1, 2], "denominator": [1, 10]})");
   block.input("u") = 1;
   block.evaluate();
-  EXPECT_EQ(block.output("y"), 1);  // all of the high frequencies at once
+  EXPECT_EQ(block.output("y"), 1);  // the gain at high frequencies at once
   block.advance(0.3, 1000);
   block.evaluate();
   EXPECT_NEAR(block.output("y"), 0.2 + 0.8 * std::exp(-3.0), 1e-12);

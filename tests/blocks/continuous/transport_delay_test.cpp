@@ -4,7 +4,7 @@
 namespace loopwright {
 namespace {
 
-/// Runs over given steps as a solver would: outputs at the step's end, then its acceptance.
+/// Runs over given steps like a solver: outputs at the end of the step, then its acceptance.
 template <class Signal> void run_to(BlockUnderTest& block, double time, Signal signal) {
   block.input("u") = signal(time);
   block.evaluate(time);
@@ -27,11 +27,11 @@ TEST(TransportDelay, TheFirstPieceHoldsInsideAStepThatEndsAtTheDelay) {
   BlockUnderTest block("TransportDelay", R"({"delay": 0.1})");
   run_to(block, 0.0, [](double) { return 8.0; });
   run_to(block, 0.05, [](double) { return 8.0; });
-  block.evaluate_held(0.1);  // a trial value of the solver: nothing has been decided yet
+  block.evaluate_held(0.1);  // a trial value of the solver: nothing is decided yet
   EXPECT_EQ(block.output("y"), 0);
 }
 
-/// On a grid that holds the delay each value comes back with its bits, however late it is.
+/// On a grid that resolves the delay, each value comes back bit for bit, even after a long time.
 TEST(TransportDelay, GivesBackWhatItTookOnAGrid) {
   BlockUnderTest block("TransportDelay", R"({"delay": 0.007, "initial": -1})");
   const auto value = [](int64_t tick) { return double(tick % 13 * (tick % 5)) / 7; };
@@ -71,7 +71,7 @@ TEST(TransportDelay, ErrsLessThanTheSquareOfTheGapSays) {
       if (t >= delay) worst = std::max(worst, std::abs(block.output("y") - std::sin(w * (t - delay))));
     }
     EXPECT_LT(worst, bound);
-    EXPECT_GT(worst, 0.3 * bound);  // thinned to the points asked for, not kept in full
+    EXPECT_GT(worst, 0.3 * bound);  // thinned to the requested number of points
   }
 }
 

@@ -27,14 +27,14 @@ struct Plant {
   }
 };
 
-/// Holds the mass with a PD; the observer and a compensation act as the observer's reference page says.
-/// Answers the estimate at the end.
+/// Holds the mass with a PD controller. The observer and a compensation are connected as the observer's
+/// reference page describes. Returns the estimate at the end.
 double estimate_after(const std::string& observer_settings, double damping, int samples,
                       std::function<double(int)> disturbance, std::function<double(int)> compensation,
                       double limit = infinity) {
   BlockUnderTest observer("DisturbanceObserver", observer_settings, T);
   BlockUnderTest feedback("PdController", R"({"Kp": 400, "Kd": 20, "derivative_pole": 1000})", T);
-  Plant plant{damping};  // moves at the start, the observer takes it as at rest: it must find its way
+  Plant plant{damping};  // moves at the start, but the observer assumes rest: it must converge
   double estimate = 0;
   for (int k = 0; k < samples; ++k) {
     observer.input("measured") = plant.x;

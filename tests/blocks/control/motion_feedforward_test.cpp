@@ -30,8 +30,7 @@ TEST(MotionFeedforward, HoldsTheDirectionInsideAStepAndCrossesWhereItChanges) {
   block.crossings();
   EXPECT_LT(block.crossing("forwards"), 0);
   EXPECT_LT(block.crossing("backwards"), 0);
-  block.input("velocity") =
-      0;  // at rest it is neither forwards nor backwards, so that leaving rest changes a sign
+  block.input("velocity") = 0;  // at rest there is no direction, so that leaving rest changes a sign
   block.crossings();
   EXPECT_LT(block.crossing("forwards"), 0);
   EXPECT_GT(block.crossing("backwards"), 0);

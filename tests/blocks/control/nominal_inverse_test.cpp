@@ -25,7 +25,7 @@ TEST(NominalInverse, OfASteadyMotionIsItsFriction) {
   for (int n : {2, 3}) {
     BlockUnderTest block("NominalInverse", settings(n), T);
     for (int k = 0; k < 2000; ++k) block.sample("measured", 0.4 * T * k, "command");
-    EXPECT_NEAR(block.output("command"), 3 * 0.4, 1e-8);  // positions of 0.8 m, rounded, twice divided by T
+    EXPECT_NEAR(block.output("command"), 3 * 0.4, 1e-8);  // positions of 0.8 m, rounded, divided twice by T
   }
 }
 

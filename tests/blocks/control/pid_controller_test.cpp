@@ -28,8 +28,8 @@ TEST(PidController, IntegratesTheErrorByTrapezoids) {
   }
 }
 
-/// Steps an error of 1 for two seconds, then of -1; answers how long the command stays at its limit after the
-/// turn.
+/// Steps with an error of 1 for two seconds, then of -1. Returns how long the command stays at its limit
+/// after the change.
 int samples_to_leave_the_limit(const std::string& anti_windup) {
   BlockUnderTest block(
       "PidController",
@@ -53,9 +53,9 @@ TEST(PidController, BackCalculationSettlesWhereTrackingBalancesTheError) {
                                             "anti_windup": "back_calculation", "tracking_gain": 20})",
                        T);
   for (int k = 0; k < 500; ++k) block.sample("reference", 1, "command");
-  // In the steady state a sample adds Ki T to the integral and tracking takes (1 - e^(-20 T)) · excess off,
-  // so both are equal. The integral is then limit + excess - Kp · 1, and without the error the command shows
-  // it.
+  // In the steady state a sample adds Ki T to the integral and tracking removes (1 - e^(-20 T)) · excess, so
+  // that both are equal. The integral is then limit + excess - Kp · 1. Without the error the command shows
+  // the integral.
   const double excess = 5 * T / (1 - std::exp(-20 * T)), integral_after = 2 + excess - 1 - 5 * T;
   EXPECT_NEAR(block.sample("reference", 0, "command"), integral_after + 5 * T / 2, 1e-12);
 }

@@ -9,7 +9,7 @@ TEST(DiscreteStateSpace, UpdatesAllStatesFromTheOldOnes) {
                        R"({"A": [[0, 1], [1, 0]], "B": [[0], [0]], "C": [[1, 0], [0, 1]], "D": [[0], [0]],
                                                  "initial": [3, 5]})",
                        0.1);
-  for (int k = 0; k < 4; ++k) {  // the states change places, which an update in place would spoil
+  for (int k = 0; k < 4; ++k) {  // the states are exchanged, which an update in place would corrupt
     block.evaluate();
     EXPECT_THAT(block.outputs("y"), k % 2 ? testing::ElementsAre(5, 3) : testing::ElementsAre(3, 5));
     block.update();

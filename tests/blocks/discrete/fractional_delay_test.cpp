@@ -17,7 +17,7 @@ TEST(FractionalDelay, TheSlopeHasTheFirstMomentOfTheLateStaircase) {
   for (size_t k = 0; k < std::size(given); ++k) {
     late.sample("u", given[k], "y");
     const double to = k < 2 ? 0 : given[k - 2];
-    double moment = 0;  // ∫ (t - ½) u dt, a change at a quarter of the sample
+    double moment = 0;  // ∫ (t - ½) u dt, with a change at a quarter of the sample
     constexpr int parts = 100000;
     for (int i = 0; i < parts; ++i) {
       const double t = (i + 0.5) / parts;

@@ -1,4 +1,4 @@
-// Without a device: it stands where it is told to, and its device file is checked. On a device:
+// Without a device: the block keeps its configured position, and its device file is checked. On a device:
 // tests/hw/realtime.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -8,7 +8,7 @@ namespace loopwright {
 
 namespace {
 
-/// A block on a file with this text, in a folder of the test's own.
+/// A block on a file with this text, in a temporary folder.
 class Recorded {
  public:
   Recorded(const std::string& csv, const std::string& settings)

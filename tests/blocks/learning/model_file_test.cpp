@@ -17,7 +17,7 @@ std::string text_of(const std::string& path) {
   return text.str();
 }
 
-/// What reading says after `from` has become `to` in the file.
+/// The message of the reader when `from` is replaced by `to` in the file.
 std::string problems_after(const std::string& from, const std::string& to) {
   const ModelFolder folder;
   std::string text = text_of(folder.path());

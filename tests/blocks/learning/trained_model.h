@@ -1,4 +1,4 @@
-/// A model file for the tests of blocks on learned disturbances.
+/// A model file for tests of blocks on learned disturbances.
 #pragma once
 #include <unistd.h>
 #include <filesystem>
@@ -7,7 +7,7 @@
 
 namespace loopwright {
 
-/// PE(x) + SE(v), from 400 samples of velocities 0.05 … 0.5 m/s, homed 3 mm off.
+/// PE(x) + SE(v), from 400 samples of velocities 0.05 … 0.5 m/s, with a homing offset of 3 mm.
 inline LearnedModel trained_model(const gp::Kernel& kernel = gp::additive()) {
   const gp::Samples samples = gp::disturbance(400, gp::Velocities::few);
   LearnedModel learned;
@@ -23,7 +23,7 @@ inline LearnedModel trained_model(const gp::Kernel& kernel = gp::additive()) {
   return learned;
 }
 
-/// A folder of the test's own with the model in it.
+/// A temporary folder with the model in it.
 class ModelFolder {
  public:
   explicit ModelFolder(const LearnedModel& model = trained_model())

@@ -32,7 +32,7 @@ TEST(Expression, PointsAtTheMistakeInAFormula) {
   const std::string text = formula.problems().text();
   EXPECT_NE(text.find("the formula cannot be read"), std::string::npos) << text;
   EXPECT_NE(text.find("spede"), std::string::npos) << text;
-  EXPECT_NE(text.find("settings.json:1:18"), std::string::npos) << text;  // where spede begins
+  EXPECT_NE(text.find("settings.json:1:18"), std::string::npos) << text;  // position of spede
 }
 
 TEST(Expression, RefusesFormulasThatAreIncomplete) {

@@ -53,7 +53,7 @@ TEST(Lookup1D, StopsTheRunBeyondItsEndsWhenToldTo) {
   EXPECT_EQ(table.fault(), "the input lies outside of the table");
 }
 
-/// Fritsch-Butland slopes and the pieces in powers of t, worked out in rational arithmetic.
+/// Fritsch-Butland slopes and the coefficients of the pieces in powers of t, computed in rational arithmetic.
 TEST(Lookup1D, CubicPiecesAgreeWithExactArithmetic) {
   BlockUnderTest table(
       "Lookup1D",

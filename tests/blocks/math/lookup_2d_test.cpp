@@ -24,7 +24,7 @@ TEST(Lookup2D, ReadsItsPointsExactly) {
     for (int j = 0; j < 2; ++j) EXPECT_EQ(read(table, rows[i], columns[j]), values[i][j]);
 }
 
-/// A bilinear function is its own interpolation.
+/// Interpolation of a bilinear function is exact.
 TEST(Lookup2D, IsExactForABilinearFunction) {
   const auto f = [](double u, double v) { return 2 - u + 0.5 * v + 0.25 * u * v; };
   std::string text = R"({"rows": [-1, 0.5, 4], "columns": [0, 3, 5], "outside": "extrapolate", "values": [)";

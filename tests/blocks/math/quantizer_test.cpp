@@ -41,7 +41,7 @@ TEST(Quantizer, HoldsItsStepUntilACrossing) {
   EXPECT_LT(quantizer.crossing("lower"), 0);
 }
 
-/// 2.5 rounds to 2: what follows above must still be seen as a change of sign.
+/// 2.5 rounds to 2: values just above must still appear as a change of sign.
 TEST(Quantizer, ASignalThatStartsOnAnEdgeIsNotOnZero) {
   BlockUnderTest quantizer("Quantizer", R"({"resolution": 1})");
   quantizer.input("u") = 2.5;

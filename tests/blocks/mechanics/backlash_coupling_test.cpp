@@ -34,13 +34,13 @@ TEST(BacklashCoupling, CrossingsChangeSignWithContact) {
 }
 
 TEST(BacklashCoupling, MotorTakesTheLoadAlongAfterTheGap) {
-  // Equal masses, no damping: after the first impact the load goes on with the motor's velocity and the motor
-  // stands.
+  // Equal masses, no damping: after the first impact the load continues with the motor's velocity and the
+  // motor stands still.
   BlockUnderTest coupling("BacklashCoupling", R"({"gap": 0.01, "stiffness": 1e6})");
   double motor = 0, load = 0, motor_velocity = 1, load_velocity = 0;
   const double h = 1e-6;
   for (int i = 0; i < 9000;
-       ++i) {  // touches after 5 ms, contact lasts π √(m/2k) = 2.2 ms; the gap lasts another 10 ms
+       ++i) {  // contact after 5 ms, for π √(m/2k) = 2.2 ms; crossing the gap takes another 10 ms
     motor += h / 2 * motor_velocity, load += h / 2 * load_velocity;
     coupling.input("motor_position") = motor, coupling.input("load_position") = load;
     coupling.evaluate();

@@ -15,8 +15,8 @@ TEST(CoulombFriction, SlowSinePushSlipsAndSticksAtTheKnownInstants) {
   BlockUnderTest friction("CoulombFriction", settings);
   DrivenMass axis{friction, m, [&](double t, double, double) { return peak * std::sin(w * t); }};
 
-  // Sliding forward from the breakaway: m v = ∫ (peak sin - level) dt; it comes to rest where that returns to
-  // zero.
+  // Sliding forward from the breakaway: m v = ∫ (peak sin - level) dt. The mass comes to rest where this
+  // returns to zero.
   const double slip = std::asin(breakaway / peak) / w;
   const auto speed = [&](double t) {
     return (peak / w * (std::cos(w * slip) - std::cos(w * t)) - level * (t - slip)) / m;

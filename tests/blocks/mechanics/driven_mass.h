@@ -1,5 +1,5 @@
-/// A mass under a given force and the friction of a block: the mode is decided at the start of each step and
-/// held in it, as a fixed-step run does.
+/// A mass under a given force and the friction of a block. The mode is decided at the start of each step and
+/// held in it, as in a fixed-step run.
 #pragma once
 #include <functional>
 #include "tests/blocks/block_under_test.h"
@@ -9,7 +9,7 @@ namespace loopwright {
 struct DrivenMass {
   BlockUnderTest& friction;
   double mass;                                                                   // kg
-  std::function<double(double time, double position, double velocity)> applied;  // N, all forces but friction
+  std::function<double(double time, double position, double velocity)> applied;  // N, without friction
   double time = 0, position = 0, velocity = 0;
 
   /// One step of classical Runge-Kutta; returns the friction at its start.
@@ -42,7 +42,7 @@ struct DrivenMass {
   }
 };
 
-/// Where a falling function passes through zero between two times.
+/// The zero of a falling function between two times.
 inline double root_between(double low, double high, const std::function<double(double)>& f) {
   for (int i = 0; i < 200; ++i) (f(0.5 * (low + high)) > 0 ? low : high) = 0.5 * (low + high);
   return low;

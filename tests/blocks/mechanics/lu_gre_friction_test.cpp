@@ -16,8 +16,8 @@ TEST(LuGreFriction, SettlesOnTheStribeckCurveAtEverySpeed) {
   for (double velocity : {1e-4, 5e-4, 2e-3, -2e-3, 0.1, 5.0}) {
     BlockUnderTest friction("LuGreFriction", settings);
     friction.input("velocity") = velocity;
-    const double duration = std::max(1.5, 5e-4 / std::abs(velocity));  // s; 33 times the greatest deflection
-    // Steps of 1e-4 s: with rk4 far beyond the limit at 5 m/s, were the bristles not held back.
+    const double duration = std::max(1.5, 5e-4 / std::abs(velocity));  // s; 33 times the largest deflection
+    // Steps of 1e-4 s: at 5 m/s far beyond the stability limit of rk4, if the bristles were not limited.
     friction.advance(duration, int(duration / 1e-4));
     friction.evaluate(duration);
     EXPECT_NEAR(friction.output("force"), std::copysign(steady(velocity), velocity) + 0.4 * velocity, 1e-9)

@@ -29,7 +29,7 @@ std::string pushed(const std::string& solver) {
 TEST(PreslidingFriction, ReachesItsLevelWithinTheTransitionDistance) {
   BlockUnderTest friction("PreslidingFriction", R"({"level": 2, "transition_distance": 1e-3})");
   move(friction, 0.3);
-  EXPECT_EQ(friction.output("force"), 0);  // wherever it starts, it starts unloaded
+  EXPECT_EQ(friction.output("force"), 0);  // starts unloaded at any position
   move(friction, 0.301);
   EXPECT_NEAR(friction.output("force"), 2 * (1 - std::exp(-1)), 1e-12);
   move(friction, 0.4);

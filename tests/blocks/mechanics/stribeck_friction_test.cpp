@@ -34,8 +34,8 @@ TEST(StribeckFriction, BreaksAwayAtTheStaticLevelWithoutAJump) {
 }
 
 TEST(StribeckFriction, PulledBySpringItSticksAndSlips) {
-  // A mass drawn by a spring whose end moves slowly: the textbook case. While it sticks, the spring is drawn
-  // out; it slips first when the spring has reached the static level, k v t = Fs.
+  // A mass pulled by a spring whose end moves slowly: the textbook case. While the mass sticks, the spring
+  // extends. The mass first slips when the spring force reaches the static level, k v t = Fs.
   const double k = 100, drawing = 0.01, h = 1e-4;
   BlockUnderTest friction("StribeckFriction",
                           R"({"level": 2, "static_level": 5, "stribeck_speed": 0.02, "mass": 1})");

@@ -99,7 +99,7 @@ TEST(MotionProfile, WaitsForItsStart) {
   EXPECT_EQ(motion.next_stop(0), 3);
 }
 
-/// From stop to stop every piece must be entered exactly at its begin, whatever the rounding.
+/// From stop to stop every piece must start exactly at its beginning, whatever the rounding.
 TEST(MotionProfile, EntersANewPieceAtEveryStopThatItAnnounces) {
   BlockUnderTest motion("MotionProfile", R"({"shape": "linear", "passes": 0, "segments": [
       {"duration": 0.1, "velocity": 1}, {"duration": 0.7, "velocity": 0}, {"duration": 0.3, "velocity": 0}]})");
@@ -109,7 +109,7 @@ TEST(MotionProfile, EntersANewPieceAtEveryStopThatItAnnounces) {
     motion.evaluate(t);
     const double next = motion.next_stop(t);
     ASSERT_GT(next, t);
-    if (next - t > 1e-9) {  // the end of a pass and the begin of the next may differ by rounding
+    if (next - t > 1e-9) {  // the end of a pass and the start of the next may differ by rounding
       ASSERT_NEAR(motion.output("acceleration"), acceleration[stop % 3], 1e-12) << t;
       ++stop;
     }
@@ -118,7 +118,7 @@ TEST(MotionProfile, EntersANewPieceAtEveryStopThatItAnnounces) {
   EXPECT_NEAR(t, 1000 * 1.1, 1e-9);
 }
 
-/// Ten segments of a tenth, again and again: each begins on its very tick, to a billion samples.
+/// Ten segments of a tenth, repeatedly: each begins on its exact tick, up to a billion samples.
 TEST(MotionProfile, ItsPiecesBeginOnTheirVeryTicks) {
   std::string segments;
   for (int i = 0; i < 10; ++i)

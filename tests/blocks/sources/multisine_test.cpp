@@ -28,7 +28,7 @@ TEST(Multisine, SchroederPhasesKeepThePeakOfABandLow) {
   EXPECT_NEAR(rms, std::sqrt(n / 2.0),
               1e-9);  // Parseval: each component carries half of its amplitude squared
   EXPECT_NEAR(peak / rms, 1.90539,
-              1e-5);  // the same sum worked out outside of this program; with equal phases 8.26
+              1e-5);  // the same sum computed independently; with equal phases 8.26
 }
 
 TEST(Multisine, RepeatsAfterTheCommonPeriod) {

@@ -13,7 +13,7 @@ TEST(PulseTrain, IsHighForTheWidthOfEachPeriod) {
   }
 }
 
-/// Whoever steps from stop to stop must see each edge, whatever the rounding of period and start.
+/// A solver that steps from stop to stop must see each edge, whatever the rounding of period and start.
 TEST(PulseTrain, ChangesAtEveryStopThatItAnnounces) {
   for (const char* settings :
        {R"({"period": 0.1, "width": 0.03, "start": 0.7})", R"({"period": 0.007, "width": 0.001})"}) {
@@ -28,7 +28,7 @@ TEST(PulseTrain, ChangesAtEveryStopThatItAnnounces) {
   }
 }
 
-/// On a grid that holds period, width and start every sample is right, to a billion samples.
+/// On a grid that resolves period, width and start every sample is correct, up to a billion samples.
 TEST(PulseTrain, IsExactOnTicksHoweverManyHavePassed) {
   struct Case {
     const char* settings;

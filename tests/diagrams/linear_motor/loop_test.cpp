@@ -1,4 +1,4 @@
-// The parts that every loop of diagrams/linear_motor is made of.
+// The parts that all loops of diagrams/linear_motor share.
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 const std::string folder = LOOPWRIGHT_SOURCE "/diagrams/linear_motor/";
 
-/// Mean of a column from a time on.
+/// Mean of a column from a given time.
 double mean_after(const Recording& recording, std::string_view name, double from_s) {
   const auto time = column(recording, "time"), values = column(recording, name);
   double sum = 0, count = 0;
@@ -29,7 +29,7 @@ TEST(LinearMotor, ConventionalTracksAsItWasCalibratedTo) {
 }
 
 TEST(LinearMotor, WhatTheCompensationCancelsTheObserverDoesNotSee) {
-  // A stage as nominal as the controller thinks, pulled back by half a newton, at one newton a volt.
+  // A stage that matches the controller's nominal model, pulled back by half a newton, at one newton a volt.
   LoadOptions pulled{.set = {{"stage.motor.cogging", "0"},
                              {"stage.motor.second_cogging", "0"},
                              {"stage.motor.drag", "0"},

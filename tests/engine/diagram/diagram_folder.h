@@ -27,13 +27,13 @@ class DiagramFolder {
 
   DiagramFolder& with(const std::string& name, std::string_view text) {
     std::filesystem::create_directories((path_ / name).parent_path());
-    std::filesystem::remove(path_ / name);  // some file systems flush a file that is written over
+    std::filesystem::remove(path_ / name);  // some file systems flush a file that is overwritten
     std::ofstream(path_ / name, std::ios::binary) << text;
     return *this;
   }
   std::string path(const std::string& name) const { return (path_ / name).string(); }
 
-  /// The diagram; fails the test when it has problems.
+  /// The diagram. Fails the test if it has problems.
   std::shared_ptr<const Diagram> load(const std::string& name = "top.json",
                                       const LoadOptions& options = {}) const {
     Problems problems;

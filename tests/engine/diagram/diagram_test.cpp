@@ -54,7 +54,7 @@ TEST(Diagram, KeepsTitleBlocksWiresAndPlaces) {
   EXPECT_EQ(line_column(feedback.type_place).column, 26);
   EXPECT_EQ(feedback.sample_time->number, 0.001);
   EXPECT_EQ(feedback.sample_offset->number, 0.0005);
-  ASSERT_EQ(feedback.settings.members.size(), 1u);  // the engine's own keys are taken out
+  ASSERT_EQ(feedback.settings.members.size(), 1u);  // the engine's own keys are removed
   EXPECT_EQ(feedback.settings.members[0].name, "Kp");
   EXPECT_EQ(source_of(feedback, "measured"), "stage.position");
   const BlockEntry& command = block_of(*diagram, "command");

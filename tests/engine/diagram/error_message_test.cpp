@@ -1,4 +1,4 @@
-// The exact words of what is wrong with a diagram, one kind of mistake at a time.
+// The exact messages for errors in a diagram, one kind of error at a time.
 #include <gtest/gtest.h>
 #include "tests/engine/diagram/diagram_folder.h"
 
@@ -7,7 +7,7 @@ namespace {
 
 std::string problems_in(std::string_view text) { return DiagramFolder().with("top.json", text).problems(); }
 
-/// The problems of a diagram with these members beside its version.
+/// The problems of a diagram with these members besides its version.
 std::string problems_with(const std::string& members) {
   return problems_in("{\"loopwright\": 1,\n" + members + "}");
 }

@@ -176,7 +176,7 @@ TEST(NamesIn, AreFoundInOrderWithoutNumbersAndConstants) {
   EXPECT_EQ(names, "alpha sin() b_2 x1 ");
 }
 
-/// A deterministic walk through strings that look like expressions: none may crash or hang.
+/// A deterministic sequence of strings that resemble expressions: none may crash or hang.
 TEST(Expression, SurvivesNonsense) {
   const std::string_view pieces[] = {"mass",  "travel", "(", ")", "+",   "-",  "*",    "/",    "^",
                                      "?",     ":",      ",", "1", "1e3", ".",  "sin(", "max(", "&&",

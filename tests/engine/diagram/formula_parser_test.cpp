@@ -21,7 +21,7 @@ std::string complaint_about(const std::string& formula) {
   return {};
 }
 
-// Whatever a newer muParser brings must be looked at: does the C library compute it?
+// Functions that a newer muParser adds must be reviewed: does the C library compute them?
 TEST(FormulaParser, LeavesNoFunctionToTheCLibrary) {
   const std::set<std::string> own{"sin",   "cos",  "tan",  "asin", "acos",  "atan",
                                   "atan2", "sinh", "cosh", "tanh", "asinh", "acosh",

@@ -1,5 +1,5 @@
-// Broken files: thousands of mutants of good diagrams, the same in every run. Each must end in a diagram or
-// in errors.
+// Damaged files: thousands of mutants of valid diagrams, the same in every run. Each must give a diagram or
+// errors.
 #include <gtest/gtest.h>
 #include <chrono>
 #include "tests/engine/diagram/diagram_folder.h"
@@ -45,7 +45,7 @@ class Random {
   uint64_t state_ = 20240229;
 };
 
-/// Begin and end of every token, roughly as JSON has them.
+/// Begin and end of every token, approximately as in JSON.
 std::vector<std::pair<size_t, size_t>> tokens(std::string_view text) {
   std::vector<std::pair<size_t, size_t>> list;
   for (size_t at = 0; at < text.size();) {
@@ -139,7 +139,7 @@ std::string mutant(const std::string& text, Random& random) {
   }
 }
 
-/// Loads a mutant; true when it is still a diagram.
+/// Loads a mutant. True if it is still a diagram.
 bool load(const DiagramFolder& folder, const std::string& what, const LoadOptions& options = {}) {
   Problems problems;
   const auto begin = std::chrono::steady_clock::now();

@@ -1,4 +1,4 @@
-// --set and drives: what the caller changes about a diagram.
+// --set and drives: changes that the caller makes to a diagram.
 #include <gtest/gtest.h>
 #include "engine/json/json.h"
 #include "tests/engine/diagram/diagram_folder.h"

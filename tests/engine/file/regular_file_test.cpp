@@ -1,4 +1,4 @@
-// Only regular files are read, and what is none is refused without waiting for anybody.
+// Only regular files are read. Others are rejected without waiting for another process.
 #include "engine/file/regular_file.h"
 
 #include <gmock/gmock.h>
@@ -23,7 +23,7 @@ class RegularFile : public testing::Test {
   RegularFile() {
     std::string name = (std::filesystem::temp_directory_path() / "loopwright_file_XXXXXX").string();
     if (::mkdtemp(name.data())) folder_ = name;
-    ::alarm(20);  // a test that waits for a writer ends here
+    ::alarm(20);  // a test that would wait for a writer ends here
   }
   ~RegularFile() override {
     ::alarm(0);

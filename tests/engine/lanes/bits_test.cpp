@@ -1,5 +1,4 @@
-/// The promise of lanes: the bits of scalar runs, for every block and every diagram, whatever the lanes'
-/// parameters.
+/// Lanes give the bits of scalar runs, for every block and every diagram, whatever the lanes' parameters.
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -14,7 +13,7 @@ using namespace loopwright::testing;
 
 const std::string diagrams = LOOPWRIGHT_SOURCE "/diagrams/";
 
-/// Every diagram that can run by itself, without the experiments and models that lie beside them.
+/// Every diagram that can run by itself, without experiments and models beside them.
 std::vector<std::string> all_diagrams() {
   std::vector<std::string> names;
   for (const char* folder : {"axis", "emps", "examples", "linear_motor"})
@@ -23,7 +22,7 @@ std::vector<std::string> all_diagrams() {
       if (file.path().extension() != ".json" || file.path().stem().has_extension()) continue;
       Problems problems;
       const auto diagram = load_diagram(file.path(), {}, problems);
-      // Parts of others have inputs of their own or nothing that says when to stop; examples must run.
+      // Parts of other diagrams have inputs of their own or no stop time. Examples must run.
       const bool runs = diagram && diagram->inputs.empty() && diagram->solver.stop.is_given;
       if (runs || folder == std::string("examples")) names.push_back(std::string(folder) + "/" + name);
     }
@@ -33,7 +32,8 @@ std::vector<std::string> all_diagrams() {
 
 class EveryDiagram : public ::testing::TestWithParam<std::string> {};
 
-/// One in every register of four lanes, and so two in every register of eight, at another place in each.
+/// One in every register of four lanes, and therefore two in every register of eight, at a different position
+/// in each.
 std::vector<int> lanes_in_every_register() {
   std::vector<int> lanes;
   for (int i = 0; i < most_lanes / 4; ++i) lanes.push_back(4 * i + i % 4);

@@ -8,7 +8,7 @@
 namespace loopwright {
 namespace {
 
-/// A block that is in no module, like one from a library of blocks: counts how often it is asked to decide.
+/// A block that is in no module, like one from a block library: counts the calls of decide.
 struct DecisionCounter {
   struct In {
     double u;
@@ -122,7 +122,7 @@ TEST_P(LaneRunTest, LetsALaneJumpWithoutTouchingTheDecisionsOfOthers) {
   EXPECT_GT(counts.size(), 1u);
 }
 
-// Each lane needs another number of Newton's steps.
+// Each lane needs a different number of Newton steps.
 TEST_P(LaneRunTest, SolvesRingsLaneByLane) {
   const auto plan = plan_of(diagram(R"(
     "drive": {"type": "Sine", "amplitude": 1, "frequency": 1},
@@ -190,7 +190,7 @@ TEST_P(LaneRunTest, RefusesMoreLanesThanAMaskHolds) {
   EXPECT_THROW(make_lane_run(*plan, GetParam(), 0), std::runtime_error);
 }
 
-/// A block that would move something in the world outside.
+/// A block that would act on the outside world.
 struct Lamp {
   static constexpr bool has_side_effects = true;
   struct In {

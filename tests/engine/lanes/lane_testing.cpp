@@ -35,7 +35,7 @@ bool set_parameter(LaneRun& run, std::string_view path, int lane, double value) 
 }
 
 double TunedParameter::in_lane(int lane) const {
-  // The lane comes first: what is hashed last hardly reaches the upper bits.
+  // The lane comes first, because the last hashed value hardly affects the upper bits.
   const uint64_t bits = ContentHash().add(std::to_string(lane)).add(path).value();
   const double share = double(bits >> 11) * 0x1p-52 - 1.0;  // in [-1, 1)
   const double tuned = value == 0 ? 0.01 * share : value * (1 + 0.03 * share);

@@ -22,7 +22,7 @@ std::string output_of(const std::string& command) {
 class LaneModule : public ::testing::TestWithParam<InstructionSet> {};
 INSTANTIATE_TEST_SUITE_P(Sets, LaneModule, ::testing::ValuesIn(simd_sets), set_name);
 
-// Under the sanitizers one module stands for both: see engine/lanes/CMakeLists.txt.
+// Under the sanitizers one module replaces both: see engine/lanes/CMakeLists.txt.
 bool is_built(InstructionSet set) {
 #ifdef __SANITIZE_ADDRESS__
   return set != InstructionSet::avx512;
@@ -32,7 +32,7 @@ bool is_built(InstructionSet set) {
 #endif
 }
 
-// Any other symbol could be handed to the program, which must run on machines without these instructions.
+// Any other symbol could be linked into the program, which must run on machines without these instructions.
 TEST_P(LaneModule, ExportsNothingButItsEntry) {
   if (!is_built(GetParam())) GTEST_SKIP() << "not built under the sanitizers";
   const std::string file = LOOPWRIGHT_BINARY "/lib/loopwright_lanes_" + std::string(to_name(GetParam())) + ".so";

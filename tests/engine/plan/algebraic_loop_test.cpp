@@ -1,4 +1,4 @@
-// Rings of direct feedthrough: told port by port, or solved.
+// Algebraic loops: listed port by port, or solved.
 #include <gtest/gtest.h>
 #include <cmath>
 #include "tests/engine/written_diagram.h"
@@ -68,7 +68,7 @@ TEST(AlgebraicLoop, ALinearRingIsSolvedToItsAnalyticSolution) {
 }
 
 TEST(AlgebraicLoop, ANonlinearRingFollowsItsSourceAtEveryStep) {
-  // y = cos(y) + t: y - cos(y) - t = 0 has one solution, as its slope 1 + sin(y) is nowhere negative.
+  // y = cos(y) + t: y - cos(y) - t = 0 has one solution, because its slope 1 + sin(y) is nowhere negative.
   const RunResult result = run_of(diagram(
       R"("t": {"type": "Clock"}, "f": {"type": "Expression", "formula": "cos(y)+t", "names": ["y", "t"], "in": {"arguments": ["f.y", "t.time"]}})",
       R"("stop": 1, "step": 0.01, "algebraic_loops": "solve")"));
@@ -93,7 +93,7 @@ TEST(AlgebraicLoop, ACoupledPairIsSolvedTogether) {
 }
 
 TEST(AlgebraicLoop, InsideAStageIsSolvedAtEveryStage) {
-  // dx/dt = v, v = -x - v/2, so x decays as exp(-2/3 t): fourth order is only reached if every stage is
+  // dx/dt = v, v = -x - v/2, so x decays as exp(-2/3 t). Fourth order is reached only if every stage is
   // solved.
   const RunResult result = run_of(diagram(R"("x": {"type": "Integrator", "initial": 1, "in": {"u": "v.y"}},
     "v": {"type": "Expression", "formula": "-x-v/2", "names": ["x", "v"], "in": {"arguments": ["x.y", "v.y"]}})",

@@ -1,4 +1,4 @@
-// What a diagram records that does not say what.
+// What a diagram without "log" records.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include "tests/engine/written_diagram.h"

@@ -1,5 +1,5 @@
-// Subdiagrams dissolve before anything is ordered: they cost no delay, make no false ring, and keep their
-// names.
+// Subdiagrams are dissolved before blocks are ordered: they add no delay, create no false algebraic loop, and
+// keep their names.
 #include <gtest/gtest.h>
 #include <algorithm>
 #include "tests/engine/written_diagram.h"
@@ -63,7 +63,7 @@ TEST(Flatten, AnInputWiredStraightToAnOutputIsAWire) {
 }
 
 TEST(Flatten, ATwoOutputSubdiagramMakesNoFalseRing) {
-  // The path from u to the output that is fed back goes through an integrator; only `direct` feeds through.
+  // The path from u to the output that is fed back contains an integrator. Only `direct` feeds through.
   DiagramFolder folder;
   folder.with(
       "two.json",
@@ -78,7 +78,8 @@ TEST(Flatten, ATwoOutputSubdiagramMakesNoFalseRing) {
 }
 
 TEST(Flatten, ATwoOutputBlockMakesNoFalseRing) {
-  // Mass: acceleration is fed by the force, velocity is a state. Friction from velocity closes no ring.
+  // Mass: acceleration depends on the force, velocity is a state. Friction that depends on velocity closes no
+  // algebraic loop.
   EXPECT_EQ(
       problems_of(diagram(
           R"("stage": {"type": "Mass", "mass": 2, "in": {"force": "sum.sum"}}, "push": {"type": "Constant", "value": 1},

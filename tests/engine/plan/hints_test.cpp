@@ -1,4 +1,4 @@
-// What is offered in the place of what does not exist.
+// Suggestions for names that do not exist.
 #include <gtest/gtest.h>
 #include "engine/block/registry.h"
 #include "engine/json/unit_hint.h"
@@ -32,7 +32,7 @@ TEST(Hints, NamesOfOtherProgramsLeadToBlocksThatExist) {
 }
 
 TEST(Hints, EveryBlockThatIsOfferedExists) {
-  // Whatever a hint offers in quotes after "did you mean" is a block.
+  // Every name that a hint quotes after "did you mean" is a block.
   for (const char* written : {"abs",
                               "bias",
                               "busselector",

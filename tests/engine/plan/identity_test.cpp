@@ -1,4 +1,4 @@
-// The hash of a plan: the same for what runs the same, another for anything that changes a number.
+// The hash of a plan: equal for plans with equal results, different for any change of a number.
 #include <gtest/gtest.h>
 #include <fstream>
 #include <set>
@@ -58,7 +58,7 @@ TEST(Identity, EveryParameterAndSettingMatters) {
 
 // ---- what was read ----
 
-/// Plays back a recording, through a subdiagram.
+/// Plays a recording through a subdiagram.
 DiagramFolder& with_recording(DiagramFolder& folder, std::string_view rows = "0,1\n1,2\n") {
   folder.with("data/track.csv", "time,x\n" + std::string(rows));
   folder.with("parts/player.json",

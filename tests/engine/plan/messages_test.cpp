@@ -1,4 +1,5 @@
-// What is misspelt, missing or too much in a diagram is told with its place and what was probably meant.
+// Misspelled, missing and superfluous members of a diagram are reported with source location and a suggested
+// correction.
 #include <gtest/gtest.h>
 #include "tests/engine/written_diagram.h"
 

@@ -1,4 +1,4 @@
-// Sample times become exact ratios of one tick; blocks run as often as what they read.
+// Sample times become exact ratios of one tick. Blocks run as often as the signals that they read.
 #include <gtest/gtest.h>
 #include "tests/engine/written_diagram.h"
 
@@ -11,7 +11,7 @@ const Plan::Block& block(const Plan& plan, std::string_view path) {
   throw std::invalid_argument("no block " + std::string(path));
 }
 
-/// The rate of a block's first output.
+/// The rate of the first output of a block.
 Rate rate(const Plan& plan, std::string_view path) {
   for (const Plan::Entry& entry : plan.order)
     if (entry.kind == Plan::Entry::Kind::outputs && plan.blocks[size_t(entry.block)].path == path)

@@ -55,8 +55,7 @@ TEST(Size, ARunOfNoDurationHasOneRow) {
   }
 }
 
-/// A chain of lags that is closed to a ring through its states, `blocks` in number, written in an order that
-/// does not help.
+/// A chain of `blocks` lags, closed to a loop through its states, written in an unfavorable order.
 std::string chain(int blocks) {
   std::string text;
   for (int i = 0; i < blocks; ++i) {
@@ -86,7 +85,7 @@ TEST(Size, AThousandBlocksCompileAndRun) {
 }
 
 TEST(Size, TheCostOfABlockDoesNotGrowWithTheirNumber) {
-  // Generous, for a loaded machine; a quadratic step anywhere would make it ten.
+  // Generous, for a loaded machine. Any quadratic step would increase it to ten.
   const double few = processor_seconds_to_compile(2000) / 2000,
                many = processor_seconds_to_compile(20000) / 20000;
   EXPECT_LT(many, 4 * few) << "seconds a block: " << few << " of 2,000, " << many << " of 20,000";

@@ -1,4 +1,4 @@
-// Every diagram that is shipped decides the unit of each of its wires.
+// Every shipped diagram determines the unit of each of its wires.
 #include <filesystem>
 #include <gtest/gtest.h>
 #include "engine/json/file_kind.h"
@@ -22,7 +22,7 @@ std::vector<std::string> shipped_diagrams() {
   return paths;
 }
 
-/// Problems and wires without a unit, as `check --strict-units` tells them.
+/// Problems and wires without a unit, as `check --strict-units` reports them.
 std::string told_of(const std::string& path, const LoadOptions& options = {}) {
   Problems problems;
   const auto diagram = load_diagram(path, options, problems);

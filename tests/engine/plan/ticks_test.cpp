@@ -1,4 +1,4 @@
-// Times as exact fractions, and what has no exact fraction.
+// Times as exact fractions, and times that have no exact fraction.
 #include <gtest/gtest.h>
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-// Hz, rpm, rad/s … mean the same rotation wherever a quantity is given, or are refused with both readings.
+// Hz, rpm, rad/s … mean the same rotation wherever a quantity is given, or are rejected with both readings.
 #include <gtest/gtest.h>
 #include <numbers>
 #include "tests/engine/written_diagram.h"
@@ -19,7 +19,7 @@ const std::vector<RateUnit> rate_units = {
     {"rad/s", 1, Kind::radians},  {"deg/s", pi / 180, Kind::radians}, {"rev/s", 2 * pi, Kind::radians},
     {"1/s", 1, Kind::plain}};
 
-/// A parameter of a block that wants rad/s, Hz, or a plain 1/s.
+/// A parameter of a block that expects rad/s, Hz, or a plain 1/s.
 struct Place {
   std::string block, path;
   RateUnit wants;
@@ -44,7 +44,7 @@ std::string filled(std::string text, const std::string& value) {
   return text.replace(text.find("VALUE"), 5, value);
 }
 
-/// The number that the block works with, and what was said about it.
+/// The number that the block uses, and the messages about it.
 struct Outcome {
   std::optional<double> number;
   std::string problems;
@@ -64,7 +64,7 @@ Outcome outcome_of(const DiagramFolder& folder, const std::string& path, const L
   return outcome;
 }
 
-/// All the ways in which `value` of a unit comes to a place.
+/// All ways in which `value` with a unit reaches a parameter.
 std::vector<std::pair<std::string, Outcome>> outcomes(const Place& place, const std::string& number,
                                                       const RateUnit& unit) {
   std::vector<std::pair<std::string, Outcome>> list;

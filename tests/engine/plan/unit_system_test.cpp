@@ -1,4 +1,4 @@
-// Unknown units in many equations are solved together, also where no equation has a single unknown.
+// Unknown units in many equations are solved together, also if every equation has several unknowns.
 #include "engine/plan/unit_system.h"
 #include <chrono>
 #include <gtest/gtest.h>
@@ -22,8 +22,7 @@ TEST(UnitSystem, SolvesProductsAndQuotients) {
 }
 
 TEST(UnitSystem, SolvesThreeTangledUnknowns) {
-  UnitSystem
-      system;  // a b c = N, a b / c = N/s^2, a / b c = kg: c = s, b = m/s^3, a = kg m … checked by putting in
+  UnitSystem system;  // a b c = N, a b / c = N/s^2, a / b c = kg: c = s, b = m/s^3, a = kg m … (substituted)
   system.add({{7, 1}, {8, 1}, {9, 1}}, inverse("N"), 0);
   system.add({{7, 1}, {8, 1}, {9, -1}}, inverse("N/s^2"), 1);
   system.add({{7, 1}, {8, -1}, {9, -1}}, inverse("kg"), 2);
@@ -69,7 +68,7 @@ TEST(UnitSystem, SolvesLongChainsInEitherOrder) {
     system.solve();
     EXPECT_EQ(system.value(0), unit("V"));
     EXPECT_EQ(system.value(links), unit("V"));
-    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));  // quadratic: minutes
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));  // minutes if quadratic
   }
 }
 

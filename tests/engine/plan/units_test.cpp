@@ -1,4 +1,4 @@
-// Units are worked out along the wires; where they clash both ends are named.
+// Units are derived along the wires. A conflict names both ends.
 #include <gtest/gtest.h>
 #include "tests/engine/written_diagram.h"
 
@@ -12,7 +12,7 @@ std::string unit_of(const Plan& plan, std::string_view port) {
   return unit ? to_string(*unit) : "?";
 }
 
-/// A force on a mass with a position controller: units are written at the mass and the reference only.
+/// A force on a mass with a position controller: units are given at the mass and the reference only.
 constexpr std::string_view servo =
     R"("reference": {"type": "Sine", "amplitude": {"value": 5, "unit": "mm"}, "frequency": 1},
 "error": {"type": "Sum", "signs": "+-", "in": {"terms": ["reference.y", "stage.position"]}},
@@ -49,7 +49,7 @@ TEST(Units, AClashNamesBothEndsAndBothUnits) {
 }
 
 TEST(Units, AClashFarFromItsCauseIsFoundAtTheWireThatCannotBe) {
-  // The mass is in kg, its force therefore in N; the gain says V.
+  // The mass is in kg, its force is therefore in N; the gain states V.
   const std::string text =
       problems_of(diagram(R"("c": {"type": "Constant", "value": {"value": 1, "unit": "m"}},
 "g": {"type": "Gain", "gain": {"value": 1, "unit": "V/m"}, "in": {"u": "c.y"}},
@@ -160,7 +160,7 @@ TEST(Units, OfAMatrixMustAgreeWhereTheyAreWritten) {
 }
 
 TEST(Units, OfSeveralUnknownsAreSolvedTogether) {
-  // Neither equation of the spring and the mass has a single unknown; together with the push all have.
+  // Each equation of the spring and the mass has several unknowns. With the push all are determined.
   const auto plan = plan_of(diagram(R"("push": {"type": "Step", "after": {"value": 10, "unit": "N"}},
 "net": {"type": "Sum", "signs": "+-", "in": {"terms": ["push.y", "spring.force"]}},
 "square": {"type": "Product", "in": {"factors": ["a.y", "b.y"]}},
@@ -231,7 +231,7 @@ TEST(Units, OfWiresThatNothingDecidesAreCounted) {
       R"("c": {"type": "Constant", "value": 1}, "g": {"type": "Gain", "gain": 2, "in": {"u": "c.y"}},
 "t": {"type": "Clock"}, "s": {"type": "Sum", "in": {"terms": ["g.y"]}})",
       R"("stop": 1)", R"(, "log": ["t.time"])"));
-  EXPECT_EQ(plan->without_unit.count, 2u);  // nobody reads s.sum
+  EXPECT_EQ(plan->without_unit.count, 2u);  // no block reads s.sum
   EXPECT_EQ(to_string(plan->without_unit), "2 wires without a unit: c.y, g.y");
   Problems problems;
   refuse(plan->without_unit, problems);

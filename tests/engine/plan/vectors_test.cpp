@@ -1,4 +1,4 @@
-// Blocks on scalars take vectors element by element; vector ports take them whole.
+// Scalar blocks accept vectors element by element. Vector ports accept whole vectors.
 #include <gtest/gtest.h>
 #include "tests/engine/written_diagram.h"
 

@@ -46,7 +46,7 @@ TEST(AtomicFile, LeavesTheOldFileWhenItIsAbandoned) {
   EXPECT_EQ(folder.count_files(), 1u);
 }
 
-/// The number of a process that is gone.
+/// The number of a process that has ended.
 pid_t ended_process() {
   const pid_t child = ::fork();
   if (child == 0) ::_exit(0);
@@ -70,7 +70,7 @@ TEST(AtomicFile, RemovesWhatAKilledProgramLeftBesideTheTarget) {
 }
 
 TEST(AtomicFile, KeepsWhatIsStillBeingWrittenThoughItsProcessCannotBeSeen) {
-  const TemporaryFolder folder;  // as from another machine, on a folder that is shared
+  const TemporaryFolder folder;  // as from another machine, on a shared folder
   const std::string other = folder / (".a.csv." + std::to_string(ended_process()) + "-0");
   std::ofstream(other) << "half";
   const int writer = ::open(other.c_str(), O_WRONLY);
@@ -125,7 +125,7 @@ TEST(AtomicFile, WritesThroughToDevices) {
   EXPECT_TRUE(S_ISCHR(status.st_mode)) << "a device must not be replaced by a file";
 }
 
-/// Runs `write` in a process whose files may not grow beyond `bytes`, as on a full disk; true when it threw.
+/// Runs `write` in a process whose files are limited to `bytes`, as on a full disk. True if it threw.
 bool throws_on_full_disk(rlim_t bytes, const std::function<void()>& write) {
   const pid_t child = ::fork();
   if (child == 0) {

@@ -1,4 +1,4 @@
-// Units of columns, and which column is the time.
+// Units of columns, and the choice of the time column.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <cmath>
@@ -16,7 +16,7 @@ Recording csv(const std::string& text) {
   EXPECT_EQ(problems.text(), "");
   return recording;
 }
-/// As from a MAT file: its variables in the order of the alphabet.
+/// As from a MAT file: its variables in alphabetical order.
 Recording variables(const std::vector<Column>& columns) {
   Recording recording;
   recording.columns = columns, recording.is_ordered = false;

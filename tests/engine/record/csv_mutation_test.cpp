@@ -1,4 +1,4 @@
-// Damaged files: whatever happens to a CSV file, reading ends with errors or with a well-formed recording.
+// Damaged files: reading any damaged CSV file ends with errors or with a well-formed recording.
 #include "engine/record/csv.h"
 #include "mutation.h"
 #include "support.h"
@@ -35,13 +35,13 @@ TEST(CsvMutation, ReadingEndsWithErrorsOrAWellFormedRecording) {
     for (const Problem& problem : problems.list()) ASSERT_LE(problem.place.offset, damaged.size());
     ASSERT_LE(problems.text().size(), 100'000u);
   }
-  // Both ways out were taken often: the test tests something.
+  // Both results occurred often: the test is meaningful.
   EXPECT_GT(refused, 2000);
   EXPECT_GT(read, 2000);
 }
 
 TEST(CsvMutation, MemoryStaysInProportionToTheFile) {
-  // A wide header over empty lines, and many lines of nothing: neither may reserve columns times lines.
+  // A wide header over empty lines, and many empty lines: neither may reserve columns times lines.
   std::string wide = "a0";
   for (int i = 1; i < 20'000; ++i) wide += ",a" + std::to_string(i);
   Problems problems;

@@ -1,4 +1,4 @@
-// A log that grows on the disk: what is whole is read, whatever happened to the file.
+// A log that grows on the disk: intact parts are read, whatever happened to the file.
 #include "engine/record/journal.h"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ std::string bytes_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 void put_bytes(const std::string& path, const std::string& bytes) {
-  std::filesystem::remove(path);  // some file systems flush a file that is written over
+  std::filesystem::remove(path);  // some file systems flush a file that is overwritten
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
@@ -53,7 +53,7 @@ class Journal : public testing::Test {
       ASSERT_EQ(journal.end({{"outputs_safe", "confirmed"}}, dropped), 0);
     }
   }
-  /// Every row that the journal yields is one that was written, in order.
+  /// Every row that the journal yields was written, in order.
   int64_t rows_that_are_right(const JournalReader& journal) {
     int64_t rows = 0;
     double last = -1;
@@ -120,7 +120,8 @@ TEST_F(Journal, AFlippedBitAnywhereCostsOneChunkAndIsTold) {
     const JournalReader journal(path);
     const int64_t rows = rows_that_are_right(journal);
     const JournalSurvey& survey = journal.survey();
-    // The first heading hurt: the rows up to its repetition. Any other chunk: its own.
+    // Damage to the first heading loses the rows up to its repetition. Damage to any other chunk loses this
+    // chunk.
     EXPECT_GE(rows, 20) << at;
     EXPECT_EQ(rows + survey.lost_rows, 30) << at;
     EXPECT_FALSE(survey.is_whole()) << at;

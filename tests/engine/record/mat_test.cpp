@@ -17,7 +17,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// Files as other programs write them.
+/// Files written by other programs.
 class ForeignFile {
  public:
   explicit ForeignFile(const std::string& path, mat_ft version = MAT_FT_MAT5)
@@ -241,7 +241,7 @@ TEST(MatProblems, TellFilesThatAreNoneOrCutOff) {
   EXPECT_THAT(problems_of(folder / "a.mat"), HasSubstr("no numbers"));
 }
 
-#if !defined(__SANITIZE_ADDRESS__)  // where memory cannot be limited
+#if !defined(__SANITIZE_ADDRESS__)  // if memory cannot be limited
 TEST(MatProblems, TellFilesThatNeedMoreMemoryThanTheyMayTake) {
   const TemporaryFolder folder;
   write_mat(folder / "a.mat",
@@ -252,7 +252,7 @@ TEST(MatProblems, TellFilesThatNeedMoreMemoryThanTheyMayTake) {
 }
 #endif
 
-/// The bytes of valid files of every kind that is read.
+/// The bytes of valid files of every supported kind.
 std::vector<std::string> valid_files() {
   const TemporaryFolder folder;
   std::vector<std::string> files;

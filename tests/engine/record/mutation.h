@@ -1,4 +1,4 @@
-/// Damage as files suffer it: flipped bits, lost ends, foreign bytes, parts twice or missing.
+/// Typical damage to files: flipped bits, missing ends, foreign bytes, duplicated or missing parts.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace loopwright {
 
-/// Damages `bytes` in one to four places; the same random numbers give the same damage.
+/// Damages `bytes` at one to four positions. The same random numbers give the same damage.
 inline std::string mutate(std::string bytes, std::mt19937_64& random) {
   for (uint64_t count = 1 + random() % 4; count > 0; --count) {
     const size_t at = bytes.empty() ? 0 : random() % bytes.size();
@@ -42,7 +42,7 @@ inline std::string mutate(std::string bytes, std::mt19937_64& random) {
   return bytes;
 }
 
-/// Flips bits behind the header and changes no length: such damage passes every check of the outline.
+/// Flips bits behind the header and changes no length: such damage passes every check of the structure.
 inline std::string flip_bits(std::string bytes, size_t header, std::mt19937_64& random) {
   for (uint64_t count = 1 + random() % 3; count > 0 && bytes.size() > header; --count) {
     const size_t at = header + random() % (bytes.size() - header);

@@ -1,4 +1,4 @@
-/// What the tests of recordings share.
+/// Shared parts of the tests of recordings.
 #pragma once
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -19,7 +19,7 @@
 
 namespace loopwright {
 
-/// A folder of its own that goes with the test.
+/// A temporary folder, removed with the test.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -49,7 +49,7 @@ inline void put_bytes(const std::string& path, std::string_view bytes) {
   std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
-/// Any finite double: every exponent and every mantissa is equally likely, denormals and -0 among them.
+/// Any finite double: every exponent and every mantissa is equally likely, including denormals and -0.
 inline double any_finite(std::mt19937_64& random) {
   while (true) {
     const double number = std::bit_cast<double>(random());
@@ -89,7 +89,7 @@ inline void expect_same(const Recording& expected, const Recording& found) {
   }
 }
 
-/// Names, units and facts that every layer of quoting and escaping has to carry.
+/// Names, units and facts that need quoting and escaping in every layer.
 inline Recording awkward_recording() {
   Recording recording;
   const std::vector<double> values = {1, 2, 3};

@@ -1,4 +1,4 @@
-// Solutions of diagrams against closed forms and published values.
+// Solutions of diagrams, compared with closed forms and published values.
 #include <gtest/gtest.h>
 #include <cmath>
 #include <numbers>
@@ -8,7 +8,7 @@
 namespace loopwright {
 namespace {
 
-/// A mass of 2 kg on a spring of 50 N/m: 5 rad/s, let go at 0.1 m.
+/// A mass of 2 kg on a spring of 50 N/m: 5 rad/s, released at 0.1 m.
 std::string oscillator(std::string_view solver) {
   return diagram(
       R"("stage": {"type": "Mass", "mass": {"value": 2, "unit": "kg"}, "initial_position": {"value": 0.1, "unit": "m"}, "in": {"force": "push.y"}},
@@ -17,7 +17,7 @@ std::string oscillator(std::string_view solver) {
       solver, R"(, "log": ["stage.position"])");
 }
 
-/// Greatest error of the position over all rows [m].
+/// Largest error of the position over all rows [m].
 double error(const RunResult& result) {
   double worst = 0;
   for (size_t i = 0; i < result.recording.rows(); ++i)
@@ -45,13 +45,13 @@ TEST(Accuracy, VariableStepMethodsKeepTheirTolerance) {
           R"("stop": 2, "method": "{}", "relative_tolerance": {:g}, "absolute_tolerance": {:g}, "record_step": 0.02)",
           method, tolerance, 0.1 * tolerance))));
       EXPECT_LT(e, 200 * 0.1 * tolerance)
-          << method << " at " << tolerance;  // local errors add up over two seconds
+          << method << " at " << tolerance;  // local errors accumulate over two seconds
       EXPECT_GT(e, 0) << method;
     }
 }
 
 TEST(Accuracy, DenseOutputDoesNotDependOnTheStepsOfTheSolver) {
-  // Steps of some 0.05 s, rows every millisecond: as accurate between the steps as at their ends.
+  // Steps of about 0.05 s, rows every millisecond: equally accurate between the steps and at their ends.
   const RunResult result = run_of(oscillator(
       R"("stop": 2, "method": "dopri5", "relative_tolerance": 1e-8, "absolute_tolerance": 1e-10, "record_step": 0.001)"));
   EXPECT_EQ(result.recording.rows(), 2001u);
@@ -77,7 +77,7 @@ TEST(Accuracy, AnRcChainFollowsItsClosedForm) {
 }
 
 TEST(Accuracy, AStepBetweenTicksIsNotSmeared) {
-  // The integral of a unit step at an irrational time: exact, as the solver stops there.
+  // The integral of a unit step at an irrational time: exact, because the solver stops there.
   for (const char* method : {"dopri5", "cvode-bdf", "cvode-adams"}) {
     const RunResult result = run_of(diagram(
         R"("s": {"type": "Step", "time": 0.31830988618379067}, "x": {"type": "Integrator", "in": {"u": "s.y"}})",

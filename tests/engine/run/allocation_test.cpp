@@ -1,4 +1,4 @@
-// A step allocates nothing, whatever blocks it runs.
+// A step allocates nothing, with all blocks.
 #include <gtest/gtest.h>
 #include <cstdlib>
 #include <set>
@@ -50,7 +50,7 @@ TEST_F(Allocation, NoBlockAllocatesInAFixedStep) {
   for (const std::string& file : example_files()) {
     Plan plan = *load_plan(file);
     if (!is_fixed_step(plan.method)) plan.method = Method::rk4;
-    plan.record_ticks = 1;  // room for a row of every step
+    plan.record_ticks = 1;  // reserves a row for every step
     EXPECT_EQ(allocations_of_fixed_steps(plan, 500), 0) << file;
     for (const Plan::Block& block : plan.blocks) seen.insert(block.type->info.type);
   }

@@ -1,2 +1,2 @@
-// This program counts its allocations too.
+// Counts the allocations of this program.
 #include "tests/engine/solve/allocations.cpp"

@@ -1,4 +1,4 @@
-// A run that was set aside goes on as if it had never stopped; a file that is not its own is refused.
+// A resumed run continues as if it had not been interrupted. A checkpoint of another run is rejected.
 #include <gtest/gtest.h>
 #include <fstream>
 #include <sstream>
@@ -7,7 +7,7 @@
 namespace loopwright {
 namespace {
 
-/// Something of every kind of memory: random stream, delay lines, discrete sums, states, modes, events.
+/// Every kind of memory: random stream, delay lines, discrete sums, states, modes, events.
 std::string everything(std::string_view solver, std::string_view gain = "1") {
   return diagram(fmt::format(R"("n": {{"type": "Noise", "sample_time": 0.01, "standard_deviation": 1}},
     "sum": {{"type": "DiscreteIntegrator", "sample_time": 0.01, "in": {{"u": "n.y"}}}}, "d": {{"type": "Delay", "samples": 7, "sample_time": 0.01, "in": {{"u": "n.y"}}}},
@@ -45,7 +45,7 @@ TEST(Checkpoint, AResumedRunHasTheSameBitsAsOneThatWasNotStopped) {
       RunOptions options = write_every(every, file);
       const RunResult whole = simulate(*plan, options);
       ASSERT_EQ(whole.status, RunStatus::finished) << whole.message;
-      options.resume_file = file;  // and sets itself aside again
+      options.resume_file = file;  // and writes checkpoints itself
       const RunResult rest = simulate(*plan, options);
       ASSERT_EQ(rest.recording.rows(), whole.recording.rows()) << solver;
       for (size_t c = 0; c < whole.recording.columns.size(); ++c)
@@ -62,7 +62,7 @@ void expect_same(const RunResult& one, const RunResult& other, const std::string
         << what << " " << one.recording.columns[c].name;
 }
 
-/// Nothing sampled: the solver's step alone leads through the run, or its events.
+/// Nothing sampled: only the solver's steps, or its events, advance the run.
 const char* const smooth =
     R"("s": {"type": "Sine", "frequency": 1}, "x": {"type": "LowPass", "cutoff": 3, "in": {"u": "s.y"}}, "y": {"type": "LowPass", "cutoff": 30, "in": {"u": "x.y"}})";
 const char* const eventful =

@@ -1,4 +1,4 @@
-// Events of diagrams: found where they are, each decided once, counted by name, and chattering told.
+// Events of diagrams: located exactly, each decided once, counted by name; chattering is reported.
 #include <gtest/gtest.h>
 #include <cmath>
 #include <ctime>
@@ -15,8 +15,8 @@ int64_t events(const RunResult& result, std::string_view name) {
 
 constexpr std::string_view tight = R"("relative_tolerance": 1e-11, "absolute_tolerance": 1e-13)";
 
-/// A ball dropped from 1 m that keeps 0.8 of its speed at every bounce; `bounces` counts them, `last` notes
-/// when.
+/// A ball dropped from 1 m that keeps 0.8 of its speed at every bounce. `bounces` counts them, `last` stores
+/// the time.
 std::string ball(std::string_view solver) {
   return diagram(R"("gravity": {"type": "Constant", "value": {"value": -9.81, "unit": "m/s^2"}},
     "velocity": {"type": "Integrator", "in": {"u": "gravity.y", "reset": "below.y", "reset_value": "rebound.y"}},
@@ -29,7 +29,7 @@ std::string ball(std::string_view solver) {
 }
 
 TEST(RunEvents, ABallBouncesAtTheTimesOfItsClosedForm) {
-  // `since` runs from the last bounce: at every row, time - since is the time of that bounce.
+  // `since` is the time since the last bounce: at every row, time - since is the time of that bounce.
   for (const char* method : {"dopri5", "cvode-bdf"}) {
     const RunResult result =
         run_of(ball(fmt::format(R"("stop": 3.6, "method": "{}", {}, "record_step": 0.01)", method, tight)));
@@ -51,7 +51,7 @@ TEST(RunEvents, ABallBouncesAtTheTimesOfItsClosedForm) {
 }
 
 TEST(RunEvents, ARelayOscillatesWithThePeriodOfItsClosedForm) {
-  // dx/dt = relay(x) = -1 when on, +1 when off, on above 0.2, off below -0.2: a triangle of period 0.8.
+  // dx/dt = relay(x) = -1 when on, +1 when off, on above 0.2, off below -0.2: a triangle wave of period 0.8.
   for (const char* method : {"dopri5", "cvode-bdf", "cvode-adams"}) {
     const RunResult result = run_of(diagram(
         R"("x": {"type": "Integrator", "in": {"u": "r.y"}}, "r": {"type": "Relay", "switch_on": 0.2, "switch_off": -0.2, "on": -1, "off": 1, "in": {"u": "x.y"}})",
@@ -80,8 +80,8 @@ TEST(RunEvents, ARelayBehindALagOscillatesWithThePeriodOfItsClosedForm) {
 }
 
 TEST(RunEvents, OfOneInstantComeAsOneSet) {
-  // Three switches on the same signal, and one on its double, at the same instant: the sum never shows a part
-  // of them.
+  // Three switches on the same signal, and one on its double, at the same instant: the sum never shows a
+  // partial change.
   const RunResult result = run_of(diagram(
       R"("t": {"type": "Clock"}, "x": {"type": "Integrator", "in": {"u": "one.y"}}, "one": {"type": "Constant", "value": 1},
     "twice": {"type": "Gain", "gain": 2, "in": {"u": "x.y"}},
@@ -118,8 +118,8 @@ TEST(RunEvents, AHysteresisAsAdvisedEndsTheChattering) {
 }
 
 TEST(RunEvents, ASwitchThatIsLeftOnTheSideItCameFromIsDecidedAnew) {
-  // x falls through zero, is pushed back through it at once, and stays: the sign must be +1 again, not -1 for
-  // ever. dx/dt = -1 until x < 0 was seen, +1 from then on.
+  // x falls through zero, is pushed back through it at once, and stays: the sign must be +1 again, not -1
+  // permanently. dx/dt = -1 until x < 0 was detected, +1 from then on.
   const RunResult result = run_of(diagram(R"("x": {"type": "Integrator", "initial": 1, "in": {"u": "r.y"}},
     "r": {"type": "Relay", "switch_on": 1000, "switch_off": 0, "on": -1, "off": 1, "starts_on": true, "in": {"u": "x.y"}}, "sign": {"type": "Sign", "in": {"u": "x.y"}})",
                                           R"("stop": 3, "method": "dopri5", "record_step": 0.1)"));
@@ -129,7 +129,7 @@ TEST(RunEvents, ASwitchThatIsLeftOnTheSideItCameFromIsDecidedAnew) {
 }
 
 TEST(RunEvents, LimitsOfAnIntegratorHoldAndRelease) {
-  // u = cos(t): the integral would be sin(t), limited to ±0.5; it leaves a limit when u changes its sign.
+  // u = cos(t): the integral would be sin(t), limited to ±0.5. It leaves a limit when u changes its sign.
   const RunResult result = run_of(diagram(
       R"("u": {"type": "Sine", "frequency": "=0.5/pi", "phase": "=pi/2"}, "x": {"type": "Integrator", "low": -0.5, "high": 0.5, "in": {"u": "u.y"}})",
       fmt::format(R"("stop": 10, "method": "dopri5", {}, "record_step": 0.01)", tight)));

@@ -1,5 +1,4 @@
-/// The diagrams in diagrams/examples, one for every block, without what lies beside them, such as
-/// NAME.model.json.
+/// The diagrams in diagrams/examples, one for every block, without other files such as NAME.model.json.
 #pragma once
 #include <algorithm>
 #include <filesystem>

@@ -1,4 +1,5 @@
-// Runs that go wrong end with a reason, the block, and the rows so far; those that might go wrong warn.
+// Runs that fail end with a reason, the block, and the rows computed so far. Runs that might fail give a
+// warning.
 #include <gtest/gtest.h>
 #include <atomic>
 #include <cmath>
@@ -31,7 +32,7 @@ TEST(Failure, ADivergingRunNamesTheBlockAndKeepsItsRows) {
 }
 
 TEST(Failure, ANumberThatIsNoneIsFoundAtItsSource) {
-  // An overflow two blocks before what is logged.
+  // An overflow two blocks before the logged signal.
   const RunResult result = run_of(diagram(
       R"("big": {"type": "Ramp", "slope": 1e200}, "q": {"type": "Product", "in": {"factors": ["big.y", "big.y"]}}, "g": {"type": "Gain", "gain": 2, "in": {"u": "q.product"}})",
       R"("stop": 1, "step": 0.1)", R"(, "log": ["g.y"])"));

@@ -13,7 +13,7 @@ uint64_t fault(const Call<double>& call) {
 }
 uint64_t fault_after_half(const Call<double>& call) { return call.now->time >= 0.5 ? fault(call) : 0; }
 
-/// Every kind of method: a sampled sum, an integrator that is reset, a delay that accepts.
+/// Every kind of method: a sampled sum, an integrator with reset, a delay that accepts.
 std::string all_methods(std::string_view solver) {
   return diagram(
       R"("t": {"type": "Clock"}, "s": {"type": "Sine", "frequency": 1}, "late": {"type": "TransportDelay", "delay": 0.1, "in": {"u": "x.y"}},
@@ -67,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"d", "update", dopri5, &K::update}),
     [](const auto& one) { return fmt::format("{}{}", one.param.method, one.index); });
 
-// A block of this test alone, never registered.
+// A block for this test only, never registered.
 template <class Real> struct Refuses {
   Real at_prepare = 0.0, at_start = 0.0, at_jump = 0.0;
   struct State {
@@ -120,8 +120,8 @@ TEST(Fault, AtTheStartEndsTheRunBeforeItsFirstRow) {
 }
 
 TEST(Fault, OfATrialThatTheSolverTookBackIsForgotten) {
-  // The first trial step reaches where the square root has no value; shorter ones do not, but for another
-  // block.
+  // The first trial step reaches a point at which the square root is undefined. Shorter steps do not, except
+  // for another block.
   const RunResult result = run_of(diagram(
       R"json("x": {"type": "Integrator", "initial": 1, "in": {"u": "g.y"}}, "g": {"type": "Gain", "gain": -40, "in": {"u": "x.y"}},
     "root": {"type": "Expression", "formula": "sqrt(x)", "names": ["x"], "in": {"arguments": ["x.y"]}},
@@ -133,7 +133,7 @@ TEST(Fault, OfATrialThatTheSolverTookBackIsForgotten) {
   EXPECT_TRUE(has(result.message, "\"late\"") || result.time < 0.45) << result.message;
 }
 
-/// Two integrators that reset each other for ever, once x leaves y by a half.
+/// Two integrators that reset each other endlessly, as soon as x differs from y by a half.
 std::string restless(std::string_view solver) {
   return diagram(
       R"("one": {"type": "Constant", "value": {"value": 1, "unit": "1/s"}}, "half": {"type": "Constant", "value": {"value": 0.5, "unit": "1"}},

@@ -1,11 +1,11 @@
-// What steps may not leap over: sources with a period, and the warning where something was leapt over.
+// Sources with a period that steps must resolve, and the warning if an event was missed.
 #include <gtest/gtest.h>
 #include "tests/engine/written_diagram.h"
 
 namespace loopwright {
 namespace {
 
-/// An integrator of 1 that a sine of 1 Hz resets to 0: it never passes 1.
+/// An integrator of 1 that a sine of 1 Hz resets to 0: it never exceeds 1.
 std::string reset_by_sine(std::string_view solver,
                           std::string_view source = R"("Sine", "frequency": 1, "phase": 0.3)") {
   return diagram(

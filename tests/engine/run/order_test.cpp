@@ -1,4 +1,4 @@
-// The step as engine/run/run.h writes it down, seen through blocks that show when they were called.
+// The step as documented in engine/run/run.h, observed through blocks that record when they were called.
 #include <gtest/gtest.h>
 #include "tests/engine/written_diagram.h"
 
@@ -6,7 +6,7 @@ namespace loopwright {
 namespace {
 
 TEST(StepOrder, ASampledChainIsReadInTheTickInWhichItIsComputed) {
-  // sampled read of a continuous state, an algebraic block, and the state that it drives: no tick of delay in
+  // Sampled read of a continuous state, an algebraic block, and the state that it drives: no tick of delay in
   // between.
   const RunResult result = run_of(diagram(R"("x": {"type": "Integrator", "initial": 1, "in": {"u": "g.y"}},
     "hold": {"type": "ZeroOrderHold", "sample_time": 0.1, "in": {"u": "x.y"}}, "g": {"type": "Gain", "gain": -1, "in": {"u": "hold.y"}})",
@@ -20,7 +20,7 @@ TEST(StepOrder, ASampledChainIsReadInTheTickInWhichItIsComputed) {
 }
 
 TEST(StepOrder, UpdatesTakeFrozenInputs) {
-  // Two delays that exchange their values: updating one before the other must not show.
+  // Two delays that exchange their values: updating one before the other must have no effect.
   const RunResult result =
       run_of(diagram(R"("a": {"type": "UnitDelay", "sample_time": 0.1, "initial": 1, "in": {"u": "b.y"}},
     "b": {"type": "UnitDelay", "sample_time": 0.1, "initial": 2, "in": {"u": "a.y"}})"));
@@ -65,7 +65,7 @@ TEST(StepOrder, AContinuousReaderSeesTheSampleOfTheSameTick) {
 }
 
 TEST(StepOrder, AResetIsSeenByEverybodyInTheTickInWhichItHappens) {
-  // The integrator falls back to 0 when the clock passes 0.5; the sampled reader of that tick sees the new
+  // The integrator is reset to 0 when the clock passes 0.5. The sampled reader of that tick sees the new
   // value.
   for (const char* solver :
        {R"("stop": 1, "step": 0.1)", R"("stop": 1, "method": "dopri5", "record_step": 0.1)"}) {

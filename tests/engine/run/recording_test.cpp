@@ -1,4 +1,4 @@
-// Results never depend on what is recorded, saved or watched: other rows, logs and checkpoints, the same
+// Results never depend on recording, saving or progress output: other rows, logs and checkpoints, the same
 // bits.
 #include <gtest/gtest.h>
 #include <cstring>
@@ -8,7 +8,7 @@
 namespace loopwright {
 namespace {
 
-/// The value of a signal in the row at a time; throws where there is no such row.
+/// The value of a signal in the row at a time. Throws if there is no such row.
 double at(const RunResult& result, std::string_view name, double time) {
   const auto& times = signal(result, "time");
   for (size_t row = 0; row < times.size(); ++row)
@@ -83,8 +83,8 @@ std::vector<std::string> shipped_diagrams() {
   return files;
 }
 
-/// The plan of a file with rows and a stop of its own, in multiples of its typical step; null where it does
-/// not run by itself, or has no room for that.
+/// The plan of a file with other rows and another stop, in multiples of its typical step. Null if it does not
+/// run by itself, or cannot be changed in this way.
 std::shared_ptr<const Plan> plan_with(const std::string& file, double record, double stop, bool few_signals) {
   LoadOptions options;
   options.set = {{"solver.record_step", fmt::format("{}", record)}, {"solver.stop", fmt::format("{}", stop)}};
@@ -102,7 +102,7 @@ std::shared_ptr<const Plan> plan_with(const std::string& file, double record, do
 
 bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
-/// Every row of the one that has the time of a row of the other.
+/// Every row of one recording that has the time of a row of the other.
 void expect_same_at_common_times(const RunResult& one, const RunResult& other, const std::string& what) {
   const auto &times = signal(one, "time"), &others = signal(other, "time");
   size_t row = 0, common = 0;
@@ -141,7 +141,7 @@ TEST(Recording, OfShippedDiagramsChangesNoNumber) {
       const auto other = plan_with(file, factor * step, stop, factor != 1.0);
       ASSERT_TRUE(other) << file;
       RunOptions saving;
-      if (factor == 12.0)  // each is on the disk before the run goes on: a few will do
+      if (factor == 12.0)  // each is written to disk before the run continues: a few are sufficient
         saving.checkpoint_file = folder.path("c"), saving.checkpoint_every = 23.3 * step;
       saving.progress = [](double, double) {};
       const RunResult result = simulate(*other, saving);
@@ -155,7 +155,7 @@ TEST(Recording, OfShippedDiagramsChangesNoNumber) {
 }
 
 TEST(Recording, OfALoopThatNewtonSolvesChangesNoNumber) {
-  // Newton's method starts at its last solution: a look of the recording must not be one.
+  // Newton's method starts at its last solution, which a row of the recording must not change.
   const std::string blocks =
       R"json("t": {"type": "Clock"}, "f": {"type": "Expression", "formula": "cos(y)+t", "names": ["y", "t"], "in": {"arguments": ["f.y", "t.time"]}},
     "x": {"type": "Integrator", "in": {"u": "f.y"}},

@@ -1,4 +1,4 @@
-// The arena is the run: copied back it repeats the same bits. And the same run has the same bits twice.
+// The arena contains the whole run: restored, it repeats the same bits. Two equal runs have the same bits.
 #include <gtest/gtest.h>
 #include <cstring>
 #include <fstream>
@@ -11,9 +11,9 @@
 namespace loopwright {
 namespace {
 
-using ScalarRun = Run<double>;  // inside a test the name Run is taken
+using ScalarRun = Run<double>;  // the name Run is taken inside a test
 
-/// Every number of the arena after each of some steps.
+/// Every number of the arena after each of several steps.
 std::vector<std::string> steps(ScalarRun& run, int count) {
   std::vector<std::string> arenas;
   const Plan& plan = run.plan();

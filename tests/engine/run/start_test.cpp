@@ -1,4 +1,4 @@
-// What signals show before their first sample.
+// Values of signals before their first sample.
 #include <gtest/gtest.h>
 #include "tests/engine/written_diagram.h"
 

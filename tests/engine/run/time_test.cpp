@@ -1,4 +1,5 @@
-// Time is tick times base: rows are neither lost nor shifted, and times are the nearest numbers.
+// Time is tick times base: rows are neither lost nor shifted, and times are the nearest floating-point
+// numbers.
 #include <gtest/gtest.h>
 #include "tests/engine/written_diagram.h"
 

@@ -1,4 +1,4 @@
-// Solutions against closed forms and published reference values.
+// Solutions, compared with closed forms and published reference values.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@ class VariableStepAccuracy : public ::testing::TestWithParam<Method> {};
 INSTANTIATE_TEST_SUITE_P(Every, VariableStepAccuracy, ::testing::ValuesIn(variable_step_methods), test_name);
 
 TEST_P(VariableStepAccuracy, ErrorOfAnOscillatorStaysBelowTheSumOfItsTolerances) {
-  // Nothing damps the errors of x'' = -x: they may add up, step by step, but to no more than that.
+  // The errors of x'' = -x are not damped: they may accumulate step by step, but not more.
   for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
     FunctionSystem system = oscillator(1.0);
     Solver solver(tolerances(GetParam(), tolerance, tolerance), system.ode());
@@ -80,19 +80,19 @@ TEST_P(VariableStepAccuracy, PolynomialOfDegreeOneIsExact) {
   EXPECT_NEAR(solver.x()[0], 5.0, 1e-13);
 }
 
-/// Greatest errors at the ends of the steps and halfway in them.
+/// Largest errors at the ends of the steps and halfway between them.
 struct FixedStepErrors {
   double end = 0.0, between = 0.0;
 };
 
-/// Of dopri5 on x = (1 / cosh t, -tanh t), with steps of h throughout.
+/// dopri5 on x = (1 / cosh t, -tanh t), with constant steps h.
 FixedStepErrors dormand_prince_errors(double h) {
   FunctionSystem system{.states = 2, .derivatives = [](double, const double* x, double* rate) {
                           rate[0] = x[0] * x[1];
                           rate[1] = -x[0] * x[0];
                           return true;
                         }};
-  SolverOptions options = tolerances(Method::dopri5, 0.5, 1e3);  // nothing to hold the step back
+  SolverOptions options = tolerances(Method::dopri5, 0.5, 1e3);  // nothing limits the step
   options.initial_step = options.maximum_step = h;
   Solver solver(options, system.ode());
   const double x0[] = {1.0, 0.0};
@@ -156,8 +156,7 @@ FunctionSystem robertson() {
 }
 
 TEST(Bdf, RobertsonPassesThePublishedTable) {
-  // Output of the LSODE demonstration program, seven digits, of which the last ones carry its tolerance of
-  // 1e-4.
+  // Output of the LSODE demonstration program, seven digits, of which the last contain its tolerance of 1e-4.
   struct Row {
     double t, x[3];
   };

@@ -15,7 +15,7 @@ namespace {
 int64_t count = 0;  // the tests run in one thread
 }
 
-// The GNU C library's own entry points, so that its allocator can be counted from outside.
+// The entry points of the GNU C library, so that its allocator can be counted from outside.
 extern "C" {
 void* __libc_malloc(size_t);
 void* __libc_calloc(size_t, size_t);

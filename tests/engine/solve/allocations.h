@@ -1,10 +1,10 @@
-// Counts every malloc of this program, libraries included.
+// Counts every malloc of this program, including libraries.
 #pragma once
 #include <cstdint>
 
 namespace loopwright::testing {
 
-/// False under a sanitizer, which brings an allocator of its own.
+/// False under a sanitizer, which has its own allocator.
 bool allocations_are_counted();
 int64_t allocations();
 

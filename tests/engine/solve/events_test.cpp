@@ -1,4 +1,4 @@
-// Where crossing functions change sign, and what does not count as an event.
+// Location of the sign changes of crossing functions, and changes that do not count as an event.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,8 +31,8 @@ FunctionSystem ball() {
           .crossing_values = [](double, const double* x, double* value) { return value[0] = x[0], true; }};
 }
 
-/// Times [s] of the bounces of a ball dropped from 1 m, `restitution` of its speed kept. `place` is the
-/// height it is put to at a bounce, NaN for where it was found.
+/// Times [s] of the bounces of a ball dropped from 1 m that keeps `restitution` of its speed. `place` is the
+/// height at which it is placed at a bounce; NaN: where it was found.
 std::vector<double> bounce_times(const SolverOptions& options, int bounces, double restitution, double place,
                                  const Crossing wanted) {
   FunctionSystem system = ball();
@@ -44,7 +44,7 @@ std::vector<double> bounce_times(const SolverOptions& options, int bounces, doub
     const Advance result = solver.advance(100.0, &wanted);
     EXPECT_EQ(result.status, SolverStatus::event) << "bounce " << times.size();
     if (result.status != SolverStatus::event) break;
-    if (solver.fired()[0] > 0) {  // left a rounding below the floor, it comes back through it
+    if (solver.fired()[0] > 0) {  // left a rounding error below the floor, it rises through it
       EXPECT_EQ(wanted, Crossing::either);
       EXPECT_LT(result.t - times.back(), 1e-12);
       solver.restart(result.t, solver.x().data());
@@ -80,7 +80,8 @@ TEST_P(Events, BouncesAreFoundToANanosecondWhereverTheDriverPutsTheBall) {
 }
 
 TEST_P(Events, ACrossingThatComesStraightBackFiresAgain) {
-  // dx/dt = -sign(x), the sign decided at events only: it cannot rest at zero, and every return must be told.
+  // dx/dt = -sign(x), the sign decided at events only: it cannot rest at zero, and every return must be
+  // reported.
   double sign = 1.0;
   FunctionSystem system =
       clock_with(1, [](double, const double* x, double* value) { return value[0] = x[0], true; });
@@ -100,12 +101,13 @@ TEST_P(Events, ACrossingThatComesStraightBackFiresAgain) {
 }
 
 TEST_P(Events, ABallThatHardlyBouncesDoesNotFallThroughTheFloor) {
-  // Hops of 1e-10 m, and with an absolute tolerance of 1e-13 m there is no more to ask for. The polynomial
-  // between bounces is exact for dopri5, which therefore goes on to hops of 1e-15 m.
+  // Hops of 1e-10 m; with an absolute tolerance of 1e-13 m no better result can be expected. The polynomial
+  // between bounces is exact for dopri5, which therefore continues to hops of 1e-15 m.
   const int bounces = GetParam() == Method::dopri5 ? 80 : 50;
   const std::vector<double> times = bounce_times(options(), bounces, 0.8, 0.0, Crossing::falling);
   ASSERT_EQ(std::ssize(times), bounces);
-  // An error of the tolerance in height is one of 2e-9 s at the last landing, of 6e-5 m/s, and they add up.
+  // An error of the tolerance in height is an error of 2e-9 s at the last landing and of 6e-5 m/s, and these
+  // accumulate.
   EXPECT_NEAR(times.back(), exact_bounce_time(bounces - 1, 0.8), 1e-7);
 }
 
@@ -144,7 +146,7 @@ TEST_P(Events, OnlyTheWantedDirectionCounts) {
 TEST_P(Events, SimultaneousCrossingsComeAsOneSet) {
   FunctionSystem system = clock_with(4, [](double t, const double* x, double* value) {
     value[0] = x[0] - 1.0;
-    value[1] = std::sqrt(2.0) * (1.0 - x[0] * x[0] * x[0]);  // the same instant, rounded otherwise
+    value[1] = std::sqrt(2.0) * (1.0 - x[0] * x[0] * x[0]);  // the same instant with another rounding
     value[2] = 10.0 * t - 10.0;
     value[3] = x[0] - 1.001;
     return true;

@@ -23,7 +23,7 @@ TEST(Method, EulerHeunAndRk4HaveAFixedStep) {
   }
 }
 
-/// What a Runge-Kutta method makes of x' = λ x in one step, z = hλ: the exponential series, cut off.
+/// One step of a Runge-Kutta method on x' = λ x, z = hλ, gives the truncated exponential series.
 std::complex<double> growth(Method method, std::complex<double> z) {
   std::complex<double> term = 1.0, sum = 1.0;
   for (int k = 1; k <= facts(method).order; ++k) sum += term *= z / static_cast<double>(k);

@@ -52,8 +52,8 @@ TEST(Newton, SolutionsOfAnySizeAreFoundFromZero) {
 }
 
 TEST(Newton, ADiodeInALoopIsSolvedFromFarAway) {
-  // v = 5 V - R I(v), I = 1 pA (e^(v / 25 mV) - 1), R = 1 kΩ: the first Newton step lands where the current
-  // is 10⁷⁴ A.
+  // v = 5 V - R I(v), I = 1 pA (e^(v / 25 mV) - 1), R = 1 kΩ: the first Newton step reaches a point at which
+  // the current is 10⁷⁴ A.
   Equations diode{1, [](const double* y, double* r) {
                     r[0] = y[0] - (5.0 - 1e3 * 1e-12 * std::expm1(y[0] / 0.025));
                     return true;

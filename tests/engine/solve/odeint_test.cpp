@@ -1,5 +1,5 @@
-// dopri5 against boost::odeint's Dormand-Prince method: another hand's coefficients, error control and dense
-// output.
+// dopri5, compared with the Dormand-Prince method of boost::odeint: independent coefficients, error control
+// and dense output.
 #include <gtest/gtest.h>
 
 #include <boost/numeric/odeint.hpp>
@@ -45,7 +45,7 @@ const Problem problems[] = {
      }},
 };
 
-/// The solution at even times, by odeint.
+/// The solution of odeint at evenly spaced times.
 std::vector<State> theirs(const Problem& problem, double tolerance, int rows) {
   auto stepper = odeint::make_dense_output(tolerance, tolerance, odeint::runge_kutta_dopri5<State>());
   State x = problem.start;
@@ -112,7 +112,7 @@ TEST(Odeint, NeedsNoMoreEvaluationsForTheSameError) {
       error = std::max(error, std::abs(mine[i] - exact[i]));
       their_error = std::max(their_error, std::abs(x[i] - exact[i]));
     }
-    // An error of order five in evaluations: what would be needed for theirs.
+    // The error is of order five in evaluations: the number that reaches the error of odeint.
     const double needed = double(evaluations) * std::pow(error / their_error, 0.2);
     EXPECT_LT(needed, 1.5 * double(their_evaluations)) << problem.name;
   }

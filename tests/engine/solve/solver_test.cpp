@@ -1,4 +1,5 @@
-// What a run may rely on whatever the method: stop times, restarts, failures, repeatability, no allocation.
+// Properties that a run requires of every method: stop times, restarts, failures, repeatability, no
+// allocation.
 #include "engine/solve/solver.h"
 
 #include <gtest/gtest.h>
@@ -145,7 +146,7 @@ TEST_P(SolverContract, ABlockFaultIsReportedWithTheStateBeforeIt) {
 }
 
 TEST_P(SolverContract, ATrialBeyondTheDomainIsTakenBackAndTheRunGoesOn) {
-  // x' = -√x from 1: x = (1 - t/2)². Long trials go below zero, where the root does not exist.
+  // x' = -√x from 1: x = (1 - t/2)². Long trial steps reach negative values, for which the root is undefined.
   FunctionSystem system{.states = 1, .derivatives = [](double, const double* x, double* rate) {
                           return rate[0] = -std::sqrt(x[0]), true;
                         }};
@@ -275,7 +276,7 @@ TEST_P(SolverContract, NothingAllocatesAfterConstruction) {
 }
 
 TEST(DormandPrinceRestarts, CostOneEvaluationAndKeepTheStepSize) {
-  // One step a millisecond is enough here: 1 evaluation for the restart, 6 for the step.
+  // One step a millisecond is sufficient: 1 evaluation for the restart, 6 for the step.
   FunctionSystem system = oscillator(20.0);
   Solver solver(tolerances(Method::dopri5, 1e-8, 1e-10), system.ode());
   const double x0[] = {1.0, 0.0};
@@ -306,7 +307,7 @@ TEST(DormandPrinceRestarts, AStretchCutShortDoesNotShrinkTheNextSteps) {
   }
 }
 
-/// A method that says it has stepped, wherever it is.
+/// A method that reports a step without advancing.
 class Liar : public Stepper {
  public:
   Liar(const OdeSystem& system, double time, double state)

@@ -1,4 +1,4 @@
-// Systems for the tests of the solvers, written as lambdas, and what they were asked.
+// Systems for the tests of the solvers, written as lambdas, and a record of their evaluations.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -13,8 +13,7 @@
 
 namespace loopwright::testing {
 
-/// An OdeSystem from two functions. Remembers the earliest and latest time at which it was asked for
-/// anything.
+/// An OdeSystem from two functions. Stores the earliest and latest time at which it was evaluated.
 struct FunctionSystem {
   using Function = std::function<bool(double t, const double* x, double* result)>;
 
@@ -61,7 +60,7 @@ inline FunctionSystem exponential(double lambda) {
           }};
 }
 
-/// Nothing moves: only time goes by.
+/// Constant states: only time advances.
 inline FunctionSystem clock_with(int crossings, FunctionSystem::Function values) {
   return {.states = 1,
           .derivatives = [](double, const double*, double* rate) { return rate[0] = 1.0, true; },
@@ -79,7 +78,7 @@ inline SolverOptions tolerances(Method method, double relative, double absolute)
 
 constexpr Method variable_step_methods[] = {Method::dopri5, Method::cvode_bdf, Method::cvode_adams};
 
-/// "dopri5", "cvode_bdf": as gtest wants names.
+/// "dopri5", "cvode_bdf": names as gtest requires.
 inline std::string test_name(const ::testing::TestParamInfo<Method>& parameter) {
   std::string name(to_name(parameter.param));
   std::replace(name.begin(), name.end(), '-', '_');

@@ -82,7 +82,7 @@ TEST(ParseUnit, ReadsTemperaturesWithAZeroOfTheirOwn) {
   EXPECT_EQ(to_string(unit("degC").in_si()), "K");
 }
 
-/// Every unit of rotation and frequency, and how many rad/s one of it is; a plain 1/s is a rad/s.
+/// Every unit of rotation and frequency, with its value in rad/s. A plain 1/s is a rad/s.
 const std::vector<std::pair<const char*, double>> rates = {{"Hz", 2 * std::acos(-1.0)},
                                                            {"kHz", 2000 * std::acos(-1.0)},
                                                            {"rpm", 2 * std::acos(-1.0) / 60},

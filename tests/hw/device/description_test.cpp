@@ -1,4 +1,4 @@
-// What is wrong with a device file is said with its place, before anything could move.
+// Errors in a device file are reported with source location, before anything can move.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include "tests/hw/device_file.h"

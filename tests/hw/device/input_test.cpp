@@ -1,5 +1,4 @@
-// No raw number whatever becomes a position that an axis could not have: all kinds of inputs, all kinds of
-// doubles.
+// No raw number becomes an impossible position: all kinds of inputs, all kinds of doubles.
 #include "hw/device/input.h"
 #include <gtest/gtest.h>
 #include <bit>
@@ -19,7 +18,7 @@ InputChannel channel_of(InputKind kind, int bits, double maximum_rate) {
   return channel;
 }
 
-/// Numbers at which conversions break, and random bits, among which every kind of double is found.
+/// Numbers at which conversions fail, and random bits, which include every kind of double.
 class HostileNumbers {
  public:
   double next() {
@@ -110,7 +109,7 @@ TEST(Input, ACounterIsFollowedAcrossItsWrapHoweverItIsRead) {
   std::mt19937_64 random(3);
   for (const int bits : {8, 16, 24, 31, 32})
     for (const int width : {bits, 32})             // of the device's counter
-      for (const bool has_sign : {true, false}) {  // and how it hands it over
+      for (const bool has_sign : {true, false}) {  // and its form in the interface
         const InputChannel channel = channel_of(InputKind::encoder, bits, 0);
         Input input(channel, period);
         int64_t counts = 0;

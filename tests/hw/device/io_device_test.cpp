@@ -1,4 +1,4 @@
-// The port's rules, on a driver that does what a test tells it.
+// The rules of the port, on a driver that a test controls.
 #include "hw/device/io_device.h"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -135,7 +135,7 @@ TEST(IoDevice, ASampleNumberedBackwardIsAFault) {
             "the device numbered a sample 1 after sample 1: what time it is cannot be told");
 }
 
-// ---- raw numbers that cannot be ----
+// ---- impossible raw numbers ----
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double inf = std::numeric_limits<double>::infinity();

@@ -1,4 +1,5 @@
-// The functions that the emulated motor and the judge of the diagnosis have in the place of the C library's.
+// The functions that the emulated motor and the hidden-effect generator use instead of those of the C
+// library.
 #include <gtest/gtest.h>
 #include <cmath>
 #include <limits>
@@ -12,7 +13,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The greatest error between low and high, in units in the last place.
+/// The largest error between low and high, in units in the last place.
 double worst(double (*own)(double), long double (*reference)(long double), double low, double high) {
   std::mt19937_64 generator(1);
   double worst = 0;

@@ -1,4 +1,4 @@
-// The emulated card and its motor against what can be worked out on paper: never against the simulator.
+// The emulated card and its motor, compared with analytic results, never with the simulator.
 #include <gtest/gtest.h>
 #include <cmath>
 #include "tests/hw/emulator/hil.h"

@@ -1,4 +1,4 @@
-/// The vendor's functions as a program of their own would declare them: nothing here is Loopwright's.
+/// The vendor's functions as an independent program would declare them, without any code of Loopwright.
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,5 @@
-// The main promises of a deployment once more, on a card behind a library that shares nothing with the
-// emulated one.
+// The main guarantees of a deployment again, on a card behind a library that shares nothing with the emulated
+// one.
 #include <dlfcn.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ class Lookalike : public testing::Test {
     card = reinterpret_cast<LookalikeReset*>(dlsym(library, "lookalike_reset"))();
     setenv("HIL_LIBRARY", path.c_str(), 1);
   }
-  /// Deploys, and holds what is said of the outputs against the card.
+  /// Deploys, and compares the reported state of the outputs with the card.
   DeployResult run(const std::string& patch = in_virtual_time) {
     DeployResult result = Deployed(patch).run();
     EXPECT_FALSE(card->is_open);

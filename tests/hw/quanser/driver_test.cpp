@@ -1,4 +1,4 @@
-// The backend against the emulated card: order of calls, every answer of a read, every class of error.
+// The backend on the emulated card: order of calls, every result of a read, every class of error.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <fstream>
@@ -154,7 +154,7 @@ TEST_F(Quanser, NamesAreGivenOfProcessesThatHaveTheLibraryLoaded) {
   int to_child[2];
   ASSERT_EQ(pipe(to_child), 0);
   const pid_t child = fork();
-  if (child == 0) {  // has the library of this process
+  if (child == 0) {  // has loaded the library in this process
     close(to_child[1]);
     char ignored;
     [[maybe_unused]] const ssize_t end = ::read(to_child[0], &ignored, 1);

@@ -1,5 +1,5 @@
-// However a deployment ends, the card's outputs are safe and the log is kept. Each end happens in a child
-// process, on a card in another process that can be looked at afterwards.
+// At every end of a deployment the card's outputs are safe and the log is kept. Each end takes place in a
+// child process, on a card in another process that can be inspected afterwards.
 #include <dirent.h>
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -20,11 +20,11 @@ namespace {
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 
-/// A computer that does other things meanwhile: what comes late is only counted, the watchdog has time.
+/// For a busy computer: late commands are only counted, and the watchdog has a long timeout.
 const std::string patient =
     R"({"clock": {"buffer": 1, "overflow": "overwrite"}, "policy": {"on_overrun": "count", "on_lost": "count"}, "watchdog": {"timeout": 0.4}})";
 
-// ---- the child: a deployment that ends as the environment says ----
+// ---- the child: a deployment that ends as the environment variables request ----
 
 volatile int zero = 0;
 volatile int* volatile nowhere = nullptr;
@@ -56,7 +56,7 @@ void crash(const std::string& how) {
   if (how == "wrong exception") throw 17;
 }
 
-/// The card's driver, with an accident in the loop's thread.
+/// The card's driver, with an injected failure in the loop's thread.
 class AccidentDriver final : public Driver {
  public:
   AccidentDriver(std::unique_ptr<Driver> driver, std::string how)
@@ -161,7 +161,7 @@ class Ends : public testing::Test {
            static_cast<char*>(nullptr), raw.data());
     _exit(98);
   }
-  /// Its exit code; 128 + signal when a signal ended it, 999 when it did not end within 20 s.
+  /// Its exit code; 128 + signal if a signal ended it, 999 if it did not end within 20 s.
   int wait() {
     for (int i = 0; i < 2000; ++i) {
       int status = 0;
@@ -288,7 +288,7 @@ TEST_F(Ends, AFatalSignalToAnyThreadStopsTheMachine) {
 TEST_F(Ends, ALoopThatHangsInItsDriverIsLeftAtTheThirdSignal) {
   begin("loop", "hang");
   ASSERT_TRUE(wait_until_driven()) << text("err");
-  std::this_thread::sleep_for(800ms);  // now it hangs, and nobody feeds the watchdog
+  std::this_thread::sleep_for(800ms);  // now it hangs, and the watchdog is not reset
   kill(child_, SIGINT);
   std::this_thread::sleep_for(50ms);
   kill(child_, SIGINT);

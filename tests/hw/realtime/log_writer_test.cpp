@@ -1,4 +1,4 @@
-// The log between the loop and the disk: in order, in time, and without holding anybody up.
+// The log between the loop and the disk: in order, in time, and without blocking the loop.
 #include "hw/realtime/log_writer.h"
 #include <gtest/gtest.h>
 #include <cerrno>
@@ -13,7 +13,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A disk that stalls and fails as it is told.
+/// A disk that stalls and fails on request.
 class TestSink final : public LogSink {
  public:
   int take(std::span<const double> rows, int64_t dropped) override {
@@ -96,7 +96,7 @@ TEST(LogWriter, ADiskThatNeverAnswersIsGivenUp) {
     EXPECT_FALSE(writer.end({}, [&] { return --patience > 0; }));
     EXPECT_EQ(writer.failure(), 0);
   }
-  sink->stall(false);  // the thread that was left behind ends
+  sink->stall(false);  // the abandoned thread ends
   std::this_thread::sleep_for(100ms);
 }
 
@@ -119,7 +119,7 @@ TEST(LogWriter, AJournalRepeatsItsHeading) {
   JournalSink sink(folder.path("j"), heading);
   for (int i = 0; i < 1500; ++i) ASSERT_EQ(sink.take(std::array{double(i)}, 0), 0);
   ASSERT_EQ(sink.end({}, 0), 0);
-  // With the first heading hurt, the rest is still read.
+  // If the first heading is damaged, the rest is still read.
   std::fstream file(folder.path("j"), std::ios::in | std::ios::out | std::ios::binary);
   file.seekp(60), file.put(char(99)), file.close();
   const JournalReader journal(folder.path("j"));

@@ -1,4 +1,4 @@
-// Samples that never came: model time is the device's, the plan keeps pace, and too many in a row end the
+// Lost samples: model time is that of the device, the plan stays synchronous, and too many in a row end the
 // run.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,13 +15,13 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-/// A buffer that drops its oldest sample and counts them, in virtual time.
+/// A buffer that drops its oldest sample and counts the dropped ones, in virtual time.
 std::string dropping(const std::string& policy = "{}") {
   return R"({"clock": {"buffer": 2, "overflow": "overwrite", "time": "simulated"}, "policy": )" + policy +
          "}";
 }
 
-/// The emulated card loses one sample in a hundred, and tells by its count of overflows.
+/// The emulated card loses one sample in a hundred, and reports it by its count of overflows.
 class LossyCard : public EmulatedCard {
  public:
   explicit LossyCard(double every = 100, double length = 1) {
@@ -29,7 +29,7 @@ class LossyCard : public EmulatedCard {
   }
 };
 
-/// The value of a column at every instant, NaN where the log has no row.
+/// The value of a column at every instant, NaN if the log has no row.
 std::vector<double> by_instant(const Recording& recording, const std::string& name) {
   std::vector<double> values(3101, std::nan(""));
   const auto& time = column(recording, "time");
@@ -38,7 +38,7 @@ std::vector<double> by_instant(const Recording& recording, const std::string& na
   return values;
 }
 
-/// The largest difference at instants that both logs have.
+/// The largest difference at instants that both logs contain.
 double largest_difference(const Recording& a, const Recording& b, const std::string& name) {
   const auto x = by_instant(a, name), y = by_instant(b, name);
   double largest = 0;
@@ -124,7 +124,7 @@ TEST(LostSamples, ReplayReproducesTheLogInEveryBit) {
   }
 }
 
-/// Loses so many in a row, once, in the middle of the motion.
+/// Loses this number of samples in a row, once, in the middle of the motion.
 DeployResult gap_of(int samples, const std::string& policy) {
   EmulatedCard card;
   card.set("lose.told", 1), card.set("lose.from", 500), card.set("lose.count", samples);
@@ -191,7 +191,7 @@ TEST(LostSamples, CountersAndSlowerRatesKeepTheirPhase) {
   }
 }
 
-// ---- periods that the computer's clock leaves out ----
+// ---- periods that the computer's clock skips ----
 
 /// Wakes up late once.
 class SleepyClock final : public Clock {
@@ -242,7 +242,7 @@ TEST(SkippedPeriods, SoManyInARowAreAFault) {
   EXPECT_EQ(oversleeping(3.1, R"({"most_skipped": 3})").status, RunStatus::failed);
 }
 
-// ---- readings that cannot be, in the first sample ----
+// ---- impossible readings in the first sample ----
 
 TEST(FirstSample, NoNumberInItNeverStartsAMotion) {
   for (const double bad : {std::nan(""), HUGE_VAL, 1e6}) {

@@ -1,4 +1,4 @@
-// The small parts of the loop: log ring, histogram, what the system grants.
+// The small parts of the loop: ring buffer of the log, histogram, what the system grants.
 #include <gtest/gtest.h>
 #include <thread>
 #include "hw/realtime/histogram.h"

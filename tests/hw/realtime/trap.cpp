@@ -14,7 +14,7 @@ template <class Function> Function* next(const char* name) {
 }  // namespace
 
 #if !defined(__SANITIZE_ADDRESS__)
-// The GNU C library's own entry points, so that its allocator can be watched from outside.
+// The entry points of the GNU C library, so that its allocator can be observed from outside.
 extern "C" {
 void* __libc_malloc(size_t);
 void* __libc_calloc(size_t, size_t);

@@ -8,7 +8,7 @@
 namespace loopwright::hw {
 namespace {
 
-/// A mass on a driver without any lock: what is counted is the loop's own.
+/// A mass on a driver without any lock: only operations of the loop are counted.
 class QuietDriver final : public Driver {
  public:
   Capabilities capabilities() const override { return {true, false, false, true}; }

@@ -1,4 +1,5 @@
-// A device of another kind behind the same port: loopback only, the device a thread that answers in step.
+// Another kind of device behind the same port: loopback only, the device is a thread that answers
+// synchronously.
 #include "hw/udp/udp.h"
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
@@ -116,7 +117,7 @@ TEST(Udp, TheSameDiagramRunsOnAnotherKindOfDevice) {
   EXPECT_EQ(result.outputs_safe, OutputsSafe::confirmed);
   EXPECT_EQ(peer.output, 0);
   EXPECT_EQ(result.statistics.cycles, 1001);
-  // A ramp of 10 mm/s against a damping of 20 V s/m, held by 1000 V/m: 0.2 mm behind.
+  // A ramp of 10 mm/s against a damping of 20 V s/m, held by 1000 V/m: a lag of 0.2 mm.
   EXPECT_NEAR(result.recording.find("axis.position")->values.back(), 0.01 - 0.2e-3, 2e-5);
 }
 

@@ -14,7 +14,7 @@ inline Shape periodic(double length, double period = pitch) {
 }
 inline Shape smooth(double length) { return {Shape::Kind::squared_exponential, length, 0}; }
 
-/// PE(x) + SE(v), SE(x) + SE(v), PE(x)·SE(v) + SE(v), at hyper-parameters that a fit might end with.
+/// PE(x) + SE(v), SE(x) + SE(v), PE(x)·SE(v) + SE(v), at realistic hyper-parameters of a fit.
 inline Kernel additive() {
   return {{Term{0.64, {periodic(2.1), Shape{}}}, Term{0.14, {Shape{}, smooth(0.21)}}}, 0.1};
 }
@@ -30,7 +30,7 @@ inline Kernel smooth_product_and_constant() {
 
 enum class Velocities { few, continuous };
 
-/// Cogging whose amplitude falls with speed, drag, and noise; labels have zero mean.
+/// Cogging whose amplitude decreases with speed, drag, and noise. Labels have zero mean.
 inline Samples disturbance(int count, Velocities velocities, double noise = 0.1, unsigned seed = 1) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> uniform(0, 1);

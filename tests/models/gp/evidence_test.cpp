@@ -1,4 +1,4 @@
-// Log evidence, gradient, mean and variance: the structured way against whole matrices, both against
+// Log evidence, gradient, mean and variance: the structured computation against whole matrices, both against
 // differences.
 #include <gtest/gtest.h>
 #include "models/gp/dense.h"

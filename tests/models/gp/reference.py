@@ -11,7 +11,7 @@ from sklearn.gaussian_process.kernels import RBF, ConstantKernel, ExpSineSquared
 
 
 class OnInput(Kernel):
-    """A kernel that looks at one column of its inputs."""
+    """A kernel of one column of its inputs."""
 
     def __init__(self, kernel, column):
         self.kernel = kernel
@@ -49,7 +49,7 @@ class OnInput(Kernel):
 
 def shape(entry, column):
     if entry["kind"] == "periodic":
-        # Their exponent is -2 sin²(πr/p)/l², as ours.
+        # The exponent is -2 sin²(πr/p)/l², as in Loopwright.
         return OnInput(ExpSineSquared(entry["length"], entry["period"], periodicity_bounds="fixed"), column)
     return OnInput(RBF(entry["length"]), column)
 
@@ -68,7 +68,7 @@ X, y = np.array(case["inputs"]), np.array(case["labels"])
 model = GaussianProcessRegressor(kernel, alpha=0, optimizer=None).fit(X, y)
 value, gradient = model.log_marginal_likelihood(model.kernel_.theta, eval_gradient=True, clone_kernel=False)
 mean, deviation = model.predict(np.array(case["points"]), return_std=True)
-# Theirs are derivatives by the logarithm of variances; a deviation's is twice that.
+# scikit-learn differentiates with respect to the logarithm of variances; for a standard deviation the value is twice that.
 free = [h.name for h in model.kernel_.hyperparameters if not h.fixed]
 is_variance = ["constant_value" in name or "noise_level" in name for name in free]
 gradient = [g * 2 if v else g for g, v in zip(gradient, is_variance)]

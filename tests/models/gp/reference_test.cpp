@@ -1,4 +1,5 @@
-// Against scikit-learn, an implementation by others: the Debian package python3-sklearn, run as a child.
+// Comparison with scikit-learn, an independent implementation: the Debian package python3-sklearn, run as a
+// child.
 #include <gtest/gtest.h>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -13,7 +14,7 @@ namespace loopwright::gp {
 namespace {
 
 using nlohmann::json;
-constexpr const char* python = "/usr/bin/python3";  // the one that Debian's packages belong to
+constexpr const char* python = "/usr/bin/python3";  // the interpreter of Debian's packages
 
 json case_of(const Kernel& kernel, const Samples& samples, const std::vector<Point>& points) {
   json terms = json::array();

@@ -13,7 +13,7 @@ Model model_of(const Kernel& kernel, Velocities velocities, bool structured = tr
   return model;
 }
 
-/// The greatest difference between table and posterior, also far outside of the samples.
+/// The largest difference between table and posterior, also far outside the samples.
 double greatest_error(const Posterior& posterior, const MeanTable& table, int points) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> x(-0.2, 0.9), v(-3, 3), near(0.05, 0.5);

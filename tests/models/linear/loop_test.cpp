@@ -87,7 +87,7 @@ TEST(Margins, TheDelayMarginIsTheDelayThatEndsStability) {
 }
 
 TEST(Margins, MsIsTheInverseDistanceFromMinusOne) {
-  // L = k/s with delay τ: at k τ = 0.5 the peak of 1/|1 + L| was found by hand on a fine grid.
+  // L = k/s with delay τ: at k τ = 0.5 the peak of 1/|1 + L| was determined separately on a fine grid.
   const StateSpace L = with_delay(first_order(5, 0), 0.1);
   double peak = 0;
   for (double w = 1; w < 60; w += 1e-3)
@@ -96,8 +96,8 @@ TEST(Margins, MsIsTheInverseDistanceFromMinusOne) {
 }
 
 TEST(Margins, AConditionallyStableLoopHasALowerGainMargin) {
-  // L = 10 (s+1)²/s³: its phase, 2 atan ω - 270°, is -180° at ω = 1, where |L| = 20. Less gain ends it.
-  // = 20.
+  // L = 10 (s+1)²/s³: its phase, 2 atan ω - 270°, is -180° at ω = 1, where |L| = 20. A lower gain makes the
+  // loop unstable.
   const StateSpace pi_part = {
       MatrixXd::Zero(1, 1), MatrixXd::Ones(1, 1), MatrixXd::Ones(1, 1), MatrixXd::Ones(1, 1), 0, {}};
   const Margins m = margins(in_series(in_series(pi_part, pi_part), first_order(10, 0)));

@@ -88,7 +88,7 @@ TEST(Zeros, OfTwoInputsAndTwoOutputsAreThoseOfTheDeterminant) {
 
 TEST(Structure, WhatLiesBehindACutWireIsNoPartOfAChannel) {
   StateSpace
-      s;  // 0 → 1 → 2, the output sees 1; 2 is unstable, nothing reads it; 3 drives 1, nothing drives it
+      s;  // 0 → 1 → 2, the output reads 1; 2 is unstable, nothing reads it; 3 drives 1, nothing drives it
   s.A = MatrixXd::Zero(4, 4);
   s.A(0, 0) = -1, s.A(1, 0) = 1, s.A(1, 1) = -2, s.A(2, 1) = 1, s.A(2, 2) = 5, s.A(3, 3) = 7, s.A(1, 3) = 1;
   s.B = MatrixXd::Zero(4, 1), s.C = MatrixXd::Zero(1, 4), s.D = MatrixXd::Zero(1, 1);

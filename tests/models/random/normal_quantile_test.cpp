@@ -7,7 +7,7 @@ namespace loopwright {
 TEST(NormalQuantile, IsTheInverseOfTheNormalDistribution) {
   for (int i = -3000; i <= 2500; ++i) {
     const long double p = std::erfc(-i * 1e-3L * 3 / std::sqrt(2.0L)) / 2;
-    const double x = i * 3e-3, lost_in_p = i > 0 ? 1e-16 / std::exp(-x * x / 2) : 0;  // where p is nearly 1
+    const double x = i * 3e-3, lost_in_p = i > 0 ? 1e-16 / std::exp(-x * x / 2) : 0;  // where p is close to 1
     EXPECT_NEAR(normal_quantile(double(p)), x, 1e-14 + 10 * lost_in_p) << i;
   }
 }

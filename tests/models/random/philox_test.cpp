@@ -3,7 +3,7 @@
 
 namespace loopwright {
 
-// The known answers that come with the authors' Random123 library.
+// The known answers supplied with the authors' Random123 library.
 TEST(Philox, GivesTheKnownAnswers) {
   using Words = std::array<uint32_t, 4>;
   EXPECT_EQ(philox({0, 0, 0, 0}, {0, 0}), (Words{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}));

@@ -2,7 +2,7 @@
 #include <cfloat>
 #include "tests/models/real/arguments.h"
 
-// The reference is libm in long double, which must be finer than double for these tests to mean anything.
+// The reference is libm in long double, which must be more accurate than double for these tests to be valid.
 static_assert(LDBL_MANT_DIG >= 64);
 
 namespace loopwright::test {
@@ -12,8 +12,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr int samples = 300000;
 
-/// |y - reference| in units in the last place of the reference; infinity counts as 2¹⁰²⁴, what follows the
-/// greatest double. NaN against a number is infinitely wrong.
+/// |y - reference| in units in the last place of the reference. Infinity counts as 2¹⁰²⁴, the value after the
+/// largest double. NaN against a number is an infinite error.
 double error_in_ulp(double y, long double reference) {
   if (std::isnan(y) || std::isnan(reference)) return std::isnan(y) && std::isnan(reference) ? 0.0 : infinity;
   const long double end = 0x1p1024L;
@@ -26,7 +26,7 @@ double error_in_ulp(double y, long double reference) {
   return double(std::fabs(found - expected) / ulp);
 }
 
-/// The greatest error and where it is.
+/// The largest error and its argument.
 struct Worst {
   double error = 0, at = 0, beside = 0;
   void see(double y, long double reference, double x, double second = 0) {
@@ -50,7 +50,7 @@ Worst worst_between(double low, double high, const Function& f, const Reference&
   }
   return worst;
 }
-/// Over all special arguments and over any bit pattern.
+/// Over all special arguments and over random bit patterns.
 template <class Function, class Reference>
 Worst worst_anywhere(const Function& f, const Reference& reference, double limit = infinity) {
   Worst worst;

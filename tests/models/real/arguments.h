@@ -12,7 +12,7 @@
 
 namespace loopwright::test {
 
-/// Equal in every bit, -0 different from 0; all NaN are one.
+/// Equal in every bit, -0 different from 0. All NaN are equal.
 inline bool same_bits(double a, double b) {
   return (std::isnan(a) && std::isnan(b)) ||
          std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
@@ -24,8 +24,8 @@ inline std::string in_hexadecimal(double x) {
   return text;
 }
 
-/// Zeros, ones, halves, denormal, tiny, huge, infinite and NaN, each with both signs, and the neighbours of
-/// places where functions change their branch.
+/// Zeros, ones, halves, denormal, tiny, huge, infinite and NaN, each with both signs, and the neighbors of
+/// branch points of functions.
 inline std::vector<double> special_arguments() {
   using limits = std::numeric_limits<double>;
   std::vector<double> all;
@@ -92,7 +92,7 @@ inline std::vector<double> arguments(std::size_t random, std::uint64_t seed) {
     if (i % 3 == 1) all.push_back(sign * std::ldexp(uniform(generator, 1, 2), int(generator() % 121) - 60));
     if (i % 3 == 2) all.push_back(uniform(generator, -50, 50));
   }
-  while (all.size() % 64 != 0) all.push_back(0.0);  // full registers of every width
+  while (all.size() % 64 != 0) all.push_back(0.0);  // full registers of every vector width
   return all;
 }
 

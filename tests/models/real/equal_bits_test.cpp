@@ -4,7 +4,7 @@
 namespace loopwright::test {
 namespace {
 
-// -mavx2 and -mavx512f builds of this program hold the same statements for those instruction sets.
+// Builds of this program with -mavx2 and -mavx512f test the same statements for those instruction sets.
 struct InstructionSet : testing::Environment {
   void SetUp() override {
 #if defined __AVX512F__
@@ -17,7 +17,7 @@ struct InstructionSet : testing::Environment {
 [[maybe_unused]] const auto* const instruction_set = testing::AddGlobalTestEnvironment(new InstructionSet);
 
 template <class Real> struct EqualBits : testing::Test {};
-#ifdef __SANITIZE_ADDRESS__  // the same statements; instrumented, 32 lanes would take minutes to compile
+#ifdef __SANITIZE_ADDRESS__  // the same statements; compiling 32 instrumented lanes would take minutes
 using Widths = testing::Types<Lanes<4>, Lanes<4, 2>>;
 #else
 using Widths = testing::Types<Lanes<4>, Lanes<8>, Lanes<8, 4>>;
@@ -95,8 +95,8 @@ std::uint64_t fingerprint(const std::vector<double>& values) {
   return hash;
 }
 
-// Recorded once. They change only with the polynomials, never with compiler, flags or instruction set: a
-// stored run can be repeated to the bit.
+// Recorded values. They change only with the polynomials, never with compiler, flags or instruction set, so
+// that a stored run can be repeated to the bit.
 TEST(EqualBitsAnywhere, ResultsAreThoseRecorded) {
   auto x = arguments(60000, 4);
   for (double& value : x) {

@@ -6,7 +6,7 @@ namespace {
 
 constexpr double step = 1e-3, cutoff = 2 * std::numbers::pi * 20;  // s, rad/s
 
-/// Amplitude in phase and across the phase of a filtered sine of angular frequency w, away from the ends.
+/// In-phase and quadrature amplitude of a filtered sine of angular frequency w, away from the ends.
 std::pair<double, double> response(double w) {
   std::vector<double> x;
   for (int k = 0; k < 6000; ++k) x.push_back(std::sin(w * step * k));

@@ -1,4 +1,4 @@
-// check knows every kind of file by its keys, and says all that is wrong with it.
+// check recognizes every kind of file by its keys, and reports all its errors.
 #include <gtest/gtest.h>
 #include "tests/tools/command/program.h"
 

@@ -1,4 +1,4 @@
-// Command lines that cannot be read: what was meant, in the words of all other messages, and exit code 2.
+// Invalid command lines: a suggestion, the form of all other messages, and exit code 2.
 #include <gtest/gtest.h>
 #include "tests/tools/command/program.h"
 

@@ -1,4 +1,4 @@
-// The program from outside: exit codes, what goes where, and that an error leaves nothing behind.
+// The program from outside: exit codes, output streams, and that an error leaves no files.
 #include <gtest/gtest.h>
 #include <filesystem>
 #include <thread>
@@ -56,7 +56,7 @@ TEST_F(Command, ADashPutsTheDataOnStdout) {
 }
 
 TEST_F(Command, ADashNeverReplacesWhereStdoutLeads) {
-  // Standard output is a file that has lost its name: it gets the rows, and no file appears in its place.
+  // Standard output is a file that has been unlinked: it gets the rows, and no new file appears.
   const std::string name = folder.path("lost");
   const int file = open(name.c_str(), O_CREAT | O_RDWR, 0600);
   ASSERT_GE(file, 0);

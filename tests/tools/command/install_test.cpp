@@ -1,4 +1,4 @@
-// What `cmake --install` puts down works after it was moved: the program finds its lanes and its effects
+// The result of `cmake --install` works after it was moved: the program finds its lanes and its effects
 // beside itself.
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

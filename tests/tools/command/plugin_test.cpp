@@ -1,4 +1,4 @@
-// Libraries of blocks: one that works, and those that are refused with exit code 2 instead of an abort.
+// Libraries of blocks: one that works, and those that are rejected with exit code 2 instead of an abort.
 #include <gtest/gtest.h>
 #include "tests/tools/command/program.h"
 

@@ -1,4 +1,4 @@
-/// Runs the built program as a person would: what it prints where, and its exit code.
+/// Runs the built program like a user: its outputs and its exit code.
 #pragma once
 #include <csignal>
 #include <cstdlib>
@@ -21,7 +21,7 @@ inline std::string program() {
 }
 
 struct Outcome {
-  int code = -1;  ///< exit code; 128 + signal when a signal ended it
+  int code = -1;  ///< exit code; 128 + signal if a signal ended it
   std::string out, err;
 };
 
@@ -32,7 +32,7 @@ inline std::string text_of(const std::string& path) {
   return text.str();
 }
 
-/// A started program, its output in files of its own folder.
+/// A started program, with its output in files of its own folder.
 class Program {
  public:
   explicit Program(std::vector<std::string> arguments, const std::string& folder = "") {

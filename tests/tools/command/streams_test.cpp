@@ -1,4 +1,4 @@
-// What goes where: summaries to stdout, or to stderr when a result takes stdout; progress and problems to
+// Output streams: summaries go to stdout, or to stderr if a result uses stdout; progress and problems go to
 // stderr.
 #include <gtest/gtest.h>
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace loopwright {
 namespace {
 
-/// A mass under viscous friction, driven by a recorded force, and what goes with it.
+/// A mass under viscous friction, driven by a recorded force, and the files that belong to it.
 class Streams : public ::testing::Test {
  protected:
   void SetUp() override {

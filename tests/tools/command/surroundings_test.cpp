@@ -1,4 +1,5 @@
-// Where the program reads and writes: what is no file, what cannot be written, who has gone away.
+// Inputs and outputs of the program: inputs that are not files, outputs that cannot be written, readers that
+// ended.
 #include <gtest/gtest.h>
 #include <chrono>
 #include <filesystem>

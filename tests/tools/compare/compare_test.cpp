@@ -1,4 +1,4 @@
-// Comparisons whose figures are known beforehand.
+// Comparisons with known results.
 #include <gtest/gtest.h>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -21,7 +21,7 @@ TEST(Compare, AMeasurementThatFollowsTheModelHasNoError) {
 }
 
 TEST(Compare, KnownErrorsGiveKnownFigures) {
-  // The measurement lies 1 mm above on one half of the rows and 3 mm above on the other.
+  // The measurement is 1 mm above on one half of the rows and 3 mm above on the other.
   const auto times = every(0.05, 40);
   const Comparison c =
       ExperimentFolder()
@@ -50,7 +50,7 @@ TEST(Compare, RowsHeldOutAreFiguredApart) {
   EXPECT_NEAR(c.signals[0].held_out_rmse, 0.005, 1e-12) << "the last ten rows";
 }
 
-/// A force that grows by 1 N a second; held from row to row, or joined by straight lines.
+/// A force that increases by 1 N a second, held from row to row, or joined by straight lines.
 double held_ramp(double t) {  // x after the samples before t, each held for 0.05 s
   double x = 0, v = 0;
   for (int k = 0; k < int(std::lround(t / 0.05)); ++k) {

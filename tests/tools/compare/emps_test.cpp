@@ -1,4 +1,4 @@
-// The published model of EMPS against its published measurement.
+// The published model of EMPS, compared with its published measurement.
 #include <gtest/gtest.h>
 #include <cstdlib>
 #include <filesystem>
@@ -10,7 +10,7 @@ namespace {
 
 TEST(Emps, ThePublishedParametersReproduceTheRecordedLoop) {
   // A. Janot, M. Gautier, M. Brunot, Data Set and Reference Models of EMPS, 2019: force within 5.5 % of its
-  // size.
+  // magnitude.
   setenv("LOOPWRIGHT_DATA", LOOPWRIGHT_SOURCE "/../shared/data", 0);
   if (!std::filesystem::exists(std::string(std::getenv("LOOPWRIGHT_DATA")) + "/emps/emps_train.csv"))
     GTEST_SKIP() << "no emps/emps_train.csv below $LOOPWRIGHT_DATA";

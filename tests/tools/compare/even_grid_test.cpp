@@ -1,4 +1,4 @@
-// Rows of a record on their places, whatever is missing between them.
+// Rows of a record at their correct times, whatever is missing between them.
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <cmath>
@@ -64,7 +64,7 @@ TEST(EvenGrid, StampsThatTrembleOrComeInABurstAreNoGaps) {
   std::normal_distribution<double> tremble(0, 0.15 * dt);
   std::vector<double> times;
   for (int k = 0; k < 5000; ++k) times.push_back(k * dt + tremble(random));
-  for (int k = 0; k < 10; ++k) times[size_t(2000 + k)] = 2.0095 + 1e-5 * k;  // ten late stamps at once
+  for (int k = 0; k < 10; ++k) times[size_t(2000 + k)] = 2.0095 + 1e-5 * k;  // ten late time stamps at once
   std::ranges::sort(times);
   const Experiment e = record(times);
   EXPECT_FALSE(e.time.on_grid);

@@ -1,4 +1,4 @@
-/// A diagram, an experiment and data written inside a test; the data come from a closed form, not from the
+/// A diagram, an experiment and data written inside a test. The data come from a closed form, not from the
 /// engine.
 #pragma once
 #include <fmt/format.h>
@@ -8,7 +8,7 @@
 
 namespace loopwright {
 
-/// A mass of 2 kg that a force pushes; the experiment puts the recorded force in its place.
+/// A mass of 2 kg that a force pushes. The experiment replaces the force by the recorded one.
 class ExperimentFolder : public DiagramFolder {
  public:
   ExperimentFolder() {
@@ -39,7 +39,7 @@ class ExperimentFolder : public DiagramFolder {
     return *this;
   }
   Comparison compared() const { return compare(path("stage.json"), path("e.json")); }
-  /// What is wrong, with file names relative to the folder.
+  /// The problems, with file names relative to the folder.
   std::string refusal() const {
     try {
       compared();

@@ -1,4 +1,4 @@
-// Experiments and data that do not fit are told with their place.
+// Experiments and data that do not match are reported with source location.
 #include <gtest/gtest.h>
 #include <cmath>
 #include "tests/tools/compare/experiment_folder.h"

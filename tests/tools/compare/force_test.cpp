@@ -1,4 +1,4 @@
-// The force that a model lacks, on records made from closed forms: what was left out must come back.
+// The missing force, on records from closed forms: the omitted force must be recovered.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <cmath>
@@ -11,7 +11,8 @@ namespace {
 
 constexpr double mass = 2, damping = 5, dt = 1e-3;
 
-/// To and fro over 0.2 m by sines of changing speed; the force that a machine with one more effect takes.
+/// Forward and back over 0.2 m by sines of changing speed; the force that a machine with one additional
+/// effect needs.
 struct Record {
   double duration = 12;
   std::function<double(double x, double v, double a, double t)> extra = [](double, double, double, double) {
@@ -20,11 +21,11 @@ struct Record {
   std::function<double(double t)> phase = [](double t) { return 3 * t + 1.5 * std::sin(0.9 * t); };
   double offset_per_second = 0;  ///< m/s: one way only
   double unit_error = 1;
-  int late = 0;           ///< samples by which the force column is late
+  int late = 0;           ///< delay of the force column in samples
   std::vector<int> lost;  ///< samples without a row
 
   double x(double t) const { return 0.1 - 0.1 * std::cos(phase(t)) + offset_per_second * t; }
-  /// Mean force over the sample after t: what a held command must have been.
+  /// Mean force over the sample after t: the value of a held command.
   double force(double t) const {
     double sum = 0;
     constexpr int parts = 4;
@@ -114,7 +115,7 @@ TEST(ForceResidual, NamesTheVariableOnWhichItDepends) {
 
 TEST(ForceResidual, ARepeatedMotionTellsItsNoiseFloor) {
   Record record;
-  record.phase = [](double t) { return 2 * M_PI * t / 3; };  // every three seconds the same
+  record.phase = [](double t) { return 2 * M_PI * t / 3; };  // repeats every three seconds
   record.extra = [](double x, double, double, double t) { return 3 * x + 0.05 * std::sin(38.2 * t); };
   const Comparison c = record.compared();
   EXPECT_NEAR(c.force->residual.repeat_s, 3, 0.01);

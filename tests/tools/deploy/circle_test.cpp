@@ -1,5 +1,5 @@
-// The whole circle, by the program: deploy on a motor that hides dry friction, find it in the log, simulate
-// with it, learn a compensation from the same log, deploy again.
+// The complete workflow with the program: deploy on a motor with hidden dry friction, find it in the log,
+// simulate with it, learn a compensation from the same log, deploy again.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <cmath>
@@ -33,7 +33,7 @@ class Circle : public testing::Test {
     for (const std::string& change : changes) arguments.insert(arguments.end(), {"--set", change});
     return loopwright_program(arguments);
   }
-  /// The force that the model lacks to explain identification.csv, by `compare`.
+  /// The missing force in identification.csv, by `compare`.
   double missing_force(const std::vector<std::string>& changes,
                        const std::string& diagram = "identification.json") {
     std::vector<std::string> arguments{"compare", root + "/diagrams/linear_motor/" + diagram,
@@ -85,7 +85,7 @@ TEST_F(Circle, TheDiagnosisOfALogNamesTheHiddenFrictionAndTheImprovedDiagramHasI
   outcome = loopwright_program({"compare", improved, experiment, "--json", "-"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_LT(nlohmann::json::parse(outcome.out).at("force_residual").at("rmse"), 0.2 * before);
-  // What was improved is the simulated stage: the same diagram is deployed as before.
+  // Only the simulated stage was improved: the same diagram is deployed as before.
   outcome = loopwright_program({"check", improved, "--variant", "stage=quanser", "--set",
                                 "stage.device=" + root + "/hw/devices/qpid_e_emulated.json"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;

@@ -1,6 +1,5 @@
-// However the program is ended, the card's outputs are safe, the card is closed, and the log is kept:
-// signals, a terminal or readers that go away, disks that are full or stall. The card lives in a process of
-// its own.
+// At every end of the program the card's outputs are safe, the card is closed, and the log is kept: signals,
+// a terminal or readers that disappear, disks that are full or stall. The card runs in its own process.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -25,7 +24,7 @@ using testing::Not;
 using namespace std::chrono_literals;
 
 const std::string conventional = LOOPWRIGHT_SOURCE "/diagrams/linear_motor/conventional.json";
-/// A computer that does other things meanwhile: what comes late is only counted, the watchdog has time.
+/// For a busy computer: late commands are only counted, and the watchdog has a long timeout.
 const std::string patient =
     R"({"clock": {"buffer": 1, "overflow": "overwrite"}, "policy": {"on_overrun": "count", "on_lost": "count"}, "watchdog": {"timeout": 0.4}})";
 
@@ -36,7 +35,7 @@ class EndsOfTheProgram : public testing::Test {
     folder_.with("device.json", hw::device_text(patient));
     card_ = std::make_unique<hw::CardDaemon>(folder_.path("world"), folder_.path("card.json"));
   }
-  /// Starts deploy; `prepare` is called in the child before it.
+  /// Starts deploy. `prepare` is called in the child before it.
   void begin(
       std::vector<std::string> more, const std::function<void()>& prepare = [] {}) {
     std::vector<std::string> all{program(),
@@ -96,7 +95,7 @@ class EndsOfTheProgram : public testing::Test {
     EXPECT_EQ(card_->get("watchdog.expired"), 0) << what;
     EXPECT_EQ(card_->get("open"), 0) << what;
   }
-  /// The log is there as a CSV that reads, its last row not long before the end.
+  /// The log exists as a readable CSV, and its last row is shortly before the end.
   void expect_log(const std::string& what, size_t least_rows = 50) {
     Problems problems;
     const Recording recording = read_csv(log(), problems, {.allow_not_finite = true});
@@ -276,7 +275,7 @@ TEST_F(EndsOfTheProgram, AStalledDiskHoldsUpNeitherTheLoopNorTheStop) {
   for (int i = 0; i < 100 && card_->get("open") != 0; ++i) std::this_thread::sleep_for(10ms);
   expect_stopped("stalled disk: the machine does not wait for it");
   std::this_thread::sleep_for(2500ms);
-  kill(process_, SIGINT);  // nor does a person
+  kill(process_, SIGINT);  // nor does a person wait
   EXPECT_EQ(wait(), 130) << err();
   EXPECT_THAT(err(), AllOf(HasSubstr("the disk does not answer"), HasSubstr("loopwright recover")));
   std::filesystem::remove(flag);
@@ -297,7 +296,7 @@ TEST_F(EndsOfTheProgram, AKilledProgramLosesAtMostASecondOfItsLog) {
                                               "stage.device=" + folder_.path("device.json"), "-o", log()});
   EXPECT_EQ(refused.code, 2) << "the only copy of a log is not overwritten";
   EXPECT_THAT(refused.err, HasSubstr("loopwright recover"));
-  // Samples that the loop missed have no row, so rows are counted by time.
+  // Samples that the loop missed have no row, so that rows are counted by time.
   const Outcome outcome = loopwright_program({"recover", journal(), "-o", log()});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("its end is missing"));

@@ -1,5 +1,5 @@
-// The program as a person uses it, on the emulated card: signals, a killed controller, exit codes, what is
-// written.
+// The program on the emulated card, used like by a person: signals, a killed controller, exit codes, output
+// files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -50,7 +50,7 @@ class DeployProgram : public testing::Test {
 };
 
 const std::string in_virtual_time = R"({"clock": {"time": "simulated"}})";
-/// A computer that does other things meanwhile: what comes late is only counted, the watchdog has time.
+/// For a busy computer: late commands are only counted, and the watchdog has a long timeout.
 const std::string patient =
     R"({"clock": {"buffer": 1, "overflow": "overwrite"}, "policy": {"on_overrun": "count", "on_lost": "count"}, "watchdog": {"timeout": 0.4}})";
 

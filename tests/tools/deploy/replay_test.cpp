@@ -1,5 +1,5 @@
-// The same plan simulated, deployed and replayed: close, as two motors of the same parameters are, and equal
-// in every bit where the same blocks ran on the same numbers.
+// The same plan simulated, deployed and replayed: close, as two motors with the same parameters are, and
+// equal in every bit if the same blocks processed the same numbers.
 #include "tools/deploy/replay.h"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -38,12 +38,12 @@ double largest(const std::vector<double>& values) {
 struct Agreement {
   double position = 0, command = 0, error = 0;  ///< largest differences; m, V, m
 };
-/// The emulated motor has the parameters of the simulated stage from the start, but for its current loop.
+/// The emulated motor has the parameters of the simulated stage from the start, except for its current loop.
 Agreement agreement() {
   EmulatedCard card;
   card.set("plant.current_lag", 0);
-  // It begins with its first sample, as the simulation does, and not after two that agree: cogging moves it
-  // meanwhile.
+  // The run begins with its first sample, as the simulation does, and not after two that agree, because
+  // cogging moves the motor meanwhile.
   const hw::DeployResult deployed =
       Deployed(R"({"clock": {"time": "simulated"}, "inputs": {"position": {"maximum_rate": 0}}})").run();
   EXPECT_EQ(deployed.status, RunStatus::finished) << deployed.message;
@@ -135,7 +135,7 @@ TEST(Replay, ALogOfAnotherPlanIsRefused) {
   replay(*other.plan, other.hardware, result.recording, problems);
   EXPECT_THAT(problems.text(), HasSubstr("the diagram or its parameters (--set, --variant) have changed"));
 
-  // Without the facts only the bits can tell.
+  // Without the facts only the bits can show the difference.
   result.recording.facts.clear();
   const Replay wrong = replayed(other, result.recording);
   EXPECT_FALSE(wrong.explains());

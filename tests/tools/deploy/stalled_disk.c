@@ -1,5 +1,5 @@
-/* Preloaded into the program: from the moment at which the file $STALLED_DISK exists, the disk under journals
- * answers no more. */
+/* Preloaded into the program: as soon as the file $STALLED_DISK exists, write calls on journals block, as on a
+ * disk that stalls. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <stdio.h>

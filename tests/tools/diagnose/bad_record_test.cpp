@@ -1,4 +1,4 @@
-// Records that cannot support a verdict are named, with what it costs.
+// Records that cannot support a verdict are named, with the consequence.
 #include <gmock/gmock.h>
 #include "tests/tools/diagnose/diagnosed.h"
 #include "tests/tools/diagnose/hidden_axis.h"

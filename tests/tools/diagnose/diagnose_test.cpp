@@ -1,4 +1,4 @@
-// Records with a force that the diagram lacks: is it named, with the right number, and nothing beside it?
+// Records with a missing force: is the effect named, with the correct parameter, and no other effect?
 #include "tools/diagnose/diagnose.h"
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>

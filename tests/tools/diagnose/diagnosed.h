@@ -1,4 +1,4 @@
-/// What tests ask of a diagnosis.
+/// Common checks of a diagnosis.
 #pragma once
 #include <gtest/gtest.h>
 #include <algorithm>
@@ -15,7 +15,7 @@ inline std::vector<std::string> names(const Diagnosis& d) {
   return list;
 }
 
-/// The truth lies within four standard deviations, as worked out from the 95 % interval (which a right answer
+/// The truth lies within four standard deviations, computed from the 95 % interval (which a correct answer
 /// misses once in twenty times), and the interval is no wider than `width`.
 inline void expect_parameter(const DiagnosedEffect& effect, const std::string& name, double truth,
                              double width, const std::string& unit) {

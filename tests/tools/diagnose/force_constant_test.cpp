@@ -1,5 +1,5 @@
-// What lies between the recorded input and the sum of forces is the diagram's own: the same machine, driven
-// by newtons, amperes, volts or milliamperes, lacks the same force.
+// The path from the recorded input to the sum of forces belongs to the diagram: the same machine, driven by
+// newtons, amperes, volts or milliamperes, lacks the same force.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include "engine/record/recording_file.h"
@@ -14,7 +14,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// A way from an input to newtons.
+/// A path from an input to newtons.
 struct Drive {
   std::string name, input_unit;
   double newtons_per_input;
@@ -22,8 +22,8 @@ struct Drive {
   std::string force = "f.y", input_port = "f.u";
 };
 
-/// 2 kg on viscous friction, pushed by a held multisine of 16 N rms; the record hides 3 N*s/m from the
-/// diagram.
+/// 2 kg on viscous friction, pushed by a held multisine of 16 N rms. The record contains 3 N*s/m that the
+/// diagram lacks.
 class DrivenMass {
  public:
   explicit DrivenMass(const Drive& drive) : drive_(drive) {
@@ -102,7 +102,7 @@ std::vector<Drive> drives() {
 TEST(ForceConstant, CompareNamesTheSameForceWhateverTheInput) {
   for (const Drive& drive : drives()) {
     SCOPED_TRACE(drive.name);
-    Drive exact = drive;  // without friction in the diagram the whole of 4 N*s/m is missing
+    Drive exact = drive;  // without friction in the diagram all of 4 N*s/m is missing
     const Comparison c = DrivenMass(exact).compared();
     ASSERT_TRUE(c.force) << c.why_no_force;
     const ForceAnalysis& f = *c.force;
@@ -160,7 +160,7 @@ Answer answer_in(const InputUnit& unit, const std::function<void(Physics&)>& hid
   return {diagnose(axis.diagram(), {record}), compare(axis.diagram(), record)};
 }
 
-/// As a person reads them: four digits.
+/// Rounded to four digits.
 constexpr double four_digits = 1e-4;
 void expect_near(double value, double other, const char* what) {
   EXPECT_NEAR(value, other, four_digits * std::max(std::abs(value), std::abs(other))) << what;

@@ -1,5 +1,5 @@
-/// Records of an axis that the generator's plant makes (tests/hidden_effects, plain C): its physics, its
-/// solver and its random numbers share nothing with the blocks. Any motion, controller or none, any units.
+/// Records of an axis from the generator's plant (tests/hidden_effects, plain C): its physics, solver and
+/// random numbers share nothing with the blocks. Any motion, controller or none, any units.
 #pragma once
 #include <unistd.h>
 #include <fmt/format.h>
@@ -22,11 +22,11 @@ namespace loopwright {
 
 constexpr double hidden_sample_time = 1e-3;
 
-/// Wanted positions, a sample each: strokes whose speed rises and falls by half a cosine.
+/// Reference positions, one for each sample: strokes whose speed rises and falls by half a cosine.
 struct WantedMotion {
   std::vector<double> position{0};
-  std::vector<double> added_force;  ///< on top of the command; empty: none
-  double initial_speed = 0;         ///< the axis moves already
+  std::vector<double> added_force;  ///< added to the command; empty: none
+  double initial_speed = 0;         ///< the axis already moves
 
   WantedMotion& rest(double seconds) {
     position.insert(position.end(), size_t(seconds / hidden_sample_time), position.back());
@@ -45,7 +45,7 @@ struct WantedMotion {
   }
 };
 
-/// There and back at three speeds.
+/// Forward and back at three speeds.
 inline WantedMotion there_and_back(double way, double top_speed) {
   WantedMotion motion;
   motion.rest(0.2);
@@ -62,7 +62,7 @@ inline WantedMotion one_way(double direction) {
   return motion;
 }
 
-/// The same speeds from the first sample to the last: nowhere would friction hold.
+/// The same speeds from the first sample to the last: friction never holds the axis.
 inline WantedMotion one_way_without_rest(double direction) {
   WantedMotion motion;
   constexpr double ramp_s = 0.1, cruise_s = 0.5, end_s = 3 * (ramp_s + cruise_s) + cruise_s;
@@ -78,7 +78,7 @@ inline WantedMotion one_way_without_rest(double direction) {
   return motion;
 }
 
-/// What the diagram says of the axis, and with what noise it is measured.
+/// The diagram's model of the axis, and the noise of its measurement.
 struct HiddenMachine {
   double mass = 0.2621, damping = 3;
   std::string position_unit = "m", force_unit = "N";
@@ -86,17 +86,17 @@ struct HiddenMachine {
   std::string column_unit, input_unit, gain = "1";
   double newtons_per_column = 1;
   double force_noise = 0.01, encoder_noise = 5e-8, resolution = 2e-7;
-  std::optional<double> velocity_noise;  ///< measured with so much noise; empty: not measured
+  std::optional<double> velocity_noise;  ///< measured with this noise; empty: not measured
   bool measures_position = true, has_controller = true;
   double leaves_out_s = 0;  ///< of the start of every record
-  size_t loses_every = 0;   ///< row of so many that a device would have lost; 0: none
+  size_t loses_every = 0;   ///< one row in this number that a device would have lost; 0: none
   std::string position_port = "mass.position", velocity_port = "mass.velocity",
               damping_port = "viscous.force";
   std::string further_blocks;   ///< of the diagram
-  std::string moving, viscous;  ///< in the place of its Mass and of its ViscousFriction; empty: these
+  std::string moving, viscous;  ///< replace its Mass and its ViscousFriction; empty: these
 };
 
-/// Folder with nominal.json and a pair of files for every record; gone with the object.
+/// Folder with nominal.json and a pair of files for every record; removed with the object.
 class HiddenAxis {
  public:
   explicit HiddenAxis(HiddenMachine machine = {}) : machine_(std::move(machine)) {
@@ -113,7 +113,7 @@ class HiddenAxis {
     std::error_code code;
     std::filesystem::remove_all(folder_, code);
   }
-  /// The physics of the diagram: a truth is that, and what it hides.
+  /// The physics of the diagram. A truth is this plus the hidden effects.
   Physics nominal() const {
     Physics physics{};
     physics.mass_kg = machine_.mass, physics.damping_n_s_per_m = machine_.damping;
@@ -127,7 +127,7 @@ class HiddenAxis {
     write_data(name, truth, wanted), write_experiment(name);
     return file(name + ".experiment.json");
   }
-  /// Root of the mean square of what was commanded in the last record.
+  /// Rms of the command in the last record.
   double force_level() const { return force_level_; }
 
  private:

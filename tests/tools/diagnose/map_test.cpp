@@ -1,4 +1,4 @@
-// Maps of balances: an axis held step by step, here worked out from forces written down by themselves.
+// Maps of balances: an axis held step by step, here computed from independently written forces.
 #include <gmock/gmock.h>
 #include <numbers>
 #include "tests/engine/written_diagram.h"
@@ -16,8 +16,8 @@ using testing::AnyOf, testing::Contains, testing::ElementsAre, testing::HasSubst
 
 constexpr double step = 0.5e-3, resolution = 1e-6, turn = 2 * std::numbers::pi;
 
-/// There and back over 0.3 m in steps of half a millimetre; each stand is read four times, and its position
-/// trembles by a count.
+/// Forward and back over 0.3 m in steps of half a millimetre. Each position is read four times, with a
+/// scatter of one count.
 class HeldAxis : public DiagramFolder {
  public:
   using Force = std::function<double(double position, double direction)>;
@@ -64,7 +64,7 @@ TEST(Map, CoggingAndDryFrictionAreNamedWithTheirNumbers) {
   expect_parameter(d.effects[0], "pitch", 0.0225, 1e-4, "m");
   expect_parameter(d.effects[1], "level", 0.05, 0.003, "N");
   EXPECT_THAT(to_text(d), HasSubstr("a map of balances has neither speeds nor times"));
-  // What was added is in the diagram now, and is not missing any more.
+  // The added effect is in the diagram now and is no longer missing.
   const Diagnosis again = diagnose(axis.path("improved.json"), {axis.path("map.json")});
   EXPECT_EQ(again.verdict, Verdict::nothing_missing) << to_text(again);
   EXPECT_NEAR(again.error_before, d.error_after, 0.1 * d.error_after);

@@ -1,4 +1,4 @@
-// What the diagnosis says of axes that somebody built and measured.
+// The diagnosis of axes that were built and measured.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <cstdlib>

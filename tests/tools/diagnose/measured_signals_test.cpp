@@ -1,5 +1,4 @@
-// What was measured: velocity instead of position, both, the angle of a rotary axis, the counts of an
-// encoder.
+// Measured signals: velocity instead of position, both, the angle of a rotary axis, the counts of an encoder.
 #include <gmock/gmock.h>
 #include "tests/tools/diagnose/diagnosed.h"
 #include "tests/tools/diagnose/hidden_axis.h"

@@ -1,4 +1,4 @@
-// The prediction errors, and the filters that say how they answer to forces.
+// The prediction errors, and the filters that describe their response to forces.
 #include "tools/diagnose/predictor.h"
 #include <cmath>
 #include "tests/tools/diagnose/recorded_axis.h"

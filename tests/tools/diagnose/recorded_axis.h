@@ -1,4 +1,4 @@
-/// Records of a made-up axis in closed loop, with a force that the diagram beside them does not know.
+/// Records of a synthetic axis in closed loop, with a force that the diagram beside them lacks.
 #pragma once
 #include <unistd.h>
 #include <fmt/format.h>
@@ -13,7 +13,7 @@
 
 namespace loopwright {
 
-/// What the truth has beyond the diagram's mass of 0.2621 and damping of 3.
+/// What the truth contains beyond the diagram's mass of 0.2621 and damping of 3.
 struct Truth {
   double mass = 0.2621, damping = 3;
   std::function<double(double position, double velocity, double time)> force = [](double, double, double) {
@@ -26,7 +26,7 @@ struct Truth {
   uint64_t seed = 1;
 };
 
-/// Folder with nominal.json, train.csv and train.experiment.json; gone with the object.
+/// Folder with nominal.json, train.csv and train.experiment.json; removed with the object.
 class RecordedAxis {
  public:
   explicit RecordedAxis(const Truth& truth) : truth_(truth) {
@@ -57,7 +57,7 @@ class RecordedAxis {
     const UniformPair u = uniform_pair(truth_.seed, stream, index);
     return std::sqrt(-2 * std::log(u.first)) * std::cos(2 * std::numbers::pi * u.second);
   }
-  /// Strokes of 0.3 with seven peak speeds from 0.05 to 0.4, there and back.
+  /// Strokes of 0.3 with seven peak speeds from 0.05 to 0.4, forward and back.
   void reference(double t, double& x, double& v, double& a) const {
     const double peaks[] = {0.4, 0.1, 0.25, 0.05, 0.35, 0.15, 0.2};
     double begin = 0.2, from = 0;

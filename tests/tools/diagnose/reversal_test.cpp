@@ -1,5 +1,5 @@
-/// An axis shaken so that it turns within a sample: the moment is known to a sample or two, and dry friction
-/// is on the wrong side for as long.
+/// An axis with such fast motion that it reverses within a sample: the moment is known to a sample or two,
+/// and dry friction has the wrong sign for this time.
 #include <gmock/gmock.h>
 #include "tests/tools/diagnose/diagnosed.h"
 #include "tests/tools/diagnose/hidden_axis.h"
@@ -9,7 +9,7 @@ namespace {
 
 using testing::ElementsAre;
 
-/// Slow strokes with six sines on top, whose speed is several times that of the strokes.
+/// Slow strokes with six added sines, whose speed is several times that of the strokes.
 WantedMotion shaken() {
   WantedMotion motion;
   motion.rest(0.3);

@@ -1,4 +1,4 @@
-// Which effects are looked for: those of the catalogue for which the diagram has room, and the user's own.
+// Which effects are searched for: those of the catalogue that the diagram allows, and the user's own.
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 #include "tests/tools/diagnose/diagnosed.h"
@@ -30,7 +30,7 @@ std::vector<std::string> not_looked_for(const Diagnosis& d) {
   return list;
 }
 
-/// The same axis out of integrators and gains: no block has a mass or a damping as its parameter.
+/// The same axis built from integrators and gains: no block has a mass or a damping as its parameter.
 HiddenMachine of_integrators() {
   HiddenMachine machine;
   machine.position_port = "position.y", machine.velocity_port = "velocity.y";

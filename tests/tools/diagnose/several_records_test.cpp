@@ -1,4 +1,4 @@
-// Two records say together what neither says alone.
+// Two records together determine what neither determines alone.
 #include <gmock/gmock.h>
 #include "tests/tools/diagnose/diagnosed.h"
 #include "tests/tools/diagnose/hidden_axis.h"
@@ -30,7 +30,8 @@ TEST(SeveralRecords, OneForwardAndOneBackwardNameCoulombFriction) {
   EXPECT_THAT(d.experiments, ElementsAre(forward, backward));
 }
 
-/// A constant force and Coulomb friction together: each way alone shows their sum or their difference.
+/// A constant force and Coulomb friction together: each direction alone shows only their sum or their
+/// difference.
 TEST(SeveralRecords, OneForwardAndOneBackwardTellTwoEffectsWithTheirNumbers) {
   HiddenAxis axis;
   Physics truth = axis.nominal();
@@ -47,7 +48,8 @@ TEST(SeveralRecords, OneForwardAndOneBackwardTellTwoEffectsWithTheirNumbers) {
   }
 }
 
-/// A spindle that turns at one speed all the while: no dry friction, damping or steady pull differs in it.
+/// A spindle that turns at constant speed: dry friction, damping and a constant force cannot be
+/// distinguished.
 TEST(SeveralRecords, OneSlowBackwardAndOneFastForwardNameCoulombFriction) {
   HiddenMachine machine;
   machine.leaves_out_s = 1;

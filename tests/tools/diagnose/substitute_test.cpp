@@ -8,7 +8,7 @@ namespace {
 using ::testing::Contains;
 using ::testing::UnorderedElementsAre;
 
-/// Without damping a gain and a mass are the same thing; both fit to 1e-5 of the criterion.
+/// Without damping a gain and a mass are equivalent. Both fit to 1e-5 of the criterion.
 TEST(Substitute, WithoutDampingAGainAndAMassAreDeclaredAlike) {
   HiddenMachine machine;
   machine.damping = 0;

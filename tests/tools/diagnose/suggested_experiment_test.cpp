@@ -1,5 +1,5 @@
-// A record that leaves two effects alike says so; the motion that it suggests, made with the same hidden
-// effect, tells them apart.
+// A record that cannot distinguish two effects reports this. The suggested motion, made with the same hidden
+// effect, distinguishes them.
 #include <gmock/gmock.h>
 #include "tests/tools/diagnose/diagnosed.h"
 #include "tests/tools/diagnose/hidden_axis.h"
@@ -13,7 +13,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-/// The motion that the catalogue means by a suggestion, in sizes of the record.
+/// The motion that the catalogue describes in a suggestion, relative to the record.
 WantedMotion suggested_motion(const SuggestedExperiment& suggestion, const WantedMotion& record,
                               const RecordSizes& sizes) {
   Problems problems;
@@ -45,8 +45,8 @@ RecordSizes sizes_of(const WantedMotion& record, const HiddenAxis& axis) {
   return sizes;
 }
 
-/// Diagnoses a record, then with it the one that it asks for. The first must leave the two alike, whichever
-/// of them it names; the second must not.
+/// Diagnoses a record, then this record together with the suggested one. The first must not distinguish the
+/// two effects, whichever of them it names; the second must.
 void expect_told_apart(HiddenAxis& axis, const Physics& truth, const WantedMotion& motion,
                        const std::string& hidden, const std::string& alike) {
   const std::string first = axis.record("first", truth, motion);
@@ -122,8 +122,8 @@ TEST(SuggestedExperiment, TellsFrictionThatDiffersWithTheDirectionFromDamping) {
   expect_told_apart(axis, truth, one_way(1), "direction_dependent_friction", "viscous_friction");
 }
 
-/// Without a controller and below 3 Hz the command is so smooth that a delay and a lag of 3 ms differ by
-/// τ²/2 d²u/dt²: 0.1 mN beside 10 mN of noise.
+/// Without a controller and below 3 Hz the command is so smooth that a delay and a lag of 3 ms differ by τ²/2
+/// d²u/dt²: 0.1 mN beside 10 mN of noise.
 WantedMotion smooth() {
   WantedMotion motion;
   for (double t = hidden_sample_time; t < 10; t += hidden_sample_time) {

@@ -1,4 +1,4 @@
-/// The sizes of an axis on a table, and the catalogue.
+/// The sizes of a synthetic axis, and the catalogue.
 #pragma once
 #include <gtest/gtest.h>
 #include <stdexcept>

@@ -159,7 +159,7 @@ TEST(EffectRun, RefusesToRunWithoutWhatItReads) {
   EXPECT_THROW(effect.run({{}, s.velocity, {}, {}, {}, false}, values), std::invalid_argument);
 }
 
-/// What the catalogue does not know is added by one more file: here a bump at one place of the track.
+/// One more file adds an effect to the catalogue: here a bump at one position of the track.
 TEST(EffectFile, AFurtherEffectIsOneMoreFile) {
   DiagramFolder folder;
   folder.with("bump.json", R"json({
@@ -218,7 +218,7 @@ TEST(EffectFile, EveryMistakeIsToldAtItsPlace) {
     EXPECT_TRUE(has(text, part)) << part << "\n" << text;
 }
 
-/// Of an effect file that can be read, but does not compile.
+/// For an effect file that can be read, but does not compile.
 std::string compile_problems(const std::string& path) {
   Problems problems;
   const auto effects = load_effect(path, problems);

@@ -1,5 +1,5 @@
-// A diagram written into another folder: paths are told by what their place is for, not by what lies in the
-// folder.
+// A diagram written into another folder: paths are recognized by the kind of their parameter, not by the
+// files in the folder.
 #include <gtest/gtest.h>
 #include "engine/json/json.h"
 #include "tests/engine/written_diagram.h"

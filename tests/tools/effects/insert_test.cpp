@@ -94,10 +94,10 @@ TEST(Insertion, AnEffectOfNoSizeChangesNothing) {
   const auto file = nominal();
   const RunResult before = run_text(file->text, file->name);
   for (const Effect& effect : whole_catalogue()) {
-    if (effect.name == "backlash" || effect.name == "flexible_mode") continue;  // a load of no mass is none
+    if (effect.name == "backlash" || effect.name == "flexible_mode") continue;  // no mass, no load
     const RunResult after =
         run_text(insert_text(file, nominal_axis, effect, values(effect, true)), file->name);
-    // A lag cannot be zero, and a command that comes late comes sampled.
+    // A lag cannot be zero, and a delayed command is sampled.
     const bool is_small = effect.name == "actuator_lag" || effect.name == "input_delay";
     const double allowed = is_small ? 2e-4 : 1e-12;
     EXPECT_LE(rms_difference(signal(before, "axis.position"), signal(after, "axis.position")), allowed)
@@ -179,7 +179,7 @@ TEST(Insertion, SaysWhatIsMissing) {
   EXPECT_TRUE(has(second.text(), "no role \"force\"")) << second.text();
 }
 
-/// A controlled axis: the error of a sensor is seen by the controller and in what is compared, not by forces.
+/// A controlled axis: the controller and the compared signals see the error of a sensor, forces do not.
 TEST(Insertion, AnErrorOfTheSensorIsSeenOutsideAndNotByForces) {
   DiagramFolder folder;
   folder.with("axis.json", R"({"loopwright": 1, "inputs": {"force": "N"},
@@ -200,7 +200,7 @@ TEST(Insertion, AnErrorOfTheSensorIsSeenOutsideAndNotByForces) {
   EXPECT_GT(rms_difference(signal(after, "axis.position"), signal(after, "axis.mass.position")), 1e-4);
 }
 
-/// An observer that reads the command goes on reading the command, not what a lag makes of it.
+/// An observer that reads the command still reads the command, not the output of a lag.
 TEST(Insertion, OnTheInputOnlyTheMachineFeelsIt) {
   DiagramFolder folder;
   folder.with("top.json", R"({"loopwright": 1, "solver": {"step": 0.0001, "stop": 0.1}, "blocks": {

@@ -1,4 +1,4 @@
-// `loopwright gp` from outside: exit codes, files, and that an error leaves nothing behind.
+// `loopwright gp` from outside: exit codes, files, and that an error leaves no files.
 #include <gtest/gtest.h>
 #include <filesystem>
 #include "tests/tools/command/program.h"

@@ -1,4 +1,4 @@
-/// A stage whose disturbance is known, run along plateaus of constant velocity, as recordings in a folder.
+/// A stage with a known disturbance, run along plateaus of constant velocity, as recordings in a folder.
 #pragma once
 #include <fmt/format.h>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace loopwright {
 
-/// V; cogging of 22.5 mm whose amplitude falls with speed, and drag.
+/// V; cogging of 22.5 mm whose amplitude decreases with speed, and drag.
 inline double disturbance_at(double x, double v) {
   const double angle = 2 * std::numbers::pi * x / 0.0225;
   return 0.1 + 0.7 * (1 - 0.6 * std::abs(v)) * std::sin(angle + 0.4) + 0.2 * std::sin(2 * angle) - 0.3 * v;
@@ -17,8 +17,8 @@ inline double disturbance_at(double x, double v) {
 
 class StageFolder : public DiagramFolder {
  public:
-  /// One pass: it speeds up, keeps each velocity over 0.3 m, and changes within 0.1 s. The label is the
-  /// disturbance of `lag` ago, and a ripple that is no function of position and velocity.
+  /// One pass: the stage accelerates, keeps each velocity over 0.3 m, and changes within 0.1 s. The label is
+  /// the disturbance delayed by `lag`, plus a ripple that is no function of position and velocity.
   StageFolder& pass(const std::string& name, const std::vector<double>& velocities, double lag = 0,
                     const std::function<double(double)>& label = {}) {
     std::string text = time_heading + ",x [mm],v [m/s],d [V]\n";
@@ -67,7 +67,7 @@ class StageFolder : public DiagramFolder {
   }
   std::string time_heading = "time [s]";
   double time_unit = 1;  ///< s
-  /// What the last training said.
+  /// The output of the last training.
   std::string said;
 };
 

@@ -153,7 +153,7 @@ TEST(Train, FindsTheDisturbanceInCommandAndPosition) {
   std::string text = "time [s],x [m],v [m/s],u [V]\n";
   double x = 0, v = 0, u = 0;
   for (int k = 0; k < 6000; ++k) {
-    // A controller that keeps four velocities well, with noise of its own.
+    // A controller that keeps four velocities well, with its own noise.
     const double wanted = four[size_t(k / 1500)];
     u = 60 * (wanted - v) + damping * wanted;
     text += fmt::format("{:.3f},{:.12g},{:.12g},{:.12g}\n", step * k, x, wanted, u);

@@ -1,4 +1,4 @@
-/// `loopwright linearize` from outside: exit codes, the files it leaves, what stands in them.
+/// `loopwright linearize` from outside: exit codes, output files, and their contents.
 #include <gmock/gmock.h>
 #include <filesystem>
 #include <nlohmann/json.hpp>

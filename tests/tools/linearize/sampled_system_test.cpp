@@ -17,7 +17,7 @@ SampledSystem sampled(const std::string& text, const Access& access, double samp
   return sampled_system(linearize_at_start(*plan), access, sample_time);
 }
 
-/// What comes out at samples 0, 1, … after a pulse of one sample, one input to one output.
+/// The output at samples 0, 1, … after a pulse of one sample, from one input to one output.
 std::vector<double> pulse_response(const StateSpace& s, int samples) {
   std::vector<double> y{s.D(0, 0)};
   MatrixXd x = s.B;
@@ -93,7 +93,7 @@ TEST(SampledSystem, SignalsThatAreAddedAtTheSampleAreSeenAtTheSample) {
 }
 
 TEST(SampledSystem, TwoRatesAreLiftedOverTheirCommonPeriod) {
-  // A lag x' = u - x; the fast sampler runs at T, the slow one at 2 T, their sum drives the lag.
+  // A lag x' = u - x. The fast sampler runs at T, the slow one at 2 T; their sum drives the lag.
   const SampledSystem system = sampled(diagram(R"(
     "fast": {"type": "ZeroOrderHold", "sample_time": 0.1, "in": {"u": "lag.y"}},
     "slow": {"type": "ZeroOrderHold", "sample_time": 0.2, "in": {"u": "lag.y"}},
@@ -130,7 +130,7 @@ TEST(SampledSystem, WhatARateWithAnOffsetHoldsOverTheStartOfThePeriodIsAState) {
 }
 
 TEST(SampledSystem, ATransportDelayOfAHeldSignalIsExact) {
-  // 1.4 samples: the plant sees u[k-2] for the first 0.4 of the interval, u[k-1] for the rest.
+  // 1.4 samples: the plant gets u[k-2] for the first 0.4 of the interval, u[k-1] for the rest.
   const SampledSystem system = sampled(diagram(R"(
     "u": {"type": "Constant", "value": 0},
     "hold": {"type": "ZeroOrderHold", "sample_time": 0.1, "in": {"u": "u.y"}},

@@ -1,5 +1,5 @@
-// The reference says what the blocks say, and every block has what a user looks for: a test, an example,
-// words, units.
+// The reference agrees with the descriptions of the blocks, and every block has a test, an example, texts and
+// units.
 #include <gtest/gtest.h>
 #include <filesystem>
 #include <fstream>
@@ -81,7 +81,7 @@ TEST(Reference, EveryBlockHasAnExampleOfItsName) {
 }
 
 TEST(Reference, EveryBlockHasATest) {
-  // In a file of its name, or in one of its room that puts it on the bench.
+  // In a file of its name, or in a file of its folder that tests it.
   for (const auto& [name, type] : all_blocks()) {
     bool found = false;
     for (const auto& entry : fs::directory_iterator(root / "tests/blocks" / type.info.room))
@@ -109,7 +109,7 @@ TEST(Reference, EverythingHasASentence) {
   }
 }
 
-/// The variables of a unit, "$force", stand for units in SI: any will do to read the rest.
+/// The variables of a unit, "$force", represent units in SI: any unit is suitable for reading the rest.
 void check_unit(const std::string& where, std::string_view unit, const std::set<std::string>& known) {
   if (unit.empty() || unit == any_unit) return;
   const std::string text(unit);

@@ -1,4 +1,4 @@
-// The JSON Schema: well formed, complete, and agreed with by every diagram in the repository.
+// The JSON Schema: well formed, complete, and satisfied by every diagram in the repository.
 #include <gtest/gtest.h>
 #include <filesystem>
 #include <fstream>
@@ -14,12 +14,12 @@ namespace {
 using Json = nlohmann::json;
 namespace fs = std::filesystem;
 
-/// As much of JSON Schema (draft 2020-12) as diagram_schema() uses; an unknown keyword fails the test.
+/// The part of JSON Schema (draft 2020-12) that diagram_schema() uses. An unknown keyword fails the test.
 class Validator {
  public:
   explicit Validator(const Json& schema) : root_(schema) {}
 
-  /// What is wrong with a value, "" if nothing.
+  /// The error of a value, "" if there is none.
   std::string fault(const Json& schema, const Json& value, const std::string& at = "") const {
     for (const auto& [key, rule] : schema.items())
       if (const std::string text = fault_by(key, rule, schema, value, at); !text.empty()) return text;

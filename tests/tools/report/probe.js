@@ -1,4 +1,4 @@
-// Added to a page by browser_test.cpp: uses the scopes as a reader would and leaves what it saw in the title.
+// Added to a page by browser_test.cpp. It operates the scopes like a reader and stores the results in the title.
 addEventListener("load", async () => {
   const settled = () => new Promise((done) => setTimeout(done, 50));
   const figures = [...document.querySelectorAll("figure.plot")];

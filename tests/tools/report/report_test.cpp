@@ -25,7 +25,7 @@ size_t count(const std::string& text, std::string_view part) {
 
 Page page_of(std::vector<Item> items) { return {"Title", "", {}, {{"Section", std::move(items)}}}; }
 
-/// The data of the first plot, as they stand in the page.
+/// The data of the first plot, as in the page.
 std::string plot_data(const Page& page) {
   const std::string html = to_html(page), start = "<script type=\"application/json\">";
   const size_t begin = html.find(start) + start.size();
@@ -56,7 +56,7 @@ TEST(ReportHtml, CarriesItsScriptsAndStylesAndLoadsNothing) {
   EXPECT_THAT(html, HasSubstr(std::string(assets::uplot_css)));
   EXPECT_THAT(html, HasSubstr(std::string(assets::page_js)));
   EXPECT_THAT(html, HasSubstr(std::string(assets::page_css)));
-  EXPECT_THAT(html, HasSubstr("Leon Sorokin"));  // the licence of uPlot asks for it
+  EXPECT_THAT(html, HasSubstr("Leon Sorokin"));  // required by the license of uPlot
   EXPECT_THAT(html, HasSubstr("default-src 'none'"));
   for (const std::string_view loading : {"<link", " src=", "@import", "url(", "fetch(", "XMLHttpRequest"})
     EXPECT_EQ(count(html, loading), 0u) << loading;

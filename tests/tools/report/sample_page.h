@@ -1,4 +1,4 @@
-/// A page with everything on it, as a servo engineer would get it from a comparison. The data are synthetic.
+/// A page with all elements, as a comparison would give it. The data are synthetic.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace loopwright::report {
 
-/// A second-order servo loop on a linear stage, 2.6 s at 1 kHz: there and back by 0.1 m, with friction and
+/// A second-order servo loop on a linear stage, 2.6 s at 1 kHz: forward and back by 0.1 m, with friction and
 /// cogging.
 struct ServoRun {
   std::vector<double> time, reference, position, error, velocity, command, disturbance, residual;

@@ -42,7 +42,7 @@ TEST(Waterfall, DrawsACurveForEveryRowAndEveryPointOnce) {
 
 TEST(Waterfall, NearCurvesHideThoseBehind) {
   const std::string svg = waterfall_picture(ripple()).svg;
-  // The first curve in the file is the farthest: higher up, that is with the lesser y.
+  // The first curve in the file is the farthest: higher up, that is, with the smaller y.
   const std::regex path(
       "<path d=\"M([0-9.]+) ([0-9.]+)L[^\"]*\" style=\"fill:none;stroke:var\\(--series-7\\)");
   std::vector<double> heights;

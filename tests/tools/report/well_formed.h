@@ -1,4 +1,4 @@
-/// Whether tags nest: enough of HTML for what the report writes.
+/// Whether tags are nested correctly: the part of HTML that the report uses.
 #pragma once
 #include <string>
 #include <string_view>
@@ -6,8 +6,7 @@
 
 namespace loopwright::report {
 
-/// What is wrong with the tags of a page, "" when every one is closed in order. Scripts and styles are passed
-/// over.
+/// The error in the tags of a page, "" if every one is closed in order. Scripts and styles are skipped.
 inline std::string fault_in_html(std::string_view html) {
   std::vector<std::string> open;
   for (size_t at = 0; (at = html.find('<', at)) != html.npos;) {

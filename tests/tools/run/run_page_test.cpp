@@ -1,4 +1,4 @@
-// What the page and the summary of a run show.
+// The contents of the page and the summary of a run.
 #include <gtest/gtest.h>
 #include "tests/engine/written_diagram.h"
 #include "tests/tools/report/well_formed.h"

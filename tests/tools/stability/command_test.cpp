@@ -1,4 +1,4 @@
-/// `loopwright stability` from outside: exit codes, the files it leaves, what stands in them.
+/// `loopwright stability` from outside: exit codes, output files, and their contents.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <filesystem>
@@ -11,7 +11,7 @@ namespace {
 using ::testing::HasSubstr;
 namespace fs = std::filesystem;
 
-/// A sampled PD loop around a mass with viscous friction; `gain` alone makes it stable or not.
+/// A sampled PD loop around a mass with viscous friction. `gain` alone determines its stability.
 std::string servo(double gain, const std::string& controller = "PdController") {
   return fmt::format(
       R"({{"loopwright": 1, "title": "Servo", "solver": {{"stop": 0.5, "step": 0.001}}, "blocks": {{

@@ -108,7 +108,7 @@ TEST(Certificates, OneFunctionScalesWithAlphaAndAnotherDoesNot) {
   EXPECT_EQ(certify(gains, functions, 1).largest_alpha, 0);
 }
 
-/// The paper's loop as it is sampled, with cogging, and a learned block.
+/// The paper's loop as a sampled system, with cogging, and a learned block.
 std::string sampled_loop(const std::string& model, double Kd = 62.21, const std::string& stiction = "0") {
   return diagram(fmt::format(R"(
   "reference": {{"type": "Sine", "amplitude": 0.05, "frequency": 1, "sample_time": 0.001}},

@@ -1,5 +1,4 @@
-/// What a sweep does when it is killed, when the disk is full, damaged or not to be written, and when two
-/// want to write.
+/// Sweeps that are killed, whose disk is full, damaged or read-only, and two sweeps that write to one folder.
 #include <gmock/gmock.h>
 #include <signal.h>
 #include <sys/mount.h>
@@ -16,7 +15,7 @@ namespace {
 using ::testing::HasSubstr;
 namespace fs = std::filesystem;
 
-/// What the sweep throws; empty: nothing.
+/// The exception of the sweep; empty: none.
 std::string failure_of(const SweepPlan& plan, const std::string& folder, const SweepOptions& options = {}) {
   try {
     run_sweep(plan, folder, options);
@@ -26,7 +25,7 @@ std::string failure_of(const SweepPlan& plan, const std::string& folder, const S
   return "";
 }
 
-/// A child that sweeps and tells how many runs it has handed in.
+/// A child that sweeps and reports how many runs it has completed.
 struct KilledSweep {
   int64_t acknowledged = 0;
   bool was_killed = false;
@@ -155,11 +154,11 @@ TEST(Interruption, SaysWhenNoMoreCanBeWrittenAndKeepsWhatWasWritten) {
   EXPECT_THAT(message, HasSubstr("cannot be written"));
   const SweepResults kept = read_results(plan, folder.results());
   EXPECT_GT(kept.table.rows(), 50u);
-  EXPECT_TRUE(kept.notes.empty());  // nothing torn is left behind
+  EXPECT_TRUE(kept.notes.empty());  // no incomplete file remains
   EXPECT_EQ(bits_with(plan, folder, "results", {}).size(), 160 * kept.table.columns.size());
 }
 
-/// A disk of its own, as small as wanted; null where mounting is not allowed.
+/// A separate disk of any size; null if mounting is not allowed.
 class SmallDisk {
  public:
   static std::unique_ptr<SmallDisk> mounted(const std::string& at, const std::string& size) {
@@ -187,12 +186,12 @@ TEST(Interruption, GoesOnWhenTheFullDiskHasRoomAgain) {
   const SweepResults kept = read_results(plan, folder.results());
   EXPECT_GT(kept.table.rows(), 0u);
   EXPECT_GT(kept.missing, 0);
-  EXPECT_TRUE(kept.notes.empty());  // nothing torn is left behind
+  EXPECT_TRUE(kept.notes.empty());  // no incomplete file remains
   ASSERT_TRUE(disk->grow("4m"));
   EXPECT_EQ(bits_with(plan, folder, "results", {}), whole);
 }
 
-/// Nobody while it lives, where the test has the rights to be: root may write everywhere.
+/// Drops the rights of root while it exists, if possible: root may write everywhere.
 struct WithoutRights {
   WithoutRights() : is_root(geteuid() == 0) {
     if (is_root) is_dropped = seteuid(65534) == 0;

@@ -1,4 +1,4 @@
-/// The program itself: exit codes, the pages and tables it leaves, several processes of one mpirun.
+/// The program itself: exit codes, its pages and tables, several processes of one mpirun.
 #include <gmock/gmock.h>
 #include <cstdlib>
 #include <fstream>
@@ -62,7 +62,7 @@ TEST(SweepProgram, SharesRunsAmongRanksAndGivesTheTableOfOneProcess) {
       0);
   EXPECT_EQ(content(folder.results("four") + "/results.csv"),
             content(folder.results("one") + "/results.csv"));
-  // What a lost rank had not written is made again.
+  // Runs that a lost rank had not written are repeated.
   const auto shards = shard_files(folder.results("four"));
   std::filesystem::resize_file(shards[0], std::filesystem::file_size(shards[0]) / 2);
   if (shards.size() > 1) std::filesystem::remove(shards[1]);
@@ -73,7 +73,7 @@ TEST(SweepProgram, SharesRunsAmongRanksAndGivesTheTableOfOneProcess) {
             content(folder.results("one") + "/results.csv"));
 }
 
-// The rank takes itself away as soon as it has written a block; mpirun then ends the others.
+// The rank ends itself as soon as it has written a block; mpirun then ends the others.
 TEST(SweepProgram, MakesWhatAKilledRankLeftAndGivesTheSameTable) {
   if (exit_code("command -v mpirun") != 0) GTEST_SKIP() << "mpirun is not installed";
   const SweepFolder folder(R"("mass.mass": {"linear": {"from": 0.5, "to": 2, "count": 10000}})",

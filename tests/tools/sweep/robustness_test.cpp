@@ -8,7 +8,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// y = 2 of the variant `steady`, y = a of `following`; beyond a = 3 the latter divides by zero.
+/// y = 2 of the variant `steady`, y = a of `following`. Beyond a = 3 the latter divides by zero.
 const char* const two_variants = R"json({
   "loopwright": 1, "solver": {"stop": 0.1, "step": 0.1}, "parameters": {"a": 1, "b": 1},
   "blocks": {

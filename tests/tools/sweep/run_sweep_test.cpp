@@ -26,7 +26,7 @@ TEST(RunSweep, GivesTheSameBitsWhateverTheThreadsAndLanes) {
   }
 }
 
-// What the sweep finds must be what a person finds who runs the printed command.
+// The results of the sweep must be those of the printed command.
 TEST(RunSweep, GivesWhatEachRunGivesByItself) {
   const SweepFolder folder(four_axis_values, forty_samples);
   const SweepPlan plan = folder.plan();

@@ -62,7 +62,7 @@ TEST(SweepPlan, FollowsExpressionsAndUnits) {
   EXPECT_EQ(world.tuned, (std::vector<std::string>{"damper.gain", "mass.mass", "spring.gain"}));
 }
 
-// Neither axis alone moves the damper from where both begin; only runs in between show that both do.
+// Neither axis alone changes the damper from the first point. Only runs in between show that both do.
 TEST(SweepPlan, NoticesWhatOnlyTwoAxesTogetherShow) {
   std::string loop = small_loop;
   loop.replace(loop.find("=2*damping_ratio*sqrt(stiffness)"), 32,
@@ -156,7 +156,7 @@ TEST(Sensitivity, FindsTheIndicesOfTheIshigamiFunction) {
   EXPECT_NEAR(effects[1].total.value(), 0.4424, 0.03);
   EXPECT_NEAR(effects[2].total.value(), 0.2437, 0.03);
   const double first_order[] = {0.3139, 0.4424, 0.0}, total[] = {0.5576, 0.4424, 0.2437};
-  for (int a = 0; a < 3; ++a) {  // the stated errors are those of the estimates, neither wishes nor fears
+  for (int a = 0; a < 3; ++a) {  // the stated errors are those of the estimates
     EXPECT_GT(effects[size_t(a)].first_order_error, 0.005);
     EXPECT_LT(effects[size_t(a)].first_order_error, 0.06);
     EXPECT_NEAR(effects[size_t(a)].first_order, first_order[a], 3 * effects[size_t(a)].first_order_error);

@@ -1,4 +1,4 @@
-/// What tests of sweeps share: a small loop, sweeps over it, folders that go away.
+/// Shared parts of tests of sweeps: a small loop, sweeps over it, temporary folders.
 #pragma once
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 
 namespace loopwright {
 
-/// A mass on a spring, pulled by a sine: two states, exact enough with few steps. Its damping hangs on an
+/// A mass on a spring, driven by a sine: two states, accurate with few steps. Its damping depends on an
 /// expression, its noise on the number of the run.
 inline const char* const small_loop = R"json({
   "loopwright": 1, "solver": {"method": "rk4", "step": 0.01, "stop": 0.5},
@@ -75,7 +75,7 @@ inline const char* const four_axis_values = R"(
   "pull.frequency": {"normal": {"mean": 12, "deviation": 2}})";
 inline const char* const forty_samples = R"(, "samples": {"method": "latin_hypercube", "count": 40})";
 
-/// Runs what is missing in the folder `name`, and every number of its table.
+/// Runs the missing runs in the folder `name`. Returns every number of its table.
 inline std::vector<uint64_t> bits_with(const SweepPlan& plan, const SweepFolder& folder,
                                        const std::string& name, SweepOptions options) {
   const std::string results = folder.results(name);

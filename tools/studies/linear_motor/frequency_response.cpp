@@ -11,8 +11,8 @@ namespace {
 using Complex = std::complex<double>;
 constexpr double sample_time_s = 0.001, first_s = 1.2, span_s = 10;  // at constant velocity
 
-/// Amplitude of a frequency, after a straight line through the ends of the stretch was taken out: the stage
-/// moves on while it shakes.
+/// Amplitude at a frequency, after subtracting a straight line through the ends of the section: the stage
+/// moves while it vibrates.
 Complex projected(std::span<const double> values, double frequency_hz) {
   const size_t first = whole_count(first_s / sample_time_s), count = whole_count(span_s / sample_time_s);
   const double slope = (values[first + count] - values[first]) / double(count);

@@ -1,4 +1,4 @@
-// From nothing to the tables and figures of the paper.
+// Generates the tables and figures of the paper.
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <chrono>

@@ -73,7 +73,7 @@ Table table_2(const Study& s) {
   return table;
 }
 
-/// A row a condition; each controller with its ratio to the first.
+/// One row per condition; each controller with its ratio to the first.
 Table comparison_table(const Comparison& c, std::string caption) {
   Table table{{"Condition"}, {}, std::move(caption)};
   for (size_t i = 0; i < c.controllers.size(); ++i) {
@@ -91,7 +91,7 @@ Table comparison_table(const Comparison& c, std::string caption) {
   return table;
 }
 
-/// A row a controller, a column a condition.
+/// One row per controller, one column per condition.
 Table transposed_table(const Comparison& c, std::string caption) {
   Table table{{"Controller"}, {}, std::move(caption)};
   for (const Tracking& tracking : c.rows) table.head.push_back(tracking.condition.title);

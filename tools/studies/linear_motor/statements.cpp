@@ -15,7 +15,7 @@ constexpr std::array<const char*, 5> section_names{"0-0.2 s", "0.2-1.2 s", "1.2-
 constexpr std::array<size_t, 3> blends{0, 2, 4};
 constexpr std::array<size_t, 2> plateaus{1, 3};
 
-/// Rows of the motion, chosen by position and by velocity; the runs share their times and motion.
+/// Rows of the motion, selected by position and by velocity; the runs share their times and motion.
 class Rows {
  public:
   Rows(const Recording& run, const std::vector<Stretch>& trained)
@@ -24,7 +24,7 @@ class Rows {
         velocity_(column(run, "reference.velocity")),
         trained_(trained) {}
   bool in_motion(size_t i) const { return time_[i] >= motion_start_s && time_[i] <= motion_end_s; }
-  /// At least `margin` [m] away from every position that was trained (or within, for a negative one).
+  /// At least `margin` [m] away from every trained position (or within, for a negative margin).
   bool outside(size_t i, double margin) const {
     return std::ranges::none_of(trained_, [&](const Stretch& s) {
       return position_[i] >= s.from - margin && position_[i] <= s.to + margin;

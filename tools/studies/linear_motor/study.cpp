@@ -9,7 +9,7 @@
 namespace loopwright::paper {
 namespace {
 
-// Noise is a function of the run's number: training, evaluation and tracking never see the same.
+// Noise is a function of the run's number: training, evaluation and tracking always have different noise.
 constexpr int64_t first_training = 0, first_evaluation = 1000, first_tracking = 2000;
 
 std::string file(const std::string& diagrams, const char* name) { return diagrams + "/" + name + ".json"; }
@@ -36,7 +36,7 @@ const Controller& named(const std::vector<Controller>& controllers, std::string_
   return *found;
 }
 
-/// The two motions, and what hurts a learned phase.
+/// The two motions, and the conditions that disturb the phase of a learned compensation.
 std::vector<Condition> telling_conditions() {
   std::vector<Condition> conditions{paper_condition(), held_out_condition()};
   for (Condition& condition : harder_conditions())

@@ -1,7 +1,7 @@
 /// The paper on data-driven compensation for core-type linear motors (TISO-GPR with a disturbance observer),
-/// from the identification experiment to its tables and figures, and what does better.
+/// from the identification experiment to its tables and figures, and an improved method.
 ///
-/// Nothing here is a number of the paper but `published`, which stands beside the results in the page.
+/// No number here is taken from the paper except `published`, which is shown beside the results in the page.
 #pragma once
 #include <array>
 #include <functional>
@@ -23,7 +23,7 @@ inline constexpr Published published;
 
 struct StudyOptions {
   std::string diagrams = "diagrams/linear_motor";
-  std::string output = "build/paper";  ///< folder that takes recordings and models
+  std::string output = "build/paper";  ///< folder for recordings and models
   int runs = 5;                        ///< with different noise, for every number
   std::function<void(const std::string& what)> progress;
 };
@@ -41,7 +41,7 @@ struct Comparison {
   const Spread& at(std::string_view condition, std::string_view controller) const;
 };
 
-/// Predictions on experiments that the models were not trained on [V]; by size of the training windows.
+/// Predictions on experiments not used for training [V]; by size of the training windows.
 struct PredictionErrors {
   std::array<Spread, 3> ds, ps;                      ///< against the observer's estimate: Table 1
   std::array<Spread, 3> undelayed_ds, undelayed_ps;  ///< against labels without delay
@@ -65,13 +65,13 @@ struct Study {
 
 // The parts of a study. Noise differs between training, evaluation and tracking, and from run to run.
 
-/// Records the identification experiment as a CSV file in `folder` and returns its path. Experiments to train
-/// on and to evaluate on have different noise; `run` from 0.
+/// Records the identification experiment as a CSV file in `folder` and returns its path. Training and
+/// evaluation experiments have different noise; `run` counts from 0.
 enum class Purpose { training, evaluation };
 std::string record_experiment(const std::string& diagrams, Purpose purpose, int run,
                               const std::string& folder);
-/// Each run trains on an experiment of its own and evaluates on another; their recordings go to `folder`. The
-/// models of the first are given.
+/// Each run trains on an experiment of its own and evaluates on another; their recordings are written to
+/// `folder`. The models of the first run are passed in.
 PredictionErrors prediction_errors(const std::string& diagrams, const Models& first, int runs,
                                    const std::string& folder);
 /// Conventional, DS, PS, beyond.
@@ -79,14 +79,14 @@ std::vector<Controller> controllers_of(const std::string& diagrams, const Models
 Comparison compare(std::vector<Controller> controllers, std::vector<Condition> conditions, int runs);
 FigureRuns figure_runs(const std::vector<Controller>& controllers);
 
-/// All of it: simulates, trains, simulates again. The same options give the same numbers.
+/// The complete study: simulates, trains, simulates again. The same options give the same numbers.
 Study run_study(const StudyOptions& options);
 
 /// Stable keys: table1.{ds,ps}[3] in V; table2.{conventional,ds,ps,beyond} in µm on the paper's motion;
 /// held_out, payload2x, delay1, homing1mm .{conventional,ds,ps,beyond} in µm on the held-out motion.
 std::string to_json(const Study& study);
 report::Page study_page(const Study& study);
-/// Tables and statements alone.
+/// Only tables and statements.
 report::Page summary_page(const Study& study);
 
 }  // namespace loopwright::paper

@@ -9,18 +9,18 @@
 
 namespace loopwright::paper {
 
-/// Sizes of the training windows D1, D2, D3 about the middle of each stretch of constant velocity [m].
+/// Sizes of the training windows D1, D2, D3 around the middle of each section of constant velocity [m].
 inline constexpr std::array<double, 3> window_lengths{0.125, 0.225, 0.325};
 
-/// Which training file, which recording, and what differs from the file.
+/// The training file, the recording, and the differences from the file.
 struct TrainingChoice {
   std::string file;                          ///< path of NAME.training.json
   std::string recording;                     ///< path of a CSV file
-  double window_length = window_lengths[1];  ///< m; 0: all of each stretch
-  std::string kernel;                        ///< "ps"; empty: that of the file
+  double window_length = window_lengths[1];  ///< m; 0: all of each section
+  std::string kernel;                        ///< "ps"; empty: the kernel of the file
 };
 
-/// Throws InputError when file or recording do not serve.
+/// Throws InputError when file or recording are unusable.
 gp::Samples samples_of(const TrainingChoice& choice);
 
 struct StudyModel {
@@ -32,14 +32,14 @@ struct StudyModel {
   std::string hyper_parameters() const;  ///< for people
 };
 
-/// Throws InputError when file or recording do not serve.
+/// Throws InputError when file or recording are unusable.
 StudyModel train_model(const TrainingChoice& choice, std::string title);
 
-/// Stretch of positions [m].
+/// Interval of positions [m].
 struct Stretch {
   double from = 0, to = 0;
 };
-/// Where a model has samples, at any velocity; rising, apart.
+/// Intervals in which a model has samples, at any velocity; ascending, disjoint.
 std::vector<Stretch> trained_stretches(const StudyModel& model);
 
 struct Models {

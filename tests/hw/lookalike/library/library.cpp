@@ -1,6 +1,6 @@
-// A second library with the vendor's symbols, for tests: written from what is publicly known of the
-// interface, by other means than hw/emulator and sharing nothing with it. Time is the number of samples, the
-// counter has 32 bits, and a motor is an exact solution of m dv/dt = u - d v.
+// A second library with the vendor's symbols, for tests. It is written from public information on the
+// interface, independently of hw/emulator and without shared code. Time is the number of samples, the counter
+// has 32 bits, and the motor is an exact solution of m dv/dt = u - d v.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -76,7 +76,7 @@ void take_sample() {
   task.buffer.push_back(sample);
 }
 
-/// Every call counts, and a card that is unplugged answers none.
+/// Every call counts, and an unplugged card answers no call.
 int32_t begin(const void* handle) {
   ++card.calls;
   if (handle != &card_handle || !card.is_open) return -88;
@@ -101,7 +101,7 @@ int32_t hil_open(const char* type, const char* identifier, void** handle) {
   ++card.calls;
   if (std::strcmp(type, "qpid_e") != 0) return -179;
   if (std::strcmp(identifier, "0") != 0) return -108;
-  if (card.is_open) return -109;  // the other of the two answers for it
+  if (card.is_open) return -109;  // the other of the two reports it
   card.is_open = true, *handle = &card_handle;
   return 0;
 }

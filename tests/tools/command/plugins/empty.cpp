@@ -1,2 +1,2 @@
-// A library that somebody forgot to register a block in.
+// A library without a registered block.
 extern "C" int nothing() { return 0; }

@@ -1,4 +1,4 @@
-// A block that was compiled against headers in which things had other sizes.
+// A block that was compiled against headers with other type sizes.
 #include "engine/block/registry.h"
 
 static const bool is_registered = [] {

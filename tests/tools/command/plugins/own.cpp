@@ -1,4 +1,4 @@
-// A block of somebody's own, under a name that is free.
+// A user's block with an unused name.
 #include "engine/block.h"
 
 namespace loopwright::blocks {

@@ -1,4 +1,4 @@
-// The name of this block is taken.
+// A block whose name is already used.
 #include "engine/block.h"
 
 namespace loopwright::blocks {

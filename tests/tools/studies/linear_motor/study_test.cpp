@@ -18,7 +18,7 @@ std::string fresh_folder() {
   return folder;
 }
 
-/// The models that lie beside the diagrams, as controllers.
+/// The models that are stored beside the diagrams, as controllers.
 std::vector<Controller> controllers() {
   const auto at = [](const char* name) { return diagrams + "/" + name + ".json"; };
   return {{"conventional", "Conventional", at("conventional"), {}},
@@ -33,7 +33,7 @@ std::vector<Condition> conditions() {
   return list;
 }
 
-/// Hyper-parameters of a model file, held against those of a model.
+/// Hyper-parameters of a model file, compared with those of a model.
 void expect_same(const std::string& file, const StudyModel& model) {
   Problems problems;
   const LearnedModel kept = read_model(file, {}, problems);
@@ -122,7 +122,7 @@ TEST_F(Statements, OfFigures10To17Hold) {
 }
 
 TEST_F(Statements, DoNotHoldForTheWrongRuns) {
-  FigureRuns none = *runs_;  // compensation that does nothing
+  FigureRuns none = *runs_;  // compensation without effect
   for (Recording* run : {&none.ds, &none.ps})
     for (Column& values : run->columns)
       if (const Column* plain = none.conventional.find(values.name)) values.values = plain->values;
