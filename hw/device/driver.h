@@ -61,7 +61,7 @@ class Driver {
   virtual void emergency_stop(std::span<const double> safe) noexcept = 0;
 
   // The end: every step is attempted, even after earlier failures. May be called in any state and repeatedly.
-  /// Ends sampling; the outputs stay as they are.
+  /// Ends sampling; the outputs keep their values.
   virtual void stop_sampling() noexcept = 0;
   /// After safe values were confirmed: sets the values on termination, and turns the watchdog off.
   virtual void disarm() noexcept = 0;

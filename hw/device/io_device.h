@@ -45,7 +45,7 @@ class IoDevice {
   Status start(double period_s);
 
   /// Values of all inputs, in the order of the description. On a fault the values are those of the last
-  /// sample. The first read takes two samples or more, until two agree, where inputs have a maximum rate.
+  /// sample. If inputs have a maximum rate, the first read takes two or more samples, until two agree.
   Status read(Sample& sample, std::span<double> values) noexcept;
   /// Values of all outputs; clamped, and changed no faster than their maximum rate.
   Status write(std::span<const double> values) noexcept;

@@ -81,7 +81,7 @@ struct card {
 struct world {
   uint64_t magic;
   pthread_mutex_t lock;
-  int64_t now, origin; /* ns since the start, by the system's clock */
+  int64_t now, origin; /* ns since the start; the start by the system's clock */
   /* settings, all numbers so that they can be set by name */
   double is_real_time, drift_ppm;
   double compute; /* s that pass with every write in virtual time */

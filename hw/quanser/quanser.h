@@ -1,4 +1,4 @@
-/// Cards behind the vendor's HIL library (QPIDe, Q8-USB, …).
+/// Cards accessed through the vendor's HIL library (QPIDe, Q8-USB, …).
 #pragma once
 #include "hw/device/driver.h"
 

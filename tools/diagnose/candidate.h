@@ -16,7 +16,7 @@ struct CandidateParameter {
   double span = 0;   ///< for a period: the stroke or time over which it repeats; determines its resolution
   double start = 0;  ///< a typical value
 
-  /// A result at this end of the range is a warning, not a result.
+  /// Whether a value is at an end of the range; a fitted one is then reported as a warning, not as a result.
   bool ends_at(double value) const {
     const double edge = 1e-6 * (high - low);
     return value <= low + edge || value >= high - edge;
@@ -39,7 +39,7 @@ struct Candidate {
   bool flies = false;            ///< its force is zero for a while and returns with an impact
   bool is_repeatable = false;    ///< may occur more than once
   bool repeats_in_time = false;  ///< its period is in time, not in position
-  bool is_unknown = false;       ///< not an effect of the catalog but any function of the variables in `form`
+  bool is_unknown = false;       ///< not from the catalogue, but any function of the variables in `form`
   /// For several shapes together: cheaper than one after the other.
   std::function<std::vector<Columns>(const Path& path, const std::vector<std::vector<double>>& shapes)>
       columns_at;

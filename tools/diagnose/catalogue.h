@@ -1,4 +1,4 @@
-/// The effects of the catalog as candidates: each runs its own blocks.
+/// The effects of the catalogue as candidates: each runs its own blocks.
 #pragma once
 #include "tools/diagnose/candidate.h"
 #include "tools/diagnose/diagnose.h"
@@ -6,7 +6,7 @@
 
 namespace loopwright::diagnosis {
 
-/// The effects of a catalog, compiled for a machine.
+/// The effects of a catalogue, compiled for a machine.
 struct Catalogue {
   std::vector<Effect> effects;
   std::vector<Candidate> candidates;  ///< one per effect, in the same order

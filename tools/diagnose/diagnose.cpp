@@ -94,7 +94,7 @@ std::string_view name_of(Verdict verdict) {
 
 namespace {
 
-/// The records of one axis, and what can be concluded from them with the effects of a catalog.
+/// The records of one axis, and what can be concluded from them with the effects of a catalogue.
 class Inquiry {
  public:
   Inquiry(Trials& trials, const Motion& motion, const Catalogue& catalogue, const RecordSizes& sizes,

@@ -12,7 +12,7 @@ namespace loopwright {
 struct DiagnoseOptions {
   LoadOptions load;  ///< --set, --variant
   std::vector<std::string>
-      catalogues;                ///< folders with effect files; empty: the catalog of the installation
+      catalogues;                ///< folders with effect files; empty: the catalogue of the installation
   std::string improved_diagram;  ///< path of the diagram with the effects; empty: not written
   std::function<void(const char* stage, double done)> progress;
   const std::atomic<bool>* interrupt = nullptr;  ///< once true, the diagnosis ends soon, without a verdict
@@ -21,7 +21,7 @@ struct DiagnoseOptions {
 struct DiagnosedParameter {
   std::string name, unit;
   double value = 0, low = 0, high = 0;  ///< SI; 95 % interval
-  bool at_limit = false;                ///< the range of the catalog ends here: a warning, not a result
+  bool at_limit = false;                ///< the range of the catalogue ends here: a warning, not a result
 };
 
 struct DiagnosedEffect {
@@ -57,7 +57,7 @@ struct RecordFinding {
   bool may_be_physics = false;  ///< unless effects explain the whole record: then it has no meaning
 };
 
-/// An effect of the catalog that cannot be used with this diagram or these records.
+/// An effect of the catalogue that cannot be used with this diagram or these records.
 struct NotLookedFor {
   std::vector<std::string> effects;
   std::string why;

@@ -7,7 +7,7 @@
 namespace loopwright {
 namespace {
 
-/// The catalog's name in words.
+/// The effect's name in the catalogue, as words.
 std::string words(std::string name) {
   for (char& c : name)
     if (c == '_') c = ' ';

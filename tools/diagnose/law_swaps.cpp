@@ -66,7 +66,7 @@ std::vector<Proposal> law_swaps(const std::vector<Member>& members, const std::v
   const auto present = std::ranges::count(terms, true, &Term::is_member);
   std::vector<Proposal> list;
   for (const Term& term : terms) {
-    // A mass or a damping alone is less than a gain and one of them.
+    // A mass or a damping alone is simpler than a gain together with the other one.
     const bool is_alike = present == 2 || (present == 1 && &term == &terms[0]);
     if (!term.is_member || !is_alike || !(term.nominal > 0) || !(term.whole() > 0)) continue;
     if (Proposal proposal = without(term, terms, members); !proposal.added.empty())

@@ -169,7 +169,7 @@ class Search {
     return true;
   }
 
-  /// Forces that the catalog does not contain.
+  /// Forces that the catalogue does not contain.
   std::vector<const Shape*> shapes_without_name() {
     nameless_ = shapes_of(unknown_, best_.motion);
     std::ranges::move(periodic_shapes(trials_, best_, unknown_, 1), std::back_inserter(nameless_));

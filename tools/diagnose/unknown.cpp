@@ -25,7 +25,7 @@ double middle_position(const Path& path, size_t k) {
   return path.position[k] + 0.5 * path.sample_time * path.velocity[k];
 }
 
-/// From -1 to 1, with a transition as short as in the catalog's dry friction: an unnamed function must not
+/// From -1 to 1, with a transition as short as in the catalogue's dry friction: an unnamed function must not
 /// win by its behavior at reversals.
 Variable direction_of(double transition_distance) {
   return [=](const Path& path) {

@@ -1,4 +1,4 @@
-/// Unnamed forces: any smooth function of a few variables, for effects that the catalog does not contain.
+/// Unnamed forces: any smooth function of a few variables, for effects that the catalogue does not contain.
 #pragma once
 #include "tools/diagnose/candidate.h"
 #include "tools/effects/effect.h"

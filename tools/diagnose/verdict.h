@@ -15,7 +15,7 @@ std::vector<RecordFinding> look_at_records(const Trials& trials, const std::vect
 void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, const Noise& tight,
            Diagnosis& diagnosis);
 
-/// The experiment of the catalog that distinguishes the two.
+/// The experiment of the catalogue that distinguishes the two.
 SuggestedExperiment separating_experiment(const Effect& effect, const std::string& other);
 
 /// Shares of the remaining slow force that are explained by functions of position, velocity, acceleration,

@@ -104,7 +104,7 @@ struct SeparatingExperiment {
 };
 
 struct ConfusableEffect {
-  std::string with;  ///< another effect of the catalog
+  std::string with;  ///< another effect of the catalogue
   std::string when;  ///< in words: in which records
   SeparatingExperiment experiment;
 };
@@ -132,7 +132,7 @@ std::vector<Effect> load_effect(const std::string& path, Problems& problems);
 /// All effect files of the folders, sorted by name; a repeated name replaces the earlier one.
 std::vector<Effect> load_catalogue(const std::vector<std::string>& folders, Problems& problems);
 
-/// The catalog installed with the program, see shared_file, or the folder named by LOOPWRIGHT_EFFECTS.
+/// The catalogue installed with the program, see shared_file, or the folder named by LOOPWRIGHT_EFFECTS.
 std::string catalogue_folder();
 
 struct FitRange {

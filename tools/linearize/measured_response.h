@@ -18,7 +18,7 @@ struct SineTest {
   std::string to;             ///< any port
   double amplitude = 1;       ///< SI, of the added sine
   double settle = 0;          ///< s before the measurement; the sine is on from the start
-  int periods = 10;           ///< number of measured periods per sine, at least; rounded up to whole samples
+  int periods = 10;           ///< minimum number of measured periods per sine; rounded up to whole samples
   double sample_time = 1e-3;  ///< s between the rows used
   bool holds = true;          ///< the sine is held between rows, as by a sampled controller
   std::vector<double> frequencies;  ///< rad/s; adjusted slightly so that whole periods fit whole rows

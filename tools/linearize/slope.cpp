@@ -7,7 +7,7 @@ namespace loopwright {
 namespace {
 
 constexpr int levels = 15;
-constexpr double ratio = 7, first_step = 0.7310;  // does not divide the period of any block
+constexpr double ratio = 7, first_step = 0.7310;  // steps that are no multiples of a block's period
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 

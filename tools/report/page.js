@@ -11,7 +11,7 @@
 
   // ---------- numbers ----------
 
-  /** The power of ten, a multiple of 3, in which values up to `largest` read well. */
+  /** The power of ten, a multiple of 3, in which values up to `largest` are easy to read. */
   function exponentFor(largest, unit) {
     if (!(largest > 0) || !isFinite(largest)) return 0;
     const exponent = 3 * Math.floor(Math.log10(largest * 1.0000001) / 3);
@@ -282,7 +282,7 @@
     return element("div", "legend", ...plot.buttons, plot.reset);
   }
 
-  /** The box beside the cursor: x, then a row for each curve. */
+  /** The box next to the cursor: x, then a row for each curve. */
   function buildReadOut(plot) {
     plot.abscissa = element("output", "abscissa");
     plot.rows = plot.series.map((series, k) => {

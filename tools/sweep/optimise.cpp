@@ -36,7 +36,7 @@ class Search {
     const unsigned n = unsigned(free_.size());
     if (n == 0) return void(value_at({}));
     nlopt::opt everywhere(nlopt::GN_DIRECT_L, n), nearby(nlopt::LN_SBPLX, n);
-    nearby.set_initial_step(0.03);  // approximate resolution of DIRECT
+    nearby.set_initial_step(0.03);  // approximate distance between the points of DIRECT
     std::vector<double> u(n, 0.5);
     search(everywhere, u, std::max(1, options_.evaluations * 2 / 3));
     if (!best_u_.empty()) search(nearby, best_u_, std::max(1, options_.evaluations - used_));

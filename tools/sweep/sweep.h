@@ -53,7 +53,7 @@ struct Metric {
     peak,             ///< greatest magnitude
     final,            ///< the last value
     settling_time,    ///< [s] from `from` to the last time outside target ± band
-    overshoot,        ///< overshoot beyond the target, relative to the first value
+    overshoot,        ///< overshoot beyond the target, as seen from the first value
     percentile,       ///< of the values at the rows, by nearest rank
     first_violation,  ///< [s] when the magnitude first exceeds `threshold`; NaN: never
   };
