@@ -19,6 +19,7 @@
 #include "engine/run/block_instance.h"
 #include "engine/run/calls_by_rate.h"
 #include "engine/run/algebraic_loop.h"
+#include "engine/solve/ode.h"
 
 namespace loopwright {
 

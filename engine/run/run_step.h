@@ -95,18 +95,18 @@ void Run<Real>::look_between(double time, const double* x, Record&& record) {
 }
 
 template <class Real> bool Run<Real>::derivatives_at(double time, const double* x, double* rate) {
-  std::copy_n(x, plan_.states, x_);
+  copy_states(x, size_t(plan_.states), x_);
   now_.time = time;
   forget_trials();
   uint64_t bad = 0;
   for (const Call<Real>& c : stage_) bad |= c.step(c);
   for (const Call<Real>& c : slopes_) bad |= c.step(c);
-  std::copy_n(slope_[0], plan_.states, rate);
+  copy_states(slope_[0], size_t(plan_.states), rate);
   return bad == 0;
 }
 
 template <class Real> bool Run<Real>::crossings_at(double time, const double* x, double* value) {
-  std::copy_n(x, plan_.states, x_);
+  copy_states(x, size_t(plan_.states), x_);
   now_.time = time;
   forget_trials();
   uint64_t bad = 0;
@@ -117,7 +117,7 @@ template <class Real> bool Run<Real>::crossings_at(double time, const double* x,
 }
 
 template <class Real> void Run<Real>::look_at(double time, const double* x) {
-  std::copy_n(x, plan_.states, x_);
+  copy_states(x, size_t(plan_.states), x_);
   now_.time = time;
 }
 

@@ -1,7 +1,6 @@
 /// Accepted steps without events: the common interface of the integration methods for the Solver.
 #pragma once
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <vector>
 
@@ -83,7 +82,7 @@ class Stepper {
   virtual void interpolate_within(double t, double* x) const = 0;
 
   void copy(const double* from, double* to) const {
-    if (states_ > 0) std::memmove(to, from, states_ * sizeof(double));
+    copy_states(from, states_, to);
   }
 
   /// The end of the last step becomes the beginning of this one, `x` (swapped, not copied) its end at t.
