@@ -94,6 +94,9 @@ template <class Real> class Run {
 
   // For variable-step solvers: the system between discontinuities. Only for scalar runs.
   bool derivatives_at(double time, const double* x, double* rate);
+  /// To be called after evaluate(): the signals are those of the present time and states. If the next call of
+  /// derivatives_at is for these, it does not compute them again.
+  void reuse_signals() { signals_are_current_ = accepts_.empty() && algebraic_loops_.empty(); }
   bool crossings_at(double time, const double* x, double* value);
   /// Sets states and time; signals are not yet computed.
   void look_at(double time, const double* x);
@@ -194,6 +197,7 @@ template <class Real> class Run {
   std::vector<std::vector<BlockInstance<Real>>> instances_;  // for each arena, as in all members below
   std::vector<Wires> wires_;
   std::vector<std::vector<Call<Real>>> base_;  // one for each block, without a step
+  bool signals_are_current_ = false;  ///< by reuse_signals()
   std::vector<std::unique_ptr<AlgebraicLoopSolver<Real>>> algebraic_loops_;
   std::vector<Call<Real>> constants_, early_, between_, stage_, for_events_, held_, accepts_, jumps_,
       crossings_, slopes_;

@@ -102,6 +102,7 @@ class Simulation {
         if (run_.now().time >= next_checkpoint_ && has_started) checkpoint(&solver);
         if (!begin_at_tick() || run_.now().tick == plan_.stop_tick) break;
         copy_states();
+        run_.reuse_signals();
         has_started ? solver.restart(run_.now().time, x_.data()) : solver.start(run_.now().time, x_.data());
       }
       has_started = true, is_between_ticks_ = false;
@@ -179,6 +180,7 @@ class Simulation {
     run_.evaluate(0, true);
     run_.accept();
     copy_states();
+    run_.reuse_signals();
     solver.restart(solver.t(), x_.data());
   }
   bool accept_at(Solver& solver) {
