@@ -84,24 +84,27 @@ static void write_coefficients(FILE* file, const double* values) {
   fputc(']', file);
 }
 
-static void write_filter(FILE* file, const char* name, const Filter* filter, const char* source) {
+/// `unit`: of the output over that of the input.
+static void write_filter(FILE* file, const char* name, const Filter* filter, const char* unit,
+                         const char* source) {
   fprintf(file,
-          "    \"%s\": {\"type\": \"DiscreteTransferFunction\", \"sample_time\": %g, \"numerator\": ", name,
-          sample_time_s);
+          "    \"%s\": {\"type\": \"DiscreteTransferFunction\", \"sample_time\": %g, "
+          "\"numerator\": {\"value\": ",
+          name, sample_time_s);
   write_coefficients(file, filter->numerator);
-  fputs(", \"denominator\": ", file);
+  fprintf(file, ", \"unit\": \"%s\"}, \"denominator\": ", unit);
   write_coefficients(file, filter->denominator);
   fprintf(file, ", \"in\": {\"u\": \"%s\"}},\n", source);
 }
 
 static void write_observer_loop(FILE* file, const Controller* c) {
-  write_filter(file, "feedback", &c->feedback, "error.sum");
-  write_filter(file, "inverse", &c->observer_position, "encoder.position");
+  write_filter(file, "feedback", &c->feedback, "N/m", "error.sum");
+  write_filter(file, "inverse", &c->observer_position, "N/m", "encoder.position");
   fprintf(
       file,
       "    \"previous\": {\"type\": \"UnitDelay\", \"sample_time\": %g, \"in\": {\"u\": \"force.sum\"}},\n",
       sample_time_s);
-  write_filter(file, "commanded", &c->observer_command, "previous.y");
+  write_filter(file, "commanded", &c->observer_command, "1", "previous.y");
   fputs(
       "    \"force\": {\"type\": \"Sum\", \"signs\": \"++-+\",\n"
       "              \"in\": {\"terms\": [\"feedback.y\", \"feedforward\", \"inverse.y\", "
@@ -110,7 +113,7 @@ static void write_observer_loop(FILE* file, const Controller* c) {
 }
 
 static void write_cascade_loop(FILE* file, const Controller* c) {
-  write_filter(file, "velocity", &c->velocity, "encoder.position");
+  write_filter(file, "velocity", &c->velocity, "1/s", "encoder.position");
   fprintf(file,
           "    \"wanted_velocity\": {\"type\": \"Gain\", \"gain\": {\"value\": %.17g, \"unit\": \"1/s\"}, "
           "\"in\": {\"u\": \"error.sum\"}},\n",
