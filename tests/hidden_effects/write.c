@@ -77,10 +77,12 @@ static bool write_axis(const char* folder, const Physics* nominal) {
   return done(file);
 }
 
-static void write_coefficients(FILE* file, const double* values) {
+/// Each in `unit`.
+static void write_coefficients(FILE* file, const double* values, const char* unit) {
   int last = FILTER_ORDER;
   while (last > 0 && values[last] == 0) --last;
-  for (int i = 0; i <= last; ++i) fprintf(file, "%s%.17g", i ? ", " : "[", values[i]);
+  for (int i = 0; i <= last; ++i)
+    fprintf(file, "%s{\"value\": %.17g, \"unit\": \"%s\"}", i ? ", " : "[", values[i], unit);
   fputc(']', file);
 }
 
@@ -89,11 +91,11 @@ static void write_filter(FILE* file, const char* name, const Filter* filter, con
                          const char* source) {
   fprintf(file,
           "    \"%s\": {\"type\": \"DiscreteTransferFunction\", \"sample_time\": %g, "
-          "\"numerator\": {\"value\": ",
+          "\"numerator\": ",
           name, sample_time_s);
-  write_coefficients(file, filter->numerator);
-  fprintf(file, ", \"unit\": \"%s\"}, \"denominator\": ", unit);
-  write_coefficients(file, filter->denominator);
+  write_coefficients(file, filter->numerator, unit);
+  fputs(", \"denominator\": ", file);
+  write_coefficients(file, filter->denominator, "1");
   fprintf(file, ", \"in\": {\"u\": \"%s\"}},\n", source);
 }
 
