@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <set>
+#include "engine/block/registry.h"
 #include "engine/json/json.h"
 #include "engine/json/reader.h"
 #include "tools/effects/effect_values.h"
@@ -182,9 +183,8 @@ class Inserter {
       return start ? to_json(start->value) : "";
     }
     const std::string number = value_text(setting.value, path + "." + setting.name);
-    return is_factor(type_of(block.value), setting.name)
-               ? values_.with_unit(setting.value, effect_, site_.units)
-               : number;
+    if (!is_factor(type_of(block.value), setting.name)) return number;
+    return values_.with_unit(setting.value, effect_, site_.units);
   }
   std::string value_text(const Value& value, const std::string& path) {
     if (value.kind == Kind::text && value.text.starts_with('=')) {
