@@ -28,6 +28,7 @@ class TypeUnits {
   size_t variables() const { return names_.size(); }
   /// Whether a variable is the position of a moving part. If it is dimensionless, it is an angle.
   bool is_position(int variable) const { return variable == position_; }
+  int position() const { return position_; }  ///< that variable; -1: none
 
  private:
   void add_parameter(const ParameterInfo& parameter);

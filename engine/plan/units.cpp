@@ -27,6 +27,8 @@ class Solver {
     for (const Phase phase : {Phase::written, Phase::forward, Phase::any}) propagate(phase);
     solve_together();
     for (const Equation& equation : equations_) check(equation);
+    if (!problems_.has_errors())  // which may be the cause
+      for (size_t b = 0; b < flat_.blocks.size(); ++b) check_position(int(b));
     PortUnits units;
     units.first.reserve(flat_.blocks.size());
     for (size_t b = 0; b < flat_.blocks.size(); ++b) {
@@ -277,6 +279,26 @@ class Solver {
     return block >= 0 && std::ranges::any_of(begin, end, [](const NumberWithUnit& number) {
              return number.info->plain_when_bare && !(number.value && number.value->unit);
            });
+  }
+
+  /// The position of a moving part is a length or an angle, whatever force and mass are given.
+  void check_position(int b) {
+    const int position = said_.types_of(b).position();
+    if (position < 0) return;
+    const auto& unit = variables_[said_.variable_of(b, {position, 1})];
+    static const Unit meter = parse_unit("m").value();
+    if (!unit || unit->fits(meter) || unit->fits(Unit{})) return;
+    const FlatBlock& block = flat_.blocks[size_t(b)];
+    auto& p = problems_.error(block.entry->place, block.entry->place.pointer(), block.path,
+                              fmt::format("the position would be in {}", to_string(*unit)));
+    p.expected = "m or rad";
+    const auto& inputs = block.type->info.inputs;
+    for (size_t i = 0; i < inputs.size(); ++i)
+      if (const auto known = value({b, &said_.types_of(b).of_input(i), {}}))
+        p.found += fmt::format("{}{} [{}]", p.found.empty() ? "" : ", ", inputs[i].name, to_string(*known));
+    p.hint =
+        "the units of its numbers and wires do not go together: is a force constant missing, such as a "
+        "Gain of {\"value\": 20, \"unit\": \"N/A\"}?";
   }
 
   void check_formula(const Equation& equation) {

@@ -44,7 +44,8 @@ TEST(Failure, OfABlockGivesItsReasonAndTheTime) {
   for (const char* solver :
        {R"("stop": 1, "step": 0.1)", R"("stop": 1, "method": "dopri5", "record_step": 0.1)"}) {
     const RunResult result = run_of(diagram(
-        R"json("t": {"type": "Clock"}, "e": {"type": "Expression", "formula": "sqrt(0.55-t)", "names": ["t"], "in": {"arguments": ["t.time"]}},
+        R"json("t": {"type": "Clock"}, "end": {"type": "Constant", "value": {"value": 0.55, "unit": "s"}},
+      "e": {"type": "Expression", "formula": "sqrt(end-t)", "names": ["end", "t"], "in": {"arguments": ["end.y", "t.time"]}},
       "x": {"type": "Integrator", "in": {"u": "e.y"}})json",
         solver));
     EXPECT_EQ(result.status, RunStatus::failed) << solver;

@@ -126,7 +126,8 @@ TEST(Fault, OfATrialThatTheSolverTookBackIsForgotten) {
       R"json("x": {"type": "Integrator", "initial": 1, "in": {"u": "g.y"}}, "g": {"type": "Gain", "gain": -40, "in": {"u": "x.y"}},
     "root": {"type": "Expression", "formula": "sqrt(x)", "names": ["x"], "in": {"arguments": ["x.y"]}},
     "y": {"type": "Integrator", "in": {"u": "root.y"}}, "t": {"type": "Clock"},
-    "late": {"type": "Expression", "formula": "sqrt(0.5-t)", "names": ["t"], "in": {"arguments": ["t.time"]}},
+    "end": {"type": "Constant", "value": {"value": 0.5, "unit": "s"}},
+    "late": {"type": "Expression", "formula": "sqrt(end-t)", "names": ["end", "t"], "in": {"arguments": ["end.y", "t.time"]}},
     "z": {"type": "Integrator", "in": {"u": "late.y"}})json",
       R"("stop": 1, "method": "dopri5", "record_step": 0.1, "relative_tolerance": 1e-3, "absolute_tolerance": 1e-3)"));
   EXPECT_EQ(result.status, RunStatus::failed);
