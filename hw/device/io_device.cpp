@@ -123,7 +123,7 @@ Status IoDevice::read_first(Sample& sample) noexcept {
   size_t jumped = 0;
   for (int taken = 0; taken < most_first_samples; ++taken) {
     if (taken > 0)
-      if (const Status status = driver_->write(raw_initial_); !status.ok()) return status;
+      if (const Status status = send(raw_initial_); !status.ok()) return status;
     if (const Status status = take_sample(sample); !status.ok()) return status;
     bool agree = taken > 0 || !has_rates_;
     for (size_t i = 0; i < inputs_.size(); ++i) {

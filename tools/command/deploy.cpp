@@ -198,6 +198,7 @@ int run(const Arguments& a) {
   // Until the process has ended: a repeated signal must not come between the last file and the exit code.
   take_time_after_interruption();
   static const hw::StopSignals& signals = *new hw::StopSignals;
+  if (interruption()) return interrupted;  // requested while the diagram was loaded: nothing has moved
   std::optional<hw::DeployResult> moved = move(a, *plan, hardware, signals, journal);
   if (!moved) return run_failed;
   hw::DeployResult& result = *moved;

@@ -13,7 +13,7 @@ constexpr long patience_ns = 700'000'000;  // the documented limit is a second, 
 std::atomic<bool> asked = false, may_take_time = false;
 static_assert(std::atomic<bool>::is_always_lock_free);
 timer_t deadline;
-bool has_deadline = false;
+std::atomic<bool> has_deadline = false;
 
 // Calls only functions that a signal handler may call.
 void on_deadline(int) {
@@ -41,6 +41,12 @@ void obey_interruption() {
 
 const std::atomic<bool>& interruption() { return asked; }
 
-void take_time_after_interruption() { may_take_time = true; }
+void take_time_after_interruption() {
+  may_take_time = true;
+  if (!has_deadline) return;
+  has_deadline = false;
+  timer_delete(deadline);
+  std::signal(SIGALRM, SIG_DFL);  // an alarm from outside is a request to end like any other
+}
 
 }  // namespace loopwright
