@@ -176,7 +176,7 @@ std::optional<hw::DeployResult> move(const Arguments& a, const Plan& plan, const
   if (!a.quiet) {
     options.progress = show;
     options.ready = [](const std::vector<std::string>& lines) {
-      for (const std::string& line : lines) say(line + "\n", patience_ms / 2);
+      say(fmt::format("{}\n", fmt::join(lines, "\n")), patience_ms / 2);  // one wait for all of them
     };
   }
   hw::DeployResult result = hw::deploy(plan, hardware, device, options);
