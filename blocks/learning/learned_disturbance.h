@@ -24,7 +24,7 @@ struct ModelInput {
   /// For inputs that are not finite: no prediction is possible.
   static Fault not_finite(double position, double velocity) {
     return fault_if(!(std::isfinite(position) && std::isfinite(velocity)),
-                    "the position or the velocity that a learned model is asked at is no finite number");
+                    "the position or the velocity that a learned model is evaluated at is not finite");
   }
   Fault fault(double velocity) const {
     const double low = std::min(trained.low, 0.0), high = std::max(trained.high, 0.0);

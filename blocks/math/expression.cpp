@@ -100,7 +100,7 @@ struct Expression {
   Fault outputs(const In& in, Out& out) const {
     for (int i = 0; i < in.arguments.size(); ++i) compiled.variables[size_t(i)] = in.arguments[i];
     out.y = compiled.parser.Eval();
-    return fault_if(!std::isfinite(out.y), "the formula gave no finite number");
+    return fault_if(!std::isfinite(out.y), "the formula gave a non-finite number");
   }
 };
 LOOPWRIGHT_BLOCK(Expression)

@@ -80,7 +80,7 @@ std::unique_ptr<LaneRun> make_lane_run(const Plan& plan, InstructionSet set, int
 std::string to_text(const LaneFailure& failure, const Plan& plan) {
   const std::string block = failure.block < 0 ? "?" : plan.blocks[size_t(failure.block)].path;
   if (failure.reason) return fault_text(plan, {failure.block, failure.reason}, failure.time);
-  return fmt::format("the run diverged: \"{}\" is no finite number any more at t = {:g} s",
+  return fmt::format("the run diverged: \"{}\" became non-finite at t = {:g} s",
                      failure.number < 0 ? block : plan.name_of(failure.number), failure.time);
 }
 

@@ -321,8 +321,8 @@ class Simulation {
     for (int i = 0; i < plan_.states && culprit.empty(); ++i)
       if (!std::isfinite(run_.states()[size_t(i)])) culprit = block_of_state(i);
     if (culprit.empty()) culprit = plan_.log[size_t(recorder_.first_non_finite())].name;
-    return fail(fmt::format("the run diverged: \"{}\" is no finite number any more at t = {:g} s", culprit,
-                            run_.now().time));
+    return fail(
+        fmt::format("the run diverged: \"{}\" became non-finite at t = {:g} s", culprit, run_.now().time));
   }
   void add_facts() {
     auto& facts = result_.recording.facts;

@@ -20,7 +20,7 @@ std::string what_was_read(const Incident& incident, const InputChannel& input) {
     case Reading::good:
       break;
     case Reading::not_finite:
-      return read + ", which is no finite number";
+      return read + ", which is not finite";
     case Reading::not_whole:
       return read + ": a counter counts whole edges";
     case Reading::beyond_counter:
@@ -58,7 +58,7 @@ std::string explain(const Incident& incident, const DeviceDescription& device) {
     case What::output: {
       const OutputChannel& output = device.outputs[incident.channel];
       return fmt::format(
-          "the command for output \"{}\" (channel {}) became {:g}, which is no finite number; "
+          "the command for output \"{}\" (channel {}) became {:g}, which is not finite; "
           "the safe values were sent instead",
           output.name, output.channel, incident.number);
     }

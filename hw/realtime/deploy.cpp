@@ -64,9 +64,10 @@ class Deployment {
         options.journal.empty()
             ? ""
             : fmt::format("; the log: loopwright recover {} -o FILE.csv", options.journal);
-    const std::string_view ends[] = {"the device took the safe values and is closed",
-                                     "the device's watchdog put out its safe values; the device is closed",
-                                     "safe values were sent, but nobody knows whether they were taken"};
+    const std::string_view ends[] = {
+        "the device took the safe values and is closed",
+        "the device's watchdog put out its safe values; the device is closed",
+        "safe values were sent, but it is not known whether the device took them"};
     for (const std::string_view end : ends) last_words_.push_back(fmt::format("{}{}", end, log));
   }
 

@@ -8,7 +8,7 @@ namespace {
 
 /// [samples] If more than a hundredth of the time stamps deviate further from the grid, this is not jitter:
 /// their median step is not their mean step. A few rows may have been delayed.
-constexpr double most_tremble = 5, most_held_up = 0.01;
+constexpr double most_jitter = 5, most_held_up = 0.01;
 /// A row whose stamp is further behind the previous one follows a lost sample.
 constexpr double gap = 1.5;
 
@@ -23,7 +23,7 @@ EvenGrid::EvenGrid(const Experiment& experiment) : sample_time_(experiment.time.
   std::ranges::nth_element(starts, starts.begin() + std::ptrdiff_t(starts.size() / 2));
   const double middle = starts[starts.size() / 2];
   const auto far = std::ranges::count_if(
-      starts, [&](double start) { return std::abs(start - middle) > most_tremble * sample_time_; });
+      starts, [&](double start) { return std::abs(start - middle) > most_jitter * sample_time_; });
   if (double(far) > most_held_up * double(time.size())) {
     by_time(time);
     return;

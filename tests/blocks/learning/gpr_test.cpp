@@ -84,7 +84,7 @@ TEST(Gpr, StopsTheRunWhereItIsAskedAtNoFiniteNumber) {
         BlockUnderTest block(type, settings(folder, fmt::format(R"(, "untrained": "{}")", untrained)));
         predicted(block, x, v, block_output(type));
         EXPECT_EQ(block.fault(),
-                  "the position or the velocity that a learned model is asked at is no finite number")
+                  "the position or the velocity that a learned model is evaluated at is not finite")
             << type << " " << x << " " << v;
       }
 }

@@ -24,7 +24,7 @@ TEST(Expression, StopsTheRunWhenTheResultIsNoNumber) {
   BlockUnderTest formula("Expression", R"({"formula": "1/x", "names": ["x"]})");
   formula.input("arguments") = 0;
   formula.evaluate();
-  EXPECT_EQ(formula.fault(), "the formula gave no finite number");
+  EXPECT_EQ(formula.fault(), "the formula gave a non-finite number");
 }
 
 TEST(Expression, PointsAtTheMistakeInAFormula) {

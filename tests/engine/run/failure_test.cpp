@@ -49,7 +49,7 @@ TEST(Failure, OfABlockGivesItsReasonAndTheTime) {
       "x": {"type": "Integrator", "in": {"u": "e.y"}})json",
         solver));
     EXPECT_EQ(result.status, RunStatus::failed) << solver;
-    EXPECT_TRUE(has(result.message, "\"e\" stopped the run") && has(result.message, "no finite number"))
+    EXPECT_TRUE(has(result.message, "\"e\" stopped the run") && has(result.message, "non-finite number"))
         << result.message;
     EXPECT_GE(result.recording.rows(), 6u) << solver;
     EXPECT_LE(result.time, 0.7) << solver;

@@ -153,7 +153,7 @@ TEST(IoDevice, ANumberThatCannotBeIsAFault) {
 
 TEST(IoDevice, WhatWasReadIsToldInASentence) {
   const std::pair<double, const char*> sentences[] = {
-      {nan, "input \"position\" (encoder 0) read nan counts, which is no finite number"},
+      {nan, "input \"position\" (encoder 0) read nan counts, which is not finite"},
       {0.5, "input \"position\" (encoder 0) read 0.5 counts: a counter counts whole edges"},
       {1e10,
        "input \"position\" (encoder 0) read 10000000000 counts, which its counter of 24 bits cannot do "
