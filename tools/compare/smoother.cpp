@@ -204,10 +204,13 @@ double floor_of_smooth_parts(const Rows& rows) {
     std::copy_n(remainder.data(), n, left.begin());
   };
   solve();
+  // Of the top speed, so that all columns are alike in size whatever the unit of the position.
+  const auto faster = [](double a, double b) { return std::abs(a) < std::abs(b); };
+  const double top_speed = std::max(std::abs(*std::ranges::max_element(rows.velocity, faster)), 1e-300);
   for (int l = 0; l < lines; ++l) {  // the line itself, and the line multiplied by speed and by its square
     const Line line = find_line(left, rows, rows.position, -1);
     for (size_t i = 0; i < n; ++i) {
-      const double angle = 2 * pi * line.frequency * rows.position[i], v = rows.velocity[i];
+      const double angle = 2 * pi * line.frequency * rows.position[i], v = rows.velocity[i] / top_speed;
       double factor = 1;
       for (int power = 0; power < 3; ++power, factor *= std::abs(v)) {
         design(Eigen::Index(i), at + 2 * power) = factor * std::sin(angle);
