@@ -46,12 +46,13 @@ void tell_ambiguity(const Value& number, const Unit& wanted, const Reader& reade
   other.exponents[Unit::cycle] = wanted.cycles();
   other.exponents[Unit::radian] += given.cycles() - wanted.cycles();
   const double converted = conversion(given, other)(number.number);
+  const Conversion in_radians{Conversion::Kind::turns, -1};
   if (wanted.cycles() == 0)
     p.hint = fmt::format("counted once a cycle it is {}, in radians {}", shown(number.number, wanted),
                          shown(converted, other));
   else
     p.hint = fmt::format("as cycles it is {}, as radians {}", shown(number.number, wanted),
-                         shown(conversion(other, wanted)(number.number), wanted));
+                         shown(in_radians(number.number), wanted));
 }
 
 }  // namespace

@@ -122,6 +122,12 @@ TEST(UnitConversion, GivesTheSameRotationOnEveryWayOrRefuses) {
       }
 }
 
+TEST(UnitConversion, NamesBothReadingsForAFrequency) {
+  const std::string text = problems_of(
+      diagram(R"("x": {"type": "Sine", "amplitude": 1, "frequency": {"value": 60, "unit": "1/min"}})"));
+  EXPECT_TRUE(has(text, "as cycles it is 1 Hz, as radians 0.1592 Hz")) << text;
+}
+
 TEST(UnitConversion, NamesBothNumbersOfAFileThatChanges) {
   const std::string text = problems_of(diagram(
       R"("x": {"type": "LowPass", "cutoff": {"value": 40, "unit": "Hz"}, "in": {"u": "t.time"}}, "t": {"type": "Clock"})"));
