@@ -49,7 +49,8 @@ void measure(ComparedSignal& signal, double hold_out_fraction) {
   signal.relative_percent = size > 0 ? 100 * signal.rmse / size : 0;
   signal.fit_percent = spread > 0 ? 100 * (1 - signal.rmse / spread) : 0;
   if (hold_out_fraction > 0)
-    signal.held_out_rmse = rms(std::span(signal.error).last(whole_between<size_t>(double(n) * hold_out_fraction, 0, n)));
+    signal.held_out_rmse =
+        rms(std::span(signal.error).last(whole_between<size_t>(double(n) * hold_out_fraction, 0, n)));
 }
 
 void add_axes(Comparison& comparison, const Experiment& experiment) {

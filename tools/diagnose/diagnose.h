@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 #include "engine/diagram/diagram.h"
+#include "tools/effects/insert.h"
 #include "tools/report/report.h"
 
 namespace loopwright {
@@ -91,7 +92,8 @@ struct Diagnosis {
   double mean_square = 0, held_out_mean_square = 0, portmanteau = 0;
   double white_force = 0, slow_force = 0, slow_force_time_s = 0;
   std::vector<double> measurement_noise;
-  std::string improved;  ///< the diagram that was written
+  std::string improved;                     ///< the diagram that was written
+  std::vector<MovedPort> experiment_ports;  ///< that an experiment must name differently with that diagram
   std::vector<std::string> trail;
   struct Curves {
     std::vector<double> time, position, velocity, before, after;

@@ -53,6 +53,9 @@ std::string to_json(const Diagnosis& d) {
                    {"slow_force_time_s", d.slow_force_time_s},
                    {"measurement", d.measurement_noise}};
   json["diagram"] = d.improved.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(d.improved);
+  json["experiment_ports"] = nlohmann::ordered_json::array();
+  for (const MovedPort& moved : d.experiment_ports)
+    json["experiment_ports"].push_back({{"from", moved.from}, {"to", moved.to}});
   return json.dump(2) + "\n";
 }
 

@@ -206,6 +206,8 @@ report::Page diagnosis_page(const Diagnosis& d) {
   page.facts = {{"Diagram", d.diagram}, {"Records", joined(d.experiments, ", ")}};
   if (!d.improved.empty()) page.facts.emplace_back("Improved diagram", d.improved);
   page.sections.push_back({"Answer", {verdict(d)}});
+  for (const MovedPort& moved : d.experiment_ports)
+    page.sections.back().items.push_back(report::Notice{report::Notice::Severity::warning, words_of(moved)});
   page.sections.push_back(what_is_missing(d));
   page.sections.push_back(where_it_fails(d));
   page.sections.push_back(staircase(d));

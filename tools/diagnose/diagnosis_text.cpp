@@ -69,6 +69,7 @@ std::string to_text(const Diagnosis& d) {
   for (const RecordFinding& f : d.findings) line(fmt::format("The record: {}; {}.", f.what, f.cost));
   for (const NotLookedFor& n : d.not_looked_for)
     line(fmt::format("Not looked for: {}; {}.", joined(n.effects, ", "), n.why));
+  for (const MovedPort& moved : d.experiment_ports) line(words_of(moved));
   return text;
 }
 

@@ -18,6 +18,37 @@ std::vector<double> fitted_values(const Effect& effect, const Member& member) {
   return values;
 }
 
+/// Whether the experiment drives a port or names it in its roles.
+bool is_input_of(const Experiment& experiment, const std::string& port) {
+  return std::ranges::any_of(experiment.drives, [&](const RecordedSignal& d) { return d.port == port; }) ||
+         std::ranges::any_of(experiment.roles.ports, [&](const auto& role) { return role.second == port; });
+}
+
+/// Ports of the experiment that several insertions moved.
+class MovedPorts {
+ public:
+  explicit MovedPorts(const Experiment& experiment) : experiment_(experiment) {}
+
+  void add(const Insertion& insertion) {
+    for (const MovedPort& moved : insertion.measured_at) {  // the last error of a sensor is the outermost
+      const auto earlier = std::ranges::find(list_, std::vector{moved.from}, &MovedPort::to);
+      if (earlier != list_.end())
+        earlier->to = moved.to;
+      else
+        list_.push_back(moved);
+    }
+    for (const MovedPort& moved : insertion.input_at)  // the first effect of the input reads it
+      if (is_input_of(experiment_, moved.from) &&
+          std::ranges::find(list_, moved.from, &MovedPort::from) == list_.end())
+        list_.push_back(moved);
+  }
+  const std::vector<MovedPort>& list() const { return list_; }
+
+ private:
+  const Experiment& experiment_;
+  std::vector<MovedPort> list_;
+};
+
 }  // namespace
 
 WhyNot attachable(const std::string& diagram, const std::string& experiment_path, const LoadOptions& load,
@@ -37,14 +68,16 @@ WhyNot attachable(const std::string& diagram, const std::string& experiment_path
   };
 }
 
-std::string write_improved(const std::string& diagram, const std::string& experiment_path,
-                           const LoadOptions& load, const Catalogue& catalogue, const Estimate& estimate,
-                           const MachineUnits& units, const RecordSizes& sizes, const std::string& target) {
+std::vector<MovedPort> write_improved(const std::string& diagram, const std::string& experiment_path,
+                                      const LoadOptions& load, const Catalogue& catalogue,
+                                      const Estimate& estimate, const MachineUnits& units,
+                                      const RecordSizes& sizes, const std::string& target) {
   Problems problems;
   const auto experiment = load_experiment(experiment_path, problems);
   auto file = read_source(diagram, {}, problems);
   if (!file || !experiment) throw InputError(std::move(problems));
   InsertionSite site{experiment->roles.ports, load.variants, units};
+  MovedPorts moved_ports(*experiment);
   std::vector<Member> members = estimate.members;  // in the direction of the signal
   std::ranges::stable_sort(members, {}, [](const Member& m) { return m.candidate->stage; });
   for (const Member& member : members) {
@@ -52,9 +85,10 @@ std::string write_improved(const std::string& diagram, const std::string& experi
     const Effect& effect = catalogue.effects[size_t(member.candidate - catalogue.candidates.data())];
     const auto inserted = insert_effect(file, site, effect, fitted_values(effect, member), sizes, problems);
     if (!inserted) throw InputError(std::move(problems));
+    moved_ports.add(*inserted);
     for (auto& [role, port] : site.roles)
-      for (const auto& [from, to] : inserted->moved_ports)
-        if (port == from) port = to;
+      for (const auto& [from, to] : inserted->measured_at)
+        if (port == from) port = to.front();
     if (!inserted->input_behind.empty())
       for (auto& [role, port] : site.roles)
         if (role == "input") port = inserted->input_behind;
@@ -62,7 +96,7 @@ std::string write_improved(const std::string& diagram, const std::string& experi
   }
   const std::string folder = std::filesystem::path(target).parent_path().string();
   write_file(target, moved_to_folder(*file, folder.empty() ? "." : folder));
-  return target;
+  return moved_ports.list();
 }
 
 }  // namespace loopwright::diagnosis

@@ -10,10 +10,11 @@ namespace loopwright::diagnosis {
 WhyNot attachable(const std::string& diagram, const std::string& experiment, const LoadOptions& load,
                   const MachineUnits& units, const RecordSizes& sizes);
 
-/// Writes the diagram with every member's blocks to `target`, completely or not at all, and returns its path.
-/// Throws InputError.
-std::string write_improved(const std::string& diagram, const std::string& experiment, const LoadOptions& load,
-                           const Catalogue& catalogue, const Estimate& estimate, const MachineUnits& units,
-                           const RecordSizes& sizes, const std::string& target);
+/// Writes the diagram with every member's blocks to `target`, completely or not at all. Returns the ports
+/// that the experiment must name differently with it. Throws InputError.
+std::vector<MovedPort> write_improved(const std::string& diagram, const std::string& experiment,
+                                      const LoadOptions& load, const Catalogue& catalogue,
+                                      const Estimate& estimate, const MachineUnits& units,
+                                      const RecordSizes& sizes, const std::string& target);
 
 }  // namespace loopwright::diagnosis

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 #include <vector>
+#include "tools/effects/insert.h"
 #include "tools/report/typography.h"
 
 namespace loopwright {
@@ -20,6 +21,13 @@ inline std::string joined(const std::vector<std::string>& names, const char* wit
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : with) + name;
   return text;
+}
+
+inline std::string words_of(const MovedPort& moved) {
+  return fmt::format(
+      "With the improved diagram, the experiment must name {} in the place of {}: otherwise it does not "
+      "reach the added effect.",
+      joined(moved.to, " and "), moved.from);
 }
 
 }  // namespace loopwright

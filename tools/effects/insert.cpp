@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 #include <set>
 #include "engine/block/registry.h"
+#include "engine/diagram/expression.h"
 #include "engine/json/json.h"
 #include "engine/json/reader.h"
 #include "tools/effects/effect_values.h"
 #include "tools/effects/nest.h"
+#include "tools/effects/setting_change.h"
 #include "tools/effects/wire_reader.h"
 
 namespace loopwright {
@@ -14,7 +16,6 @@ namespace {
 
 using Kind = Value::Kind;
 using To = Attachment::To;
-using Document = Nest::Document;
 using Level = Nest::Level;
 using Port = Nest::Port;
 
@@ -264,6 +265,21 @@ class Inserter {
     }
     add_blocks(found->level, *readers.front().block);
     redirect(found->level, readers, new_port(attachment.from));
+    for (const WireReader& reader : readers)
+      result_.input_at.push_back(
+          {joined(found->level.prefix, reader.block->name + "." + loopwright::port_of(reader)),
+           ports_that_read_the_input(found->level)});
+  }
+  std::vector<std::string> ports_that_read_the_input(const Level& level) const {
+    std::vector<std::string> ports;
+    for (const Value::Member& block : effect_.blocks.members)
+      if (needed_.contains(block.name))
+        each_wire(block.value, [&](const Value& wire) {
+          if (wire.text == "input")
+            ports.push_back(
+                joined(level.prefix, name_of(block.name) + "." + loopwright::port_of({&block, &wire})));
+        });
+    return ports;
   }
 
   /// The block of a level that contains the sum of forces: the sum itself, or a subdiagram.
@@ -291,7 +307,7 @@ class Inserter {
     }
     add_blocks(found->level, *block);
     redirect(found->level, readers_but_mechanics(nest_, found->level, source), new_port(attachment.from));
-    result_.moved_ports.emplace_back(role, joined(found->level.prefix, new_port(attachment.from)));
+    result_.measured_at.push_back({role, {joined(found->level.prefix, new_port(attachment.from))}});
   }
   void attach_to_parameter(const Attachment& attachment) {
     for (const std::string& target : attachment.targets) {
@@ -314,65 +330,18 @@ class Inserter {
 
   void change(const Value::Member& setting, const Attachment& attachment, const std::string& parameter,
               const std::string& block_path) {
-    const double add = values_.evaluate(attachment.add);
-    Document& document = *sum_level_.document;
-    const std::string& text = document.text();
-    const size_t at = setting.value.place.offset;
-    const std::string fitted = attachment.add.text.empty() ? "" : attachment.add.text.substr(1);
-    if (setting.value.kind == Kind::number) {
-      document.edits.replace(at, end_of_value(text, at), readable_number(setting.value.number + add));
-      return;
+    SettingChange change{values_.evaluate(attachment.add), "", base_ + "_" + parameter, effect_.title};
+    for (const NameUse& use : names_in(attachment.add.text))
+      if (const EffectParameter* p = effect_.find(use.name)) change.unit = unit_in(p->unit, site_.units);
+    const ChangedSetting changed = add_to_setting(sum_level_, setting.value, change);
+    if (changed == ChangedSetting::nothing) {
+      auto& p = error(fmt::format("nothing can be added to the setting \"{}.{}\"", block_path, parameter));
+      p.expected = "a number or an expression in " + change.unit, p.found = shown(setting.value);
     }
-    const Value::Member* value = setting.value.find("value");
-    const Value::Member* unit = setting.value.find("unit");
-    if (value && value->value.kind == Kind::number && unit) {
-      const auto parsed = parse_unit(unit->value.text);
-      const size_t number = value->value.place.offset;
-      document.edits.replace(number, end_of_value(text, number),
-                             readable_number(value->value.number + add / (parsed ? parsed->scale : 1)));
-      return;
-    }
-    if (setting.value.kind != Kind::text || !setting.value.text.starts_with('=')) {
-      error(fmt::format("the setting \"{}.{}\" is no number", block_path, parameter)).found =
-          shown(setting.value);
-      return;
-    }
-    const std::string name = base_ + "_" + parameter;
-    const std::string expression = setting.value.text.substr(1);
-    declare(name, add, expression, attachment);
-    const bool has_lower_rank = expression.find_first_of("?<>=&|") != expression.npos;
-    const std::string whole = has_lower_rank ? "(" + expression + ")" : expression;
-    document.edits.replace(at, end_of_value(text, at), fmt::format("\"={} + {}\"", whole, name));
-    if (effect_.find(fitted)) result_.settings.emplace_back(fitted, joined(sum_level_.prefix, name));
-  }
-
-  /// The unit that the diagram uses for the changed quantity, as written there; otherwise that of the effect.
-  std::string unit_beside(const std::string& expression, const Attachment& attachment) const {
-    if (const auto* list = sum_level_.diagram->find("parameters"))
-      for (const Value::Member& parameter : list->value.members)
-        if (const auto* unit = parameter.value.find("unit"); unit && expression.starts_with(parameter.name))
-          return unit->value.text;
-    std::string by_role;
-    for (const EffectParameter& p : effect_.parameters)
-      if (attachment.add.text.find(p.name) != std::string::npos) by_role = p.unit;
-    return unit_in(by_role, site_.units);
-  }
-  /// A new parameter of the diagram that contains the sum of forces.
-  void declare(const std::string& name, double value, const std::string& expression,
-               const Attachment& attachment) {
-    const std::string unit = unit_beside(expression, attachment);
-    const std::string text = fmt::format("{{\"value\": {}, \"unit\": \"{}\", \"description\": \"{}\"}}",
-                                         readable_number(value), unit, effect_.title);
-    Document& document = *sum_level_.document;
-    const Value::Member* list = sum_level_.diagram->find("parameters");
-    if (list && !list->value.members.empty()) {
-      const Value::Member& first = list->value.members.front();
-      document.edits.insert(first.place.offset, member_before(list->value, first, name, text));
-    } else {
-      const Value::Member& blocks = *sum_level_.diagram->find("blocks");
-      document.edits.insert(blocks.place.offset, member_before(*sum_level_.diagram, blocks, "parameters",
-                                                               fmt::format("{{\"{}\": {}}}", name, text)));
-    }
+    if (changed != ChangedSetting::parameter || attachment.add.text.empty()) return;
+    const std::string fitted = attachment.add.text.substr(1);
+    if (effect_.find(fitted))
+      result_.settings.emplace_back(fitted, joined(sum_level_.prefix, change.parameter));
   }
 
   const InsertionSite& site_;

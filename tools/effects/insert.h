@@ -14,15 +14,24 @@ struct InsertionSite {
   MachineUnits units;
 };
 
+/// A port of an experiment whose signal is at other ports of the new diagram.
+struct MovedPort {
+  std::string from;
+  std::vector<std::string> to;
+};
+
 struct Insertion {
   std::string text;                 ///< the diagram with the effect
   std::vector<std::string> blocks;  ///< the added blocks, by path: "axis.coulomb_friction"
   /// Every parameter of the effect that can be set in the new diagram: name → path for `--set`, such as
   /// "level" → "axis.coulomb_friction.level". A value computed from several parameters has no path.
   std::vector<std::pair<std::string, std::string>> settings;
-  /// Ports whose meaning moved to another port: with a sensor error in a flat diagram the measured position
-  /// is no longer "mass.position". Experiments must name the new one.
-  std::vector<std::pair<std::string, std::string>> moved_ports;
+  /// With a sensor error in a flat diagram the measured position is no longer "mass.position". Experiments
+  /// must name the new port.
+  std::vector<MovedPort> measured_at;
+  /// Ports that read the input until now, and the ports of the effect that read it instead: "amp.u" →
+  /// "force_gain.u". An experiment that drives the former bypasses the effect.
+  std::vector<MovedPort> input_at;
   /// The role "input" with which a further effect of the input acts after this one; empty: unchanged.
   std::string input_behind;
 };

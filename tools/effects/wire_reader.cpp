@@ -1,4 +1,5 @@
 #include "tools/effects/wire_reader.h"
+#include <fmt/format.h>
 #include <limits>
 #include <set>
 #include "engine/block/registry.h"
@@ -28,6 +29,15 @@ int distance(const Nest::Level& level, const std::string& from, const std::strin
 }
 
 }  // namespace
+
+std::string port_of(const WireReader& reader) {
+  for (const Value::Member& port : reader.block->value.find("in")->value.members) {
+    if (&port.value == reader.wire) return port.name;
+    for (size_t i = 0; i < port.value.items.size(); ++i)
+      if (&port.value.items[i] == reader.wire) return fmt::format("{}[{}]", port.name, i);
+  }
+  return "";
+}
 
 std::string block_of(const std::string& port) { return port.substr(0, port.find('.')); }
 

@@ -11,6 +11,9 @@ struct WireReader {
   const Value* wire;  ///< into it
 };
 
+/// The port of the block into which the wire leads, as experiments name it: "u", "terms[1]".
+std::string port_of(const WireReader& reader);
+
 /// "mass" of "mass.position".
 std::string block_of(const std::string& port);
 

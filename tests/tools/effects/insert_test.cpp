@@ -2,6 +2,7 @@
 #include "tools/effects/nest.h"
 #include <gtest/gtest.h>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include "engine/diagram/in_memory.h"
 #include "engine/json/json.h"
@@ -65,6 +66,32 @@ std::string insert_text(std::shared_ptr<const SourceFile> file, const InsertionS
   const auto insertion = insert_effect(file, site, effect, fitted, axis_sizes(), problems);
   EXPECT_EQ(problems.text(), "");
   return insertion ? insertion->text : "";
+}
+
+/// A mass of 1 kg and a damping of 3 N*s/m, written as given, pushed by 2 N.
+std::string written_axis(const std::string& parameters, const std::string& mass, const std::string& damping) {
+  return fmt::format(R"({{"loopwright": 1, "solver": {{"method": "rk4", "step": 0.001, "stop": 1}},
+  "parameters": {{{}}}, "blocks": {{
+    "push": {{"type": "Constant", "value": {{"value": 2, "unit": "N"}}}},
+    "viscous": {{"type": "ViscousFriction", "damping": {}, "in": {{"velocity": "mass.velocity"}}}},
+    "net": {{"type": "Sum", "signs": "+-", "in": {{"terms": ["push.y", "viscous.force"]}}}},
+    "mass": {{"type": "Mass", "mass": {}, "in": {{"force": "net.sum"}}}}}},
+  "log": ["mass.velocity"]}})",
+                     parameters, damping, mass);
+}
+
+/// The velocity after 1 s with 0.3 kg and 2 N*s/m more than is written.
+void expect_more_mass_and_damping(const std::string& text) {
+  DiagramFolder folder;
+  folder.with("axis.json", text);
+  const InsertionSite site{{{"position", "mass.position"}, {"force", "net.sum"}}, {}, {}};
+  auto file = source(folder.path("axis.json"));
+  for (const auto& [name, add] : {std::pair{"inertia", 0.3}, {"viscous_friction", 2.0}})
+    file = std::make_shared<SourceFile>(
+        SourceFile{file->name, insert_text(file, site, effect_named(name), {add})});
+  const RunResult result = run_text(file->text, file->name);
+  ASSERT_EQ(result.status, RunStatus::finished) << file->text;
+  EXPECT_NEAR(signal(result, "mass.velocity").back(), 2.0 / 5 * (1 - std::exp(-5 / 1.3)), 1e-6) << file->text;
 }
 
 /// Lines of `b` that are not in `a`.
@@ -215,4 +242,71 @@ TEST(Insertion, OnTheInputOnlyTheMachineFeelsIt) {
   const RunResult after = run_text(insert_text(file, site, effect_named("actuator_lag"), {0.01}), file->name);
   EXPECT_EQ(signal(after, "watch.y").back(), 1);
   EXPECT_NEAR(signal(after, "mass.velocity").back(), 0.1 - 0.01 * (1 - std::exp(-10)), 1e-6);
+}
+
+/// The added number has the unit that is written beside it.
+TEST(Insertion, AddsToASettingInTheUnitOfTheDiagram) {
+  const std::string grams = R"("m": {"value": 5, "unit": "mm"}, "mass": {"value": 1000, "unit": "g"})";
+  const std::string per_mm = R"("damping": {"value": 0.003, "unit": "N*s/mm"})";
+  expect_more_mass_and_damping(written_axis(grams + ", " + per_mm, R"("=mass")", R"("=damping")"));
+  expect_more_mass_and_damping(written_axis(grams + ", " + per_mm, R"("=1*mass")", R"("=2*damping/2")"));
+  expect_more_mass_and_damping(
+      written_axis("", R"({"value": 1000, "unit": "g"})", R"({"value": 0.003, "unit": "N*s/mm"})"));
+  expect_more_mass_and_damping(written_axis("", "1", "3"));
+}
+
+TEST(Insertion, AddsToAnExpressionBesideAUnit) {
+  expect_more_mass_and_damping(written_axis(R"("mass": {"value": 1000, "unit": "g"}, "damping": 0.003)",
+                                            R"({"value": "=mass", "unit": "kg"})",
+                                            R"({"value": "=damping", "unit": "N*s/mm"})"));
+}
+
+/// Names are compared as a whole: "m" is no part of "mass".
+TEST(Insertion, AddsToAnExpressionInTheUnitOfItsOwnNames) {
+  expect_more_mass_and_damping(
+      written_axis(R"("m": {"value": 5, "unit": "g"}, "mass": {"value": 1, "unit": "kg"},
+                      "d": {"value": 0.003, "unit": "N*s/mm"}, "damping": {"value": 3, "unit": "N*s/m"},
+                      "length": {"value": 2, "unit": "m"}, "density": {"value": 0.5, "unit": "kg/m"})",
+                   R"("=density*length")", R"("=damping")"));
+  expect_more_mass_and_damping(written_axis(
+      R"("m": {"value": 5, "unit": "g"}, "mass": {"value": 1, "unit": "kg"})", R"("=mass")", "3"));
+  expect_more_mass_and_damping(
+      written_axis(R"("m": {"value": 5, "unit": "g"}, "mass": 1)", R"("=mass")", R"("=6/2")"));
+}
+
+/// An experiment that drives the port before which an effect stands would bypass it.
+TEST(Insertion, NamesThePortsThatReadTheInputFromNowOn) {
+  DiagramFolder folder;
+  folder.with("top.json", R"({"loopwright": 1, "solver": {"step": 0.001, "stop": 0.1}, "blocks": {
+    "push": {"type": "Constant", "value": {"value": 1, "unit": "N"}},
+    "net": {"type": "Sum", "in": {"terms": ["push.y"]}},
+    "mass": {"type": "Mass", "mass": 1, "in": {"force": "net.sum"}}},
+    "log": ["mass.velocity"]})");
+  const InsertionSite site{{{"force", "net.sum"}, {"input", "push.y"}}, {}, {}};
+  Problems problems;
+  const auto insertion = insert_effect(source(folder.path("top.json")), site, effect_named("force_gain"),
+                                       {0.1}, axis_sizes(), problems);
+  ASSERT_TRUE(insertion) << problems.text();
+  ASSERT_EQ(insertion->input_at.size(), 1u);
+  EXPECT_EQ(insertion->input_at[0].from, "net.terms[0]");
+  EXPECT_EQ(insertion->input_at[0].to, std::vector<std::string>{"force_gain.u"});
+}
+
+/// 1 N*m*s per revolution is 1/(2 pi) N*m*s/rad.
+TEST(Insertion, AddsToASettingPerRevolution) {
+  DiagramFolder folder;
+  folder.with("top.json",
+              R"({"loopwright": 1, "solver": {"method": "rk4", "step": 0.001, "stop": 1}, "blocks": {
+    "push": {"type": "Constant", "value": {"value": 2, "unit": "N*m"}},
+    "viscous": {"type": "ViscousFriction", "damping": {"value": 1, "unit": "N*m*s/rev"}, "in": {"velocity": "mass.velocity"}},
+    "net": {"type": "Sum", "signs": "+-", "in": {"terms": ["push.y", "viscous.force"]}},
+    "mass": {"type": "Mass", "mass": {"value": 1, "unit": "kg*m^2"}, "in": {"force": "net.sum"}}},
+    "log": ["mass.velocity"]})");
+  const InsertionSite site{{{"position", "mass.position"}, {"force", "net.sum"}}, {}, {"rad", "N*m", "N*m"}};
+  const auto file = source(folder.path("top.json"));
+  const std::string text = insert_text(file, site, effect_named("viscous_friction"), {2});
+  const double damping = 2 + 1 / (2 * std::numbers::pi);
+  EXPECT_NEAR(signal(run_text(text, file->name), "mass.velocity").back(),
+              2 / damping * (1 - std::exp(-damping)), 1e-6)
+      << text;
 }
