@@ -299,7 +299,7 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   judge(trials, conclusion, inquiry.motion_of_all_rows(), search_noise(trials), result);
   if (!options.improved_diagram.empty()) {
     result.improved = options.improved_diagram;
-    result.experiment_ports = write_improved(diagram, experiments.front(), options.load, catalogue,
+    result.experiment_ports = write_improved(diagram, experiments, options.load, catalogue,
                                              conclusion.estimate, units, sizes, result.improved);
   }
   result.curves = residual_curves(trials, inverse.front(), conclusion);

@@ -24,10 +24,12 @@ bool is_input_of(const Experiment& experiment, const std::string& port) {
          std::ranges::any_of(experiment.roles.ports, [&](const auto& role) { return role.second == port; });
 }
 
-/// Ports of the experiment that several insertions moved.
+using Experiments = std::vector<std::shared_ptr<const Experiment>>;
+
+/// Ports of the experiments that several insertions moved.
 class MovedPorts {
  public:
-  explicit MovedPorts(const Experiment& experiment) : experiment_(experiment) {}
+  explicit MovedPorts(const Experiments& experiments) : experiments_(experiments) {}
 
   void add(const Insertion& insertion) {
     for (const MovedPort& moved : insertion.measured_at) {  // the last error of a sensor is the outermost
@@ -38,14 +40,17 @@ class MovedPorts {
         list_.push_back(moved);
     }
     for (const MovedPort& moved : insertion.input_at)  // the first effect of the input reads it
-      if (is_input_of(experiment_, moved.from) &&
-          std::ranges::find(list_, moved.from, &MovedPort::from) == list_.end())
+      if (is_named(moved.from) && std::ranges::find(list_, moved.from, &MovedPort::from) == list_.end())
         list_.push_back(moved);
   }
   const std::vector<MovedPort>& list() const { return list_; }
 
  private:
-  const Experiment& experiment_;
+  bool is_named(const std::string& port) const {
+    return std::ranges::any_of(experiments_, [&](const auto& e) { return is_input_of(*e, port); });
+  }
+
+  const Experiments& experiments_;
   std::vector<MovedPort> list_;
 };
 
@@ -68,16 +73,19 @@ WhyNot attachable(const std::string& diagram, const std::string& experiment_path
   };
 }
 
-std::vector<MovedPort> write_improved(const std::string& diagram, const std::string& experiment_path,
+std::vector<MovedPort> write_improved(const std::string& diagram,
+                                      const std::vector<std::string>& experiment_paths,
                                       const LoadOptions& load, const Catalogue& catalogue,
                                       const Estimate& estimate, const MachineUnits& units,
                                       const RecordSizes& sizes, const std::string& target) {
   Problems problems;
-  const auto experiment = load_experiment(experiment_path, problems);
+  Experiments experiments;
+  for (const std::string& path : experiment_paths) experiments.push_back(load_experiment(path, problems));
   auto file = read_source(diagram, {}, problems);
-  if (!file || !experiment) throw InputError(std::move(problems));
-  InsertionSite site{experiment->roles.ports, load.variants, units};
-  MovedPorts moved_ports(*experiment);
+  if (!file || std::ranges::find(experiments, nullptr) != experiments.end())
+    throw InputError(std::move(problems));
+  InsertionSite site{experiments.front()->roles.ports, load.variants, units};
+  MovedPorts moved_ports(experiments);
   std::vector<Member> members = estimate.members;  // in the direction of the signal
   std::ranges::stable_sort(members, {}, [](const Member& m) { return m.candidate->stage; });
   for (const Member& member : members) {

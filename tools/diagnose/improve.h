@@ -10,9 +10,10 @@ namespace loopwright::diagnosis {
 WhyNot attachable(const std::string& diagram, const std::string& experiment, const LoadOptions& load,
                   const MachineUnits& units, const RecordSizes& sizes);
 
-/// Writes the diagram with every member's blocks to `target`, completely or not at all. Returns the ports
-/// that the experiment must name differently with it. Throws InputError.
-std::vector<MovedPort> write_improved(const std::string& diagram, const std::string& experiment,
+/// Writes the diagram with every member's blocks to `target`, completely or not at all; the roles are those
+/// of the first experiment. Returns the ports that the experiments must name differently with it. Throws
+/// InputError.
+std::vector<MovedPort> write_improved(const std::string& diagram, const std::vector<std::string>& experiments,
                                       const LoadOptions& load, const Catalogue& catalogue,
                                       const Estimate& estimate, const MachineUnits& units,
                                       const RecordSizes& sizes, const std::string& target);
