@@ -6,6 +6,7 @@
 #include "engine/json/json.h"
 #include "engine/diagram/parameter_scope.h"
 #include "engine/json/reader.h"
+#include "hw/device/units.h"
 
 namespace loopwright::hw {
 namespace {
@@ -55,7 +56,19 @@ class DeviceReader {
   template <class T> void section(const Value& file, std::string_view key, T& to) {
     const Value::Member* found = file.find(key);
     if (found && reading::object(found->value, "", problems_))
-      read_fields(to, found->value, std::string(key), problems_);
+      read_with_units(to, found->value, std::string(key), problems_);
+  }
+
+  template <class Channel> static ChannelUnits units_of(const Value& object) {
+    const auto text = [&](std::string_view key) {
+      const Value::Member* member = object.find(key);
+      return member ? member->value.text : std::string();
+    };
+    ChannelUnits units{text("unit"), "/V"};
+    if (!std::is_same_v<Channel, InputChannel>) return units;
+    if (text("kind") == "encoder") units.per_raw = "";
+    if (text("kind") == "encoder_velocity") units.per_raw = "*s";
+    return units;
   }
 
   template <class Channel>
@@ -70,7 +83,7 @@ class DeviceReader {
       Channel channel;
       channel.name = member.name;
       const size_t before = problems_.list().size();
-      read_fields(channel, member.value, member.name, problems_);
+      read_with_units(channel, member.value, member.name, problems_, units_of<Channel>(member.value));
       if (problems_.list().size() == before) check(channel, member.value, to);
       to.push_back(std::move(channel));
     }
@@ -84,7 +97,7 @@ class DeviceReader {
 
   template <class Channel> void check_common(const Channel& channel, const Value& object) {
     const auto unit = parse_unit(channel.unit);
-    if (!unit || unit->scale != 1) {
+    if (!unit || unit->scale != 1 || unit->offset != 0) {
       auto& p = error(object, "unit", channel.name, "values are in SI units");
       p.expected = "a unit without prefix, as in \"m\", \"N\" or \"V\"";
       p.found = "\"" + channel.unit + "\"";

@@ -1,7 +1,7 @@
 /// Contents of a device file: channels with their physical meaning, limits, clock, watchdog, policies.
 ///
 /// Every channel obeys one equation: value = scale · raw + offset. Raw numbers are counts (encoder), counts/s
-/// (encoder velocity) or volts (analog). See docs/hardware.md for the format.
+/// (encoder velocity) or volts (analog). See docs/hardware.md for the format, hw/device/units.h for "$unit".
 #pragma once
 #include <array>
 #include <memory>
@@ -49,8 +49,9 @@ struct InputChannel {
         parameter(&InputChannel::kind, "kind", "", "What the channel measures"),
         parameter(&InputChannel::channel, "channel", "", "Number on the device").not_negative(),
         parameter(&InputChannel::unit, "unit", "", "SI unit of the value"),
-        parameter(&InputChannel::scale, "scale", "", "Value per count (after quadrature), count/s or volt"),
-        parameter(&InputChannel::offset, "offset", "", "Value at raw zero").optional(),
+        parameter(&InputChannel::scale, "scale", "$unit/$raw",
+                  "Value per count (after quadrature), count/s or volt"),
+        parameter(&InputChannel::offset, "offset", "$unit", "Value at raw zero").optional(),
         parameter(&InputChannel::quadrature, "quadrature", "", "Edges counted a period: 0, 1, 2 or 4")
             .between(0, 4)
             .optional(),
@@ -62,7 +63,7 @@ struct InputChannel {
         parameter(&InputChannel::filter, "filter", "Hz", "Cut-off of the encoder's digital filter")
             .not_negative()
             .optional(),
-        parameter(&InputChannel::maximum_rate, "maximum_rate", "",
+        parameter(&InputChannel::maximum_rate, "maximum_rate", "$unit/s",
                   "Change of the value per second beyond which a sample is a glitch; 0: none")
             .not_negative()
             .optional(),
@@ -84,18 +85,19 @@ struct OutputChannel {
     return fields(
         parameter(&OutputChannel::channel, "channel", "", "Number on the device").not_negative(),
         parameter(&OutputChannel::unit, "unit", "", "SI unit of the value"),
-        parameter(&OutputChannel::scale, "scale", "", "Value per volt"),
-        parameter(&OutputChannel::offset, "offset", "", "Value at 0 V").optional(),
+        parameter(&OutputChannel::scale, "scale", "$unit/$raw", "Value per volt"),
+        parameter(&OutputChannel::offset, "offset", "$unit", "Value at 0 V").optional(),
         parameter(&OutputChannel::low, "low", "V", "Lower end of the range").optional(),
         parameter(&OutputChannel::high, "high", "V", "Upper end of the range").optional(),
-        parameter(&OutputChannel::minimum, "minimum", "", "Least value that is ever sent").optional(),
-        parameter(&OutputChannel::maximum, "maximum", "", "Greatest value that is ever sent").optional(),
-        parameter(&OutputChannel::maximum_rate, "maximum_rate", "",
+        parameter(&OutputChannel::minimum, "minimum", "$unit", "Least value that is ever sent").optional(),
+        parameter(&OutputChannel::maximum, "maximum", "$unit", "Greatest value that is ever sent").optional(),
+        parameter(&OutputChannel::maximum_rate, "maximum_rate", "$unit/s",
                   "Greatest change per second; 0: not limited")
             .not_negative()
             .optional(),
-        parameter(&OutputChannel::initial, "initial", "", "Value before the first step").optional(),
-        parameter(&OutputChannel::safe, "safe", "", "Value at which nothing can move, sent at every stop"));
+        parameter(&OutputChannel::initial, "initial", "$unit", "Value before the first step").optional(),
+        parameter(&OutputChannel::safe, "safe", "$unit",
+                  "Value at which nothing can move, sent at every stop"));
   }
   double volts(double value) const { return (value - offset) / scale; }
   double least() const { return std::max(minimum, std::min(scale * low, scale * high) + offset); }

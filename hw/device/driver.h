@@ -38,8 +38,9 @@ class Driver {
   virtual Status open() = 0;
   /// Ends the other program's use of the device and opens it. Only after a person has agreed.
   virtual Status take_over() { return {Code::unsupported}; }
-  /// Ranges, encoder counts, initial outputs, watchdog states. `initial`, `safe`: raw, one number per output.
-  virtual Status configure(std::span<const double> initial, std::span<const double> safe) = 0;
+  /// Ranges, encoder counts, watchdog states, and `safe` (raw, one number per output) as the first outputs:
+  /// the watchdog is not armed yet.
+  virtual Status configure(std::span<const double> safe) = 0;
   virtual Status start(double period_s) = 0;
   /// Describes the error of a status. Not called in the loop.
   virtual std::string describe(Status status) const = 0;

@@ -17,7 +17,7 @@ std::string_view to_name(Code code) {
   return names[size_t(code)];
 }
 std::string_view to_name(OutputsSafe safe) {
-  static constexpr std::string_view names[] = {"confirmed", "by_watchdog", "unknown"};
+  static constexpr std::string_view names[] = {"confirmed", "by_watchdog", "unknown", "untouched"};
   return names[size_t(safe)];
 }
 
@@ -54,7 +54,11 @@ Status IoDevice::open() {
 
 Status IoDevice::take_over() {
   if (stage_ != Stage::closed) return {Code::busy};
-  return opened(driver_->take_over());
+  const Status status = opened(driver_->take_over());
+  if (status.code != Code::unsupported)
+    outputs_safe_ = OutputsSafe::unknown;                     // as the other program left them
+  if (status.ok()) has_written_ = true, is_stopped_ = false;  // close() must not leave them so
+  return status;
 }
 
 Status IoDevice::opened(Status status) {
@@ -66,7 +70,7 @@ Status IoDevice::preset() {
   if (stage_ != Stage::open) return {Code::not_open};
   has_written_ = true, is_stopped_ = false;  // also if it fails halfway
   outputs_safe_ = OutputsSafe::unknown;
-  const Status status = driver_->configure(raw_initial_, raw_safe_);
+  const Status status = driver_->configure(raw_safe_);
   if (!status.ok()) return latch(status);
   stage_ = Stage::ready;
   return status;
@@ -78,10 +82,11 @@ Status IoDevice::start(double period_s) {
   inputs_.clear();
   for (const InputChannel& channel : description_->inputs) inputs_.emplace_back(channel, period_s);
   has_begun_ = false, last_sequence_ = -1, incident_ = {};
-  const Status status = driver_->start(period_s);
-  if (!status.ok()) return latch(status);
+  if (const Status status = driver_->start(period_s); !status.ok()) return latch(status);
   stage_ = Stage::running;
-  return status;
+  Status status = driver_->kick();  // from here on the watchdog guards whatever is put out
+  if (status.ok() && raw_initial_ != raw_safe_) status = send(raw_initial_);
+  return latch(status);
 }
 
 /// A sample of the driver with its number, not yet converted.
@@ -117,13 +122,18 @@ bool IoDevice::may_hold(const Input& input, Reading reading) const noexcept {
   return policy.on_invalid == OnInvalid::hold && input.bad_in_row() < policy.most_invalid;
 }
 
+Status IoDevice::send_initial() noexcept {
+  const Status status = send(raw_initial_);
+  return status.ok() ? driver_->kick() : status;
+}
+
 /// Before anything moves, two consecutive samples must agree: a single sample cannot be recognized as a
 /// glitch. Meanwhile the initial values are written, for devices that expect a command for every sample.
 Status IoDevice::read_first(Sample& sample) noexcept {
   size_t jumped = 0;
   for (int taken = 0; taken < most_first_samples; ++taken) {
     if (taken > 0)
-      if (const Status status = send(raw_initial_); !status.ok()) return status;
+      if (const Status status = send_initial(); !status.ok()) return status;
     if (const Status status = take_sample(sample); !status.ok()) return status;
     bool agree = taken > 0 || !has_rates_;
     for (size_t i = 0; i < inputs_.size(); ++i) {

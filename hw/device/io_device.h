@@ -6,7 +6,8 @@
 /// 2. After a latched fault every write sends only the safe values, until rearm().
 /// 3. A write is all or nothing. A value that is not finite is refused and latches a fault.
 /// 4. stop() and close() may be called in any state and repeatedly.
-/// 5. Whether the outputs are safe is confirmed or unknown, never assumed.
+/// 5. Whether the outputs are safe is confirmed or unknown, never assumed; before the first call that may
+///    change them they are untouched.
 /// 6. An implausible raw number is never used: it is a fault, or the previous value is held for a stated
 ///    number of samples. Nothing begins before two samples have agreed.
 #pragma once
@@ -38,10 +39,11 @@ class IoDevice {
 
   /// `busy`: another program has opened the device, which was left untouched. An open device stays open.
   Status open();
-  /// Ends the other program's use of the device and opens it.
+  /// Ends the other program's use of the device and opens it. Its outputs are unknown until a stop.
   Status take_over();
-  /// Encoder counts, ranges, initial outputs, watchdog values.
+  /// Encoder counts, ranges, safe outputs, watchdog values.
   Status preset();
+  /// Begins to sample, arms the watchdog, then sends the initial values.
   Status start(double period_s);
 
   /// Values of all inputs, in the order of the description. On a fault the values are those of the last
@@ -77,6 +79,7 @@ class IoDevice {
   enum class Stage { closed, open, ready, running };
   Status latch(Status status) noexcept;
   Status opened(Status status);
+  Status send_initial() noexcept;
   Status read_first(Sample& sample) noexcept;
   Status read_next(Sample& sample) noexcept;
   Status take_sample(Sample& sample) noexcept;
@@ -90,7 +93,7 @@ class IoDevice {
   Stage stage_ = Stage::closed;
   Status fault_;
   std::atomic<bool> is_emergency_ = false;
-  OutputsSafe outputs_safe_ = OutputsSafe::confirmed;  // nothing has been sent yet
+  OutputsSafe outputs_safe_ = OutputsSafe::untouched;
   bool has_written_ = false, is_stopped_ = false;
   double period_s_ = 0;
   std::vector<Input> inputs_;

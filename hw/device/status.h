@@ -34,7 +34,8 @@ struct Status {
 enum class OutputsSafe : uint8_t {
   confirmed,    ///< the device accepted the safe values
   by_watchdog,  ///< the device's watchdog has output its own
-  unknown
+  unknown,
+  untouched  ///< nothing was sent to the device: its outputs are as another program, or nobody, left them
 };
 std::string_view to_name(OutputsSafe safe);
 

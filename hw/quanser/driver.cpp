@@ -21,6 +21,18 @@ struct InputGroup {
   uint32_t count() const { return uint32_t(channels.size()); }
 };
 
+/// Counts the calls from other threads that are under way.
+class Visit {
+ public:
+  explicit Visit(std::atomic<int>& count) noexcept : count_(count) { ++count_; }
+  ~Visit() { --count_; }
+  Visit(const Visit&) = delete;
+  Visit& operator=(const Visit&) = delete;
+
+ private:
+  std::atomic<int>& count_;
+};
+
 class QuanserDriver final : public Driver {
  public:
   QuanserDriver(std::shared_ptr<const DeviceDescription> device, Settings settings, Library library)
@@ -48,8 +60,9 @@ class QuanserDriver final : public Driver {
 
   Status open() override {
     step_ = "hil_open";
-    const t_error result = call().hil_open(settings_.board.c_str(), settings_.identifier.c_str(), &card_);
-    if (result < 0) card_ = nullptr;
+    t_card card = nullptr;
+    const t_error result = call().hil_open(settings_.board.c_str(), settings_.identifier.c_str(), &card);
+    card_ = result < 0 ? nullptr : card;
     is_asked_to_stop_ = false, is_armed_ = false;
     return status_of(result, false);
   }
@@ -62,7 +75,7 @@ class QuanserDriver final : public Driver {
     return open();
   }
 
-  Status configure(std::span<const double> initial, std::span<const double> safe) override;
+  Status configure(std::span<const double> safe) override;
   Status start(double period_s) override;
   std::string describe(Status status) const override;
   std::vector<std::string> facts() const override;
@@ -76,12 +89,14 @@ class QuanserDriver final : public Driver {
   Status kick() noexcept override;
   void request_stop() noexcept override {
     is_asked_to_stop_ = true;
-    if (task_) call().hil_task_stop(task_);
+    const Visit visit(visits_);
+    if (const t_task task = task_) call().hil_task_stop(task);
   }
 
   void emergency_stop(std::span<const double> safe) noexcept override {
-    if (card_ && !outputs_.empty())
-      call().hil_write_analog(card_, outputs_.data(), uint32_t(outputs_.size()), safe.data());
+    const Visit visit(visits_);
+    if (const t_card card = card_; card && !outputs_.empty())
+      call().hil_write_analog(card, outputs_.data(), uint32_t(outputs_.size()), safe.data());
   }
 
   void stop_sampling() noexcept override {
@@ -94,9 +109,14 @@ class QuanserDriver final : public Driver {
   }
   bool watchdog_took_over() noexcept override;
   void close() noexcept override {
-    if (task_) call().hil_task_delete(task_);
-    if (card_) call().hil_close(card_);
-    task_ = nullptr, card_ = nullptr;
+    const t_task task = task_.exchange(nullptr);
+    const t_card card = card_.exchange(nullptr);
+    // A call from another thread that began before still uses them. If it hangs, they are left to the system.
+    const timespec moment{0, 100'000};
+    for (int i = 0; visits_ > 0 && i < 1000; ++i) nanosleep(&moment, nullptr);
+    if (visits_ > 0) return;
+    if (task) call().hil_task_delete(task);
+    if (card) call().hil_close(card);
   }
   Status rearm() override {
     is_armed_ = false, is_asked_to_stop_ = false;
@@ -124,8 +144,10 @@ class QuanserDriver final : public Driver {
   std::shared_ptr<const DeviceDescription> device_;
   Settings settings_;
   Library library_;
-  t_card card_ = nullptr;
-  t_task task_ = nullptr;
+  // request_stop() and emergency_stop() read them in other threads while close() takes them away.
+  std::atomic<t_card> card_ = nullptr;
+  std::atomic<t_task> task_ = nullptr;
+  std::atomic<int> visits_ = 0;
   InputGroup encoders_, analog_, other_;
   std::vector<uint32_t> outputs_;
   std::vector<int32_t> counts_;
@@ -138,28 +160,30 @@ class QuanserDriver final : public Driver {
 
 // ---- set-up, in the order used by the vendor's own generated programs ----
 
-Status QuanserDriver::configure(std::span<const double> initial, std::span<const double> safe) {
+Status QuanserDriver::configure(std::span<const double> safe) {
   const bool has_options = !settings_.options.empty();
   Status status = !has_options
                       ? Status{}
                       : set_up("hil_set_card_specific_options", true, call().hil_set_card_specific_options,
-                               card_, settings_.options.c_str(), settings_.options.size() + 1);
-  if (status.ok()) status = set_up("hil_watchdog_clear", false, call().hil_watchdog_clear, card_);
+                               card_.load(), settings_.options.c_str(), settings_.options.size() + 1);
+  if (status.ok()) status = set_up("hil_watchdog_clear", false, call().hil_watchdog_clear, card_.load());
   if (status.ok()) status = set_ranges();
   step_ = "hil_write_analog";
-  if (status.ok()) status = write(initial);
+  if (status.ok()) status = write(safe);
   if (status.ok()) status = set_watchdog(safe);
   if (status.ok()) status = set_encoders();
   if (!status.ok() || device_->clock.source == ClockSource::host) return status;
-  status = set_up("hil_task_create_reader", true, call().hil_task_create_reader, card_,
+  t_task task = nullptr;
+  status = set_up("hil_task_create_reader", true, call().hil_task_create_reader, card_.load(),
                   uint32_t(device_->clock.buffer), analog_.list(), analog_.count(), encoders_.list(),
-                  encoders_.count(), channel_list{}, 0u, other_.list(), other_.count(), &task_);
+                  encoders_.count(), channel_list{}, 0u, other_.list(), other_.count(), &task);
   if (!status.ok()) return status;
+  task_ = task;
   const bool overwrites = device_->clock.overflow == Overflow::overwrite;
   if (overwrites && !call().hil_task_get_buffer_overflows)
     return step_ = "hil_task_get_buffer_overflows", Status{Code::unsupported, function_not_supported};
   return set_up("hil_task_set_buffer_overflow_mode", overwrites, call().hil_task_set_buffer_overflow_mode,
-                task_, overwrites ? overflow_drops_oldest : overflow_is_error);
+                task_.load(), overwrites ? overflow_drops_oldest : overflow_is_error);
 }
 
 /// Ranges that the file leaves unchanged need no function to set them.
@@ -179,13 +203,13 @@ Status QuanserDriver::set_ranges() {
   bool is_usual = take(device_->inputs, [](InputKind kind) { return kind == InputKind::analog; });
   if (!low.empty())
     if (const Status status =
-            set_up("hil_set_analog_input_ranges", !is_usual, call().hil_set_analog_input_ranges, card_,
+            set_up("hil_set_analog_input_ranges", !is_usual, call().hil_set_analog_input_ranges, card_.load(),
                    analog_.list(), analog_.count(), volts(low.data()), volts(high.data()));
         !status.ok())
       return status;
   is_usual = take(device_->outputs, nullptr);
   if (low.empty()) return {};
-  return set_up("hil_set_analog_output_ranges", !is_usual, call().hil_set_analog_output_ranges, card_,
+  return set_up("hil_set_analog_output_ranges", !is_usual, call().hil_set_analog_output_ranges, card_.load(),
                 channel_list(outputs_.data()), uint32_t(outputs_.size()), volts(low.data()),
                 volts(high.data()));
 }
@@ -201,14 +225,14 @@ Status QuanserDriver::set_encoders() {
     has_mode |= encoder.quadrature != 4, has_filter |= encoder.filter > 0, has_preset |= encoder.preset != 0;
   }
   if (preset.empty()) return {};
-  Status status =
-      set_up("hil_set_encoder_quadrature_mode", has_mode, call().hil_set_encoder_quadrature_mode, card_,
-             encoders_.list(), encoders_.count(), static_cast<const int32_t*>(quadrature.data()));
+  Status status = set_up("hil_set_encoder_quadrature_mode", has_mode, call().hil_set_encoder_quadrature_mode,
+                         card_.load(), encoders_.list(), encoders_.count(),
+                         static_cast<const int32_t*>(quadrature.data()));
   if (status.ok() && has_filter)
-    status = set_up("hil_set_encoder_filter_frequency", true, call().hil_set_encoder_filter_frequency, card_,
-                    encoders_.list(), encoders_.count(), volts(filter.data()));
+    status = set_up("hil_set_encoder_filter_frequency", true, call().hil_set_encoder_filter_frequency,
+                    card_.load(), encoders_.list(), encoders_.count(), volts(filter.data()));
   if (status.ok())
-    status = set_up("hil_set_encoder_counts", has_preset, call().hil_set_encoder_counts, card_,
+    status = set_up("hil_set_encoder_counts", has_preset, call().hil_set_encoder_counts, card_.load(),
                     encoders_.list(), encoders_.count(), static_cast<const int32_t*>(preset.data()));
   return status;
 }
@@ -226,7 +250,7 @@ Status QuanserDriver::set_watchdog(std::span<const double> safe) {
                                          std::pair{"hil_watchdog_reload", (void*)call().hil_watchdog_reload}})
       if (!function) return step_ = name, Status{Code::unsupported, function_not_supported};
     const Status status = set_up("hil_watchdog_set_analog_expiration_state", true,
-                                 call().hil_watchdog_set_analog_expiration_state, card_,
+                                 call().hil_watchdog_set_analog_expiration_state, card_.load(),
                                  channel_list(channels.data()), count, volts(states.data()));
     if (!status.ok()) return status;
   }
@@ -239,8 +263,8 @@ Status QuanserDriver::set_watchdog(std::span<const double> safe) {
 Status QuanserDriver::start(double period_s) {
   sequence_ = 0;
   if (device_->clock.source == ClockSource::host) return {};
-  return set_up("hil_task_start", true, call().hil_task_start, task_, int32_t(settings_.clock), 1 / period_s,
-                until_stopped);
+  return set_up("hil_task_start", true, call().hil_task_start, task_.load(), int32_t(settings_.clock),
+                1 / period_s, until_stopped);
 }
 
 std::string QuanserDriver::describe(Status status) const {
@@ -340,7 +364,8 @@ bool QuanserDriver::watchdog_took_over() noexcept {
   t_error result = call().hil_watchdog_is_expired(card_);
   if (result == 0) {
     const double wait_s = device_->watchdog.timeout + 2e-3;
-    const timespec wait{whole_between<time_t>(wait_s, 0, 1000), whole_between(1e9 * (wait_s - std::floor(wait_s)), 0L, 999'999'999L)};
+    const timespec wait{whole_between<time_t>(wait_s, 0, 1000),
+                        whole_between(1e9 * (wait_s - std::floor(wait_s)), 0L, 999'999'999L)};
     nanosleep(&wait, nullptr);
     result = call().hil_watchdog_is_expired(card_);
   }

@@ -40,7 +40,7 @@ inline constexpr const char* what_taking_over_does =
     "that "
     "program's loop ends in the middle of its motion, and the outputs stay where they were until this "
     "program "
-    "sends its own initial values. What the vendor's library does to programs in other processes is not "
+    "sends its own safe values. What the vendor's library does to programs in other processes is not "
     "known.";
 
 /// Loads the library; null after a problem. Opens no card.

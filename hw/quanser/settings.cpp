@@ -2,6 +2,7 @@
 #include <algorithm>
 #include "engine/diagram/diagram.h"
 #include "engine/json/reader.h"
+#include "hw/device/units.h"
 #include "hw/quanser/quanser.h"
 
 namespace loopwright::hw::quanser {
@@ -60,7 +61,7 @@ void check_channels(const std::vector<Channel>& channels, int most, const Settin
 Settings read_settings(const DeviceDescription& device, Problems& problems) {
   Settings settings;
   const Value& section = device.driver_settings;
-  read_fields(settings, section, device.driver, problems);
+  read_with_units(settings, section, device.driver, problems);
   if (settings.library.find('/') != settings.library.npos)
     settings.library = resolve_relative(section.find("library")->value.place, settings.library);
   check_options(settings, section, problems);

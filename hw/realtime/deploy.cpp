@@ -29,17 +29,6 @@ size_t rows_of_ring(const Plan& plan, const Hardware& hardware, size_t columns, 
   return std::clamp<size_t>(rows_of_run(plan, hardware), 1, most);
 }
 
-/// The text of an unexpected exception.
-std::string text_of_exception() {
-  try {
-    throw;
-  } catch (const std::exception& e) {
-    return e.what();
-  } catch (...) {
-    return "an unknown exception";
-  }
-}
-
 class Deployment {
  public:
   Deployment(const Plan& plan, const Hardware& hardware, IoDevice& device, const DeployOptions& options)
@@ -67,7 +56,8 @@ class Deployment {
     const std::string_view ends[] = {
         "the device took the safe values and is closed",
         "the device's watchdog put out its safe values; the device is closed",
-        "safe values were sent, but it is not known whether the device took them"};
+        "safe values were sent, but it is not known whether the device took them",
+        "nothing was sent to the device"};
     for (const std::string_view end : ends) last_words_.push_back(fmt::format("{}{}", end, log));
   }
 
@@ -285,8 +275,19 @@ class Deployment {
     if (result_.status == RunStatus::finished) explain_end();
     Facts facts{{"outputs_safe", std::string(to_name(result_.outputs_safe))}};
     if (result_.status != RunStatus::finished) facts.emplace_back("incomplete", result_.message);
+    require_known_outputs();
     end_log(facts);
     result_.statistics.longest_log_delay_s = writer_->longest_delay_s();
+  }
+
+  /// A motor may still be driven: that is no good end, even of a whole run.
+  void require_known_outputs() {
+    if (result_.outputs_safe != OutputsSafe::unknown) return;
+    const char* what = "the device did not confirm its safe values: its outputs are not known";
+    if (result_.status == RunStatus::finished)
+      fail(what);
+    else
+      result_.message += std::string("\n") + what;
   }
 
   /// The machine has stopped. The disk may take its time, but not without limit, and a second signal ends the

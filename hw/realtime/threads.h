@@ -3,10 +3,23 @@
 #include <atomic>
 #include <ctime>
 #include <functional>
+#include <exception>
+#include <string>
 #include <thread>
 #include "hw/realtime/crash_guard.h"
 
 namespace loopwright::hw {
+
+/// The text of an unexpected exception.
+inline std::string text_of_exception() {
+  try {
+    throw;
+  } catch (const std::exception& e) {
+    return e.what();
+  } catch (...) {
+    return "an unknown exception";
+  }
+}
 
 /// A thread that is requested to end and joined, also when an exception is thrown.
 class GuardedThread {

@@ -10,6 +10,8 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include "hw/device/units.h"
+#include "hw/realtime/clock.h"
 #include "hw/udp/protocol.h"
 #include "hw/udp/udp.h"
 #include "models/real/whole.h"
@@ -23,7 +25,10 @@ class UdpDriver final : public Driver {
  public:
   UdpDriver(std::shared_ptr<const DeviceDescription> device, Settings settings)
       : device_(std::move(device)), settings_(std::move(settings)) {}
-  ~UdpDriver() override { close(); }
+  ~UdpDriver() override {
+    close();
+    if (stop_event_ >= 0) ::close(stop_event_);
+  }
 
   Capabilities capabilities() const override {
     return {true, device_->watchdog.timeout > 0, true, true, true};
@@ -31,7 +36,7 @@ class UdpDriver final : public Driver {
 
   Status open() override {
     socket_ = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-    stop_event_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    if (stop_event_ < 0) stop_event_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     sockaddr_in peer{};
     peer.sin_family = AF_INET;
     peer.sin_port = htons(uint16_t(settings_.port));
@@ -45,10 +50,10 @@ class UdpDriver final : public Driver {
     return {};
   }
 
-  Status configure(std::span<const double> initial, std::span<const double> safe) override {
+  Status configure(std::span<const double> safe) override {
     is_sampling_ = false;
     if (const Status status = exchange(Request::configure, safe); !status.ok()) return status;
-    return exchange(Request::command, initial);
+    return exchange(Request::command, safe);
   }
 
   Status start(double period_s) override {
@@ -70,9 +75,10 @@ class UdpDriver final : public Driver {
   /// Returns the newest sample; older ones still waiting are lost.
   Status read(RawSample& sample, std::span<double> raw) noexcept override {
     FromDevice packet;
-    for (;;) {
-      if (const Status status = receive(packet); !status.ok()) return status;
+    for (const int64_t deadline = wall_ns() + patience_ns();;) {
+      if (const Status status = receive(packet, deadline); !status.ok()) return status;
       if (int32_t(packet.sequence - sequence_) > 0) break;  // otherwise an old sample, or an acknowledgment
+      if (wall_ns() >= deadline) return {Code::disconnected};
     }
     for (FromDevice newer; take(newer);)
       if (int32_t(newer.sequence - packet.sequence) > 0) packet = newer;
@@ -108,9 +114,7 @@ class UdpDriver final : public Driver {
   void disarm() noexcept override {}  // the device's watchdog stays armed: its values are the safe ones
   bool watchdog_took_over() noexcept override { return exchange(Request::stop, {}).code == Code::watchdog; }
   void close() noexcept override {
-    if (socket_ >= 0) ::close(socket_);
-    if (stop_event_ >= 0) ::close(stop_event_);
-    socket_ = stop_event_ = -1;
+    if (const int open = socket_.exchange(-1); open >= 0) ::close(open);
   }
   Status rearm() override { return exchange(Request::clear, {}); }
 
@@ -137,28 +141,39 @@ class UdpDriver final : public Driver {
     return false;
   }
 
-  Status receive(FromDevice& packet) noexcept {
+  int64_t patience_ns() const noexcept {
+    return whole_between(1e9 * settings_.patience, int64_t(0), int64_t(3'600'000'000'000));
+  }
+
+  /// Waits for the next packet, whichever it is, until the deadline.
+  Status receive(FromDevice& packet, int64_t deadline_ns) noexcept {
     pollfd events[] = {{socket_, POLLIN, 0}, {stop_event_, POLLIN, 0}};
     for (;;) {
-      if (take(packet)) return is_silent_ = false, Status{};
-      const int answer = poll(events, is_sampling_ ? 2 : 1, whole_between(std::ceil(1e3 * settings_.patience), 0, 1'000'000));
-      if (answer == 0) return is_silent_ = true, Status{Code::disconnected};
+      const int64_t now = wall_ns();
+      if (take(packet)) return heard_ns_ = now, is_silent_ = false, Status{};
+      const int64_t left_ms = (std::max<int64_t>(0, deadline_ns - now) + 999'999) / 1'000'000;
+      const int answer = poll(events, is_sampling_ ? 2 : 1, int(left_ms));
+      if (answer == 0)
+        return is_silent_ = heard_ns_ < deadline_ns - patience_ns(), Status{Code::disconnected};
       if (answer < 0 && errno != EINTR) return {Code::device_fault, errno};
       if (is_sampling_ && (events[1].revents & POLLIN)) return {Code::stopped};
       if (events[0].revents & POLLERR) return {Code::disconnected, ECONNREFUSED};
     }
   }
 
-  /// Sends until acknowledged: at most three times, once if the device did not respond before.
+  /// Sends until acknowledged: at most three times, once if the device did not respond before. Every attempt
+  /// has a deadline: a device that lost the packet may go on sending samples.
   Status exchange(Request request, std::span<const double> raw) noexcept {
     Status status;
     const int attempts = is_silent_ ? 1 : 3;
     for (int attempt = 0; attempt < attempts; ++attempt) {
       status = send(request, raw);
+      const int64_t deadline = wall_ns() + patience_ns();
       FromDevice packet;
       while (status.ok()) {
-        status = receive(packet);
+        status = receive(packet, deadline);
         if (status.ok() && int32_t(packet.answered - number_) >= 0) return status_of(packet);
+        if (wall_ns() >= deadline) status = {Code::disconnected};
       }
     }
     return status;
@@ -166,11 +181,13 @@ class UdpDriver final : public Driver {
 
   std::shared_ptr<const DeviceDescription> device_;
   Settings settings_;
-  int socket_ = -1, stop_event_ = -1;
+  // Another thread may request a stop while the device is closed: its event stays open.
+  std::atomic<int> socket_ = -1, stop_event_ = -1;
   std::atomic<uint32_t> number_ = 0;
   uint32_t sequence_ = 0;
   int64_t number_of_sample_ = 0;  // the same, beyond 32 bits
   double period_s_ = 0;
+  int64_t heard_ns_ = 0;  // when the last packet came
   bool is_sampling_ = false, is_silent_ = false;
 };
 
@@ -179,7 +196,7 @@ class UdpDriver final : public Driver {
 Settings read_settings(const DeviceDescription& device, Problems& problems) {
   Settings settings;
   const Value& section = device.driver_settings;
-  read_fields(settings, section, device.driver, problems);
+  read_with_units(settings, section, device.driver, problems);
   in_addr ignored{};
   if (inet_pton(AF_INET, settings.address.c_str(), &ignored) != 1) {
     auto& p = problems.error(section.place, section.place.pointer(), "", "the address cannot be read");

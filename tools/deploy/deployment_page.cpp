@@ -95,9 +95,13 @@ std::vector<report::Plot> scopes(const Recording& recording) {
   return plots;
 }
 
+std::string_view explained(hw::OutputsSafe safe) {
+  return safe == hw::OutputsSafe::untouched ? "untouched, as nothing was sent to the device" : to_name(safe);
+}
+
 report::Notice notice(const hw::DeployResult& result) {
   using Severity = report::Notice::Severity;
-  const std::string safe = fmt::format("Outputs at their safe values: {}.", to_name(result.outputs_safe));
+  const std::string safe = fmt::format("Outputs at their safe values: {}.", explained(result.outputs_safe));
   if (result.status == RunStatus::finished && result.outputs_safe == hw::OutputsSafe::confirmed)
     return {Severity::good, "Finished. " + safe};
   const bool is_bad = result.status == RunStatus::failed || result.outputs_safe == hw::OutputsSafe::unknown;
@@ -148,7 +152,7 @@ std::string to_text(const hw::DeployResult& result) {
                         s.rate_limited, s.glitches);
   if (s.least_watchdog_margin_s != 0)
     text += fmt::format("  least margin to the watchdog {:.2f} ms\n", 1e3 * s.least_watchdog_margin_s);
-  return text + fmt::format("outputs safe: {}\n", to_name(result.outputs_safe));
+  return text + fmt::format("outputs safe: {}\n", explained(result.outputs_safe));
 }
 
 report::Page deployment_page(const Plan& plan, const hw::DeployResult& result) {
@@ -162,7 +166,7 @@ report::Page deployment_page(const Plan& plan, const hw::DeployResult& result) {
                               {"Too late", fmt::format("{}", s.overruns), "", ""},
                               {"Lateness, longest", us(1e-3 * double(s.lateness.longest_ns())), "us", ""},
                               {"Step, 99 %", us(s.step.quantile_us(0.99)), "us", ""},
-                              {"Outputs safe", std::string(to_name(result.outputs_safe)), "", ""}}};
+                              {"Outputs safe", std::string(explained(result.outputs_safe)), "", ""}}};
   page.sections.push_back({"Outcome", {notice(result), numbers}});
   report::Section signals{"Signals", {}};
   for (report::Plot& plot : scopes(result.recording)) signals.items.push_back(std::move(plot));

@@ -25,7 +25,7 @@ class ScriptedDriver final : public Driver {
   explicit ScriptedDriver(Script& script) : script_(script) {}
   Capabilities capabilities() const override { return {true, true, false, true}; }
   Status open() override { return note("open"); }
-  Status configure(std::span<const double>, std::span<const double>) override { return note("configure"); }
+  Status configure(std::span<const double>) override { return note("configure"); }
   Status start(double) override { return note("start"); }
   std::string describe(Status) const override { return ""; }
   Status read(RawSample& sample, std::span<double> raw) noexcept override {

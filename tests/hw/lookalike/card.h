@@ -14,13 +14,17 @@ struct LookalikeCard {
   double stalled_for = 0;                // … for this time [s]
   int64_t strange_at = -1;               // sample in which analog input 0 reads `strange`
   double strange = 0;                    // V
+  int64_t refused_from = -1;             // write of analog outputs from which on all are refused
+  void (*in_delete)() = nullptr;         // called while the task is deleted
   bool stays_expired_in_silence = true;  // writes after expiry return 0; else -1202
   // observed by a test
   double volts[8] = {};
   double position = 0, velocity = 0;
   double time = 0;
   bool is_open = false, is_watched = false, has_expired = false;
-  int64_t calls = 0;
+  int64_t calls = 0, writes = 0;
+  int64_t stops_after_delete = 0;  // of a task that was deleted
+  double unwatched_peak = 0;       // V, greatest output while the watchdog was not armed
 };
 
 /// A card as after power-on, and the access to it.

@@ -50,10 +50,53 @@ TEST_F(Lookalike, ACardInUseIsRefusedUntouched) {
   const DeployResult result = second.run();
   EXPECT_EQ(result.status, RunStatus::failed);
   EXPECT_EQ(result.fault.code, Code::busy);
+  EXPECT_EQ(result.outputs_safe, OutputsSafe::untouched);
   EXPECT_THAT(result.message, AllOf(HasSubstr("the device is in use"), HasSubstr("-109")));
   EXPECT_EQ(card->calls, 1) << "hil_open alone";
   EXPECT_EQ(card->volts[0], 1.5);
   EXPECT_TRUE(card->is_open);
+}
+
+TEST_F(Lookalike, WhatIsTakenOverEndsWithSafeOutputsBeforeAnythingMoves) {
+  card->is_open = true, card->volts[0] = 1.5;
+  {
+    Deployed second(in_virtual_time);
+    EXPECT_TRUE(second.device->take_over().ok());
+    EXPECT_EQ(second.device->outputs_safe(), OutputsSafe::unknown);
+  }
+  EXPECT_EQ(card->volts[0], 0);
+  EXPECT_FALSE(card->is_open);
+}
+
+TEST_F(Lookalike, TheWatchdogIsArmedBeforeAnythingButSafeValuesIsPutOut) {
+  const DeployResult result =
+      run(R"({"clock": {"time": "simulated"}, "outputs": {"drive": {"initial": 1, "safe": 0}}})");
+  EXPECT_EQ(result.status, RunStatus::finished) << result.message;
+  EXPECT_EQ(card->unwatched_peak, 0);
+}
+
+TEST_F(Lookalike, ARunWhoseSafeValuesWereRefusedAtItsEndHasFailed) {
+  ASSERT_EQ(run().status, RunStatus::finished);
+  const int64_t writes = card->writes;
+  SetUp();
+  card->refused_from = writes - 2;  // those of the stop
+  const DeployResult result = run();
+  EXPECT_NE(card->volts[0], 0);
+  EXPECT_EQ(result.outputs_safe, OutputsSafe::unknown);
+  EXPECT_EQ(result.status, RunStatus::failed);
+  EXPECT_THAT(result.message, HasSubstr("did not confirm its safe values"));
+}
+
+IoDevice* device_to_stop = nullptr;
+
+TEST_F(Lookalike, AStopRequestedWhileTheTaskIsDeletedDoesNotUseIt) {
+  Deployed deployed(in_virtual_time);
+  device_to_stop = deployed.device.get();
+  card->in_delete = [] { device_to_stop->request_stop(); };
+  EXPECT_EQ(deployed.run().status, RunStatus::finished);
+  device_to_stop->request_stop();
+  EXPECT_EQ(card->stops_after_delete, 0);
+  EXPECT_FALSE(card->is_open);
 }
 
 TEST_F(Lookalike, ModelTimeFollowsTheSamplesThatTheCardCounted) {

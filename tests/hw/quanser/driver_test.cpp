@@ -65,9 +65,9 @@ TEST_F(Quanser, CallsComeInTheOrderOfTheVendorsOwnPrograms) {
                   "hil_watchdog_set_analog_expiration_state", "hil_set_analog_termination_state",
                   "hil_set_encoder_quadrature_mode", "hil_set_encoder_filter_frequency",
                   "hil_set_encoder_counts", "hil_task_create_reader", "hil_task_set_buffer_overflow_mode",
-                  "hil_task_start",                                            //
-                  "hil_task_read", "hil_write_analog",                         // two samples that agree
-                  "hil_task_read", "hil_write_analog", "hil_watchdog_start",   //
+                  "hil_task_start", "hil_watchdog_start",                      // before the first command
+                  "hil_task_read", "hil_write_analog", "hil_watchdog_reload",  // two samples that agree
+                  "hil_task_read", "hil_write_analog", "hil_watchdog_reload",  //
                   "hil_task_read", "hil_write_analog", "hil_watchdog_reload",  //
                   "hil_write_analog", "hil_task_stop", "hil_write_analog", "hil_write_termination_states",
                   "hil_watchdog_stop", "hil_task_delete", "hil_close"));

@@ -66,8 +66,8 @@ class AccidentDriver final : public Driver {
       : driver_(std::move(driver)), how_(std::move(how)) {}
   Capabilities capabilities() const override { return driver_->capabilities(); }
   Status open() override { return driver_->open(); }
-  Status configure(std::span<const double> initial, std::span<const double> safe) override {
-    return driver_->configure(initial, safe);
+  Status configure(std::span<const double> safe) override {
+    return driver_->configure(safe);
   }
   Status start(double period_s) override { return driver_->start(period_s); }
   std::string describe(Status status) const override { return driver_->describe(status); }

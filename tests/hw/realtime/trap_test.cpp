@@ -13,7 +13,7 @@ class QuietDriver final : public Driver {
  public:
   Capabilities capabilities() const override { return {true, false, false, true}; }
   Status open() override { return {}; }
-  Status configure(std::span<const double>, std::span<const double>) override { return {}; }
+  Status configure(std::span<const double>) override { return {}; }
   Status start(double) override { return {}; }
   std::string describe(Status) const override { return ""; }
   Status read(RawSample& sample, std::span<double> raw) noexcept override {

@@ -43,22 +43,35 @@ class Peer {
   std::atomic<double> output = 99;
   std::atomic<int> silent_from = -1, gap_at = -1, gap = 2, expires_at = -1, short_at = -1, bad_at = -1;
   std::atomic<double> bad = 0;
+  std::atomic<int> stops_to_lose = 0;  // its samples go on every 20 ms
+  std::atomic<bool> is_deaf_from_stop = false;
 
  private:
   void serve() {
     ToDevice packet;
+    FromDevice last;
+    sockaddr_in from{};
     timeval patience{0, 20000};
     setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
     while (!is_over_) {
-      sockaddr_in from{};
       socklen_t size = sizeof from;
       if (recvfrom(socket_, &packet, sizeof packet, 0, reinterpret_cast<sockaddr*>(&from), &size) !=
-          sizeof packet)
+              sizeof packet ||
+          is_lost(packet)) {
+        if (has_lost_a_stop_ && is_sampling_) {
+          last.sequence = ++sequence_;
+          sendto(socket_, &last, sizeof last, 0, reinterpret_cast<sockaddr*>(&from), sizeof from);
+        }
         continue;
+      }
       if (silent_from >= 0 && int(sequence_) >= silent_from) continue;
-      FromDevice answer = take(packet);
-      sendto(socket_, &answer, sizeof answer, 0, reinterpret_cast<sockaddr*>(&from), size);
+      last = take(packet);
+      sendto(socket_, &last, sizeof last, 0, reinterpret_cast<sockaddr*>(&from), size);
     }
+  }
+  bool is_lost(const ToDevice& packet) {
+    if (packet.request == Request::stop && stops_to_lose > 0) return --stops_to_lose, has_lost_a_stop_ = true;
+    return has_lost_a_stop_ && is_deaf_from_stop;
   }
   FromDevice take(const ToDevice& packet) {
     if (packet.request == Request::start) is_sampling_ = true, sequence_ = 0;
@@ -83,7 +96,7 @@ class Peer {
   int socket_;
   std::thread thread_;
   std::atomic<bool> is_over_ = false;
-  bool is_sampling_ = false;
+  bool is_sampling_ = false, has_lost_a_stop_ = false;
   uint32_t sequence_ = 0;
   double position_ = 0, velocity_ = 0, safe_ = 99;
 };
@@ -176,6 +189,25 @@ TEST(Udp, ADeviceThatFallsSilentIsGoneAndItsOutputsUnknown) {
   EXPECT_THAT(result.message, HasSubstr("does not answer"));
   EXPECT_EQ(result.outputs_safe, OutputsSafe::unknown);
   EXPECT_EQ(result.recording.rows(), 199u) << "the first sample only confirms the second";
+}
+
+TEST(Udp, AStopThatWasLostIsSentAgain) {
+  Peer peer;
+  peer.stops_to_lose = 2;
+  const DeployResult result = deploy_on(peer);
+  EXPECT_EQ(result.status, RunStatus::finished) << result.message;
+  EXPECT_EQ(result.outputs_safe, OutputsSafe::confirmed);
+  EXPECT_EQ(peer.stops_to_lose, 0);
+  EXPECT_EQ(peer.output, 0);
+}
+
+TEST(Udp, ADeviceThatSamplesButTakesNothingIsGivenUpAndItsOutputsUnknown) {
+  Peer peer;
+  peer.stops_to_lose = 100, peer.is_deaf_from_stop = true;
+  const DeployResult result = deploy_on(peer);
+  EXPECT_EQ(result.outputs_safe, OutputsSafe::unknown);
+  EXPECT_EQ(result.status, RunStatus::failed);
+  EXPECT_LE(peer.stops_to_lose, 100 - 3) << "three attempts";
 }
 
 TEST(Udp, ItsWatchdogIsReported) {

@@ -28,7 +28,7 @@ double timeout = 0, deadline = 0;
 int32_t preset = 0;
 
 struct Task {
-  bool exists = false, runs = false, overwrites = false, has_overflowed = false;
+  bool exists = false, is_deleted = false, runs = false, overwrites = false, has_overflowed = false;
   uint32_t capacity = 0, analogs = 0, encoders = 0, others = 0;
   std::vector<uint32_t> analog_channels, encoder_channels;
   double period = 0;
@@ -124,7 +124,9 @@ int32_t hil_write_analog(void* handle, const uint32_t* channels, uint32_t count,
   for (uint32_t i = 0; i < count; ++i)
     if (channels[i] >= outputs) return -133;
   if (card.has_expired) return card.stays_expired_in_silence ? 0 : -1202;
+  if (++card.writes > card.refused_from && card.refused_from >= 0) return -1160;
   for (uint32_t i = 0; i < count; ++i) {
+    if (!card.is_watched) card.unwatched_peak = std::fmax(card.unwatched_peak, std::fabs(volts[i]));
     const double code = std::round(std::fmin(std::fmax(volts[i], -10), 10) * 3276.7);
     card.volts[channels[i]] = code / 3276.7;
   }
@@ -170,12 +172,13 @@ int32_t hil_task_start(void*, int32_t clock, double frequency, uint32_t) {
 }
 int32_t hil_task_stop(void*) {
   const Lock lock(mutex);
-  task.runs = false;
+  task.runs = false, card.stops_after_delete += task.is_deleted;
   return is_unplugged() ? -1160 : 0;
 }
 int32_t hil_task_delete(void*) {
   const Lock lock(mutex);
-  task = {};
+  task = {}, task.is_deleted = true;
+  if (card.in_delete) card.in_delete();
   return 0;
 }
 int32_t hil_task_read(void*, uint32_t samples, double* analog, int32_t* encoder, char*, double*) {
