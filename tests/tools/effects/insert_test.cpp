@@ -292,6 +292,32 @@ TEST(Insertion, NamesThePortsThatReadTheInputFromNowOn) {
   EXPECT_EQ(insertion->input_at[0].to, std::vector<std::string>{"force_gain.u"});
 }
 
+/// The second effect of the input acts behind the first: the first one's port reaches both.
+TEST(Insertion, ASecondEffectOfTheInputIsReachedThroughTheFirst) {
+  DiagramFolder folder;
+  folder.with("top.json",
+              R"({"loopwright": 1, "solver": {"method": "rk4", "step": 0.0001, "stop": 0.1}, "blocks": {
+    "push": {"type": "Constant", "value": {"value": 0, "unit": "N"}},
+    "amp": {"type": "Gain", "gain": 1, "in": {"u": "push.y"}},
+    "net": {"type": "Sum", "in": {"terms": ["amp.y"]}},
+    "mass": {"type": "Mass", "mass": 1, "in": {"force": "net.sum"}}},
+    "log": ["amp.y"]})");
+  const InsertionSite site{{{"force", "net.sum"}, {"input", "amp.u"}}, {}, {}};
+  auto file = source(folder.path("top.json"));
+  for (const auto& [name, size, port] :
+       {std::tuple{"force_gain", 0.5, "force_gain.u"}, {"actuator_lag", 0.01, "actuator_lag.command"}}) {
+    Problems problems;
+    const auto inserted = insert_effect(file, site, effect_named(name), {size}, axis_sizes(), problems);
+    ASSERT_TRUE(inserted) << problems.text();
+    ASSERT_EQ(inserted->input_at.size(), 1u);
+    EXPECT_EQ(inserted->input_at[0].from, "amp.u");
+    EXPECT_EQ(inserted->input_at[0].to, std::vector<std::string>{port});
+    file = std::make_shared<SourceFile>(SourceFile{file->name, inserted->text});
+  }
+  EXPECT_TRUE(has(file->text, R"("in": {"command": "force_gain.y"})")) << file->text;
+  EXPECT_TRUE(has(file->text, R"("in": {"u": "actuator_lag.force"})")) << file->text;
+}
+
 /// 1 N*m*s per revolution is 1/(2 pi) N*m*s/rad.
 TEST(Insertion, AddsToASettingPerRevolution) {
   DiagramFolder folder;
