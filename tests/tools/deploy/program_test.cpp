@@ -2,6 +2,7 @@
 // files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <nlohmann/json.hpp>
 #include <thread>
 #include "tests/hw/card_daemon.h"
@@ -91,6 +92,7 @@ TEST_F(DeployProgram, AnUnpluggedCardIsExitCodeOneAndUnknown) {
   const Outcome outcome = loopwright_program(arguments({"--json", "-"}));
   EXPECT_EQ(outcome.code, 1);
   EXPECT_THAT(outcome.out, HasSubstr("\"outputs_safe\": \"unknown\""));
+  EXPECT_THAT(outcome.err, HasSubstr("did not confirm its safe values"));
   EXPECT_THAT(outcome.err, HasSubstr("-1160, DEVICE_DISCONNECTED"));
 }
 
@@ -194,6 +196,23 @@ TEST_F(DeployProgram, WrongInputIsExitCodeTwoBeforeAnythingMoves) {
   outcome = loopwright_program(arguments());
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("/nowhere/libhil.so"));
+}
+
+TEST_F(DeployProgram, APipeOrOneFileForTwoResultsIsRefusedBeforeAnythingMoves) {
+  files(in_virtual_time, "{}");
+  ASSERT_EQ(mkfifo(folder_.path("pipe.csv").c_str(), 0600), 0);
+  for (const char* option : {"-o", "--report", "--json"}) {
+    const Outcome outcome = loopwright_program(arguments({option, folder_.path("pipe.csv")}));
+    EXPECT_EQ(outcome.code, 2) << option;
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr(option), HasSubstr("does not write to a pipe")));
+  }
+  const std::string path = folder_.path("log.csv"), again = folder_.path("./log.csv");
+  for (const auto& two : {std::array{"-o", "--json"}, {"-o", "--report"}, {"--report", "--json"}}) {
+    const Outcome outcome = loopwright_program(arguments({two[0], path, two[1], again}));
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr(two[0]), HasSubstr(two[1]), HasSubstr("name the same file")));
+  }
+  EXPECT_FALSE(std::filesystem::exists(path));
 }
 
 TEST_F(DeployProgram, ASimulationOpensNoDeviceAndSaysSo) {
