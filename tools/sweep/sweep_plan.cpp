@@ -5,6 +5,7 @@
 #include <set>
 #include "engine/lanes/lane_run.h"
 #include "engine/file/hash.h"
+#include "tools/sweep/dependence.h"
 #include "tools/sweep/tunables.h"
 #include "models/real/whole.h"
 
@@ -58,16 +59,15 @@ SweepPlan::SweepPlan(std::shared_ptr<const Sweep> sweep) : sweep_(std::move(swee
         .expected = fmt::format("at most {}", most_worlds);
     throw InputError(std::move(problems));
   }
+  make_worlds(problems);
+  if (problems.has_errors()) throw InputError(std::move(problems));
   ContentHash structure;
   std::vector<FileRead> files = {{sweep_->path, content_hash(sweep_->text)}};
-  for (int64_t w = 0; w < design_->worlds() && !problems.has_errors(); ++w) {
-    worlds_.push_back(make_world(w, problems));
-    if (!worlds_.back().plan) continue;
-    const Identity& of_world = worlds_.back().plan->identity;
+  for (const World& world : worlds_) {
+    const Identity& of_world = world.plan->identity;
     structure.add(of_world.structure);
     files.insert(files.end(), of_world.files.begin(), of_world.files.end());
   }
-  if (problems.has_errors()) throw InputError(std::move(problems));
   // Files of the worlds are already named relative to the diagram's folder, the sweep file by its own name.
   files.front().path = std::filesystem::path(sweep_->path).filename().string();
   identity_ = {structure.text(), program_build(), named_from("", std::move(files))};
@@ -109,14 +109,48 @@ std::shared_ptr<const Plan> SweepPlan::load_or_report(const std::vector<double>&
   }
 }
 
+/// The first of some runs that the diagram accepts. Otherwise the problems of the first run are reported.
+SweepPlan::Accepted SweepPlan::find_accepted(const Runs& runs, Problems& problems) const {
+  Problems of_first, of_others;
+  for (int i = 0; i <= Runs::examples; ++i) {
+    const auto point = runs.example(i);
+    if (auto plan = load_or_report(point, i == 0 ? of_first : of_others)) return {std::move(plan), point};
+  }
+  problems.add(of_first);
+  return {};
+}
+
+/// A step of one axis to an end of its range. If the diagram refuses this end together with the other values
+/// of `start`, those of other runs are tried: the end is wrong only if none of them fits.
+SweepPlan::Step SweepPlan::find_step(const Runs& runs, const Accepted& start, size_t axis, double end,
+                                     Problems& problems) const {
+  const auto with = [axis](std::vector<double> point, double value) {
+    point[axis] = value;
+    return point;
+  };
+  Problems of_start, of_others;
+  if (auto after = load_or_report(with(start.point, end), of_start))
+    return {start.plan, std::move(after), start.point[axis]};
+  bool is_wrong = true;
+  for (int i = 0; i <= Runs::examples; ++i) {
+    const auto point = runs.example(i);
+    auto after = load_or_report(with(point, end), of_others);
+    if (!after) continue;
+    is_wrong = false;
+    if (auto before = load_or_report(point, of_others))
+      return {std::move(before), std::move(after), point[axis]};
+  }
+  if (is_wrong) problems.add(of_start);
+  return {};
+}
+
 /// Examines each axis alone, at both ends of its range.
 std::vector<bool> SweepPlan::find_axes_that_change_the_plan(Problems& problems) const {
   std::vector<bool> changes(sweep_->axes.size());
   const Design design(*sweep_, changes);
-  const auto start = design.point(0);
-  const auto base = load_or_report(start, problems);
-  if (!base) return changes;
-  const std::string unchanged = skeleton(*base);
+  const Runs runs{design, 0, design.runs()};
+  const Accepted start = find_accepted(runs, problems);
+  if (!start.plan) return changes;
   const auto [low, high] = design.range();
   for (size_t a = 0; a < changes.size(); ++a) {
     const Axis& axis = sweep_->axes[a];
@@ -124,12 +158,9 @@ std::vector<bool> SweepPlan::find_axes_that_change_the_plan(Problems& problems) 
       changes[a] = true;
       continue;
     }
-    for (const double end : {low[a], high[a]}) {
-      auto point = start;
-      point[a] = end;
-      if (const auto plan = load_or_report(point, problems))
-        changes[a] = changes[a] || skeleton(*plan) != unchanged;
-    }
+    for (const double end : {low[a], high[a]})
+      if (const Step step = find_step(runs, start, a, end, problems); step.after)
+        changes[a] = changes[a] || skeleton(*step.after) != skeleton(*step.before);
     if (!changes[a] || !axis.is_sampled()) continue;
     auto& p =
         problems.error(axis.place, axis.pointer, "",
@@ -139,21 +170,82 @@ std::vector<bool> SweepPlan::find_axes_that_change_the_plan(Problems& problems) 
   return changes;
 }
 
-World SweepPlan::make_world(int64_t index, Problems& problems) {
+SweepPlan::Runs SweepPlan::runs_of(int64_t world) const {
+  return {*design_, world * design_->runs_in_world(), design_->runs_in_world()};
+}
+
+/// If the diagram refuses every run of a world, but accepts its variants in another one, the combination is
+/// at fault: its runs are made alone, and fail.
+void SweepPlan::make_worlds(Problems& problems) {
+  const auto variants_of = [this](size_t world) {
+    auto point = design_->point(int64_t(world) * design_->runs_in_world());
+    for (size_t a = 0; a < point.size(); ++a)
+      if (sweep_->axes[a].kind != Axis::Kind::variants) point[a] = 0;
+    return point;
+  };
+  std::vector<Problems> refused(size_t(design_->worlds()));
+  for (size_t w = 0; w < refused.size() && !problems.has_errors(); ++w)
+    worlds_.push_back(make_world(int64_t(w), problems, refused[w]));
+  std::map<std::vector<double>, size_t> accepted;
+  for (size_t w = 0; w < worlds_.size(); ++w)
+    if (worlds_[w].plan) accepted.try_emplace(variants_of(w), w);
+  for (size_t w = 0; w < worlds_.size(); ++w) {
+    if (worlds_[w].plan) continue;
+    if (const auto other = accepted.find(variants_of(w)); other != accepted.end()) {
+      worlds_[w].plan = worlds_[other->second].plan, worlds_[w].observed = worlds_[other->second].observed;
+      worlds_[w].lanes_forbidden = "the diagram refuses its parameters";
+    } else {
+      problems.add(refused[w]);
+    }
+  }
+}
+
+World SweepPlan::make_world(int64_t index, Problems& problems, Problems& refused) const {
   World world;
-  world.plan = load_or_report(design_->point(index * design_->runs_in_world()), problems);
+  const Accepted start = find_accepted(runs_of(index), refused);
+  world.plan = start.plan;
   if (!world.plan) return world;
   world.observed = observe(*sweep_, *world.plan, problems);
   world.lanes_forbidden = lanes_forbidden_by(*world.plan);
-  if (!problems.has_errors() && world.lanes_forbidden.empty()) bind(world, index, problems);
+  if (!problems.has_errors() && world.lanes_forbidden.empty()) bind(world, runs_of(index), start, problems);
   return world;
+}
+
+/// Adds the numbers that follow from an axis through an expression: they are computed for each run. False if
+/// some of them belong to the structure; each run then needs a plan of its own.
+bool SweepPlan::add_computed(World& world, const Accepted& start,
+                             std::map<std::string, World::Source>& found) const {
+  const auto numbers = tunable_numbers(*world.plan);
+  std::vector<std::string> parameters;
+  for (size_t a = 0; a < sweep_->axes.size(); ++a)
+    if (!changes_plan_[a] && !numbers.contains(sweep_->axes[a].name))
+      parameters.push_back(sweep_->axes[a].name);
+  if (parameters.empty()) return true;
+  Problems unheard;  // the plan was made of the same diagram
+  const std::lock_guard lock(loading_);
+  const auto diagram = load_diagram(sweep_->diagram, options_at(start.point), unheard);
+  for (const std::string& path : computed_settings(*diagram, parameters)) {
+    if (numbers.contains(path)) {
+      found[path] = {};
+      continue;
+    }
+    world.lanes_forbidden = fmt::format("\"{}\" is structural and follows from an axis", path);
+    return false;
+  }
+  return true;
+}
+
+/// Whether two numbers of one block differ between runs, so that the block must check them together.
+static bool is_shared_by_one_block(const std::vector<std::string>& tuned, const Plan& plan) {
+  return std::ranges::any_of(plan.blocks, [&](const Plan::Block& block) {
+    return std::ranges::count_if(
+               tuned, [&](const std::string& path) { return path.starts_with(block.path + "."); }) > 1;
+  });
 }
 
 /// Determines which tunable numbers depend on each axis, and how. The rule found at the ends of the axes is
 /// then checked at runs in between; if it fails, every number comes from the loader.
-void SweepPlan::bind(World& world, int64_t index, Problems& problems) {
-  const int64_t first = index * design_->runs_in_world(), count = design_->runs_in_world();
-  const auto start = design_->point(first);
+void SweepPlan::bind(World& world, const Runs& runs, const Accepted& start, Problems& problems) const {
   const auto base = tunable_numbers(*world.plan);
   const auto [low, high] = design_->range();
   std::map<std::string, World::Source> found;
@@ -163,39 +255,40 @@ void SweepPlan::bind(World& world, int64_t index, Problems& problems) {
     const auto unit = parse_unit(axis.unit);
     const double scale = unit && !axis.unit.empty() ? unit->scale : 1.0;
     for (const double end : {low[a], high[a]}) {
-      auto point = start;
-      point[a] = end;
-      const auto plan = load_or_report(point, problems);
-      if (!plan) return;
-      for (const auto& [path, number] : tunable_numbers(*plan)) {
-        const auto before = base.find(path);
-        if (before == base.end() || before->second == number) continue;
-        const bool is_direct = number == end * scale && before->second == start[a] * scale;
+      const Step step = find_step(runs, start, a, end, problems);
+      if (!step.after) continue;
+      const auto numbers = tunable_numbers(*step.before);
+      for (const auto& [path, number] : tunable_numbers(*step.after)) {
+        const auto before = numbers.find(path);
+        if (before == numbers.end() || before->second == number) continue;
+        const bool is_direct = number == end * scale && before->second == step.from * scale;
         const auto [entry, is_new] = found.try_emplace(path, World::Source{is_direct ? int(a) : -1, scale});
         if (!is_new && (entry->second.axis != int(a) || !is_direct)) entry->second.axis = -1;
       }
     }
   }
+  if (problems.has_errors() || !add_computed(world, start, found)) return;
   const auto take = [&] {
     world.tuned.clear(), world.sources.clear();
-    world.needs_loader = false;
     for (const auto& [path, source] : found) {
       world.tuned.push_back(path), world.sources.push_back(source);
       world.needs_loader |= source.axis < 0;
     }
+    world.needs_loader |= is_shared_by_one_block(world.tuned, *world.plan);
   };
   take();
   for (int i = 1; i <= joint_checks; ++i)
-    if (!predicts(world, first + (count - 1) * i / joint_checks, problems)) {
+    if (!predicts(world, runs.first + (runs.count - 1) * i / joint_checks)) {
       for (const auto& [path, number] : base) found[path] = {};
       return take();
     }
 }
 
 /// Whether the sources give every tunable number of a run as the loader does.
-bool SweepPlan::predicts(const World& world, int64_t run, Problems& problems) const {
-  const auto plan = load_or_report(design_->point(run), problems);
-  if (!plan) return true;  // reported
+bool SweepPlan::predicts(const World& world, int64_t run) const {
+  Problems of_run;
+  const auto plan = load_or_report(design_->point(run), of_run);
+  if (!plan) return true;  // a failure of that run
   auto expected = tunable_numbers(*world.plan);
   const auto point = design_->point(run);
   const auto actual = tunable_numbers(*plan);

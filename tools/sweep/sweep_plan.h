@@ -21,13 +21,15 @@ struct World {
     double scale = 1;
   };
   std::vector<Source> sources;
-  bool needs_loader = false;  ///< some number depends on an expression over axes
+  bool needs_loader = false;  ///< the diagram is loaded for each run: an expression depends on axes, or the
+                              ///< numbers of a block must fit each other
 };
 
 class SweepPlan {
  public:
   /// Throws InputError with every problem of sweep and diagram. Values are checked by the diagram's own rules
-  /// at both ends of every axis and at some runs in between.
+  /// at both ends of every axis. A combination of values that the diagram refuses is a failure of its run
+  /// only.
   explicit SweepPlan(std::shared_ptr<const Sweep> sweep);
 
   const Sweep& sweep() const { return *sweep_; }
@@ -56,11 +58,34 @@ class SweepPlan {
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
+  /// A point that the diagram accepts. No plan: none was found.
+  struct Accepted {
+    std::shared_ptr<const Plan> plan;
+    std::vector<double> point;
+  };
+  /// The plans before and after a step along one axis from a point. No plans: no such step was found.
+  struct Step {
+    std::shared_ptr<const Plan> before, after;
+    double from = 0;
+  };
+  /// Consecutive runs of a design.
+  struct Runs {
+    const Design& design;
+    int64_t first, count;
+    std::vector<double> example(int i) const { return design.point(first + (count - 1) * i / examples); }
+    static constexpr int examples = 16;
+  };
+
   std::shared_ptr<const Plan> load_or_report(const std::vector<double>& point, Problems& problems) const;
+  Accepted find_accepted(const Runs& runs, Problems& problems) const;
+  Step find_step(const Runs& runs, const Accepted& start, size_t axis, double end, Problems& problems) const;
   std::vector<bool> find_axes_that_change_the_plan(Problems& problems) const;
-  World make_world(int64_t index, Problems& problems);
-  void bind(World& world, int64_t index, Problems& problems);
-  bool predicts(const World& world, int64_t run, Problems& problems) const;
+  Runs runs_of(int64_t world) const;
+  void make_worlds(Problems& problems);
+  World make_world(int64_t index, Problems& problems, Problems& refused) const;
+  void bind(World& world, const Runs& runs, const Accepted& start, Problems& problems) const;
+  bool add_computed(World& world, const Accepted& start, std::map<std::string, World::Source>& found) const;
+  bool predicts(const World& world, int64_t run) const;
 
   std::shared_ptr<const Sweep> sweep_;
   std::vector<bool> changes_plan_;  // one per axis
