@@ -257,15 +257,19 @@ class Evaluator {
     const UnitFinding finding =
         find_unit([&f](const std::vector<double>& at, double pi) { return f(at, pi); }, parameters_, unit);
     if (finding == UnitFinding::known) result.unit = unit;
-    if (finding == UnitFinding::known || finding == UnitFinding::zero)
+    const bool is_turns_over_hertz = finding == UnitFinding::known && unit.cycles() == -2;
+    if (finding == UnitFinding::zero || (finding == UnitFinding::known && !is_turns_over_hertz))
       return result;  // zero fits every unit
     Problem& problem =
-        report(finding == UnitFinding::mixed         ? "the expression mixes units"
+        report(is_turns_over_hertz ? "2*pi over a frequency in Hz is neither a period nor a time constant"
+               : finding == UnitFinding::mixed       ? "the expression mixes units"
                : finding == UnitFinding::mixed_turns ? "the expression adds Hz and rad/s"
                                                      : "the unit of the expression cannot be found",
                0);
     problem.found += with_units();
     if (finding == UnitFinding::mixed_turns) problem.hint = "2*pi times a frequency in Hz is in rad/s";
+    if (is_turns_over_hertz)
+      problem.hint = "the period of f is 1/f, the time constant of a corner at f is 1/(2*pi*f)";
     if (finding == UnitFinding::mixed)
       problem.hint = "a number can be given a unit as a parameter: {\"value\": 3, \"unit\": \"m\"}";
     return {};

@@ -7,8 +7,9 @@
 namespace loopwright {
 namespace {
 
+/// "==" is the name of a comparison.
 bool is_expression(const Value& value) {
-  return value.kind == Value::Kind::text && value.text.starts_with('=');
+  return value.kind == Value::Kind::text && value.text.starts_with('=') && value.text != "==";
 }
 
 /// {"value": 25, "unit": "mm"}

@@ -68,6 +68,8 @@ class SettingsReader {
       return reader_.expect(value, Value::Kind::number, fmt::format("\"{}\"", key), expected);
     }
     if (!value.unit || value.unit->fits(unit)) return true;
+    // The period 1/f of a frequency in Hz, or 2*pi/w of one in rad/s, is a time for each cycle.
+    if (value.is_computed && value.unit->same_dimension(unit)) return true;
     Problem& problem = reader_.error(value, fmt::format("the unit does not fit \"{}\"", key));
     problem.expected = to_string(unit);
     problem.found = shown_unit(value);

@@ -33,8 +33,9 @@ void warn_of_expression(const Value& number, double converted, const Unit& wante
       fmt::format("{}the expression seems to give {}, and is taken as {}", named(number),
                   shown(number.number, *number.unit), shown(number.number, wanted)));
   p.found = number.text;
-  p.hint = fmt::format("{} would be {}: write 2*pi into the expression, or give its parameters the unit {}",
-                       shown(number.number, *number.unit), shown(converted, wanted), to_string(wanted));
+  p.hint = fmt::format("{} would be {}: {} 2*pi, or give its parameters the unit {}",
+                       shown(number.number, *number.unit), shown(converted, wanted),
+                       wanted.cycles() == 0 ? "multiply by" : "divide by", to_string(wanted));
 }
 
 void tell_ambiguity(const Value& number, const Unit& wanted, const Reader& reader) {

@@ -93,13 +93,18 @@ class Order {
         if (n < plan_.signals && vertex_of_number_[size_t(n)] >= 0)
           edges.emplace_back(v, size_t(vertex_of_number_[size_t(n)]));
       });
-      // Outputs that depend on the inputs read the mode decided from them; other outputs are computed before.
-      const Vertex& vertex = vertices_[v];
-      const int decision = decision_[size_t(vertex.block)];
-      if (vertex.group >= 0 && decision >= 0 && (mask(vertex) != 0 || info(vertex.block).inputs.empty()))
-        edges.emplace_back(v, size_t(decision));
+      if (reads_decision(int(v))) edges.emplace_back(v, size_t(decision_[size_t(vertices_[v].block)]));
     }
     graph_ = Graph(boost::edges_are_sorted, edges.begin(), edges.end(), vertices_.size());
+  }
+  /// Outputs read the mode that is decided at the same instant, also those that read no input. Accepted
+  /// memory is the exception: its outputs may close a loop, as the decision does not depend on the present
+  /// input.
+  bool reads_decision(int v) const {
+    const Vertex& vertex = vertices_[size_t(v)];
+    if (vertex.group < 0 || decision_[size_t(vertex.block)] < 0) return false;
+    return mask(vertex) != 0 || info(vertex.block).inputs.empty() ||
+           !plan_.blocks[size_t(vertex.block)].type->kernels.accept;
   }
   bool needs_itself(int v) const {
     const auto [begin, end] = boost::out_edges(size_t(v), graph_);
@@ -127,6 +132,7 @@ class Order {
       else if (vertex_of_number_[size_t(n)] >= 0)
         rate = join(rate, rate_of_[size_t(vertex_of_number_[size_t(n)])]);
     });
+    if (reads_decision(v)) rate = join(rate, rate_of_[size_t(decision_[size_t(vertex.block)])]);
     return rate;
   }
   Plan::Entry entry_of(int v) {

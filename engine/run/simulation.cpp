@@ -6,6 +6,7 @@
 #include "engine/run/checkpoint.h"
 #include "engine/run/fault_text.h"
 #include "engine/run/fixed_step.h"
+#include "engine/run/history_points.h"
 #include "engine/run/recorder.h"
 #include "engine/run/pole_check.h"
 #include "engine/run/source_periods.h"
@@ -20,7 +21,12 @@ using Clock = std::chrono::steady_clock;
 class Simulation {
  public:
   Simulation(const Plan& plan, const RunOptions& options)
-      : plan_(plan), options_(options), run_(plan), recorder_(plan), chattering_(plan) {
+      : plan_(plan),
+        options_(options),
+        run_(plan),
+        recorder_(plan),
+        chattering_(plan),
+        history_points_(run_) {
     identity_ = {plan.seed, options.run};
     run_.reset(identity_);
     for (const Plan::Crossing& crossing : plan.crossings) directions_.push_back(crossing.direction);
@@ -146,11 +152,11 @@ class Simulation {
   bool advance(Solver& solver, int64_t next) {
     const double end = plan_.clock.time(next);
     while (solver.t() < end) {
-      const double stop = std::min(end, run_.next_stop(solver.t()));
+      const double begin = solver.t(), stop = std::min(end, run_.next_stop(begin));
       const Advance step = solver.step(stop, directions_.empty() ? nullptr : directions_.data());
       if (!succeeded(step.status)) return fail_by_solver(solver, step);
-      if (!record_between(solver, next)) return false;
-      if (!accept_at(solver)) return false;  // also before a jump: a delay stores both sides of it
+      if (!record_between(solver, next, step.status == SolverStatus::stepped)) return false;
+      if (!accept_step(solver, begin)) return false;  // also before a jump: a delay stores both sides of it
       if (step.status == SolverStatus::stepped) {
         checkpoint_inside(solver);
         if (!go_on()) return false;
@@ -166,6 +172,7 @@ class Simulation {
                         Chattering::most, chattering_.span(), step.t));
       handle_event(solver);
       if (run_.failed()) return fail_by_fault();
+      if (!record_at_event(next)) return false;
       checkpoint_inside(solver);
       if (!go_on()) return false;
     }
@@ -183,12 +190,27 @@ class Simulation {
     run_.reuse_signals();
     solver.restart(solver.t(), x_.data());
   }
-  bool accept_at(Solver& solver) {
+  /// Accepts the end of a step that began at `begin`, and before it as many instants inside the step as a
+  /// history needs to be interpolated within the tolerance.
+  bool accept_step(Solver& solver, double begin) {
     if (!run_.has_accepted_memory()) return true;
-    run_.look_at(solver.t(), solver.x().data());
+    const auto at = [&](int i, int pieces) {
+      return i < pieces ? begin + (solver.t() - begin) * i / pieces : solver.t();
+    };
+    const int pieces = history_points_.pieces(run_, [&](int i, int n) { look_within(solver, at(i, n)); });
+    for (int i = 1; i <= pieces; ++i) {
+      look_within(solver, at(i, pieces));
+      run_.accept();
+      if (run_.failed()) return fail_by_fault();
+    }
+    return true;
+  }
+  /// Computes what accepted memory reads, at a time in the last step of the solver.
+  void look_within(const Solver& solver, double time) {
+    between_.resize(size_t(plan_.states));
+    if (time < solver.t()) solver.interpolate(time, between_.data());
+    run_.look_at(time, time < solver.t() ? between_.data() : solver.x().data());
     run_.evaluate_held();
-    run_.accept();
-    return !run_.failed() || fail_by_fault();
   }
   /// If a crossing had the other sign at only one sample, others have probably been missed: reports this.
   void tell_narrow_passages(const Solver& solver, double maximum_step) {
@@ -205,10 +227,13 @@ class Simulation {
           std::isfinite(maximum_step) ? fmt::format(" shorter than {:.3g} s,", maximum_step) : ""));
     }
   }
-  /// Records rows inside the last step, from the dense output of the solver.
-  bool record_between(Solver& solver, int64_t next) {
-    for (; next_row_ < next && plan_.clock.time(next_row_) <= solver.t(); next_row_ += plan_.record_ticks) {
+  /// Records rows inside the last step, from the dense output of the solver. A row at an event or a known
+  /// discontinuity that ends the step is left to record_at_event.
+  bool record_between(Solver& solver, int64_t next, bool with_end) {
+    const double end = solver.t();
+    for (; next_row_ < next; next_row_ += plan_.record_ticks) {
       const double time = plan_.clock.time(next_row_);
+      if (time > end || (!with_end && is_same_instant(time, end))) break;
       if (time < solver.step_begin()) continue;
       between_.resize(size_t(plan_.states));
       solver.interpolate(time, between_.data());
@@ -221,6 +246,17 @@ class Simulation {
     }
     return true;
   }
+  /// As at a tick, a row at a discontinuity has the signals after it.
+  bool record_at_event(int64_t next) {
+    const double time = plan_.clock.time(next_row_), now = run_.now().time;
+    if (next_row_ >= next || !is_same_instant(time, now)) return true;
+    run_.set_time(time);
+    recorder_.record(run_);
+    run_.set_time(now);
+    next_row_ += plan_.record_ticks;
+    return check_finite();
+  }
+  static bool is_same_instant(double a, double b) { return std::fabs(a - b) <= 0x1p-50 * std::fabs(b); }
   void copy_states() { x_.assign(run_.states().begin(), run_.states().end()); }
 
   // ---- common ----
@@ -339,6 +375,7 @@ class Simulation {
   Run<double> run_;
   Recorder recorder_;
   Chattering chattering_;
+  HistoryPoints history_points_;
   RunIdentity identity_;
   RunResult result_;
   std::vector<Crossing> directions_;

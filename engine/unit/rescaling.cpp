@@ -69,15 +69,23 @@ void drop_turns_of_products(Unit& unit) {
   if (!is_kinematic || turns != 1) unit.exponents[Unit::radian] = unit.exponents[Unit::cycle] = 0;
 }
 
+bool is_power_of_time(const Unit& unit, float exponent) {
+  return unit.same_dimension({1.0, {0, 0, exponent}});
+}
+
 UnitFinding find_turns(const Rescaled& f, Unit& unit) {
-  if (!f.has(Unit::radian) && !f.has(Unit::cycle)) return UnitFinding::known;
   const double radians = f.exponent({Unit::radian}), cycles = f.exponent({Unit::cycle});
+  if (!f.has(Unit::radian) && !f.has(Unit::cycle)) {
+    if (is_power_of_time(unit, -1) && radians == 1) unit.exponents[Unit::radian] = 1;  // 2π/T of a period T
+    return UnitFinding::known;
+  }
   const bool adds_both =
       std::isnan(radians) && std::isnan(cycles) && f.has(Unit::radian) && f.has(Unit::cycle);
   if (adds_both && !std::isnan(f.exponent({Unit::radian, Unit::cycle}))) return UnitFinding::mixed_turns;
   unit.exponents[Unit::radian] = std::isnan(radians) ? 0 : static_cast<float>(radians);
   unit.exponents[Unit::cycle] = std::isnan(cycles) ? 0 : static_cast<float>(cycles);
-  drop_turns_of_products(unit);
+  const bool is_turns_over_hertz = is_power_of_time(unit, 1) && radians == 1 && cycles == -2;
+  if (!is_turns_over_hertz) drop_turns_of_products(unit);  // 2π/f is no time: both 1/f and 1/(2πf) are
   return UnitFinding::known;
 }
 

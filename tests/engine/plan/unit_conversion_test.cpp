@@ -182,10 +182,31 @@ TEST(UnitConversion, WarnsOfExpressionsThatSeemToBeInTheOtherUnit) {
   const Outcome radians = of_expression(places[2], "2*pi*f");
   EXPECT_EQ(radians.number, 80 * pi);
   EXPECT_TRUE(has(radians.problems, "the expression seems to give 251.3 rad/s")) << radians.problems;
+  EXPECT_TRUE(has(radians.problems, "251.3 rad/s would be 40 Hz: divide by 2*pi")) << radians.problems;
+  const Outcome period = of_expression(places[2], "2*pi/T");
+  EXPECT_EQ(period.number, 4 * pi);
+  EXPECT_TRUE(has(period.problems, "the expression seems to give 12.57 rad/s, and is taken as 12.57 Hz"))
+      << period.problems;
+  EXPECT_EQ(of_expression(places[0], "2*pi/T").problems, "");
   const Outcome mixed = of_expression(places[0], "w + f");
   EXPECT_FALSE(mixed.number);
   EXPECT_TRUE(has(mixed.problems, "the expression adds Hz and rad/s")) << mixed.problems;
   EXPECT_EQ(of_expression(places[0], "w + 2*pi*f").problems, "");
+}
+
+TEST(UnitConversion, ATimeIsThePeriodOfAFrequency) {
+  const auto sampled = [](std::string_view time) {
+    return diagram(fmt::format(R"("t": {{"type": "Clock", "sample_time": "={}"}})", time), R"("stop": 1)",
+                   R"(, "parameters": {"f": {"value": 40, "unit": "Hz"}, "w": {"value": 100, "unit": "rad/s"},
+                      "n": {"value": 600, "unit": "rpm"}})");
+  };
+  EXPECT_EQ(plan_of(sampled("1/f"))->blocks[0].sample_time, 0.025);
+  EXPECT_EQ(plan_of(sampled("1/w"))->blocks[0].sample_time, 0.01);
+  EXPECT_EQ(plan_of(sampled("2*pi/n"))->blocks[0].sample_time, 0.1);
+  const std::string text = problems_of(sampled("2*pi/f"));
+  EXPECT_TRUE(has(text, "2*pi over a frequency in Hz is neither a period nor a time constant")) << text;
+  EXPECT_TRUE(has(text, "hint: the period of f is 1/f")) << text;
+  EXPECT_TRUE(has(problems_of(sampled("f")), "the unit does not fit \"sample_time\""));
 }
 
 TEST(UnitConversion, ANotchInHertzTakesThatFrequencyOut) {

@@ -144,6 +144,37 @@ TEST(Accuracy, RobertsonMeetsThePublishedValueAndKeepsItsMass) {
     EXPECT_NEAR(signal(result, "a.y")[i] + signal(result, "b.y")[i] + signal(result, "c.y")[i], 1, 1e-9);
 }
 
+/// x' = -x(t - 1) with x = 1 before 0, by the method of steps: sum of (-1)^k (t - k + 1)^k / k! up to k = t
+/// + 1.
+double delayed_decay(double t) {
+  double sum = 0, factorial = 1;
+  for (int k = 0; k <= int(t) + 1; factorial *= ++k)
+    sum += (k % 2 ? -1 : 1) * std::pow(t - k + 1, k) / factorial;
+  return sum;
+}
+
+TEST(Accuracy, ADelayInALoopMeetsTheMethodOfStepsTheCloserTheTolerance) {
+  for (const char* method : {"dopri5", "cvode-bdf", "cvode-adams"}) {
+    double before = 1;
+    for (const double tolerance : {1e-4, 1e-6, 1e-8}) {
+      const RunResult result = run_of(diagram(
+          R"("x": {"type": "Integrator", "initial": 1, "in": {"u": "n.y"}}, "n": {"type": "Gain", "gain": -1, "in": {"u": "d.y"}},
+      "d": {"type": "TransportDelay", "delay": 1, "initial": 1, "points": 20000, "in": {"u": "x.y"}})",
+          fmt::format(
+              R"("stop": 6, "method": "{}", "relative_tolerance": {}, "absolute_tolerance": {}, "record_step": 0.5)",
+              method, tolerance, tolerance)));
+      ASSERT_EQ(result.status, RunStatus::finished) << method << result.message;
+      double worst = 0;
+      for (size_t k = 0; k < result.recording.rows(); ++k)
+        worst =
+            std::max(worst, std::abs(signal(result, "x.y")[k] - delayed_decay(signal(result, "time")[k])));
+      EXPECT_LT(worst, 20 * tolerance) << method;
+      EXPECT_LT(worst, before / 10) << method << ' ' << tolerance;
+      before = worst;
+    }
+  }
+}
+
 RunResult run_file(const std::string& path) {
   return simulate(*load_plan(fmt::format("{}/diagrams/{}", LOOPWRIGHT_SOURCE, path)));
 }

@@ -81,6 +81,37 @@ TEST(StepOrder, AResetIsSeenByEverybodyInTheTickInWhichItHappens) {
   }
 }
 
+TEST(StepOrder, ARowAtADiscontinuityShowsTheValueAfterItWithEveryMethod) {
+  // A known discontinuity at 0.5, pulses from 0.3 on, and an event of the relay at 0.7; with and without
+  // samples at these instants.
+  for (const char* solver :
+       {R"("method": "rk4", "step": 0.1)", R"("method": "dopri5")", R"("method": "cvode-bdf")"})
+    for (const char* sampler :
+         {"", R"(, "h": {"type": "ZeroOrderHold", "sample_time": 0.1, "in": {"u": "t.time"}})"}) {
+      const RunResult result = run_of(diagram(
+          fmt::format(
+              R"("s": {{"type": "Step", "time": 0.5}}, "x": {{"type": "Integrator", "in": {{"u": "s.y"}}}},
+      "p": {{"type": "PulseTrain", "start": 0.3, "period": 0.4, "width": 0.2}},
+      "reset": {{"type": "Integrator", "initial": 1, "in": {{"u": "s.y", "reset": "late.y"}}}}, "late": {{"type": "Step", "time": 0.8}},
+      "t": {{"type": "Clock"}}{})",
+              sampler),
+          fmt::format(R"("stop": 1, {}, "record_step": 0.1)", solver)));
+      ASSERT_EQ(result.recording.rows(), 11u) << solver;
+      for (size_t k = 0; k < 11; ++k) {
+        EXPECT_EQ(signal(result, "time")[k], double(k) / 10) << solver << sampler;
+        EXPECT_EQ(signal(result, "s.y")[k], k < 5 ? 0 : 1) << solver << sampler << " row " << k;
+        EXPECT_EQ(signal(result, "p.y")[k], k == 3 || k == 4 || k == 7 || k == 8 ? 1 : 0)
+            << solver << sampler << " row " << k;
+        EXPECT_NEAR(signal(result, "reset.y")[k],
+                    k < 5   ? 1
+                    : k < 8 ? 0.5 + 0.1 * double(k)
+                            : 0.1 * double(k) - 0.8,
+                    1e-6)
+            << solver << sampler << " row " << k;
+      }
+    }
+}
+
 TEST(StepOrder, TheOrderInTheFileDoesNotMatter) {
   const std::string x = R"("x": {"type": "Integrator", "initial": 1, "in": {"u": "g.y"}})",
                     g = R"("g": {"type": "Gain", "gain": -2, "in": {"u": "h.y"}})",
