@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <limits>
 #include <set>
 #include <span>
+#include <tuple>
 #include <unordered_map>
 #include "engine/plan/layout.h"
 #include "engine/plan/order.h"
@@ -261,11 +263,13 @@ std::vector<FileRead> with_contents(std::vector<FileRead> files) {
 Identity identity_of(const Plan& plan, const Diagram& diagram, const Problems& problems, size_t first_file) {
   std::vector<FileRead> files = diagram.files_read;
   files.insert(files.end(), problems.files().begin() + ptrdiff_t(first_file), problems.files().end());
-  std::set<const FileRead*> libraries;
+  files = named_from(diagram.path, with_contents(std::move(files)));
+  std::set<const FileRead*> libraries;  // by their own names: they do not move with the diagram
   for (const Plan::Block& block : plan.blocks)
-    if (block.type->library && libraries.insert(block.type->library).second)
-      files.push_back(*block.type->library);
-  return {hash_of_structure(plan), program_build(), named_from(diagram.path, with_contents(std::move(files)))};
+    if (const FileRead* library = block.type->library; library && libraries.insert(library).second)
+      files.push_back({std::filesystem::path(library->path).filename().string(), library->hash});
+  std::ranges::sort(files, {}, [](const FileRead& file) { return std::tie(file.path, file.hash); });
+  return {hash_of_structure(plan), program_build(), std::move(files)};
 }
 
 }  // namespace

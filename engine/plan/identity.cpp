@@ -61,11 +61,9 @@ std::map<std::string, std::set<std::string>> by_name(const Identity& identity) {
 }  // namespace
 
 std::string Identity::hash() const {
-  std::set<std::string> contents;
-  for (const FileRead& file : files) contents.insert(file.hash);
   ContentHash all;
   all.add(structure).add("\n").add(build).add("\n");
-  for (const std::string& content : contents) all.add(content).add("\n");
+  for (const FileRead& file : files) all.add(escape(file.path, ":")).add(": ").add(file.hash).add("\n");
   return all.text();
 }
 
@@ -106,21 +104,15 @@ Facts facts_of(std::string_view text) {
 
 std::vector<std::string> changes(const Identity& before, const Identity& now) {
   std::vector<std::string> list;
-  const auto has_contents = [](const Identity& identity, const std::set<std::string>& contents) {
-    return std::ranges::all_of(contents, [&](const std::string& content) {
-      return std::ranges::any_of(identity.files, [&](const FileRead& f) { return f.hash == content; });
-    });
-  };
   const auto old_contents = by_name(before), new_contents = by_name(now);
   for (const auto& [name, contents] : old_contents)
     if (const auto found = new_contents.find(name); found == new_contents.end()) {
-      if (!has_contents(now, contents))  // otherwise it was moved
-        list.push_back(fmt::format("the file \"{}\" is not read any more", name));
+      list.push_back(fmt::format("the file \"{}\" is not read any more", name));
     } else if (found->second != contents) {
       list.push_back(fmt::format("the file \"{}\" has changed", name));
     }
   for (const auto& [name, contents] : new_contents)
-    if (!old_contents.contains(name) && !has_contents(before, contents))
+    if (!old_contents.contains(name))
       list.push_back(fmt::format("the file \"{}\" is read in addition", name));
   if (before.structure != now.structure)
     list.push_back("the diagram or its parameters (--set, --variant) have changed");
@@ -137,11 +129,11 @@ std::string changes_with_build(const Identity& before, const Identity& now) {
 
 std::vector<FileRead> named_from(const std::string& diagram, std::vector<FileRead> files) {
   const auto folder = std::filesystem::path(diagram).parent_path();
-  for (FileRead& file : files)
-    file.path = std::filesystem::path(file.path)
-                    .lexically_normal()
-                    .lexically_proximate(folder.empty() ? "." : folder.lexically_normal())
-                    .string();
+  for (FileRead& file : files) {
+    std::filesystem::path path = file.path, from = folder.empty() ? "." : folder;
+    if (path.is_absolute() != from.is_absolute()) path = absolute(path), from = absolute(from);
+    file.path = path.lexically_normal().lexically_proximate(from.lexically_normal()).string();
+  }
   const auto both = [](const FileRead& file) { return std::tie(file.path, file.hash); };
   std::ranges::sort(files, {}, both);
   const auto same = [&](const FileRead& a, const FileRead& b) { return both(a) == both(b); };

@@ -95,6 +95,32 @@ TEST(Identity, MovesWithItsFilesToAnotherFolder) {
   EXPECT_EQ(changed(*before, *now), "");
 }
 
+TEST(Identity, FilesWithExchangedContentsMatter) {
+  DiagramFolder folder;
+  const auto with = [&](const std::string& a, const std::string& b, const std::string& c) {
+    std::string blocks;
+    for (const auto& [name, x] : {std::pair("a", a), std::pair("b", b), std::pair("c", c)}) {
+      folder.with(fmt::format("{}.csv", name), "time,x\n0," + x + "\n1,2\n");
+      blocks += fmt::format(R"({}"{}": {{"type": "RecordedColumn", "file": "{}.csv", "column": "x"}})",
+                            blocks.empty() ? "" : ", ", name, name);
+    }
+    return load_plan(folder.with("top.json", diagram(blocks)).path("top.json"));
+  };
+  const auto before = with("1", "2", "2");
+  const auto exchanged = with("2", "1", "2"), other_count = with("1", "2", "1");
+  EXPECT_NE(exchanged->hash, before->hash);
+  EXPECT_NE(other_count->hash, before->hash);
+  EXPECT_EQ(changed(*before, *exchanged), "the file \"a.csv\" has changed; the file \"b.csv\" has changed");
+  EXPECT_EQ(with("1", "2", "2")->hash, before->hash);
+}
+
+TEST(Identity, DoesNotDependOnTheWayThePathIsWritten) {
+  DiagramFolder folder;
+  const std::string path = with_recording(folder).path("top.json");
+  const auto relative = std::filesystem::path(path).lexically_relative(std::filesystem::current_path()).string();
+  EXPECT_EQ(load_plan(relative)->hash, load_plan(path)->hash);
+}
+
 TEST(Identity, TheModelOfALearnedBlockMatters) {
   DiagramFolder folder;
   const auto examples = std::filesystem::path(LOOPWRIGHT_SOURCE) / "diagrams/examples";
