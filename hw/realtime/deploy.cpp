@@ -70,6 +70,7 @@ class Deployment {
     make_log();
     CrashGuard guard;
     const GuardedThread watcher([&] { watch(signals, guard, request.priority); }, [&] { is_over_ = true; });
+    is_guarded_.acquire();  // a crash before that would leave the device open
     try {
       const GuardedThread loop([&] { run_loop(request); }, [&] { call_off(); });
       is_prepared_.acquire();
@@ -198,12 +199,12 @@ class Deployment {
 
   void watch(const StopSignals& signals, CrashGuard& guard, int priority) noexcept {
     const HandlerStack stack;
-    // Priority above the loop's, so that a busy loop cannot block it; without the permission it stays
-    // unchanged.
+    // Priority above the loop's, so that a busy loop cannot block it, where that is permitted.
     const sched_param above{std::min(priority + 1, 99)};
     if (priority > 0) pthread_setschedparam(pthread_self(), SCHED_FIFO, &above);
     guard.begin_guardian([](void* self) { return static_cast<Deployment*>(self)->stop_in_emergency(); },
                          this);
+    is_guarded_.release();
     const double usual = is_simulated_ ? 5 : std::max(0.25, 10 * hardware_.period_s);
     const double longest = options_.read_timeout > 0 ? options_.read_timeout : usual;
     while (!is_over_) {
@@ -229,8 +230,7 @@ class Deployment {
     }
   }
 
-  /// Driver or callback hang and ignore the request: sends safe values from here, within a second, then
-  /// exits.
+  /// Driver or callback hang and ignore the request: safe values from here, within a second, then the end.
   [[noreturn]] void end_by_signal(int signal) noexcept {
     for (const int by_default : {SIGALRM, signal}) {
       std::signal(by_default, SIG_DFL);
@@ -383,7 +383,7 @@ class Deployment {
   std::string exception_in_loop_;
   std::vector<std::string> last_words_;  // indexed by OutputsSafe
   DeviceUser device_user_;
-  std::binary_semaphore is_prepared_{0}, is_done_{0};
+  std::binary_semaphore is_prepared_{0}, is_done_{0}, is_guarded_{0};
   std::atomic<Begin> begin_ = Begin::waits;
   std::atomic<bool> has_ended_ = false, is_closed_ = false, is_over_ = false, has_timed_out_ = false;
   std::atomic<int> stop_signal_ = 0, signals_ = 0, log_failure_ = 0;
