@@ -1,6 +1,9 @@
 #include "tools/command/command_line.h"
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
+#include <filesystem>
+#include <map>
 #include "engine/json/reader.h"
 
 namespace loopwright {
@@ -187,6 +190,37 @@ class Explanation {
 
 Problems explain(const CLI::App& app, const CLI::ParseError& error) {
   return Explanation(app, error).problems();
+}
+
+void check_values(const CLI::App& app) {
+  constexpr std::array<std::string_view, 7> outputs = {"-o,--output", "--output", "--report",    "--json",
+                                                       "--csv",       "--svg",    "--checkpoint"};
+  Problems problems;
+  std::map<std::filesystem::path, std::pair<std::string, bool>> known;  // path → option, is an output
+  for (const CLI::App* command : commands_of(app))
+    for (const CLI::Option* option : command->get_options()) {
+      const std::string name = name_of(*option);
+      const bool is_output = !option->get_positional() && std::ranges::find(outputs, name) != outputs.end();
+      const bool is_input = option->get_positional() || name == "--replay";
+      if (option->get_items_expected_max() == 0) continue;
+      for (const std::string& value : option->results()) {
+        if (value.empty()) {
+          problems.error({}, "", "", fmt::format("{} has an empty value", name)).hint =
+              option->get_description();
+          continue;
+        }
+        if (value == "-" || !(is_output || is_input)) continue;
+        std::error_code code;
+        const auto path = std::filesystem::weakly_canonical(std::filesystem::absolute(value), code);
+        const auto [other, is_new] = known.try_emplace(path, name, is_output);
+        if (is_new || !(is_output || other->second.second)) continue;
+        auto& p = problems.error({}, "", "",
+                                 fmt::format("{} and {} name the same file", other->second.first, name));
+        p.found = value;
+        p.hint = "an output needs a file of its own";
+      }
+    }
+  if (problems.has_errors()) throw InputError(std::move(problems));
 }
 
 }  // namespace loopwright

@@ -9,4 +9,8 @@ namespace loopwright {
 /// error.
 Problems explain(const CLI::App& app, const CLI::ParseError& error);
 
+/// Throws InputError for empty values, and for outputs of the chosen command with the path of another output
+/// or of an input.
+void check_values(const CLI::App& app);
+
 }  // namespace loopwright

@@ -37,6 +37,7 @@ int run_program(int count, char** arguments) {
   add_stability(app, choose);
   try {
     app.parse(count, arguments);
+    check_values(app);
     return action();
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <cmath>
 #include "engine/record/csv.h"
 #include "engine/record/recording_file.h"
 #include "tools/command/command.h"
@@ -23,6 +24,8 @@ void require_paths(const Arguments& a) {
   Problems problems;
   if (!a.output.empty() && a.output != "-" && !is_recording_path(a.output))
     problems.error({}, "", "", fmt::format("-o {}: recordings are written as .csv or .mat", a.output));
+  if (!std::isfinite(a.checkpoint_every))
+    problems.error({}, "", "", "--checkpoint-every is not finite").expected = "a number above zero";
   if (a.checkpoint.empty() != (a.checkpoint_every == 0))
     problems.error({}, "", "", "--checkpoint FILE and --checkpoint-every SECONDS go together");
   if (problems.has_errors()) throw InputError(std::move(problems));
@@ -100,7 +103,8 @@ void add_run(CLI::App& app, std::function<void(std::function<int()>)> choose) {
   command->add_option("--checkpoint", a->checkpoint, "Set the run aside in this file while it goes on");
   command->add_option("--checkpoint-every", a->checkpoint_every, "Simulated seconds between checkpoints")
       ->check(CLI::PositiveNumber);
-  command->add_option("--resume", a->resume, "Go on from a checkpoint");
+  command->add_option("--resume", a->resume, "Go on from a checkpoint, with its number of the run")
+      ->excludes("--run");
   command
       ->add_option("--replay", a->replay,
                    "Step the diagram through the log of a deployment: every output must be the logged one, "
