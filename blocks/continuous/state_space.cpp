@@ -25,7 +25,8 @@ template <class Real> struct StateSpace {
         parameter(&StateSpace::C, "C", "$y/$u", "What of the states shows, outputs by states").factor(),
         parameter(&StateSpace::D, "D", "$y/$u", "What of the inputs shows at once, outputs by inputs")
             .factor(),
-        parameter(&StateSpace::initial, "initial", "$u", "States at the start; zeros when left out").optional(),
+        parameter(&StateSpace::initial, "initial", "$u", "States at the start; zeros when left out")
+            .optional(),
         input(&In::u, "u", "$u", "Inputs").length(&StateSpace::inputs),
         output(&Out::y, "y", "$y", "Outputs").length(&StateSpace::results),
         state_vector(&State::x, &StateSpace::states));

@@ -1,9 +1,10 @@
 /// y(t) = u(t - delay); before that, initial
 ///
 /// The history consists of points at and, with a variable-step method, inside accepted solver steps. They are
-/// at most delay/points apart, or as far as the step or the tolerance allows. It is interpolated linearly. The error is at most gap²/8 · max|d²u/dt²|; a jump of u may be smeared over one
-/// gap. A solver step is never longer than the delay. The output does not depend on the present input: the
-/// block may be part of a loop.
+/// at most delay/points apart, or as far as the step or the tolerance allows. It is interpolated linearly.
+/// The error is at most gap²/8 · max|d²u/dt²|; a jump of u may be smeared over one gap. A solver step is
+/// never longer than the delay. The output does not depend on the present input: the block may be part of a
+/// loop.
 #include "engine/block.h"
 
 namespace loopwright::blocks {

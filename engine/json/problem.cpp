@@ -75,8 +75,12 @@ bool is_error(const Problem& problem) { return problem.severity == Problem::Seve
 /// Length in bytes of the UTF-8 character at the start of the text; 0: none.
 size_t length_of_character(std::string_view text) {
   const auto byte = [&](size_t i) { return static_cast<unsigned char>(text[i]); };
-  const size_t length = byte(0) < 0x80 ? 1 : byte(0) < 0xC2 ? 0 : byte(0) < 0xE0 ? 2 : byte(0) < 0xF0 ? 3
-                        : byte(0) < 0xF5 ? 4 : 0;
+  const size_t length = byte(0) < 0x80   ? 1
+                        : byte(0) < 0xC2 ? 0
+                        : byte(0) < 0xE0 ? 2
+                        : byte(0) < 0xF0 ? 3
+                        : byte(0) < 0xF5 ? 4
+                                         : 0;
   if (length == 0 || text.size() < length) return 0;
   for (size_t i = 1; i < length; ++i)
     if ((byte(i) & 0xC0) != 0x80) return 0;
@@ -164,7 +168,8 @@ std::string to_text(std::span<const Problem> problems) {
     std::ranges::stable_partition(told, [](const Problem* p) { return is_error(*p); });
     told.resize(most_problems_told);
   }
-  std::ranges::stable_sort(told, {}, [](const Problem* p) { return std::pair(file_name(*p), p->place.offset); });
+  std::ranges::stable_sort(told, {},
+                           [](const Problem* p) { return std::pair(file_name(*p), p->place.offset); });
 
   std::string text;
   const SourceFile* file = nullptr;
@@ -176,7 +181,8 @@ std::string to_text(std::span<const Problem> problems) {
     }
     text += message_at(*problem, counter.advance_to(problem->place.offset)) + '\n';
   }
-  if (told.size() < problems.size()) text += fmt::format("… and {} more\n", with_commas(problems.size() - told.size()));
+  if (told.size() < problems.size())
+    text += fmt::format("… and {} more\n", with_commas(problems.size() - told.size()));
   return text;
 }
 

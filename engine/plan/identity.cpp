@@ -32,7 +32,8 @@ int take_build_id(dl_phdr_info* object, size_t, void* to) {
       const auto* note = reinterpret_cast<const ElfW(Nhdr)*>(at);
       const char* const name = at + sizeof *note;
       const char* const bytes = name + padded(note->n_namesz);
-      if (note->n_type == NT_GNU_BUILD_ID && std::string_view(name, note->n_namesz) == std::string_view("GNU", 4)) {
+      if (note->n_type == NT_GNU_BUILD_ID &&
+          std::string_view(name, note->n_namesz) == std::string_view("GNU", 4)) {
         static_cast<std::string*>(to)->assign(bytes, note->n_descsz);
         return 1;
       }

@@ -16,8 +16,8 @@ struct Identity {
   std::string build;            ///< of the program, as program_build() gives it
   std::vector<FileRead> files;  ///< sorted; without the diagram itself, which the structure covers
 
-  /// Hash of everything except the names of files, 16 hexadecimal digits: results may move to another folder
-  /// or machine.
+  /// Hash of everything, 16 hexadecimal digits. The names of files are relative to the diagram: results may
+  /// move with its folder, and to another machine.
   std::string hash() const;
   /// As in recordings and checkpoints: "plan", "plan structure", "build", and "file NAME" for each file.
   Facts facts() const;

@@ -107,7 +107,7 @@ struct Plan {
   std::vector<Crossing> crossings;
   std::vector<Logged> log;
   std::vector<std::pair<std::string, std::string>> parameters;  ///< effective values: path → value with unit
-  std::vector<std::pair<Number, double>> unwired;  ///< unwired optional inputs and their values
+  std::vector<std::pair<Number, double>> unwired;               ///< unwired optional inputs and their values
 
   TickClock clock;
   int64_t start_tick = 0, stop_tick = 0;

@@ -230,9 +230,9 @@ class Times {
     const Fraction base = plan_.clock.base;
     plan_.start_tick = whole_ratio(start_, base).value_or(0);
     if (stop_)
-      plan_.stop_tick =
-          whole_ratio(*stop_, base).value_or(
-              whole_between(std::ceil(stop_->value() / base.value() - 1e-9), plan_.start_tick, INT64_MAX));
+      plan_.stop_tick = whole_ratio(*stop_, base)
+                            .value_or(whole_between(std::ceil(stop_->value() / base.value() - 1e-9),
+                                                    plan_.start_tick, INT64_MAX));
     plan_.step_ticks = step_ ? whole_ratio(*step_, base).value_or(1) : whole_ratio(shared_, base).value_or(1);
     plan_.record_ticks = whole_ratio(*record_, base).value_or(1);
     for (size_t b = 0; b < plan_.blocks.size(); ++b) {

@@ -45,8 +45,8 @@ std::string temporary_prefix(const std::string& target) {
 }
 std::string temporary_name(const std::string& target) {
   static std::atomic<unsigned> counter{0};
-  return fmt::format("{}{}{}-{}", target.substr(0, target.rfind('/') + 1), temporary_prefix(target), ::getpid(),
-                     counter++);
+  return fmt::format("{}{}{}-{}", target.substr(0, target.rfind('/') + 1), temporary_prefix(target),
+                     ::getpid(), counter++);
 }
 
 /// The process in the "1234-5" at the end of a temporary name; 0: the text has another form.

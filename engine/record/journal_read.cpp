@@ -157,7 +157,8 @@ void JournalReader::look_through() {
         survey_.damaged_bytes += chunk.bytes;
     }
   }
-  if (!has_heading) refuse(path_, "no heading of the journal is intact: it is not known what its numbers are");
+  if (!has_heading)
+    refuse(path_, "no heading of the journal is intact: it is not known what its numbers are");
   tell_what_is_lost();
 }
 

@@ -197,7 +197,7 @@ template <class Real> class Run {
   std::vector<std::vector<BlockInstance<Real>>> instances_;  // for each arena, as in all members below
   std::vector<Wires> wires_;
   std::vector<std::vector<Call<Real>>> base_;  // one for each block, without a step
-  bool signals_are_current_ = false;  ///< by reuse_signals()
+  bool signals_are_current_ = false;           ///< by reuse_signals()
   std::vector<std::unique_ptr<AlgebraicLoopSolver<Real>>> algebraic_loops_;
   std::vector<Call<Real>> constants_, early_, between_, stage_, for_events_, held_, accepts_, jumps_,
       crossings_, slopes_;

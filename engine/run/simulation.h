@@ -14,7 +14,7 @@ struct RunOptions {
   std::string resume_file;      ///< continue from this checkpoint
   const std::atomic<bool>* interrupt = nullptr;            ///< set by a signal handler: stop after this step
   std::function<void(double time, double stop)> progress;  ///< called occasionally between steps
-  std::function<void(Run<double>&)> at_stop;  ///< called at the stop time, with signals computed
+  std::function<void(Run<double>&)> at_stop;               ///< called at the stop time, with signals computed
 };
 
 enum class RunStatus { finished, failed, interrupted };

@@ -5,7 +5,7 @@
 namespace loopwright {
 namespace {
 
-constexpr double steps_in_period = 4;  // a crossing is sampled four times in each, so 16 times per period
+constexpr double steps_in_period = 4;    // a crossing is sampled four times in each, so 16 times per period
 constexpr double samples_in_period = 2;  // fewer show an aliased frequency
 
 /// s; infinity: none.

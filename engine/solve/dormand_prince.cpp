@@ -116,8 +116,7 @@ SolverStatus DormandPrince::step(double t_stop) {
     tried_step_ = h;
     trouble_ = SolverStatus::non_finite;
     const double error = try_step(h, t_new) ? error_norm(h) : std::numeric_limits<double>::quiet_NaN();
-    if (!std::isfinite(
-            error)) {  // f may not exist at the trial point: approach it in shorter steps
+    if (!std::isfinite(error)) {  // f may not exist at the trial point: approach it in shorter steps
       ++statistics.convergence_failures;
       reason = trouble_;
       step_size_ = retreat_factor * h;
@@ -138,8 +137,7 @@ SolverStatus DormandPrince::step(double t_stop) {
     } else {
       statistics.smallest_step = std::fmin(statistics.smallest_step, h);
       step_size_ = proposal;
-      error_root_ =
-          std::fmax(root, 0.63);  // error of 1e-4: an almost exact step does not predict the next
+      error_root_ = std::fmax(root, 0.63);  // error of 1e-4: an almost exact step does not predict the next
     }
     if (statistics.steps % stiff_check_interval == 0 || stiff_streak_ > 0) check_stiffness(h);
     accept(t_new, trial_);

@@ -21,8 +21,10 @@ struct OdeSystem {
   bool (*crossing_values)(void* self, double t, const double* x, double* value) = nullptr;
 };
 
-/// Copies the state of a system. Most have a few states, for which a call of memmove costs more than the copy.
-template <class Real, class To> inline void copy_states(const Real* from, size_t count, To* to) {
+/// Copies the state of a system. Most have a few states, for which a call of memmove costs more than the
+/// copy.
+template <class Real, class To>
+[[gnu::always_inline]] inline void copy_states(const Real* from, size_t count, To* to) {
   switch (count) {
     case 4:
       to[3] = from[3];

@@ -37,7 +37,7 @@ struct SolverOptions {
   std::vector<double> absolute_tolerances;  ///< one for each state, if sizes differ widely; empty: the above
   double initial_step = 0.0;                ///< [s] first trial; 0: from x, f and the change of f
   double maximum_step = std::numeric_limits<double>::infinity();  ///< [s] so that no short pulse is skipped
-  int64_t maximum_steps_between_stops = 1'000'000;  ///< also rejected ones; ends a stuck run
+  int64_t maximum_steps_between_stops = 1'000'000;                ///< also rejected ones; ends a stuck run
   int crossing_samples = 4;  ///< samples of crossings per step; more find shorter double crossings
 
   /// The problems of these options for a system with so many states, one sentence each; empty: none.

@@ -81,9 +81,7 @@ class Stepper {
   virtual void forget_history() = 0;
   virtual void interpolate_within(double t, double* x) const = 0;
 
-  void copy(const double* from, double* to) const {
-    copy_states(from, states_, to);
-  }
+  void copy(const double* from, double* to) const { copy_states(from, states_, to); }
 
   /// The end of the last step becomes the beginning of this one, `x` (swapped, not copied) its end at t.
   void accept(double t, std::vector<double>& x) {

@@ -22,7 +22,8 @@ void* open_library(const std::string& path, std::string& why) {
   // The loader would block on a pipe until it is written. A bare name is searched for in the system's
   // folders.
   if (path.find('/') != path.npos)
-    if (const std::string reason = why_not_regular(path); !reason.empty() && reason != "there is no such file") {
+    if (const std::string reason = why_not_regular(path);
+        !reason.empty() && reason != "there is no such file") {
       why = path + ": " + reason;
       return nullptr;
     }

@@ -17,7 +17,8 @@ std::string shown(t_error result) {
 }
 
 void pause_s(double seconds) {
-  const timespec time{whole_between<time_t>(seconds, 0, 1000), whole_between(1e9 * (seconds - std::floor(seconds)), 0L, 999'999'999L)};
+  const timespec time{whole_between<time_t>(seconds, 0, 1000),
+                      whole_between(1e9 * (seconds - std::floor(seconds)), 0L, 999'999'999L)};
   nanosleep(&time, nullptr);
 }
 

@@ -67,7 +67,8 @@ void stop_machine(const char* what) {
   say(what);
   say(" in motion: ");
   const char* words = last_words.load();
-  say(words ? words : "the stop did not come to its end; only the device's watchdog can put out its safe values");
+  say(words ? words
+            : "the stop did not come to its end; only the device's watchdog can put out its safe values");
   say("\n");
 }
 

@@ -8,12 +8,12 @@ namespace loopwright::fuzz {
 // Shares: files that are written by hand, and name many others, break in the most ways. A MAT file needs a
 // process.
 constexpr KindOfFile kinds[] = {
-    {"Diagrams", 50, 0.2, 0.1, open_diagrams},      {"Experiments", 10, 0.2, 0.1, open_experiments},
-    {"Sweeps", 6, 0.2, 0.1, open_sweeps},           {"Effects", 8, 0.2, 0.1, open_effects},
-    {"Devices", 5, 0.2, 0.1, open_devices},         {"Models", 4, 0.2, 0.02, open_models},
-    {"Trainings", 4, 0.2, 0.1, open_trainings},     {"Checkpoints", 3, 0.2, 0, open_checkpoints},
-    {"Shards", 2, 0.05, 0.1, open_shards},          {"Logs", 3, 0.05, 0.1, open_logs},
-    {"Tables", 3, 0.05, 0.1, open_tables},          {"MatFiles", 2, 0.1, 0, open_mat_files},
+    {"Diagrams", 50, 0.2, 0.1, open_diagrams},  {"Experiments", 10, 0.2, 0.1, open_experiments},
+    {"Sweeps", 6, 0.2, 0.1, open_sweeps},       {"Effects", 8, 0.2, 0.1, open_effects},
+    {"Devices", 5, 0.2, 0.1, open_devices},     {"Models", 4, 0.2, 0.02, open_models},
+    {"Trainings", 4, 0.2, 0.1, open_trainings}, {"Checkpoints", 3, 0.2, 0, open_checkpoints},
+    {"Shards", 2, 0.05, 0.1, open_shards},      {"Logs", 3, 0.05, 0.1, open_logs},
+    {"Tables", 3, 0.05, 0.1, open_tables},      {"MatFiles", 2, 0.1, 0, open_mat_files},
 };
 std::span<const KindOfFile> kinds_of_files() { return kinds; }
 

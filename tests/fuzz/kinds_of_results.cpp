@@ -33,7 +33,8 @@ class Checkpoints : public FileKind {
     if (below(random, 2)) return mutate(text, random);
     constexpr size_t hash = 16;
     const size_t head = text.find("build: ");
-    const std::string mutant = mutate(text.substr(0, head), random) + text.substr(head, text.size() - hash - head);
+    const std::string mutant =
+        mutate(text.substr(0, head), random) + text.substr(head, text.size() - hash - head);
     return mutant + content_hash(mutant);
   }
   Outcome use(const std::string& path, Problems&) override {
@@ -109,7 +110,8 @@ class Logs : public FileKind {
   }
 
  private:
-  const std::shared_ptr<const Plan> plan_ = load_plan(LOOPWRIGHT_SOURCE "/diagrams/examples/hardware_io.json");
+  const std::shared_ptr<const Plan> plan_ =
+      load_plan(LOOPWRIGHT_SOURCE "/diagrams/examples/hardware_io.json");
   hw::Hardware hardware_;
 };
 
@@ -132,8 +134,10 @@ class Tables : public FileKind {
     seeds_.push_back({"table.txt", "time x\ns mm\n0 1\n0.1\t2\n"});
   }
   std::vector<std::string> command() override {
-    folder_.with("player.json", diagram(fmt::format(
-        R"("t": {{"type": "RecordedColumn", "file": "{}", "column": "stage.position"}})", seed_.name)));
+    folder_.with(
+        "player.json",
+        diagram(fmt::format(R"("t": {{"type": "RecordedColumn", "file": "{}", "column": "stage.position"}})",
+                            seed_.name)));
     return {"check", folder_.path("player.json")};
   }
 

@@ -38,8 +38,9 @@ class Sweeps : public JsonKind {
  public:
   Sweeps() {
     const SweepFolder grid(four_axis_values, forty_samples),
-        variants(R"("mass.mass": {"values": [1, 2]}, "damping_ratio": {"logarithmic": {"from": 0.1, "to": 1, "count": 3}})",
-                 R"(, "keep": {"worst": 2, "of": "a"}, "set": {"solver.stop": 0.2}, "seed": 7)");
+        variants(
+            R"("mass.mass": {"values": [1, 2]}, "damping_ratio": {"logarithmic": {"from": 0.1, "to": 1, "count": 3}})",
+            R"(, "keep": {"worst": 2, "of": "a"}, "set": {"solver.stop": 0.2}, "seed": 7)");
     for (const auto* sweep : {&grid, &variants})
       seeds_.push_back({"sweep.json", read_whole(sweep->folder.path("sweep.json"))});
     folder_.with("loop.json", small_loop);
@@ -52,8 +53,9 @@ class Sweeps : public JsonKind {
     if (!sweep) return Outcome::refused;
     const SweepPlan plan(std::move(sweep));
     const Plan& first = *plan.world(0).plan;
-    const bool is_short = (first.stop_tick - first.start_tick) / std::max<int64_t>(1, first.step_ticks) < 1000 &&
-                          is_fixed_step(first.method);
+    const bool is_short =
+        (first.stop_tick - first.start_tick) / std::max<int64_t>(1, first.step_ticks) < 1000 &&
+        is_fixed_step(first.method);
     EXPECT_TRUE(!is_short || make_runs(plan, 0, 1).size() == 1);
     return Outcome::finished;
   }
@@ -68,7 +70,8 @@ class Effects : public JsonKind {
 
  protected:
   Outcome use(const std::string& path, Problems& problems) override {
-    for (const Effect& effect : load_effect(path, problems)) compile_effect(effect, {}, axis_sizes(), problems);
+    for (const Effect& effect : load_effect(path, problems))
+      compile_effect(effect, {}, axis_sizes(), problems);
     return Outcome::finished;
   }
 };
@@ -121,7 +124,8 @@ class Models : public JsonKind {
     try {
       const ReadyModel ready(std::move(learned));
       for (const double x : {0.0, 0.2, -1e9, 1e300, double(INFINITY), double(NAN)})
-        for (const double v : {0.1, -3.0, 1e300, double(NAN)}) ready.table()({x, v}), ready.posterior.mean({x, v});
+        for (const double v : {0.1, -3.0, 1e300, double(NAN)})
+          ready.table()({x, v}), ready.posterior.mean({x, v});
     } catch (const std::domain_error&) {
       return Outcome::failed;
     }

@@ -64,20 +64,26 @@ TEST_P(MutantCommands, EndByThemselvesAndNameAPlace) {
     if (arguments.empty()) return;
     const loopwright::Outcome outcome = loopwright_program(arguments);
     EXPECT_TRUE(outcome.code == 0 || outcome.code == 1 || outcome.code == 2 || outcome.code == 130)
-        << outcome.code << "\n" << outcome.err << "\n" << what;
+        << outcome.code << "\n"
+        << outcome.err << "\n"
+        << what;
     const bool has_errors = outcome.err.find("error: ") != std::string::npos;
     EXPECT_TRUE(outcome.code != 2 || (has_errors && std::regex_search(outcome.err, place)))
-        << outcome.err << "\n" << what;
+        << outcome.err << "\n"
+        << what;
     for (const char c : outcome.out + outcome.err)
       EXPECT_TRUE(static_cast<unsigned char>(c) >= 0x20 || c == '\n') << "a control character\n" << what;
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Kind, MutantCommands, testing::Range(0, int(kinds_of_files().size())),
-                         [](const auto& test) { return std::string(kinds_of_files()[size_t(test.param)].name); });
+                         [](const auto& test) {
+                           return std::string(kinds_of_files()[size_t(test.param)].name);
+                         });
 
 INSTANTIATE_TEST_SUITE_P(Files, Mutants,
-                         testing::Combine(testing::Range(0, int(kinds_of_files().size())), testing::Range(0, parts)),
+                         testing::Combine(testing::Range(0, int(kinds_of_files().size())),
+                                          testing::Range(0, parts)),
                          [](const auto& test) {
                            return fmt::format("{}_{}", kinds_of_files()[size_t(std::get<0>(test.param))].name,
                                               std::get<1>(test.param));

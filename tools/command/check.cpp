@@ -91,8 +91,7 @@ Verdict check_model(const std::string& path, Problems& problems) {
 }
 
 /// Options that change a diagram have no effect on other files: this is reported rather than ignored.
-void reject_options(FileKind kind, const std::string& path, const CheckOptions& options,
-                    Problems& problems) {
+void reject_options(FileKind kind, const std::string& path, const CheckOptions& options, Problems& problems) {
   const bool takes_set = kind == FileKind::diagram || kind == FileKind::training;
   const auto reject = [&](std::string_view option) {
     problems.error({}, "", "", fmt::format("{} changes nothing in {}", option, path)).found =

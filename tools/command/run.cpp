@@ -57,7 +57,7 @@ void warn_of_hardware(const Plan& plan) {
   for (const Plan::Block& block : plan.blocks)
     if (block.type->info.type == "HardwareIo")
       tell("warning: \"{}\" is hardware and stands still in a simulation; loopwright deploy moves it\n",
-                 block.path);
+           block.path);
 }
 
 int run(const Arguments& a) {
@@ -77,8 +77,7 @@ int run(const Arguments& a) {
   if (!a.quiet) options.progress = [&](double time, double stop) { progress.show(time, stop); };
   const RunResult result = simulate(*plan, options);
   progress.finish();
-  for (const std::string& warning : result.warnings)
-    tell("{}: warning: {}\n", a.diagram.path, warning);
+  for (const std::string& warning : result.warnings) tell("{}: warning: {}\n", a.diagram.path, warning);
   if (a.output == "-")
     print_csv(stdout, result.recording);
   else if (!a.output.empty())

@@ -92,8 +92,7 @@ int64_t write_tables(const SweepPlan& plan, const std::string& folder) {
   for (const auto& [run, reason] : results.failures) failures += fmt::format("run {}: {}\n", run, reason);
   write_file(folder + "/failures.txt", failures);
   answer("{} runs in {}/results.csv and .mat; {} failed{}\n", results.table.rows(), folder,
-             results.failures.size(),
-             results.missing ? fmt::format("; {} are missing", results.missing) : "");
+         results.failures.size(), results.missing ? fmt::format("; {} are missing", results.missing) : "");
   if (results.missing == 0) write_traces(plan, folder, results);
   return results.missing;
 }
@@ -116,12 +115,12 @@ int optimise(const SweepPlan& plan, const Arguments& a) {
   const auto metric =
       std::find_if(metrics.begin(), metrics.end(), [&](const Metric& m) { return m.name == options.metric; });
   answer("{} {} = {} {}\n", options.maximise ? "greatest" : "least", options.metric, best.value,
-             plan.world(0).observed.units[size_t(metric - metrics.begin())]);
+         plan.world(0).observed.units[size_t(metric - metrics.begin())]);
   for (size_t i = 0; i < best.point.size(); ++i) {
     const Axis& axis = plan.sweep().axes[i];
     answer("  {} = {}\n", axis.name,
-               axis.kind == Axis::Kind::variants ? axis.variants[whole_index(best.point[i], axis.variants.size())]
-                                                 : fmt::format("{} {}", best.point[i], axis.unit));
+           axis.kind == Axis::Kind::variants ? axis.variants[whole_index(best.point[i], axis.variants.size())]
+                                             : fmt::format("{} {}", best.point[i], axis.unit));
   }
   answer("{}\n", plan.command(plan.options_at(best.point), 0));
   answer("{} runs, {} of them failed\n", best.evaluations, best.failed);
@@ -145,7 +144,7 @@ int make(const SweepPlan& plan, const Arguments& a) {
   progress.finish();
   for (const std::string& note : outcome.notes) tell("{}\n", note);
   answer("{}{} of {} runs done, {} now, {} of them failed\n", ranks.name(), outcome.done, outcome.runs,
-             outcome.made, outcome.failed);
+         outcome.made, outcome.failed);
   if (options.shards == 1 && ranks.is_first()) write_tables(plan, a.folder);
   if (!outcome.interrupted) return done;
   tell("interrupted; --resume goes on\n");

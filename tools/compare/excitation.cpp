@@ -32,7 +32,8 @@ int speeds_in(const MeasuredMotion& m) {
   std::map<int, double> seconds;  // by the logarithm of speed
   for (size_t k = 0; k < m.rows(); ++k)
     if (m.counts[k])
-      seconds[whole_between(std::floor(std::log(std::abs(m.velocity[k])) / std::log(1.2)), -10000, 10000)] += m.sample_time;
+      seconds[whole_between(std::floor(std::log(std::abs(m.velocity[k])) / std::log(1.2)), -10000, 10000)] +=
+          m.sample_time;
   double moving = 0;
   for (const auto& [bin, s] : seconds) moving += s;
   int count = 0, last = -1000;
@@ -61,7 +62,8 @@ bool has_varied_force(const MeasuredMotion& m) {
   const double low = *std::ranges::min_element(m.position), stroke = std::max(m.stroke(), 1e-300);
   for (size_t k = 0; k < m.rows(); ++k) {
     if (!m.counts[k]) continue;
-    const auto bin = whole_index((m.position[k] - low) / stroke * bins, bins) + size_t(m.velocity[k] > 0 ? bins : 0);
+    const auto bin =
+        whole_index((m.position[k] - low) / stroke * bins, bins) + size_t(m.velocity[k] > 0 ? bins : 0);
     sum[bin] += m.force[k], squares[bin] += m.force[k] * m.force[k], count[bin] += 1;
   }
   double within = 0, all = 0;

@@ -110,7 +110,8 @@ AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Prob
       record.measured.push_back({role, wanted, unit, signal.resolution, grid.measured(column.values)});
     }
   }
-  record.held_out_from = whole_between<size_t>(std::round(double(record.rows()) * (1 - experiment.hold_out_fraction)), 0, record.rows());
+  record.held_out_from = whole_between<size_t>(
+      std::round(double(record.rows()) * (1 - experiment.hold_out_fraction)), 0, record.rows());
   if (record.measured.empty())
     problems
         .error({}, "/compare", "",

@@ -233,7 +233,8 @@ RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
       sizes.resolution = std::max(sizes.resolution, position->resolution);
   }
   if (!speeds.empty()) {  // a few rows may be disturbed
-    const auto top = speeds.begin() + std::ptrdiff_t(whole_index(0.995 * double(speeds.size() - 1), speeds.size()));
+    const auto top =
+        speeds.begin() + std::ptrdiff_t(whole_index(0.995 * double(speeds.size() - 1), speeds.size()));
     std::ranges::nth_element(speeds, top);
     sizes.top_speed = *top;
   }

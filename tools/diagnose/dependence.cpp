@@ -40,7 +40,8 @@ struct Hats {
   Hats(std::vector<double> values, size_t count) {
     std::ranges::sort(values);
     for (size_t i = 0; i < count; ++i) {
-      const double knot = values[whole_index(double(values.size() - 1) * double(i) / double(count - 1), values.size())];
+      const double knot =
+          values[whole_index(double(values.size() - 1) * double(i) / double(count - 1), values.size())];
       if (knots.empty() || knot > knots.back()) knots.push_back(knot);
     }
   }

@@ -12,7 +12,8 @@ constexpr int memory_of_rest = 50;  // rows after a rest that do not count: the 
 
 double quantile(std::vector<double> values, double fraction) {
   if (values.empty()) return 0;
-  const auto at = values.begin() + std::ptrdiff_t(whole_index(fraction * double(values.size() - 1), values.size()));
+  const auto at =
+      values.begin() + std::ptrdiff_t(whole_index(fraction * double(values.size() - 1), values.size()));
   std::ranges::nth_element(values, at);
   return *at;
 }

@@ -80,9 +80,7 @@ struct SpatialGrid {
     while (samples < 4 * bins) samples *= 2;
   }
   double frequency(size_t k) const { return double(k) / (double(samples) * bin); }
-  size_t place(double position) const {
-    return whole_index((position - low) / bin, bins);
-  }
+  size_t place(double position) const { return whole_index((position - low) / bin, bins); }
 };
 
 /// How an effect of unit amplitude rises and decays when it does not repeat: the limit of infinite pitch.

@@ -52,7 +52,9 @@ class Model {
   }
 
   size_t fitted_rows(const ComparedSignal& signal) const {
-    return signal.measured.size() - whole_between<size_t>(double(signal.measured.size()) * experiment_->hold_out_fraction, 0, signal.measured.size());
+    return signal.measured.size() -
+           whole_between<size_t>(double(signal.measured.size()) * experiment_->hold_out_fraction, 0,
+                                 signal.measured.size());
   }
   size_t rows() const { return experiment_->data.rows(); }
 

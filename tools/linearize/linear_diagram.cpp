@@ -28,7 +28,8 @@ LinearDiagram linearize_at_start(const Plan& plan) {
 
 LinearDiagram linearize_at(const Plan& plan, double time, const RunOptions& options) {
   Plan until = plan;
-  until.stop_tick = whole_between<int64_t>(std::round(time / plan.clock.base.value()), plan.start_tick, INT64_MAX);
+  until.stop_tick =
+      whole_between<int64_t>(std::round(time / plan.clock.base.value()), plan.start_tick, INT64_MAX);
   LinearDiagram diagram;
   RunOptions with_stop = options;
   with_stop.at_stop = [&](Run<double>& run) { diagram = linearize(run); };

@@ -85,7 +85,8 @@ MatrixXd LinearStep::next(int block) const {
 
 void LinearStep::evaluate_entry(const Plan::Entry& entry) {
   if (entry.kind == Plan::Entry::Kind::decide) return;
-  if (entry.kind == Plan::Entry::Kind::algebraic_loop) return solve_algebraic_loop(diagram_.plan->algebraic_loops[size_t(entry.block)]);
+  if (entry.kind == Plan::Entry::Kind::algebraic_loop)
+    return solve_algebraic_loop(diagram_.plan->algebraic_loops[size_t(entry.block)]);
   const LinearBlock& block = diagram_.blocks[size_t(entry.block)];
   if (block.kind == LinearBlock::Kind::delay) {
     numbers.row(block.outputs[0]) = delayed.row(delay_of_block_[size_t(entry.block)]);

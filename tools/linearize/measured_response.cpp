@@ -94,7 +94,8 @@ class SineExperiment {
     const RunResult result = simulate(*plan, options_);
     if (result.status != RunStatus::finished) throw std::runtime_error(result.message);
     const auto& columns = result.recording.columns;
-    const auto rows = whole_between<std::ptrdiff_t>(std::round(window / test_.sample_time), 0, std::ptrdiff_t(columns[0].values.size()) - 1);
+    const auto rows = whole_between<std::ptrdiff_t>(std::round(window / test_.sample_time), 0,
+                                                    std::ptrdiff_t(columns[0].values.size()) - 1);
     const auto last = [&](const Column& column) {  // without the last row, which repeats the first one
       return std::vector<double>(column.values.end() - 1 - rows, column.values.end() - 1);
     };

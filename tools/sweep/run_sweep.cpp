@@ -193,7 +193,7 @@ SweepOutcome run_sweep(const SweepPlan& plan, const std::string& folder, const S
         throw std::runtime_error(fmt::format(
             "{} holds results already: --resume goes on with them, another folder starts anew", path));
       if (const ShardState state = read_head_of_shard(path, plan.hash(), plan.sweep().metrics.size());
-               !state.is_readable)
+          !state.is_readable)
         refuse_foreign(plan, folder, path, state);
     }
   std::vector<std::string> notes;
@@ -217,11 +217,13 @@ std::vector<RunRecord> make_runs(const SweepPlan& plan, int64_t first, int64_t e
 
 /// For the results in a folder. Results of another build of the program are also read, with a notice, because
 /// nothing is added to them.
-Identity identity_of_results(const SweepPlan& plan, const std::string& folder, std::vector<std::string>& notes) {
+Identity identity_of_results(const SweepPlan& plan, const std::string& folder,
+                             std::vector<std::string>& notes) {
   Identity before = identity_of(read_sweep_file(folder).second);
-  if (before.build == plan.identity().build || !changes(before, plan.identity()).empty()) return plan.identity();
-  notes.push_back(fmt::format("the results were made by another build of the program ({}, here {})", before.build,
-                              plan.identity().build));
+  if (before.build == plan.identity().build || !changes(before, plan.identity()).empty())
+    return plan.identity();
+  notes.push_back(fmt::format("the results were made by another build of the program ({}, here {})",
+                              before.build, plan.identity().build));
   return before;
 }
 

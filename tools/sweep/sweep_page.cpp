@@ -30,7 +30,8 @@ std::vector<double> sorted_finite(const std::vector<double>& values) {
   return finite;
 }
 double quantile(const std::vector<double>& sorted, double share) {
-  return sorted.empty() ? std::nan("") : sorted[whole_index(std::round(share * double(sorted.size() - 1)), sorted.size())];
+  return sorted.empty() ? std::nan("")
+                        : sorted[whole_index(std::round(share * double(sorted.size() - 1)), sorted.size())];
 }
 std::string text(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : "—"; }
 

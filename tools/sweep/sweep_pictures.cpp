@@ -26,7 +26,9 @@ std::string colour(double share) {
   const double at = std::clamp(share, 0.0, 1.0) * 8;
   const size_t i = whole_index(at, 8);
   const double t = at - double(i);
-  const auto mix = [&](size_t c) { return whole_between(places[i][c] + t * (places[i + 1][c] - places[i][c]) + 0.5, 0, 255); };
+  const auto mix = [&](size_t c) {
+    return whole_between(places[i][c] + t * (places[i + 1][c] - places[i][c]) + 0.5, 0, 255);
+  };
   return fmt::format("rgb({},{},{})", mix(0), mix(1), mix(2));
 }
 
@@ -36,7 +38,8 @@ std::string short_number(double value) {
   return size >= 1000 && size < 1e5 ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
 }
 std::string value_text(const Axis& axis, double value) {
-  return axis.kind == Axis::Kind::variants ? axis.variants[whole_index(value, axis.variants.size())] : fmt::format("{:.3g}", value);
+  return axis.kind == Axis::Kind::variants ? axis.variants[whole_index(value, axis.variants.size())]
+                                           : fmt::format("{:.3g}", value);
 }
 std::string bin_text(const Axis& axis, const Bin& bin) {
   return bin.from == bin.to ? value_text(axis, bin.from) : fmt::format("{:.3g} … {:.3g}", bin.from, bin.to);

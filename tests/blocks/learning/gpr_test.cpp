@@ -80,7 +80,8 @@ TEST(Gpr, StopsTheRunWhereItIsAskedAtNoFiniteNumber) {
   const double infinite = std::numeric_limits<double>::infinity(), nan = std::nan("");
   for (const char* type : {"Gpr", "GprDeviation"})
     for (const char* untrained : {"hold", "posterior", "fault"})
-      for (const auto& [x, v] : {std::pair(infinite, 0.1), {-infinite, 0.1}, {nan, 0.1}, {0.2, infinite}, {0.2, nan}}) {
+      for (const auto& [x, v] :
+           {std::pair(infinite, 0.1), {-infinite, 0.1}, {nan, 0.1}, {0.2, infinite}, {0.2, nan}}) {
         BlockUnderTest block(type, settings(folder, fmt::format(R"(, "untrained": "{}")", untrained)));
         predicted(block, x, v, block_output(type));
         EXPECT_EQ(block.fault(),

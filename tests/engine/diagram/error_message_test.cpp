@@ -92,7 +92,8 @@ TEST(DiagramErrors, Parameters) {
        "top.json:2:36: error: there is no parameter \"mas\"\n  at: /parameters/a\n  hint: did you mean "
        "\"mass\"?\n1 error"},
       {R"("parameters": {"a": "=b+1", "b": "=2*c", "c": "=a", "d": "=a"})",
-       "top.json:2:16: error: parameters depend on each other in a cycle\n  at: /parameters/a\n  found: a → b "
+       "top.json:2:16: error: parameters depend on each other in a cycle\n  at: /parameters/a\n  found: a → "
+       "b "
        "→ c → a\n1 error"},
       {R"("parameters": {"a": "=a"})",
        "top.json:2:16: error: parameters depend on each other in a cycle\n  at: /parameters/a\n  found: a → "
@@ -241,7 +242,8 @@ TEST(DiagramErrors, Subdiagrams) {
             "  expected: one of diagram, parameters, in, description\n  hint: parameters of the diagram "
             "stand in \"parameters\"\n"
             "top.json:7:18: error: \"diagram\" is of the wrong kind\n  block: f\n  at: /blocks/f/diagram\n"
-            "  expected: the path of a diagram file in quotes, or a diagram in braces\n  found: the number 5\n8 errors");
+            "  expected: the path of a diagram file in quotes, or a diagram in braces\n  found: the number "
+            "5\n8 errors");
 }
 
 TEST(DiagramErrors, Variants) {

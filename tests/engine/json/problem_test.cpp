@@ -105,7 +105,10 @@ TEST(NearestName, PrefersTheSmallerMistake) {
 TEST(ProblemText, ShowsNoControlCharactersOfAFile) {
   EXPECT_EQ(printable("plain µ→𝄞\n"), "plain µ→𝄞\n");
   EXPECT_EQ(printable("\x1b[31mred\r\t\x7f"), "\\x1b[31mred\\x0d\\x09\\x7f");
-  EXPECT_EQ(printable("\xc2\x9b" "31m"), "\\xc2\\x9b31m") << "the other way to begin an escape sequence";
+  EXPECT_EQ(printable("\xc2\x9b"
+                      "31m"),
+            "\\xc2\\x9b31m")
+      << "the other way to begin an escape sequence";
   EXPECT_EQ(printable("\xc2\xa0"), "\xc2\xa0");
   EXPECT_EQ(printable("\xff\xc0\xaf\xe0\x80\x80\xed\xa0\x80\xf4\x90\x80\x80\xc3"),
             "\\xff\\xc0\\xaf\\xe0\\x80\\x80\\xed\\xa0\\x80\\xf4\\x90\\x80\\x80\\xc3");
@@ -122,7 +125,8 @@ TEST(ProblemText, TellsTwoHundredAndCountsTheOthers) {
   const std::string text = problems.text();
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 201);
   EXPECT_NE(text.find("a.json:951:1: error: wrong\n"), text.npos) << "no error hides behind warnings";
-  EXPECT_NE(text.find("\n… and 99,801 more\n1 error, 100,000 warnings"), text.npos) << text.substr(text.size() - 200);
+  EXPECT_NE(text.find("\n… and 99,801 more\n1 error, 100,000 warnings"), text.npos)
+      << text.substr(text.size() - 200);
 }
 
 }  // namespace

@@ -35,7 +35,8 @@ bool is_built(InstructionSet set) {
 // Any other symbol could be linked into the program, which must run on machines without these instructions.
 TEST_P(LaneModule, ExportsNothingButItsEntry) {
   if (!is_built(GetParam())) GTEST_SKIP() << "not built under the sanitizers";
-  const std::string file = LOOPWRIGHT_BINARY "/lib/loopwright_lanes_" + std::string(to_name(GetParam())) + ".so";
+  const std::string file =
+      LOOPWRIGHT_BINARY "/lib/loopwright_lanes_" + std::string(to_name(GetParam())) + ".so";
   std::istringstream lines(output_of("nm -D --defined-only '" + file + "'"));
   std::string address, kind, name;
   int symbols = 0;

@@ -11,9 +11,8 @@ constexpr std::string_view negative_feedback = R"("source": {"type": "Constant",
 "gain": {"type": "Gain", "gain": 0.5, "in": {"u": "error.sum"}})";
 
 TEST(AlgebraicLoop, IsPrintedPortByPortWithWhatBreaksIt) {
-  EXPECT_EQ(
-      problems_of(diagram(negative_feedback)),
-      R"(top.json:3:1: error: algebraic loop: each of these needs the next in the same instant
+  EXPECT_EQ(problems_of(diagram(negative_feedback)),
+            R"(top.json:3:1: error: algebraic loop: each of these needs the next in the same instant
     error.sum -> gain.u
     gain.y -> error.terms
   block: error

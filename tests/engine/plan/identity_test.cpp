@@ -64,10 +64,15 @@ DiagramFolder& with_recording(DiagramFolder& folder, std::string_view rows = "0,
   folder.with("parts/player.json",
               R"({"loopwright": 1, "outputs": {"x": "track.value"},
   "blocks": {"track": {"type": "RecordedColumn", "file": "../data/track.csv", "column": "x"}}})");
-  folder.with("top.json", diagram(R"("p": {"diagram": "parts/player.json"}, "g": {"type": "Gain", "gain": 2, "in": {"u": "p.x"}})"));
+  folder.with(
+      "top.json",
+      diagram(
+          R"("p": {"diagram": "parts/player.json"}, "g": {"type": "Gain", "gain": 2, "in": {"u": "p.x"}})"));
   return folder;
 }
-std::string changed(const Plan& before, const Plan& now) { return changes_with_build(before.identity, now.identity); }
+std::string changed(const Plan& before, const Plan& now) {
+  return changes_with_build(before.identity, now.identity);
+}
 
 TEST(Identity, TheBytesOfEveryFileThatWasReadMatter) {
   DiagramFolder folder;
@@ -84,7 +89,8 @@ TEST(Identity, TheBytesOfEveryFileThatWasReadMatter) {
 
   with_recording(folder);
   folder.with("parts/player.json", text_of(folder.path("parts/player.json")) + "\n");
-  EXPECT_EQ(changed(*before, *load_plan(folder.path("top.json"))), "the file \"parts/player.json\" has changed");
+  EXPECT_EQ(changed(*before, *load_plan(folder.path("top.json"))),
+            "the file \"parts/player.json\" has changed");
 }
 
 TEST(Identity, MovesWithItsFilesToAnotherFolder) {
@@ -117,7 +123,8 @@ TEST(Identity, FilesWithExchangedContentsMatter) {
 TEST(Identity, DoesNotDependOnTheWayThePathIsWritten) {
   DiagramFolder folder;
   const std::string path = with_recording(folder).path("top.json");
-  const auto relative = std::filesystem::path(path).lexically_relative(std::filesystem::current_path()).string();
+  const auto relative =
+      std::filesystem::path(path).lexically_relative(std::filesystem::current_path()).string();
   EXPECT_EQ(load_plan(relative)->hash, load_plan(path)->hash);
 }
 

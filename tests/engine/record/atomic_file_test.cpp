@@ -61,7 +61,7 @@ TEST(AtomicFile, RemovesWhatAKilledProgramLeftBesideTheTarget) {
   make(".a.csv." + gone + "-0");
   make(".a.csv." + gone + "-17");
   const std::vector<std::string> kept = {".a.csv." + here + "-99", ".b.csv." + gone + "-0", ".a.csv." + gone,
-                                         ".a.csv." + gone + "-0x",  ".a.csv.bak." + gone + "-0"};
+                                         ".a.csv." + gone + "-0x", ".a.csv.bak." + gone + "-0"};
   for (const std::string& name : kept) make(name);
   write_file(folder / "a.csv", "whole");
   EXPECT_EQ(bytes_of(folder / "a.csv"), "whole");

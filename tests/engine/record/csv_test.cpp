@@ -276,7 +276,8 @@ TEST(CsvProblems, TellFilesThatCannotBeRead) {
   read_csv(folder / "missing.csv", problems);
   read_csv(folder / ".", problems);
   read_csv("/dev/zero", problems);
-  EXPECT_THAT(problems.text(), HasSubstr("missing.csv:1:1: error: the file cannot be read: there is no such file"));
+  EXPECT_THAT(problems.text(),
+              HasSubstr("missing.csv:1:1: error: the file cannot be read: there is no such file"));
   EXPECT_THAT(problems.text(), HasSubstr("it is a folder"));
   EXPECT_THAT(problems.text(), HasSubstr("/dev/zero:1:1: error: the file cannot be read: it is a device"));
 }

@@ -286,8 +286,7 @@ TEST(BadReading, OneInTheMotionIsAFaultOrHeldAsThePolicySays) {
   };
   const DeployResult fault = bad_for(1, "{}");
   EXPECT_EQ(fault.status, RunStatus::failed);
-  EXPECT_EQ(fault.message,
-            "input \"current\" (analog 0) read nan V, which is not finite, at t = 0.699 s");
+  EXPECT_EQ(fault.message, "input \"current\" (analog 0) read nan V, which is not finite, at t = 0.699 s");
   EXPECT_EQ(bad_for(2, R"({"on_invalid": "hold"})").status, RunStatus::finished);
   EXPECT_EQ(bad_for(3, R"({"on_invalid": "hold"})").status, RunStatus::failed);
 }

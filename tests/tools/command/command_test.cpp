@@ -213,7 +213,8 @@ TEST_F(Command, ACheckpointGoesOnInAnotherProcess) {
   const Outcome other =
       run({"run", "small.json", "-q", "-o", "other.csv", "--resume", "c", "--set", "rate=3"});
   EXPECT_EQ(other.code, 2);
-  EXPECT_TRUE(contains(other.err, "the diagram or its parameters (--set, --variant) have changed")) << other.err;
+  EXPECT_TRUE(contains(other.err, "the diagram or its parameters (--set, --variant) have changed"))
+      << other.err;
   EXPECT_FALSE(exists("other.csv"));
 }
 

@@ -62,7 +62,9 @@ TEST_F(Surroundings, WhatIsNoFileIsRefusedAtOnce) {
   ASSERT_EQ(mkfifo(folder.path("fifo.json").c_str(), 0600), 0);
   ASSERT_EQ(mkfifo(folder.path("fifo.csv").c_str(), 0600), 0);
   ASSERT_EQ(mkfifo(folder.path("fifo.so").c_str(), 0600), 0);
-  folder.with("sub.json", R"({"loopwright": 1, "solver": {"stop": 1}, "blocks": {"a": {"diagram": "fifo.json"}}})")
+  folder
+      .with("sub.json",
+            R"({"loopwright": 1, "solver": {"stop": 1}, "blocks": {"a": {"diagram": "fifo.json"}}})")
       .with("csv.json", R"({"loopwright": 1, "solver": {"stop": 1}, "blocks": {
           "a": {"type": "RecordedColumn", "file": "fifo.csv", "column": "x"}}})")
       .with("model.json", R"({"loopwright": 1, "solver": {"stop": 1}, "blocks": {
@@ -70,40 +72,52 @@ TEST_F(Surroundings, WhatIsNoFileIsRefusedAtOnce) {
           "a": {"type": "Gpr", "model": "fifo.json", "in": {"position": "c.y", "velocity": "c.y"}}}})");
   for (const char* command :
        {"check fifo.json", "check sub.json", "check csv.json", "check model.json", "run /dev/zero", "check .",
-        "sweep fifo.json -o results", "gp show fifo.json", "gp train fifo.json --model m", "compare small.json fifo.json",
-        "run small.json --resume fifo.json", "check small.json --blocks fifo.so", "run small.json --blocks /dev/zero"}) {
+        "sweep fifo.json -o results", "gp show fifo.json", "gp train fifo.json --model m",
+        "compare small.json fifo.json", "run small.json --resume fifo.json",
+        "check small.json --blocks fifo.so", "run small.json --blocks /dev/zero"}) {
     const auto begin = Clock::now();
     EXPECT_EQ(shell(std::string("$P ") + command + " 2>err"), 2) << command;
     EXPECT_LT(Clock::now() - begin, std::chrono::seconds(30)) << command;
-    EXPECT_TRUE(std::regex_search(text("err"), std::regex("it is a (pipe|device|folder)"))) << command << text("err");
+    EXPECT_TRUE(std::regex_search(text("err"), std::regex("it is a (pipe|device|folder)")))
+        << command << text("err");
   }
 }
 
 TEST_F(Surroundings, TextOfAFileCannotSteerTheTerminal) {
-  folder.with("evil.json", "{\"loopwright\": 1, \"title\": \"\\u001b[2Jgone\", \"solver\": {\"stop\": 1}, "
-                           "\"blocks\": {\"a\": {\"type\": \"\\u001b[31mGian\"}}}");
-  folder.with("named.json", "{\"loopwright\": 1, \"solver\": {\"stop\": 1}, \"blocks\": {\"a\\u001b]0;t\\u0007\": {\"type\": \"Clock\"}}}");
-  folder.with("titled.json", "{\"loopwright\": 1, \"title\": \"\\u001b[2Jgone\", \"solver\": {\"stop\": 1}, "
-                             "\"blocks\": {\"a\": {\"type\": \"Constant\", \"value\": 1}}}");
+  folder.with("evil.json",
+              "{\"loopwright\": 1, \"title\": \"\\u001b[2Jgone\", \"solver\": {\"stop\": 1}, "
+              "\"blocks\": {\"a\": {\"type\": \"\\u001b[31mGian\"}}}");
+  folder.with("named.json",
+              "{\"loopwright\": 1, \"solver\": {\"stop\": 1}, \"blocks\": {\"a\\u001b]0;t\\u0007\": "
+              "{\"type\": \"Clock\"}}}");
+  folder.with("titled.json",
+              "{\"loopwright\": 1, \"title\": \"\\u001b[2Jgone\", \"solver\": {\"stop\": 1}, "
+              "\"blocks\": {\"a\": {\"type\": \"Constant\", \"value\": 1}}}");
   for (const char* command : {"check evil.json", "check named.json", "plan titled.json", "run titled.json"}) {
     shell(std::string("$P ") + command + " >out 2>err");
-    EXPECT_EQ((text("out") + text("err")).find_first_of("\x1b\x07"), std::string::npos) << text("out") << text("err");
+    EXPECT_EQ((text("out") + text("err")).find_first_of("\x1b\x07"), std::string::npos)
+        << text("out") << text("err");
   }
   shell("$P check evil.json 2>err");
   EXPECT_NE(text("err").find("\\x1b[31mGian"), std::string::npos) << text("err");
 }
 
 TEST_F(Surroundings, ASmallStackIsEnough) {
-  std::string nested = R"("c": {"type": "Constant", "value": "=)" + std::string(60, '(') + "1" + std::string(60, ')') + "\"}";
+  std::string nested =
+      R"("c": {"type": "Constant", "value": "=)" + std::string(60, '(') + "1" + std::string(60, ')') + "\"}";
   folder.with("nested.json", R"({"loopwright": 1, "solver": {"stop": 1}, "blocks": {)" + nested + "}}");
-  for (const char* command : {"check nested.json", "run small.json -o - -q", "linearize small.json", "blocks"})
-    EXPECT_EQ(shell(std::string("ulimit -s 256; $P ") + command + " >out 2>err"), 0) << command << text("err");
+  for (const char* command :
+       {"check nested.json", "run small.json -o - -q", "linearize small.json", "blocks"})
+    EXPECT_EQ(shell(std::string("ulimit -s 256; $P ") + command + " >out 2>err"), 0)
+        << command << text("err");
 }
 
 TEST_F(Surroundings, AnInterruptionIsObeyedInTheMiddleOfALongRunOfASweep) {
-  folder.with("long.json", R"({"loopwright": 1, "solver": {"stop": 100000, "step": 0.0001, "record_step": 1}, "blocks": {
+  folder.with("long.json",
+              R"({"loopwright": 1, "solver": {"stop": 100000, "step": 0.0001, "record_step": 1}, "blocks": {
     "t": {"type": "Clock"}, "x": {"type": "Integrator", "initial": 1, "in": {"u": "t.time"}}}})");
-  folder.with("sweep.json", R"({"loopwright": 1, "diagram": "long.json", "axes": {"x.initial": {"values": [1, 2]}},
+  folder.with("sweep.json",
+              R"({"loopwright": 1, "diagram": "long.json", "axes": {"x.initial": {"values": [1, 2]}},
     "metrics": {"a": {"final": "x.y"}}})");
   Program sweep({"sweep", "sweep.json", "-o", "results", "-j", "1"}, folder.path(""));
   for (int i = 0; i < 600 && !fs::exists(folder.path("results/sweep_file.txt")); ++i)

@@ -164,7 +164,8 @@ TEST(Replay, ALogOfAnotherBuildIsReplayedWithAWarning) {
     if (name == "build") value = "0123456789abcdef";
   const Replay again = replayed(deployed, result.recording);
   EXPECT_TRUE(again.explains());
-  EXPECT_THAT(to_text(again), HasSubstr("warning: the log was made by another build of the program (0123456789abcdef"));
+  EXPECT_THAT(to_text(again),
+              HasSubstr("warning: the log was made by another build of the program (0123456789abcdef"));
 }
 
 TEST(Replay, AHoleInTheLogIsFound) {

@@ -122,8 +122,8 @@ TEST_F(Fitted, WrongNamesInExperimentAndParametersAreToldAtOnce) {
     fit(folder.path("axis.json"), folder.path("wrong.json"), {"mas"});
     FAIL() << "was not refused";
   } catch (const InputError& error) {
-    for (const char* part : {"did you mean \"motor\"?", "the data have no column \"v\"", "did you mean \"mass.position\"?",
-                             "did you mean \"mass\"?"})
+    for (const char* part : {"did you mean \"motor\"?", "the data have no column \"v\"",
+                             "did you mean \"mass.position\"?", "did you mean \"mass\"?"})
       EXPECT_TRUE(has(error.what(), part)) << part << "\n" << error.what();
   }
 }

@@ -129,7 +129,8 @@ TEST(Interruption, RefusesToGoOnWithOtherContentsOfAFile) {
   const SweepPlan changed = folder.plan();
   const auto names_it = HasSubstr("belongs to another sweep: the file \"track.csv\" has changed");
   EXPECT_THAT(failure_of(changed, folder.results(), {.resume = true}), names_it);
-  EXPECT_THAT(failure_of(changed, folder.results(), {.shard = 1, .shards = 2}), names_it) << "another part of it";
+  EXPECT_THAT(failure_of(changed, folder.results(), {.shard = 1, .shards = 2}), names_it)
+      << "another part of it";
   try {
     read_results(changed, folder.results());
     ADD_FAILURE() << "tables of other data";
