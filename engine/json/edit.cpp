@@ -53,6 +53,14 @@ Value read_value(const std::shared_ptr<const SourceFile>& source, Problems& prob
   return plain;
 }
 
+/// The number of {"value": 500, "unit": "g"}, or null.
+Value* number_beside_unit(Value& value) {
+  if (value.kind != Value::Kind::object) return nullptr;
+  const auto member = std::ranges::find(value.members, "value", &Value::Member::name);
+  const bool has_unit = std::ranges::find(value.members, "unit", &Value::Member::name) != value.members.end();
+  return has_unit && member != value.members.end() ? &member->value : nullptr;
+}
+
 }  // namespace
 
 std::string Edit::text() const { return fmt::format("{}", fmt::join(path, ".")); }
@@ -101,7 +109,9 @@ void apply_edit(const Edit& edit, Value& value, const Reader& reader) {
       return;
     }
   }
-  *at = edit.value;
+  Value* const number = number_beside_unit(*at);
+  const bool is_bare = edit.value.kind == Value::Kind::number && !edit.value.unit;
+  *(number && is_bare ? number : at) = edit.value;
 }
 
 }  // namespace loopwright

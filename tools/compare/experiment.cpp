@@ -265,7 +265,7 @@ LoadOptions follow(const Experiment& experiment, LoadOptions options) {
   }
   const std::vector<double>& time = experiment.data.columns.front().values;
   const auto set = [&](std::string key, double value) {
-    options.set.insert(options.set.begin(), {std::move(key), fmt::format("{}", value)});
+    options.set.insert(options.set.begin(), {std::move(key), fmt::format("{} s", value)});
   };
   set("solver.start", time.front());
   set("solver.stop", time.back());

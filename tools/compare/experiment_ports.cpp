@@ -62,7 +62,7 @@ LoadOptions with_drives(const std::string& diagram, const Experiment& experiment
                         Problems& problems) {
   const auto [first, last] = std::pair(options.set.begin(), options.set.end());
   if (std::none_of(first, last, [](const auto& option) { return option.first == "solver.stop"; }))
-    options.set.insert(options.set.begin(), {"solver.stop", "1"});  // the value from the experiment
+    options.set.insert(options.set.begin(), {"solver.stop", "1 s"});  // the value from the experiment
   Problems without;
   load_diagram(diagram, options, without);
   const size_t own = without.list().size();

@@ -96,8 +96,8 @@ void use_fixed_steps(LoadOptions& options, const Plan& plan, const MeasuredMotio
   const double wanted = plan.step_ticks > 0 ? plan.clock.time(plan.step_ticks) : sample_time / 10;
   const double steps = std::clamp(std::round(sample_time / wanted), 4.0, 100.0);
   options.set.emplace_back("solver.method", "rk4");
-  options.set.emplace_back("solver.step", fmt::format("{}", sample_time / steps));
-  options.set.emplace_back("solver.start", fmt::format("{}", motion.start));
+  options.set.emplace_back("solver.step", fmt::format("{} s", sample_time / steps));
+  options.set.emplace_back("solver.start", fmt::format("{} s", motion.start));
 }
 
 /// The diagram with the recorded input in place of the signal that feeds the machine's input.

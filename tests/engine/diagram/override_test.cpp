@@ -90,6 +90,20 @@ TEST_F(Overrides, SetTakesUnits) {
                    0.25);
 }
 
+TEST_F(Overrides, ABareNumberKeepsTheUnitOfTheSetting) {
+  folder_.with("top.json", R"({"loopwright": 1, "solver": {"stop": {"value": 500, "unit": "ms"}},
+    "blocks": {"push": {"type": "Constant", "value": {"value": 1, "unit": "N"}},
+               "m": {"type": "Mass", "mass": {"value": 500, "unit": "g"}, "in": {"force": "push.y"}}}})");
+  const auto mass = [&](const std::string& text) {
+    return set({{"m.mass", text}})->blocks.at(1).settings.find("mass")->value.number;
+  };
+  EXPECT_DOUBLE_EQ(mass("250"), 0.25);
+  EXPECT_DOUBLE_EQ(mass("250 kg"), 250);
+  EXPECT_DOUBLE_EQ(mass(R"({"value": 2, "unit": "t"})"), 2000);
+  EXPECT_DOUBLE_EQ(set({{"solver.stop", "200"}})->solver.stop, 0.2);
+  EXPECT_DOUBLE_EQ(set({{"solver.stop", "2 s"}})->solver.stop, 2);
+}
+
 TEST_F(Overrides, SetAnElementOfAListParameter) {
   const auto diagram = set({{"gains.1", "20"}});
   EXPECT_EQ(parameter_of(*diagram, "gains").value.items[1].number, 20);
