@@ -100,8 +100,8 @@ TEST_F(Overrides, ABareNumberKeepsTheUnitOfTheSetting) {
   EXPECT_DOUBLE_EQ(mass("250"), 0.25);
   EXPECT_DOUBLE_EQ(mass("250 kg"), 250);
   EXPECT_DOUBLE_EQ(mass(R"({"value": 2, "unit": "t"})"), 2000);
-  EXPECT_DOUBLE_EQ(set({{"solver.stop", "200"}})->solver.stop, 0.2);
-  EXPECT_DOUBLE_EQ(set({{"solver.stop", "2 s"}})->solver.stop, 2);
+  EXPECT_DOUBLE_EQ(set({{"solver.stop", "200"}})->solver.stop.value, 0.2);
+  EXPECT_DOUBLE_EQ(set({{"solver.stop", "2 s"}})->solver.stop.value, 2);
 }
 
 TEST_F(Overrides, SetAnElementOfAListParameter) {
