@@ -287,7 +287,7 @@ class Deployment {
     if (result_.status == RunStatus::finished)
       fail(what);
     else
-      result_.message += std::string("\n") + what;
+      result_.message += fmt::format("\n{}", what);
   }
 
   /// The machine has stopped. The disk may take its time, but not without limit, and a second signal ends the
