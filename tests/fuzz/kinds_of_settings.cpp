@@ -45,7 +45,7 @@ class Sweeps : public JsonKind {
       seeds_.push_back({"sweep.json", read_whole(sweep->folder.path("sweep.json"))});
     folder_.with("loop.json", small_loop);
   }
-  std::vector<std::string> command() override { return {"sweep", path(), "-o", folder_.path(seed_.name)}; }
+  std::vector<std::string> command() override { return {"sweep", path(), "-o", folder_.path("results")}; }
 
  protected:
   Outcome use(const std::string& path, Problems& problems) override {

@@ -98,7 +98,7 @@ TEST(Train, AddsUpColumnsOfTheDisturbance) {
 TEST(Train, FindsThePeriodWhenToldTo) {
   StageFolder folder;
   folder.pass("pass.csv", four).training();
-  const auto trained = folder.train({{"period", "0.0229"}, {"fit_period", "true"}});
+  const auto trained = folder.train({{"period", "22.9 mm"}, {"fit_period", "true"}});
   ASSERT_TRUE(trained) << folder.said;
   EXPECT_NEAR(trained->learned.model.kernel.terms[0].along[0].period, 0.0225, 3e-6);
 }
@@ -174,7 +174,7 @@ TEST(Train, FindsTheDisturbanceInCommandAndPosition) {
 TEST(Warnings, APeriodThatIsAFifthWrongIsFoundOut) {
   StageFolder folder;
   folder.pass("pass.csv", four).training();
-  for (const char* wrong : {"0.018", "0.027"}) {
+  for (const char* wrong : {"18 mm", "27 mm"}) {
     const auto trained = folder.train({{"period", wrong}});
     ASSERT_TRUE(trained) << folder.said;
     EXPECT_THAT(trained->learned.warnings,
@@ -298,7 +298,7 @@ TEST(BadInput, WhatDoesNotFitTogetherIsRefused) {
 TEST(ModelPage, TellsHyperParametersResidualsAndDoubts) {
   StageFolder folder;
   folder.pass("pass.csv", four).training(R"(, "title": "A stage")");
-  const auto trained = folder.train({{"period", "0.018"}});
+  const auto trained = folder.train({{"period", "18 mm"}});
   ASSERT_TRUE(trained) << folder.said;
   const ShownSamples own{"training", trained->samples->samples,
                          score(trained->learned.model, trained->samples->samples)};

@@ -9,7 +9,7 @@ namespace {
 std::shared_ptr<const Training> load(const TrainingChoice& choice) {
   const std::string recording = std::filesystem::absolute(choice.recording).string();
   std::vector<std::pair<std::string, std::string>> set{
-      {"recordings.0", recording}, {"window_length", fmt::format("{:.17g}", choice.window_length)}};
+      {"recordings.0", recording}, {"window_length", fmt::format("{:.17g} m", choice.window_length)}};
   if (!choice.kernel.empty()) set.emplace_back("kernel", choice.kernel);
   Problems problems;
   const auto training = load_training(choice.file, set, problems);
