@@ -36,18 +36,6 @@ void reject_pipe(const std::string& path, std::string_view option, Problems& pro
   p.hint = "--json - writes the figures to the standard output, which may be a pipe";
 }
 
-/// One result must not replace another.
-void reject_same_file(const Arguments& a, Problems& problems) {
-  const std::pair<std::string_view, const std::string*> results[] = {
-      {"-o", &a.output}, {"--report", &a.report}, {"--json", &a.json}};
-  std::error_code none;
-  for (const auto& [option, path] : results)
-    for (const auto& [other, same] : results)
-      if (option < other && !path->empty() && *path != "-" && *same != "-" && !same->empty() &&
-          std::filesystem::weakly_canonical(*path, none) == std::filesystem::weakly_canonical(*same, none))
-        problems.error({}, "", "", fmt::format("{} and {} name the same file: {}", option, other, *path));
-}
-
 void require_paths(const Arguments& a) {
   require_writable_file(a.output, "-o");
   require_writable_file(a.report, "--report");
@@ -56,7 +44,6 @@ void require_paths(const Arguments& a) {
   reject_pipe(a.output, "-o", problems);
   reject_pipe(a.report, "--report", problems);
   if (a.json != "-") reject_pipe(a.json, "--json", problems);
-  reject_same_file(a, problems);
   if (!a.output.empty() && !is_recording_path(a.output))
     problems.error({}, "", "", fmt::format("-o {}: logs are written as .csv or .mat", a.output));
   if (problems.has_errors()) throw InputError(std::move(problems));
