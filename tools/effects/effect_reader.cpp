@@ -63,6 +63,14 @@ class FormReader {
   double number(const Value& owner, std::string_view key, double otherwise) {
     return reader_.optional_number(owner, key, otherwise, 0);
   }
+  int count(const Value& owner, std::string_view key, int otherwise) {
+    constexpr double most = 1e6;
+    const double given = number(owner, key, otherwise);
+    if (given <= most && given == std::floor(given)) return int(given);
+    reader_.error(*owner.find(key), fmt::format("\"{}\" is no count", key)).expected =
+        fmt::format("a whole number from 0 to {}", most);
+    return otherwise;
+  }
   std::vector<std::string> texts(const Value& list, std::string_view what) {
     std::vector<std::string> found;
     if (!reader_.expect(list, Kind::list, what, "a list of texts")) return found;
@@ -281,9 +289,9 @@ class FormReader {
                            "\"needs\"");
     Excitation& e = effect_.needs;
     e.text = text(*needs, "text", "\"needs\"");
-    e.directions = int(number(*needs, "directions", 1)), e.speeds = int(number(*needs, "speeds", 1));
-    e.accelerations = int(number(*needs, "accelerations", 0));
-    e.reversals = int(number(*needs, "reversals", 0)), e.passes = int(number(*needs, "passes", 1));
+    e.directions = count(*needs, "directions", 1), e.speeds = count(*needs, "speeds", 1);
+    e.accelerations = count(*needs, "accelerations", 0);
+    e.reversals = count(*needs, "reversals", 0), e.passes = count(*needs, "passes", 1);
     e.periods = number(*needs, "periods", 0), e.duration_s = number(*needs, "duration_s", 0);
     e.varied_force = flag(*needs, "varied_force");
   }
@@ -321,7 +329,7 @@ class FormReader {
       if (e.speeds.empty()) reader_.error(*speeds, "the experiment has no speed");
     }
     e.distance = number(value, "distance", 1), e.acceleration = number(value, "acceleration", 1);
-    e.passes = int(number(value, "passes", 1)), e.pause_s = number(value, "pause_s", 0.2);
+    e.passes = count(value, "passes", 1), e.pause_s = number(value, "pause_s", 0.2);
     e.added_mass = number(value, "added_mass", 0);
     e.chirp_amplitude = number(value, "chirp_amplitude", 0);
     e.chirp_from_hz = number(value, "chirp_from_hz", 1), e.chirp_to_hz = number(value, "chirp_to_hz", 100);
