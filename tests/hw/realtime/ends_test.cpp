@@ -101,6 +101,7 @@ std::string told(const char* name) {
 void loop_throws() { throw std::runtime_error("thrown on purpose"); }
 void loop_crashes() { crash("null pointer"); }
 
+/// No test: the other tests start this program again to run it in a process that may crash.
 TEST(ChildOfEnds, DISABLED_DeploysUntilItsEnd) {
   const std::string where = told("END_WHERE"), how = told("END_HOW");
   LoadOptions load;
