@@ -7,7 +7,7 @@
 #include "hw/drivers.h"
 #include "hw/realtime/axes.h"
 #include "tools/command/command.h"
-#include "tools/compare/experiment.h"
+#include "tools/experiment/experiment.h"
 #include "tools/effects/effect.h"
 #include "tools/gp/train.h"
 #include "tools/sweep/sweep_plan.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include "models/real/whole.h"
-#include "tools/compare/experiment_ports.h"
+#include "tools/experiment/experiment_ports.h"
 
 namespace loopwright {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 #include "engine/run/simulation.h"
 #include "tools/compare/excitation.h"
-#include "tools/compare/experiment.h"
+#include "tools/experiment/experiment.h"
 #include "tools/compare/missing_force.h"
 #include "tools/report/report.h"
 

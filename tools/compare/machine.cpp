@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include "tools/compare/even_grid.h"
+#include "tools/experiment/even_grid.h"
 #include "tools/compare/zero_phase.h"
 #include "models/real/whole.h"
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <optional>
 #include "engine/run/run.h"
-#include "tools/compare/experiment.h"
+#include "tools/experiment/experiment.h"
 
 namespace loopwright {
 
@@ -39,8 +39,8 @@ struct Machine {
   std::shared_ptr<const Plan> undriven;  ///< the same with zero input
   MeasuredMotion motion;
   Number position = 0, velocity = 0;  ///< states of the plan
-  Number sensor = 0;      ///< stands for the measured position: the state, or a sensor's output
-  Number net_force = -1;  ///< -1: no role "force"
+  Number sensor = 0;                  ///< stands for the measured position: the state, or a sensor's output
+  Number net_force = -1;              ///< -1: no role "force"
   std::optional<Unit> force_unit;
   double mass = 0;  ///< [force s²/position] net force per acceleration of the model
 };

@@ -1,16 +1,16 @@
 #include "tools/diagnose/diagnose.h"
 #include <algorithm>
 #include <cmath>
-#include "tools/diagnose/catalogue.h"
-#include "tools/diagnose/conclude.h"
-#include "tools/diagnose/doubt.h"
-#include "tools/diagnose/remaining_force.h"
-#include "tools/diagnose/improve.h"
-#include "tools/diagnose/prepare.h"
-#include "tools/diagnose/search.h"
-#include "tools/diagnose/staircase.h"
-#include "tools/diagnose/unknown.h"
-#include "tools/diagnose/verdict.h"
+#include "tools/diagnose/search/catalogue.h"
+#include "tools/diagnose/search/conclude.h"
+#include "tools/diagnose/search/doubt.h"
+#include "tools/diagnose/verdict/remaining_force.h"
+#include "tools/diagnose/verdict/improve.h"
+#include "tools/diagnose/search/prepare.h"
+#include "tools/diagnose/search/search.h"
+#include "tools/diagnose/verdict/staircase.h"
+#include "tools/diagnose/search/unknown.h"
+#include "tools/diagnose/verdict/verdict.h"
 
 namespace loopwright {
 namespace {

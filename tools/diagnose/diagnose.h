@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 #include "engine/diagram/diagram.h"
-#include "tools/effects/insert.h"
-#include "tools/report/report.h"
+#include "tools/diagnose/diagnosis.h"
 
 namespace loopwright {
 
@@ -19,94 +18,8 @@ struct DiagnoseOptions {
   const std::atomic<bool>* interrupt = nullptr;  ///< once true, the diagnosis ends soon, without a verdict
 };
 
-struct DiagnosedParameter {
-  std::string name, unit;
-  double value = 0, low = 0, high = 0;  ///< SI; 95 % interval
-  bool at_limit = false;                ///< the range of the catalogue ends here: a warning, not a result
-};
-
-struct DiagnosedEffect {
-  std::string name, form, title, physics;
-  std::vector<DiagnosedParameter> parameters;
-  double inclusion = 0;                   ///< probability that it is present
-  std::vector<std::string> alternatives;  ///< indistinguishable from it by this record
-  double force_rms = 0;                   ///< SI
-  double evidence = 0;                    ///< loss of the criterion without it
-};
-
-/// Effects that explain the records equally well in place of some of the named ones.
-struct OtherExplanation {
-  std::vector<std::string> in_place_of, effects;
-};
-
-/// The errors with the effects up to this one.
-struct DiagnosisStep {
-  std::vector<std::string> added;
-  double force_rmse = 0, held_out_force_rmse = 0,
-         simulation_rmse = 0;  ///< held out: see Diagnosis::holds_out
-  bool is_optional = false;    ///< after the knee: small improvement
-};
-
-struct SuggestedExperiment {
-  std::string text, between, and_effect;
-};
-
-/// A fault of the record that limits the conclusions.
-struct RecordFinding {
-  std::string what, cost;
-  bool is_fatal = false;        ///< no confident verdict is possible from it
-  bool may_be_physics = false;  ///< unless effects explain the whole record: then it has no meaning
-};
-
-/// An effect of the catalogue that cannot be used with this diagram or these records.
-struct NotLookedFor {
-  std::vector<std::string> effects;
-  std::string why;
-};
-
-/// A share of the remaining error that a variable explains.
-struct RemainderShare {
-  std::string variable;
-  double share = 0;
-};
-
-enum class Verdict { nothing_missing, explained, partly_explained, unexplained };
-std::string_view name_of(Verdict verdict);
-
-struct Diagnosis {
-  Verdict verdict = Verdict::nothing_missing;
-  std::string diagram, title;
-  std::vector<std::string> experiments;
-  std::vector<DiagnosedEffect> effects;              ///< strongest first
-  std::vector<OtherExplanation> other_explanations;  ///< if more than one effect changes
-  std::vector<DiagnosisStep> steps;                  ///< the first is the nominal diagram
-  bool holds_out = false;  ///< otherwise everything about held-out rows is 0 and not reported
-  double error_before = 0, error_after = 0, noise_floor = 0;  ///< force, held out where there is a hold-out
-  std::string force_unit, position_unit, measured_unit;
-  std::vector<SuggestedExperiment> suggested;
-  std::vector<RecordFinding> findings;
-  std::vector<NotLookedFor> not_looked_for;
-  std::vector<std::string> remainder_variables;  ///< on which the remainder depends
-  std::vector<RemainderShare> dependence;
-  bool was_interrupted = false;  ///< no other member has a meaning, nothing was written
-  double mean_square = 0, held_out_mean_square = 0, portmanteau = 0;
-  double white_force = 0, slow_force = 0, slow_force_time_s = 0;
-  std::vector<double> measurement_noise;
-  std::string improved;                     ///< the diagram that was written
-  std::vector<MovedPort> experiment_ports;  ///< that an experiment must name differently with that diagram
-  std::vector<std::string> trail;
-  struct Curves {
-    std::vector<double> time, position, velocity, before, after;
-  } curves;  ///< force residuals of the first record; a map has neither times nor speeds
-};
-
 /// Throws InputError with every problem of diagram, experiments and effects.
 Diagnosis diagnose(const std::string& diagram, const std::vector<std::string>& experiments,
                    const DiagnoseOptions& options = {});
-
-/// Stable keys, docs/diagnose.md.
-std::string to_json(const Diagnosis& diagnosis);
-std::string to_text(const Diagnosis& diagnosis);
-report::Page diagnosis_page(const Diagnosis& diagnosis);
 
 }  // namespace loopwright

@@ -1,5 +1,5 @@
 #include <nlohmann/json.hpp>
-#include "tools/diagnose/diagnose.h"
+#include "tools/diagnose/diagnosis.h"
 
 namespace loopwright {
 

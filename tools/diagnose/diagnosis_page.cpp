@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include "tools/diagnose/diagnose.h"
+#include "tools/diagnose/diagnosis.h"
 #include "tools/diagnose/wording.h"
 
 namespace loopwright {

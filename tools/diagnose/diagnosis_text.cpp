@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 #include <algorithm>
-#include "tools/diagnose/diagnose.h"
+#include "tools/diagnose/diagnosis.h"
 #include "tools/diagnose/wording.h"
 
 namespace loopwright {

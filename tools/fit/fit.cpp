@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include "engine/json/json.h"
 #include "engine/json/reader.h"
-#include "tools/compare/experiment_ports.h"
+#include "tools/experiment/experiment_ports.h"
 #include "tools/fit/parameter.h"
 #include "models/real/whole.h"
 

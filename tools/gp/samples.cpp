@@ -11,7 +11,7 @@
 #include "engine/record/recording_file.h"
 #include "engine/record/time_axis.h"
 #include "models/signal/zero_phase.h"
-#include "tools/compare/data_file.h"
+#include "tools/experiment/data_file.h"
 #include "models/real/whole.h"
 
 namespace loopwright {

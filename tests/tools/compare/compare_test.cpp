@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include "tests/tools/compare/experiment_folder.h"
+#include "tests/tools/experiment/experiment_folder.h"
 
 namespace loopwright {
 namespace {

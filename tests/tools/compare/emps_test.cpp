@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <cstdlib>
 #include <filesystem>
-#include "tests/tools/compare/experiment_folder.h"
+#include "tests/tools/experiment/experiment_folder.h"
 #include "where.h"
 
 namespace loopwright {

@@ -1,5 +1,5 @@
 // The prediction errors, and the filters that describe their response to forces.
-#include "tools/diagnose/predictor.h"
+#include "tools/diagnose/predict/predictor.h"
 #include <cmath>
 #include "tests/tools/diagnose/recorded_axis.h"
 

@@ -1,0 +1,96 @@
+// Rows of a record at their correct times, whatever is missing between them.
+#include <gtest/gtest.h>
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include "tools/experiment/even_grid.h"
+
+namespace loopwright {
+namespace {
+
+constexpr double dt = 1e-3;
+
+Experiment record(const std::vector<double>& times) {
+  Experiment experiment;
+  Problems problems;
+  experiment.data.columns.push_back({"time", "s", times});
+  experiment.time = check_time(experiment.data.columns.front(), problems);
+  EXPECT_FALSE(problems.has_errors()) << problems.text();
+  return experiment;
+}
+std::vector<double> with_losses(int rows, const std::vector<int>& lost) {
+  std::vector<double> times;
+  for (int k = 0; k < rows; ++k)
+    if (std::ranges::find(lost, k) == lost.end()) times.push_back(k * dt);
+  return times;
+}
+
+TEST(EvenGrid, OneLostSampleMovesNoRowBehindIt) {
+  const Experiment e = record(with_losses(1000, {400}));
+  EXPECT_EQ(e.time.missing, 1);
+  EXPECT_TRUE(e.time.on_grid);
+  EXPECT_FALSE(e.time.regular);
+  EXPECT_EQ(e.time.sample_time, dt) << "to the last bit";
+  const EvenGrid grid(e);
+  ASSERT_EQ(grid.rows(), 1000u);
+  std::vector<double> position, command;
+  for (double t : e.data.columns.front().values) position.push_back(std::sin(20 * t)), command.push_back(t);
+  const std::vector<double> x = grid.measured(position), u = grid.held(command);
+  for (size_t k = 0; k < 1000; ++k) {
+    EXPECT_NEAR(x[k], std::sin(20 * double(k) * dt), k == 400 ? 1e-6 : 1e-12) << k;
+    EXPECT_NEAR(u[k], (k == 400 ? 399 : double(k)) * dt, 1e-15) << k;
+    EXPECT_EQ(grid.missing()[k], char(k == 400)) << k;
+  }
+}
+
+TEST(EvenGrid, ManyLostSamplesKeepEveryRowInItsPlace) {
+  std::mt19937 random(5);
+  std::vector<int> lost;
+  for (int k = 10; k < 20'000; ++k)
+    if (random() % 100 == 0) lost.push_back(k);
+  for (int k = 7000; k < 7500; ++k) lost.push_back(k);
+  const std::vector<double> times = with_losses(20'000, lost);
+  const Experiment e = record(times);
+  EXPECT_TRUE(e.time.on_grid);
+  EXPECT_EQ(e.time.missing, 20'000 - int64_t(times.size()));
+  const EvenGrid grid(e);
+  ASSERT_EQ(grid.rows(), 20'000u);
+  const std::vector<double> t = grid.measured(times);
+  for (size_t k = 0; k < t.size(); ++k) EXPECT_NEAR(t[k], double(k) * dt, 1e-9);
+}
+
+TEST(EvenGrid, StampsThatTrembleOrComeInABurstAreNoGaps) {
+  std::mt19937 random(6);
+  std::normal_distribution<double> tremble(0, 0.15 * dt);
+  std::vector<double> times;
+  for (int k = 0; k < 5000; ++k) times.push_back(k * dt + tremble(random));
+  for (int k = 0; k < 10; ++k) times[size_t(2000 + k)] = 2.0095 + 1e-5 * k;  // ten late time stamps at once
+  std::ranges::sort(times);
+  const Experiment e = record(times);
+  EXPECT_FALSE(e.time.on_grid);
+  EXPECT_EQ(e.time.missing, 0);
+  EXPECT_EQ(EvenGrid(e).rows(), 5000u);
+  EXPECT_TRUE(EvenGrid(e).missing().empty());
+}
+
+TEST(EvenGrid, LossesAmongTremblingStampsAreCounted) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> tremble(0, 0.1 * dt);
+  std::vector<double> times;
+  for (double t : with_losses(5000, {100, 101, 3000})) times.push_back(t + 5 * dt + tremble(random));
+  const Experiment e = record(times);
+  EXPECT_EQ(e.time.missing, 3);
+  const EvenGrid grid(e);
+  ASSERT_EQ(grid.rows(), 5000u);
+  for (size_t k : {100, 101, 3000}) EXPECT_TRUE(grid.missing()[k]) << k;
+}
+
+TEST(EvenGrid, ARecordWithMoreGapsThanRowsIsRefused) {
+  std::vector<double> times = with_losses(1000, {});
+  times.push_back(1e6);
+  EXPECT_NE(too_many_missing(record(times)), "");
+  EXPECT_EQ(too_many_missing(record(with_losses(1000, {3}))), "");
+}
+
+}  // namespace
+}  // namespace loopwright

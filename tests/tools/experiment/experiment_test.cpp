@@ -1,0 +1,136 @@
+// Experiments and data that do not match are reported with source location.
+#include <gtest/gtest.h>
+#include <cmath>
+#include "tests/tools/experiment/experiment_folder.h"
+
+namespace loopwright {
+namespace {
+
+double one(double) { return 1; }
+
+class Experiments : public ::testing::Test {
+ protected:
+  void SetUp() override { folder.data(every(0.1, 11), one, one); }
+  void expect_refusal(std::initializer_list<const char*> parts) const {
+    const std::string text = folder.refusal();
+    for (const char* part : parts) EXPECT_TRUE(has(text, part)) << part << "\n" << text;
+  }
+  ExperimentFolder folder;
+};
+constexpr const char* drive = R"("stage.force": {"column": "F", "unit": "N"})";
+
+TEST_F(Experiments, AMisspeltPortSaysWhatWasMeant) {
+  folder.experiment(drive, R"("stage.postion": {"column": "x_mm", "unit": "mm"})");
+  expect_refusal(
+      {"e.json:1:", "the diagram has no port \"stage.postion\"", "did you mean \"stage.position\"?"});
+}
+
+TEST_F(Experiments, AMisspeltDriveSaysWhatWasMeant) {
+  folder.experiment(R"("stage.forse": {"column": "F", "unit": "N"})");
+  expect_refusal({"forse", "did you mean \"force\"?"});
+}
+
+TEST_F(Experiments, AMisspeltColumnSaysWhatWasMeant) {
+  folder.experiment(drive, R"("stage.position": {"column": "x_m", "unit": "mm"})");
+  expect_refusal({"the data have no column \"x_m\"", "did you mean \"x_mm\"?"});
+}
+
+TEST_F(Experiments, AComparedColumnInTheWrongUnitIsAnError) {
+  folder.experiment(drive, R"("stage.position": {"column": "x_mm", "unit": "N"})");
+  expect_refusal({"\"stage.position\" is in another unit than its column", "expected: m", "found: N"});
+}
+
+TEST_F(Experiments, ADrivingColumnInTheWrongUnitIsAnError) {
+  folder.experiment(R"("stage.force": {"column": "F", "unit": "V"})");
+  expect_refusal({"V", "N", "stage"});
+}
+
+TEST_F(Experiments, AUnitThatCannotBeReadIsAnError) {
+  folder.experiment(drive, R"("stage.position": {"column": "x_mm", "unit": "blorps"})");
+  expect_refusal({"the unit \"blorps\" cannot be read"});
+}
+
+TEST_F(Experiments, TheTimeColumnHonoursItsUnit) {
+  folder.with("data.csv", "t [ms],F,x_mm\n0,1,0\n1000,1,250\n2000,1,1000\n");
+  const Comparison c = folder.compared();
+  EXPECT_EQ(c.time, (std::vector<double>{0, 1, 2}));
+  EXPECT_NEAR(c.signals[0].rmse, 0, 1e-9) << "x = t^2/4";
+}
+
+TEST_F(Experiments, AUnitThatContradictsTheHeadingNamesBoth) {
+  folder.with("data.csv", "t,F,x_mm [mm]\n0,1,1\n1,1,1\n2,1,1\n");
+  folder.experiment(drive, R"("stage.position": {"column": "x_mm", "unit": "m"})");
+  expect_refusal({"e.json:1:", "another unit in its file", "[mm] in data.csv:1:5", "found: m"});
+}
+
+TEST_F(Experiments, AUnitInTheHeadingMustFitThePort) {
+  folder.with("data.csv", "t,F [A],x_mm\n0,1,1\n1,1,1\n2,1,1\n");
+  folder.experiment(R"("stage.force": {"column": "F"})");
+  expect_refusal({"A", "stage"});
+}
+
+TEST_F(Experiments, ALogWhoseTimesHideItsLostSamplesIsRefused) {
+  folder.with("data.csv", "t,F,x_mm,loop.lost\n0,1,1,0\n1,1,1,0\n2,1,1,2\n3,1,1,0\n");
+  expect_refusal({"the log counts 2 lost samples, and its times leave out 0"});
+}
+
+TEST_F(Experiments, HolesInTheDataAreAnErrorWithTheirLine) {
+  folder.with("data.csv", "t,F,x_mm\n0,1,1\n0.1,nan,1\n0.2,1,1\n");
+  expect_refusal({"data.csv:3"});
+}
+
+TEST_F(Experiments, TimesThatDoNotRiseAreAnError) {
+  folder.with("data.csv", "t,F,x_mm\n0,1,1\n0.2,1,1\n0.1,1,1\n0.3,1,1\n");
+  expect_refusal({"error:", "0.1"});
+}
+
+TEST_F(Experiments, TimesThatRepeatAreAnError) {
+  folder.with("data.csv", "t,F,x_mm\n0,1,1\n0.1,1,1\n0.1,1,1\n0.2,1,1\n");
+  expect_refusal({"error:"});
+}
+
+TEST_F(Experiments, TimesBeforeZeroAreAnErrorWithAdvice) {
+  folder.with("data.csv", "t,F,x_mm\n-0.1,1,1\n0,1,1\n0.1,1,1\n");
+  expect_refusal({"begin before zero", "shift the time column"});
+}
+
+TEST_F(Experiments, AMissingDataFileSaysWhereItWasLookedFor) {
+  std::filesystem::remove(folder.path("data.csv"));
+  expect_refusal({"the data file \"data.csv\" is not there", "data.csv", "LOOPWRIGHT_DATA"});
+}
+
+TEST_F(Experiments, AMissingExperimentOrDiagramIsAnError) {
+  EXPECT_THROW(compare(folder.path("stage.json"), folder.path("none.json")), InputError);
+  EXPECT_THROW(compare(folder.path("none.json"), folder.path("e.json")), InputError);
+}
+
+TEST_F(Experiments, UnknownKeysAndMissingPartsAreErrors) {
+  folder.experiment(drive, R"("stage.position": {"column": "x_mm", "unti": "mm"})");
+  expect_refusal({"unti", "did you mean \"unit\"?"});
+  folder.experiment(drive, "");
+  expect_refusal({"compares nothing"});
+  folder.experiment(R"("stage.force": {"column": "F", "unit": "N", "interpolation": "cubic"})");
+  expect_refusal({"\"hold\" or \"linear\""});
+  folder.experiment(drive, R"("stage.position": {"column": "x_mm", "unit": "mm"})",
+                    R"(, "hold_out": {"fraction": 2})");
+  expect_refusal({"\"fraction\" is out of range", "from 0 to 0.9"});
+  folder.experiment(drive, R"("stage.position": {"column": "x_mm", "unit": "mm"})",
+                    R"(, "roles": {"speed": "stage.velocity"})");
+  expect_refusal({"speed"});
+  folder.experiment(drive, R"("stage.position": {"column": "x_mm", "unit": "mm"})",
+                    R"(, "roles": {"velocity": "stage.velosity"})");
+  expect_refusal({"did you mean \"stage.velocity\"?"});
+  folder.with("e.json", "{");
+  expect_refusal({"e.json:1:"});
+  folder.with("e.json", R"({"data": "data.csv"})");
+  expect_refusal({"\"loopwright\": 1"});
+}
+
+TEST_F(Experiments, ProblemsOfTheDiagramAreToldTogetherWithThoseOfTheExperiment) {
+  folder.with("stage.json", diagram(R"("stage": {"type": "Mas", "mass": 2})"));
+  folder.experiment(drive, "");
+  expect_refusal({"compares nothing", "did you mean \"Mass\"?"});
+}
+
+}  // namespace
+}  // namespace loopwright

@@ -1,0 +1,185 @@
+#include "tools/diagnose/predict/axis_model.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include "engine/run/run.h"
+#include "tools/experiment/experiment_ports.h"
+#include "tools/compare/machine.h"
+#include "tools/diagnose/predict/injection.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+const std::pair<std::string, Place> role(const Experiment& experiment, std::string_view name) {
+  for (size_t i = 0; i < experiment.roles.ports.size(); ++i)
+    if (experiment.roles.ports[i].first == name)
+      return {experiment.roles.ports[i].second, experiment.roles.places[i]};
+  return {};
+}
+
+Number number_of(const Plan& plan, const std::string& port) {
+  const std::vector<Number> numbers = plan.find(port);
+  return numbers.size() == 1 ? numbers[0] : -1;
+}
+
+/// Only the blocks that the axis needs are computed; the controller, now disconnected, is not.
+void keep_only(Plan& plan, const std::vector<Number>& wanted) {
+  const std::vector<bool> needed = blocks_behind(plan, wanted, {});
+  std::erase_if(plan.order, [&](const Plan::Entry& entry) {
+    return entry.kind != Plan::Entry::Kind::algebraic_loop && !needed[size_t(entry.block)];
+  });
+}
+
+/// "axis.mass.mass": the inertia on which this force acts.
+std::string inertia_parameter(const Plan& plan, Run<double>& run, Number force) {
+  for (const Plan::Block& block : plan.blocks) {
+    const bool reads = std::ranges::any_of(
+        block.inputs, [&](const auto& port) { return std::ranges::find(port, force) != port.end(); });
+    if (!reads || block.states == 0) continue;
+    for (const char* name : {"mass", "inertia", "motor_mass", "first_mass"})
+      if (run.parameter(block.path + "." + name)) return block.path + "." + name;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::vector<bool> blocks_behind(const Plan& plan, const std::vector<Number>& wanted,
+                                const std::vector<int>& beyond) {
+  std::vector<bool> needed(plan.blocks.size(), false);
+  std::vector<int> todo;
+  const auto want = [&](Number n) {
+    const int block = n < 0 ? -1 : plan.source_of(n).first;
+    if (block < 0 || needed[size_t(block)] || std::ranges::find(beyond, block) != beyond.end()) return;
+    needed[size_t(block)] = true, todo.push_back(block);
+  };
+  for (Number n : wanted) want(n);
+  while (!todo.empty()) {
+    const Plan::Block& block = plan.blocks[size_t(todo.back())];
+    todo.pop_back();
+    for (const auto& port : block.inputs)
+      for (Number n : port) want(n);
+  }
+  return needed;
+}
+
+AxisModel::AxisModel(const std::string& path, const std::string& experiment_path,
+                     const LoadOptions& options) {
+  Problems problems;
+  const auto experiment = load_experiment(experiment_path, problems);
+  const auto whole = load_diagram(path, options, problems);
+  const auto whole_plan = whole ? compile(*whole, problems) : nullptr;
+  if (!experiment || !whole_plan || problems.has_errors()) throw InputError(std::move(problems));
+  const Experiment cut = cut_open(in_units_of_ports(*whole_plan, *experiment), *whole_plan, problems);
+  const auto [force_port, force_place] = role(cut, "force");
+  if (force_port.empty())
+    problems.error({}, "/roles", "", fmt::format("{}: no role \"force\"", experiment_path)).expected =
+        "\"roles\": {\"force\": the output of the Sum that adds up the forces on the moving part, …}";
+  if (problems.has_errors()) throw InputError(std::move(problems));
+
+  LoadOptions driven = follow(cut, options);
+  driven.set.emplace_back("solver.step", fmt::format("{}", cut.time.sample_time));
+  driven.set.emplace_back("solver.method", "rk4");
+  const auto diagram = load_diagram(path, driven, problems);
+  std::string parent;
+  const auto injected =
+      diagram ? with_injected_force(*diagram, force_port, force_place, problems, parent) : nullptr;
+  const auto plan = injected ? compile(*injected, problems) : nullptr;
+  if (!plan || problems.has_errors()) throw InputError(std::move(problems));
+  auto changed = std::make_shared<Plan>(*plan);
+  std::optional<Unit> force_unit;  // the source of the input in the original diagram may determine it
+  for (const Plan* known : {static_cast<const Plan*>(changed.get()), whole_plan.get()})
+    if (const Number number = number_of(*known, force_port); number >= 0 && !force_unit)
+      force_unit = known->unit_of(number);
+  record_ = read_axis_record(cut, *changed, problems);
+  if (problems.has_errors()) throw InputError(std::move(problems));
+  input_ = number_of(*changed, role(cut, "input").first);
+  injected_ = number_of(*changed, parent + injected_force + ".y");
+  force_ = number_of(*changed, force_port);
+  const auto moving = [&](const char* name) {
+    const Number number = number_of(*changed, role(cut, name).first);
+    return number < 0 ? number : state_behind(*changed, number);
+  };
+  position_ = moving("position"), velocity_ = moving("velocity");
+  for (MeasuredPort& port : record_.measured) {  // counters and samplers have no slope for a correction
+    const Number behind = port.role == "position" ? position_ : velocity_;
+    if (behind >= 0 && is_sampled_between(*changed, behind, port.number)) port.number = behind;
+  }
+  silence(*changed, input_), silence(*changed, injected_);
+  std::vector<Number> wanted{force_, position_, velocity_};
+  for (const MeasuredPort& port : record_.measured) wanted.push_back(port.number);
+  keep_only(*changed, wanted);
+  if (position_ >= 0)
+    if (const auto unit = plan->unit_of(position_)) position_unit_ = to_string(*unit);
+  plan_ = std::move(changed);
+  run_ = std::make_unique<Run<double>>(*plan_);
+  switch_off_noise(*run_, *plan_);
+  numbers_ = reinterpret_cast<double*>(run_->arena().data());
+  for (Number n : wanted) all_outputs_ |= n >= 0 && n < plan_->signals && n != force_;
+  inertia_parameter_ = inertia_parameter(*plan_, *run_, force_);
+  if (!inertia_parameter_.empty()) own_inertia_ = *run_->parameter(inertia_parameter_);
+  for (int i = 0; i < plan_->states; ++i) seen_.push_back(i);
+  look_between_input_and_force();
+  work_out_driving_force(force_unit);
+  const LinearAxis linear = linearize_motion();
+  keep_seen_states(linear);
+  nominal_inertia_ = linear.inertia, nominal_damping_ = linear.damping;
+  if (std::isfinite(nominal_inertia_) && nominal_inertia_ > 0) return;
+  auto& p = problems.error(force_place, "/roles/force", "", "a force there does not accelerate the axis");
+  p.expected = "the output of the Sum whose force moves the roles \"velocity\" and \"position\"";
+  p.found = fmt::format("an inertia of {:.3g}", nominal_inertia_);
+  throw InputError(std::move(problems));
+}
+
+AxisModel::~AxisModel() = default;
+AxisModel::AxisModel(AxisModel&&) noexcept = default;
+
+/// Backward from the measured ports through the linear axis.
+void AxisModel::keep_seen_states(const LinearAxis& linear) {
+  const size_t n = seen_.size();
+  std::vector<bool> seen(n, false);
+  for (size_t pass = 0; pass <= n; ++pass)
+    for (size_t j = 0; j < n; ++j) {
+      const Eigen::Index c = Eigen::Index(j);
+      if (linear.C.col(c).cwiseAbs().maxCoeff() > 0) seen[j] = true;
+      for (size_t i = 0; i < n; ++i)
+        if (seen[i] && linear.A(Eigen::Index(i), c) != 0) seen[j] = true;
+    }
+  std::vector<int> kept;
+  for (size_t i = 0; i < n; ++i)
+    if (seen[i]) kept.push_back(seen_[i]);
+  seen_ = std::move(kept);
+}
+
+bool AxisModel::set_added_inertia(double added) {
+  double* parameter = inertia_parameter_.empty() ? nullptr : run_->parameter(inertia_parameter_);
+  if (!parameter) return false;
+  *parameter = own_inertia_ + added;
+  return true;
+}
+
+void AxisModel::start(double position, double velocity) {
+  run_->reset({plan_->seed, 0});
+  place(position, velocity);
+}
+
+void AxisModel::place(double position, double velocity) {
+  if (position_ >= plan_->signals) numbers_[position_] = position;
+  if (velocity_ >= plan_->signals) numbers_[velocity_] = velocity;
+}
+
+void AxisModel::step(double input, double force) {
+  numbers_[input_] = input;
+  numbers_[injected_] = force;
+  const int64_t end = run_->now().tick + plan_->step_ticks;
+  while (run_->now().tick < end) run_->step_fixed(end, false, [] {});
+  if (all_outputs_) run_->evaluate(0, true);
+}
+
+double AxisModel::position() const { return position_ < 0 ? 0 : numbers_[position_]; }
+double AxisModel::velocity() const { return velocity_ < 0 ? 0 : numbers_[velocity_]; }
+double AxisModel::measured(size_t port) const { return numbers_[record_.measured[port].number]; }
+double AxisModel::state(int index) const { return numbers_[plan_->signals + index]; }
+void AxisModel::correct(int index, double by) { numbers_[plan_->signals + index] += by; }
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,123 @@
+/// The user's diagram, cut open at its input and with an additional force: the model that the predictor
+/// steps.
+///
+/// Input and force may be different quantities, for example a current and the force that a motor produces
+/// from it. The blocks between them are the diagram's own: gains, saturations, lags, sampled filters.
+#pragma once
+#include <Eigen/Dense>
+#include <memory>
+#include <span>
+#include <string>
+#include "engine/diagram/diagram.h"
+#include "engine/plan/plan.h"
+#include "tools/diagnose/record/axis_record.h"
+
+namespace loopwright {
+template <class Real> class Run;
+}
+
+namespace loopwright::diagnosis {
+
+/// x[k+1] = A x[k] + push F (a force held over the sample), y = C x; small deviations from the recorded
+/// motion. Unobservable states are left out.
+struct LinearAxis {
+  Eigen::MatrixXd A;           ///< n×n
+  Eigen::VectorXd push;        ///< n; effect of a unit of force that pushes forward
+  Eigen::VectorXd input_push;  ///< n; effect of a unit of input
+  /// n; effect of a force that grows by one unit within the sample with zero mean, as a fraction of the push.
+  /// ∫ (T - τ)(τ/T - ½) dτ = -T²/12 is a sixth of ∫ (T - τ) dτ, so the position changes by -1/6 of the push.
+  Eigen::VectorXd slope_share;
+  Eigen::MatrixXd C;   ///< measured ports × n
+  double inertia = 0;  ///< force per acceleration, of the driven mass
+  double damping = 0;  ///< force per speed
+};
+
+/// The blocks on which these numbers depend, without those of `beyond` and those that only lie behind them.
+std::vector<bool> blocks_behind(const Plan& plan, const std::vector<Number>& wanted,
+                                const std::vector<int>& beyond);
+
+class AxisModel {
+ public:
+  /// The diagram at `path`, driven by the experiment's input alone. Throws InputError with every problem.
+  AxisModel(const std::string& path, const std::string& experiment, const LoadOptions& options);
+  ~AxisModel();
+  AxisModel(AxisModel&&) noexcept;
+
+  const AxisRecord& record() const { return record_; }
+  const Plan& plan() const { return *plan_; }
+  bool has_position() const { return position_ >= 0; }
+  /// [force] The force produced by the recorded input, row by row: loopwright::driving_force().
+  const std::vector<double>& driving_force() const { return driving_force_; }
+  /// [force/input] The gain that fits the driving force best.
+  double force_per_input() const { return force_per_input_; }
+  const std::string& force_unit() const { return force_unit_; }
+  const std::string& position_unit() const { return position_unit_; }
+
+  /// Adds to the mass (or moment of inertia) on which the force acts; 0 is the user's own value. Returns
+  /// false if the diagram has no such parameter.
+  bool set_added_inertia(double added);
+  /// Of the user's own diagram.
+  double nominal_inertia() const { return nominal_inertia_; }
+  double nominal_damping() const { return nominal_damping_; }
+
+  /// Back to the start: position and velocity as given, everything else at the diagram's initial values.
+  void start(double position, double velocity);
+  /// Advances by a sample with held input and held force (added to the force role; pushes forward).
+  void step(double input, double force);
+  double position() const;
+  double velocity() const;
+  double measured(size_t port) const;
+  /// Observable states.
+  std::span<const int> states() const { return seen_; }
+  double state(int index) const;
+  void correct(int index, double by);
+  /// The mean force on the moving part at the present state, including the added force.
+  double net_force(double input, double force);
+  void place(double position, double velocity);
+  /// The same along a path, position by position: dry friction remembers the direction of approach. Lags and
+  /// filters between input and force are in steady state.
+  double net_force_at_rest(double position, double velocity, double input, double force);
+  /// At the instant of a row the input changes: the net force after it, or the mean of before and after.
+  enum class At { from_there_on, mean };
+  /// The net force at every row along a motion. The input is held from its row to the next. Lags and filters
+  /// between input and force follow it; in a map of balances each row is independent, and they are in steady
+  /// state.
+  std::vector<double> net_forces(std::span<const double> position, std::span<const double> velocity,
+                                 std::span<const double> input, At at);
+  /// Whether a small force moves nothing at rest: something in the diagram holds the axis.
+  bool holds_at_rest(double small_force);
+
+  /// Linearized around the recorded motion. For a map: the remaining sum of the forces, see balance_of.
+  LinearAxis linearize();
+
+ private:
+  void look_between_input_and_force();
+  void work_out_driving_force(const std::optional<Unit>& force_unit);
+  void let_inner_states_rest(double position, double velocity, double input);
+  Eigen::VectorXd inner_states_after_sample(double position, double velocity, double input,
+                                            const Eigen::VectorXd& from);
+  double held_force(double input);
+  double net_force_along(double position, double velocity, double input, double force);
+  LinearAxis linearize_motion();
+  void keep_seen_states(const LinearAxis& linear);
+  Eigen::VectorXd sample_from(const Eigen::VectorXd& states, double input, double force);
+
+  std::shared_ptr<const Plan> plan_;
+  std::unique_ptr<Run<double>> run_;
+  double* numbers_ = nullptr;  // the arena's
+  Number input_ = -1, injected_ = -1, force_ = -1, position_ = -1, velocity_ = -1;
+  bool all_outputs_ = false;  // a role is not a state: its block must run at every step
+  std::string inertia_parameter_, force_unit_, position_unit_;
+  double own_inertia_ = 0, nominal_inertia_ = 0, nominal_damping_ = 0;
+  std::vector<int> seen_;
+  std::vector<int> inner_states_;   // between input and force
+  bool input_is_filtered_ = false;  // by states, sampled blocks or delays
+  bool force_remembers_ = false;    // the net force now depends on more than motion and input
+  Eigen::MatrixXd inner_decay_;     // of the inner states over a sample; empty: not yet computed
+  std::vector<char> remembered_;    // the arena at an operating point
+  std::vector<double> driving_force_;
+  double force_per_input_ = 0;
+  AxisRecord record_;
+};
+
+}  // namespace loopwright::diagnosis

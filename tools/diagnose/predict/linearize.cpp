@@ -1,0 +1,125 @@
+/// The axis linearized by differences along the recorded motion.
+#include <algorithm>
+#include <cmath>
+#include "engine/run/run.h"
+#include "tools/diagnose/predict/axis_model.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+/// Rows distributed over the record where the axis moves.
+std::vector<size_t> operating_rows(const AxisRecord& record) {
+  std::vector<size_t> rows;
+  const std::vector<double>& y = record.measured.front().value;
+  const bool is_velocity = record.measured.front().role == "velocity";
+  double greatest = 0;
+  const auto speed = [&](size_t k) {
+    return is_velocity ? std::abs(y[k]) : std::abs(y[k + 1] - y[k - 1]) / (2 * record.sample_time);
+  };
+  for (size_t k = 1; k + 1 < y.size(); ++k) greatest = std::max(greatest, speed(k));
+  const size_t step = std::max<size_t>(1, y.size() / 64);
+  for (size_t k = 1; k + 1 < y.size() && rows.size() < 24; k += step)
+    if (speed(k) > 0.1 * greatest) rows.push_back(k);
+  if (rows.empty()) rows.push_back(std::min<size_t>(1, y.size() - 1));
+  return rows;
+}
+
+/// In a map each row is independent: one state, the remaining sum of the model's forces, which is measured to
+/// be zero.
+LinearAxis balance_of(const LinearAxis& moving, double force_per_input) {
+  LinearAxis linear;
+  linear.inertia = moving.inertia, linear.damping = moving.damping;
+  linear.A = Eigen::MatrixXd::Zero(1, 1), linear.C = Eigen::MatrixXd::Ones(1, 1);
+  linear.push = Eigen::VectorXd::Ones(1);
+  linear.input_push = Eigen::VectorXd::Constant(1, force_per_input);
+  linear.slope_share = Eigen::VectorXd::Zero(1);
+  return linear;
+}
+
+}  // namespace
+
+Eigen::VectorXd AxisModel::sample_from(const Eigen::VectorXd& states, double input, double force) {
+  if (force_remembers_) {  // sampled filters and delays keep their state, independent of earlier trials
+    std::ranges::copy(remembered_, run_->arena().begin());
+    run_->restored({plan_->clock.time(plan_->start_tick), plan_->start_tick});
+  }
+  for (size_t i = 0; i < seen_.size(); ++i) numbers_[plan_->signals + seen_[i]] = states[Eigen::Index(i)];
+  step(input, force);
+  Eigen::VectorXd next(states.size());
+  for (size_t i = 0; i < seen_.size(); ++i) next[Eigen::Index(i)] = state(seen_[i]);
+  return next;
+}
+
+LinearAxis AxisModel::linearize() {
+  return record_.is_map ? balance_of(linearize_motion(), force_per_input_) : linearize_motion();
+}
+
+LinearAxis AxisModel::linearize_motion() {
+  const Eigen::Index n = Eigen::Index(seen_.size());
+  LinearAxis linear;
+  linear.A = Eigen::MatrixXd::Zero(n, n);
+  linear.push = linear.input_push = Eigen::VectorXd::Zero(n);
+  linear.C = Eigen::MatrixXd::Zero(Eigen::Index(record_.measured.size()), n);
+  const std::vector<size_t> rows = operating_rows(record_);
+  double input_size = 0, force_size = 0;
+  for (double u : record_.input) input_size = std::max(input_size, std::abs(u));
+  for (double f : driving_force_) force_size = std::max(force_size, std::abs(f));
+  if (input_size == 0) input_size = 1;
+  if (force_size == 0) force_size = 1;
+  const MeasuredPort* position = record_.find("position");
+  const MeasuredPort* velocity = record_.find("velocity");
+  const double weight = 1.0 / double(rows.size());
+  for (size_t k : rows) {
+    const double v = velocity ? velocity->value[k]
+                     : position
+                         ? (position->value[k + 1] - position->value[k - 1]) / (2 * record_.sample_time)
+                         : 0;
+    start(position ? position->value[k] : 0, v);
+    if (force_remembers_) remembered_.assign(run_->arena().begin(), run_->arena().end());
+    Eigen::VectorXd at(n);
+    for (Eigen::Index i = 0; i < n; ++i) at[i] = state(seen_[size_t(i)]);
+    const double u = record_.input[k], push = 1e-3 * force_size, change_of_u = 1e-3 * input_size;
+    linear.push += weight * (sample_from(at, u, push) - sample_from(at, u, -push)) / (2 * push);
+    linear.input_push += weight *
+                         (sample_from(at, u + change_of_u, 0) - sample_from(at, u - change_of_u, 0)) /
+                         (2 * change_of_u);
+    const Eigen::VectorXd moved = sample_from(at, u, force_size) - sample_from(at, u, 0);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double change = std::max(1e-2 * std::abs(moved[i]), 1e-9);
+      Eigen::VectorXd up = at, down = at;
+      up[i] += change, down[i] -= change;
+      const Eigen::VectorXd high = sample_from(up, u, 0);
+      linear.A.col(i) += weight * (high - sample_from(down, u, 0)) / (2 * change);
+    }
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double change = std::max(std::abs(moved[i]), 1e-6);
+      for (size_t port = 0; port < record_.measured.size(); ++port) {
+        double seen[2];
+        for (int side : {0, 1}) {
+          for (Eigen::Index j = 0; j < n; ++j) numbers_[plan_->signals + seen_[size_t(j)]] = at[j];
+          correct(seen_[size_t(i)], side ? change : -change);
+          if (all_outputs_) net_force(u, 0);
+          seen[side] = measured(port);
+        }
+        linear.C(Eigen::Index(port), i) += weight * (seen[1] - seen[0]) / (2 * change);
+      }
+    }
+  }
+  // Memories of sampled blocks are no states here: effects at the input act as in steady state.
+  if (input_is_filtered_ && inner_states_.empty()) linear.input_push = linear.push * force_per_input_;
+  const Eigen::Index v = velocity_ - plan_->signals, x = position_ - plan_->signals;
+  linear.slope_share = Eigen::VectorXd::Zero(n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    if (position_ >= 0 && seen_[size_t(i)] == x) linear.slope_share[i] = -1.0 / 6;
+  for (Eigen::Index i = 0; i < n; ++i)
+    if (seen_[size_t(i)] == v) {
+      const double decay = linear.A(i, i), per_force = linear.push[i];  // of v' = (F - D v) / M, exactly
+      linear.damping = (1 - decay) / per_force;
+      const double rate = decay < 1 ? -std::log(decay) : 0;
+      linear.inertia =
+          rate > 0 ? linear.damping / (rate / record_.sample_time) : record_.sample_time / per_force;
+    }
+  return linear;
+}
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,33 @@
+/// Noise of an axis, the corresponding Kalman gains, and its likelihood.
+#pragma once
+#include <Eigen/Dense>
+#include <vector>
+#include "tools/diagnose/predict/axis_model.h"
+
+namespace loopwright::diagnosis {
+
+/// Noise on an axis: a white force held over each sample, a slow disturbing force d[k+1] = memory d[k] + step
+/// w[k], and white noise on every measured port. Forces are per nominal inertia: they must not be smaller for
+/// a model with less inertia.
+struct Noise {
+  double white = 0;                 ///< force, standard deviation
+  double step = 0;                  ///< force
+  double memory = 1;                ///< 1: random walk
+  std::vector<double> measurement;  ///< of each port
+
+  /// Standard deviation of the slow force; infinite for a random walk.
+  double slow() const;
+};
+
+/// Steady-state Kalman predictor of the axis with the slow force as the last state.
+struct Gains {
+  Eigen::MatrixXd K;           ///< (n + 1) × ports
+  Eigen::MatrixXd whiten;      ///< ports × ports, lower: whiten · e has unit covariance
+  double log_determinant = 0;  ///< of the covariance of e
+  double memory = 1;
+};
+
+/// Solves the Riccati equation by doubling. `nominal_inertia` scales the noise forces: see Noise.
+Gains gains_of(const LinearAxis& axis, const Noise& noise, double nominal_inertia);
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,99 @@
+/// One-step predictions of the measured signals by the user's own diagram, and their response to additional
+/// forces.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+#include "tools/diagnose/predict/axis_model.h"
+#include "tools/diagnose/predict/noise.h"
+
+namespace loopwright::diagnosis {
+
+/// The inputs of the model, one value per sample: means over the sample of the input and of `force`, which
+/// pushes backward (effects consume it); `sensor` is added to the predicted position. Slopes are changes
+/// within the sample, see Column; empty: none.
+struct Drives {
+  std::vector<double> input, force, sensor;
+  std::vector<double> input_slope, force_slope;
+};
+
+/// The motion as estimated by the predictor: position and velocity at the start of each sample, and the
+/// predicted acceleration. They are functions of the past alone, so nothing computed from them correlates
+/// with future noise.
+struct Path {
+  uint64_t identity = 0;  ///< equal only for equal paths, because results along a path are cached; 0: none
+  double sample_time = 0;
+  std::vector<double> position, velocity, acceleration, input;
+  std::vector<double> force;               ///< the force produced by the recorded input
+  std::vector<double> predicted_position;  ///< before the measurement of the sample itself
+  std::vector<char> rests;                 ///< slower than `rest_speed`
+  /// For some samples after a reversal. There dry friction changes sign, at an instant known only to within a
+  /// sample or two, and its force then is no slow force. The same holds for missing samples.
+  std::vector<char> turns;
+  double rest_speed = 0;
+  size_t samples() const { return rests.size(); }
+  /// No slow force is estimated.
+  bool forgets(size_t sample) const { return rests[sample] || turns[sample]; }
+  /// Another path, over the rows that the first one covers.
+  Path first_samples(size_t count) const;
+};
+
+/// The balances of a map, as far as requested. From each balance the axis creeps to the next, so slowly that
+/// only the direction matters.
+Path creep_along(const AxisRecord& map, size_t rows);
+
+struct Prediction {
+  std::vector<double> error;  ///< samples × ports: measured minus predicted
+  std::vector<double> slow;   ///< of each sample: the disturbing force estimated after measuring
+  Path path;
+};
+
+/// The time in which the predictor corrects an impact, or friction of the wrong sign.
+constexpr int samples_to_correct = 15;
+
+/// Steps the diagram along the record, as far as the drives extend: correct with the measurement, predict the
+/// next sample.
+Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains, const Drives& drives,
+                   double rest_speed);
+
+/// The errors that other gains would give on the same record, without stepping the diagram again.
+std::vector<double> with_gains(const LinearAxis& axis, const Prediction& prediction, const Gains& from,
+                               const Gains& to);
+
+/// z[k] = whiten · e[k], in place.
+void whiten(std::vector<double>& error, const Gains& gains);
+
+/// Where an effect acts.
+enum class Acts {
+  force,   ///< consumes a force
+  input,   ///< replaces the input
+  sensor,  ///< adds an error to the measured position
+};
+
+/// The consumed force, or the error added to the measured position: a mean over each sample, and the change
+/// from its start to its end, as far as that moves the axis (see EffectRun). No slope: null. Copies share the
+/// numbers.
+struct Column {
+  using Numbers = std::shared_ptr<const std::vector<float>>;
+  Numbers mean, slope;
+
+  Column() = default;
+  explicit Column(std::vector<float> mean_, std::vector<float> slope_ = {})
+      : mean(std::make_shared<const std::vector<float>>(std::move(mean_))) {
+    if (!slope_.empty()) slope = std::make_shared<const std::vector<float>>(std::move(slope_));
+  }
+};
+/// Columns of an effect at given nonlinear parameters, per unit of each linear parameter.
+using Columns = std::vector<Column>;
+
+/// What each column adds to the whitened errors, samples × ports; eight together cost as much as two alone.
+std::vector<std::vector<double>> responses(const LinearAxis& axis, const Gains& gains, const Path& path,
+                                           Acts acts, std::span<const Column* const> columns);
+/// The same at some rows, ascending, each with its ports, written from to[column] on.
+void responses(const LinearAxis& axis, const Gains& gains, const Path& path, Acts acts,
+               std::span<const Column* const> columns, std::span<const size_t> rows,
+               std::span<double* const> to);
+std::vector<const Column*> pointers(const Columns& columns);
+
+}  // namespace loopwright::diagnosis

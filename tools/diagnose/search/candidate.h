@@ -1,0 +1,60 @@
+/// An effect as the diagnosis uses it: columns along a path, and the admissible values of its parameters.
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+#include "tools/diagnose/predict/predictor.h"
+#include "tools/effects/effect.h"
+
+namespace loopwright::diagnosis {
+
+struct CandidateParameter {
+  std::string name, unit;
+  double low = 0, high = 0;
+  bool logarithmic = false;  ///< scale on which it is stepped through, when nonlinear
+  std::vector<double> grid;  ///< initial values of the search, when nonlinear
+  double span = 0;   ///< for a period: the stroke or time over which it repeats; determines its resolution
+  double start = 0;  ///< a typical value
+
+  /// Whether a value is at an end of the range; a fitted one is then reported as a warning, not as a result.
+  bool ends_at(double value) const {
+    const double edge = 1e-6 * (high - low);
+    return value <= low + edge || value >= high - edge;
+  }
+};
+
+struct Member;
+
+struct Candidate {
+  std::string name, form;  ///< form: for an effect with several
+  Acts acts = Acts::force;
+  Attachment::Stage stage = Attachment::Stage::command;  ///< of Acts::input
+  std::vector<CandidateParameter> linear;                ///< amplitudes
+  std::vector<CandidateParameter> nonlinear;             ///< shapes
+  /// Pure shape (a delay, a lag): the amplitude is the step from 0 to the shape and must be near one.
+  bool amplitude_is_one = false;
+  /// Scans every pitch: the first nonlinear parameter is the pitch, and the columns are its sine and cosine.
+  bool is_periodic = false;
+  AtRest at_rest = AtRest::free;
+  bool flies = false;            ///< its force is zero for a while and returns with an impact
+  bool is_repeatable = false;    ///< may occur more than once
+  bool repeats_in_time = false;  ///< its period is in time, not in position
+  bool is_unknown = false;       ///< not from the catalogue, but any function of the variables in `form`
+  /// For several shapes together: cheaper than one after the other.
+  std::function<std::vector<Columns>(const Path& path, const std::vector<std::vector<double>>& shapes)>
+      columns_at;
+  Columns columns(const Path& path, const std::vector<double>& shape) const {
+    return std::move(columns_at(path, {shape}).front());
+  }
+  /// How much of the consumed force is a mass times the acceleration of the moving part; empty: none. This
+  /// part is added to the model's own mass, where it acts without delay.
+  std::function<double(const Member& member)> added_inertia;
+};
+
+/// An effect taken into the model, with its parameters.
+struct Member {
+  const Candidate* candidate = nullptr;
+  std::vector<double> linear, nonlinear;
+};
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,275 @@
+#include "tools/diagnose/search/catalogue.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include "tools/effects/effect_run.h"
+#include "models/real/whole.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+using To = Attachment::To;
+
+Acts acts(const Effect& effect) {
+  for (const Attachment& a : effect.attachments) {
+    if (a.to == To::input) return Acts::input;
+    if (a.to == To::sensor) return Acts::sensor;
+  }
+  return Acts::force;
+}
+
+Attachment::Stage stage(const Effect& effect) {
+  const auto at_input = std::ranges::find(effect.attachments, To::input, &Attachment::to);
+  return at_input == effect.attachments.end() ? Attachment::Stage::command : at_input->stage;
+}
+
+bool adds_inertia(const Attachment& attachment) {
+  return attachment.to == To::parameter &&
+         std::ranges::any_of(attachment.targets, [](const std::string& target) {
+           return target.starts_with("Mass.") || target.starts_with("TwoMass.");
+         });
+}
+
+constexpr double linear_points = 8;
+constexpr double grid_ratio = 1.7;  // between neighbors on a logarithmic scale, at most
+
+/// Initial values of the search. Later shapes of an effect start in the middle: the fit moves them.
+std::vector<double> grid_of(const CandidateParameter& p, bool is_first, int points) {
+  std::vector<double> grid;
+  const double low = p.logarithmic ? std::max(p.low, 1e-6 * p.high) : p.low;
+  const double n = points > 0      ? points
+                   : !is_first     ? 1
+                   : p.logarithmic ? std::ceil(std::log(p.high / low) / std::log(grid_ratio))
+                                   : linear_points;
+  for (double i = 0.5; i < n; i += 1)
+    grid.push_back(p.logarithmic ? low * std::pow(p.high / low, i / n) : low + (p.high - low) * i / n);
+  return grid;
+}
+
+/// The columns computed last: fits return to the same path and shape many times.
+class Remembered {
+ public:
+  const Columns* find(const Path& path, const std::vector<double>& shape) const {
+    const auto entry = std::ranges::find_if(
+        entries_, [&](const Entry& e) { return e.path == path.identity && e.path != 0 && e.shape == shape; });
+    return entry == entries_.end() ? nullptr : &entry->columns;
+  }
+  void keep(const Path& path, const std::vector<double>& shape, const Columns& columns) {
+    if (path.identity == 0) return;
+    entries_.push_back({path.identity, shape, columns});
+    if (entries_.size() > most) entries_.pop_front();
+  }
+
+ private:
+  static constexpr size_t most = 12;
+  struct Entry {
+    uint64_t path;
+    std::vector<double> shape;
+    Columns columns;
+  };
+  std::deque<Entry> entries_;
+};
+
+/// An effect with the indices of its parameters.
+struct Compiled {
+  std::shared_ptr<const EffectPlan> plan;
+  std::vector<size_t> linear, nonlinear;  // in EffectPlan::fitted
+  Acts acts;
+  Remembered remembered;
+
+  /// Runs only the shapes that are not cached.
+  std::vector<Columns> columns(const Path& path, const std::vector<std::vector<double>>& shapes) {
+    std::vector<Columns> result(shapes.size());
+    std::vector<std::vector<double>> others;
+    std::vector<size_t> places;
+    for (size_t i = 0; i < shapes.size(); ++i) {
+      if (const Columns* known = remembered.find(path, shapes[i]))
+        result[i] = *known;
+      else
+        others.push_back(shapes[i]), places.push_back(i);
+    }
+    if (others.empty()) return result;
+    std::vector<Columns> computed = run(path, others);
+    for (size_t i = 0; i < others.size(); ++i) {
+      if (others.size() < 8) remembered.keep(path, others[i], computed[i]);  // not complete grids
+      result[places[i]] = std::move(computed[i]);
+    }
+    return result;
+  }
+  /// Every linear parameter of every shape has a lane.
+  std::vector<Columns> run(const Path& path, const std::vector<std::vector<double>>& shapes) const {
+    RoleSignals signals;
+    signals.position = acts == Acts::sensor ? path.predicted_position : path.position;
+    signals.velocity = path.velocity, signals.acceleration = path.acceleration;
+    signals.input = path.input, signals.force = path.force;
+    const size_t rows = path.samples(), per_shape = std::max<size_t>(1, linear.size());
+    const size_t wanted = shapes.size() * per_shape;
+    std::vector<Columns> result(shapes.size());
+    EffectRun run(plan, int(wanted));
+    const size_t lanes = size_t(run.lanes());
+    for (size_t first = 0; first < wanted; first += lanes) {
+      std::vector<EffectRun::Output> outputs(std::min(lanes, wanted - first));
+      for (size_t lane = 0; lane < outputs.size(); ++lane) {
+        const std::vector<double>& shape = shapes[(first + lane) / per_shape];
+        for (size_t i = 0; i < nonlinear.size(); ++i) run.set(nonlinear[i], shape[i], int(lane));
+        const double size = linear.empty() ? 1 : run.isolate(linear[(first + lane) % per_shape], int(lane));
+        // What the effect adds to the input counts as negative consumption.
+        outputs[lane].factor = (acts == Acts::input ? -1.0 : 1.0) / size;
+      }
+      run.run(signals, rows, outputs);
+      for (size_t lane = 0; lane < outputs.size(); ++lane) {
+        auto& [factor, mean, slope] = outputs[lane];
+        if (std::ranges::all_of(slope, [](float s) { return s == 0; })) slope.clear();
+        result[(first + lane) / per_shape].emplace_back(std::move(mean), std::move(slope));
+      }
+    }
+    return result;
+  }
+  double added_inertia(const Member& member) const {
+    std::vector<double> fitted(plan->fitted.size());
+    for (size_t i = 0; i < linear.size(); ++i) fitted[linear[i]] = member.linear[i];
+    for (size_t i = 0; i < nonlinear.size(); ++i) fitted[nonlinear[i]] = member.nonlinear[i];
+    double sum = 0;
+    for (const Attachment& a : plan->effect.attachments)
+      if (adds_inertia(a)) sum += values_of(plan->effect, plan->sizes, fitted).evaluate(a.add);
+    return sum;
+  }
+};
+
+Candidate candidate_of(const Effect& effect, std::shared_ptr<const EffectPlan> plan) {
+  auto compiled = std::make_shared<Compiled>();
+  compiled->plan = std::move(plan), compiled->acts = acts(effect);
+  Candidate candidate;
+  candidate.name = effect.name, candidate.form = effect.form, candidate.acts = compiled->acts;
+  candidate.stage = stage(effect);
+  for (const EffectParameter& p : effect.parameters) {
+    if (!p.is_fitted) continue;
+    const FitRange range = range_of(p, compiled->plan->sizes);
+    const size_t index =
+        size_t(std::ranges::find(compiled->plan->fitted, p.name) - compiled->plan->fitted.begin());
+    CandidateParameter parameter{
+        p.name, p.unit, range.low, range.high, p.scale == EffectParameter::Scale::logarithmic, {}};
+    parameter.start = range.start;
+    if (p.is_linear) {
+      candidate.linear.push_back(parameter), compiled->linear.push_back(index);
+      continue;
+    }
+    candidate.is_periodic |= p.is_period;
+    if (p.is_period) {  // shorter ones fall between two samples
+      const RecordSizes& sizes = compiled->plan->sizes;
+      parameter.span = sizes.stroke;
+      parameter.low = std::max(parameter.low, 4 * sizes.top_speed * sizes.sample_time);
+      parameter.high = std::max(parameter.high, 2 * parameter.low);
+    }
+    parameter.grid = grid_of(parameter, candidate.nonlinear.empty(), p.points);
+    candidate.nonlinear.push_back(parameter), compiled->nonlinear.push_back(index);
+  }
+  candidate.amplitude_is_one = candidate.linear.empty();
+  if (candidate.amplitude_is_one) {  // from zero to the full value: a shape near zero would explain nothing
+    std::vector<double>& grid = candidate.nonlinear.front().grid;
+    const double high = candidate.nonlinear.front().high;
+    grid.clear();
+    for (double value = high / 60; value < high; value *= 1.5) grid.push_back(value);
+  }
+  candidate.is_repeatable = effect.is_repeatable, candidate.at_rest = effect.at_rest;
+  candidate.flies = candidate.acts == Acts::force && compiled->plan->flies;
+  candidate.columns_at = [compiled](const Path& path, const std::vector<std::vector<double>>& shapes) {
+    return compiled->columns(path, shapes);
+  };
+  if (std::ranges::any_of(effect.attachments, adds_inertia))
+    candidate.added_inertia = [compiled](const Member& member) { return compiled->added_inertia(member); };
+  return candidate;
+}
+
+/// A range or a value of the effect that these records do not determine; empty: all are numbers.
+std::string unknown_number(const Effect& effect, const RecordSizes& sizes) {
+  std::vector<double> starts;
+  for (const EffectParameter& p : effect.parameters) {
+    if (!p.is_fitted) continue;
+    const FitRange range = range_of(p, sizes);
+    if (!std::isfinite(range.low + range.high + range.start) || !(range.low < range.high))
+      return fmt::format("the range of \"{}\" cannot be worked out from these records", p.name);
+    starts.push_back(range.start);
+  }
+  const EffectValues values = values_of(effect, sizes, starts);
+  for (const EffectParameter& p : effect.parameters)
+    if (!std::isfinite(values.at(p.name)))
+      return fmt::format("\"{}\" cannot be worked out from these records", p.name);
+  return {};
+}
+
+/// Effects with the same reason together, each once.
+void leave_out(std::vector<NotLookedFor>& list, const std::string& effect, std::string why) {
+  auto same = std::ranges::find(list, why, &NotLookedFor::why);
+  if (same == list.end()) same = list.insert(same, {{}, std::move(why)});
+  if (std::ranges::find(same->effects, effect) == same->effects.end()) same->effects.push_back(effect);
+}
+
+}  // namespace
+
+RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
+                     const std::vector<const AxisModel*>& models) {
+  RecordSizes sizes;
+  double squared_force = 0, squared_input = 0, count = 0, low = 1e300, high = -1e300;
+  std::vector<double> speeds;
+  for (size_t i = 0; i < paths.size(); ++i) {
+    const Path& path = *paths[i];
+    for (size_t k = 0; k < path.samples(); ++k) {
+      low = std::min(low, path.predicted_position[k]), high = std::max(high, path.predicted_position[k]);
+      if (k < 10) continue;
+      const double step = path.position[k] - path.position[k - 1];
+      speeds.push_back(std::abs(models[i]->record().is_map ? step / path.sample_time : path.velocity[k]));
+      if (path.rests[k]) continue;
+      squared_force += path.force[k] * path.force[k], squared_input += path.input[k] * path.input[k];
+      count += 1;
+    }
+    for (size_t k = 20; k + 20 < path.samples(); k += 5)
+      sizes.top_acceleration =
+          std::max(sizes.top_acceleration,
+                   std::abs(path.velocity[k + 20] - path.velocity[k - 20]) / (40 * path.sample_time));
+    sizes.duration = std::max(sizes.duration, double(path.samples()) * path.sample_time);
+    if (const MeasuredPort* position = models[i]->record().find("position"))
+      sizes.resolution = std::max(sizes.resolution, position->resolution);
+  }
+  if (!speeds.empty()) {  // a few rows may be disturbed
+    const auto top =
+        speeds.begin() + std::ptrdiff_t(whole_index(0.995 * double(speeds.size() - 1), speeds.size()));
+    std::ranges::nth_element(speeds, top);
+    sizes.top_speed = *top;
+  }
+  sizes.lowest_position = low, sizes.highest_position = high, sizes.stroke = high - low;
+  sizes.force_level = std::sqrt(squared_force / std::max(count, 1.0));
+  sizes.input_level = std::sqrt(squared_input / std::max(count, 1.0));
+  sizes.machine_mass = models.front()->nominal_inertia();
+  sizes.machine_damping = std::max(0.0, models.front()->nominal_damping());
+  sizes.sample_time = paths.front()->sample_time;
+  return sizes;
+}
+
+std::string not_in_a_map(const Effect& effect) {
+  const Excitation& needs = effect.needs;
+  const bool needs_motion = needs.speeds > 1 || needs.accelerations > 0 || needs.passes > 1 ||
+                            needs.reversals > 0 || needs.varied_force;
+  return needs_motion ? "a map of balances has neither speeds nor times" : "";
+}
+
+Catalogue make_catalogue(const std::vector<std::string>& folders, const MachineUnits& units,
+                         const RecordSizes& sizes, const WhyNot& why_not) {
+  Problems problems;
+  Catalogue catalogue;
+  for (Effect& effect : load_catalogue(folders, problems)) {
+    std::string why = unknown_number(effect, sizes);
+    if (why.empty()) why = why_not(effect);
+    if (!why.empty()) {
+      leave_out(catalogue.left_out, effect.name, std::move(why));
+    } else if (auto plan = compile_effect(effect, units, sizes, problems)) {
+      catalogue.candidates.push_back(candidate_of(effect, std::move(plan)));
+      catalogue.effects.push_back(std::move(effect));
+    }
+  }
+  if (problems.has_errors()) throw InputError(std::move(problems));
+  return catalogue;
+}
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,31 @@
+/// The effects of the catalogue as candidates: each runs its own blocks.
+#pragma once
+#include "tools/diagnose/search/candidate.h"
+#include "tools/diagnose/diagnosis.h"
+#include "tools/effects/effect.h"
+
+namespace loopwright::diagnosis {
+
+/// The effects of a catalogue, compiled for a machine.
+struct Catalogue {
+  std::vector<Effect> effects;
+  std::vector<Candidate> candidates;  ///< one per effect, in the same order
+  std::vector<NotLookedFor> left_out;
+};
+
+/// Extents over all records.
+RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
+                     const std::vector<const AxisModel*>& models);
+
+/// Why an effect cannot be added to the diagram; empty: it can be added.
+using WhyNot = std::function<std::string(const Effect&)>;
+
+/// Why a map of balances contains no information about an effect; empty: it contains some.
+std::string not_in_a_map(const Effect& effect);
+
+/// Effects that cannot be added, and effects whose numbers cannot be computed for these records, are left
+/// out. Throws InputError with every problem of the effect files.
+Catalogue make_catalogue(const std::vector<std::string>& folders, const MachineUnits& units,
+                         const RecordSizes& sizes, const WhyNot& why_not);
+
+}  // namespace loopwright::diagnosis

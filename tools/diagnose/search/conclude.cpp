@@ -1,0 +1,395 @@
+#include "tools/diagnose/search/conclude.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+#include "tools/diagnose/search/doubt.h"
+#include "tools/diagnose/search/law_swaps.h"
+#include "tools/diagnose/search/spectrum.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+constexpr double least_wald = 25, least_wald_per_row = 0.001, plain_wald_per_row = 0.01;
+constexpr double least_force = 0.005;          // of the driving force's rms
+constexpr double least_force_to_noise = 0.25;  // of the white noise
+constexpr double least_unique_force = 0.001;   // of the driving force's rms
+
+/// Indices of a member's parameters among the free ones. Only those that decide whether it is present: the
+/// linear ones, or the shape of a member without linear ones.
+std::vector<Eigen::Index> existence(const std::vector<Member>& members, size_t member) {
+  std::vector<Eigen::Index> places;
+  const std::vector<FreeParameter> free = free_parameters(members);
+  const bool by_shape = members[member].candidate->amplitude_is_one;
+  for (size_t i = 0; i < free.size(); ++i)
+    if (free[i].member == member && free[i].is_linear != by_shape) places.push_back(Eigen::Index(i));
+  return places;
+}
+
+/// Quadratic form of theta with the inverse of the covariance that remains when the parameters at `known` are
+/// known and those at neither `known` nor `places` are estimated with them.
+double chi_square(const Eigen::MatrixXd& information, const Eigen::VectorXd& theta,
+                  const std::vector<Eigen::Index>& places, const std::vector<Eigen::Index>& known) {
+  std::vector<Eigen::Index> free = places;
+  for (Eigen::Index i = 0; i < information.rows(); ++i)
+    if (std::ranges::find(places, i) == places.end() && std::ranges::find(known, i) == known.end())
+      free.push_back(i);
+  const Eigen::MatrixXd covariance = information(free, free).inverse();
+  const Eigen::Index n = Eigen::Index(places.size());
+  const Eigen::VectorXd at = theta(places);
+  return at.dot(covariance.topLeftCorner(n, n).ldlt().solve(at));
+}
+
+/// χ² of the parameters that decide whether a member is present, alone and with all others known. Its own
+/// shape is taken as known: a drift much longer than the record is certain even if its size and time are not
+/// determined separately.
+std::pair<double, double> wald(Estimate& estimate, size_t member) {
+  const std::vector<FreeParameter> free = free_parameters(estimate.members);
+  const std::vector<Eigen::Index> places = existence(estimate.members, member);
+  const Eigen::VectorXd scale = estimate.covariance.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd correlation = scale.asDiagonal() * estimate.covariance * scale.asDiagonal();
+  const Eigen::MatrixXd information = scale.asDiagonal() * correlation.inverse() * scale.asDiagonal();
+  Eigen::VectorXd theta(Eigen::Index(free.size()));
+  std::vector<Eigen::Index> shape, others;
+  for (size_t i = 0; i < free.size(); ++i) {
+    const Eigen::Index at = Eigen::Index(i);
+    theta[at] = value_of(estimate.members, free[i]);
+    if (std::ranges::find(places, at) != places.end()) continue;
+    others.push_back(at);
+    if (free[i].member == member) shape.push_back(at);
+  }
+  return {chi_square(information, theta, places, shape), chi_square(information, theta, places, others)};
+}
+
+/// Root mean square of the force that a member consumes over the fitted rows.
+double force_rms(const Trials& trials, const Estimate& estimate, size_t index) {
+  const Member& member = estimate.members[index];
+  double sum = 0, n = 0;
+  for (size_t t = 0; t < trials.list.size(); ++t) {
+    const Trial& trial = trials.list[t];
+    const Fitted& fitted = estimate.fitted[t];
+    const Columns columns = member.candidate->columns(*estimate.motion.paths[t], member.nonlinear);
+    std::vector<float> whole(columns[0].mean->size());
+    for (size_t c = 0; c < columns.size(); ++c)
+      for (size_t k = 0; k < whole.size(); ++k) whole[k] += float(member.linear[c]) * (*columns[c].mean)[k];
+    std::vector<double> seen(whole.begin(), whole.end());
+    if (member.candidate->acts == Acts::input)
+      for (double& u : seen) u *= trial.model->force_per_input();
+    if (member.candidate->acts == Acts::sensor) {
+      const Column feigned(whole);
+      const Column* const one = &feigned;
+      seen = responses(fitted.axis, fitted.gains, fitted.prediction.path, Acts::sensor, {&one, 1}).front();
+      for (double& e : seen) e *= estimate.noise.white;
+    }
+    for (size_t k = 0; k < trial.held_out_from; ++k)
+      if (trial.usable[k]) sum += seen[k] * seen[k], n += 1;
+  }
+  return std::sqrt(sum / std::max(n, 1.0));
+}
+
+Weight weigh(const Trials& trials, Estimate& estimate, size_t member) {
+  Weight weight;
+  const auto [among_others, alone] = wald(estimate, member);
+  weight.wald = among_others;
+  weight.force_rms = force_rms(trials, estimate, member);
+  weight.unique_force = weight.force_rms * std::sqrt(std::min(1.0, among_others / std::max(alone, 1e-300)));
+  return weight;
+}
+
+void maximise(Trials& trials, Estimate& estimate) {
+  for (int round = 0; round < 2; ++round) {
+    const Noise noise = fit_noise_alone(trials, estimate.fitted, estimate.noise, FreeNoise::all);
+    estimate = fit_members(trials, estimate.members, noise, estimate.motion, 8);
+  }
+}
+
+bool is_at_limit(const Member& member) {
+  const Candidate& candidate = *member.candidate;
+  for (size_t i = 0; i < member.linear.size() && !candidate.amplitude_is_one; ++i)
+    if (candidate.linear[i].ends_at(member.linear[i])) return true;
+  for (size_t i = 0; i < member.nonlinear.size(); ++i)
+    if (candidate.nonlinear[i].ends_at(member.nonlinear[i])) return true;
+  return false;
+}
+
+/// The result, and the sets that explain the records as well.
+class Rivals {
+ public:
+  /// `reach`: loss of the criterion that a rival may have.
+  Rivals(Trials& trials, const Estimate& estimate, size_t catalogue, double reach)
+      : trials_(trials), estimate_(estimate), catalogue_(catalogue), reach_(reach) {}
+
+  double reach() const { return reach_; }
+  /// With a proposal applied and all parameters fitted.
+  Estimate fitted(const Proposal& proposal) {
+    return fit_members(trials_, applied(proposal, estimate_.members), estimate_.noise, estimate_.motion, 4);
+  }
+  /// How much worse its criterion is; empty: out of reach. A larger set that contains this one as a special
+  /// case is always close, so it must explain more to be a rival.
+  std::optional<double> loss_of(const Proposal& proposal, const Estimate& other) const {
+    if (!other.is_valid) return {};
+    size_t before = 0, now = 0;
+    for (size_t m : proposal.removed) before += parameters_of(*estimate_.members[m].candidate);
+    for (const Member& m : proposal.added) now += parameters_of(*m.candidate);
+    if (now > before && other.profile > estimate_.profile - 4) return {};
+    const double loss = criterion_of(other) - criterion_of(estimate_);
+    return loss < reach_ ? std::optional(loss) : std::nullopt;
+  }
+  std::optional<double> loss_of(const Proposal& proposal) {
+    Estimate other = fitted(proposal);
+    if (const double loss = criterion_of(other) - criterion_of(estimate_); loss > reach_ && loss < 4 * reach_)
+      maximise(trials_, other);
+    const std::optional<double> loss = loss_of(proposal, other);
+    if (!loss) return {};
+    const double disliked = *loss - preference(other.members, estimate_.members);
+    if (disliked < best_loss_) best_loss_ = disliked, best_ = std::move(other);
+    return loss;
+  }
+  /// Whether it is as good on the same motion, and not much worse on its own motion. If the diagram itself
+  /// quantizes, for example with an encoder, every run gives a different result.
+  bool is_promised(const Proposal& proposal, const Estimate& other) const {
+    constexpr double much = 20;  // multiple of the reach
+    return proposal.gain > 0 && other.is_valid &&
+           criterion_of(other) - criterion_of(estimate_) < much * reach_;
+  }
+  /// The best of the sets whose loss was computed, if it is also better with noise of its own: the search
+  /// compared them under the noise known then. `doubt`: what its gain must exceed when the errors are not
+  /// white.
+  std::optional<Estimate> better(double doubt) {
+    const auto at_limit = [](const Estimate& e) { return std::ranges::count_if(e.members, is_at_limit); };
+    if (!best_.is_valid || at_limit(best_) > at_limit(estimate_)) return {};
+    maximise(trials_, best_);
+    const double gain = criterion_of(estimate_) - criterion_of(best_);
+    return gain + preference(best_.members, estimate_.members) > std::max(clearly, doubt)
+               ? std::optional(std::move(best_))
+               : std::nullopt;
+  }
+
+ private:
+  double criterion_of(const Estimate& estimate) const { return criterion(trials_, estimate, catalogue_); }
+
+  static constexpr double clearly = 3;
+  Trials& trials_;
+  const Estimate& estimate_;
+  size_t catalogue_;
+  double reach_, best_loss_ = -clearly;
+  Estimate best_;
+};
+
+/// What a set leaves unexplained, in twice the log-likelihood: approximately the gain of a model of the
+/// errors' autocorrelation. A set that is worse by less cannot be excluded. Beyond the limit of white errors
+/// there is no bound.
+double unexplained(double portmanteau) {
+  return std::clamp(portmanteau - double(portmanteau_lags), 0.0, most_portmanteau);
+}
+
+/// Whether one candidate replaces the same member.
+bool contains(const std::vector<Proposal>& list, const Proposal& proposal) {
+  return std::ranges::any_of(list, [&](const Proposal& p) {
+    return p.removed == proposal.removed && p.added[0].candidate == proposal.added[0].candidate;
+  });
+}
+
+/// Alternatives: every other candidate in place of a member, with its shape and all parameters fitted.
+std::vector<Substitute> substitutes_of(Rivals& rivals, size_t member,
+                                       const std::vector<Proposal>& exchanges) {
+  std::vector<Substitute> list;
+  for (const Proposal& proposal : exchanges) {
+    const bool is_one_for_one = proposal.removed == std::vector<size_t>{member} && proposal.added.size() == 1;
+    if (!is_one_for_one || list.size() >= 3) continue;
+    if (const auto loss = rivals.loss_of(proposal)) list.push_back({proposal.added.front().candidate, *loss});
+  }
+  std::ranges::stable_sort(list, {}, &Substitute::loss);
+  return list;
+}
+
+/// The same for several members at a time; the most promising are tried.
+std::vector<OtherSet> other_sets(Rivals& rivals, const std::vector<Member>& members,
+                                 const std::vector<Proposal>& proposals) {
+  constexpr size_t most_tried = 5, most_told = 3;
+  std::vector<OtherSet> list;
+  std::set<std::multiset<std::string>> tried;
+  for (const Proposal& proposal : proposals) {
+    if (tried.size() >= most_tried) break;
+    OtherSet other;
+    std::multiset<std::string> names;
+    for (size_t m : proposal.removed) other.replaced.push_back(members[m].candidate);
+    for (const Member& m : proposal.added) other.by.push_back(m.candidate), names.insert(m.candidate->name);
+    const bool is_one_for_one = other.replaced.size() == 1 && other.by.size() == 1;
+    const bool comes_back = std::ranges::any_of(
+        other.replaced, [&](const Candidate* c) { return names.contains(c->name) || c->is_unknown; });
+    for (const Candidate* c : other.replaced) names.insert("without " + c->name);
+    if (is_one_for_one || comes_back || !tried.insert(names).second) continue;
+    if (const auto loss = rivals.loss_of(proposal)) other.loss = *loss, list.push_back(std::move(other));
+  }
+  std::ranges::stable_sort(list, {}, &OtherSet::loss);
+  if (list.size() > most_told) list.resize(most_told);
+  return list;
+}
+
+/// A parameter at the end of its range indicates that a simpler set is sufficient: one with fewer parameters
+/// that is not out of reach.
+std::optional<Estimate> simplified(Rivals& rivals, const std::vector<Member>& members,
+                                   const std::vector<Proposal>& exchanges) {
+  for (size_t m = 0; m < members.size(); ++m) {
+    const Member& member = members[m];
+    if (!is_at_limit(member)) continue;
+    for (const Proposal& proposal : exchanges) {
+      const bool is_simpler = proposal.removed == std::vector<size_t>{m} && proposal.added.size() == 1 &&
+                              parameters_of(*proposal.added[0].candidate) < parameters_of(*member.candidate);
+      if (!is_simpler || proposal.gain <= -10 * rivals.reach()) continue;
+      Estimate other = rivals.fitted(proposal);
+      if (rivals.loss_of(proposal, other) || rivals.is_promised(proposal, other)) return other;
+    }
+  }
+  return {};
+}
+
+/// Fits all parameters and the noise together, and removes the members that are not material, one by one, the
+/// weakest first. The search judged them with noise that it knew only partly; a barely material member must
+/// explain more than noise that is fitted without it.
+void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
+  constexpr double barely = 2;
+  Estimate& estimate = result.estimate;
+  for (;;) {
+    maximise(trials, estimate);
+    result.weights = weigh_all(trials, estimate);
+    if (estimate.members.empty()) return;
+    std::vector<double> sizes;
+    for (const Weight& weight : result.weights) sizes.push_back(material(trials, estimate, weight));
+    const auto least = std::ranges::min_element(sizes);
+    if (*least >= barely) return;
+    const size_t weakest = size_t(least - sizes.begin());
+    std::vector<Member> members = estimate.members;
+    members.erase(members.begin() + std::ptrdiff_t(weakest));
+    Estimate without = fit_members(trials, members, estimate.noise, estimate.motion, 4);
+    if (*least >= 1) {
+      maximise(trials, without);
+      if (criterion(trials, without, catalogue) > criterion(trials, estimate, catalogue)) return;
+    }
+    const Weight& weight = result.weights[weakest];
+    result.trail.push_back(
+        fmt::format("{}: {}, χ² {:.0f}, force {:.3g}, unique {:.3g} beside a driving force of {:.3g} and "
+                    "noise of {:.3g} and {:.3g}",
+                    *least < 1 ? "not material" : "other noise does as well",
+                    estimate.members[weakest].candidate->name, weight.wald, weight.force_rms,
+                    weight.unique_force, trials.force_rms, estimate.noise.white, estimate.noise.slow()));
+    estimate = std::move(without);
+  }
+}
+
+/// Computes the alternatives, and from them the probability of each member.
+void ask_rivals(Conclusion& result, Evidence& evidence, const std::vector<Proposal>& exchanges,
+                const std::vector<Candidate>& candidates, const AxisModel& model, Rivals& rivals, double n) {
+  const double reach = rivals.reach();
+  // Far from its operating point the loss predicted by a linearization may be wrong by a hundred.
+  const double far = std::max(100.0, 3 * reach);
+  const std::vector<Member>& members = result.estimate.members;
+  std::vector<Proposal> several = evidence.exchanges_for_pairs();
+  std::ranges::copy(exchanges, std::back_inserter(several));
+  std::erase_if(several, [&](const Proposal& p) { return p.gain < -std::max(30.0, reach); });
+  std::ranges::stable_sort(several, std::ranges::greater{}, &Proposal::gain);
+  result.other_sets = other_sets(rivals, members, several);
+  std::vector<Proposal> swaps = shape_swaps(members, candidates);
+  std::ranges::move(law_swaps(members, candidates, model), std::back_inserter(swaps));
+  std::vector<Proposal> near = swaps;
+  for (const Proposal& p : exchanges)
+    if (p.gain > -far && !contains(swaps, p)) near.push_back(p);
+  const std::vector<double> removal = evidence.gains_of_removal();
+  for (size_t m = 0; m < members.size(); ++m) {
+    result.weights[m].loss = -removal[m] * n / evidence.rows();
+    result.substitutes.push_back(substitutes_of(rivals, m, near));
+    double others = std::exp(-std::min(result.weights[m].loss, 600.0) / 2);
+    for (const Substitute& s : result.substitutes[m]) others += std::exp(-std::max(s.loss, 0.0) / 4);
+    result.inclusion.push_back(0.995 / (1 + others));
+  }
+}
+
+/// Joint maximum likelihood, repeated with a set that is as good with fewer members, or better: at most
+/// `rounds` times.
+Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
+                     const std::vector<Shape>& shapes, Estimate found, int rounds) {
+  Conclusion result;
+  Estimate& estimate = result.estimate;
+  estimate = std::move(found);
+  leave_out_doubtful(trials, estimate);
+  const bool was_doubtful = may_be_doubtful(estimate.members);
+  keep_material(trials, result, candidates.size());
+  if (was_doubtful && !may_be_doubtful(estimate.members)) {  // all rows count again
+    leave_out_doubtful(trials, estimate);
+    keep_material(trials, result, candidates.size());
+  }
+  result.portmanteau = portmanteau(trials, estimate.fitted);
+  const double n = double(fitted_numbers(trials));
+  const std::vector<Shape> periodic = periodic_shapes(trials, estimate, candidates, 1);
+  std::vector<const Shape*> all;
+  for (const auto* list : {&shapes, &periodic})
+    for (const Shape& shape : *list) all.push_back(&shape);
+  Evidence evidence(trials, estimate, all, candidates.size());
+  const std::vector<Proposal> exchanges = evidence.exchanges();
+  Rivals rivals(trials, estimate, candidates.size(),
+                std::max({10.0, 0.002 * n, unexplained(result.portmanteau)}));
+  std::optional<Estimate> instead;
+  if (rounds > 0) instead = simplified(rivals, estimate.members, exchanges);
+  if (!instead) {
+    ask_rivals(result, evidence, exchanges, candidates, *trials.list.front().model, rivals, n);
+    if (rounds > 0 && (instead = rivals.better(unexplained(result.portmanteau))))
+      result.trail.push_back("with noise of its own another set does better");
+  }
+  if (instead) {
+    Conclusion next = concluded(trials, candidates, shapes, std::move(*instead), rounds - 1);
+    next.trail.insert(next.trail.begin(), result.trail.begin(), result.trail.end());
+    return next;
+  }
+  const Noise free = fit_noise(trials, estimate.fitted, estimate.noise, FreeNoise::all);
+  result.is_remainder_noise = free.slow() <= most_slow_noise * free.white;
+  return result;
+}
+
+}  // namespace
+
+double material(const Trials& trials, const Estimate& estimate, const Weight& weight) {
+  const double n = double(fitted_numbers(trials));
+  const double least_force_now =
+      std::max(least_force * trials.force_rms, least_force_to_noise * estimate.noise.white);
+  // A delay acts only for moments, but is clearly visible.
+  const double size = std::max(weight.force_rms / least_force_now, weight.wald / (plain_wald_per_row * n));
+  return std::min({weight.wald / std::max(least_wald, least_wald_per_row * n), size,
+                   weight.unique_force / (least_unique_force * trials.force_rms)});
+}
+
+std::vector<Weight> weigh_all(Trials& trials, Estimate& estimate) {
+  work_out_covariance(trials, estimate);
+  if (portmanteau(trials, estimate.fitted) > most_portmanteau) widen_by_blocks(trials, estimate);
+  std::vector<Weight> weights;
+  for (size_t m = 0; m < estimate.members.size(); ++m) weights.push_back(weigh(trials, estimate, m));
+  return weights;
+}
+
+double portmanteau(const Trials& trials, const std::vector<Fitted>& fitted) {
+  constexpr size_t lags = portmanteau_lags;
+  double sums[lags + 1] = {}, n = 0;
+  const size_t ports = trials.ports();
+  for (size_t t = 0; t < trials.list.size(); ++t) {
+    const Trial& trial = trials.list[t];
+    for (size_t k = 0; k < trial.held_out_from; ++k) {
+      if (!trial.usable[k]) continue;
+      n += 1;
+      for (size_t lag = 0; lag <= std::min(lags, k); ++lag)
+        if (trial.usable[k - lag])
+          sums[lag] += fitted[t].white[k * ports] * fitted[t].white[(k - lag) * ports];
+    }
+  }
+  double sum = 0;
+  for (size_t lag = 1; lag <= lags; ++lag) sum += sums[lag] * sums[lag];
+  return n * sum / (sums[0] * sums[0]);
+}
+
+Conclusion conclude(Trials& trials, const std::vector<Candidate>& candidates,
+                    const std::vector<Shape>& shapes, Estimate found) {
+  constexpr int rounds = 2;
+  return concluded(trials, candidates, shapes, std::move(found), rounds);
+}
+
+}  // namespace loopwright::diagnosis

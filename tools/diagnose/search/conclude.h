@@ -1,0 +1,58 @@
+/// After the search: noise and parameters by maximum likelihood, material members, alternatives.
+#pragma once
+#include "tools/diagnose/search/evidence.h"
+
+namespace loopwright::diagnosis {
+
+/// The evidence for one member, and its size.
+struct Weight {
+  double wald = 0;          ///< χ²: squared distance from zero in standard deviations
+  double force_rms = 0;     ///< of the force it consumes, over the fitted rows; sensor: the equivalent force
+  double unique_force = 0;  ///< the part of it that no other member could replace
+  double loss = 0;          ///< loss of the criterion without it
+};
+
+/// Computes the covariance of an estimate with the given noise, and the weight of every member.
+std::vector<Weight> weigh_all(Trials& trials, Estimate& estimate);
+
+/// How far a member is above all thresholds of certainty and force; a member below one of them is not
+/// accepted.
+double material(const Trials& trials, const Estimate& estimate, const Weight& weight);
+
+struct Substitute {
+  const Candidate* candidate = nullptr;
+  double loss = 0;  ///< how much worse the criterion is with it; negative: better
+};
+
+/// Members that others could jointly replace, two for one or two or one for two.
+struct OtherSet {
+  std::vector<const Candidate*> replaced, by;
+  double loss = 0;  ///< how much worse the criterion is with it
+};
+
+/// Above it the errors are not white. Encoder counts at a steady speed alone give up to 170.
+constexpr double most_portmanteau = 300;
+constexpr size_t portmanteau_lags = 40;
+
+struct Conclusion {
+  Estimate estimate;
+  std::vector<Weight> weights;                       ///< one per member
+  std::vector<std::vector<Substitute>> substitutes;  ///< within reach, best first
+  std::vector<OtherSet> other_sets;                  ///< within reach, best first
+  std::vector<double> inclusion;                     ///< probability that the effect is there, calibrated
+  bool is_remainder_noise = true;                    ///< otherwise a slow force exceeds the noise
+  double portmanteau = 0;          ///< n Σ ρ², 40 lags of the whitened errors; 40 when white
+  std::vector<std::string> trail;  ///< what was removed, and why
+
+  /// Whether the errors contain nothing more.
+  bool is_white() const { return is_remainder_noise && portmanteau <= most_portmanteau; }
+};
+
+/// Joint maximum likelihood of parameters and noise; immaterial members are removed one by one.
+Conclusion conclude(Trials& trials, const std::vector<Candidate>& candidates,
+                    const std::vector<Shape>& shapes, Estimate found);
+
+/// n Σ ρ² over 40 lags; near 40 when the errors are white.
+double portmanteau(const Trials& trials, const std::vector<Fitted>& fitted);
+
+}  // namespace loopwright::diagnosis

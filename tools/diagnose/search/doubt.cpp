@@ -1,0 +1,131 @@
+#include "tools/diagnose/search/doubt.h"
+#include "models/real/whole.h"
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace loopwright::diagnosis {
+namespace {
+
+constexpr double kept_error = 0.9;     // of a velocity's error from sample to sample
+constexpr double deviations = 2;       // of the errors that are tried
+constexpr double most_change = 2;      // of the force, caused by them, relative to the white noise
+constexpr double least_left = 0.2;     // of the moving rows
+constexpr double shifts_s[] = {1, 2};  // each gives a different error
+
+/// The path with a different, equally plausible estimation error.
+Path seen_otherwise(const Path& path, double shift_s) {
+  Path other = path;
+  other.identity = 0;
+  const size_t rows = path.samples(), shift = whole_count(shift_s / path.sample_time);
+  double error = 0;
+  for (size_t k = 0; k < rows; ++k) {
+    const size_t from = (k + rows - shift % rows) % rows;
+    const double correction = from == 0 ? 0
+                                        : path.velocity[from] - path.velocity[from - 1] -
+                                              path.acceleration[from - 1] * path.sample_time;
+    error = kept_error * error + correction;
+    other.velocity[k] += deviations * error;
+  }
+  return other;
+}
+
+/// The force consumed by the members that may be doubtful.
+std::vector<double> force_along(std::vector<Member> members, const Path& path) {
+  std::erase_if(members, [](const Member& m) { return !m.candidate->flies; });
+  return drives_of(members, path, path.input).force;
+}
+
+double most_change_of(const Trials& trials) { return most_change * search_noise(trials).white; }
+
+/// Marks the rows at which two forces differ by more than `most`, and the rows after them.
+void mark_where_they_differ(const std::vector<double>& one, const std::vector<double>& other, double most,
+                            std::vector<char>& rows) {
+  int left = 0;
+  for (size_t k = 0; k < rows.size(); ++k) {
+    left = std::abs(other[k] - one[k]) > most ? samples_to_correct : std::max(0, left - 1);
+    if (left > 0) rows[k] = 1;
+  }
+}
+
+/// The force that a candidate consumes at its initial amplitudes.
+std::vector<double> force_at_start(const Candidate& candidate, const Columns& columns) {
+  std::vector<double> force(columns.front().mean->size());
+  for (size_t c = 0; c < columns.size(); ++c)
+    for (size_t k = 0; k < force.size(); ++k)
+      force[k] += candidate.linear[c].start * double((*columns[c].mean)[k]);
+  return force;
+}
+
+/// For one candidate. One shift is enough to rank the shapes, and costs half as much as two.
+void mark_doubtful(std::span<Shape> shapes, const Motion& motion, double most) {
+  const Candidate& candidate = *shapes.front().candidate;
+  std::vector<std::vector<double>> points;
+  for (const Shape& shape : shapes) points.push_back(shape.nonlinear);
+  for (size_t t = 0; t < motion.paths.size(); ++t) {
+    const Path& path = *motion.paths[t];
+    for (Shape& shape : shapes) shape.doubtful.emplace_back(path.samples(), char(0));
+    const std::vector<Columns> others = candidate.columns_at(seen_otherwise(path, shifts_s[0]), points);
+    for (size_t i = 0; i < shapes.size(); ++i)
+      mark_where_they_differ(force_at_start(candidate, shapes[i].columns[t]),
+                             force_at_start(candidate, others[i]), most, shapes[i].doubtful[t]);
+  }
+}
+
+}  // namespace
+
+bool may_be_doubtful(const std::vector<Member>& members) {
+  return std::ranges::any_of(members, [](const Member& m) { return m.candidate->flies; });
+}
+
+std::vector<std::vector<char>> doubtful_rows(const Trials& trials, const Estimate& estimate) {
+  const double most = most_change_of(trials);
+  std::vector<std::vector<char>> doubtful;
+  for (const std::shared_ptr<const Path>& path : estimate.motion.paths) {
+    std::vector<char>& rows = doubtful.emplace_back(path->samples(), char(0));
+    const std::vector<double> force = force_along(estimate.members, *path);
+    for (const double shift : shifts_s)
+      mark_where_they_differ(force, force_along(estimate.members, seen_otherwise(*path, shift)), most, rows);
+  }
+  return doubtful;
+}
+
+void add_without_doubt(const Trials& trials, const Motion& motion, std::vector<Shape>& shapes) {
+  std::vector<Shape> flying;
+  std::ranges::copy_if(shapes, std::back_inserter(flying), [](const Shape& s) { return s.candidate->flies; });
+  for (auto first = flying.begin(); first != flying.end();) {
+    const auto is_other = [&](const Shape& shape) { return shape.candidate != first->candidate; };
+    const auto end = std::find_if(first, flying.end(), is_other);
+    mark_doubtful({first, end}, motion, most_change_of(trials));
+    first = end;
+  }
+  std::ranges::move(flying, std::back_inserter(shapes));
+}
+
+void leave_out_doubtful(Trials& trials, Estimate& estimate) {
+  std::vector<std::vector<char>> usable;
+  for (const Trial& trial : trials.list) usable.push_back(trial.moving);
+  if (may_be_doubtful(estimate.members)) {
+    const std::vector<std::vector<char>> doubtful = doubtful_rows(trials, estimate);
+    size_t moving = 0, left = 0;
+    for (size_t t = 0; t < doubtful.size(); ++t)
+      for (size_t k = 0; k < doubtful[t].size(); ++k) {
+        moving += size_t(usable[t][k]);
+        if (doubtful[t][k]) usable[t][k] = 0;
+        left += size_t(usable[t][k]);
+      }
+    // A shape that makes nearly all rows doubtful explains nothing.
+    if (double(left) < least_left * double(moving))
+      for (size_t t = 0; t < usable.size(); ++t) usable[t] = trials.list[t].moving;
+  }
+  bool changes = false;
+  for (size_t t = 0; t < usable.size(); ++t) {
+    changes |= usable[t] != trials.list[t].usable;
+    trials.list[t].usable = std::move(usable[t]);
+  }
+  if (!changes) return;
+  estimate.mean_square = mean_square(trials, estimate.fitted);
+  estimate.profile = profile(trials, estimate.fitted);
+}
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,386 @@
+#include "tools/diagnose/search/evidence.h"
+#include <algorithm>
+#include <cmath>
+
+namespace loopwright::diagnosis {
+namespace {
+
+/// Every combination of the grids.
+std::vector<std::vector<double>> grid_points(const Candidate& candidate) {
+  std::vector<std::vector<double>> points{{}};
+  for (const CandidateParameter& parameter : candidate.nonlinear) {
+    std::vector<std::vector<double>> longer;
+    for (const auto& point : points)
+      for (double value : parameter.grid) {
+        longer.push_back(point);
+        longer.back().push_back(value);
+      }
+    points = std::move(longer);
+  }
+  return points;
+}
+
+bool is_feasible(const Shape& shape, const Eigen::VectorXd& theta, Eigen::Index first) {
+  const Candidate& candidate = *shape.candidate;
+  if (candidate.amplitude_is_one) return theta[first] > 0.6 && theta[first] < 1.7;
+  for (size_t i = 0; i < candidate.linear.size(); ++i) {
+    const double value = theta[first + Eigen::Index(i)];
+    if (value < candidate.linear[i].low || value > candidate.linear[i].high) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+size_t parameters_of(const Candidate& candidate) {
+  return (candidate.amplitude_is_one ? 0 : candidate.linear.size()) + candidate.nonlinear.size();
+}
+
+double price(size_t parameters, size_t effects, double n, size_t catalogue) {
+  return double(parameters) * std::log(n) + 2 * double(effects) * std::log(double(catalogue));
+}
+
+double criterion(const Trials& trials, const Estimate& estimate, size_t catalogue) {
+  const double n = double(fitted_numbers(trials));
+  size_t parameters = 0;
+  for (const Member& member : estimate.members) parameters += parameters_of(*member.candidate);
+  return estimate.profile + estimate.against_at_rest +
+         price(parameters, estimate.members.size(), n, catalogue);
+}
+
+std::vector<Member> applied(const Proposal& proposal, std::vector<Member> members) {
+  for (size_t i = proposal.removed.size(); i-- > 0;)
+    members.erase(members.begin() + std::ptrdiff_t(proposal.removed[i]));
+  const std::vector<FreeParameter> free = free_parameters(members);
+  double fraction = 1;  // all together, up to the first end of a range
+  for (size_t i = 0; i < free.size(); ++i) {
+    const CandidateParameter& range = range_of(members, free[i]);
+    const double value = value_of(members, free[i]), step = proposal.step[i];
+    const double room = step > 0 ? range.high - value : value - range.low;
+    if (std::abs(step) > room) fraction = std::min(fraction, room / std::abs(step));
+  }
+  for (size_t i = 0; i < free.size(); ++i) value_of(members, free[i]) += fraction * proposal.step[i];
+  for (Member member : proposal.added) {
+    if (!member.candidate->amplitude_is_one)
+      for (double& amplitude : member.linear) amplitude *= fraction;
+    members.push_back(std::move(member));
+  }
+  return members;
+}
+
+std::vector<Proposal> shape_swaps(const std::vector<Member>& members,
+                                  const std::vector<Candidate>& candidates) {
+  std::vector<Proposal> list;
+  const auto is_member = [&](const Candidate& c) {
+    return std::ranges::find(members, &c, &Member::candidate) != members.end();
+  };
+  for (size_t m = 0; m < members.size(); ++m)
+    for (const Candidate& other : candidates) {
+      if (!members[m].candidate->amplitude_is_one || !other.amplitude_is_one || is_member(other)) continue;
+      const CandidateParameter& range = other.nonlinear[0];
+      Member member{&other, {1}, {std::clamp(members[m].nonlinear[0], range.low, range.high)}};
+      std::vector<Member> rest = members;
+      rest.erase(rest.begin() + std::ptrdiff_t(m));
+      list.push_back({{m}, {std::move(member)}, std::vector<double>(free_parameters(rest).size()), 0});
+    }
+  return list;
+}
+
+void add_shapes(const Candidate& candidate, const std::vector<std::vector<double>>& points,
+                const Motion& motion, std::vector<Shape>& shapes) {
+  const size_t first = shapes.size();
+  for (const auto& point : points) shapes.push_back({&candidate, point, {}, {}});
+  for (const auto& path : motion.paths) {
+    std::vector<Columns> columns = candidate.columns_at(*path, points);
+    for (size_t i = 0; i < points.size(); ++i) shapes[first + i].columns.push_back(std::move(columns[i]));
+  }
+}
+
+std::vector<Shape> shapes_of(const std::vector<Candidate>& candidates, const Motion& motion) {
+  std::vector<Shape> shapes;
+  for (const Candidate& candidate : candidates) {
+    if (candidate.is_periodic) continue;
+    add_shapes(candidate, grid_points(candidate), motion, shapes);
+  }
+  return shapes;
+}
+
+Evidence::Evidence(const Trials& trials, const Estimate& estimate, const std::vector<const Shape*>& shapes,
+                   size_t catalogue, size_t most_rows)
+    : members_(estimate.members),
+      shapes_(shapes),
+      catalogue_(catalogue),
+      free_(free_parameters(estimate.members)) {
+  Eigen::Index width = Eigen::Index(free_.size());
+  for (const Shape* shape : shapes)
+    first_column_.push_back(int(width)), width += Eigen::Index(shape->columns[0].size());
+  const size_t ports = trials.ports();
+  const size_t stride = std::max<size_t>(1, fitted_numbers(trials) / ports / most_rows);
+  std::vector<std::vector<size_t>> rows;
+  size_t count = 0;
+  for (const Trial& trial : trials.list) {
+    rows.emplace_back();
+    for (size_t k = 0, usable = 0; k < trial.held_out_from; ++k)
+      if (trial.usable[k] && usable++ % stride == 0) rows.back().push_back(k);
+    count += rows.back().size() * ports;
+  }
+  n_ = double(count);
+  X_.resize(Eigen::Index(count), width + 1);
+  Eigen::Index top = 0;
+  for (size_t t = 0; t < trials.list.size(); ++t) {
+    const Fitted& fitted = estimate.fitted[t];
+    const Path& path = *estimate.motion.paths[t];
+    const auto fill = [&](Eigen::Index column, const std::vector<double>& values) {
+      Eigen::Index r = top;
+      for (size_t k : rows[t])
+        for (size_t p = 0; p < ports; ++p) X_(r++, column) = values[k * ports + p];
+    };
+    const Sensitivity own = sensitivity(estimate.members, path, fitted, trials.list[t].input);
+    for (size_t c = 0; c < own.columns.size(); ++c) fill(Eigen::Index(c), own.columns[c]);
+    for (const Acts acts : {Acts::force, Acts::input, Acts::sensor}) {
+      std::vector<const Column*> columns;
+      std::vector<double*> places;
+      for (size_t s = 0; s < shapes.size(); ++s) {
+        if (shapes[s]->candidate->acts != acts || without_doubt(s) != s) continue;
+        for (size_t c = 0; c < shapes[s]->columns[t].size(); ++c)
+          columns.push_back(&shapes[s]->columns[t][c]), places.push_back(&X_(top, first_column_[s] + int(c)));
+      }
+      responses(fitted.axis, fitted.gains, path, acts, columns, rows[t], places);
+    }
+    for (size_t s = 0; s < shapes.size(); ++s)
+      if (!shapes[s]->doubtful.empty()) clear_doubtful(s, shapes[s]->doubtful[t], rows[t], top, ports);
+    fill(width, fitted.white);
+    top += Eigen::Index(rows[t].size() * ports);
+  }
+  G_ = Eigen::MatrixXd::Zero(width, width);
+  const Eigen::Index own = Eigen::Index(free_.size());
+  G_.topRows(own).noalias() = X_.leftCols(own).transpose() * X_.leftCols(width);
+  G_.leftCols(own) = G_.topRows(own).transpose().eval();
+  for (size_t s = 0; s < shapes.size(); ++s) multiply(s, s);
+  b_ = X_.leftCols(width).transpose() * X_.col(width);
+  squares_ = X_.col(width).squaredNorm();
+  explained_ = solve(member_columns(), b_, squares_).squares;
+}
+
+/// The same shape with all its rows, which has the same responses; if there is none, the shape itself.
+size_t Evidence::without_doubt(size_t shape) const {
+  const Shape& s = *shapes_[shape];
+  if (s.doubtful.empty()) return shape;
+  const auto original = std::ranges::find_if(shapes_, [&](const Shape* other) {
+    return other->candidate == s.candidate && other->doubtful.empty() && other->nonlinear == s.nonlinear;
+  });
+  return original == shapes_.end() ? shape : size_t(original - shapes_.begin());
+}
+
+void Evidence::clear_doubtful(size_t shape, const std::vector<char>& doubtful,
+                              const std::vector<size_t>& rows, Eigen::Index top, size_t ports) {
+  const auto columns = [&](size_t s) {
+    return X_.block(top, first_column_[s], Eigen::Index(rows.size() * ports), width_of(s));
+  };
+  if (const size_t original = without_doubt(shape); original != shape) columns(shape) = columns(original);
+  for (size_t i = 0; i < rows.size(); ++i)
+    if (doubtful[rows[i]]) columns(shape).middleRows(Eigen::Index(i * ports), Eigen::Index(ports)).setZero();
+}
+
+void Evidence::multiply(size_t shape, size_t other) {
+  const int i = first_column_[shape], j = first_column_[other];
+  G_.block(i, j, width_of(shape), width_of(other)).noalias() =
+      X_.middleCols(i, width_of(shape)).transpose() * X_.middleCols(j, width_of(other));
+  G_.block(j, i, width_of(other), width_of(shape)) =
+      G_.block(i, j, width_of(shape), width_of(other)).transpose().eval();
+}
+
+Evidence::Solution Evidence::solve(const std::vector<int>& columns, const Eigen::VectorXd& b,
+                                   double squares) const {
+  const Eigen::Index n = Eigen::Index(columns.size());
+  if (n == 0) return {squares, {}};
+  Eigen::MatrixXd G(n, n);
+  Eigen::VectorXd right(n), scale(n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    scale[i] = 1 / std::sqrt(std::max(G_(columns[size_t(i)], columns[size_t(i)]), 1e-300));
+  for (Eigen::Index i = 0; i < n; ++i) {
+    right[i] = scale[i] * b[columns[size_t(i)]];
+    for (Eigen::Index j = 0; j < n; ++j)
+      G(i, j) = scale[i] * scale[j] * G_(columns[size_t(i)], columns[size_t(j)]) + (i == j ? 1e-9 : 0.0);
+  }
+  const Eigen::VectorXd theta = G.ldlt().solve(right);
+  return {std::max(squares - right.dot(theta), 1e-12 * squares), scale.cwiseProduct(theta)};
+}
+
+std::vector<int> Evidence::member_columns(const std::vector<size_t>& without, bool only_linear) const {
+  std::vector<int> columns;
+  for (size_t i = 0; i < free_.size(); ++i)
+    if (std::ranges::find(without, free_[i].member) == without.end() && (free_[i].is_linear || !only_linear))
+      columns.push_back(int(i));
+  return columns;
+}
+
+/// What a member explains becomes part of the errors again. A shape that is not proportional to a parameter
+/// (a delay) counts as its derivative times its value.
+Evidence::Errors Evidence::errors_without(const std::vector<size_t>& removed) const {
+  const Eigen::Index own = Eigen::Index(free_.size());
+  Eigen::VectorXd theta = Eigen::VectorXd::Zero(own);
+  for (size_t i = 0; i < free_.size(); ++i) {
+    const FreeParameter& p = free_[i];
+    if (std::ranges::find(removed, p.member) == removed.end()) continue;
+    const Member& m = members_[p.member];
+    if (p.is_linear)
+      theta[Eigen::Index(i)] = m.linear[p.index];
+    else if (m.candidate->amplitude_is_one)
+      theta[Eigen::Index(i)] = m.nonlinear[p.index];
+  }
+  const Eigen::VectorXd added = G_.leftCols(own) * theta;
+  return {removed, b_ + added, squares_ + 2 * theta.dot(b_.head(own)) + theta.dot(added.head(own))};
+}
+
+/// A candidate is a member only once; one that repeats along the axis may be added again at another pitch.
+bool Evidence::may_be_added(const Shape& shape, const std::vector<size_t>& removed) const {
+  for (size_t m = 0; m < members_.size(); ++m) {
+    const Member& member = members_[m];
+    if (member.candidate != shape.candidate) continue;
+    const bool other_pitch = shape.candidate->is_periodic && shape.candidate->is_repeatable &&
+                             std::abs(shape.nonlinear[0] / member.nonlinear[0] - 1) > 0.02;
+    if (!other_pitch) return false;
+    if (std::ranges::find(removed, m) != removed.end()) return false;
+  }
+  return true;
+}
+
+std::optional<Proposal> Evidence::with_shapes(const std::vector<size_t>& shapes, const Errors& errors) const {
+  const std::vector<size_t>& removed = errors.removed;
+  const auto with_members = [&](bool only_linear) {
+    std::vector<int> columns = member_columns(removed, only_linear);
+    for (size_t s : shapes)
+      for (int c = 0; c < width_of(s); ++c) columns.push_back(first_column_[s] + c);
+    return columns;
+  };
+  const Solution solution = solve(with_members(false), errors.b, errors.squares);
+  Eigen::Index first = Eigen::Index(member_columns(removed).size());
+  double cost = 0;
+  for (size_t s : shapes) {
+    if (!is_feasible(*shapes_[s], solution.theta, first)) return {};
+    first += width_of(s);
+    cost += price(parameters_of(*shapes_[s]->candidate), 1, n_, catalogue_);
+  }
+  for (size_t m : removed) cost -= price(parameters_of(*members_[m].candidate), 1, n_, catalogue_);
+  // If the members' shapes are poorly determined, the full step would leave the linear range.
+  const std::vector<int> columns = with_members(true);
+  Proposal proposal = with_step(shapes, removed, solve(columns, errors.b, errors.squares).theta);
+  proposal.gain = n_ * std::log(explained_ / solution.squares) - cost;
+  return proposal;
+}
+
+/// `theta`: steps of the linear parameters of the members that stay, then of the shapes.
+Proposal Evidence::with_step(const std::vector<size_t>& shapes, const std::vector<size_t>& removed,
+                             const Eigen::VectorXd& theta) const {
+  Proposal proposal;
+  proposal.removed = removed;
+  Eigen::Index next = 0;
+  for (const FreeParameter& p : free_)
+    if (std::ranges::find(removed, p.member) == removed.end())
+      proposal.step.push_back(p.is_linear ? theta[next++] : 0);
+  for (size_t s : shapes) {
+    const Shape& shape = *shapes_[s];
+    Member member{shape.candidate, {}, shape.nonlinear};
+    for (int c = 0; c < width_of(s); ++c, ++next)
+      member.linear.push_back(shape.candidate->amplitude_is_one ? 1 : theta[next]);
+    proposal.added.push_back(std::move(member));
+  }
+  return proposal;
+}
+
+/// For every candidate that is not a member, the shape that saves most.
+std::vector<size_t> Evidence::best_shapes(const Errors& errors) const {
+  std::vector<size_t> best;
+  std::vector<double> gains;
+  for (size_t s = 0; s < shapes_.size(); ++s) {
+    if (!may_be_added(*shapes_[s], errors.removed)) continue;
+    const auto proposal = with_shapes({s}, errors);
+    if (!proposal) continue;
+    const auto same = std::ranges::find_if(
+        best, [&](size_t other) { return shapes_[other]->candidate == shapes_[s]->candidate; });
+    if (same == best.end()) {
+      best.push_back(s), gains.push_back(proposal->gain);
+    } else if (double& gain = gains[size_t(same - best.begin())]; proposal->gain > gain) {
+      *same = s, gain = proposal->gain;
+    }
+  }
+  return best;
+}
+
+std::vector<Proposal> Evidence::extensions() const {
+  std::vector<Proposal> list;
+  const Errors errors = errors_without({});
+  for (size_t s : best_shapes(errors))
+    if (auto proposal = with_shapes({s}, errors); proposal && proposal->gain > 0)
+      list.push_back(std::move(*proposal));
+  std::ranges::stable_sort(list, std::ranges::greater{}, &Proposal::gain);
+  return list;
+}
+
+Proposal Evidence::best_pair(bool one_without_name) {
+  const Errors errors = errors_without({});
+  const std::vector<size_t> best = best_shapes(errors);
+  Proposal result;
+  for (size_t i = 0; i < best.size(); ++i)
+    for (size_t j = i + 1; j < best.size(); ++j) {
+      const bool has_unknown =
+          shapes_[best[i]]->candidate->is_unknown != shapes_[best[j]]->candidate->is_unknown;
+      if (one_without_name && !has_unknown) continue;
+      multiply(best[i], best[j]);
+      if (auto pair = with_shapes({best[i], best[j]}, errors); pair && pair->gain > result.gain)
+        result = std::move(*pair);
+    }
+  return result;
+}
+
+std::vector<std::vector<size_t>> Evidence::removals() const {
+  std::vector<std::vector<size_t>> list;
+  for (size_t i = 0; i < members_.size(); ++i) {
+    list.push_back({i});
+    for (size_t j = i + 1; j < members_.size(); ++j) list.push_back({i, j});
+  }
+  return list;
+}
+
+std::vector<Proposal> Evidence::exchanges() const {
+  std::vector<Proposal> list;
+  for (const auto& removed : removals()) {
+    const Errors errors = errors_without(removed);
+    for (size_t s : best_shapes(errors))
+      if (auto proposal = with_shapes({s}, errors)) list.push_back(std::move(*proposal));
+  }
+  std::ranges::stable_sort(list, std::ranges::greater{}, &Proposal::gain);
+  return list;
+}
+
+std::vector<Proposal> Evidence::exchanges_for_pairs() {
+  std::vector<Proposal> list;
+  for (const auto& removed : removals()) {
+    const Errors errors = errors_without(removed);
+    const std::vector<size_t> best = best_shapes(errors);
+    std::vector<double> alone;
+    for (size_t s : best) alone.push_back(with_shapes({s}, errors)->gain);
+    for (size_t i = 0; i < best.size(); ++i)
+      for (size_t j = i + 1; j < best.size(); ++j) {
+        multiply(best[i], best[j]);
+        auto proposal = with_shapes({best[i], best[j]}, errors);
+        if (proposal && proposal->gain > std::max(alone[i], alone[j])) list.push_back(std::move(*proposal));
+      }
+  }
+  std::ranges::stable_sort(list, std::ranges::greater{}, &Proposal::gain);
+  return list;
+}
+
+std::vector<double> Evidence::gains_of_removal() const {
+  std::vector<double> gains;
+  for (size_t m = 0; m < members_.size(); ++m) {
+    const Errors errors = errors_without({m});
+    const double without = solve(member_columns({m}), errors.b, errors.squares).squares;
+    gains.push_back(price(parameters_of(*members_[m].candidate), 1, n_, catalogue_) -
+                    n_ * std::log(without / explained_));
+  }
+  return gains;
+}
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,105 @@
+/// Evidence of the prediction errors for additional effects: columns of every candidate on a coarse grid of
+/// shapes, and their sums of squares, so that a set of effects costs only one small solve.
+#pragma once
+#include "tools/diagnose/search/maximum_likelihood.h"
+
+namespace loopwright::diagnosis {
+
+/// A candidate at one point of its grid, with its columns along each record.
+struct Shape {
+  const Candidate* candidate = nullptr;
+  std::vector<double> nonlinear;
+  std::vector<Columns> columns;  ///< one per record
+  /// Rows of each record that contain no information about it; empty if all count: see add_without_doubt().
+  std::vector<std::vector<char>> doubtful;
+};
+
+/// A candidate at several points together.
+void add_shapes(const Candidate& candidate, const std::vector<std::vector<double>>& points,
+                const Motion& motion, std::vector<Shape>& shapes);
+/// Every candidate at every point of its grid, except those that scan pitches.
+std::vector<Shape> shapes_of(const std::vector<Candidate>& candidates, const Motion& motion);
+
+/// A set of effects that explains the errors, according to the linearization.
+struct Proposal {
+  std::vector<size_t> removed;  ///< members removed
+  std::vector<Member> added;
+  std::vector<double> step;  ///< of the free parameters of the members that stay, to go with `added`
+  double gain = 0;           ///< saving in the extended information criterion
+};
+
+/// Extended Bayesian information criterion (Chen and Chen 2008): what a set must save in n ln(mean square).
+double price(size_t parameters, size_t effects, double n, size_t catalogue);
+size_t parameters_of(const Candidate& candidate);
+/// n ln(mean square) + ln|S| + cost of the parameters; smaller is better.
+double criterion(const Trials& trials, const Estimate& estimate, size_t catalogue);
+
+/// The members with the proposal applied.
+std::vector<Member> applied(const Proposal& proposal, std::vector<Member> members);
+
+/// Members that are pure shapes (a delay, a lag) replaced by another pure shape of the same size: they are
+/// equal to first order, and too nonlinear for the linearization to distinguish.
+std::vector<Proposal> shape_swaps(const std::vector<Member>& members,
+                                  const std::vector<Candidate>& candidates);
+
+/// Sums of squares of the errors, of the members' sensitivities, and of every shape.
+class Evidence {
+ public:
+  /// At most this many rows are used, evenly spaced.
+  Evidence(const Trials& trials, const Estimate& estimate, const std::vector<const Shape*>& shapes,
+           size_t catalogue, size_t most_rows = 9000);
+
+  /// The best shape of every candidate that is not yet a member, best first; without those that save nothing.
+  std::vector<Proposal> extensions() const;
+  /// The best two shapes together, from the best shapes of every candidate; if requested, one of them
+  /// unnamed.
+  Proposal best_pair(bool one_without_name = false);
+  /// A member, or two, replaced by one shape: the best for each candidate, best first.
+  std::vector<Proposal> exchanges() const;
+  /// A member, or two, replaced by two shapes, both of them needed: the best for each pair of candidates,
+  /// best first.
+  std::vector<Proposal> exchanges_for_pairs();
+  /// The members without one, with the saving (mostly negative).
+  std::vector<double> gains_of_removal() const;
+  double rows() const { return n_; }
+
+ private:
+  struct Solution {
+    double squares = 0;
+    Eigen::VectorXd theta;
+  };
+  /// The errors with some members removed.
+  struct Errors {
+    std::vector<size_t> removed;
+    Eigen::VectorXd b;  ///< products with all columns
+    double squares = 0;
+  };
+  Solution solve(const std::vector<int>& columns, const Eigen::VectorXd& b, double squares) const;
+  std::vector<int> member_columns(const std::vector<size_t>& without = {}, bool only_linear = false) const;
+  /// Every member, and every pair.
+  std::vector<std::vector<size_t>> removals() const;
+  Errors errors_without(const std::vector<size_t>& removed) const;
+  void multiply(size_t shape, size_t other);
+  size_t without_doubt(size_t shape) const;
+  /// Zero where the shape is doubtful, in a record's rows of X_, which begin at `top`.
+  void clear_doubtful(size_t shape, const std::vector<char>& doubtful, const std::vector<size_t>& rows,
+                      Eigen::Index top, size_t ports);
+  int width_of(size_t shape) const { return int(shapes_[shape]->columns[0].size()); }
+  std::optional<Proposal> with_shapes(const std::vector<size_t>& shapes, const Errors& errors) const;
+  Proposal with_step(const std::vector<size_t>& shapes, const std::vector<size_t>& removed,
+                     const Eigen::VectorXd& theta) const;
+  bool may_be_added(const Shape& shape, const std::vector<size_t>& removed) const;
+  std::vector<size_t> best_shapes(const Errors& errors) const;
+
+  const std::vector<Member> members_;
+  const std::vector<const Shape*> shapes_;
+  const size_t catalogue_;
+  std::vector<FreeParameter> free_;
+  std::vector<int> first_column_;  // of each shape
+  Eigen::MatrixXd X_;              // rows used × columns: members', shapes', errors
+  Eigen::MatrixXd G_;  // Xᵀ X, as far as needed: for two shapes only if they were tried together
+  Eigen::VectorXd b_;
+  double squares_ = 0, n_ = 0, explained_ = 0;  // explained_: remaining squares after the members
+};
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,111 @@
+/// The likelihood of the noise, from errors produced with one set of gains.
+#include <nlopt.h>
+#include <algorithm>
+#include <cmath>
+#include "tools/diagnose/search/maximum_likelihood.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+/// Relative to the driving force's rms: a fiftieth of the smallest material force.
+constexpr double least_white = 1e-4;
+
+/// Logarithms of the free parameters of a noise.
+struct Coordinates {
+  FreeNoise free;
+  Noise start;
+
+  std::vector<double> of(const Noise& noise) const {
+    std::vector<double> x{std::log(noise.white)};
+    if (free == FreeNoise::white_and_slow) return x.push_back(std::log(noise.slow())), x;
+    x.push_back(std::log(free == FreeNoise::with_random_walk ? noise.step : noise.slow()));
+    for (double m : noise.measurement) x.push_back(std::log(m));
+    if (free == FreeNoise::all) x.push_back(std::log(-1 / std::log(noise.memory)));
+    return x;
+  }
+  Noise at(const double* x) const {
+    Noise noise = start;
+    noise.white = std::exp(x[0]);
+    if (free != FreeNoise::white_and_slow)
+      for (size_t p = 0; p < noise.measurement.size(); ++p) noise.measurement[p] = std::exp(x[2 + p]);
+    if (free == FreeNoise::with_random_walk) return noise.step = std::exp(x[1]), noise;
+    if (free == FreeNoise::all) noise.memory = std::exp(-std::exp(-x[2 + noise.measurement.size()]));
+    noise.step = std::exp(x[1]) * std::sqrt(1 - noise.memory * noise.memory);
+    return noise;
+  }
+};
+
+struct Objective {
+  const Trials& trials;
+  const std::vector<Fitted>& fitted;
+  Coordinates coordinates;
+
+  double operator()(const Noise& noise) const {
+    double sum = 0;
+    const size_t ports = trials.ports();
+    for (size_t t = 0; t < trials.list.size(); ++t) {
+      const Trial& trial = trials.list[t];
+      const Gains gains = gains_of(fitted[t].axis, noise, trial.model->nominal_inertia());
+      std::vector<double> error = with_gains(fitted[t].axis, fitted[t].prediction, fitted[t].gains, gains);
+      whiten(error, gains);
+      for (size_t k = 0; k < std::min(trial.held_out_from, error.size() / ports); ++k) {
+        if (!trial.usable[k]) continue;
+        sum += gains.log_determinant;
+        for (size_t p = 0; p < ports; ++p) sum += error[k * ports + p] * error[k * ports + p];
+      }
+    }
+    return std::isfinite(sum) ? sum : 1e300;
+  }
+};
+
+double evaluate(unsigned, const double* x, double*, void* data) {
+  const Objective& objective = *static_cast<const Objective*>(data);
+  return objective(objective.coordinates.at(x));
+}
+
+}  // namespace
+
+Noise search_noise(const Trials& trials) {
+  constexpr double memory_s = 0.03;
+  Noise noise = trials.noise;
+  noise.white = std::clamp(noise.white, 0.005 * trials.force_rms, 0.02 * trials.force_rms);
+  const double sample_time = trials.list.front().model->record().sample_time;
+  noise.memory = std::exp(-sample_time / memory_s);
+  noise.step = usual_slow_noise * noise.white * std::sqrt(1 - noise.memory * noise.memory);
+  return noise;
+}
+
+Noise fit_noise(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& start, FreeNoise free) {
+  Objective objective{trials, fitted, {free, start}};
+  std::vector<double> x = objective.coordinates.of(start), low = x, high = x;
+  for (size_t i = 0; i < x.size(); ++i) low[i] -= std::log(30.0), high[i] += std::log(30.0);
+  // If the sensor's quantization is the only noise, the force noise would go to zero.
+  low[0] = std::max(low[0], std::log(least_white * trials.force_rms));
+  x[0] = std::max(x[0], low[0]), high[0] = std::max(high[0], x[0]);
+  nlopt_opt optimiser = nlopt_create(NLOPT_LN_BOBYQA, unsigned(x.size()));
+  nlopt_set_min_objective(optimiser, evaluate, &objective);
+  nlopt_set_lower_bounds(optimiser, low.data());
+  nlopt_set_upper_bounds(optimiser, high.data());
+  nlopt_set_initial_step1(optimiser, 0.7);
+  nlopt_set_ftol_abs(optimiser, 0.1);
+  nlopt_set_maxeval(optimiser, 60 * int(x.size()));
+  double value = 0;
+  nlopt_optimize(optimiser, x.data(), &value);
+  nlopt_destroy(optimiser);
+  return objective.coordinates.at(x.data());
+}
+
+Noise fit_noise_alone(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& start,
+                      FreeNoise free) {
+  constexpr double next_to_nothing = 0.01;
+  // If it is nearly zero, or was set to zero, the likelihood is too flat to recover it.
+  Noise from = start;
+  from.step = std::max(from.step, usual_slow_noise * from.white * std::sqrt(1 - from.memory * from.memory));
+  Noise noise = fit_noise(trials, fitted, from, free);
+  if (noise.slow() <= most_slow_noise * noise.white) return noise;
+  noise.white = std::hypot(noise.white, noise.slow());
+  noise.step = next_to_nothing * noise.white * std::sqrt(1 - noise.memory * noise.memory);
+  return noise;
+}
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,244 @@
+#include "tools/diagnose/search/hypothesis.h"
+#include <algorithm>
+#include <cmath>
+
+namespace loopwright::diagnosis {
+namespace {
+
+double added_inertia(const std::vector<Member>& members) {
+  double added = 0;
+  for (const Member& member : members)
+    if (member.candidate->added_inertia) added += member.candidate->added_inertia(member);
+  return added;
+}
+
+/// Members that change the input, in the order of the signal path.
+std::vector<const Member*> chain_of(const std::vector<Member>& members) {
+  std::vector<const Member*> chain;
+  for (const Member& member : members)
+    if (member.candidate->acts == Acts::input) chain.push_back(&member);
+  std::ranges::stable_sort(chain, {}, [](const Member* m) { return m->candidate->stage; });
+  return chain;
+}
+
+/// Adds `sign` times the force that a member consumes; a slope that is not needed stays empty.
+void add_columns(const Member& member, const Columns& columns, std::vector<double>& mean,
+                 std::vector<double>& slope, double sign = 1) {
+  for (size_t c = 0; c < columns.size(); ++c) {
+    const double amplitude = sign * member.linear[c];
+    const std::vector<float>& mean_of = *columns[c].mean;
+    for (size_t k = 0; k < mean.size(); ++k) mean[k] += amplitude * double(mean_of[k]);
+    if (!columns[c].slope) continue;
+    const std::vector<float>& slope_of = *columns[c].slope;
+    slope.resize(mean.size(), 0.0);
+    for (size_t k = 0; k < slope.size(); ++k) slope[k] += amplitude * double(slope_of[k]);
+  }
+}
+
+/// The input after a chain of effects, as mean and slope.
+struct ChangedInput {
+  std::vector<double> mean, slope;
+};
+ChangedInput through(const std::vector<const Member*>& chain, const Path& path,
+                     const std::vector<double>& raw_input) {
+  if (chain.empty()) return {raw_input, {}};
+  Path upstream = path;
+  upstream.input = raw_input, upstream.identity = 0;
+  std::vector<double> slope;
+  for (const Member* member : chain)
+    add_columns(*member, member->candidate->columns(upstream, member->nonlinear), upstream.input, slope, -1);
+  return {std::move(upstream.input), std::move(slope)};
+}
+
+/// A step in a nonlinear parameter for its derivative, within its range.
+double difference_step(const CandidateParameter& range, double at) {
+  if (range.span > 0) return 0.003 * at * at / range.span;
+  const double step = 1e-3 * (range.logarithmic ? std::abs(at) : range.high - range.low);
+  return at + step > range.high ? -step : step;
+}
+
+std::vector<float> divided(const std::vector<double>& change, double step) {
+  std::vector<float> result(change.size());
+  for (size_t k = 0; k < result.size(); ++k) result[k] = float(change[k] / step);
+  return result;
+}
+
+/// d(consumed)/d(parameter) of a member that does not change the input: its columns, then a difference for
+/// each shape.
+Columns derivatives(const Member& member, const Path& path) {
+  std::vector<std::vector<double>> shapes{member.nonlinear};
+  std::vector<double> steps;
+  for (size_t i = 0; i < member.nonlinear.size(); ++i) {
+    shapes.push_back(member.nonlinear);
+    steps.push_back(difference_step(member.candidate->nonlinear[i], member.nonlinear[i]));
+    shapes.back()[i] += steps[i];
+  }
+  std::vector<Columns> at = member.candidate->columns_at(path, shapes);
+  Columns result = member.candidate->amplitude_is_one ? Columns{} : at[0];
+  for (size_t i = 0; i < steps.size(); ++i) {
+    std::vector<double> change(path.samples()), slope;
+    add_columns(member, at[i + 1], change, slope);
+    add_columns(member, at[0], change, slope, -1);
+    result.emplace_back(divided(change, steps[i]), divided(slope, steps[i]));
+  }
+  return result;
+}
+
+/// The same for a member that changes the input, as consumed input at the end of the chain.
+Column input_derivative(std::vector<Member> members, const FreeParameter& parameter, const Path& path,
+                        const std::vector<double>& raw_input) {
+  double& value = value_of(members, parameter);
+  const CandidateParameter& range = range_of(members, parameter);
+  const double at = value, step = parameter.is_linear ? 1e-3 : difference_step(range, value);
+  const double before = parameter.is_linear ? at - step : std::clamp(at - step, range.low, range.high);
+  value = at + step;
+  ChangedInput change = through(chain_of(members), path, raw_input);
+  value = before;
+  const ChangedInput low = through(chain_of(members), path, raw_input);
+  change.slope.resize(std::max(change.slope.size(), low.slope.size()), 0.0);
+  for (size_t k = 0; k < change.mean.size(); ++k) change.mean[k] -= low.mean[k];
+  for (size_t k = 0; k < low.slope.size(); ++k) change.slope[k] -= low.slope[k];
+  return Column(divided(change.mean, before - at - step), divided(change.slope, before - at - step));
+}
+
+template <class F>
+void for_counted_rows(const Trials& trials, const std::vector<Fitted>& fitted, bool held_out, F&& f) {
+  const size_t ports = trials.ports();
+  for (size_t t = 0; t < trials.list.size(); ++t) {
+    const Trial& trial = trials.list[t];
+    const size_t from = held_out ? trial.held_out_from : 0;
+    const size_t to = held_out ? trial.usable.size() : trial.held_out_from;
+    for (size_t k = from; k < to; ++k)
+      if (trial.usable[k]) f(fitted[t], std::span(fitted[t].white).subspan(k * ports, ports));
+  }
+}
+
+}  // namespace
+
+void Trials::run_along(Rows rows) {
+  for (Trial& trial : list) {
+    const std::vector<double>& whole = trial.model->record().input;
+    const size_t end = rows == Rows::all ? whole.size() : trial.held_out_from;
+    trial.input.assign(whole.begin(), whole.begin() + std::ptrdiff_t(end));
+  }
+}
+
+Motion cut(const Motion& motion, const Trials& trials) {
+  Motion shorter{{}, motion.profile};
+  for (size_t t = 0; t < trials.list.size(); ++t)
+    shorter.paths.push_back(
+        std::make_shared<const Path>(motion.paths[t]->first_samples(trials.list[t].rows())));
+  return shorter;
+}
+
+std::vector<FreeParameter> free_parameters(const std::vector<Member>& members) {
+  std::vector<FreeParameter> free;
+  for (size_t m = 0; m < members.size(); ++m) {
+    if (!members[m].candidate->amplitude_is_one)
+      for (size_t i = 0; i < members[m].linear.size(); ++i) free.push_back({m, true, i});
+    for (size_t i = 0; i < members[m].nonlinear.size(); ++i) free.push_back({m, false, i});
+  }
+  return free;
+}
+
+double& value_of(std::vector<Member>& members, const FreeParameter& p) {
+  Member& member = members[p.member];
+  return p.is_linear ? member.linear[p.index] : member.nonlinear[p.index];
+}
+
+const CandidateParameter& range_of(const std::vector<Member>& members, const FreeParameter& p) {
+  const Candidate& candidate = *members[p.member].candidate;
+  return p.is_linear ? candidate.linear[p.index] : candidate.nonlinear[p.index];
+}
+
+Drives drives_of(const std::vector<Member>& members, const Path& path, const std::vector<double>& raw_input) {
+  Drives drives;
+  ChangedInput changed = through(chain_of(members), path, raw_input);
+  drives.input = std::move(changed.mean), drives.input_slope = std::move(changed.slope);
+  drives.force.assign(raw_input.size(), 0.0);
+  const double inertia = added_inertia(members);
+  if (inertia != 0)
+    for (size_t k = 0; k < drives.force.size(); ++k) drives.force[k] = -inertia * path.acceleration[k];
+  for (const Member& member : members) {
+    const Candidate& candidate = *member.candidate;
+    if (candidate.acts == Acts::force)
+      add_columns(member, candidate.columns(path, member.nonlinear), drives.force, drives.force_slope);
+    if (candidate.acts != Acts::sensor) continue;
+    std::vector<double> no_slope;
+    drives.sensor.resize(raw_input.size(), 0.0);
+    add_columns(member, candidate.columns(path, member.nonlinear), drives.sensor, no_slope);
+  }
+  return drives;
+}
+
+std::vector<Fitted> run_members(Trials& trials, const std::vector<Member>& members, const Motion& motion,
+                                const Noise& noise) {
+  if (trials.interrupt && *trials.interrupt) throw Interrupted{};
+  std::vector<Fitted> result;
+  const double inertia = added_inertia(members);
+  for (size_t t = 0; t < trials.list.size(); ++t) {
+    AxisModel& model = *trials.list[t].model;
+    Fitted fitted;
+    model.set_added_inertia(inertia);
+    fitted.axis = model.linearize();
+    fitted.gains = gains_of(fitted.axis, noise, model.nominal_inertia());
+    const std::vector<double>& raw = trials.list[t].input;
+    Drives drives;
+    if (motion.paths.empty())
+      drives = {raw, std::vector<double>(raw.size(), 0.0), {}, {}, {}};
+    else
+      drives = drives_of(members, *motion.paths[t], raw);
+    fitted.prediction = predict(model, fitted.axis, fitted.gains, drives, trials.rest_speed);
+    fitted.white = fitted.prediction.error;
+    whiten(fitted.white, fitted.gains);
+    result.push_back(std::move(fitted));
+  }
+  return result;
+}
+
+double mean_square(const Trials& trials, const std::vector<Fitted>& fitted, bool held_out) {
+  double sum = 0;
+  size_t n = 0;
+  for_counted_rows(trials, fitted, held_out, [&](const Fitted&, std::span<const double> white) {
+    for (double e : white) sum += e * e, ++n;
+  });
+  return n ? sum / double(n) : 0;
+}
+
+double profile(const Trials& trials, const std::vector<Fitted>& fitted) {
+  double sum = 0;
+  for_counted_rows(trials, fitted, false,
+                   [&](const Fitted& f, std::span<const double>) { sum += f.gains.log_determinant; });
+  return sum + double(fitted_numbers(trials)) * std::log(mean_square(trials, fitted));
+}
+
+size_t fitted_numbers(const Trials& trials) {
+  size_t n = 0;
+  for (const Trial& trial : trials.list)
+    for (size_t k = 0; k < trial.held_out_from; ++k) n += trial.usable[k] ? trials.ports() : 0;
+  return n;
+}
+
+Sensitivity sensitivity(const std::vector<Member>& members, const Path& path, const Fitted& fitted,
+                        const std::vector<double>& raw_input) {
+  Sensitivity result;
+  const std::vector<FreeParameter> free = free_parameters(members);
+  result.columns.resize(free.size());
+  for (const Acts acts : {Acts::force, Acts::input, Acts::sensor}) {
+    Columns columns;
+    std::vector<size_t> places;
+    for (size_t i = 0; i < free.size(); ++i)
+      if (members[free[i].member].candidate->acts == acts) {
+        places.push_back(i);
+        if (acts == Acts::input) columns.push_back(input_derivative(members, free[i], path, raw_input));
+      }
+    for (const Member& member : members)
+      if (acts != Acts::input && member.candidate->acts == acts)
+        std::ranges::move(derivatives(member, path), std::back_inserter(columns));
+    auto response = responses(fitted.axis, fitted.gains, path, acts, pointers(columns));
+    for (size_t i = 0; i < places.size(); ++i) result.columns[places[i]] = std::move(response[i]);
+  }
+  return result;
+}
+
+}  // namespace loopwright::diagnosis

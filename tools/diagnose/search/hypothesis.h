@@ -1,0 +1,97 @@
+/// A model to be tested: the nominal diagram and some effects, run along every record.
+#pragma once
+#include <atomic>
+#include <limits>
+#include <memory>
+#include <optional>
+#include "tools/diagnose/search/candidate.h"
+
+namespace loopwright::diagnosis {
+
+/// The user requested an interruption.
+struct Interrupted {};
+
+/// One record with the model that follows it.
+struct Trial {
+  std::unique_ptr<AxisModel> model;
+  std::vector<char> moving;   ///< rows that have been moving for some time, after the start, not damaged
+  std::vector<char> usable;   ///< those of them that count: see leave_out_doubtful()
+  std::vector<char> at_rest;  ///< rows at rest, after the start
+  size_t held_out_from = 0;   ///< rows from here on are not fitted
+  std::vector<double> input;  ///< as recorded, over the rows that a model is run along: see run_along
+
+  size_t rows() const { return input.size(); }
+};
+
+/// The records of one axis, and what is known of their noise.
+struct Trials {
+  std::vector<Trial> list;
+  Noise noise;
+  double rest_speed = 0;
+  bool nominal_holds = false;  ///< the user's diagram has dry friction that holds the axis
+  double force_rms = 0;        ///< the force produced by the recorded inputs
+  double lowest_position = 0, highest_position = 0, longest_s = 0;  ///< as in the first prediction
+  const std::atomic<bool>* interrupt =
+      nullptr;  ///< once true, the next run along the records throws Interrupted
+  size_t ports() const { return list.front().model->record().measured.size(); }
+  /// All records are maps of balances, or none.
+  bool has_map() const { return list.front().model->record().is_map; }
+
+  /// During the search for a set, rows that are not fitted need not be run along.
+  enum class Rows { fitted, all };
+  void run_along(Rows rows);
+};
+
+/// The input of the effects' blocks: the motion estimated by one prediction. Two sets of effects can be
+/// compared on the same motion; on different motions even the same set gives slightly different values.
+struct Motion {
+  std::vector<std::shared_ptr<const Path>> paths;            ///< one per record
+  double profile = std::numeric_limits<double>::infinity();  ///< of the prediction that estimated it
+};
+
+/// The rows of a motion that the trials are run along; it must have this many.
+Motion cut(const Motion& motion, const Trials& trials);
+
+/// The result of the members on one record.
+struct Fitted {
+  LinearAxis axis;
+  Gains gains;
+  Prediction prediction;
+  std::vector<double> white;  ///< whitened errors
+};
+
+/// Runs the nominal diagram with the members along each record, as far as the trials require; without members
+/// no motion is needed.
+std::vector<Fitted> run_members(Trials& trials, const std::vector<Member>& members, const Motion& motion,
+                                const Noise& noise);
+
+/// The input after the members that change it, and the force that the others consume, along a path.
+Drives drives_of(const std::vector<Member>& members, const Path& path, const std::vector<double>& raw_input);
+
+/// Mean of the squared whitened errors over the usable rows before the hold-out, or in it.
+double mean_square(const Trials& trials, const std::vector<Fitted>& fitted, bool held_out = false);
+/// n ln(mean square) + Σ ln |S| over the fitted rows: twice the negative log-likelihood with the best common
+/// scale of all noise inserted.
+double profile(const Trials& trials, const std::vector<Fitted>& fitted);
+/// Number of fitted rows × ports.
+size_t fitted_numbers(const Trials& trials);
+
+/// Derivatives of the whitened prediction errors, negated: the change caused by one more unit of each
+/// parameter. One column per parameter, linear ones of a member first.
+struct Sensitivity {
+  std::vector<std::vector<double>> columns;  ///< samples × ports each
+};
+Sensitivity sensitivity(const std::vector<Member>& members, const Path& path, const Fitted& fitted,
+                        const std::vector<double>& raw_input);
+
+/// The free parameters of a fit, in order.
+struct FreeParameter {
+  size_t member;
+  bool is_linear;
+  size_t index;
+};
+std::vector<FreeParameter> free_parameters(const std::vector<Member>& members);
+double& value_of(std::vector<Member>& members, const FreeParameter& parameter);
+const CandidateParameter& range_of(const std::vector<Member>& members, const FreeParameter& parameter);
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,181 @@
+#include "tools/diagnose/search/maximum_likelihood.h"
+#include "tools/diagnose/search/rest.h"
+#include "models/real/whole.h"
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace loopwright::diagnosis {
+namespace {
+
+constexpr double least_gain = 0.01;   // of an iteration, in twice the log-likelihood
+constexpr double same_motion = 0.01;  // two models that differ less in ln(mean square) have the same motion
+
+struct NormalEquations {
+  Eigen::MatrixXd G;
+  Eigen::VectorXd b;
+};
+
+/// Jᵀ J and Jᵀ e over the fitted rows of all records.
+NormalEquations normal_equations(const Trials& trials, const std::vector<Member>& members,
+                                 const std::vector<Fitted>& fitted, const Motion& motion) {
+  const Eigen::Index n = Eigen::Index(free_parameters(members).size());
+  NormalEquations equations{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
+  const size_t ports = trials.ports();
+  for (size_t t = 0; t < trials.list.size(); ++t) {
+    const Trial& trial = trials.list[t];
+    const Sensitivity s = sensitivity(members, *motion.paths[t], fitted[t], trial.input);
+    constexpr size_t chunk = 1024;
+    Eigen::MatrixXd rows(Eigen::Index(chunk * ports), n + 1);
+    for (size_t start = 0; start < trial.held_out_from; start += chunk) {
+      Eigen::Index r = 0;
+      for (size_t k = start; k < std::min(start + chunk, trial.held_out_from); ++k) {
+        if (!trial.usable[k]) continue;
+        for (size_t p = 0; p < ports; ++p, ++r) {
+          for (Eigen::Index c = 0; c < n; ++c) rows(r, c) = s.columns[size_t(c)][k * ports + p];
+          rows(r, n) = fitted[t].white[k * ports + p];
+        }
+      }
+      equations.G.noalias() += rows.topRows(r).leftCols(n).transpose() * rows.topRows(r).leftCols(n);
+      equations.b.noalias() += rows.topRows(r).leftCols(n).transpose() * rows.topRows(r).col(n);
+    }
+  }
+  return equations;
+}
+
+/// Solves with columns scaled to one and a ridge that affects only dependent columns.
+Eigen::VectorXd solve(const Eigen::MatrixXd& G, const Eigen::VectorXd& b) {
+  const Eigen::VectorXd scale = G.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  Eigen::MatrixXd scaled = scale.asDiagonal() * G * scale.asDiagonal();
+  scaled.diagonal().array() += 1e-9;
+  return scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * b);
+}
+
+/// The step within the ranges of all amplitudes: an amplitude that would leave its range is set to its end,
+/// and the others are solved again. Clipping it alone would disturb all amplitudes that balance it.
+Eigen::VectorXd step_in_range(const NormalEquations& e, std::vector<Member> members,
+                              const std::vector<FreeParameter>& free) {
+  Eigen::VectorXd step = Eigen::VectorXd::Zero(e.b.size());
+  std::vector<Eigen::Index> open(free.size()), held;
+  std::iota(open.begin(), open.end(), 0);
+  while (!open.empty()) {
+    const Eigen::VectorXd b = e.b(open) - e.G(open, held) * step(held);
+    step(open) = solve(e.G(open, open), b);
+    const size_t before = held.size();
+    for (const Eigen::Index i : std::vector(open)) {
+      const FreeParameter& p = free[size_t(i)];
+      const CandidateParameter& range = range_of(members, p);
+      const double value = value_of(members, p), inside = std::clamp(value + step[i], range.low, range.high);
+      if (!p.is_linear || inside == value + step[i]) continue;
+      step[i] = inside - value, held.push_back(i), std::erase(open, i);
+    }
+    if (held.size() == before) break;
+  }
+  return step;
+}
+
+/// The members after a step, within their ranges; shapes move at most by a third at a time.
+std::vector<Member> moved(std::vector<Member> members, const std::vector<FreeParameter>& free,
+                          const Eigen::VectorXd& step, double fraction) {
+  for (size_t i = 0; i < free.size(); ++i) {
+    const CandidateParameter& range = range_of(members, free[i]);
+    double& value = value_of(members, free[i]);
+    double by = fraction * step[Eigen::Index(i)];
+    if (!free[i].is_linear) {
+      const double most = range.span > 0      ? 0.2 * value * value / range.span
+                          : range.logarithmic ? std::abs(value) / 3
+                                              : (range.high - range.low) / 6;
+      by = std::clamp(by, -most, most);
+    }
+    value = std::clamp(value + by, range.low, range.high);
+  }
+  return members;
+}
+
+Estimate evaluated(Trials& trials, std::vector<Member> members, const Noise& noise, const Motion& motion) {
+  Estimate estimate;
+  estimate.members = std::move(members), estimate.noise = noise, estimate.motion = motion;
+  estimate.fitted = run_members(trials, estimate.members, motion, noise);
+  estimate.mean_square = mean_square(trials, estimate.fitted);
+  estimate.profile = profile(trials, estimate.fitted);
+  estimate.against_at_rest = against_at_rest(trials, estimate.members, estimate.fitted, noise);
+  estimate.is_valid = std::isfinite(estimate.mean_square);
+  return estimate;
+}
+
+}  // namespace
+
+Estimate on_own_motion(Trials& trials, Estimate estimate) {
+  Motion motion{{}, estimate.profile};
+  for (Fitted& fitted : estimate.fitted)
+    motion.paths.push_back(std::make_shared<const Path>(std::move(fitted.prediction.path)));
+  return evaluated(trials, std::move(estimate.members), estimate.noise, motion);
+}
+
+Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& noise, const Motion& motion,
+                     int iterations) {
+  Estimate best = evaluated(trials, std::move(members), noise, motion);
+  const std::vector<FreeParameter> free = free_parameters(best.members);
+  const double far = same_motion * double(fitted_numbers(trials));
+  for (int i = 0; i < iterations && best.is_valid && !free.empty(); ++i) {
+    const NormalEquations equations = normal_equations(trials, best.members, best.fitted, best.motion);
+    const Eigen::VectorXd step = step_in_range(equations, best.members, free);
+    if (step.dot(equations.b) < least_gain * best.mean_square) break;  // predicted gain of the step
+    const double before = best.profile;
+    double fraction = 1;
+    for (int shorter = 0; shorter < 4 && best.profile == before; ++shorter, fraction *= 0.35) {
+      Estimate next = evaluated(trials, moved(best.members, free, step, fraction), noise, best.motion);
+      if (next.profile < before) best = std::move(next);
+    }
+    if (!(best.profile < before - least_gain)) break;
+    if (std::abs(best.profile - best.motion.profile) > far) best = on_own_motion(trials, std::move(best));
+  }
+  return best;
+}
+
+void widen_by_blocks(const Trials& trials, Estimate& estimate) {
+  constexpr double block_s = 0.5;
+  const Eigen::Index n = estimate.covariance.rows();
+  if (n == 0) return;
+  const size_t ports = trials.ports();
+  Eigen::MatrixXd between = Eigen::MatrixXd::Zero(n, n), within = between;  // of blocks, of rows
+  for (size_t t = 0; t < trials.list.size(); ++t) {
+    const Trial& trial = trials.list[t];
+    const Fitted& fitted = estimate.fitted[t];
+    const Path& path = *estimate.motion.paths[t];
+    const Sensitivity s = sensitivity(estimate.members, path, fitted, trial.input);
+    const size_t block = std::max<size_t>(1, whole_count(block_s / path.sample_time));
+    Eigen::VectorXd sum(n), score(n);
+    for (size_t start = 0; start < trial.held_out_from; start += block) {
+      sum.setZero();
+      for (size_t k = start; k < std::min(start + block, trial.held_out_from); ++k) {
+        if (!trial.usable[k]) continue;
+        score.setZero();
+        for (size_t p = 0; p < ports; ++p)
+          for (Eigen::Index c = 0; c < n; ++c)
+            score[c] += s.columns[size_t(c)][k * ports + p] * fitted.white[k * ports + p];
+        sum += score, within += score * score.transpose();
+      }
+      between += sum * sum.transpose();
+    }
+  }
+  const Eigen::MatrixXd& C = estimate.covariance;
+  const Eigen::VectorXd alike = (C * between * C).diagonal(), independent = (C * within * C).diagonal();
+  const Eigen::VectorXd factor = alike.cwiseQuotient(independent.cwiseMax(1e-300)).cwiseMax(1.0).cwiseSqrt();
+  estimate.covariance = factor.asDiagonal() * C * factor.asDiagonal();
+}
+
+void work_out_covariance(Trials& trials, Estimate& estimate) {
+  const std::vector<FreeParameter> free = free_parameters(estimate.members);
+  if (free.empty()) return;
+  const NormalEquations e = normal_equations(trials, estimate.members, estimate.fitted, estimate.motion);
+  // A level that no row reaches is completely unknown, but must be a finite number.
+  const auto inverse_root = [](double squares) { return squares > 0 ? 1 / std::sqrt(squares) : 1.0; };
+  const Eigen::VectorXd scale = e.G.diagonal().unaryExpr(inverse_root);
+  Eigen::MatrixXd scaled = scale.asDiagonal() * e.G * scale.asDiagonal();
+  scaled.diagonal().array() += 1e-12;
+  estimate.covariance = scale.asDiagonal() * scaled.inverse() * scale.asDiagonal();
+  estimate.covariance *= std::max(1.0, estimate.mean_square);
+}
+
+}  // namespace loopwright::diagnosis

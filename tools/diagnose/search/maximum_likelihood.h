@@ -1,0 +1,55 @@
+/// Joint maximum likelihood: the parameters of all members, and the noise.
+#pragma once
+#include "tools/diagnose/search/hypothesis.h"
+
+namespace loopwright::diagnosis {
+
+struct Estimate {
+  std::vector<Member> members;
+  Noise noise;
+  Motion motion;  ///< motion on which the members ran
+  std::vector<Fitted> fitted;
+  double mean_square = 0;      ///< of the whitened errors; 1 when model and noise are correct
+  double profile = 0;          ///< see profile(): smaller is better
+  double against_at_rest = 0;  ///< see against_at_rest()
+  Eigen::MatrixXd covariance;  ///< of the free parameters, times max(1, mean_square)
+  bool is_valid = false;
+};
+
+/// Gauss-Newton on the prediction errors with the given noise, starting from the given members. Each
+/// iteration steps the diagram once or, if a step must be shortened, a few times. The motion estimated by a
+/// better model replaces the given motion as soon as the two may differ.
+Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& noise, const Motion& motion,
+                     int iterations);
+
+/// The same on the motion that it estimated itself.
+Estimate on_own_motion(Trials& trials, Estimate estimate);
+
+/// Noise for the search: small, so that a missing effect is not taken for noise.
+Noise search_noise(const Trials& trials);
+
+/// Which of its parameters may be changed.
+enum class FreeNoise { with_random_walk, white_and_slow, all };
+/// Maximizes the likelihood of the noise for the errors of the given estimate. Bounded: a factor of thirty
+/// around the start.
+Noise fit_noise(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& start, FreeNoise free);
+
+/// The slow force of an amplifier, as a fraction of the white force.
+constexpr double usual_slow_noise = 0.3;
+/// A slow force above this fraction of the white force is not noise but something that the model lacks.
+constexpr double most_slow_noise = 0.8;
+
+/// fit_noise; but if the slow force is more than noise, all of it is counted as white. Otherwise the
+/// predictor would follow what the model lacks, and effects fitted with it would lose their steady parts to
+/// it.
+Noise fit_noise_alone(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& start,
+                      FreeNoise free);
+
+/// Increases the covariance if errors in blocks of half a second are more correlated than independent errors:
+/// the sandwich estimator by blocks (Liang and Zeger 1986), a factor for each parameter, never less than one.
+void widen_by_blocks(const Trials& trials, Estimate& estimate);
+
+/// Fills Estimate::covariance.
+void work_out_covariance(Trials& trials, Estimate& estimate);
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,94 @@
+#include "tools/diagnose/search/rest.h"
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace loopwright::diagnosis {
+namespace {
+
+constexpr double worse_at_rest = 4;    // than in motion: errors that the set does not explain occur there too
+constexpr double least_freedom = 0.4;  // of the motion of a free axis under noise; reduced by control
+constexpr double most_freedom = 3;     // more is motion
+constexpr size_t apart = 6;            // samples: enough for a deviation, too few to correct all of it
+constexpr size_t glance = 36;          // samples: enough to average out steps of the encoder
+
+AtRest at_rest(const std::vector<Member>& members) {
+  AtRest result = AtRest::free;
+  for (const Member& member : members) {
+    if (member.candidate->at_rest == AtRest::gives) return AtRest::gives;
+    if (member.candidate->at_rest == AtRest::holds) result = AtRest::holds;
+  }
+  return result;
+}
+
+/// Something held the axis that the members leave free.
+double against_free(const Trials& trials, const std::vector<Fitted>& fitted) {
+  double sum = 0, count = 0;
+  const size_t ports = trials.ports();
+  for (size_t t = 0; t < trials.list.size(); ++t)
+    for (size_t k = 0; k < trials.list[t].held_out_from; ++k)
+      for (size_t p = 0; p < ports && trials.list[t].at_rest[k]; ++p)
+        sum += std::pow(fitted[t].white[k * ports + p], 2), count += 1;
+  const double in_motion = mean_square(trials, fitted);
+  return count > 0 ? count * std::log(std::max(1.0, sum / count / (worse_at_rest * in_motion))) : 0;
+}
+
+/// Mean square of the increase of the motion of the axis at rest in `lag` samples over that in the previous
+/// `lag` samples: a creep at constant speed does not contribute. Median of means over short intervals,
+/// because a held axis slips now and then.
+struct Swerve {
+  double square = 0;
+  size_t glances = 0;
+};
+Swerve swerve_at_rest(const Trials& trials, size_t lag) {
+  constexpr double median_to_mean = 0.9;
+  std::vector<double> glances;
+  for (const Trial& trial : trials.list) {
+    const MeasuredPort* position = trial.model->record().find("position");
+    double sum = 0;
+    for (size_t k = 0, resting = 0; position && k < trial.held_out_from; ++k) {
+      resting = trial.at_rest[k] ? resting + 1 : 0;
+      if (resting <= 2 * lag) {
+        sum = 0;
+        continue;
+      }
+      const double* x = position->value.data() + k;
+      sum += std::pow(*x - 2 * *(x - lag) + *(x - 2 * lag), 2) / double(glance);
+      if ((resting - 2 * lag) % glance == 0) glances.push_back(std::exchange(sum, 0));
+    }
+  }
+  if (glances.empty()) return {};
+  const auto middle = glances.begin() + std::ptrdiff_t(glances.size() / 2);
+  std::ranges::nth_element(glances, middle);
+  return {*middle / median_to_mean, glances.size()};
+}
+
+/// The axis moves as if nothing held it.
+double against_held(const Trials& trials, const Noise& noise) {
+  const Swerve swerve = swerve_at_rest(trials, apart);
+  if (swerve.glances == 0) return 0;
+  const AxisModel& model = *trials.list.front().model;
+  const double T = model.record().sample_time, kick = noise.white / model.nominal_inertia() * T * T;
+  // From sample to sample hardly anything but the sensor changes, including its steps.
+  const double sensor = std::max(swerve_at_rest(trials, 1).square, 6 * std::pow(noise.measurement[0], 2));
+  const double free = kick * kick * 2 * std::pow(double(apart), 3) / 3, seen = swerve.square - sensor;
+  if (seen < least_freedom * free || seen > most_freedom * free || seen < sensor) return 0;
+  return double(swerve.glances * glance) / double(2 * apart) * std::log1p(seen / sensor);
+}
+
+}  // namespace
+
+double against_at_rest(const Trials& trials, const std::vector<Member>& members,
+                       const std::vector<Fitted>& fitted, const Noise& noise) {
+  if (trials.nominal_holds) return 0;
+  switch (at_rest(members)) {
+    case AtRest::free:
+      return against_free(trials, fitted);
+    case AtRest::holds:
+      return against_held(trials, noise);
+    default:
+      return 0;
+  }
+}
+
+}  // namespace loopwright::diagnosis

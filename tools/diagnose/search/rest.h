@@ -1,0 +1,20 @@
+/// What an axis at rest shows about dry friction: with it the axis keeps its position, without it noise and
+/// any remaining force move the axis.
+#pragma once
+#include "tools/diagnose/search/hypothesis.h"
+
+namespace loopwright::diagnosis {
+
+/// How strongly the rows at rest speak against a set of members, as twice a log-likelihood. They are not
+/// fitted to any set.
+///   nothing in the set holds:  n ln(m / 4) where the mean square m of the whitened errors at rest is more
+///                              than four times that in motion: a force was there and moved nothing
+///   something in it holds:     n/12 ln(1 + d / s) where the second difference x(k) - 2 x(k-6) + x(k-12) of
+///                              the position has the mean square d + s (median of means over 36), s is the
+///                              sensor's (the same from sample to sample), and d is about what noise alone
+///                              causes on a free axis: nothing held it
+/// If the set or the user's own diagram yields at rest, both are undecided: 0.
+double against_at_rest(const Trials& trials, const std::vector<Member>& members,
+                       const std::vector<Fitted>& fitted, const Noise& noise);
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,327 @@
+#include "tools/diagnose/search/search.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <limits>
+#include <cmath>
+#include <optional>
+#include <ranges>
+#include "tools/diagnose/search/conclude.h"
+#include "tools/diagnose/search/doubt.h"
+#include "tools/diagnose/search/law_swaps.h"
+#include "tools/diagnose/search/spectrum.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+constexpr size_t most_effects = 8;
+constexpr size_t tried_extensions = 4;
+constexpr size_t tried_exchanges = 3;
+constexpr double clearly = 3;  // improvement, in the criterion
+
+class Search {
+ public:
+  Search(Trials& trials, const std::vector<Candidate>& candidates, const std::vector<Shape>& shapes,
+         const std::vector<Candidate>& unknown, const Motion& motion)
+      : unknown_(unknown),
+        trials_(trials),
+        candidates_(candidates),
+        shapes_(shapes),
+        noise_(search_noise(trials)),
+        motion_(motion) {
+    take(fit_members(trials_, {}, noise_, motion_, 0));
+  }
+
+  SearchResult run() {
+    bool goes_on = grow(4);
+    // Cogging has many lines, and a map shows little else: as many effects as for a start without a name.
+    if (goes_on && is_much_left() && trials_.has_map()) goes_on = grow(2);
+    if (is_much_left() || explain_without_name()) {
+      start_from_what_has_no_name();
+      goes_on = true;
+    }
+    if (goes_on) grow(most_effects - std::min(most_effects, best_.members.size()));
+    return {std::move(best_), std::move(trail_)};
+  }
+
+ private:
+  double score(const Estimate& e) const { return criterion(trials_, e, candidates_.size()); }
+
+  Estimate refined(const std::vector<Member>& members, int iterations) {
+    return fit_members(trials_, members, noise_, best_.motion, iterations);
+  }
+
+  void note(const char* what) {
+    std::string line =
+        fmt::format("{}: mean square {:.5g}, criterion {:.1f}:", what, best_.mean_square, score(best_));
+    for (const Member& member : best_.members) {
+      line += fmt::format(" {}", member.candidate->name);
+      if (member.candidate->is_unknown) line += " of " + member.candidate->form;
+      for (double v : member.linear)
+        if (!member.candidate->is_unknown) line += fmt::format(" {:.5g}", v);
+      for (double v : member.nonlinear) line += fmt::format(" | {:.5g}", v);
+      line += ",";
+    }
+    trail_.push_back(std::move(line));
+  }
+
+  /// Predictions of the linearization, best first.
+  void note(const std::vector<Proposal>& proposals) {
+    std::string line = "promised:";
+    for (const Proposal& proposal : proposals | std::views::take(8))
+      line += fmt::format(" {} {:.0f},", names_of(proposal.added), proposal.gain);
+    trail_.push_back(std::move(line));
+  }
+  static std::string names_of(const std::vector<Member>& members) {
+    std::string names;
+    for (const Member& member : members) {
+      names += (names.empty() ? "" : " + ") + member.candidate->name;
+      if (!member.candidate->form.empty()) names += " of " + member.candidate->form;
+    }
+    return names;
+  }
+
+  void take(Estimate better) {
+    best_ = std::move(better);
+    leave_out_doubtful(trials_, best_);
+    evidence_.reset();
+  }
+
+  /// Improvement of the criterion of a trial over the best set, on the same rows.
+  double gain_of(Estimate& trial) {
+    if (!trial.is_valid) return -std::numeric_limits<double>::infinity();
+    if (!may_be_doubtful(trial.members) || may_be_doubtful(best_.members)) return score(best_) - score(trial);
+    // Without the rows that are doubtful for the trial, both may differ.
+    leave_out_doubtful(trials_, trial);
+    trial = refined_further(trial), leave_out_doubtful(trials_, trial);
+    trial = refined_further(trial);
+    const double gain = score(refined_further(best_)) - score(trial);
+    leave_out_doubtful(trials_, best_);
+    return gain;
+  }
+  Estimate refined_further(const Estimate& e) { return fit_members(trials_, e.members, noise_, e.motion, 2); }
+
+  /// Shapes on the grid, and the pitches with peaks in the present spectrum.
+  std::vector<const Shape*> all_shapes() {
+    periodic_ = periodic_shapes(trials_, best_, candidates_);
+    std::vector<const Shape*> list;
+    for (const Shape& shape : shapes_) list.push_back(&shape);
+    for (const Shape& shape : periodic_) list.push_back(&shape);
+    return list;
+  }
+  /// All named effects, in addition to the best set.
+  Evidence& evidence() {
+    if (!evidence_) evidence_.emplace(trials_, best_, all_shapes(), candidates_.size());
+    return *evidence_;
+  }
+
+  bool is_much_left() const { return best_.mean_square >= 8; }
+
+  /// False when nothing more was found.
+  bool grow(size_t most) {
+    for (size_t step = 0; step < most; ++step) {
+      if (!extend()) return false;
+      sharpen_noise();
+      exchange();
+      prune();
+    }
+    return true;
+  }
+
+  bool extend() {
+    std::vector<Proposal> proposals = evidence().extensions();
+    note(proposals);
+    const double single = proposals.empty() ? 0 : proposals.front().gain;
+    if (proposals.size() > tried_extensions) proposals.resize(tried_extensions);
+    if (const Proposal pair = evidence().best_pair(); pair.gain > single + 10) {
+      if (pair.gain > 2 * single) proposals.resize(std::min<size_t>(proposals.size(), 2));
+      proposals.push_back(pair);
+    }
+    const double least = std::max(10.0, 0.002 * double(fitted_numbers(trials_)));
+    std::vector<std::pair<double, Estimate>> tried;
+    for (const Proposal& proposal : proposals) {
+      Estimate trial = refined(applied(proposal, best_.members), 2);
+      const double gain = gain_of(trial);
+      trail_.push_back(fmt::format("tried {}: criterion {:+.1f}", names_of(proposal.added), -gain));
+      if (gain > least) tried.emplace_back(gain, std::move(trial));
+    }
+    std::ranges::stable_sort(tried, std::ranges::greater{}, [](const auto& t) { return t.first; });
+    Estimate best;
+    for (auto& [gain, trial] : tried)
+      if (!best.is_valid && adds_material(trial)) best = std::move(trial);
+    if (!best.is_valid) return note("no extension"), false;
+    take(fit_members(trials_, best.members, noise_, best.motion, 6));
+    note("extended");
+    return true;
+  }
+
+  /// A member that would be removed at the end is not accepted.
+  bool adds_material(Estimate& trial) {
+    leave_out_doubtful(trials_, trial);
+    const std::vector<Weight> weights = weigh_all(trials_, trial);
+    leave_out_doubtful(trials_, best_);
+    for (size_t m = best_.members.size(); m < weights.size(); ++m) {
+      const Weight& w = weights[m];
+      if (material(trials_, trial, w) >= 1) continue;
+      trail_.push_back(fmt::format("not material: {}, χ² {:.0f}, force {:.3g}, unique {:.3g}",
+                                   trial.members[m].candidate->name, w.wald, w.force_rms, w.unique_force));
+      return false;
+    }
+    return true;
+  }
+
+  /// Forces that the catalogue does not contain.
+  std::vector<const Shape*> shapes_without_name() {
+    nameless_ = shapes_of(unknown_, best_.motion);
+    std::ranges::move(periodic_shapes(trials_, best_, unknown_, 1), std::back_inserter(nameless_));
+    std::vector<const Shape*> list;
+    for (const Shape& shape : nameless_) list.push_back(&shape);
+    return list;
+  }
+  /// The best two.
+  std::vector<Proposal> without_name() {
+    std::vector<Proposal> proposals =
+        Evidence(trials_, best_, shapes_without_name(), candidates_.size()).extensions();
+    note(proposals);
+    if (proposals.size() > 2) proposals.resize(2);
+    return proposals;
+  }
+
+  /// A spline adapts itself to small errors of an effect: it must explain a tenth more.
+  double worth_losing_names() const { return std::max(20.0, 0.1 * double(fitted_numbers(trials_))); }
+  static bool has_unknown(const Estimate& e) {
+    return std::ranges::any_of(e.members, [](const Member& m) { return m.candidate->is_unknown; });
+  }
+
+  /// And the effects that had substituted for it.
+  bool explain_without_name() {
+    Estimate best;
+    double best_score = score(best_) - worth_losing_names();
+    for (const Proposal& proposal : without_name()) {
+      Estimate trial = refined(applied(proposal, best_.members), 2);
+      if (!trial.is_valid || score(trial) >= best_score) continue;
+      best_score = score(trial), best = std::move(trial);
+    }
+    if (!best.is_valid) return false;
+    take(std::move(best));
+    note("without a name");
+    prune();
+    return true;
+  }
+
+  /// Alternative initial sets: the best function of the variables alone, and with one effect.
+  std::vector<std::vector<Member>> starts_without_name() {
+    std::vector<std::vector<Member>> starts;
+    for (Proposal& proposal : without_name()) starts.push_back(std::move(proposal.added));
+    evidence_.reset();  // its shapes are computed again
+    std::vector<const Shape*> shapes = shapes_without_name();
+    std::ranges::copy(all_shapes(), std::back_inserter(shapes));
+    Proposal pair = Evidence(trials_, best_, shapes, candidates_.size()).best_pair(true);
+    if (!pair.added.empty()) starts.push_back(std::move(pair.added));
+    return starts;
+  }
+
+  /// The effects found first may only have substituted for an unnamed force: start again with that force
+  /// included first.
+  void start_from_what_has_no_name() {
+    Estimate best = std::move(best_);
+    const Estimate nominal = fit_members(trials_, {}, noise_, motion_, 0);
+    take(nominal);
+    std::vector<std::vector<Member>> starts = starts_without_name();
+    for (const Member& member : best.members)
+      if (member.candidate->is_unknown) starts.push_back({member});
+    for (std::vector<Member>& start : starts) {
+      take(nominal);
+      take(refined(start, 4));
+      if (!best_.is_valid || score(best_) >= score(nominal)) continue;
+      note("started without a name");
+      grow(4);
+      best = fit_members(trials_, best.members, noise_, best.motion, 1);  // noise in its present state
+      const double least = has_unknown(best) || !has_unknown(best_) ? 0 : worth_losing_names();
+      if (score(best_) < score(best) - least) best = std::move(best_);
+    }
+    take(std::move(best));
+    note("best of all");
+  }
+
+  /// A member, or two, for another: also an equally good one, if it makes others unnecessary.
+  void exchange() {
+    for (int round = 0; round < 4; ++round) {
+      if (best_.members.empty()) return;
+      const std::vector<Proposal> proposals = evidence().exchanges();
+      std::vector<std::vector<Member>> others;
+      for (size_t i = 0; i < std::min(tried_exchanges, proposals.size()); ++i)
+        if (proposals[i].gain >= -0.01 * evidence().rows())
+          others.push_back(applied(proposals[i], best_.members));
+      for (const Proposal& swap : shape_swaps(best_.members, candidates_))
+        others.push_back(applied(swap, best_.members));
+      if (has_gain(best_.members))
+        for (const Proposal& swap : law_swaps(best_.members, candidates_, *trials_.list.front().model))
+          others.push_back(applied(swap, best_.members));
+      Estimate best;
+      double best_gain = clearly;
+      for (const std::vector<Member>& members : others) {
+        Estimate trial = pruned(refined(members, 4));
+        const double gain = gain_of(trial);
+        trail_.push_back(fmt::format("tried instead {}: criterion {:+.1f}", names_of(members), -gain));
+        const double preferred = gain + preference(trial.members, best_.members);
+        if (preferred <= best_gain) continue;
+        best_gain = preferred, best = std::move(trial);
+      }
+      if (!best.is_valid) return;
+      take(std::move(best));
+      note("exchanged");
+    }
+  }
+
+  void prune() {
+    Estimate left = pruned(best_);
+    if (left.members.size() == best_.members.size()) return;
+    take(std::move(left));
+    note("removed");
+  }
+
+  /// Without the members that do not justify their cost.
+  Estimate pruned(Estimate estimate) {
+    while (estimate.is_valid && estimate.members.size() > 1) {
+      const Evidence evidence(trials_, estimate, {}, candidates_.size());
+      const std::vector<double> gains = evidence.gains_of_removal();
+      const size_t worst = size_t(std::ranges::max_element(gains) - gains.begin());
+      if (gains[worst] < -10) break;
+      std::vector<Member> members = estimate.members;
+      members.erase(members.begin() + std::ptrdiff_t(worst));
+      Estimate without = fit_members(trials_, members, noise_, estimate.motion, 4);
+      if (!without.is_valid || score(without) > score(estimate)) break;
+      estimate = std::move(without);
+    }
+    return estimate;
+  }
+
+  /// Once little is left to find, the noise level can be estimated from the remainder.
+  void sharpen_noise() {
+    if (is_much_left()) return;
+    noise_ = fit_noise_alone(trials_, best_.fitted, noise_, FreeNoise::white_and_slow);
+    take(fit_members(trials_, best_.members, noise_, best_.motion, 2));
+    trail_.push_back(fmt::format("noise: white {:.3g}, slow {:.3g}", noise_.white, noise_.slow()));
+  }
+
+  const std::vector<Candidate>& unknown_;
+  Trials& trials_;
+  const std::vector<Candidate>& candidates_;
+  const std::vector<Shape>& shapes_;
+  Noise noise_;
+  Motion motion_;  // motion along which the shapes were computed
+  std::vector<Shape> periodic_, nameless_;
+  Estimate best_;
+  std::optional<Evidence> evidence_;  // of best_
+  std::vector<std::string> trail_;
+};
+
+}  // namespace
+
+SearchResult search(Trials& trials, const std::vector<Candidate>& candidates,
+                    const std::vector<Shape>& shapes, const std::vector<Candidate>& unknown,
+                    const Motion& motion) {
+  return Search(trials, candidates, shapes, unknown, motion).run();
+}
+
+}  // namespace loopwright::diagnosis

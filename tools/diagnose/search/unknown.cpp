@@ -1,0 +1,123 @@
+#include "tools/diagnose/search/unknown.h"
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace loopwright::diagnosis {
+namespace {
+
+/// One value per sample.
+using Variable = std::function<std::vector<double>(const Path&)>;
+
+template <class F> Variable each_sample(F&& of) {
+  return [of](const Path& path) {
+    std::vector<double> values(path.samples());
+    for (size_t k = 0; k < values.size(); ++k) values[k] = of(path, k);
+    return values;
+  };
+}
+
+double middle_velocity(const Path& path, size_t k) {
+  return path.velocity[k] + 0.5 * path.sample_time * path.acceleration[k];
+}
+double middle_position(const Path& path, size_t k) {
+  return path.position[k] + 0.5 * path.sample_time * path.velocity[k];
+}
+
+/// From -1 to 1, with a transition as short as in the catalogue's dry friction: an unnamed function must not
+/// win by its behavior at reversals.
+Variable direction_of(double transition_distance) {
+  return [=](const Path& path) {
+    std::vector<double> values(path.samples());
+    double fraction = 0;
+    for (size_t k = 1; k < values.size(); ++k) {
+      const double way = middle_position(path, k) - middle_position(path, k - 1), sign = way < 0 ? -1 : 1;
+      const double left = std::exp(-std::abs(way) / transition_distance);
+      fraction = sign + (fraction - sign) * left, values[k] = fraction;
+    }
+    return values;
+  };
+}
+
+/// Σ level_i · B_i(variable) · factor: a cubic spline over uniform intervals.
+Candidate spline(std::string variables, size_t levels, double low, double high, Variable variable,
+                 Variable factor) {
+  Candidate candidate;
+  candidate.name = "unknown", candidate.form = std::move(variables), candidate.is_unknown = true,
+  candidate.at_rest = AtRest::gives;
+  for (size_t i = 0; i < levels; ++i) candidate.linear.push_back({"level", "", -1e300, 1e300, false, {}});
+  candidate.columns_at = [=](const Path& path, const std::vector<std::vector<double>>& shapes) {
+    std::vector<std::vector<float>> values(levels, std::vector<float>(path.samples()));
+    const size_t intervals = levels - 3;
+    const std::vector<double> along = variable(path), factors = factor(path);
+    for (size_t k = 0; k < path.samples(); ++k) {
+      const double at = std::clamp((along[k] - low) / (high - low), 0.0, 1.0) * double(intervals);
+      const size_t i = std::min(size_t(at), intervals - 1);
+      const double t = at - double(i), left = 1 - t, size = factors[k] / 6;
+      values[i][k] = float(size * left * left * left);
+      values[i + 1][k] = float(size * (4 - 3 * t * t * (2 - t)));
+      values[i + 2][k] = float(size * (4 - 3 * left * left * (2 - left)));
+      values[i + 3][k] = float(size * t * t * t);
+    }
+    Columns columns;
+    for (std::vector<float>& column : values) columns.emplace_back(std::move(column));
+    return std::vector(shapes.size(), columns);
+  };
+  return candidate;
+}
+
+/// Its mean acts like a mass, without delay.
+Candidate mass_along(Candidate candidate) {
+  candidate.added_inertia = [](const Member& member) {
+    return std::accumulate(member.linear.begin(), member.linear.end(), 0.0) / double(member.linear.size());
+  };
+  return candidate;
+}
+
+Candidate tone(const RecordSizes& sizes) {
+  Candidate candidate;
+  candidate.name = "unknown", candidate.form = "time", candidate.is_unknown = true,
+  candidate.at_rest = AtRest::gives;
+  candidate.is_periodic = candidate.repeats_in_time = true;
+  candidate.linear = {{"sine", "", -1e300, 1e300, false, {}}, {"cosine", "", -1e300, 1e300, false, {}}};
+  const double shortest = 10 * sizes.sample_time, longest = sizes.duration / 4;
+  candidate.nonlinear = {
+      {"period", "s", shortest, longest, true, {std::sqrt(shortest * longest)}, sizes.duration}};
+  candidate.columns_at = [](const Path& path, const std::vector<std::vector<double>>& shapes) {
+    std::vector<Columns> result;
+    for (const std::vector<double>& shape : shapes) {
+      std::vector<float> sine(path.samples()), cosine(path.samples());
+      for (size_t k = 0; k < path.samples(); ++k) {
+        const double angle = 2 * std::numbers::pi * (double(k) + 0.5) * path.sample_time / shape[0];
+        sine[k] = float(std::sin(angle)), cosine[k] = float(std::cos(angle));
+      }
+      result.push_back({Column(std::move(sine)), Column(std::move(cosine))});
+    }
+    return result;
+  };
+  return candidate;
+}
+
+}  // namespace
+
+std::vector<Candidate> unknown_forces(const RecordSizes& sizes, bool is_map) {
+  const double low = sizes.lowest_position, high = sizes.highest_position, top = sizes.top_speed;
+  const Variable one = each_sample([](const Path&, size_t) { return 1.0; });
+  const Variable acceleration = each_sample([](const Path& path, size_t k) { return path.acceleration[k]; });
+  const Variable time = each_sample([](const Path& path, size_t k) { return double(k) * path.sample_time; });
+  const Variable position = each_sample(middle_position), velocity = each_sample(middle_velocity);
+  const Variable direction = direction_of(std::max(1e-6 * sizes.stroke, sizes.resolution));
+  const Candidate of_position = spline("position", 60, low, high, position, one),
+                  of_direction = spline("position,direction", 24, low, high, position, direction);
+  if (is_map) return {of_position, of_direction};
+  return {of_position,
+          spline("velocity", 24, -top, top, velocity, one),
+          spline("time", 40, 0, sizes.duration, time, one),
+          of_direction,
+          spline("position,velocity", 24, low, high, position, velocity),
+          mass_along(spline("position,acceleration", 24, low, high, position, acceleration)),
+          tone(sizes)};
+}
+
+}  // namespace loopwright::diagnosis

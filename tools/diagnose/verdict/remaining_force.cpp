@@ -1,0 +1,157 @@
+#include "tools/diagnose/verdict/remaining_force.h"
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include "tools/compare/zero_phase.h"
+#include "models/real/whole.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+constexpr double turn = 2 * std::numbers::pi;
+double force_cutoff(double sample_time) { return std::min(80.0, 0.08 / sample_time); }
+
+/// Gain of zero_phase_low_pass.
+double gain_of_filter(double frequency, double cutoff, double sample_time) {
+  const double ratio =
+      std::tan(turn / 2 * frequency * sample_time) / std::tan(turn / 2 * cutoff * sample_time);
+  return 1 / (1 + std::pow(ratio, 8));
+}
+
+/// A value held from its sample on, as seen at the sample instants: the mean of before and after. In a map it
+/// belongs to its own balance.
+std::vector<double> at_samples(const std::vector<double>& held, const AxisRecord& record) {
+  if (record.is_map) return held;
+  std::vector<double> mean = held;
+  for (size_t k = held.size(); k-- > 1;) mean[k] = (held[k - 1] + held[k]) / 2;
+  return mean;
+}
+
+bool misses_samples(const AxisRecord& record, size_t from, size_t to) {
+  for (size_t k = from; k < to; ++k)
+    if (record.is_missing(k)) return true;
+  return false;
+}
+
+/// For the model along a path, at the instants of its rows.
+std::vector<double> net_forces(AxisModel& model, const Path& path, const std::vector<double>& input) {
+  return model.net_forces(path.position, path.velocity, input, AxisModel::At::mean);
+}
+
+}  // namespace
+
+InverseDynamics inverse_dynamics(Trial& trial, double rest_speed) {
+  AxisModel& model = *trial.model;
+  const AxisRecord& record = model.record();
+  InverseDynamics result;
+  result.motion = measured_motion(record);
+  result.motion.force = model.driving_force(), result.motion.force_unit = model.force_unit();
+  Path& path = result.path;
+  if (record.is_map) {
+    path = creep_along(record, record.rows());
+  } else {
+    path.sample_time = record.sample_time, path.rest_speed = rest_speed;
+    path.position = path.predicted_position = result.motion.position;
+    path.velocity = result.motion.velocity, path.acceleration = result.motion.acceleration;
+    path.input = record.input;
+    path.rests.resize(record.rows()), path.turns.resize(record.rows());
+    for (size_t k = 0; k < record.rows(); ++k) path.rests[k] = std::abs(path.velocity[k]) < rest_speed;
+  }
+  path.force = model.driving_force();
+  result.net_force = net_forces(model, path, record.input);
+  for (size_t k = 0; k < record.rows(); ++k)
+    result.residual.push_back(result.net_force[k] - model.nominal_inertia() * path.acceleration[k]);
+  return result;
+}
+
+std::vector<double> residual_with(const Trial& trial, const InverseDynamics& inverse,
+                                  const std::vector<Member>& members) {
+  const AxisRecord& record = trial.model->record();
+  const double T = record.sample_time, mass = trial.model->nominal_inertia();
+  std::vector<double> residual = inverse.residual;
+  std::vector<double> consumed(record.rows(), 0.0);
+  std::vector<Member> others;
+  for (const Member& member : members) {
+    if (member.candidate->acts != Acts::force) {
+      others.push_back(member);
+      continue;
+    }
+    const Columns columns = member.candidate->columns(inverse.path, member.nonlinear);
+    for (size_t c = 0; c < columns.size(); ++c)
+      for (size_t k = 0; k < residual.size(); ++k)
+        consumed[k] += member.linear[c] * double((*columns[c].mean)[k]);
+  }
+  const Drives changed = drives_of(others, inverse.path, record.input);
+  const std::vector<double> force = at_samples(consumed, record);
+  for (size_t k = 0; k < residual.size(); ++k) residual[k] -= force[k];
+  if (changed.input != record.input) {
+    const std::vector<double> net = net_forces(*trial.model, inverse.path, changed.input);
+    for (size_t k = 0; k < residual.size(); ++k) residual[k] += net[k] - inverse.net_force[k];
+  }
+  if (!changed.sensor.empty())
+    for (size_t k = 1; k + 1 < residual.size(); ++k)
+      residual[k] += mass * (changed.sensor[k + 1] - 2 * changed.sensor[k] + changed.sensor[k - 1]) / (T * T);
+  return zero_phase_low_pass(residual, force_cutoff(T), T);
+}
+
+ResidualSize residual_size(const Trials& trials, const std::vector<InverseDynamics>& inverse,
+                           const std::vector<Member>& members) {
+  double sum[2] = {}, n[2] = {};
+  for (size_t t = 0; t < trials.list.size(); ++t) {
+    const std::vector<double> residual = residual_with(trials.list[t], inverse[t], members);
+    for (size_t k = 0; k < residual.size(); ++k) {
+      const int side = k >= trials.list[t].held_out_from;
+      if (inverse[t].motion.counts[k]) sum[side] += residual[k] * residual[k], n[side] += 1;
+    }
+  }
+  return {std::sqrt(sum[0] / std::max(n[0], 1.0)), n[1] > 0 ? std::sqrt(sum[1] / n[1]) : 0};
+}
+
+double residual_floor(const Trials& trials, const Noise& noise) {
+  const AxisModel& model = *trials.list.front().model;
+  const double T = model.record().sample_time, mass = model.nominal_inertia();
+  const bool from_position = model.record().measured.front().role == "position";
+  const double motion_cutoff = std::min(200.0, 0.2 / T);
+  constexpr int points = 2000;
+  double sum = 0;
+  for (int i = 0; i < points; ++i) {
+    const double f = (i + 0.5) / points * 0.5 / T, w = 2 * std::numbers::pi * f * T;
+    const double hold = 0.5 * (1 + std::cos(w));  // the mean of before and after
+    const double slow = noise.step * noise.step / std::norm(1.0 - noise.memory * std::polar(1.0, -w));
+    const double sensor = from_position ? (2 - 2 * std::cos(w)) / (T * T) : std::sin(w) / T;
+    const double motion = gain_of_filter(f, motion_cutoff, T) * sensor * mass * noise.measurement[0];
+    const double filter = gain_of_filter(f, force_cutoff(T), T);
+    sum += filter * filter * (hold * (noise.white * noise.white + slow) + motion * motion);
+  }
+  return std::sqrt(sum / points);
+}
+
+double short_horizon_error(Trials& trials, const Estimate& estimate, double horizon_s) {
+  if (trials.has_map()) return std::nan("");  // no motion to predict
+  double sum = 0, n = 0;
+  double inertia = 0;
+  for (const Member& member : estimate.members)
+    if (member.candidate->added_inertia) inertia += member.candidate->added_inertia(member);
+  for (size_t t = 0; t < trials.list.size(); ++t) {
+    AxisModel& model = *trials.list[t].model;
+    const AxisRecord& record = model.record();
+    const Path& path = estimate.fitted[t].prediction.path;
+    const Drives drives = drives_of(estimate.members, *estimate.motion.paths[t], trials.list[t].input);
+    model.set_added_inertia(inertia);
+    model.start(path.position[0], path.velocity[0]);
+    const size_t horizon = std::max<size_t>(2, whole_count(horizon_s / record.sample_time));
+    for (size_t start = 0; start + horizon < path.samples(); start += horizon) {
+      if (!trials.list[t].usable[start] || !trials.list[t].usable[start + horizon]) continue;
+      if (misses_samples(record, start, start + horizon)) continue;
+      model.place(path.position[start], path.velocity[start]);
+      for (size_t k = start; k < start + horizon; ++k) model.step(drives.input[k], -drives.force[k]);
+      const double sensor = drives.sensor.empty() ? 0 : drives.sensor[start + horizon];
+      const double error = model.measured(0) + sensor - record.measured[0].value[start + horizon];
+      sum += error * error, n += 1;
+    }
+  }
+  return n > 0 ? std::sqrt(sum / n) : 0;
+}
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,128 @@
+#include "tools/diagnose/verdict/staircase.h"
+#include <algorithm>
+#include "tools/diagnose/search/evidence.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+bool corrects_nominal(const Member& member) {
+  return member.candidate->name == "inertia" || member.candidate->name == "viscous_friction";
+}
+
+std::string shown_name(const Candidate& candidate) {
+  return candidate.is_unknown ? "an unknown force of " + candidate.form : candidate.name;
+}
+
+struct Stage {
+  std::vector<size_t> members;  ///< for the conclusion
+  Estimate estimate;
+  double criterion = 0;
+  double force = 0;  ///< the residual that remains, over the fitted rows
+};
+
+class Climb {
+ public:
+  Climb(Trials& trials, const Conclusion& conclusion, const std::vector<InverseDynamics>& inverse,
+        size_t catalogue)
+      : trials_(trials), conclusion_(conclusion), inverse_(inverse), catalogue_(catalogue) {}
+
+  /// All members first, the empty set last.
+  std::vector<Stage> stages() {
+    std::vector<Stage> list;
+    Stage whole{{}, conclusion_.estimate, criterion(trials_, conclusion_.estimate, catalogue_)};
+    for (size_t m = 0; m < conclusion_.estimate.members.size(); ++m) whole.members.push_back(m);
+    list.push_back(std::move(whole));
+    while (!list.back().members.empty()) list.push_back(without_least(list.back()));
+    return list;
+  }
+
+ private:
+  Stage fitted(const std::vector<size_t>& members, const Estimate& near) {
+    std::vector<Member> values;
+    for (size_t m : members) values.push_back(conclusion_.estimate.members[m]);
+    Stage stage{members, fit_members(trials_, values, conclusion_.estimate.noise, near.motion, 3), 0};
+    stage.criterion = criterion(trials_, stage.estimate, catalogue_);
+    stage.force = residual_size(trials_, inverse_, stage.estimate.members).fitted;
+    return stage;
+  }
+  Stage without_least(const Stage& from) {
+    const auto is_correction = [&](size_t m) { return corrects_nominal(conclusion_.estimate.members[m]); };
+    const bool only_corrections = std::ranges::all_of(from.members, is_correction);
+    Stage best;
+    for (size_t m : from.members) {
+      if (is_correction(m) && !only_corrections) continue;
+      std::vector<size_t> rest;
+      std::ranges::copy_if(from.members, std::back_inserter(rest), [&](size_t other) { return other != m; });
+      Stage stage = fitted(rest, from.estimate);
+      if (best.estimate.fitted.empty() || stage.force < best.force) best = std::move(stage);
+    }
+    return with_own_noise(without_idle_corrections(std::move(best), is_correction));
+  }
+  /// The force that this stage lacks is larger than the final noise.
+  Stage with_own_noise(Stage stage) {
+    const Estimate& e = stage.estimate;
+    const Noise noise = fit_noise_alone(trials_, e.fitted, e.noise, FreeNoise::white_and_slow);
+    stage.estimate = fit_members(trials_, e.members, noise, e.motion, 4);
+    stage.force = residual_size(trials_, inverse_, stage.estimate.members).fitted;
+    return stage;
+  }
+  /// Of the remaining members, corrections without a benefit of their own are removed too.
+  template <class F> Stage without_idle_corrections(Stage stage, F&& is_correction) {
+    for (size_t i = 0; i < stage.members.size(); ++i) {
+      if (!is_correction(stage.members[i])) continue;
+      std::vector<size_t> rest = stage.members;
+      rest.erase(rest.begin() + std::ptrdiff_t(i));
+      Stage without = fitted(rest, stage.estimate);
+      const double n = double(fitted_numbers(trials_));
+      if (without.criterion - stage.criterion > 0.02 * n) continue;
+      return without_idle_corrections(std::move(without), is_correction);
+    }
+    return stage;
+  }
+
+  Trials& trials_;
+  const Conclusion& conclusion_;
+  const std::vector<InverseDynamics>& inverse_;
+  const size_t catalogue_;
+};
+
+/// After the largest decrease, members that improve the error by less than a tenth of it are optional.
+void mark_knee(std::vector<DiagnosisStep>& steps) {
+  const auto error = [](const DiagnosisStep& s) {
+    return s.held_out_force_rmse > 0 ? s.held_out_force_rmse : s.force_rmse;
+  };
+  const double whole = error(steps.front()) - error(steps.back());
+  for (size_t i = steps.size(); i-- > 1;) {
+    if (error(steps[i - 1]) - error(steps[i]) > 0.05 * whole) break;
+    steps[i].is_optional = true;
+  }
+}
+
+}  // namespace
+
+Staircase climb(Trials& trials, const Conclusion& conclusion, const std::vector<InverseDynamics>& inverse,
+                size_t catalogue) {
+  Staircase result;
+  std::vector<Stage> stages = Climb(trials, conclusion, inverse, catalogue).stages();
+  std::ranges::reverse(stages);
+  std::vector<size_t> before;
+  for (const Stage& stage : stages) {
+    DiagnosisStep step;
+    std::vector<size_t> added;
+    for (size_t m : stage.members)
+      if (std::ranges::find(before, m) == before.end()) added.push_back(m);
+    std::ranges::stable_sort(added, {},
+                             [&](size_t m) { return corrects_nominal(conclusion.estimate.members[m]); });
+    for (size_t m : added)
+      step.added.push_back(shown_name(*conclusion.estimate.members[m].candidate)), result.order.push_back(m);
+    const ResidualSize size = residual_size(trials, inverse, stage.estimate.members);
+    step.force_rmse = size.fitted, step.held_out_force_rmse = size.held_out;
+    step.simulation_rmse = short_horizon_error(trials, stage.estimate);
+    before = stage.members;
+    result.steps.push_back(std::move(step));
+  }
+  if (result.steps.size() > 1) mark_knee(result.steps);
+  return result;
+}
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,25 @@
+/// The final statements, and what the records do not support.
+#pragma once
+#include "tools/diagnose/search/conclude.h"
+#include "tools/diagnose/diagnosis.h"
+#include "tools/diagnose/verdict/remaining_force.h"
+#include "tools/effects/effect.h"
+
+namespace loopwright::diagnosis {
+
+/// Faults of the records and missing excitation, with their consequences.
+std::vector<RecordFinding> look_at_records(const Trials& trials, const std::vector<InverseDynamics>& inverse);
+
+/// Verdict, remainder and its variables, the latter along `motion`. `tight` is the noise of the search: with
+/// the final noise, the slow force has absorbed the remainder.
+void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, const Noise& tight,
+           Diagnosis& diagnosis);
+
+/// The experiment of the catalogue that distinguishes the two.
+SuggestedExperiment separating_experiment(const Effect& effect, const std::string& other);
+
+/// Shares of the remaining slow force that are explained by functions of position, velocity, acceleration,
+/// input, time, and of position or acceleration with the direction, on rows left out of their fit.
+std::vector<RemainderShare> dependence_of(const Trials& trials, const std::vector<Fitted>& fitted);
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,276 @@
+#include "tools/experiment/experiment.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <numeric>
+#include "engine/json/file_kind.h"
+#include "engine/json/json.h"
+#include "engine/json/reader.h"
+#include "engine/record/column_units.h"
+#include "engine/record/recording_file.h"
+#include "hw/realtime/deploy.h"
+#include "tools/experiment/balances.h"
+#include "tools/experiment/data_file.h"
+
+namespace loopwright {
+namespace {
+
+class Loader {
+ public:
+  Loader(std::string path, Problems& problems) : reader_{problems, ""}, problems_(problems) {
+    result_->path = std::move(path);
+  }
+
+  std::shared_ptr<const Experiment> run() {
+    const auto source = read_source(result_->path, {}, problems_);
+    if (!source) return nullptr;
+    const Value file = parse_json(source, problems_);
+    if (problems_.has_errors() ||
+        !reader_.expect(file, Value::Kind::object, "an experiment", "an object in braces") ||
+        !expect_kind(file, FileKind::experiment, problems_))
+      return nullptr;
+    reader_.reject_unknown(file,
+                           {"$schema", "loopwright", "title", "description", "data", "time", "drive",
+                            "compare", "roles", "hold_out", "rows"},
+                           "an experiment");
+    reader_.check_version(file);
+    result_->title = reader_.text(file, "title");
+    read_signals(file, "drive", result_->drives);
+    read_signals(file, "compare", result_->compared);
+    read_roles(file);
+    read_hold_out(file);
+    read_kind_of_rows(file);
+    read_data(file);
+    if (!problems_.has_errors() && result_->is_map) gather_balances(*result_, problems_);
+    return result_;
+  }
+
+ private:
+  void read_signals(const Value& file, std::string_view key, std::vector<RecordedSignal>& to) {
+    const Value::Member* list = file.find(key);
+    if (!list) {
+      if (key == "compare")
+        reader_.error(file, "the experiment compares nothing").expected =
+            "\"compare\": {\"axis.position\": {\"column\": …, \"unit\": …}}";
+      return;
+    }
+    if (!reader_.expect(list->value, Value::Kind::object, fmt::format("\"{}\"", key),
+                        "an object: port → column and unit"))
+      return;
+    for (const Value::Member& entry : list->value.members) {
+      if (!reader_.expect(entry.value, Value::Kind::object, entry.name, "{\"column\": …, \"unit\": …}"))
+        continue;
+      const bool drives = key == "drive";
+      if (drives)
+        reader_.reject_unknown(entry.value, {"column", "unit", "interpolation"}, "a driven port");
+      else
+        reader_.reject_unknown(entry.value, {"column", "unit", "resolution"}, "a compared port");
+      RecordedSignal signal;
+      signal.port = entry.name, signal.place = entry.place, signal.pointer = entry.value.place.pointer();
+      signal.column = reader_.text(entry.value, "column");
+      signal.unit = reader_.text(entry.value, "unit");
+      if (signal.column.empty())
+        reader_.error(entry, fmt::format("\"{}\" names no column", entry.name)).expected =
+            "\"column\": name of a column in the data";
+      if (drives)
+        result_->drive_is_linear.push_back(interpolation(entry.value));
+      else
+        signal.resolution = reader_.optional_number(entry.value, "resolution", 0, 0, 1e30);
+      to.push_back(std::move(signal));
+    }
+    if (list->value.members.empty() && key == "compare")
+      reader_.error(*list, "the experiment compares nothing");
+  }
+  bool interpolation(const Value& entry) {
+    const Value::Member* member = entry.find("interpolation");
+    if (!member) return false;
+    const std::string text = reader_.text(entry, "interpolation");
+    if (text == "hold" || text == "linear") return text == "linear";
+    auto& p = reader_.error(*member, "there is no such interpolation");
+    p.expected = "\"hold\" or \"linear\"";
+    return false;
+  }
+
+  void read_roles(const Value& file) {
+    const Value::Member* roles = file.find("roles");
+    if (!roles || !reader_.expect(roles->value, Value::Kind::object, "\"roles\"", "an object: role → port"))
+      return;
+    reader_.reject_unknown(roles->value, {"position", "velocity", "acceleration", "force", "input"},
+                           "the roles");
+    for (const Value::Member& role : roles->value.members) {
+      result_->roles.ports.emplace_back(role.name, reader_.text(roles->value, role.name));
+      result_->roles.places.push_back(role.place);
+    }
+  }
+  void read_hold_out(const Value& file) {
+    const Value::Member* hold_out = file.find("hold_out");
+    if (!hold_out ||
+        !reader_.expect(hold_out->value, Value::Kind::object, "\"hold_out\"", "{\"fraction\": 0.3}"))
+      return;
+    reader_.reject_unknown(hold_out->value, {"fraction"}, "\"hold_out\"");
+    result_->hold_out_fraction = reader_.optional_number(hold_out->value, "fraction", 0, 0, 0.9);
+  }
+
+  void read_kind_of_rows(const Value& file) {
+    const Value::Member* rows = file.find("rows");
+    if (!rows) return;
+    const std::string text = reader_.text(file, "rows");
+    result_->is_map = text == "balances", result_->map_place = rows->place;
+    if (text == "balances" || text == "samples") return;
+    reader_.error(*rows, "rows of such a kind are not known").expected =
+        "\"samples\" in time, or \"balances\": places where the axis stood still";
+  }
+
+  void read_data(const Value& file) {
+    const std::string name = reader_.text(file, "data");
+    const Value::Member* member = file.find("data");
+    if (name.empty()) {
+      reader_.error(file, "the experiment names no data").expected = "\"data\": \"measured.csv\"";
+      return;
+    }
+    std::vector<std::string> tried;
+    result_->data_path = find_data_file(result_->path, name, tried);
+    if (result_->data_path.empty()) {
+      auto& p = reader_.error(*member, fmt::format("the data file \"{}\" is not there", name));
+      p.expected = tried.front() + (tried.size() > 1 ? ", or below $LOOPWRIGHT_DATA" : "");
+      p.hint = tried.size() > 1
+                   ? ""
+                   : "the environment variable LOOPWRIGHT_DATA may name a folder of measurements";
+      return;
+    }
+    const size_t before = problems_.list().size();
+    const Recording data = read_recording(result_->data_path, problems_);
+    if (data.columns.empty() || has_errors_from(before)) return;
+    read_time(file, data, *member);
+    for (auto* list : {&result_->drives, &result_->compared})
+      for (RecordedSignal& signal : *list) add_column(data, signal);
+  }
+  bool has_errors_from(size_t begin) const {
+    const auto& list = problems_.list();
+    return std::any_of(list.begin() + ptrdiff_t(begin), list.end(),
+                       [](const Problem& p) { return p.severity == Problem::Severity::error; });
+  }
+  void read_time(const Value& file, const Recording& data, const Value::Member& names_data) {
+    const Value::Member* named = file.find("time");
+    if (result_->is_map && !named) {  // the times of its rows have no meaning
+      result_->data.columns.push_back({"time", "s", std::vector<double>(data.rows())});
+      return;
+    }
+    const Place& place = named ? named->place : names_data.place;
+    const auto time = time_in_seconds(data, named ? reader_.text(file, "time") : "",
+                                      error_at(place, named ? "/time" : "/data"));
+    if (!time) return;
+    result_->time_column = time->name;
+    if (!result_->is_map) {
+      result_->time = check_time(*time, problems_, {}, names_data.place);
+      check_start(*time, names_data);
+      check_lost(data, place);
+    }
+    result_->data.columns.push_back({"time", "s", time->values});
+  }
+  /// A log counts the samples that its device lost: its times must be consistent with that.
+  void check_lost(const Recording& data, const Place& place) {
+    const Column* lost = data.find(hw::lost_column);
+    if (!lost || lost->values.empty()) return;
+    const double counted = std::accumulate(lost->values.begin() + 1, lost->values.end(), 0.0);
+    if (!(counted > double(result_->time.missing))) return;
+    auto& p = problems_.error(place, "/data", "",
+                              fmt::format("the log counts {:.0f} lost samples, and its times leave out {}",
+                                          counted, result_->time.missing));
+    p.expected = "the times of the device";
+    p.found = lost->origin;
+    p.hint = "its rows are not as far apart as it says: record it anew";
+  }
+  ColumnError error_at(const Place& place, const std::string& pointer) {
+    return [this, place, pointer](std::string message) -> Problem& {
+      return problems_.error(place, pointer, "", std::move(message));
+    };
+  }
+  void check_start(const Column& time, const Value::Member& member) {
+    if (time.values.empty() || time.values.front() >= 0) return;
+    auto& p = reader_.error(member, "the recorded times begin before zero");
+    p.found = fmt::format("{} s", time.values.front());
+    p.hint = "shift the time column so that it begins at zero";
+  }
+  void add_column(const Recording& data, RecordedSignal& signal) {
+    if (signal.column.empty()) return;  // already reported
+    const Column* found = find_column(data, signal.column, error_at(signal.place, signal.pointer));
+    if (!found) return;
+    const auto unit = unit_of(*found, signal.unit, error_at(signal.place, signal.pointer));
+    if (!unit) return;
+    if (!found->unit.empty()) signal.unit = found->unit;
+    signal.resolution *= unit->scale;
+    Column values = in_si(*found, *unit);
+    values.name = signal.port;
+    if (!result_->data.find(signal.port)) result_->data.columns.push_back(std::move(values));
+  }
+
+  std::shared_ptr<Experiment> result_ = std::make_shared<Experiment>();
+  Reader reader_;
+  Problems& problems_;
+};
+
+Value text_value(std::string text) {
+  Value value;
+  value.kind = Value::Kind::text;
+  value.text = std::move(text);
+  return value;
+}
+
+}  // namespace
+
+std::shared_ptr<const Experiment> read_experiment(const std::string& path, Problems& problems) {
+  Problems own;
+  const auto experiment = Loader(path, own).run();
+  for (const Problem& problem : own.list()) problems.add(problem);
+  return experiment;
+}
+
+std::shared_ptr<const Experiment> load_experiment(const std::string& path, Problems& problems) {
+  Problems own;
+  const auto experiment = read_experiment(path, own);
+  for (const Problem& problem : own.list()) problems.add(problem);
+  return own.has_errors() ? nullptr : experiment;
+}
+
+void reject_map(const Experiment& experiment, Problems& problems) {
+  if (!experiment.is_map) return;
+  auto& p = problems.error(experiment.map_place, "/rows", "",
+                           "a map of balances has no time that a run could follow");
+  p.expected = "\"rows\": \"samples\"";
+  p.hint = "`loopwright diagnose` reads maps";
+}
+
+LoadOptions follow(const Experiment& experiment, LoadOptions options) {
+  for (size_t i = 0; i < experiment.drives.size(); ++i) {
+    const RecordedSignal& signal = experiment.drives[i];
+    Drive drive;
+    drive.port = signal.port;
+    drive.settings.kind = Value::Kind::object;
+    const auto add = [&](std::string name, std::string text) {
+      drive.settings.members.push_back({std::move(name), signal.place, text_value(std::move(text))});
+    };
+    if (experiment.is_map) {  // the quantities in balance are set row by row
+      drive.type = "ExternalSignal", drive.output = "y";
+      drive.settings.place = signal.place;
+      options.drives.push_back(std::move(drive));
+      continue;
+    }
+    add("file", experiment.data_path);
+    add("column", signal.column);
+    add("time", experiment.time_column);
+    add("unit", signal.unit);
+    add("interpolation", experiment.drive_is_linear[i] ? "linear" : "hold");
+    drive.settings.place = signal.place;
+    options.drives.push_back(std::move(drive));
+  }
+  const std::vector<double>& time = experiment.data.columns.front().values;
+  const auto set = [&](std::string key, double value) {
+    options.set.insert(options.set.begin(), {std::move(key), fmt::format("{} s", value)});
+  };
+  set("solver.start", time.front());
+  set("solver.stop", time.back());
+  if (experiment.time.on_grid) set("solver.record_step", experiment.time.sample_time);
+  return options;
+}
+
+}  // namespace loopwright

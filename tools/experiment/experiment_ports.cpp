@@ -1,0 +1,139 @@
+#include "tools/experiment/experiment_ports.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <set>
+#include "engine/json/reader.h"
+
+namespace loopwright {
+namespace {
+
+/// Generated blocks that play a recorded column: they are not in the user's diagram and not addressed by
+/// name.
+bool is_driver(std::string_view port) { return port.starts_with("recorded_"); }
+
+/// The port's number. Reports a problem if the diagram has no such port, or one of another dimension.
+std::optional<Number> find_port(const Plan& plan, const std::string& port,
+                                const std::optional<std::string>& unit, const Place& place,
+                                const std::string& pointer, Problems& problems) {
+  const std::vector<Number> numbers = plan.find(port);
+  if (numbers.size() != 1) {
+    auto& p = problems.error(place, pointer, "",
+                             numbers.empty() ? fmt::format("the diagram has no port \"{}\"", port)
+                                             : fmt::format("\"{}\" has {} elements: name one, \"{}[0]\"",
+                                                           port, numbers.size(), port));
+    std::vector<std::string> names;
+    for (const Plan::Port& known : plan.ports)
+      if (!is_driver(known.name)) names.emplace_back(known.name);
+    if (numbers.empty()) KnownNames(names).explain(p, port);
+    return {};
+  }
+  const auto of_port = plan.unit_of(numbers[0]), of_data = unit ? parse_unit(*unit) : std::nullopt;
+  if (!of_port || !of_data) return numbers[0];
+  const Conversion::Kind kind = conversion(*of_data, *of_port).kind;
+  if (kind == Conversion::Kind::none || kind == Conversion::Kind::turns) return numbers[0];
+  auto& p =
+      problems.error(place, pointer, "", fmt::format("\"{}\" is in another unit than its column", port));
+  p.expected = to_string(*of_port), p.found = *unit;
+  if (kind == Conversion::Kind::ambiguous)
+    p.hint =
+        "are these cycles (Hz), radians (rad/s) or plain numbers (1/s)? give the column the unit of the port";
+  return numbers[0];
+}
+
+/// A constant in place of a recorded column, whether that exists or not.
+Drive placeholder(const RecordedSignal& signal) {
+  Drive drive;
+  drive.port = signal.port, drive.type = "ExternalSignal", drive.output = "y";
+  drive.settings.kind = Value::Kind::object;
+  drive.settings.place = signal.place;
+  return drive;
+}
+
+void add_errors(const std::vector<Problem>& list, size_t from, Problems& to) {
+  std::set<std::string> told;
+  for (const Problem& problem : to.list()) told.insert(to_string(problem));
+  for (size_t i = from; i < list.size(); ++i)
+    if (list[i].severity == Problem::Severity::error && told.insert(to_string(list[i])).second)
+      to.add(list[i]);
+}
+
+/// The drives that lead to ports of the diagram; each of the others is a problem.
+LoadOptions with_drives(const std::string& diagram, const Experiment& experiment, LoadOptions options,
+                        Problems& problems) {
+  const auto [first, last] = std::pair(options.set.begin(), options.set.end());
+  if (std::none_of(first, last, [](const auto& option) { return option.first == "solver.stop"; }))
+    options.set.insert(options.set.begin(), {"solver.stop", "1 s"});  // the value from the experiment
+  Problems without;
+  load_diagram(diagram, options, without);
+  const size_t own = without.list().size();
+  std::vector<Drive> good;
+  for (const RecordedSignal& signal : experiment.drives) {
+    Problems with;
+    LoadOptions one = options;
+    one.drives.push_back(placeholder(signal));
+    load_diagram(diagram, one, with);
+    if (with.list().size() == own) good.push_back(one.drives.back());
+    add_errors(with.list(), own, problems);
+  }
+  options.drives = std::move(good);
+  return options;
+}
+
+}  // namespace
+
+Plan logging(const Plan& plan, const Experiment& experiment, Problems& problems) {
+  Plan changed = plan;
+  changed.log.clear();
+  const auto log = [&](const std::string& name, const std::optional<std::string>& unit, const Place& place,
+                       const std::string& pointer) {
+    const auto number = find_port(plan, name, unit, place, pointer, problems);
+    if (!number || std::ranges::any_of(changed.log, [&](const Plan::Logged& l) { return l.name == name; }))
+      return;
+    Plan::Logged logged;
+    logged.name = name, logged.number = *number;
+    if (const auto known = plan.unit_of(*number)) logged.unit = *known, logged.unit_is_known = true;
+    changed.log.push_back(std::move(logged));
+  };
+  for (const RecordedSignal& signal : experiment.compared)
+    log(signal.port, signal.unit, signal.place, signal.pointer);
+  for (const RecordedSignal& signal : experiment.drives)
+    find_port(plan, signal.port, signal.unit, signal.place, signal.pointer, problems);
+  for (size_t i = 0; i < experiment.roles.ports.size(); ++i)
+    log(experiment.roles.ports[i].second, std::nullopt, experiment.roles.places[i],
+        "/roles/" + experiment.roles.ports[i].first);
+  return changed;
+}
+
+Experiment in_units_of_ports(const Plan& plan, Experiment experiment) {
+  for (RecordedSignal& signal : experiment.compared) {
+    const std::vector<Number> numbers = plan.find(signal.port);
+    const auto of_port = numbers.size() == 1 ? plan.unit_of(numbers[0]) : std::nullopt;
+    const auto of_data = parse_unit(signal.unit);
+    const auto column = std::ranges::find(experiment.data.columns, signal.port, &Column::name);
+    if (!of_port || !of_data || column == experiment.data.columns.end()) continue;
+    const Conversion to_port = conversion(*of_data, *of_port);
+    if (to_port.kind != Conversion::Kind::turns) continue;
+    for (double& value : column->values) value = to_port(value);
+    column->unit = signal.unit = to_string(of_port->in_si());
+    signal.resolution = to_port(signal.resolution);
+  }
+  return experiment;
+}
+
+void explain_failure(const std::string& path, const std::vector<std::string>& experiments,
+                     const LoadOptions& options, Problems found) {
+  for (const std::string& experiment_path : experiments) {
+    Problems problems;
+    const auto experiment = read_experiment(experiment_path, problems);
+    const LoadOptions driven = with_drives(path, experiment ? *experiment : Experiment{}, options, problems);
+    Problems of_diagram;
+    const auto diagram = load_diagram(path, driven, of_diagram);
+    const auto plan = diagram ? compile(*diagram, of_diagram) : nullptr;
+    add_errors(of_diagram.list(), 0, problems);
+    if (plan && experiment) logging(*plan, *experiment, problems);
+    add_errors(problems.list(), 0, found);
+  }
+  throw InputError(std::move(found));
+}
+
+}  // namespace loopwright
