@@ -23,17 +23,44 @@ const std::vector<std::string>& usual_units() {
 struct Alias {
   std::string_view written, meant;
 };
-constexpr Alias aliases[] = {{"Nm", "N*m"},    {"mNm", "mN*m"}, {"Ns", "N*s"},       {"RPM", "rpm"},
-                             {"U/min", "rpm"}, {"sec", "s"},    {"secs", "s"},       {"msec", "ms"},
-                             {"usec", "us"},   {"Ohm", "ohm"},  {"°C", "degC"},      {"gram", "g"},
-                             {"newton", "N"},  {"revs", "rpm"}, {"kgm^2", "kg*m^2"}, {"kgm2", "kg*m^2"},
-                             {"Vs", "V*s"},    {"As", "A*s"},   {"micron", "um"}};
+constexpr Alias aliases[] = {{"U/min", "rpm"},     {"revs", "rpm"},     {"RPM", "rpm"},    {"RPS", "rps"},
+                             {"sec", "s"},         {"secs", "s"},       {"msec", "ms"},    {"usec", "us"},
+                             {"rads", "rad"},      {"Ohm", "ohm"},      {"°C", "degC"},    {"gram", "g"},
+                             {"newton", "N"},      {"micron", "um"},    {"NM", "N*m"},     {"cts", "count"},
+                             {"ticks", "count"},   {"/s", "1/s"},       {"/min", "1/min"}, {"kgs", "kg"},
+                             {"ozin", "ozf*inch"}, {"kgm^2", "kg*m^2"}, {"kgm2", "kg*m^2"}};
+
+/// Units of which products are often written without a sign: "Nm", "kgcm2", "Vs".
+constexpr std::string_view first_factors[] = {"mN", "uN", "kN", "N",  "mV", "V",  "mA",
+                                              "A",  "kW", "W",  "kg", "g",  "lbf"};
+constexpr std::string_view other_factors[] = {"mm", "cm", "m", "s", "h", "in", "ft"};
+
+/// "N*m*s" for "Nms"; empty if the word is not such a product.
+std::string with_signs(std::string_view word) {
+  const auto rest_of = [](const auto& self, std::string_view rest) -> std::string {
+    if (rest.empty()) return " ";
+    for (const std::string_view factor : other_factors)
+      if (rest.starts_with(factor))
+        if (const std::string more = self(self, rest.substr(factor.size())); !more.empty())
+          return "*" + std::string(factor) + more;
+    return "";
+  };
+  for (const std::string_view factor : first_factors) {
+    if (!word.starts_with(factor) || word.size() == factor.size()) continue;
+    std::string rest = rest_of(rest_of, word.substr(factor.size()));
+    if (rest.empty()) continue;
+    rest.pop_back();
+    return std::string(factor) + rest;
+  }
+  return "";
+}
 
 bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) || (c & 0x80); }
 
 std::string meant_by(const std::string& word) {
   const auto alias = std::ranges::find(aliases, word, &Alias::written);
   if (alias != std::end(aliases)) return std::string(alias->meant);
+  if (std::string product = with_signs(word); !product.empty()) return product;
   const auto lower = [](std::string text) {
     for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
     return text;
@@ -48,9 +75,13 @@ std::string meant_by(const std::string& word) {
 std::string unit_hint(std::string_view text) {
   constexpr size_t longest = 64;  // of a text that may be a unit
   if (text.size() > longest) return "";
-  std::string meant = meant_by(std::string(text));
-  if (!meant.empty() && parse_unit(meant)) return fmt::format("did you mean \"{}\"?", meant);
-  meant.clear();
+  const bool is_word = std::ranges::all_of(text, is_letter);
+  const auto alias = std::ranges::find(aliases, text, &Alias::written);
+  if (is_word || alias != std::end(aliases)) {
+    const std::string meant = meant_by(std::string(text));
+    return !meant.empty() && parse_unit(meant) ? fmt::format("did you mean \"{}\"?", meant) : "";
+  }
+  std::string meant;
   for (size_t at = 0; at < text.size();) {  // word by word
     size_t end = at;
     while (end < text.size() && is_letter(text[end])) ++end;
@@ -63,6 +94,7 @@ std::string unit_hint(std::string_view text) {
     if (other.empty()) return "";
     meant += other;
     at = end;
+    if (at < text.size() && other != word && std::isdigit(static_cast<unsigned char>(text[at]))) meant += '^';
   }
   return meant != text && parse_unit(meant) ? fmt::format("did you mean \"{}\"?", meant) : "";
 }

@@ -31,6 +31,54 @@ TEST(Hints, NamesOfOtherProgramsLeadToBlocksThatExist) {
   EXPECT_EQ(block_type_hint("Xyzzy"), "`loopwright blocks` lists all types");
 }
 
+TEST(Hints, MisspelledUnitsLeadToUnitsThatExist) {
+  for (const auto& [written, meant] :
+       std::vector<std::pair<std::string, std::string>>{{"Nm", "N*m"},
+                                                        {"mNm", "mN*m"},
+                                                        {"kNm", "kN*m"},
+                                                        {"Nmm", "N*mm"},
+                                                        {"Nms", "N*m*s"},
+                                                        {"Nm/rad", "N*m/rad"},
+                                                        {"Nms/rad", "N*m*s/rad"},
+                                                        {"Nm/A", "N*m/A"},
+                                                        {"kgm2", "kg*m^2"},
+                                                        {"kgm^2", "kg*m^2"},
+                                                        {"kgcm2", "kg*cm^2"},
+                                                        {"gcm2", "g*cm^2"},
+                                                        {"Vs", "V*s"},
+                                                        {"Vs/rad", "V*s/rad"},
+                                                        {"RPM", "rpm"},
+                                                        {"Rpm", "rpm"},
+                                                        {"RPM/V", "rpm/V"},
+                                                        {"RPS", "rps"},
+                                                        {"HZ", "Hz"},
+                                                        {"hz", "Hz"},
+                                                        {"khz", "kHz"},
+                                                        {"Kg", "kg"},
+                                                        {"kgs", "kg"},
+                                                        {"rads/s", "rad/s"},
+                                                        {"cts/rev", "count/rev"},
+                                                        {"/s", "1/s"},
+                                                        {"/min", "1/min"},
+                                                        {"U/min", "rpm"}}) {
+    EXPECT_FALSE(parse_unit(written)) << written;
+    EXPECT_EQ(unit_hint(written), "did you mean \"" + meant + "\"?");
+    EXPECT_TRUE(parse_unit(meant)) << meant;
+  }
+}
+
+TEST(Hints, UsualNotationsOfUnitsNeedNone) {
+  for (const auto& [written, unit] : std::vector<std::pair<std::string, std::string>>{
+           {"Ohm", "ohm"},       {"ohms", "ohm"},    {"sec", "s"},      {"secs", "s"},
+           {"msec", "ms"},       {"degrees", "deg"}, {"degree", "deg"}, {"°", "deg"},
+           {"rad/sec", "rad/s"}, {"m/s2", "m/s^2"},  {"m/s²", "m/s^2"}, {"kg.m2", "kg*m^2"},
+           {"kg m2", "kg*m^2"},  {"N.m", "N*m"},     {"N-m", "N*m"},    {"N·m", "N*m"},
+           {"uN", "µN"},         {"μN", "µN"},       {"µm", "um"},      {"μm", "um"},
+           {"newtons", "N"},     {"meters", "m"},    {"volts", "V"},    {"amps", "A"},
+           {"rps", "rev/s"}})
+    EXPECT_EQ(parse_unit(written), parse_unit(unit)) << written;
+}
+
 TEST(Hints, EveryBlockThatIsOfferedExists) {
   // Every name that a hint quotes after "did you mean" is a block.
   for (const char* written : {"abs",
@@ -100,6 +148,7 @@ TEST(Hints, TheSettingThatAsksForWiresIsNamed) {
 
 TEST(Hints, UnitsWrittenNearlySo) {
   for (const auto& [written, meant] : std::vector<std::pair<std::string, std::string>>{{"Kg", "kg"},
+                                                                                       {"kgs", "kg"},
                                                                                        {"Nm", "N*m"},
                                                                                        {"n", "N"},
                                                                                        {"RPM", "rpm"},
