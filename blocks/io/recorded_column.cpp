@@ -6,6 +6,7 @@
 #include <memory>
 #include "engine/block.h"
 #include "engine/record/column_units.h"
+#include "engine/unit/scaled_rate.h"
 #include "engine/record/recording_file.h"
 
 namespace loopwright::blocks {
@@ -99,7 +100,7 @@ void RecordedColumn::check(const Checker& checker) {
   const auto times = time_in_seconds(recording, time_column, error_at(names_time));
   const auto scale = values ? unit_of(*values, unit, error_at("unit")) : std::nullopt;
   if (!times || !scale) return;
-  if (!unit.empty() || !values->unit.empty()) known_unit = scale->in_si();
+  if (!unit.empty() || !values->unit.empty()) known_unit = kept_in_si(*scale);
   auto loaded = std::make_shared<Table>();
   loaded->time = loaded->begin = times->values;
   loaded->value = in_si(*values, *scale).values;

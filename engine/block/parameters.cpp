@@ -76,7 +76,7 @@ static bool as_described(const Value& v, const Range& range) {
   if (range.is_difference && v.unit->is_point) return false;
   const bool counts_cycles = range.unit.find("Hz") != range.unit.npos;
   const bool is_fixed = range.unit.find('$') == range.unit.npos;
-  return !is_fixed || (v.unit->cycles() == 0) == !counts_cycles;
+  return !is_fixed || (v.unit->scale == 1 && (v.unit->cycles() == 0) == !counts_cycles);
 }
 /// False after a problem.
 static bool take(Value& v, const Range& range, const Reader& reader) {

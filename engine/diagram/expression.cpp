@@ -8,6 +8,7 @@
 #include <numbers>
 #include <unordered_map>
 #include "engine/diagram/formula_parser.h"
+#include "engine/unit/scaled_rate.h"
 
 namespace loopwright {
 namespace {
@@ -260,14 +261,19 @@ class Evaluator {
     const bool is_turns_over_hertz = finding == UnitFinding::known && unit.cycles() == -2;
     if (finding == UnitFinding::zero || (finding == UnitFinding::known && !is_turns_over_hertz))
       return result;  // zero fits every unit
+    const bool has_rate =
+        std::ranges::any_of(parameters_, [](const Quantity& p) { return p.unit && is_scaled_rate(*p.unit); });
     Problem& problem =
         report(is_turns_over_hertz ? "2*pi over a frequency in Hz is neither a period nor a time constant"
-               : finding == UnitFinding::mixed       ? "the expression mixes units"
+               : finding == UnitFinding::mixed ? "the expression mixes units"
+               : finding == UnitFinding::mixed_turns && has_rate
+                   ? "the expression adds a rate such as 1/min to rad/s or Hz"
                : finding == UnitFinding::mixed_turns ? "the expression adds Hz and rad/s"
                                                      : "the unit of the expression cannot be found",
                0);
     problem.found += with_units();
-    if (finding == UnitFinding::mixed_turns) problem.hint = "2*pi times a frequency in Hz is in rad/s";
+    if (finding == UnitFinding::mixed_turns)
+      problem.hint = has_rate ? "revolutions per minute are rpm" : "2*pi times a frequency in Hz is in rad/s";
     if (is_turns_over_hertz)
       problem.hint = "the period of f is 1/f, the time constant of a corner at f is 1/(2*pi*f)";
     if (finding == UnitFinding::mixed)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include "engine/json/take_unit.h"
+#include "engine/unit/scaled_rate.h"
 
 namespace loopwright {
 namespace {
@@ -34,7 +35,7 @@ std::string_view without_spaces(std::string_view text) {
 void give_unit(Value& number, const Unit& unit) {
   number.number = unit.to_si(number.number);
   number.whole &= unit.scale == 1 && unit.offset == 0;
-  number.unit = unit.in_si();
+  number.unit = kept_in_si(unit);
 }
 
 std::string_view kind_name(Value::Kind kind) {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <fmt/format.h>
 #include "engine/json/json.h"
+#include "engine/json/stated_number.h"
 
 namespace loopwright {
 namespace {
@@ -14,20 +14,6 @@ std::optional<size_t> index_in(const std::string& text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
   if (error != std::errc() || end != text.data() + text.size()) return {};
   return index;
-}
-
-/// "25 mm"
-std::optional<Value> number_with_unit(const std::string& text) {
-  double number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || !std::isfinite(number) || end == text.data() + text.size()) return {};
-  const auto unit = parse_unit(std::string_view(end, text.data() + text.size()));
-  if (!unit) return {};
-  Value value;
-  value.kind = Value::Kind::number;
-  value.number = unit->to_si(number);
-  value.unit = unit->in_si();
-  return value;
 }
 
 Value read_value(const std::shared_ptr<const SourceFile>& source, Problems& problems) {
@@ -46,9 +32,9 @@ Value read_value(const std::shared_ptr<const SourceFile>& source, Problems& prob
     json.is_broken = true;
     return json;
   }
-  if (auto number = number_with_unit(text)) {
-    number->place = plain.place;
-    return *number;
+  if (auto number = number_and_unit(text)) {
+    number->at.place = plain.place;
+    return number->at;
   }
   return plain;
 }

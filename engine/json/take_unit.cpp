@@ -1,5 +1,6 @@
 #include "engine/json/take_unit.h"
 #include <fmt/format.h>
+#include "engine/unit/scaled_rate.h"
 
 namespace loopwright {
 namespace {
@@ -38,11 +39,28 @@ void warn_of_expression(const Value& number, double converted, const Unit& wante
                        wanted.cycles() == 0 ? "multiply by" : "divide by", to_string(wanted));
 }
 
+/// The same number with radians in place of counts: 2π for each.
+std::string shown_in_radians(const Value& number, const Unit& wanted) {
+  const Conversion turns{Conversion::Kind::turns, double{wanted.radians()} - double{number.unit->radians()}};
+  return shown(turns(number.number), wanted);
+}
+
 void tell_ambiguity(const Value& number, const Unit& wanted, const Reader& reader) {
   const Unit given = number.unit->in_si();
-  auto& p = reader.error(
-      number, fmt::format("{}{} can mean two numbers here", named(number), shown(number.number, given)));
+  auto& p = reader.error(number, fmt::format("{}{} can mean two numbers here", named(number),
+                                             shown(number.unit->from_si(number.number), *number.unit)));
+  if (!number.text.empty()) p.found = number.text;
   p.expected = fmt::format("a number in {}", to_string(wanted));
+  const bool is_count = given.cycles() == wanted.cycles();  // a rate such as 1/min, and radians
+  if (is_count && is_scaled_rate(*number.unit)) {
+    p.hint = fmt::format("revolutions make it {}: write rpm; a plain rate makes it {}: write 1/s",
+                         shown_in_radians(number, wanted.in_si()), shown(number.number, wanted.in_si()));
+    return;
+  }
+  if (is_count) {
+    p.hint = "revolutions per minute are rpm, and radians per second rad/s";
+    return;
+  }
   Unit other = given;  // the same with radians instead of cycles
   other.exponents[Unit::cycle] = wanted.cycles();
   other.exponents[Unit::radian] += given.cycles() - wanted.cycles();
@@ -61,7 +79,8 @@ void tell_ambiguity(const Value& number, const Unit& wanted, const Reader& reade
 UnitTaken take_unit(Value& number, const Unit& wanted, const Reader& reader) {
   const Conversion to_wanted = conversion(*number.unit, wanted);
   if (to_wanted.kind == Conversion::Kind::impossible) return UnitTaken::no;
-  if (to_wanted.kind == Conversion::Kind::ambiguous && !number.is_computed) {
+  const bool is_told = !number.is_computed || is_scaled_rate(*number.unit);
+  if (to_wanted.kind == Conversion::Kind::ambiguous && is_told) {
     tell_ambiguity(number, wanted, reader);
     return UnitTaken::told;
   }
@@ -75,7 +94,7 @@ UnitTaken take_unit(Value& number, const Unit& wanted, const Reader& reader) {
       number.whole = false;
     }
   }
-  number.unit = wanted.in_si();
+  number.unit = kept_in_si(wanted);
   number.is_computed = false;
   return UnitTaken::yes;
 }

@@ -6,18 +6,13 @@ namespace loopwright {
 
 enum class UnitTaken {
   yes,   ///< the number is now in the wanted unit (SI)
-  told,  ///< cycles and a plain number: a problem was reported
+  told,  ///< cycles and a plain number, or radians and a rate such as 1/min: a problem was reported
   no,    ///< another dimension: the caller reports it
 };
 
 /// Hertz are converted to radians per second by 2π, and back. A warning states both readings, as the two were
 /// once the same. The result of an expression is taken without conversion, with a warning if it seems to be
-/// in the other unit.
+/// in the other unit; a result that is a rate such as 1/min is refused where it can mean two numbers.
 UnitTaken take_unit(Value& number, const Unit& wanted, const Reader& reader);
-
-/// Whether `take_unit` would leave the number unchanged; a fast check that covers most numbers.
-inline bool is_taken_as_it_is(const Value& number, const Unit& wanted) {
-  return !number.unit || number.unit->cycles() == wanted.cycles();
-}
 
 }  // namespace loopwright

@@ -54,7 +54,7 @@ void Settings::add(const std::vector<Parameter>& parameters) {
   for (const Parameter& parameter : parameters)
     effective.emplace_back(
         parameter.name,
-        to_json(parameter.value) + (parameter.value.unit ? " " + to_string(*parameter.value.unit) : ""));
+        to_json(parameter.value) + (parameter.value.unit ? " " + to_string(parameter.value.unit->in_si()) : ""));
 }
 
 void Settings::add(int block, const BlockType& type, const BlockEntry& entry, const std::string& path) {

@@ -1,5 +1,6 @@
 #include "engine/plan/unit_equations.h"
 #include <algorithm>
+#include "engine/unit/scaled_rate.h"
 
 namespace loopwright {
 
@@ -103,7 +104,7 @@ End UnitEquations::open_input_end(const FlatWire& wire) {
   if (open < 0) return {};
   const DiagramInput& input = diagram_.inputs[size_t(open)];
   const auto unit = input.unit.empty() ? std::nullopt : parse_unit(input.unit);
-  return {-1, unit ? constant(unit->in_si()) : nullptr, input.name};
+  return {-1, unit ? constant(kept_in_si(*unit)) : nullptr, input.name};
 }
 
 /// Inputs and outputs that diagrams declare with a unit.
@@ -113,7 +114,7 @@ void UnitEquations::add_declarations(const Diagram& diagram, const std::string& 
     const auto unit = parse_unit(unit_text);
     const FlatWire* const wire = declared(prefix + name);
     if (!unit || !wire || !wire->is_resolved()) return;
-    equations_.push_back({{-1, constant(unit->in_si()), {}},
+    equations_.push_back({{-1, constant(kept_in_si(*unit)), {}},
                           output_end(*wire),
                           &place,
                           &declared_paths_.emplace_back(prefix + name)});

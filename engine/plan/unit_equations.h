@@ -35,7 +35,8 @@ struct Equation {
   bool is_parameter() const { return left.block >= 0 && right.block < 0 && !rule && !is_open_input; }
   bool agrees(const Unit& a, const Unit& b) const {
     const bool is_converted = is_parameter() && left.expression->factors.empty();  // done where it was read
-    return is_converted ? a.same_dimension(b) : a.fits(b);
+    if (is_converted) return a.same_dimension(b);
+    return a.fits(b) && (a.radians() == b.radians() || conversion(b, a).kind == Conversion::Kind::none);
   }
   /// Nothing to solve, and no contradiction.
   bool is_settled() const {

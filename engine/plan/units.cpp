@@ -5,6 +5,7 @@
 #include "engine/plan/groups.h"
 #include "engine/plan/unit_equations.h"
 #include "engine/plan/unit_system.h"
+#include "engine/unit/scaled_rate.h"
 
 namespace loopwright {
 namespace {
@@ -34,7 +35,7 @@ class Solver {
     for (size_t b = 0; b < flat_.blocks.size(); ++b) {
       units.first.push_back(units.outputs.size());
       for (size_t o = 0; o < flat_.blocks[b].type->info.outputs.size(); ++o)
-        units.outputs.push_back(value({int(b), &said_.types_of(int(b)).of_output(o), {}}));
+        units.outputs.push_back(in_si(value({int(b), &said_.types_of(int(b)).of_output(o), {}})));
     }
     return units;
   }
@@ -60,6 +61,14 @@ class Solver {
       });
   }
 
+  /// Signals are in SI. Only a rate such as 1/min keeps its scale.
+  static Unit of_signal(Unit unit) {
+    if (!is_scaled_rate(unit)) unit.scale = 1;
+    return unit;
+  }
+  static std::optional<Unit> in_si(const std::optional<Unit>& unit) {
+    return unit ? std::optional(unit->in_si()) : std::nullopt;
+  }
   std::optional<Unit> value(const End& end) const {
     Unit unit = end.expression->constant;
     for (const UnitFactor& factor : end.expression->factors) {
@@ -67,7 +76,7 @@ class Solver {
       if (!known) return {};
       unit = unit * power(*known, factor.exponent);
     }
-    return unit;
+    return of_signal(unit);
   }
   /// The unit of the right end, or the result of its rule.
   std::optional<Unit> right_value(const Equation& equation) const {
@@ -82,7 +91,7 @@ class Solver {
       if (!unit) return {};
       product = product * power(*unit, argument.power);
     }
-    return product;
+    return of_signal(product);
   }
 
   /// The unit of a formula, once the units of its arguments are known.
@@ -149,7 +158,7 @@ class Solver {
     if (unit.radians() > 0 && !others.same_dimension(Unit{})) unit.exponents[Unit::radian] = 0;
   }
   void assign(const Unknown& unknown, Unit unit) {
-    unit.scale = 1;
+    unit = of_signal(unit);
     drop_radians_of_products(unit);
     if (unknown.is_position && unit == Unit{}) unit.exponents[Unit::radian] = 1;
     variables_[unknown.variable] = unit;
@@ -264,6 +273,8 @@ class Solver {
   }
 
   std::string hint_for(const Equation& equation, const Unit& left, const Unit& right) const {
+    if (is_scaled_rate(left) || is_scaled_rate(right))
+      return "revolutions per minute are rpm, and a plain rate is in 1/s: state which of them is meant";
     if (left.same_dimension(right))
       return "hertz count cycles: a Gain of {\"value\": \"=2*pi\", \"unit\": \"rad/(Hz*s)\"} makes radians "
              "of them";
@@ -307,9 +318,10 @@ class Solver {
     const FlatBlock& block = flat_.blocks[size_t(equation.left.block)];
     const Value::Member* const at = block.entry->settings.find(unit->parameter);
     const Place& place = at ? at->value.place : *equation.place;
-    auto& p = problems_.error(
-        place, place.pointer(), block.path,
-        unit->finding == UnitFinding::mixed ? "the formula mixes units" : "the formula adds Hz and rad/s");
+    auto& p = problems_.error(place, place.pointer(), block.path,
+                              unit->finding == UnitFinding::mixed
+                                  ? "the formula mixes units"
+                                  : "the formula adds Hz, rad/s or a rate such as 1/min");
     p.found = unit->found;
     p.hint = "a number can be given a unit as an argument: a Constant of {\"value\": 3, \"unit\": \"m\"}";
   }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include "engine/unit/scaled_rate.h"
 #include "models/real/double_functions.h"
 
 namespace loopwright {
@@ -11,6 +12,13 @@ namespace {
 using Function = std::function<double(const std::vector<double>&, double)>;
 
 constexpr double no_power = std::numeric_limits<double>::quiet_NaN();
+
+/// Rates such as 1/min are rescaled like a base unit of their own.
+constexpr size_t scaled_rate = Unit::cycle + 1;
+
+float exponent_of(const Unit& unit, size_t base) {
+  return base != scaled_rate ? unit.exponents[base] : is_scaled_rate(unit) ? 1.0f : 0.0f;
+}
 
 /// b in f ~ λ^b, a multiple of 1/12; NaN if f is not a power of λ.
 double exponent_of_growth(double at_one, double at_two, double at_three) {
@@ -42,7 +50,7 @@ class Rescaled {
         if (base == Unit::cycle) of_pi -= 1;
         for (size_t i = 0; i < arguments_.size(); ++i)
           if (arguments_[i].unit)
-            rescaled[i] *= any_power(lambda, double{arguments_[i].unit->exponents[base]});
+            rescaled[i] *= any_power(lambda, double{exponent_of(*arguments_[i].unit, base)});
       }
       return function_(rescaled, of_pi == 0 ? std::numbers::pi : std::numbers::pi * any_power(lambda, of_pi));
     };
@@ -50,8 +58,14 @@ class Rescaled {
   }
 
   bool has(size_t base) const {
-    return std::ranges::any_of(arguments_,
-                               [base](const Quantity& q) { return q.unit && q.unit->exponents[base] != 0; });
+    return std::ranges::any_of(
+        arguments_, [base](const Quantity& q) { return q.unit && exponent_of(*q.unit, base) != 0; });
+  }
+  /// Of the first argument that is a rate such as 1/min.
+  double scale_of_rate() const {
+    for (const Quantity& q : arguments_)
+      if (q.unit && is_scaled_rate(*q.unit)) return q.unit->scale;
+    return 1;
   }
 
  private:
@@ -61,12 +75,16 @@ class Rescaled {
   double at_one_ = 0;
 };
 
+bool is_kinematic(const Unit& unit) {
+  bool is_time = true;
+  for (size_t i = 0; i < Unit::checked; ++i) is_time &= i == 2 || unit.exponents[i] == 0;
+  return is_time;
+}
+
 /// Only rad, rad/s, Hz, 1/Hz and the like keep turns: m ω² is a stiffness.
 void drop_turns_of_products(Unit& unit) {
-  bool is_kinematic = true;
-  for (size_t i = 0; i < Unit::checked; ++i) is_kinematic &= i == 2 || unit.exponents[i] == 0;
   const float turns = std::abs(unit.radians()) + std::abs(unit.cycles());
-  if (!is_kinematic || turns != 1) unit.exponents[Unit::radian] = unit.exponents[Unit::cycle] = 0;
+  if (!is_kinematic(unit) || turns != 1) unit.exponents[Unit::radian] = unit.exponents[Unit::cycle] = 0;
 }
 
 bool is_power_of_time(const Unit& unit, float exponent) {
@@ -79,6 +97,9 @@ UnitFinding find_turns(const Rescaled& f, Unit& unit) {
     if (is_power_of_time(unit, -1) && radians == 1) unit.exponents[Unit::radian] = 1;  // 2π/T of a period T
     return UnitFinding::known;
   }
+  const bool adds_turns = std::isnan(radians) || (radians == 0 && std::isnan(cycles));
+  const bool adds_rate = adds_turns && f.has(scaled_rate) && std::isnan(f.exponent({scaled_rate}));
+  if (adds_rate && is_kinematic(unit)) return UnitFinding::mixed_turns;
   const bool adds_both =
       std::isnan(radians) && std::isnan(cycles) && f.has(Unit::radian) && f.has(Unit::cycle);
   if (adds_both && !std::isnan(f.exponent({Unit::radian, Unit::cycle}))) return UnitFinding::mixed_turns;
@@ -99,7 +120,12 @@ UnitFinding unit_at(const Rescaled& f, Unit& unit) {
     if (std::isnan(exponent)) return UnitFinding::mixed;
     unit.exponents[base] = static_cast<float>(exponent);
   }
-  return find_turns(f, unit);
+  const UnitFinding finding = find_turns(f, unit);
+  // A multiple of a rate such as 1/min, and a sum with one, is as ambiguous as the rate.
+  Unit rate = unit;
+  rate.scale = f.scale_of_rate();
+  if (is_scaled_rate(rate) && f.exponent({scaled_rate}) != 0) unit.scale = rate.scale;
+  return finding;
 }
 
 }  // namespace

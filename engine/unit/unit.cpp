@@ -1,5 +1,6 @@
 #include "engine/unit/unit.h"
 #include "engine/unit/base_symbols.h"
+#include "engine/unit/scaled_rate.h"
 
 #include <algorithm>
 #include <charconv>
@@ -251,7 +252,10 @@ Conversion conversion(const Unit& from, const Unit& to) {
   if (!from.same_dimension(to)) return {Conversion::Kind::impossible};
   const double cycles = double{from.cycles()} - double{to.cycles()};
   const double radians = double{to.radians()} - double{from.radians()};
-  if (cycles == 0) return {Conversion::Kind::none};
+  if (cycles == 0) {
+    const bool may_be_turns = radians != 0 && (is_scaled_rate(from) || is_scaled_rate(to));
+    return {may_be_turns ? Conversion::Kind::ambiguous : Conversion::Kind::none};
+  }
   return {cycles == radians ? Conversion::Kind::turns : Conversion::Kind::ambiguous, cycles};
 }
 

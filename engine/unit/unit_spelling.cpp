@@ -134,7 +134,8 @@ std::string_view name_of_scaled(const Unit& unit) {
   };
   static const std::vector<Named> list = [] {
     std::vector<Named> named;
-    for (const std::string_view name : {"%", "deg", "rev", "rpm", "deg/s", "rev/s", "degC", "degF"})
+    for (const std::string_view name :
+         {"%", "deg", "rev", "rpm", "deg/s", "rev/s", "degC", "degF", "1/min", "1/h", "1/ms"})
       named.push_back({name, parse_unit(name).value()});
     return named;
   }();

@@ -34,7 +34,7 @@ void take_number(Value& number, std::string_view name, const std::string& wanted
   if (taken == UnitTaken::no) {
     auto& p = reader.error(number, fmt::format("the unit does not fit \"{}\"", name));
     p.expected = *unit == Unit{} ? "a number without a unit" : fmt::format("a number in {}", wanted);
-    p.found = fmt::format("{:g} {}", number.number, shown_unit(number));
+    p.found = fmt::format("{:g} {}", number.unit->from_si(number.number), shown_unit(number));
     if (name == "scale") p.hint = "value = scale * raw + offset; the raw number of an analog channel is in V";
   }
   if (taken == UnitTaken::yes)

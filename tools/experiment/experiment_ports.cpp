@@ -36,7 +36,8 @@ std::optional<Number> find_port(const Plan& plan, const std::string& port,
   p.expected = to_string(*of_port), p.found = *unit;
   if (kind == Conversion::Kind::ambiguous)
     p.hint =
-        "are these cycles (Hz), radians (rad/s) or plain numbers (1/s)? give the column the unit of the port";
+        "are these cycles (Hz), revolutions (rpm), radians (rad/s) or plain numbers (1/s)? give the column "
+        "the unit that is meant";
   return numbers[0];
 }
 

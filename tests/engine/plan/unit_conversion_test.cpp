@@ -11,13 +11,13 @@ using std::numbers::pi;
 struct RateUnit {
   std::string name;
   double radians_per_second;
-  enum class Kind { cycles, radians, plain } kind;
+  enum class Kind { cycles, radians, plain, scaled } kind;
 };
 using Kind = RateUnit::Kind;
 const std::vector<RateUnit> rate_units = {
     {"Hz", 2 * pi, Kind::cycles}, {"kHz", 2000 * pi, Kind::cycles},   {"rpm", 2 * pi / 60, Kind::radians},
     {"rad/s", 1, Kind::radians},  {"deg/s", pi / 180, Kind::radians}, {"rev/s", 2 * pi, Kind::radians},
-    {"1/s", 1, Kind::plain}};
+    {"1/s", 1, Kind::plain},      {"1/min", 1.0 / 60, Kind::scaled},  {"1/ms", 1000, Kind::scaled}};
 
 /// A parameter of a block that expects rad/s, Hz, or a plain 1/s.
 struct Place {
@@ -106,8 +106,10 @@ TEST(UnitConversion, GivesTheSameRotationOnEveryWayOrRefuses) {
       for (const auto& [way, outcome] : outcomes(place, "40", unit)) {
         const std::string what = way + ": 40 " + unit.name + " for " + place.path + " in " +
                                  place.wants.name + "\n" + outcome.problems;
-        const bool is_ambiguous = (unit.kind == Kind::cycles) != (place.wants.kind == Kind::cycles) &&
-                                  (unit.kind == Kind::plain || place.wants.kind == Kind::plain);
+        const bool is_ambiguous = unit.kind == Kind::scaled
+                                      ? place.wants.kind != Kind::plain
+                                      : (unit.kind == Kind::cycles) != (place.wants.kind == Kind::cycles) &&
+                                            (unit.kind == Kind::plain || place.wants.kind == Kind::plain);
         if (is_ambiguous) {
           EXPECT_FALSE(outcome.number) << what;
           EXPECT_TRUE(has(outcome.problems, "can mean two numbers here")) << what;
@@ -203,9 +205,12 @@ TEST(UnitConversion, ATimeIsThePeriodOfAFrequency) {
   EXPECT_EQ(plan_of(sampled("1/f"))->blocks[0].sample_time, 0.025);
   EXPECT_EQ(plan_of(sampled("1/w"))->blocks[0].sample_time, 0.01);
   EXPECT_EQ(plan_of(sampled("2*pi/n"))->blocks[0].sample_time, 0.1);
-  const std::string text = problems_of(sampled("2*pi/f"));
-  EXPECT_TRUE(has(text, "2*pi over a frequency in Hz is neither a period nor a time constant")) << text;
-  EXPECT_TRUE(has(text, "hint: the period of f is 1/f")) << text;
+  EXPECT_EQ(plan_of(sampled("1/(f*(1 + 1))"))->blocks[0].sample_time, 0.0125);
+  for (const char* wrong : {"2*pi/f", "pi/f", "2*pi*(1/f)", "1/(f/(2*pi))"}) {
+    const std::string text = problems_of(sampled(wrong));
+    EXPECT_TRUE(has(text, "2*pi over a frequency in Hz is neither a period nor a time constant")) << text;
+    EXPECT_TRUE(has(text, "hint: the period of f is 1/f")) << text;
+  }
   EXPECT_TRUE(has(problems_of(sampled("f")), "the unit does not fit \"sample_time\""));
 }
 
