@@ -17,9 +17,9 @@ double filter_step(Filter* filter, double input) {
   return output;
 }
 
-/// Kp + Kd (1 − 1/z)/T behind a first-order low-pass of 150 Hz.
-static Filter pd_filter(double proportional, double derivative, double sample_time_s) {
-  const double pole = exponential_of(-two_pi * 150 * sample_time_s),
+/// Kp + Kd (1 − 1/z)/T behind a first-order low-pass.
+static Filter pd_filter(double proportional, double derivative, double low_pass_hz, double sample_time_s) {
+  const double pole = exponential_of(-two_pi * low_pass_hz * sample_time_s),
                slope = derivative * (1 - pole) / sample_time_s;
   return (Filter){.numerator = {proportional + slope, -proportional * pole - slope},
                   .denominator = {1, -pole}};
@@ -34,7 +34,7 @@ static Filter behind_low_pass(double frequency_hz, double sample_time_s, double 
 Controller controller_make(ControllerKind kind, double mass, double damping, double T) {
   Controller controller = {.kind = kind};
   const double bandwidth = two_pi * 18, observer_hz = 10;
-  controller.feedback = pd_filter(mass * bandwidth * bandwidth, 1.6 * bandwidth * mass - damping, T);
+  controller.feedback = pd_filter(mass * bandwidth * bandwidth, 1.6 * bandwidth * mass - damping, 150, T);
   controller.observer_position = behind_low_pass(observer_hz, T, mass / (T * T) + damping / T,
                                                  -2 * mass / (T * T) - damping / T, mass / (T * T));
   controller.observer_command = behind_low_pass(observer_hz, T, 0.5, 0.5, 0);
@@ -42,6 +42,13 @@ Controller controller_make(ControllerKind kind, double mass, double damping, dou
   controller.velocity_gain_n_s_per_m = 160 * mass - damping;
   controller.velocity = (Filter){.numerator = {1 / T, -1 / T}, .denominator = {1}};
   return controller;
+}
+
+Controller controller_pd(double mass, double damping, double T, double bandwidth_hz, double low_pass_hz) {
+  const double bandwidth = two_pi * bandwidth_hz;
+  const double derivative = fmax(1.6 * bandwidth * mass - damping, 0);
+  return (Controller){.kind = PD_WITH_OBSERVER,
+                      .feedback = pd_filter(mass * bandwidth * bandwidth, derivative, low_pass_hz, T)};
 }
 
 double controller_step(Controller* c, double reference, double feedforward, double measured) {

@@ -30,6 +30,10 @@ typedef struct {
 Controller controller_make(ControllerKind kind, double mass_kg, double damping_n_s_per_m,
                            double sample_time_s);
 
+/// PD on the position error alone, of this bandwidth, with the derivative behind a low-pass.
+Controller controller_pd(double mass_kg, double damping_n_s_per_m, double sample_time_s, double bandwidth_hz,
+                         double low_pass_hz);
+
 double controller_step(Controller* controller, double reference_m, double feedforward_n, double measured_m);
 
 #endif

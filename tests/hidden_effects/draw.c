@@ -137,6 +137,10 @@ static double rms_consumed(const Path* path, const Physics* before, const Physic
   return sqrt(sum / path->count);
 }
 
+double effect_share(const Path* path, const Physics* before, const Physics* after) {
+  return rms_consumed(path, before, after) / force_scale_n;
+}
+
 static double rms(const double* values, int count) {
   double sum = 0;
   for (int i = 0; i < count; ++i) sum += values[i] * values[i];

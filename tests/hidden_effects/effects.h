@@ -65,6 +65,9 @@ bool effects_clash(Effect one, Effect other);
 /// share of force does not apply, see the source.
 bool effect_draw(Effect effect, const Path* path, Random* random, Physics* physics);
 
+/// Force of the difference between two laws of motion along the path, in units of the scale of magnitudes.
+double effect_share(const Path* path, const Physics* before, const Physics* after);
+
 /// Its parameters as a JSON object.
 void effect_write(FILE* file, Effect effect, const Physics* physics);
 

@@ -5,7 +5,8 @@
 #include "hw/emulator/elementary.h"
 
 const char* const trajectory_names[TRAJECTORIES] = {"paper",     "many_speeds", "constant_speeds",
-                                                    "multisine", "forward",     "held_out"};
+                                                    "multisine", "forward",     "held_out",
+                                                    "oscillation"};
 
 static const double pi = 3.14159265358979323846;
 
@@ -123,6 +124,20 @@ static void make_held_out(Motion* motion) {
   rest(motion, 0.2);
 }
 
+/// To the middle of the track, and there two sines: no piece of the motion is steady.
+static void make_oscillation(Motion* motion, Random* random) {
+  rest(motion, 0.3);
+  stroke(motion, 0.3, 0.2, 0.2);
+  motion->sines_start_s = motion->stop_s;
+  rest(motion, 40);
+  motion->sines_end_s = motion->stop_s;
+  const double frequency = random_uniform(random, 0.6, 1.0);
+  motion->sines[motion->sine_count++] = (Sine){0.17, frequency, random_uniform(random, 0, 2 * pi)};
+  motion->sines[motion->sine_count++] = (Sine){0.05, 1.62 * frequency, random_uniform(random, 0, 2 * pi)};
+  stroke(motion, -0.3, 0.2, 0.2);
+  rest(motion, 0.3);
+}
+
 Motion motion_make(Trajectory trajectory, Random* random) {
   Motion motion = {.piece_count = 0};
   switch (trajectory) {
@@ -140,6 +155,9 @@ Motion motion_make(Trajectory trajectory, Random* random) {
       break;
     case FORWARD:
       make_forward(&motion);
+      break;
+    case OSCILLATION:
+      make_oscillation(&motion, random);
       break;
     default:
       make_held_out(&motion);

@@ -66,10 +66,14 @@ double plant_carriage_mass(const Physics* p, double x) {
   return p->mass_kg + p->added_mass_kg - p->load_kg + p->uneven_mass_kg_per_m * x;
 }
 
+static double drive(const Physics* p, const double s[STATES], double t, double input, double noise) {
+  const double lagged = p->lag_s > 0 ? s[LAG] : input;
+  return plant_motor_force(p, lagged, s[POSITION], t) + noise;
+}
+
 /// All forces on the carriage except dry friction.
 static double applied_force(const Physics* p, const double s[STATES], double t, double input, double noise) {
-  const double lagged = p->lag_s > 0 ? s[LAG] : input;
-  double force = plant_motor_force(p, lagged, s[POSITION], t) + noise;
+  double force = p->motor_at_load ? 0 : drive(p, s, t, input, noise);
   force -= plant_resisting_force(p, s[POSITION], s[VELOCITY], t) + p->dahl_n * s[DAHL];
   return force - plant_coupling_force(p, s);
 }
@@ -93,7 +97,8 @@ static void slope(const Plant* plant, const double s[STATES], double t, Held hel
   if (p->load_kg > 0) {
     const double drag = p->load_damping_n_s_per_m * s[LOAD_VELOCITY];
     ds[LOAD_POSITION] = s[LOAD_VELOCITY];
-    ds[LOAD_VELOCITY] = (plant_coupling_force(p, s) - drag) / p->load_kg;
+    const double push = p->motor_at_load ? drive(p, s, t, held.input_n, held.noise_n) : 0;
+    ds[LOAD_VELOCITY] = (plant_coupling_force(p, s) - drag + push) / p->load_kg;
   }
 }
 
@@ -182,6 +187,10 @@ static void advance(Plant* plant, double duration_s, Held held) {
   const int steps = (int)ceil(plant->substeps * duration_s / plant->sample_time_s);
   for (int i = 0; i < steps; ++i)
     for (double left = duration_s / steps; left > 1e-15;) left -= step(plant, left, held);
+}
+
+void plant_advance(Plant* plant, double duration_s, double input_n, double noise_n) {
+  advance(plant, duration_s, (Held){input_n, noise_n});
 }
 
 Plant plant_at_rest(const Physics* physics, double sample_time_s, int substeps) {

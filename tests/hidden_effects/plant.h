@@ -44,6 +44,8 @@ typedef struct {
   double load_kg, load_damping_n_s_per_m;
   double gap_m;  ///< total free travel; < 0: no gap, a spring joins carriage and load
   double coupling_n_per_m, coupling_n_s_per_m;
+  /// The motor and its noise push the load, and the spring the carriage: the encoder is on the driven side.
+  bool motor_at_load;
   double delay_s, lag_s;
   DriftOf drift_of;
   double drift, drift_time_s;  ///< drift (1 − exp(−t/τ)): fraction, N·s/m or N
@@ -75,6 +77,9 @@ Plant plant_at_rest(const Physics* physics, double sample_time_s, int substeps);
 /// Holds the input and the noise force over one sample. Fourth order between events. Reversals, contacts,
 /// sticking and the arrival of delayed inputs are located.
 void plant_sample(Plant* plant, double input_n, double noise_n);
+
+/// The same over any time, with this command at the motor: the delay is the caller's.
+void plant_advance(Plant* plant, double duration_s, double input_n, double noise_n);
 
 /// The encoder reading without resolution and noise.
 double plant_encoder(const Plant* plant);

@@ -16,7 +16,7 @@ const Physics* scenario_truth(const Scenario* scenario) { return &scenario->stag
 
 // ---- Records
 
-static Record record_allocate(int count) {
+Record record_allocate(int count) {
   Record record = {.count = count};
   double** columns[] = {
       &record.time_s,     &record.reference_m,           &record.feedforward_n, &record.force_n,
@@ -72,10 +72,10 @@ Record record_make(const Scenario* scenario, const Physics* physics, const Motio
 
 // ---- The trace of an effect in a record
 
-/// Force between samples k and k + 1 that belongs to the effect and that no simpler effect would explain.
-static double own_force(Effect effect, const Physics* before, const Physics* after, const Record* r, int k) {
+double own_force(Effect effect, const Physics* before, const Physics* after, const Record* r, int k) {
   const double x = r->true_position_m[k], v = r->true_velocity_m_per_s[k], t = r->time_s[k];
-  const double acceleration = (r->true_velocity_m_per_s[k + 1] - v) / sample_time_s;
+  const double interval_s = r->time_s[k + 1] - t,
+               acceleration = (r->true_velocity_m_per_s[k + 1] - v) / interval_s;
   switch (effect) {
     case INERTIA:
       return after->added_mass_kg * acceleration;
@@ -91,14 +91,15 @@ static double own_force(Effect effect, const Physics* before, const Physics* aft
       return plant_dry_friction(after, fabs(v), x) - after->stribeck.level_n;
     case BACKLASH:
     case FLEXIBLE_MODE: {
-      const double load = (r->load_velocity_m_per_s[k + 1] - r->load_velocity_m_per_s[k]) / sample_time_s;
+      const double load =
+          (r->load_velocity_m_per_s[k + 1] - r->load_velocity_m_per_s[k]) / interval_s;
       return after->load_kg * (load - acceleration);
     }
     case ENCODER_PERIODIC_ERROR: {
       if (k == 0) return 0;
       double error[3];
       for (int i = 0; i < 3; ++i) error[i] = periodic(after->encoder, r->true_position_m[k - 1 + i]);
-      return after->mass_kg * (error[2] - 2 * error[1] + error[0]) / (sample_time_s * sample_time_s);
+      return after->mass_kg * (error[2] - 2 * error[1] + error[0]) / (interval_s * interval_s);
     }
     default:
       return consumed_force(after, x, v, t, r->force_n[k]) - consumed_force(before, x, v, t, r->force_n[k]);

@@ -39,6 +39,10 @@ typedef struct {
 
 extern const double sample_time_s;
 
+/// Force between samples k and k + 1 that belongs to the effect and that no simpler effect would explain, from
+/// the law of motion before and after the effect was added.
+double own_force(Effect effect, const Physics* before, const Physics* after, const Record* record, int k);
+
 /// Draws until the loop is stable and every effect leaves a visible trace on the training motion.
 Scenario scenario_draw(uint64_t seed);
 
@@ -53,6 +57,8 @@ const Physics* scenario_truth(const Scenario* scenario);
 /// Runs the loop. noise = NULL: no noise at all. The resolution of the encoder is kept unless it is zero.
 Record record_make(const Scenario* scenario, const Physics* physics, const Motion* motion, const Noise* noise,
                    double resolution_m, const char* stream, int substeps);
+/// Zeros.
+Record record_allocate(int count);
 void record_free(Record* record);
 
 #endif
