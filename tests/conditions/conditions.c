@@ -61,7 +61,8 @@ static void draw_names(Hidden* h, int wanted, Random* random) {
   }
 }
 
-/// The first effect has 0.6 … 1 of the force while moving and the second 0.05 … 0.08, in the pairs of strong and weak.
+/// The first effect has 0.6 … 1 of the force while moving and the second 0.05 … 0.08, in the pairs of strong
+/// and weak.
 static bool draw_one(Hidden* h, int i, const Path* path, Random* random) {
   const Physics* before = &h->stages[i];
   Physics* after = &h->stages[i + 1];
@@ -104,8 +105,8 @@ static double least(const Hidden* h) {
   return gain;
 }
 
-/// Draws magnitudes until each effect is visible. After some draws, the one whose least visible effect was seen best: an effect below
-/// `least_gain` does not count. False if no loop was sound.
+/// Draws magnitudes until each effect is visible. After some draws, the one whose least visible effect was
+/// seen best: an effect below `least_gain` does not count. False if no loop was sound.
 static bool draw_visible(Hidden* h, const Path* path, Random* random, int attempts) {
   Hidden best = *h;
   bool found = false;

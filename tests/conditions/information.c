@@ -40,14 +40,16 @@ static void slopes(const Physics* p, bool has_load, Matrix a, double carriage[OR
   if (has_load) {
     a[V][LOAD_X] = k / mass, a[V][LOAD_V] = d / mass;
     a[LOAD_X][LOAD_V] = 1;
-    a[LOAD_V][X] = k / load, a[LOAD_V][V] = d / load, a[LOAD_V][LOAD_X] = -k / load, a[LOAD_V][LOAD_V] = -d / load;
+    a[LOAD_V][X] = k / load, a[LOAD_V][V] = d / load, a[LOAD_V][LOAD_X] = -k / load,
+    a[LOAD_V][LOAD_V] = -d / load;
   }
   motor[p->motor_at_load ? LOAD_V : V] = p->motor_at_load ? 1 / load : 1 / mass;
   for (int i = 0; i < ORDER; ++i) a[i][SLOW] = motor[i];
 }
 
 /// Taylor series of exp(a h) and of its integral over a part of the sample, and doubling.
-static void sample_model(Matrix a, double time_s, const double carriage[ORDER], const double motor[ORDER], Model* m) {
+static void sample_model(Matrix a, double time_s, const double carriage[ORDER], const double motor[ORDER],
+                         Model* m) {
   enum { DOUBLINGS = 12, TERMS = 10 };
   const double h = time_s / (1 << DOUBLINGS);
   Matrix whole = {{0}}, integral = {{0}}, term = {{0}}, next;
@@ -69,7 +71,8 @@ static void sample_model(Matrix a, double time_s, const double carriage[ORDER], 
   memcpy(m->transition, whole, sizeof whole);
   for (int i = 0; i < ORDER; ++i) {
     m->input[i] = m->noise_input[i] = 0;
-    for (int j = 0; j < ORDER; ++j) m->input[i] += integral[i][j] * carriage[j], m->noise_input[i] += integral[i][j] * motor[j];
+    for (int j = 0; j < ORDER; ++j)
+      m->input[i] += integral[i][j] * carriage[j], m->noise_input[i] += integral[i][j] * motor[j];
   }
 }
 
@@ -112,13 +115,16 @@ static Model model_of(const Setting* s, const Physics* truth) {
   const double noise = s->measures_velocity ? s->velocity_noise : s->noise.encoder_m,
                count = s->measures_velocity ? s->velocity_resolution : s->noise.resolution_m,
                least = s->measures_velocity ? least_m_per_s : least_m;
-  steady_filter(s, fmax(s->noise.white_n, least_n), noise * noise + count * count / 12 + least * least, &model);
+  steady_filter(s, fmax(s->noise.white_n, least_n), noise * noise + count * count / 12 + least * least,
+                &model);
   return model;
 }
 
 static double mean_force(Effect effect, const Physics* before, const Physics* after, const Record* r, int k) {
   const double moving_m_per_s = 0.002;
-  if (fabs(r->true_velocity_m_per_s[k]) < moving_m_per_s || fabs(r->true_velocity_m_per_s[k + 1]) < moving_m_per_s) return 0;
+  if (fabs(r->true_velocity_m_per_s[k]) < moving_m_per_s ||
+      fabs(r->true_velocity_m_per_s[k + 1]) < moving_m_per_s)
+    return 0;
   const double early = own_force(effect, before, after, r, k);
   return k + 2 < r->count ? 0.5 * (early + own_force(effect, before, after, r, k + 1)) : early;
 }
@@ -159,7 +165,8 @@ static double left_beside_others(double g[COLUMNS][COLUMNS], int columns, int i)
   return fmax(m[i][i], 0);
 }
 
-void information(const Setting* s, const Physics stages[], const Effect effects[], int count, const Log* log, double gains[]) {
+void information(const Setting* s, const Physics stages[], const Effect effects[], int count, const Log* log,
+                 double gains[]) {
   const Physics* truth = &stages[count];
   const Model model = model_of(s, truth);
   const Record* r = &log->truth;

@@ -1,4 +1,5 @@
-/// Writes the record and the truth of a seed into a folder, which is created if necessary; scenario.py adds the diagram and the experiment.
+/// Writes the record and the truth of a seed into a folder, which is created if necessary; scenario.py adds
+/// the diagram and the experiment.
 
 #include <stdlib.h>
 #include <string.h>
@@ -7,9 +8,11 @@
 
 static int usage(void) {
   fputs(
-      "usage: conditions SEED FOLDER [--quiet]                          condition and effects as the seed decides\n"
-      "       conditions SEED FOLDER [--quiet] CONDITION [EFFECT…]      these effects, with magnitudes that the seed decides\n"
-      "--quiet: without noise, counts, jitter and lost rows\n",
+      "usage: conditions SEED FOLDER [--quiet]                          condition and effects as the seed "
+      "decides\n"
+      "       conditions SEED FOLDER [--quiet] CONDITION [EFFECT…]      these effects, with magnitudes that "
+      "the seed decides\n"
+      "--quiet: without noise and counts\n",
       stderr);
   return 2;
 }

@@ -5,6 +5,7 @@ the diagram contains.
 """
 
 import json
+import math
 import pathlib
 import subprocess
 import sys
@@ -105,7 +106,10 @@ def subdiagram(machine, truth, units):
 
 
 def solver(truth):
-    return {"method": "rk4", "step": truth["sample_time_s"] / 4, "stop": truth["duration_s"], "record_step": truth["sample_time_s"]}
+    """A user takes four steps a sample where that is a plain number, else one that is."""
+    quarter = truth["sample_time_s"] / 4
+    step = round(quarter, 8) if abs(quarter * 1e8 - round(quarter * 1e8)) < 1e-3 else 10.0 ** math.floor(math.log10(quarter))
+    return {"method": "rk4", "step": step, "stop": truth["duration_s"]}
 
 
 def whole_diagram(truth, units):
@@ -144,6 +148,8 @@ def experiment(truth, units, ports):
     result = {"loopwright": 1, "title": "The machine, driven by the recorded command", "data": "record.csv", "time": "t",
               "drive": {ports["input"]: drive}, "compare": {ports["counts"] or ports[kind]: measured},
               "roles": {role: ports[role] for role in ("position", "velocity", "force", "input")}, "hold_out": {"fraction": 0.25}}
+    if ports["counts"] and truth["flat"]:  # the sensor's output stands for the position, as docs/compare.md has it
+        result["roles"]["position"] = ports["counts"]
     if "second" in truth:
         result["drive"]["bridge.force"] = {**drive, "column": "second_command"}
         result["compare"]["bridge.position"] = {**measured, "column": "second_measured"}

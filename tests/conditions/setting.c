@@ -27,7 +27,9 @@ const char* const condition_names[CONDITIONS] = {"mass",
                                                  "few_rows_between_turns"};
 const char* const between_names[BETWEEN] = {"hold", "linear", "band_limited"};
 
-static void name_variant(Setting* s, const char* text) { snprintf(s->variant, sizeof s->variant, "%s", text); }
+static void name_variant(Setting* s, const char* text) {
+  snprintf(s->variant, sizeof s->variant, "%s", text);
+}
 
 /// Every condition begins with this machine: 0.2 … 5 kg, 0.2 … 1.2 m, 0.5 … 2 kHz, one motion of 6 … 80 s.
 static void draw_base(Setting* s, double mass_kg, double stroke, Random* random) {
@@ -93,7 +95,8 @@ static void draw_gaps(Setting* s, Random* random) {
 static void draw_units(Setting* s, Random* random) {
   static const char* const columns[] = {"mm", "count", "deg"};
   const int which = random_below(random, 3);
-  if (which == 2) make_rotary(s, random_log_uniform(random, 1e-4, 1e-2), random_uniform(random, 1, 8), random);
+  if (which == 2)
+    make_rotary(s, random_log_uniform(random, 1e-4, 1e-2), random_uniform(random, 1, 8), random);
   s->column = columns[which];
   s->milliseconds = random_below(random, 2) == 0;
   snprintf(s->variant, sizeof s->variant, "%s%s", s->column, s->milliseconds ? ", ms" : "");
@@ -121,6 +124,11 @@ static void draw_no_noise(Setting* s, Random* random) {
   s->noise = (Noise){0, 0, 0.03, 0, exact ? 0 : 1e-8 * stroke_m};
 }
 
+enum { SLOW_RATES = 6, MIDDLE_RATES = 4, FAST_RATES = 5 };
+static const double slow_rates_hz[SLOW_RATES] = {100, 125, 160, 200, 250, 400},
+                    middle_rates_hz[MIDDLE_RATES] = {500, 800, 2000, 2500},
+                    fast_rates_hz[FAST_RATES] = {5000, 8000, 10000, 16000, 20000};
+
 static void draw_length(Setting* s, Random* random) {
   const bool brief = random_below(random, 2) == 0;
   name_variant(s, brief ? "1.5 to 4 s" : "200,000 to 2 million rows");
@@ -130,8 +138,11 @@ static void draw_length(Setting* s, Random* random) {
     s->sample_time_s = 1 / (1000 * s->units.time_s);
     return;
   }
+  const double rate_hz = fast_rates_hz[random_below(random, FAST_RATES)],
+               rows = random_log_uniform(random, 2e5, 2e6);
   s->trajectory = MANY_SPEEDS;
-  s->sample_time_s = 56 / random_log_uniform(random, 2e5, 2e6);
+  set_time_unit(s, fmin(fmax(rows / (56 * rate_hz), 0.6), 3));
+  s->sample_time_s = 1 / (rate_hz * s->units.time_s);
 }
 
 /// A part of the mass on a spring, as the diagram knows it too.
@@ -152,7 +163,8 @@ static void draw_nominal(Setting* s, Random* random) {
   if (which == 0) p->offset_n = 0.6 * random_log_uniform(random, 0.5, 5);
   if (which == 1) {
     const double level = 0.6 * random_uniform(random, 0.15, 0.5);
-    p->stribeck = (Stribeck){level, level * random_uniform(random, 1.3, 2.2), random_log_uniform(random, 0.01, 0.08), 2};
+    p->stribeck = (Stribeck){level, level * random_uniform(random, 1.3, 2.2),
+                             random_log_uniform(random, 0.01, 0.08), 2};
   }
   if (which == 2) draw_coupling(s, 15, 50, random);
 }
@@ -160,12 +172,14 @@ static void draw_nominal(Setting* s, Random* random) {
 static void draw_between(Setting* s, Random* random) {
   s->between = (Between)random_below(random, BETWEEN);
   if (random_below(random, 2)) s->late_s = s->sample_time_s * random_uniform(random, 0.1, 0.9);
-  snprintf(s->variant, sizeof s->variant, "%s%s", between_names[s->between], s->late_s > 0 ? ", late" : "");
+  name_variant(s, between_names[s->between]);
 }
 
 static void draw_few_rows(Setting* s, Random* random) {
   s->trajectory = OSCILLATION;
-  const double rows_between_turns = random_log_uniform(random, 6, 45), rate_hz = random_log_uniform(random, 50, 2000);
+  const double rows_between_turns = random_log_uniform(random, 6, 45),
+               rate_hz = random_below(random, 2) ? slow_rates_hz[random_below(random, SLOW_RATES)]
+                                                 : middle_rates_hz[random_below(random, MIDDLE_RATES)];
   s->sample_time_s = 1 / (2 * 0.8 * rows_between_turns);
   set_time_unit(s, 1 / (rate_hz * s->sample_time_s));
   name_variant(s, rows_between_turns < 16 ? "6 to 16 rows between turns" : "16 to 45 rows between turns");
@@ -174,7 +188,10 @@ static void draw_few_rows(Setting* s, Random* random) {
 static void draw_jitter(Setting* s, Random* random) {
   s->jitter = random_log_uniform(random, 0.02, 0.3);
   s->only_stamps = random_below(random, 4) == 0;
-  snprintf(s->variant, sizeof s->variant, "%s", s->only_stamps ? "of the stamps alone" : s->jitter < 0.08 ? "2 to 8 %" : "8 to 30 %");
+  snprintf(s->variant, sizeof s->variant, "%s",
+           s->only_stamps     ? "of the stamps alone"
+           : s->jitter < 0.08 ? "2 to 8 %"
+                              : "8 to 30 %");
 }
 
 static void draw_velocity(Setting* s, Random* random) {
@@ -242,14 +259,18 @@ static void draw_condition(Setting* s, Random* random) {
 }
 
 static void draw_rate(Setting* s, Random* random) {
-  const double rate_hz = random_log_uniform(random, 100, 20000);
+  static const char* const names[] = {"100 to 400 Hz", "500 to 2500 Hz", "5 to 20 kHz"};
+  const int which = random_below(random, 3);
+  name_variant(s, names[which]);
+  const double rate_hz = which == 0   ? slow_rates_hz[random_below(random, SLOW_RATES)]
+                         : which == 1 ? middle_rates_hz[random_below(random, MIDDLE_RATES)]
+                                      : fast_rates_hz[random_below(random, FAST_RATES)];
   s->sample_time_s = 1 / (rate_hz * s->units.time_s);
-  if (rate_hz > 4000) s->trajectory = PAPER;
-  name_variant(s, rate_hz < 500 ? "100 to 500 Hz" : rate_hz < 4000 ? "0.5 to 4 kHz" : "4 to 20 kHz");
+  if (which == 2) s->trajectory = PAPER;
 }
 
-/// As fast as noise, counts, rate and a coupling outside the loop allow: no reading moves the motor by more than
-/// a tenth of the force.
+/// As fast as noise, counts, rate and a coupling outside the loop allow: no reading moves the motor by more
+/// than a tenth of the force.
 static double bandwidth_for(const Setting* s) {
   const double reading_m = fmax(s->noise.resolution_m, 3 * s->noise.encoder_m);
   const double quiet = sqrt(0.06 / (12.8 * s->nominal.mass_kg * reading_m + 1e-12)) / two_pi;
@@ -263,9 +284,11 @@ static double bandwidth_for(const Setting* s) {
 
 Setting setting_draw(Condition condition, Random* random) {
   Setting s = {.condition = condition, .stamp_decimals = 9, .column = "m"};
-  const double mass_kg = condition == MASS ? random_log_uniform(random, 0.02, 200) : random_log_uniform(random, 0.2, 5);
+  const double mass_kg =
+      condition == MASS ? random_log_uniform(random, 0.02, 200) : random_log_uniform(random, 0.2, 5);
   draw_base(&s, mass_kg, random_log_uniform(random, 0.2, 1.2), random);
-  if (condition == MASS) name_variant(&s, mass_kg < 0.2 ? "0.02 to 0.2 kg" : mass_kg < 5 ? "0.2 to 5 kg" : "5 to 200 kg");
+  if (condition == MASS)
+    name_variant(&s, mass_kg < 0.2 ? "0.02 to 0.2 kg" : mass_kg < 5 ? "0.2 to 5 kg" : "5 to 200 kg");
   if (condition == RATE) draw_rate(&s, random);
   draw_condition(&s, random);
   // The density of the force noise belongs to the machine: held over longer samples it is smaller.
@@ -278,7 +301,8 @@ Setting setting_draw(Condition condition, Random* random) {
 bool setting_allows(const Setting* s, Effect effect) {
   const Physics* p = &s->nominal;
   if (p->load_kg > 0 && (effect == BACKLASH || effect == FLEXIBLE_MODE)) return false;
-  if (p->motor_at_load && effect == FORCE_RIPPLE) return false;  // along the motor, which the record does not show
+  if (p->motor_at_load && effect == FORCE_RIPPLE)
+    return false;  // along the motor, which the record does not show
   if (p->stribeck.level_n != 0 &&
       (effect == COULOMB_FRICTION || effect == STRIBECK_FRICTION || effect == PRESLIDING_HYSTERESIS))
     return false;

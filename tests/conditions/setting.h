@@ -3,9 +3,10 @@
 
 #include "tests/hidden_effects/scenario.h"
 
-/// The conditions under which a record is made: other machines, rates, clocks, sensors, drives and diagrams than those of the axis
-/// benchmark. The laws of motion are those of tests/hidden_effects, computed on an axis of standard size (0.6 m, 0.35 m/s, about
-/// 0.6 N): the laws have no scale of their own, so that any other machine is a matter of units.
+/// The conditions under which a record is made: other machines, rates, clocks, sensors, drives and diagrams
+/// than those of the axis benchmark. The laws of motion are those of tests/hidden_effects, computed on an
+/// axis of standard size (0.6 m, 0.35 m/s, about 0.6 N): the laws have no scale of their own, so that any
+/// other machine is a matter of units.
 typedef enum {
   MASS,
   ROTARY,
@@ -60,12 +61,12 @@ typedef struct {
   bool device_pauses;  ///< the command is held over lost rows; otherwise the loop ran on
   bool repeats_rows;   ///< some rows are there twice, with the same stamp
   double origin_m;
-  const char* column;  ///< unit of the recorded motion: "m", "mm", "deg", "rad" or "count"
-  bool milliseconds;   ///< stamps in ms
+  const char* column;                ///< unit of the recorded motion: "m", "mm", "deg", "rad" or "count"
+  bool milliseconds;                 ///< stamps in ms
   double volts_per_force, back_emf;  ///< SI; 0: the command is a force. back_emf is contained in the damping
   Between between;
   double late_s;  ///< a delay of the record by a part of a sample, which counts as an effect; 0: none
-  bool flat;  ///< the diagram has no subdiagram
+  bool flat;      ///< the diagram has no subdiagram
 } Setting;
 
 /// Everything except the effects.

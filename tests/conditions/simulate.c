@@ -16,13 +16,14 @@ typedef struct {
   Plant plant;
   Command queue[QUEUE];
   unsigned first, count;
-  double acting_n;              ///< the command at the motor
+  double acting_n;             ///< the command at the motor
   double acted_n_s, sent_n_s;  ///< integrals since the row, at the motor and as if there were no delay
 } Drive;
 
 static void send(Drive* drive, double time_s, double value_n) {
   if (drive->count == QUEUE) abort();
-  drive->queue[(drive->first + drive->count++) % QUEUE] = (Command){time_s + drive->plant.physics->delay_s, value_n};
+  drive->queue[(drive->first + drive->count++) % QUEUE] =
+      (Command){time_s + drive->plant.physics->delay_s, value_n};
 }
 
 static void push(Drive* drive, double duration_s, double noise_n) {
@@ -57,10 +58,12 @@ static double reference_force(const Setting* s, const Wanted* wanted) {
   const Physics* p = &s->nominal;
   const double v = wanted->velocity_m_per_s, dry = plant_dry_friction(p, fabs(v), 0);
   const double direction = fabs(v) < 0.005 ? v / 0.005 : v > 0 ? 1 : -1;
-  return p->mass_kg * wanted->acceleration_m_per_s2 + p->damping_n_s_per_m * v + p->offset_n + direction * dry;
+  return p->mass_kg * wanted->acceleration_m_per_s2 + p->damping_n_s_per_m * v + p->offset_n +
+         direction * dry;
 }
 
-static double next_command(Loop* loop, const Setting* s, const Motion* motion, double time_s, double measured_m) {
+static double next_command(Loop* loop, const Setting* s, const Motion* motion, double time_s,
+                           double measured_m) {
   const Wanted wanted = motion_at(motion, time_s);
   return controller_step(&loop->controller, wanted.position_m, reference_force(s, &wanted), measured_m);
 }
@@ -69,14 +72,14 @@ static Loop loop_make(const Setting* s) {
   const double parts = s->between == BAND_LIMITED ? PARTS : 1, tick_s = s->sample_time_s / parts;
   const double bandwidth = s->between == HELD ? s->bandwidth_hz : 0.5 * s->bandwidth_hz;
   const double q = exponential_of(-6.283185307179586 * 0.06 / parts), gain = (1 - q) * (1 - q);
-  return (Loop){controller_pd(s->nominal.mass_kg, s->nominal.damping_n_s_per_m, tick_s, bandwidth, 8 * bandwidth),
-                (Filter){.numerator = {gain}, .denominator = {1, -2 * q, q * q}},
-                0};
+  return (Loop){
+      controller_pd(s->nominal.mass_kg, s->nominal.damping_n_s_per_m, tick_s, bandwidth, 8 * bandwidth),
+      (Filter){.numerator = {gain}, .denominator = {1, -2 * q, q * q}}, 0};
 }
 
 /// Sends what acts from row to row; returns what the record shows at this row.
-static double row_command(Loop* loop, Drive* drive, const Setting* s, const Motion* motion, double time_s, double measured_m,
-                          double noise_n) {
+static double row_command(Loop* loop, Drive* drive, const Setting* s, const Motion* motion, double time_s,
+                          double measured_m, double noise_n) {
   const double before = loop->before_n, part_s = s->sample_time_s / PARTS;
   if (s->between == BAND_LIMITED) {
     double shown = 0;
@@ -137,15 +140,16 @@ void log_free(Log* log) {
   free(log->stamp_s), free(log->is_lost), free(log->is_twice);
 }
 
-static void draw_rows(const Setting* s, Log* log, Random* random, bool quiet) {
+static void draw_rows(const Setting* s, Log* log, Random* random) {
   for (int k = 0; k < log->truth.count; ++k) {
     const double regular = k * s->sample_time_s,
-                 moved = k == 0 || quiet ? regular : regular + s->jitter * s->sample_time_s * random_uniform(random, -1, 1);
+                 moved = k == 0 ? regular
+                                : regular + s->jitter * s->sample_time_s * random_uniform(random, -1, 1);
     log->truth.time_s[k] = s->only_stamps ? regular : moved;
     log->stamp_s[k] = moved * s->units.time_s;
-    if (s->repeats_rows && !quiet) log->is_twice[k] = k > 3 && random_unit(random) < 0.001;
+    if (s->repeats_rows) log->is_twice[k] = k > 3 && random_unit(random) < 0.001;
   }
-  if (s->lost > 0 && !quiet) draw_lost(log, s->lost, random);
+  if (s->lost > 0) draw_lost(log, s->lost, random);
 }
 
 static void keep_state(Record* r, int k, const Plant* plant) {
@@ -156,12 +160,13 @@ static void keep_state(Record* r, int k, const Plant* plant) {
   r->dahl[k] = plant->state[DAHL];
 }
 
-Log log_make(const Setting* s, const Physics* physics, const Motion* motion, uint64_t seed, const char* stream, bool quiet) {
-  const double finest_s = 1e-4;
+Log log_make(const Setting* s, const Physics* physics, const Motion* motion, uint64_t seed,
+             const char* stream, bool quiet) {
+  const double finest_s = fmax(1e-4, s->sample_time_s / 40);
   Log log = log_allocate((int)(s->motion.stop_s / s->sample_time_s) + 1);
   Record* r = &log.truth;
   Random random = random_stream(seed, stream);
-  draw_rows(s, &log, &random, quiet);
+  draw_rows(s, &log, &random);
   Drive* drive = calloc(1, sizeof *drive);
   if (!drive) abort();
   drive->plant = plant_at_rest(physics, s->sample_time_s, (int)fmax(2, ceil(s->sample_time_s / finest_s)));
@@ -176,7 +181,7 @@ Log log_make(const Setting* s, const Physics* physics, const Motion* motion, uin
       drive->sent_n_s = drive->acted_n_s = 0;
     }
     keep_state(r, k, &drive->plant);
-    const bool is_stale = !quiet && s->stale > 0 && k > 3 && random_unit(&random) < s->stale;
+    const bool is_stale = s->stale > 0 && k > 3 && random_unit(&random) < s->stale;
     r->position_m[k] = is_stale ? r->position_m[k - 1] : reading(s, &drive->plant, &random, quiet);
     force_noise = quiet ? 0 : noise->white_n * random_normal(&random) + coloured;
     // The drive of a motor with a velocity sensor in the record controls by an encoder of its own.
@@ -184,7 +189,8 @@ Log log_make(const Setting* s, const Physics* physics, const Motion* motion, uin
     r->force_n[k] = log.is_lost[k] && s->device_pauses
                         ? drive->acting_n
                         : row_command(&loop, drive, s, motion, r->time_s[k], measured, force_noise);
-    if (!quiet) coloured = memory * coloured + sqrt(1 - memory * memory) * noise->coloured_n * random_normal(&random);
+    if (!quiet)
+      coloured = memory * coloured + sqrt(1 - memory * memory) * noise->coloured_n * random_normal(&random);
   }
   free(drive);
   return log;

@@ -30,7 +30,9 @@ static double column_scale(const Setting* s) {
   return length;
 }
 
-static double command_scale(const Setting* s) { return s->units.force * (s->volts_per_force > 0 ? s->volts_per_force : 1); }
+static double command_scale(const Setting* s) {
+  return s->units.force * (s->volts_per_force > 0 ? s->volts_per_force : 1);
+}
 
 /// The recorded motion in the unit of its column. Counts are whole numbers.
 static double shown(const Setting* s, const Log* log, int k) {
@@ -42,8 +44,6 @@ static double shown(const Setting* s, const Log* log, int k) {
   return strcmp(s->column, "count") == 0 ? round(scaled) : scaled;
 }
 
-/// The command at the motor is the force plus what the nominal back-EMF takes: force = (u − K v)/(R/K), where K²/R belongs to the damping
-/// of the diagram.
 static void write_row(FILE* file, const Setting* s, const Log* log, const Log* second, int k) {
   const double time = log->stamp_s[k] * (s->milliseconds ? 1000 : 1);
   fprintf(file, "%.*f,%.12g,%.*g", s->milliseconds ? s->stamp_decimals - 3 : s->stamp_decimals, time,
@@ -55,7 +55,8 @@ static void write_row(FILE* file, const Setting* s, const Log* log, const Log* s
 static bool write_record(const char* folder, const Setting* s, const Log* log, const Log* second) {
   FILE* file = create(folder, "record.csv");
   if (!file) return false;
-  fprintf(file, "%s,command,measured%s\n", s->milliseconds ? "t [ms]" : "t", second ? ",second_command,second_measured" : "");
+  fprintf(file, "%s,command,measured%s\n", s->milliseconds ? "t [ms]" : "t",
+          second ? ",second_command,second_measured" : "");
   for (int k = 0; k < log->truth.count; ++k) {
     if (log->is_lost[k]) continue;
     write_row(file, s, log, second, k);
@@ -66,24 +67,26 @@ static bool write_record(const char* folder, const Setting* s, const Log* log, c
 
 /// What the diagram contains, in SI.
 static void write_machine(FILE* file, const char* key, const Physics* p) {
-  fprintf(file, "  \"%s\": {\"mass\": %.9g, \"damping\": %.9g", key, p->mass_kg - p->load_kg, p->damping_n_s_per_m);
+  fprintf(file, "  \"%s\": {\"mass\": %.9g, \"damping\": %.9g", key, p->mass_kg - p->load_kg,
+          p->damping_n_s_per_m);
   if (p->nominal_cogging.amplitude != 0)
-    fprintf(file, ",\n    \"cogging\": {\"pitch\": %.9g, \"amplitude\": %.9g, \"phase\": %.9g}", p->nominal_cogging.pitch_m,
-            p->nominal_cogging.amplitude, p->nominal_cogging.phase_rad);
+    fprintf(file, ",\n    \"cogging\": {\"pitch\": %.9g, \"amplitude\": %.9g, \"phase\": %.9g}",
+            p->nominal_cogging.pitch_m, p->nominal_cogging.amplitude, p->nominal_cogging.phase_rad);
   if (p->offset_n != 0) fprintf(file, ",\n    \"gravity\": %.9g", p->offset_n);
   if (p->stribeck.level_n != 0)
-    fprintf(file, ",\n    \"stribeck\": {\"level\": %.9g, \"static_level\": %.9g, \"speed\": %.9g}", p->stribeck.level_n,
-            p->stribeck.static_level_n, p->stribeck.speed_m_per_s);
+    fprintf(file, ",\n    \"stribeck\": {\"level\": %.9g, \"static_level\": %.9g, \"speed\": %.9g}",
+            p->stribeck.level_n, p->stribeck.static_level_n, p->stribeck.speed_m_per_s);
   if (p->load_kg > 0)
-    fprintf(file, ",\n    \"%s\": {\"mass\": %.9g, \"stiffness\": %.9g, \"damping\": %.9g}", p->motor_at_load ? "motor" : "load",
-            p->load_kg, p->coupling_n_per_m, p->coupling_n_s_per_m);
+    fprintf(file, ",\n    \"%s\": {\"mass\": %.9g, \"stiffness\": %.9g, \"damping\": %.9g}",
+            p->motor_at_load ? "motor" : "load", p->load_kg, p->coupling_n_per_m, p->coupling_n_s_per_m);
   fputs("},\n", file);
 }
 
 static void write_effects(FILE* file, const Hidden* h, const Physics* si) {
   fputs("  \"effects\": [", file);
   for (int i = 0; i < h->effect_count; ++i) {
-    fprintf(file, "%s\n    {\"effect\": \"%s\", \"gain\": %.6g, \"counts\": %s, \"parameters\": ", i ? "," : "",
+    fprintf(file,
+            "%s\n    {\"effect\": \"%s\", \"gain\": %.6g, \"counts\": %s, \"parameters\": ", i ? "," : "",
             effect_names[h->effects[i]], h->gains[i], h->gains[i] >= least_gain ? "true" : "false");
     effect_write(file, h->effects[i], si);
     fputc('}', file);
@@ -95,26 +98,38 @@ static bool write_truth(const char* folder, const Hidden* h, int rows, const Phy
   FILE* file = create(folder, "truth.json");
   if (!file) return false;
   const Setting* s = &h->setting;
-  const Physics nominal = physics_in_si(&s->nominal, &s->units), truth = physics_in_si(&h->stages[h->effect_count], &s->units);
-  fprintf(file, "{\n  \"seed\": %llu,\n  \"condition\": \"%s\",\n  \"variant\": \"%s\",\n  \"trajectory\": \"%s\",\n",
-          (unsigned long long)h->seed, condition_names[s->condition], s->variant, trajectory_names[s->trajectory]);
-  fprintf(file, "  \"rows\": %d,\n  \"sample_time_s\": %.9g,\n  \"duration_s\": %.9g,\n", rows, s->sample_time_s * s->units.time_s,
-          s->motion.stop_s * s->units.time_s);
-  fprintf(file, "  \"rotary\": %s,\n  \"flat\": %s,\n", s->units.is_rotary ? "true" : "false", s->flat ? "true" : "false");
+  const Physics nominal = physics_in_si(&s->nominal, &s->units),
+                truth = physics_in_si(&h->stages[h->effect_count], &s->units);
+  fprintf(
+      file,
+      "{\n  \"seed\": %llu,\n  \"condition\": \"%s\",\n  \"variant\": \"%s\",\n  \"trajectory\": \"%s\",\n",
+      (unsigned long long)h->seed, condition_names[s->condition], s->variant,
+      trajectory_names[s->trajectory]);
+  fprintf(file, "  \"rows\": %d,\n  \"sample_time_s\": %.9g,\n  \"duration_s\": %.9g,\n", rows,
+          s->sample_time_s * s->units.time_s, s->motion.stop_s * s->units.time_s);
+  fprintf(file, "  \"rotary\": %s,\n  \"flat\": %s,\n", s->units.is_rotary ? "true" : "false",
+          s->flat ? "true" : "false");
   const double resolution = s->measures_velocity ? s->velocity_resolution * s->units.length / s->units.time_s
                                                  : s->noise.resolution_m * s->units.length;
-  fprintf(file, "  \"sensor\": {\"quantity\": \"%s\", \"unit\": \"%s\", \"resolution\": %.9g, \"origin\": %.9g},\n",
-          s->measures_velocity ? "velocity" : "position", s->column, resolution, s->origin_m * s->units.length);
-  fprintf(file, "  \"time_unit\": \"%s\",\n  \"interpolation\": \"%s\",\n", s->milliseconds ? "ms" : "s", between_names[s->between]);
+  fprintf(file,
+          "  \"sensor\": {\"quantity\": \"%s\", \"unit\": \"%s\", \"resolution\": %.9g, \"origin\": %.9g},\n",
+          s->measures_velocity ? "velocity" : "position", s->column, resolution,
+          s->origin_m * s->units.length);
+  fprintf(file, "  \"time_unit\": \"%s\",\n  \"interpolation\": \"%s\",\n", s->milliseconds ? "ms" : "s",
+          between_names[s->between]);
   if (s->volts_per_force > 0)
-    fprintf(file, "  \"motor\": {\"resistance\": %.9g, \"constant\": %.9g},\n", s->volts_per_force * s->volts_per_force * s->back_emf,
-            s->volts_per_force * s->back_emf);
+    fprintf(file, "  \"motor\": {\"resistance\": %.9g, \"constant\": %.9g},\n",
+            s->volts_per_force * s->volts_per_force * s->back_emf, s->volts_per_force * s->back_emf);
   write_machine(file, "nominal", &nominal);
   if (second) write_machine(file, "second", second);
   write_effects(file, h, &truth);
-  fprintf(file, "  \"noise\": {\"white_force\": %.6g, \"slow_force\": %.6g, \"slow_time_s\": %.6g, \"sensor\": %.6g}\n}\n",
-          s->noise.white_n * s->units.force, s->noise.coloured_n * s->units.force, s->noise.coloured_s * s->units.time_s,
-          s->measures_velocity ? s->velocity_noise * s->units.length / s->units.time_s : s->noise.encoder_m * s->units.length);
+  fprintf(file,
+          "  \"noise\": {\"white_force\": %.6g, \"slow_force\": %.6g, \"slow_time_s\": %.6g, \"sensor\": "
+          "%.6g}\n}\n",
+          s->noise.white_n * s->units.force, s->noise.coloured_n * s->units.force,
+          s->noise.coloured_s * s->units.time_s,
+          s->measures_velocity ? s->velocity_noise * s->units.length / s->units.time_s
+                               : s->noise.encoder_m * s->units.length);
   return done(file);
 }
 

@@ -37,6 +37,7 @@ SHORTENED = [
     ("tools/reproduce_paper.sh", "tools/reproduce_paper.sh --runs 1", "one run for every number instead of five"),
     ("tools/hidden_effects.sh 300", "tools/hidden_effects.sh 4", "4 scenarios instead of 300"),
     ("tools/hidden_effects.sh 20", "tools/hidden_effects.sh 2", "2 scenarios instead of 20"),
+    ("tools/conditions.sh 500", "tools/conditions.sh 2", "2 scenarios instead of 500"),
     ("--evaluations 300", "--evaluations 20", "20 runs of the search instead of 300"),
     ("loopwright sweep diagrams/linear_motor/robustness.sweep.json -o /tmp/robustness",
      "loopwright sweep diagrams/linear_motor/robustness.sweep.json -o /tmp/robustness --shard 0/20", "a twentieth of the runs"),
@@ -44,7 +45,7 @@ SHORTENED = [
      "loopwright sweep diagrams/linear_motor/controllers.sweep.json -o /tmp/controllers --shard 0/20", "a twentieth of the runs"),
 ]
 # Skipped by --quick: seconds to minutes each.
-SLOW = ["tools/", "bin/hidden_effects ", "loopwright sweep ", "loopwright gp ", "identification", "loopwright diagnose", "loopwright fit",
+SLOW = ["tools/", "bin/hidden_effects ", "bin/conditions ", "loopwright sweep ", "loopwright gp ", "identification", "loopwright diagnose", "loopwright fit",
         "diagrams/linear_motor/ps.json", "diagrams/linear_motor/beyond.json", "loopwright deploy", "--replay", "g++", "magnetic_pull"]
 # Preconditions of a page that this machine may lack.
 BEFORE = {

@@ -4,9 +4,8 @@
 
 #include "hw/emulator/elementary.h"
 
-const char* const trajectory_names[TRAJECTORIES] = {"paper",     "many_speeds", "constant_speeds",
-                                                    "multisine", "forward",     "held_out",
-                                                    "oscillation"};
+const char* const trajectory_names[TRAJECTORIES] = {"paper",   "many_speeds", "constant_speeds", "multisine",
+                                                    "forward", "held_out",    "oscillation"};
 
 static const double pi = 3.14159265358979323846;
 
@@ -129,7 +128,7 @@ static void make_oscillation(Motion* motion, Random* random) {
   rest(motion, 0.3);
   stroke(motion, 0.3, 0.2, 0.2);
   motion->sines_start_s = motion->stop_s;
-  rest(motion, 40);
+  rest(motion, 120);
   motion->sines_end_s = motion->stop_s;
   const double frequency = random_uniform(random, 0.6, 1.0);
   motion->sines[motion->sine_count++] = (Sine){0.17, frequency, random_uniform(random, 0, 2 * pi)};

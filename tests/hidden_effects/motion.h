@@ -7,7 +7,16 @@
 /// multisine.
 enum { MAX_PIECES = 256, MAX_SINES = 8 };
 
-typedef enum { PAPER, MANY_SPEEDS, CONSTANT_SPEEDS, MULTISINE, FORWARD, HELD_OUT, OSCILLATION, TRAJECTORIES } Trajectory;
+typedef enum {
+  PAPER,
+  MANY_SPEEDS,
+  CONSTANT_SPEEDS,
+  MULTISINE,
+  FORWARD,
+  HELD_OUT,
+  OSCILLATION,
+  TRAJECTORIES
+} Trajectory;
 extern const char* const trajectory_names[TRAJECTORIES];
 
 typedef struct {

@@ -91,8 +91,7 @@ double own_force(Effect effect, const Physics* before, const Physics* after, con
       return plant_dry_friction(after, fabs(v), x) - after->stribeck.level_n;
     case BACKLASH:
     case FLEXIBLE_MODE: {
-      const double load =
-          (r->load_velocity_m_per_s[k + 1] - r->load_velocity_m_per_s[k]) / interval_s;
+      const double load = (r->load_velocity_m_per_s[k + 1] - r->load_velocity_m_per_s[k]) / interval_s;
       return after->load_kg * (load - acceleration);
     }
     case ENCODER_PERIODIC_ERROR: {

@@ -39,8 +39,8 @@ typedef struct {
 
 extern const double sample_time_s;
 
-/// Force between samples k and k + 1 that belongs to the effect and that no simpler effect would explain, from
-/// the law of motion before and after the effect was added.
+/// Force between samples k and k + 1 that belongs to the effect and that no simpler effect would explain,
+/// from the law of motion before and after the effect was added.
 double own_force(Effect effect, const Physics* before, const Physics* after, const Record* record, int k);
 
 /// Draws until the loop is stable and every effect leaves a visible trace on the training motion.

@@ -1,0 +1,150 @@
+"""What an answer of `loopwright diagnose` is worth, and the tables of the conditions benchmark.
+
+A result is {"truth", "answer", "exit", "time_s", "over_limit", "text"}: the truth of the scenario, the JSON of the answer (None if there is
+none), the exit code (negative: the signal), the CPU seconds, whether the time limit ended it, and what the program said.
+"""
+
+import itertools
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "hidden_effects"))
+import score  # noqa: E402  the rules of the axis benchmark
+
+CLASSES = ("exact", "declared", "flagged", "silent", "refused", "over_limit", "crash")
+MEANING = {
+    "exact": "the set is the hidden one; of a clean record, nothing_missing",
+    "declared": "a declared alternative is the hidden set",
+    "flagged": "not right, and the answer says that something remains",
+    "silent": "not right, and the answer says that everything is explained",
+    "refused": "no answer, with a reason",
+    "over_limit": "no answer within the time limit",
+    "crash": "ended by a signal, or without a reason",
+}
+# What stands for an effect whose own shape the record hardly shows.
+SIMPLER = {"stribeck_friction": {"coulomb_friction"}, "presliding_hysteresis": {"coulomb_friction"}}
+
+
+def required(truth):
+    return {e["effect"] for e in truth["effects"] if e["counts"]}
+
+
+def tolerated(truth):
+    """Effects of which the record gains too little: named or not, the answer is right."""
+    hardly_visible = {e["effect"] for e in truth["effects"] if not e["counts"]}
+    return hardly_visible | {s for e in hardly_visible for s in SIMPLER.get(e, ())}
+
+
+def is_clean(truth):
+    return not truth["effects"]
+
+
+def acceptable(names, truth):
+    names, must, may = set(names), required(truth), tolerated(truth)
+    if (names | must | may) & score.SPRINGS:  # the rest position of a spring is a constant force
+        names, must = names - {"constant_force"}, must - {"constant_force"}
+    return must <= names <= must | may
+
+
+def is_refusal(result):
+    return result["exit"] in (1, 2) and result["text"].strip() != ""
+
+
+def classify(result):
+    truth, answer = result["truth"], result["answer"]
+    if result["over_limit"]:
+        return "over_limit"
+    if answer is None:
+        return "refused" if is_refusal(result) else "crash"
+    names = score.found_names(result)
+    if not names:
+        if not required(truth) and answer["verdict"] == "nothing_missing":
+            return "exact"
+    elif not is_clean(truth):
+        if acceptable(names, truth):
+            return "exact"
+        if any(len(set(choice)) == len(choice) and acceptable(choice, truth)
+               for choices in score.declared_choices(result) for choice in itertools.product(*choices)):
+            return "declared"
+    return "flagged" if score.flagged(result) else "silent"
+
+
+def share(results, *classes):
+    return score.percent(classify(r) in classes for r in results)
+
+
+def bars(results):
+    hidden, clean = [r for r in results if not is_clean(r["truth"])], [r for r in results if is_clean(r["truth"])]
+
+    def times(name, *classes):
+        return score.bar(name, float(sum(classify(r) in classes for r in results)), len(results), at_most=0, unit="")
+
+    return [score.bar("exact or declared, of the records with effects", share(hidden, "exact", "declared"), len(hidden), at_least=95),
+            score.bar("exact, of the records with effects", share(hidden, "exact"), len(hidden)),
+            score.bar("silently wrong or missed, of all", share(results, "silent"), len(results), at_most=1),
+            score.bar("clean called nothing_missing", share(clean, "exact"), len(clean), at_least=97),
+            times("crashes", "crash"), times("beyond the time limit", "over_limit"),
+            score.share_bar("flagged although right", score.flagged, [r for r in results if classify(r) in ("exact", "declared")]),
+            score.bar("refusals: each must have a reason that the user can mend", share(results, "refused"), len(results))]
+
+
+def grouped(results, key):
+    groups = {}
+    for result in results:
+        groups.setdefault(key(result["truth"]), []).append(result)
+    rows = []
+    for name in sorted(groups):
+        row = {"group": name}
+        for kind, chosen in (("hidden", [r for r in groups[name] if not is_clean(r["truth"])]),
+                             ("clean", [r for r in groups[name] if is_clean(r["truth"])])):
+            row[kind] = {"n": len(chosen), **{c: sum(classify(r) == c for r in chosen) for c in CLASSES}}
+        times = [r["time_s"] for r in groups[name]]
+        row["time_s"] = {"median": score.quantile(times, 0.5), "most": max(times)}
+        rows.append(row)
+    return rows
+
+
+def said(result):
+    answer = result["answer"]
+    if answer is None:
+        return f"exit {result['exit']}: " + " ".join(result["text"].split())[:300]
+    named = ", ".join(e["effect"] + (f" or {'/'.join(score.alternatives(e))}" if score.alternatives(e) else "")
+                      for e in score.found(result))
+    return f"{answer['verdict']}: {named or 'no effect'}"
+
+
+def describe(result):
+    truth = result["truth"]
+    hidden = ", ".join(f"{e['effect']} ({e['gain']:.3g}{'' if e['counts'] else ', does not count'})" for e in truth["effects"])
+    rate = 1 / truth["sample_time_s"]
+    kind = truth["variant"] or truth["trajectory"]
+    return (f"{truth['seed']} {truth['condition']} ({kind}), {truth['rows']} rows of {rate:.4g} Hz: "
+            f"hidden {hidden or 'nothing'} → {said(result)} [{classify(result)}, {result['time_s']:.1f} s]")
+
+
+def summary(results):
+    return {"scenarios": len(results), "bars": bars(results), "by_condition": grouped(results, lambda t: t["condition"]),
+            "by_variant": grouped([r for r in results if r["truth"]["variant"]], lambda t: f"{t['condition']}, {t['variant']}"),
+            "not_right": [describe(r) for r in results if classify(r) not in ("exact", "declared")]}
+
+
+def group_table(name, rows):
+    columns = [name, "effects", "exact", "declared", "flagged", "silent", "refused", "limit", "crash",
+               "clean", "right", "flagged", "silent", "refused", "limit", "crash", "s median", "s most"]
+    return score.table(columns, [
+        [row["group"], *[row["hidden"][c] for c in ("n", *CLASSES)],
+         *[row["clean"][c] for c in ("n", "exact", "flagged", "silent", "refused", "over_limit", "crash")],
+         score.number(row["time_s"]["median"], "{:.1f}"), score.number(row["time_s"]["most"], "{:.1f}")] for row in rows])
+
+
+def text(s):
+    """The summary as Markdown tables."""
+    marks = {True: "met", False: "**missed**", None: "not measured"}
+    parts = [f"{s['scenarios']} scenarios",
+             score.table(["bar", "measured", "n", "must be", ""],
+                         [[b["bar"], score.number(b["value"]) + (f" {b['unit']}" if b["unit"] and b["value"] is not None else ""), b["n"],
+                           score.limit(b), marks[b["met"]] if score.limit(b) else ""] for b in s["bars"]]),
+             "\n".join(f"- {c}: {MEANING[c]}" for c in CLASSES),
+             group_table("condition", s["by_condition"]), group_table("variant", s["by_variant"]),
+             "Not right (in brackets what the record gains in −2 ln L):\n" + "\n".join("- " + line for line in s["not_right"])]
+    return "\n\n".join(parts) + "\n"
