@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
+#include "engine/json/stated_number.h"
 
 namespace loopwright {
 namespace {
@@ -39,6 +40,46 @@ void reject_what_does_not_belong(const Reader& reader, const Metric& metric, con
   }
 }
 
+/// Reads the numbers of a metric. What has a unit of its own is compared with the signal later.
+class MetricNumbers {
+ public:
+  MetricNumbers(const Reader& reader, const Value& body, Metric& metric)
+      : reader_(reader), body_(body), metric_(metric) {}
+
+  /// In `unit`.
+  void in(std::string_view unit, double& to, std::string_view key) const {
+    if (const auto number = find(key, -Reader::infinity))
+      to = in_unit(*number, *parse_unit(unit), quoted(key), reader_).value_or(to);
+  }
+  /// In SI, of the signal.
+  void of_signal(double& to, std::string_view key, double low = -Reader::infinity) const {
+    keep(to, key, low, true);
+  }
+  /// In the unit of the result.
+  void of_result(double& to, std::string_view key) const {
+    if (!metric_.unit.empty()) return in(metric_.unit, to, key);
+    keep(to, key, -Reader::infinity, false);
+  }
+
+ private:
+  static std::string quoted(std::string_view key) { return fmt::format("\"{}\"", key); }
+  std::optional<StatedNumber> find(std::string_view key, double low) const {
+    const Value::Member* member = body_.find(key);
+    return member ? stated_number(member->value, quoted(key), reader_, low) : std::nullopt;
+  }
+  void keep(double& to, std::string_view key, double low, bool is_of_signal) const {
+    const auto number = find(key, low);
+    if (!number) return;
+    to = number->as_given();
+    if (number->unit)
+      metric_.stated.push_back({std::string(key), *number->at.unit, is_of_signal, number->at.place});
+  }
+
+  const Reader& reader_;
+  const Value& body_;
+  Metric& metric_;
+};
+
 std::optional<Metric> read_metric(const Reader& reader, const Value::Member& member) {
   Metric metric;
   metric.name = member.name, metric.place = member.place, metric.pointer = member.value.place.pointer();
@@ -64,15 +105,13 @@ std::optional<Metric> read_metric(const Reader& reader, const Value::Member& mem
   }
   reject_what_does_not_belong(reader, metric, body);
   if (body.find("unit") && reader.unit(body.find("unit")->value)) metric.unit = reader.text(body, "unit");
-  metric.from = reader.optional_number(body, "from", 0);
-  metric.to = reader.optional_number(body, "to", Metric::infinity);
+  const MetricNumbers numbers(reader, body, metric);
+  numbers.in("s", metric.from, "from"), numbers.in("s", metric.to, "to");
   if (metric.from >= metric.to) reader.error(member, "\"from\" must lie before \"to\"");
-  metric.target = reader.optional_number(body, "target", 0);
-  metric.band = reader.optional_number(body, "band", 0, 0);
-  metric.threshold = reader.optional_number(body, "threshold", 0, 0);
+  numbers.of_signal(metric.target, "target");
+  numbers.of_signal(metric.band, "band", 0), numbers.of_signal(metric.threshold, "threshold", 0);
   metric.percent = reader.optional_number(body, "percent", 95, 0, 100);
-  metric.least = reader.optional_number(body, "least", -Metric::infinity);
-  metric.most = reader.optional_number(body, "most", Metric::infinity);
+  numbers.of_result(metric.least, "least"), numbers.of_result(metric.most, "most");
   return metric;
 }
 

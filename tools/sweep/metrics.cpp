@@ -2,31 +2,27 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include "engine/diagram/formula_parser.h"
 #include "engine/json/reader.h"
 #include "models/real/whole.h"
+#include "tools/sweep/metric_expression.h"
 
 namespace loopwright {
 namespace {
 
-constexpr const char* name_characters = "0123456789_abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ.[]";
-
-bool is_expression(const std::string& signal) { return signal.starts_with('='); }
-
-/// The ports named by a signal, in a fixed order.
-std::vector<std::string> ports_of(const Metric& metric, Problems& problems) {
-  if (!is_expression(metric.signal)) return {metric.signal};
-  try {
-    FormulaParser parser;
-    parser.DefineNameChars(name_characters);
-    parser.set_formula(metric.signal.substr(1));
-    std::vector<std::string> ports;
-    for (const auto& [name, value] : parser.GetUsedVar()) ports.push_back(name);
-    return ports;
-  } catch (const mu::ParserError& error) {
-    problems.error(metric.place, metric.pointer, "", "the expression cannot be read").found =
-        FormulaParser::message_of(error);
-    return {};
+/// Numbers of the metric that were written with a unit of their own.
+void check_stated(const Metric& metric, const std::optional<Unit>& of_signal,
+                  const std::optional<Unit>& of_result, Problems& problems) {
+  for (const Metric::Stated& stated : metric.stated) {
+    const auto& wanted = stated.is_of_signal ? of_signal : of_result;
+    const bool is_difference = stated.key == "band" || stated.key == "threshold" || !stated.is_of_signal;
+    const bool fits = !wanted || conversion(stated.unit, *wanted).kind == Conversion::Kind::none;
+    if (fits && !(is_difference && stated.unit.is_point)) continue;
+    auto& p = problems.error(stated.place, stated.place.pointer(), "",
+                             fmt::format("\"{}\" has another unit than the {}", stated.key,
+                                         stated.is_of_signal ? "signal" : "metric"));
+    p.expected = fmt::format("a number in {}", wanted ? to_string(*wanted) : "K");
+    p.found = to_string(stated.unit);
+    if (fits) p.hint = "a metric may be a difference: it takes K";
   }
 }
 
@@ -36,7 +32,7 @@ Observed observe(const Sweep& sweep, const Plan& plan, Problems& problems) {
   Observed observed;
   for (const Metric& metric : sweep.metrics) {
     auto& of_metric = observed.of_metric.emplace_back();
-    std::optional<Unit> unit;
+    std::vector<std::optional<Unit>> units_of_ports;
     const auto ports = ports_of(metric, problems);
     for (const std::string& port : ports) {
       const std::vector<Number> numbers = plan.find(port);
@@ -44,7 +40,7 @@ Observed observe(const Sweep& sweep, const Plan& plan, Problems& problems) {
         const auto at = std::find(observed.numbers.begin(), observed.numbers.end(), numbers[0]);
         of_metric.push_back(size_t(at - observed.numbers.begin()));
         if (at == observed.numbers.end()) observed.numbers.push_back(numbers[0]);
-        if (ports.size() == 1 && !is_expression(metric.signal)) unit = plan.unit_of(numbers[0]);
+        units_of_ports.push_back(plan.unit_of(numbers[0]));
         continue;
       }
       auto& p =
@@ -56,7 +52,14 @@ Observed observe(const Sweep& sweep, const Plan& plan, Problems& problems) {
       for (const Plan::Port& other : plan.ports) known.add(std::string(other.name));
       if (numbers.empty()) known.explain(p, port);
     }
+    std::optional<Unit> unit;
+    if (is_expression(metric.signal))
+      unit = unit_of_expression(metric, ports, units_of_ports, problems);
+    else if (!units_of_ports.empty())
+      unit = units_of_ports.front();
+    const auto of_signal = unit;
     if (metric.is_time()) unit = parse_unit("s");
+    check_stated(metric, of_signal, unit, problems);
     const auto stated = metric.unit.empty() ? unit : parse_unit(metric.unit);
     double scale = metric.unit.empty() || !stated ? 1.0 : stated->scale;
     if (stated && unit) {
@@ -88,7 +91,7 @@ struct MetricBank::Accumulator {
         b(lanes) {
     if (!is_expression(metric.signal)) return;
     arguments.resize(numbers.size());
-    parser.DefineNameChars(name_characters);
+    parser = metric_parser();
     Problems none;
     const auto ports = ports_of(metric, none);
     for (size_t i = 0; i < ports.size(); ++i) parser.DefineVar(ports[i], &arguments[i]);

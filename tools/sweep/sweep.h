@@ -69,6 +69,15 @@ struct Metric {
   Place place;
   std::string pointer;
 
+  /// A number above that was written with a unit, which must fit once the signals are known.
+  struct Stated {
+    std::string key;  ///< "target"
+    Unit unit;
+    bool is_of_signal;  ///< otherwise of the result
+    Place place;
+  };
+  std::vector<Stated> stated;
+
   static constexpr double infinity = std::numeric_limits<double>::infinity();
   bool is_time() const { return kind == Kind::settling_time || kind == Kind::first_violation; }
 };

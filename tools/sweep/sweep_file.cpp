@@ -4,6 +4,7 @@
 #include "engine/json/file_kind.h"
 #include "engine/json/json.h"
 #include "engine/json/reader.h"
+#include "engine/json/stated_number.h"
 #include "engine/plan/plan.h"
 #include "models/real/double_functions.h"
 #include "tools/sweep/metric_reader.h"
@@ -117,6 +118,9 @@ class Loader {
         body, {"values", "linear", "logarithmic", "uniform", "log_uniform", "normal", "variants", "unit"},
         "an axis");
     if (body.find("unit") && reader_.unit(body.find("unit")->value)) axis.unit = reader_.text(body, "unit");
+    const bool has_unit = !axis.unit.empty();
+    if (!has_unit) axis.unit = unit_of_numbers(body);
+    is_bare_allowed_ = has_unit || axis.unit.empty();
     int ways = 0;
     for (const Value::Member& way : body.members)
       if (way.name != "unit") ++ways, read_way(axis, way);
@@ -125,6 +129,29 @@ class Loader {
     p.expected =
         "one of \"values\", \"linear\", \"logarithmic\", \"uniform\", \"log_uniform\", \"normal\", "
         "\"variants\"";
+  }
+  /// The unit of the first number that states one: "values": ["5 um", "10 um"].
+  static std::string unit_of_numbers(const Value& value) {
+    if (value.find("value") && value.find("unit"))
+      return value.find("unit")->value.kind == Value::Kind::text ? value.find("unit")->value.text : "";
+    if (value.kind == Value::Kind::text)
+      if (const auto stated = number_and_unit(value.text)) return stated->unit_text;
+    std::string unit;
+    for (size_t i = 0; i < value.items.size() && unit.empty(); ++i) unit = unit_of_numbers(value.items[i]);
+    for (size_t i = 0; i < value.members.size() && unit.empty(); ++i)
+      if (value.members[i].name != "variants") unit = unit_of_numbers(value.members[i].value);
+    return unit;
+  }
+  /// In the unit of the axis.
+  double number_of(const Axis& axis, const Value& value, std::string_view what, bool is_difference = false) {
+    const auto stated = stated_number(value, what, reader_);
+    const auto unit = parse_unit(axis.unit);
+    if (!stated || !unit) return 0;
+    if (!stated->unit && !is_bare_allowed_) {
+      auto& p = reader_.error(value, fmt::format("{} has no unit, unlike other numbers of the axis", what));
+      p.expected = fmt::format("a number with a unit, or \"unit\": \"{}\" for the axis", axis.unit);
+    }
+    return in_unit(*stated, *unit, what, reader_, is_difference).value_or(0);
   }
   void read_way(Axis& axis, const Value::Member& way) {
     if (way.name == "values") return read_values(axis, way.value);
@@ -136,8 +163,8 @@ class Loader {
     if (way.name == "normal") {
       reader_.reject_unknown(way.value, {"mean", "deviation"}, "\"normal\"");
       axis.kind = Axis::Kind::normal;
-      axis.low = required(way.value, "mean", expected),
-      axis.high = required(way.value, "deviation", expected);
+      axis.low = required(axis, way.value, "mean", expected);
+      axis.high = required(axis, way.value, "deviation", expected);
       if (axis.high <= 0) reader_.error(way.value, "the standard deviation must be above zero");
       return;
     }
@@ -146,7 +173,8 @@ class Loader {
       reader_.reject_unknown(way.value, {"from", "to"}, fmt::format("\"{}\"", way.name));
     else
       reader_.reject_unknown(way.value, {"from", "to", "count"}, fmt::format("\"{}\"", way.name));
-    const double from = required(way.value, "from", expected), to = required(way.value, "to", expected);
+    const double from = required(axis, way.value, "from", expected),
+                 to = required(axis, way.value, "to", expected);
     if (is_logarithmic && (from <= 0 || to <= 0))
       reader_.error(way.value, "a logarithmic axis lies above zero");
     if (is_sampled) {
@@ -157,9 +185,9 @@ class Loader {
       fill(axis, way.value, from, to, is_logarithmic);
     }
   }
-  double required(const Value& object, std::string_view key, const std::string& expected) {
+  double required(const Axis& axis, const Value& object, std::string_view key, const std::string& expected) {
     if (const Value::Member* member = object.find(key))
-      return reader_.number(member->value, fmt::format("\"{}\"", key));
+      return number_of(axis, member->value, fmt::format("\"{}\"", key), key == "deviation");
     reader_.error(object, fmt::format("\"{}\" is missing", key)).expected = expected;
     return 1;
   }
@@ -178,7 +206,7 @@ class Loader {
   }
   void read_values(Axis& axis, const Value& list) {
     if (!reader_.expect(list, Value::Kind::list, "\"values\"", "a list of numbers")) return;
-    for (const Value& item : list.items) axis.values.push_back(reader_.number(item, "a value"));
+    for (const Value& item : list.items) axis.values.push_back(number_of(axis, item, "a value"));
     if (list.items.empty()) reader_.error(list, "the list of values is empty");
   }
   void read_variants(Axis& axis, const Value& list) {
@@ -315,6 +343,7 @@ class Loader {
   Problems& problems_;
   Reader reader_;
   std::shared_ptr<Sweep> sweep_ = std::make_shared<Sweep>();
+  bool is_bare_allowed_ = true;  // a number without a unit, on the axis that is being read
 };
 
 }  // namespace

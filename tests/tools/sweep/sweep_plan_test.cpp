@@ -47,18 +47,25 @@ TEST(SweepPlan, PointsToTheAxisThatTheDiagramRefuses) {
               HasSubstr("another unit"));
 }
 
+/// Every tunable number of every run, whether it is tuned or that of the shared plan, is as the diagram gives
+/// it.
+void expect_numbers_of_all_runs(const SweepPlan& plan) {
+  for (int64_t run = 0; run < plan.runs(); ++run) {
+    const World& world = plan.world_of(run);
+    auto numbers = tunable_numbers(*world.plan);
+    const auto tuned = plan.tuned(run);
+    for (size_t i = 0; i < tuned.size(); ++i) numbers.at(world.tuned[i]) = tuned[i];
+    EXPECT_EQ(numbers, tunable_numbers(*plan.plan_of(run))) << "run " << run;
+  }
+}
+
 TEST(SweepPlan, FollowsExpressionsAndUnits) {
   const SweepFolder folder(
       R"("stiffness": {"values": [10, 1000]}, "mass.mass": {"values": [500, 900], "unit": "g"})");
   const SweepPlan plan = folder.plan();
   const World& world = plan.world(0);
   EXPECT_TRUE(world.needs_loader);
-  for (int64_t run = 0; run < plan.runs(); ++run) {
-    const auto expected = tunable_numbers(*plan.plan_of(run));
-    const auto tuned = plan.tuned(run);
-    for (size_t i = 0; i < tuned.size(); ++i)
-      EXPECT_EQ(tuned[i], expected.at(world.tuned[i])) << world.tuned[i];
-  }
+  expect_numbers_of_all_runs(plan);
   EXPECT_EQ(world.tuned, (std::vector<std::string>{"damper.gain", "mass.mass", "spring.gain"}));
 }
 
@@ -70,12 +77,25 @@ TEST(SweepPlan, NoticesWhatOnlyTwoAxesTogetherShow) {
   const SweepFolder folder(
       R"("damping_ratio": {"values": [0.1, 0.9]}, "stiffness": {"values": [10, 20, 30]})", "",
       metrics_of_all_kinds, loop);
+  expect_numbers_of_all_runs(folder.plan());
+}
+
+// Only one run of 200 shows that the damper depends on the axes, through two parameters.
+TEST(SweepPlan, NoticesWhatASingleRunShows) {
+  std::string loop = small_loop;
+  loop.replace(loop.find("=2*damping_ratio*sqrt(stiffness)"), 32, "=handed_on");
+  loop.replace(loop.find("\"stiffness\": 40"), 15,
+               R"("stiffness": 40, "handed_on": "=chosen",
+                  "chosen": "=damping_ratio > 0.5 && stiffness == 15 ? 3 : 1")");
+  const SweepFolder folder(
+      R"("damping_ratio": {"values": [0.1, 0.9]}, "stiffness": {"linear": {"from": 10, "to": 109, "count": 100}})",
+      "", metrics_of_all_kinds, loop);
   const SweepPlan plan = folder.plan();
-  for (int64_t run = 0; run < plan.runs(); ++run) {
-    const auto expected = tunable_numbers(*plan.plan_of(run));
-    const auto tuned = plan.tuned(run);
-    for (size_t i = 0; i < tuned.size(); ++i) EXPECT_EQ(tuned[i], expected.at(plan.world(0).tuned[i]));
-  }
+  expect_numbers_of_all_runs(plan);
+  std::set<double> dampers;
+  for (int64_t run = 0; run < plan.runs(); ++run)
+    dampers.insert(tunable_numbers(*plan.plan_of(run)).at("damper.gain"));
+  EXPECT_EQ(dampers, (std::set<double>{1, 3}));
 }
 
 TEST(SweepPlan, GivesVariantsAndStructuralValuesPlansOfTheirOwn) {
