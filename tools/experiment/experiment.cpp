@@ -1,10 +1,12 @@
 #include "tools/experiment/experiment.h"
 #include <fmt/format.h>
 #include <algorithm>
+#include <map>
 #include <numeric>
 #include "engine/json/file_kind.h"
 #include "engine/json/json.h"
 #include "engine/json/reader.h"
+#include "engine/json/stated_number.h"
 #include "engine/record/column_units.h"
 #include "engine/record/recording_file.h"
 #include "hw/realtime/deploy.h"
@@ -74,11 +76,17 @@ class Loader {
       if (drives)
         result_->drive_is_linear.push_back(interpolation(entry.value));
       else
-        signal.resolution = reader_.optional_number(entry.value, "resolution", 0, 0, 1e30);
+        read_resolution(entry);
       to.push_back(std::move(signal));
     }
     if (list->value.members.empty() && key == "compare")
       reader_.error(*list, "the experiment compares nothing");
+  }
+  /// Its unit is compared with that of the column once the data are known.
+  void read_resolution(const Value::Member& compared) {
+    if (const Value::Member* member = compared.value.find("resolution"))
+      if (auto stated = stated_number(member->value, "\"resolution\"", reader_, 0))
+        resolutions_[compared.name] = std::move(*stated);
   }
   bool interpolation(const Value& entry) {
     const Value::Member* member = entry.find("interpolation");
@@ -198,12 +206,20 @@ class Loader {
     const auto unit = unit_of(*found, signal.unit, error_at(signal.place, signal.pointer));
     if (!unit) return;
     if (!found->unit.empty()) signal.unit = found->unit;
-    signal.resolution *= unit->scale;
+    signal.resolution = resolution_of(signal.port, *unit);
     Column values = in_si(*found, *unit);
     values.name = signal.port;
     if (!result_->data.find(signal.port)) result_->data.columns.push_back(std::move(values));
   }
 
+  /// [SI], 0 if it is not stated.
+  double resolution_of(const std::string& port, const Unit& of_column) const {
+    const auto stated = resolutions_.find(port);
+    if (stated == resolutions_.end()) return 0;
+    return in_unit(stated->second, of_column, "\"resolution\"", reader_, true).value_or(0) * of_column.scale;
+  }
+
+  std::map<std::string, StatedNumber> resolutions_;  // by port
   std::shared_ptr<Experiment> result_ = std::make_shared<Experiment>();
   Reader reader_;
   Problems& problems_;

@@ -45,6 +45,26 @@ TEST_F(Experiments, ADrivingColumnInTheWrongUnitIsAnError) {
   expect_refusal({"V", "N", "stage"});
 }
 
+TEST_F(Experiments, AColumnInRatesPerMinuteIsNoSpeedInRadians) {
+  folder.with("shaft.json", diagram(R"("push": {"type": "Constant", "value": {"value": 0, "unit": "N*m"}},
+    "stage": {"type": "Mass", "mass": {"value": 2, "unit": "kg*m^2"}, "in": {"force": "push.y"}})",
+                                    R"("method": "rk4", "step": 0.05, "stop": 1)"));
+  folder.with("data.csv", "t,F,n\n0,1,0\n1,1,1\n2,1,2\n");
+  const auto refusal = [&](const std::string& unit) {
+    folder.experiment(R"("stage.force": {"column": "F", "unit": "N*m"})",
+                      R"("stage.velocity": {"column": "n", "unit": ")" + unit + "\"}");
+    try {
+      compare(folder.path("shaft.json"), folder.path("e.json"));
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_TRUE(has(refusal("1/min"), "\"stage.velocity\" is in another unit than its column"));
+  EXPECT_TRUE(has(refusal("1/min"), "revolutions (rpm)")) << refusal("1/min");
+  EXPECT_EQ(refusal("rpm"), "");
+}
+
 TEST_F(Experiments, AUnitThatCannotBeReadIsAnError) {
   folder.experiment(drive, R"("stage.position": {"column": "x_mm", "unit": "blorps"})");
   expect_refusal({"the unit \"blorps\" cannot be read"});
@@ -55,6 +75,26 @@ TEST_F(Experiments, TheTimeColumnHonoursItsUnit) {
   const Comparison c = folder.compared();
   EXPECT_EQ(c.time, (std::vector<double>{0, 1, 2}));
   EXPECT_NEAR(c.signals[0].rmse, 0, 1e-9) << "x = t^2/4";
+}
+
+TEST_F(Experiments, AResolutionMayHaveAUnitOfItsOwn) {
+  const auto resolution = [&](const std::string& text) {
+    folder.experiment(drive,
+                      R"("stage.position": {"column": "x_mm", "unit": "mm", "resolution": )" + text + "}");
+    Problems problems;
+    const auto experiment = load_experiment(folder.path("e.json"), problems);
+    return experiment ? experiment->compared[0].resolution : -1;
+  };
+  for (const char* text : {"0.005", "\"5 um\"", "\"0.005 mm\"", R"({"value": 5, "unit": "um"})"})
+    EXPECT_DOUBLE_EQ(resolution(text), 5e-6) << text;
+  EXPECT_EQ(resolution("\"5 N\""), -1);
+  expect_refusal({"e.json:1:", "\"resolution\" has another unit", "expected: a number in mm", "found: N"});
+  EXPECT_EQ(resolution("\"-5 um\""), -1);
+  expect_refusal({"\"resolution\" is out of range"});
+  EXPECT_EQ(resolution(R"({"value": 5})"), -1);
+  expect_refusal({"\"resolution\" lacks its \"unit\""});
+  EXPECT_EQ(resolution("\"fine\""), -1);
+  expect_refusal({"wrong kind", "expected: a number, \"5 um\""});
 }
 
 TEST_F(Experiments, AUnitThatContradictsTheHeadingNamesBoth) {
