@@ -100,6 +100,7 @@ class Collector {
           zero_phase_low_pass(rows.position, velocity_cutoff, rows.sample_time), rows.sample_time);
     else
       rows.velocity = column(recording, name, training_.velocity.column, training_.velocity.unit);
+    check_velocity(recording, name);
     rows.begin = 0, rows.end = rows.time.size();
     if (training_.label.command.empty())
       observed_label(recording, name, rows);
@@ -130,6 +131,23 @@ class Collector {
       const double s = at - double(k);
       rows.label[i] = (1 - s) * sum[k] + s * sum[k + 1];
     }
+  }
+
+  /// The velocity must be the position per time. Rates such as 1/min are no rad/s.
+  void check_velocity(const Recording& recording, const std::string& file) {
+    const auto unit_of_choice = [&](const ColumnChoice& choice) {
+      const Column* found = recording.find(choice.column);
+      const std::string& text = found && !found->unit.empty() ? found->unit : choice.unit;
+      return text.empty() ? std::nullopt : parse_unit(text);
+    };
+    const auto position = unit_of_choice(training_.position), velocity = unit_of_choice(training_.velocity);
+    if (!position || !velocity) return;
+    const Unit wanted = position->in_si() * *parse_unit("1/s");
+    if (conversion(*velocity, wanted).kind == Conversion::Kind::none) return;
+    auto& p = problem(fmt::format("{}: the velocity does not fit the position", file));
+    p.expected = fmt::format("a velocity in {}", to_string(wanted));
+    p.found = to_string(*velocity);
+    if (velocity->same_dimension(wanted)) p.hint = "revolutions per minute are rpm";
   }
 
   /// The number times acceleration or velocity must have the unit of the command: kilograms do not match

@@ -93,6 +93,16 @@ TEST(DeviceFile, NumbersWithUnitsAreConverted) {
   EXPECT_DOUBLE_EQ(device->watchdog.timeout, 0.02);
 }
 
+TEST(DeviceFile, RatesPerMinuteAreNoRadiansPerSecond) {
+  const auto problems = [](const std::string& unit) {
+    return problems_of_device(device_text(fmt::format(
+        R"({{"outputs": {{"drive": {{"unit": "rad/s", "scale": 1, "maximum": {{"value": 60, "unit": "{}"}}}}}}}})",
+        unit)));
+  };
+  EXPECT_THAT(problems("1/min"), AllOf(HasSubstr("60 1/min can mean two numbers"), HasSubstr("write rpm")));
+  EXPECT_EQ(problems("rpm"), "");
+}
+
 TEST(DeviceFile, UnitsOfAnotherDimensionAreErrorsThatNameBoth) {
   const struct {
     std::string patch, pointer, expected, found;

@@ -45,6 +45,23 @@ TEST(Train, ANominalMassMustMakeOfMotionWhatTheCommandIs) {
   EXPECT_THAT(folder.said, Not(HasSubstr("damping")));
 }
 
+TEST(Train, AVelocityIsThePositionPerTime) {
+  const auto said = [](const std::string& position, const std::string& velocity) {
+    StageFolder folder;
+    std::string text = fmt::format("time [s],x [{}],v [{}],d [V]\n", position, velocity);
+    for (int k = 0; k < 20; ++k) text += fmt::format("{},{},{},0\n", 1e-3 * k, 1e-3 * k, 1);
+    folder.with("pass.csv", text);
+    folder.training().train();
+    return folder.said;
+  };
+  for (const char* velocity : {"1/min", "Hz", "mm/s"})
+    EXPECT_THAT(said("rad", velocity),
+                AllOf(HasSubstr("the velocity does not fit the position"), HasSubstr("a velocity in rad/s")));
+  for (const char* velocity : {"rpm", "1/s", "deg/s"})
+    EXPECT_THAT(said("rad", velocity), Not(HasSubstr("does not fit the position")));
+  EXPECT_THAT(said("mm", "m/min"), Not(HasSubstr("does not fit the position")));
+}
+
 TEST(Train, AUnitThatContradictsTheHeadingIsAnError) {
   StageFolder folder;
   folder.pass("pass.csv", four).training("", R"({"columns": ["d"], "unit": "mV"})");
