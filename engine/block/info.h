@@ -29,7 +29,9 @@ struct BlockInfo {
   std::vector<ParameterInfo> parameters;
   std::vector<CrossingInfo> crossings;
   int buffers = 0, groups = 0, state_vectors = 0, fixed_states = 0;
-  bool uses_time = false;           ///< its outputs depend on time
+  bool uses_time = false;  ///< its outputs depend on time
+  bool outputs_read_mode = false;
+  bool decision_reads_inputs = false;
   bool is_sampled = false;          ///< has discrete memory: requires a sample time
   bool is_continuous = false;       ///< has states, or modes of its own: must not have a sample time
   std::vector<int> memory_numbers;  ///< words of Memory, 8 bytes each, that are numbers; others are indices
@@ -68,6 +70,11 @@ template <class B, class L> int length_of(const B& block, const L& length) {
     return -1;
 }
 
+/// Whether a method of a block has a parameter of this type.
+template <class T, class A, class B, class... P> constexpr bool takes(A (B::*)(P...) const) {
+  return (std::is_same_v<std::remove_cvref_t<P>, T> || ...);
+}
+
 /// B is the scalar block: B<double> or a plain struct.
 template <class B> BlockInfo info_of(std::string_view type) {
   BlockInfo info{};
@@ -101,14 +108,14 @@ template <class B> BlockInfo info_of(std::string_view type) {
   info.state_vectors = int(count_of<B, is_state_vector>);
   info.fixed_states =
       std::is_same_v<State<B>, None> || info.state_vectors ? 0 : int(sizeof(State<B>) / sizeof(double));
-  if constexpr (requires { &B::outputs; })
-    info.uses_time = []<class A, class... P>(A (B::*)(P...) const) {
-      return (std::is_same_v<std::remove_cvref_t<P>, Instant> || ...);
-    }(&B::outputs);
-  if constexpr (requires { &B::decide; })
-    info.uses_time |= []<class A, class... P>(A (B::*)(P...) const) {
-      return (std::is_same_v<std::remove_cvref_t<P>, Instant> || ...);
-    }(&B::decide);
+  if constexpr (requires { &B::outputs; }) {
+    info.uses_time = takes<Instant>(&B::outputs);
+    info.outputs_read_mode = takes<Mode<B>>(&B::outputs);
+  }
+  if constexpr (requires { &B::decide; }) {
+    info.uses_time |= takes<Instant>(&B::decide);
+    info.decision_reads_inputs = takes<In<B>>(&B::decide);
+  }
   info.is_sampled = requires { &B::update; };
   if constexpr (!std::is_same_v<Memory<B>, None>) info.memory_numbers = number_words<Memory<B>>();
   info.is_continuous = requires { &B::derivatives; }

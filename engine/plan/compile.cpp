@@ -282,6 +282,7 @@ std::shared_ptr<const Plan> compile(const Diagram& diagram, Problems& problems) 
   const PortUnits units = check_units(flat, diagram, problems);
   auto plan = std::make_shared<Plan>();
   plan->title = diagram.title;
+  plan->solver_place = diagram.solver.place;
   if (problems.has_errors()) {  // the times are still checked
     find_times(diagram, flat, {}, *plan, problems);
     return nullptr;

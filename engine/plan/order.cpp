@@ -50,7 +50,7 @@ class Order {
  private:
   const BlockInfo& info(int block) const { return plan_.blocks[size_t(block)].type->info; }
   uint64_t mask(const Vertex& v) const {
-    if (v.group < 0) return ~uint64_t(0);
+    if (v.group < 0) return info(v.block).decision_reads_inputs ? ~uint64_t(0) : 0;
     for (const PortInfo& output : info(v.block).outputs)
       if (output.group == v.group) return output.fed_by;
     return 0;
@@ -98,12 +98,11 @@ class Order {
     graph_ = Graph(boost::edges_are_sorted, edges.begin(), edges.end(), vertices_.size());
   }
   /// Outputs read the mode that is decided at the same instant, also those that read no input. Accepted
-  /// memory is the exception: its outputs may close a loop, as the decision does not depend on the present
-  /// input.
+  /// memory is the exception, unless its outputs read the mode: they may close a loop.
   bool reads_decision(int v) const {
     const Vertex& vertex = vertices_[size_t(v)];
     if (vertex.group < 0 || decision_[size_t(vertex.block)] < 0) return false;
-    return mask(vertex) != 0 || info(vertex.block).inputs.empty() ||
+    return mask(vertex) != 0 || info(vertex.block).inputs.empty() || info(vertex.block).outputs_read_mode ||
            !plan_.blocks[size_t(vertex.block)].type->kernels.accept;
   }
   bool needs_itself(int v) const {

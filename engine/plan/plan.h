@@ -117,6 +117,7 @@ struct Plan {
   Method method = Method::rk4;
   double relative_tolerance = 1e-6, absolute_tolerance = 1e-9, maximum_step = infinity;
   uint64_t seed = 1;
+  Place solver_place;  ///< of "solver" in the file, or of the diagram: for problems of a whole run
 
   int signals = 0, states = 0, buffer_numbers = 0;
   /// Whether the computation between samples depends on the solver steps: there are states, decisions,

@@ -203,8 +203,10 @@ class Times {
     }
     const double ticks = stop_->value() / base.value();
     if (are_counted(base)) return true;
+    const SolverSettings& solver = diagram_.solver;  // a stop time from elsewhere has no place of its own
+    const Place& place = solver.stop.place.file ? solver.stop.place : solver.place;
     auto& p =
-        problems_.error(diagram_.solver.stop.place, diagram_.solver.stop.place.pointer(), "",
+        problems_.error(place, place.pointer(), "",
                         fmt::format("the run has {:.3g} ticks of {:.3g} s, more than can be counted exactly",
                                     ticks, base.value()));
     p.hint = "sample times, step and record_step with a larger common divisor make longer ticks";

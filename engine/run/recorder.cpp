@@ -11,8 +11,8 @@ Recorder::Recorder(const Plan& plan) : plan_(plan) {
   constexpr double most = 8e9;
   if (bytes > most) {
     Problems problems;
-    auto& p =
-        problems.error({}, "/solver", "", fmt::format("the recording would take {:.3g} GB", bytes / 1e9));
+    auto& p = problems.error(plan.solver_place, plan.solver_place.pointer(), "",
+                             fmt::format("the recording would take {:.3g} GB", bytes / 1e9));
     p.expected = fmt::format("at most {:.3g} GB", most / 1e9);
     p.hint = "a longer \"record_step\" in \"solver\", or fewer signals in \"log\"";
     throw InputError(std::move(problems));

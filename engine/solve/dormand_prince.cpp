@@ -82,7 +82,7 @@ class DormandPrince final : public Stepper {
   bool try_step(double h, double t_new);
   double error_norm(double h) const;
   double scale(size_t i, double a, double b) const {
-    return absolute_tolerance_[i] + relative_tolerance_ * std::fmax(std::fabs(a), std::fabs(b));
+    return absolute_tolerance_[i] + relative_tolerance_ * std::max(std::fabs(a), std::fabs(b));
   }
   void check_stiffness(double h);
   void interpolate_within(double t, double* x) const override;
@@ -102,10 +102,10 @@ class DormandPrince final : public Stepper {
 SolverStatus DormandPrince::step(double t_stop) {
   if (!know_rate()) return fail(trouble_);
   const double remaining = t_stop - t_end_;
-  if (step_size_ == 0.0) step_size_ = starting_step(std::fmin(remaining, maximum_step_));
+  if (step_size_ == 0.0) step_size_ = starting_step(std::min(remaining, maximum_step_));
   SolverStatus reason = SolverStatus::step_too_small;
   for (double largest_growth = largest_factor;; largest_growth = 1.0) {
-    double h = std::fmin(step_size_, maximum_step_), t_new = t_end_ + h;
+    double h = std::min(step_size_, maximum_step_), t_new = t_end_ + h;
     if (remaining <= maximum_step_ && remaining <= 1.01 * step_size_) {
       h = remaining, t_new = t_stop;
     } else if (remaining < 2.0 * h) {  // two halves instead of a whole step and a tiny one
@@ -122,22 +122,22 @@ SolverStatus DormandPrince::step(double t_stop) {
       step_size_ = retreat_factor * h;
       continue;
     }
-    const double root = twentieth_root(std::fmax(error, 1e-10));
+    const double root = twentieth_root(std::max(error, 1e-10));
     if (error > 1.0) {
       ++statistics.error_test_failures;
       reason = SolverStatus::step_too_small;
-      step_size_ = h * std::fmax(smallest_factor, safety / square(square(root)));
+      step_size_ = h * std::max(smallest_factor, safety / square(square(root)));
       continue;
     }
     const double proposal =
         h * std::clamp(safety * error_root_ / (root * root * root), smallest_factor, largest_growth);
-    const bool cut_short = h < std::fmin(step_size_, maximum_step_);
+    const bool cut_short = h < std::min(step_size_, maximum_step_);
     if (cut_short) {
-      step_size_ = std::fmax(step_size_, proposal);
+      step_size_ = std::max(step_size_, proposal);
     } else {
-      statistics.smallest_step = std::fmin(statistics.smallest_step, h);
+      statistics.smallest_step = std::min(statistics.smallest_step, h);
       step_size_ = proposal;
-      error_root_ = std::fmax(root, 0.63);  // error of 1e-4: an almost exact step does not predict the next
+      error_root_ = std::max(root, 0.63);  // error of 1e-4: an almost exact step does not predict the next
     }
     if (statistics.steps % stiff_check_interval == 0 || stiff_streak_ > 0) check_stiffness(h);
     accept(t_new, trial_);

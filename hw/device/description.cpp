@@ -18,7 +18,7 @@ class DeviceReader {
 
   void read(const Value& file, DeviceDescription& to) {
     reader_.check_version(file);
-    to.title = reader_.text(file, "title");
+    to.title = reader_.text(file, "title"), to.place = file.place;
     read_driver(file, to);
     Value without_drivers = file;  // each driver has a key of its own
     std::erase_if(without_drivers.members, [&](const Value::Member& m) { return is_driver(m.name); });

@@ -179,6 +179,7 @@ struct Policy {
 
 struct DeviceDescription {
   std::string path, title;
+  Place place;            ///< of the file's object
   std::string driver;     ///< "quanser", "udp"
   Value driver_settings;  ///< the object with the driver's name in the file; empty if absent
   std::vector<InputChannel> inputs;

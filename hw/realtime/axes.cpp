@@ -59,7 +59,7 @@ Hardware find_hardware(const Plan& plan, Problems& problems) {
     hardware.axes.push_back(axis);
   }
   if (!hardware.axes.empty() && plan.states > 0 && !is_fixed_step(plan.method)) {
-    auto& p = problems.error({}, "/solver/method", "",
+    auto& p = problems.error(plan.solver_place, plan.solver_place.pointer(), "",
                              "a loop on hardware needs steps whose length is known beforehand");
     p.expected = "euler, heun or rk4";
     p.found = std::string(to_name(plan.method));

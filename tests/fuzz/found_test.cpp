@@ -94,5 +94,34 @@ TEST(Found, MoreMemoryThanAMachineHasIsAProblemOfTheDiagram) {
   expect_in("block: d", text);
 }
 
+TEST(Found, ARecordingTooLargeForTheMemoryIsAProblemOfTheSolverSettings) {
+  DiagramFolder folder;
+  folder.with("top.json", R"({"loopwright": 1,
+"solver": {"stop": 1000000, "record_step": 1e-6, "step": 1e-6}, "blocks": {"x": {"type": "Integrator", "in": {"u": "x.y"}}}})");
+  try {
+    simulate(*load_plan(folder.path("top.json")));
+    FAIL() << "the recording would have more rows than a memory holds";
+  } catch (const InputError& error) {
+    expect_in("top.json:2:", error.what());
+    expect_in("the recording would take", error.what());
+  }
+}
+
+TEST(Found, AStopTimeFromOutsideLeavesThePlaceOfTheSolverSettings) {
+  DiagramFolder folder;
+  folder.with("top.json", R"({"loopwright": 1,
+"solver": {"step": 1e-15}, "blocks": {"x": {"type": "Integrator", "in": {"u": "x.y"}}}})");
+  LoadOptions options;
+  options.set = {{"solver.stop", "100 s"}};
+  try {
+    load_plan(folder.path("top.json"), options);
+    FAIL() << "the ticks cannot be counted";
+  } catch (const InputError& error) {
+    for (const Problem& problem : error.problems.list())
+      EXPECT_TRUE(problem.place.file) << to_string(problem);
+    expect_in("more than can be counted exactly", error.what());
+  }
+}
+
 }  // namespace
 }  // namespace loopwright

@@ -89,7 +89,7 @@ bool take_over(hw::IoDevice& device, const hw::DriverType& driver, const TakeOve
 void require_watchdog(const hw::DeviceDescription& device) {
   if (device.watchdog.timeout > 0) return;
   Problems problems;
-  auto& p = problems.error({}, "/watchdog", "", fmt::format("{} has no watchdog", device.path));
+  auto& p = problems.error(device.place, "/watchdog", "", "the device has no watchdog");
   p.expected =
       "\"watchdog\": {\"timeout\": 0.01}: when this program is killed or the computer dies, only the device "
       "itself can put out its safe values";

@@ -21,8 +21,8 @@ hw::quanser::Settings settings_of(const std::string& path) {
   const auto device = hw::load_device(path, {}, problems);
   if (!device) throw InputError(std::move(problems));
   if (device->driver == "quanser") return hw::quanser::read_settings(*device, problems);
-  problems.error({}, "/driver", "", fmt::format("{} is no device of the driver that can be probed", path))
-      .expected = "\"quanser\"";
+  problems.error(device->place, "/driver", "", "devices of this driver cannot be probed").expected =
+      "\"quanser\"";
   throw InputError(std::move(problems));
 }
 

@@ -35,7 +35,7 @@ class Loader {
                             "compare", "roles", "hold_out", "rows"},
                            "an experiment");
     reader_.check_version(file);
-    result_->title = reader_.text(file, "title");
+    result_->title = reader_.text(file, "title"), result_->place = file.place;
     read_signals(file, "drive", result_->drives);
     read_signals(file, "compare", result_->compared);
     read_roles(file);

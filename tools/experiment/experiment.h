@@ -27,6 +27,7 @@ struct Roles {
 
 struct Experiment {
   std::string title, path;
+  Place place;            ///< of the file's object
   std::string data_path;  ///< the file that was found
   std::string time_column;
   Recording data;  ///< driving and compared columns in SI, "time" first

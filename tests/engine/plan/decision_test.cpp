@@ -25,7 +25,72 @@ struct DecidedSign {
 };
 LOOPWRIGHT_BLOCK(DecidedSign)
 
+/// The same, and it accepts the input of each instant: its output is the decided sign of the present input.
+struct RememberedSign {
+  struct In {
+    double u;
+  };
+  struct Out {
+    double y;
+  };
+  struct Mode {
+    double sign;
+  };
+  struct Memory {
+    double last;
+  };
+  static constexpr auto describe() {
+    return block("Sign of a signal that it remembers.", input(&In::u, "u", "", "Signal"),
+                 output(&Out::y, "y", "", "Sign").from_memory());
+  }
+  void decide(const In& in, Mode& mode) const { mode.sign = in.u > 0 ? 1.0 : -1.0; }
+  void outputs(const Mode& mode, Out& out) const { out.y = mode.sign; }
+  void accept(const In& in, Memory& memory) const { memory.last = in.u; }
+};
+LOOPWRIGHT_BLOCK(RememberedSign)
+
+/// The sign that it accepted at the instant before: its decision reads memory only.
+struct DelayedSign {
+  struct In {
+    double u;
+  };
+  struct Out {
+    double y;
+  };
+  struct Mode {
+    double sign;
+  };
+  struct Memory {
+    double last;
+  };
+  static constexpr auto describe() {
+    return block("Sign of a signal at the accepted instant before.", input(&In::u, "u", "", "Signal"),
+                 output(&Out::y, "y", "", "Sign").from_memory());
+  }
+  void decide(const Memory& memory, Mode& mode) const { mode.sign = memory.last > 0 ? -1.0 : 1.0; }
+  void outputs(const Mode& mode, Out& out) const { out.y = mode.sign; }
+  void accept(const In& in, Memory& memory) const { memory.last = in.u; }
+};
+LOOPWRIGHT_BLOCK(DelayedSign)
+
 namespace {
+
+TEST(Decision, AnOutputOfTheModeFollowsItsDecisionDespiteAcceptedMemory) {
+  const RunResult result = run_of(diagram(
+      R"("r": {"type": "Ramp", "initial": -0.35, "slope": 1}, "e": {"type": "RememberedSign", "in": {"u": "r.y"}})",
+      R"("stop": 1, "step": 0.1, "record_step": 0.1)"));
+  ASSERT_EQ(result.status, RunStatus::finished) << result.message;
+  for (size_t k = 0; k < 11; ++k) EXPECT_EQ(signal(result, "e.y")[k], k < 4 ? -1 : 1) << "row " << k;
+  EXPECT_PRED2(has, problems_of(diagram(R"("e": {"type": "RememberedSign", "in": {"u": "e.y"}})")),
+               "algebraic loop");
+}
+
+TEST(Decision, OfMemoryAloneMayCloseALoop) {
+  const RunResult result = run_of(diagram(R"("e": {"type": "DelayedSign", "in": {"u": "e.y"}})",
+                                          R"("stop": 0.5, "step": 0.1, "record_step": 0.1)"));
+  ASSERT_EQ(result.status, RunStatus::finished) << result.message;
+  for (size_t k = 0; k < 6; ++k) EXPECT_EQ(signal(result, "e.y")[k], k % 2 ? -1 : 1) << "row " << k;
+}
 
 TEST(Decision, AnOutputOfTheModeAloneFollowsItsDecision) {
   // The input is sampled and has the signs - - - - + + + + + + (-): each sign holds from its own sample on.

@@ -73,7 +73,7 @@ AxisModel::AxisModel(const std::string& path, const std::string& experiment_path
   const Experiment cut = cut_open(in_units_of_ports(*whole_plan, *experiment), *whole_plan, problems);
   const auto [force_port, force_place] = role(cut, "force");
   if (force_port.empty())
-    problems.error({}, "/roles", "", fmt::format("{}: no role \"force\"", experiment_path)).expected =
+    problems.error(cut.place, "/roles", "", "no role \"force\"").expected =
         "\"roles\": {\"force\": the output of the Sum that adds up the forces on the moving part, …}";
   if (problems.has_errors()) throw InputError(std::move(problems));
 

@@ -85,11 +85,11 @@ Experiment cut_open(const Experiment& experiment, const Plan& plan, Problems& pr
 
 AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Problems& problems) {
   AxisRecord record;
-  record.title = experiment.title, record.path = experiment.path;
+  record.title = experiment.title, record.path = experiment.path, record.place = experiment.place;
   const std::vector<double>& time = experiment.data.columns.front().values;
   if (experiment.drives.empty() || time.size() < 2) return record;
   if (const std::string why = too_many_missing(experiment); !why.empty()) {
-    problems.error({}, "/data", "", fmt::format("{}: {}", experiment.path, why));
+    problems.error(experiment.place, "/data", "", why);
     return record;
   }
   const EvenGrid grid(experiment);
@@ -113,9 +113,7 @@ AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Prob
   record.held_out_from = whole_between<size_t>(
       std::round(double(record.rows()) * (1 - experiment.hold_out_fraction)), 0, record.rows());
   if (record.measured.empty())
-    problems
-        .error({}, "/compare", "",
-               fmt::format("{}: neither position nor velocity of the axis was recorded", experiment.path))
+    problems.error(experiment.place, "/compare", "", "neither position nor velocity of the axis was recorded")
         .expected = "a column in \"compare\" for the port of the role \"position\" or \"velocity\"";
   return record;
 }

@@ -20,6 +20,7 @@ struct MeasuredPort {
 
 struct AxisRecord {
   std::string title, path;
+  Place place;                ///< of the experiment's object
   double sample_time = 0;     ///< s
   double start = 0;           ///< s
   std::vector<char> missing;  ///< samples that were not recorded; empty: none

@@ -72,8 +72,7 @@ void reject_mixed(const Trials& trials) {
   for (const Trial& trial : trials.list) {
     const AxisRecord& record = trial.model->record();
     if (record.is_map == trials.has_map()) continue;
-    auto& p =
-        problems.error({}, "/rows", "", record.path + ": maps of balances and records of motion are mixed");
+    auto& p = problems.error(record.place, "/rows", "", "maps of balances and records of motion are mixed");
     p.expected = "one kind at a time";
   }
   if (problems.has_errors()) throw InputError(std::move(problems));
