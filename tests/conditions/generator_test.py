@@ -145,33 +145,33 @@ def minus_two_log_likelihood(truth, time, force, measured, with_effects):
     """Of a linear machine, by a Kalman filter with the slow force as a state."""
     bare = dict(truth, effects=truth["effects"] if with_effects else [])
     a, motor, carriage = laws(bare)
-    a, motor, carriage = a[:2, :2], motor[:2], carriage[:2]
     h, noise = truth["sample_time_s"], truth["noise"]
-    whole = np.zeros((4, 4))
-    whole[:2, :2], whole[:2, 2], whole[:2, 3] = a, motor, carriage
+    whole = np.zeros((6, 6))
+    whole[:4, :4], whole[:4, 4], whole[:4, 5] = a, motor, carriage
     step = expm(whole * h)
     memory = math.exp(-h / noise["slow_time_s"])
-    transition = np.zeros((3, 3))
-    transition[:2, :2], transition[:2, 2], transition[2, 2] = step[:2, :2], step[:2, 2], memory
-    drive = np.append(step[:2, 2], 0)
-    constant = -parameter(bare, "constant_force", "level") - truth["nominal"].get("gravity", 0)
+    transition = np.zeros((5, 5))
+    transition[:4, :4], transition[:4, 4], transition[4, 4] = step[:4, :4], step[:4, 4], memory
+    drive, constant = np.append(step[:4, 4], 0), np.append(step[:4, 5], 0) * -parameter(bare, "constant_force", "level")
     covariance = noise["white_force"]**2 * np.outer(drive, drive)
-    covariance[2, 2] += (1 - memory**2) * noise["slow_force"]**2
+    covariance[4, 4] += (1 - memory**2) * noise["slow_force"]**2
     variance_measured = noise["sensor"]**2 + truth["sensor"]["resolution"]**2 / 12
-    state, p, total = np.array([measured[0], 0, 0]), np.diag([variance_measured, 0, noise["slow_force"]**2]), 0.0
+    at = 1 if truth["sensor"]["quantity"] == "velocity" else 0
+    state, p, total = np.zeros(5), np.diag([0, 0, 0, 0, noise["slow_force"]**2]), 0.0
     for k in range(len(time)):
-        s = p[0, 0] + variance_measured
-        error = measured[k] - state[0]
+        s = p[at, at] + variance_measured
+        error = measured[k] - state[at]
         total += math.log(s) + error**2 / s
-        gain = p[:, 0] / s
-        state, p = state + gain * error, p - np.outer(gain, p[0])
-        state, p = transition @ state + drive * (force[k] + constant), transition @ p @ transition.T + covariance
+        gain = p[:, at] / s
+        state, p = state + gain * error, p - np.outer(gain, p[at])
+        state, p = transition @ state + drive * force[k] + constant, transition @ p @ transition.T + covariance
     return total
 
 
 class Gains(unittest.TestCase):
     def test_are_those_of_a_likelihood(self):
-        for seed, condition, effect in ((1, "loud", "viscous_friction"), (3, "mass", "inertia"), (3, "rotary", "constant_force")):
+        for seed, condition, effect in ((1, "loud", "viscous_friction"), (3, "mass", "inertia"), (3, "rotary", "constant_force"),
+                                        (3, "velocity_only", "inertia"), (3, "load_side", "viscous_friction")):
             with self.subTest(effect=effect), tempfile.TemporaryDirectory() as name:
                 truth, header, table = generated(pathlib.Path(name) / "r", seed, condition, effect)
                 self.assertNotIn("cogging", truth["nominal"])
