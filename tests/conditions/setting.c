@@ -51,8 +51,12 @@ static void draw_base(Setting* s, double mass_kg, double stroke, Random* random)
   s->flat = random_below(random, 3) == 0;
 }
 
-/// A shaft: the inertia in kg·m², the stroke in turns, a sensor of 2^17 … 2^20 counts a turn.
-static void make_rotary(Setting* s, double inertia, double turns, Random* random) {
+/// A shaft: the inertia in kg·m², the turns of its stroke, a sensor of 2^17 … 2^20 counts a turn. As
+/// everywhere here, no expression draws twice: C leaves the order open.
+static void make_rotary(Setting* s, double least_inertia, double least_turns, double most_turns,
+                        Random* random) {
+  const double turns = random_uniform(random, least_turns, most_turns);
+  const double inertia = random_log_uniform(random, least_inertia, 1e-2);
   s->units.is_rotary = true;
   s->column = "rad";
   s->units.length = two_pi * turns / stroke_m;
@@ -95,8 +99,7 @@ static void draw_gaps(Setting* s, Random* random) {
 static void draw_units(Setting* s, Random* random) {
   static const char* const columns[] = {"mm", "count", "deg"};
   const int which = random_below(random, 3);
-  if (which == 2)
-    make_rotary(s, random_log_uniform(random, 1e-4, 1e-2), random_uniform(random, 1, 8), random);
+  if (which == 2) make_rotary(s, 1e-4, 1, 8, random);
   s->column = columns[which];
   s->milliseconds = random_below(random, 2) == 0;
   snprintf(s->variant, sizeof s->variant, "%s%s", s->column, s->milliseconds ? ", ms" : "");
@@ -112,7 +115,7 @@ static void draw_voltage(Setting* s) {
 
 static void draw_counts(Setting* s, Random* random) {
   const double counts = round(random_log_uniform(random, 1000, 20000));
-  make_rotary(s, random_log_uniform(random, 1e-4, 1e-2), random_uniform(random, 2, 20), random);
+  make_rotary(s, 1e-4, 2, 20, random);
   s->noise.resolution_m = two_pi / counts / s->units.length;
   s->noise.encoder_m = random_uniform(random, 0.05, 0.3) * s->noise.resolution_m;
   snprintf(s->variant, sizeof s->variant, counts < 4000 ? "1000 to 4000 a turn" : "4000 to 20000 a turn");
@@ -163,8 +166,8 @@ static void draw_nominal(Setting* s, Random* random) {
   if (which == 0) p->offset_n = 0.6 * random_log_uniform(random, 0.5, 5);
   if (which == 1) {
     const double level = 0.6 * random_uniform(random, 0.15, 0.5);
-    p->stribeck = (Stribeck){level, level * random_uniform(random, 1.3, 2.2),
-                             random_log_uniform(random, 0.01, 0.08), 2};
+    const double static_level = level * random_uniform(random, 1.3, 2.2);
+    p->stribeck = (Stribeck){level, static_level, random_log_uniform(random, 0.01, 0.08), 2};
   }
   if (which == 2) draw_coupling(s, 15, 50, random);
 }
@@ -204,7 +207,7 @@ static void draw_velocity(Setting* s, Random* random) {
 static void draw_condition(Setting* s, Random* random) {
   switch (s->condition) {
     case ROTARY:
-      make_rotary(s, random_log_uniform(random, 2e-5, 1e-2), random_uniform(random, 1, 8), random);
+      make_rotary(s, 2e-5, 1, 8, random);
       break;
     case JITTER:
       draw_jitter(s, random);
@@ -216,7 +219,8 @@ static void draw_condition(Setting* s, Random* random) {
       draw_gaps(s, random);
       break;
     case ORIGIN:
-      s->origin_m = random_sign(random) * stroke_m * random_log_uniform(random, 1, 100);
+      s->origin_m = random_sign(random) * stroke_m;
+      s->origin_m *= random_log_uniform(random, 1, 100);
       name_variant(s, fabs(s->origin_m) < 10 * stroke_m ? "1 to 10 strokes" : "10 to 100 strokes");
       break;
     case COLUMN_UNITS:
