@@ -5,6 +5,7 @@
 #include <map>
 #include "engine/diagram/diagram.h"
 #include "engine/json/json.h"
+#include "engine/plan/block_settings.h"
 #include "where.h"
 
 namespace loopwright {
@@ -78,7 +79,13 @@ void collect(const Diagram& diagram, const std::string& prefix, Collection& to) 
     if (entry.subdiagram) collect(*entry.subdiagram, prefix + entry.name + ".", to);
     const BlockType* type = find_block(entry.type);
     if (!type) continue;
-    Specimen specimen{entry.type, prefix + entry.name, to_json(with_whole_paths(entry.settings)),
+    // As when a plan is made: with the parameters in a formula, and of a vector the first element.
+    const auto extended = settings_with_constants(type->info, entry.settings, diagram.parameters);
+    Value settings = extended ? *extended : entry.settings;
+    Problems problems;
+    if (auto elements = settings_by_element(type->info, settings, entry.name, problems); !elements.empty())
+      settings = std::move(elements[0]);
+    Specimen specimen{entry.type, prefix + entry.name, to_json(with_whole_paths(std::move(settings))),
                       entry.sample_time ? entry.sample_time->number : 0,
                       wires_of(entry, diagram, type->info)};
     auto& list = to[entry.type];

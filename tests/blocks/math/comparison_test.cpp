@@ -37,6 +37,29 @@ TEST(Comparison, EveryChangeOfItsAnswerChangesTheSignOfACrossing) {
   EXPECT_EQ(crossings(1e-200), std::pair(true, true));
 }
 
+TEST(Comparison, WithHysteresisHoldsUntilTheBorderIsFarBehind) {
+  const double a[] = {2.4, 2, 2.1, 1.6, 2.05, 1.4, 1.9, 2.1};
+  const double greater[] = {1, 1, 1, 1, 1, 0, 0, 1};  // above 2, until below 1.5
+  const double less[] = {0, 0, 0, 1, 1, 1, 1, 1};     // below 2, until above 2.5
+  BlockUnderTest above("Comparison", R"({"operator": ">", "hysteresis": 0.5})"),
+      below("Comparison", R"({"operator": "<", "hysteresis": 0.5})");
+  above.input("b") = below.input("b") = 2;
+  for (int i = 0; i < 8; ++i) {
+    above.input("a") = below.input("a") = a[i];
+    above.evaluate(i), below.evaluate(i);
+    EXPECT_EQ(above.output("y"), greater[i]) << i;
+    EXPECT_EQ(below.output("y"), less[i]) << i;
+    above.crossings(), below.crossings();
+    EXPECT_EQ(above.crossing("above") > 0, greater[i] > 0) << i;
+    EXPECT_EQ(below.crossing("below") < 0, less[i] > 0) << i;
+  }
+}
+
+TEST(Comparison, OnlyAnInequalityHasHysteresis) {
+  BlockUnderTest equal("Comparison", R"({"operator": "==", "hysteresis": 0.5})");
+  EXPECT_NE(equal.problems().text().find("only an inequality"), std::string::npos);
+}
+
 TEST(Comparison, NamesItsOperatorsWhenOneIsUnknown) {
   BlockUnderTest comparison("Comparison", R"({"operator": "="})");
   EXPECT_NE(comparison.problems().text().find("\"==\" or \"!=\""), std::string::npos)
