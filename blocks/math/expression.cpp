@@ -1,10 +1,14 @@
 /// y = formula(names[0], names[1], …)
 ///
+/// The formula may also use the parameters of the diagram that contains the block, with their units; a name
+/// in `names` hides a parameter of the same name. A parameter without a unit is a plain number.
+///
 /// The formula is evaluated by muParser: + - * / ^, comparisons, && || !, c ? a : b, sin, cos, tan, asin,
 /// acos, atan, atan2, sinh, cosh, tanh, exp, ln, log2, log10, sqrt, abs, sign, rint, min, max, sum, avg;
 /// `pi`, and `_e` for Euler's number. Units are checked as in the expression of a parameter; π is a half
 /// cycle in radians. A variable-step solver does not locate the kinks and jumps of the formula; where that
 /// matters, use blocks instead. An infinite or NaN result stops the run.
+#include <fmt/format.h>
 #include <algorithm>
 #include "engine/block.h"
 #include "engine/diagram/formula_parser.h"
@@ -21,22 +25,35 @@ struct Formula {
   Formula& operator=(const Formula&) { return *this; }
 
   /// Throws mu::ParserError. `half_turn` replaces π, to determine its effect on the result.
-  void compile(const std::string& text, const std::vector<std::string>& names, double* half_turn = nullptr) {
+  void compile(const std::string& text, const std::vector<std::string_view>& names,
+               double* half_turn = nullptr) {
     parser = FormulaParser();
     if (half_turn)
       parser.DefineVar("pi", half_turn);
     else
       parser.DefineConst("pi", pi);
     variables.assign(names.size(), 1.0);
-    for (size_t i = 0; i < names.size(); ++i) parser.DefineVar(names[i], &variables[i]);
+    for (size_t i = 0; i < names.size(); ++i) parser.DefineVar(std::string(names[i]), &variables[i]);
     parser.set_formula(text);
     parser.Eval();  // compiles the formula, so that later calls do not allocate
   }
 };
 
 struct Expression {
+  struct NamedNumber {
+    std::string name;
+    double value = 0;
+    std::string unit;
+    static constexpr auto describe() {
+      return fields(
+          parameter(&NamedNumber::name, "name", "", "What the formula calls it"),
+          parameter(&NamedNumber::value, "value", "", "The number, in SI"),
+          parameter(&NamedNumber::unit, "unit", "", "Its unit; a plain number when empty").optional());
+    }
+  };
   std::string formula;
   std::vector<std::string> names;
+  std::vector<NamedNumber> constants;
   mutable Formula compiled;  // belongs to one run: muParser has its own evaluation stack
   struct In {
     Many<double> arguments;
@@ -49,20 +66,39 @@ struct Expression {
         "A formula over any number of signals.",
         parameter(&Expression::formula, "formula", "", "The formula, as in \"k * sin(2*pi*x)\""),
         parameter(&Expression::names, "names", "", "What the formula calls its arguments, in their order"),
+        parameter(&Expression::constants, "constants", "",
+                  "Further numbers; parameters of the diagram in the formula are added by themselves")
+            .optional(),
         input(&In::arguments, "arguments", "?", "A signal for each name").length(&Expression::arguments),
         output(&Out::y, "y", "$y", "What the formula gives"));
   }
   int arguments() const { return int(names.size()); }
+  /// Arguments, then constants.
+  std::vector<std::string_view> all_names() const {
+    std::vector<std::string_view> all(names.begin(), names.end());
+    for (const NamedNumber& constant : constants) all.push_back(constant.name);
+    return all;
+  }
   void check(const Checker& checker) const {
+    const auto all = all_names();
     bool are_different = true;
-    for (size_t i = 0; i < names.size(); ++i)
-      if (std::find(names.begin(), names.begin() + ptrdiff_t(i), names[i]) != names.begin() + ptrdiff_t(i)) {
-        checker.error("names", "two arguments have the same name").found = "\"" + names[i] + "\"";
+    for (size_t i = 0; i < all.size(); ++i)
+      if (std::find(all.begin(), all.begin() + ptrdiff_t(i), all[i]) != all.begin() + ptrdiff_t(i)) {
+        const bool is_argument = i < names.size();
+        checker
+            .error(is_argument ? "names" : "constants",
+                   is_argument ? "two arguments have the same name" : "the name is already in use")
+            .found = fmt::format("\"{}\"", all[i]);
+        are_different = false;
+      }
+    for (const NamedNumber& constant : constants)
+      if (!constant.unit.empty() && !parse_unit(constant.unit)) {
+        checker.error("constants", "there is no such unit").found = "\"" + constant.unit + "\"";
         are_different = false;
       }
     if (!are_different) return;
     try {
-      Formula().compile(formula, names);
+      Formula().compile(formula, all);
     } catch (const mu::ParserError& error) {
       const bool in_name = error.GetCode() == mu::ecINVALID_NAME || error.GetCode() == mu::ecNAME_CONFLICT;
       auto& p =
@@ -70,7 +106,8 @@ struct Expression {
                         in_name ? "this cannot be the name of an argument" : "the formula cannot be read");
       if (!in_name && error.GetPos() >= 0) p.place.offset += 1 + uint32_t(error.GetPos());  // after the quote
       p.found = FormulaParser::message_of(error);
-      for (const std::string& name : names) p.hint += (p.hint.empty() ? "its arguments are " : ", ") + name;
+      for (const std::string_view name : all)
+        p.hint.append(p.hint.empty() ? "it knows the names " : ", ").append(name);
     }
   }
   FormulaUnit formula_unit(std::span<const Unit> of_wires) const {
@@ -82,6 +119,13 @@ struct Expression {
       arguments.push_back({1.0, of_wires[i]});
       result.found += (i ? ", " : formula + " with ") + names[i] + " in " + to_string(of_wires[i]);
     }
+    for (const NamedNumber& constant : constants) {
+      const auto unit = constant.unit.empty() ? std::nullopt : parse_unit(constant.unit);
+      arguments.push_back({constant.value, unit ? std::optional(unit->in_si()) : std::nullopt});
+      if (unit)
+        result.found += fmt::format("{}{} in {}", of_wires.empty() ? formula + " with " : ", ", constant.name,
+                                    to_string(*unit));
+    }
     double half_turn = pi;
     Formula rescaled;
     const auto at = [&](const std::vector<double>& numbers, double pi_there) {
@@ -90,13 +134,16 @@ struct Expression {
       return rescaled.parser.Eval();
     };
     try {
-      rescaled.compile(formula, names, &half_turn);
+      rescaled.compile(formula, all_names(), &half_turn);
       result.finding = find_unit(at, arguments, result.unit);
     } catch (const mu::ParserError&) {  // reported by check
     }
     return result;
   }
-  void prepare(double) { compiled.compile(formula, names); }
+  void prepare(double) {
+    compiled.compile(formula, all_names());
+    for (size_t i = 0; i < constants.size(); ++i) compiled.variables[names.size() + i] = constants[i].value;
+  }
   Fault outputs(const In& in, Out& out) const {
     for (int i = 0; i < in.arguments.size(); ++i) compiled.variables[size_t(i)] = in.arguments[i];
     out.y = compiled.parser.Eval();

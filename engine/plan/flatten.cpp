@@ -4,6 +4,7 @@
 #include <deque>
 #include <optional>
 #include <unordered_set>
+#include "engine/plan/block_settings.h"
 #include "engine/plan/block_table.h"
 
 namespace loopwright {
@@ -89,17 +90,38 @@ class Flattener {
       unknown_type(flat.path, entry);
       return -1;
     }
-    flat.value = {values_, values_->add(flat.type->kernels)};
-    const size_t before = errors();
-    flat.type->info.read(flat.value.get(), entry.settings, flat.path, problems_);
-    if (errors() == before)
-      flat.type->info.check(flat.value.get(), Checker(entry.settings, flat.path, problems_));
-    flat_.settings.add(int(flat_.blocks.size()), *flat.type, entry, flat.path);
+    const Value& settings = settings_of(*scope.diagram, *flat.type, entry);
+    const auto by_element = settings_by_element(flat.type->info, settings, flat.path, problems_);
+    if (by_element.size() < 2) {
+      flat.value = read_value(*flat.type, by_element.empty() ? settings : by_element[0], flat.path);
+    } else {
+      const size_t before = errors();
+      for (const Value& element : by_element) {
+        flat.elements.push_back(read_value(*flat.type, element, flat.path));
+        if (errors() > before) break;  // the others have the same problems
+      }
+      flat.value = flat.elements[0];
+    }
+    flat_.settings.add(int(flat_.blocks.size()), *flat.type, settings, flat.path);
     flat.inputs.resize(flat.type->info.inputs.size());
     flat.output_lengths.assign(flat.type->info.outputs.size(), 1);
     flat_.blocks.push_back(std::move(flat));
     scope_of_block_.push_back(&scope);
     return int(flat_.blocks.size()) - 1;
+  }
+
+  /// As in the file, or with the parameters of the diagram that its formula names.
+  const Value& settings_of(const Diagram& diagram, const BlockType& type, const BlockEntry& entry) {
+    auto extended = settings_with_constants(type.info, entry.settings, diagram.parameters);
+    return extended ? flat_.extended_settings.emplace_back(std::move(*extended)) : entry.settings;
+  }
+
+  std::shared_ptr<void> read_value(const BlockType& type, const Value& settings, const std::string& path) {
+    std::shared_ptr<void> value(values_, values_->add(type.kernels));
+    const size_t before = errors();
+    type.info.read(value.get(), settings, path, problems_);
+    if (errors() == before) type.info.check(value.get(), Checker(settings, path, problems_));
+    return value;
   }
 
   size_t errors() const {

@@ -1,5 +1,6 @@
 /// Flattened diagrams: a list of blocks with their types, parameters and resolved wires, without subdiagrams.
 #pragma once
+#include <deque>
 #include <memory_resource>
 #include "engine/block/registry.h"
 #include "engine/diagram/diagram.h"
@@ -24,7 +25,8 @@ struct FlatBlock {
   std::string path;
   const BlockEntry* entry = nullptr;
   const BlockType* type = nullptr;
-  std::shared_ptr<void> value;  ///< scalar block with its parameters
+  std::shared_ptr<void> value;                  ///< scalar block with its parameters
+  std::vector<std::shared_ptr<void>> elements;  ///< of each element, if numbers differ; otherwise empty
   FlatInputs inputs;
   int width = 1;                         ///< number of elements, if scalar ports are wired with vectors
   std::pmr::vector<int> output_lengths;  ///< of the port of one element; 1 until the shapes are known
@@ -46,7 +48,8 @@ struct FlatDiagram {
   std::unique_ptr<std::pmr::monotonic_buffer_resource> memory =
       std::make_unique<std::pmr::monotonic_buffer_resource>();
   std::vector<FlatBlock> blocks;
-  Settings settings;  ///< of the blocks, in their order
+  Settings settings;                    ///< of the blocks, in their order
+  std::deque<Value> extended_settings;  ///< of blocks whose formula names parameters of the diagram
   std::vector<FlatLog> log;
   std::vector<FlatName> names;    ///< ports of blocks have plain names: path.port
   std::vector<FlatName> outputs;  ///< of the outermost diagram

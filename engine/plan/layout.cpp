@@ -43,7 +43,9 @@ void Layout::add_blocks() {
     for (int element = 0; element < flat.width; ++element) {
       Plan::Block& block = plan_.blocks.emplace_back();
       block.path = flat.width == 1 ? flat.path : fmt::format("{}[{}]", flat.path, element);
-      block.type = flat.type, block.value = flat.value, block.place = flat.entry->place;
+      block.type = flat.type;
+      block.value = flat.elements.empty() ? flat.value : flat.elements[size_t(element)];
+      block.place = flat.entry->place;
       block.states = info.state_length(flat.value.get());
       block.first_state = plan_.states;
       plan_.states += block.states;

@@ -13,10 +13,11 @@ namespace loopwright {
 /// A number written with a unit, or from a parameter with a unit, or a bare number where bare numbers are
 /// dimensionless. Points into the diagram.
 struct NumberWithUnit {
-  int block;                  ///< index of the flat block
-  const ParameterInfo* info;  ///< of the number, which may be inside a list or an object
-  std::string_view name;      ///< of the parameter that has it
-  const Value* value;         ///< null: omitted
+  int block;  ///< index of the flat block
+  const ParameterInfo*
+      info;               ///< of the number, which may be inside a list or an object, or differ by element
+  std::string_view name;  ///< of the parameter that has it
+  const Value* value;     ///< null: omitted
 
   Unit unit() const { return value && value->unit ? *value->unit : Unit{}; }
 };
@@ -28,7 +29,7 @@ struct Settings {
   /// Adds the parameters of a diagram.
   void add(const std::vector<Parameter>& parameters);
   /// Adds every evaluated setting of a block, and the defaults of omitted ones.
-  void add(int block, const BlockType& type, const BlockEntry& entry, const std::string& path);
+  void add(int block, const BlockType& type, const Value& settings, const std::string& path);
 
  private:
   void add_numbers(int block, const ParameterInfo& info, std::string_view name, const Value& value,

@@ -37,6 +37,7 @@ static int total_length(const FlatDiagram& flat, std::span<const FlatWire> wires
 static bool update_shape(FlatDiagram& flat, FlatBlock& block) {
   const BlockInfo& info = block.type->info;
   const int old_width = block.width;
+  block.width = std::max(block.width, int(block.elements.size()));
   if (!has_vector_ports(info))
     for (const auto& wires : block.inputs)
       for (const FlatWire& wire : wires) block.width = std::max(block.width, length_of(flat, wire));
@@ -105,6 +106,20 @@ static void check_port(const FlatDiagram& flat, const FlatBlock& block, size_t i
                        : fmt::format("a scalar or {} elements, as its other inputs have", width),
             fmt::format("\"{}\" with {} elements", wire.at->source, n));
   }
+}
+
+/// Numbers that differ by element are as many as the elements of the wires.
+static void check_elements(const FlatBlock& block, Problems& problems) {
+  const size_t elements = block.elements.size();
+  if (elements < 2 || elements == size_t(block.width)) return;
+  for (const Value::Member& member : block.entry->settings.members)
+    if (member.value.kind == Value::Kind::list && member.value.items.size() == elements) {
+      auto& p = problems.error(
+          member.value.place, member.value.place.pointer(), block.path,
+          fmt::format("\"{}\" has {} elements, and the wires have {}", member.name, elements, block.width));
+      p.expected = fmt::format("a number, or a list of {}", block.width);
+      return;
+    }
 }
 
 /// The element named by a wire must exist. A wire with many readers is reported once.
@@ -183,6 +198,7 @@ void find_shapes(FlatDiagram& flat, Problems& problems) {
   }
   std::set<std::string> told;
   for (const FlatBlock& block : flat.blocks) {
+    check_elements(block, problems);
     for (size_t i = 0; i < block.inputs.size(); ++i) check_port(flat, block, i, problems);
     for (const auto& wires : block.inputs)
       for (const FlatWire& wire : wires) check_element(flat, wire, block.path, told, problems);

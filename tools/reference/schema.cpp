@@ -1,5 +1,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include "engine/plan/block_settings.h"
 #include "tools/reference/reference.h"
 
 namespace loopwright {
@@ -97,6 +98,13 @@ Json block_schema(const BlockInfo& info) {
                                                           {{"$ref", "#/$defs/quantity"}}})}};
   }
   for (auto& [name, parameter] : schema["properties"].items()) properties[name] = parameter;
+  if (takes_numbers_by_element(info))
+    for (const ParameterInfo& parameter : info.parameters)
+      if (parameter.kind == ParameterKind::number) {
+        Json& number = properties[std::string(parameter.name)];
+        const Json one = {{"anyOf", number["anyOf"]}};
+        number["anyOf"].push_back({{"type", "array"}, {"minItems", 1}, {"items", one}});
+      }
   schema["properties"] = properties;
   Json required = Json::array({"type"});
   if (info.is_sampled) required.push_back("sample_time");
