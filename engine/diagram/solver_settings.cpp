@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include "engine/diagram/names_elsewhere.h"
 
 namespace loopwright {
 namespace {
@@ -57,8 +58,10 @@ class SettingsReader {
         value,
         fmt::format("there is no {} \"{}\"", key == "method" ? "solver method" : "choice", value.text));
     problem.expected = expected;
-    if (const std::string near = nearest_name(value.text, choices); !near.empty())
-      problem.hint = fmt::format("did you mean \"{}\"?", near);
+    const NameElsewhere* const elsewhere = key == "method" ? find_name_elsewhere(value.text) : nullptr;
+    const bool is_solver = elsewhere && !elsewhere->method.empty();
+    const std::string near = is_solver ? std::string(elsewhere->method) : nearest_name(value.text, choices);
+    if (!near.empty()) problem.hint = fmt::format("did you mean \"{}\"?", near);
   }
 
   bool is_number(const Value& value, std::string_view key, const Unit& unit) {

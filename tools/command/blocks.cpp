@@ -18,15 +18,30 @@ static int show(const std::string& type) {
   throw InputError(std::move(problems));
 }
 
+static int find(const std::string& words) {
+  const std::string found = found_blocks(words);
+  if (!found.empty()) {
+    answer("{}", found);
+    return done;
+  }
+  Problems problems;
+  problems.error({}, "", "", fmt::format("no block and no name elsewhere contains \"{}\"", words)).hint =
+      block_type_hint(words);
+  throw InputError(std::move(problems));
+}
+
 void add_blocks(CLI::App& app, std::function<void(std::function<int()>)> choose) {
   CLI::App* command = app.add_subcommand("blocks", "List the blocks, or describe one");
   struct Arguments {
-    std::string type;
+    std::string type, words;
     bool markdown = false;
     DiagramArguments libraries;
   };
   auto a = std::make_shared<Arguments>();
-  command->add_option("type", a->type, "Block type");
+  CLI::Option* const type = command->add_option("type", a->type, "Block type");
+  command->add_option("--find", a->words, "Blocks by words, also by their names in Simulink: \"mux\"")
+      ->type_name("WORDS")
+      ->excludes(type);
   command->add_flag("--markdown", a->markdown, "The whole reference as a page");
   command->add_option("--blocks", a->libraries.libraries, "Shared library with more blocks")
       ->type_name("FILE.so")
@@ -34,6 +49,7 @@ void add_blocks(CLI::App& app, std::function<void(std::function<int()>)> choose)
   command->callback([=] {
     choose([=]() -> int {
       a->libraries.options();
+      if (!a->words.empty()) return find(a->words);
       if (!a->markdown) return show(a->type);
       answer_data(block_reference());
       return done;

@@ -53,7 +53,7 @@ std::string facts_text(const ParameterInfo& p) {
 std::string timing_text(const BlockInfo& info) {
   if (info.is_sampled) return "sampled: needs a sample_time";
   if (info.is_continuous) return "continuous: takes no sample_time";
-  return "no memory of samples: runs at the rate of what it reads, or at its sample_time";
+  return "runs at the rate of what it reads, or at its sample_time";
 }
 
 std::string feedthrough_text(const BlockInfo& info, const PortInfo& output) {

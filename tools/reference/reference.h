@@ -14,6 +14,10 @@ std::string block_text(const BlockInfo& info);
 /// All types by room, one line each.
 std::string block_list();
 
+/// Blocks whose name or description contains these words, and what they are called in other programs ("mux",
+/// "Transfer Fcn", "anti-windup"); empty if nothing was found.
+std::string found_blocks(std::string_view words);
+
 /// The reference page docs/blocks.md.
 std::string block_reference();
 

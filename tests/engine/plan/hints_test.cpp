@@ -1,11 +1,18 @@
 // Suggestions for names that do not exist.
 #include <gtest/gtest.h>
 #include "engine/block/registry.h"
+#include "engine/diagram/names_elsewhere.h"
 #include "engine/json/unit_hint.h"
 #include "tests/engine/written_diagram.h"
 
 namespace loopwright {
 namespace {
+
+bool method_exists(std::string_view method) {
+  return problems_of(diagram(R"("c": {"type": "Constant", "value": 1})",
+                             fmt::format(R"("stop": 1, "method": "{}")", method)))
+      .empty();
+}
 
 TEST(Hints, NamesOfOtherProgramsLeadToBlocksThatExist) {
   for (const auto& [written, block] :
@@ -16,8 +23,18 @@ TEST(Hints, NamesOfOtherProgramsLeadToBlocksThatExist) {
                                                         {"Demux", "Unpack"},
                                                         {"Inertia", "Mass"},
                                                         {"Abs", "Absolute"},
-                                                        {"Trig", "Expression"},
-                                                        {"Sin", "Expression"},
+                                                        {"Trig", "Trigonometry"},
+                                                        {"Sin", "Trigonometry"},
+                                                        {"Sample and Hold", "SampleAndHold"},
+                                                        {"Multiport Switch", "MultiportSwitch"},
+                                                        {"AND", "Logic"},
+                                                        {"Detect Rise Positive", "Edge"},
+                                                        {"TON", "Timer"},
+                                                        {"Gain1", "Gain"},
+                                                        {"Integrator1/s", "Integrator"},
+                                                        {"Transfer Fcn2", "TransferFunction"},
+                                                        {"Sum 3", "Sum"},
+                                                        {"1/z", "UnitDelay"},
                                                         {"Gian", "Gain"},
                                                         {"Sine Wave", "Sine"},
                                                         {"From Workspace", "RecordedColumn"}}) {
@@ -80,52 +97,30 @@ TEST(Hints, UsualNotationsOfUnitsNeedNone) {
 }
 
 TEST(Hints, EveryBlockThatIsOfferedExists) {
-  // Every name that a hint quotes after "did you mean" is a block.
-  for (const char* written : {"abs",
-                              "bias",
-                              "busselector",
-                              "chirpsignal",
-                              "damper",
-                              "demux",
-                              "differentiator",
-                              "digitalclock",
-                              "discretefilter",
-                              "discretepidcontroller",
-                              "discretetimeintegrator",
-                              "divide",
-                              "fcn",
-                              "fromfile",
-                              "fromworkspace",
-                              "inertia",
-                              "lookuptable",
-                              "math",
-                              "mathfunction",
-                              "matlabfunction",
-                              "memory",
-                              "minmax",
-                              "multiply",
-                              "mux",
-                              "pd",
-                              "pi",
-                              "pid",
-                              "pulsegenerator",
-                              "randomnumber",
-                              "relationaloperator",
-                              "sampleandhold",
-                              "sin",
-                              "sinewave",
-                              "squarewave",
-                              "subtract",
-                              "transferfcn",
-                              "trig",
-                              "trigonometricfunction",
-                              "uniformrandomnumber",
-                              "whitenoise",
-                              "zeropole"}) {
-    const std::string hint = block_type_hint(written);
-    const size_t begin = hint.find('"') + 1;
-    const std::string block = hint.substr(begin, hint.find('"', begin) - begin);
-    EXPECT_TRUE(find_block(block)) << written << ": " << hint;
+  for (const NameElsewhere& entry : names_elsewhere()) {
+    EXPECT_TRUE(entry.block.empty() || find_block(entry.block)) << entry.name << ": " << entry.block;
+    EXPECT_FALSE(advice(entry).empty()) << entry.name;
+    EXPECT_EQ(find_name_elsewhere(entry.name), &entry) << entry.name << " stands there twice";
+    EXPECT_TRUE(entry.method.empty() || method_exists(entry.method)) << entry.name << ": " << entry.method;
+  }
+  EXPECT_GT(names_elsewhere().size(), 150u);
+}
+
+TEST(Hints, NoNameElsewhereIsThatOfAnotherBlockHere) {
+  // A block that is called so here is meant, whatever the name means elsewhere.
+  for (const auto& [type, block] : all_blocks()) {
+    const NameElsewhere* const entry = find_name_elsewhere(type);
+    const bool is_same = entry && plain_name(entry->name) == plain_name(type);
+    EXPECT_TRUE(!is_same || entry->block == type) << type << " leads to " << entry->block;
+  }
+}
+
+TEST(Hints, SolversOfOtherProgramsLeadToMethods) {
+  for (const auto& [written, method] : std::vector<std::pair<std::string, std::string>>{
+           {"ode45", "dopri5"}, {"ode15s", "cvode-bdf"}, {"ode4", "rk4"}, {"ode1", "euler"}}) {
+    const std::string text = problems_of(diagram(R"("c": {"type": "Constant", "value": 1})",
+                                                 fmt::format(R"("stop": 1, "method": "{}")", written)));
+    EXPECT_TRUE(has(text, "did you mean \"" + method + "\"?")) << text;
   }
 }
 

@@ -41,6 +41,24 @@ TEST(Reference, EveryTypeStandsInTheListThePageAndItsOwnText) {
   }
 }
 
+TEST(Reference, BlocksAreFoundByWordsAndByTheirNamesElsewhere) {
+  const auto finds = [](const char* words, const char* block) {
+    return found_blocks(words).find(std::string("  ") + block + " ") != std::string::npos ||
+           found_blocks(words).find(std::string("\"") + block + "\"") != std::string::npos;
+  };
+  EXPECT_TRUE(finds("mux", "Pack"));
+  EXPECT_TRUE(finds("Transfer Fcn", "TransferFunction"));
+  EXPECT_TRUE(finds("Gain1", "Gain"));
+  EXPECT_TRUE(finds("gain", "MatrixGain"));
+  EXPECT_TRUE(finds("TON", "Timer"));
+  EXPECT_TRUE(finds("resonance", "Notch")) << "by its sentence";
+  EXPECT_TRUE(finds("hysteresis", "Comparison")) << "by a name elsewhere or a parameter";
+  EXPECT_NE(found_blocks("scope").find("--report"), std::string::npos);
+  EXPECT_NE(found_blocks("ode45").find("dopri5"), std::string::npos);
+  EXPECT_EQ(found_blocks("xyzzy"), "");
+  EXPECT_EQ(found_blocks(""), "");
+}
+
 /// "PdController" → "pd_controller", "LuGreFriction" → "lu_gre_friction", "Lookup1D" → "lookup_1d".
 std::string file_name(const std::string& type) {
   std::string name;
