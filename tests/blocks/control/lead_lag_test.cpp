@@ -22,5 +22,23 @@ TEST(LeadLag, ItsGainAtRestIsTheGain) {
   EXPECT_NEAR(block.output("y"), 6, 1e-13);
 }
 
+TEST(ContinuousLeadLag, HasItsTransferFunction) {
+  BlockUnderTest block("ContinuousLeadLag", R"({"gain": 2, "zero": 20, "pole": 80})");
+  for (double w : {0.0, 5.0, 40.0, 300.0}) {
+    const Complex s(0, w);
+    EXPECT_COMPLEX_NEAR(continuous_response(block, "u", "y", w), 2.0 * (1.0 + s / 20.0) / (1.0 + s / 80.0),
+                        1e-12);
+  }
+}
+
+TEST(ContinuousLeadLag, StartsAtRestWithItsInput) {
+  BlockUnderTest block("ContinuousLeadLag", R"({"gain": 2, "zero": 20, "pole": 80, "initial": 3})");
+  block.input("u") = 3;
+  block.evaluate();
+  block.derivatives();
+  EXPECT_EQ(block.output("y"), 6);
+  EXPECT_EQ(block.rates()[0], 0);
+}
+
 }  // namespace
 }  // namespace loopwright

@@ -31,5 +31,24 @@ TEST(Notch, FaultsFromHalfTheSamplingFrequencyOn) {
   EXPECT_THAT(std::string(block.fault()), testing::HasSubstr("half the sampling frequency"));
 }
 
+TEST(ContinuousNotch, HasItsTransferFunction) {
+  BlockUnderTest block("ContinuousNotch",
+                       R"({"frequency": 600, "depth_damping": 0.05, "width_damping": 0.4})");
+  for (double w : {0.0, 100.0, 550.0, 600.0, 700.0, 3000.0}) {
+    const Complex p(0, w / 600);
+    EXPECT_COMPLEX_NEAR(continuous_response(block, "u", "y", w),
+                        (p * p + 0.1 * p + 1.0) / (p * p + 0.8 * p + 1.0), 1e-12);
+  }
+}
+
+TEST(ContinuousNotch, StartsAtRestWithItsInput) {
+  BlockUnderTest block("ContinuousNotch", R"({"frequency": 600, "width_damping": 0.4, "initial": 3})");
+  block.input("u") = 3;
+  block.evaluate();
+  block.derivatives();
+  EXPECT_EQ(block.output("y"), 3);
+  EXPECT_THAT(block.rates(), testing::ElementsAre(0, 0));
+}
+
 }  // namespace
 }  // namespace loopwright

@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 #include "tests/blocks/frequency_response.h"
+#include "tests/engine/written_diagram.h"
 
 namespace loopwright {
 namespace {
@@ -66,6 +67,47 @@ TEST(PidController, ClampingStillLetsTheIntegralComeBack) {
   EXPECT_EQ(block.sample("reference", -1, "command"), 2);
   for (int k = 0; k < 30; ++k) block.sample("reference", -1, "command");
   EXPECT_LT(block.output("command"), 2);
+}
+
+TEST(PidController, HasTheDifferenceEquationsOfItsMethod) {
+  // s is replaced by (z-1)/T forward and (z-1)/(T z) backward; the responses follow from that alone.
+  for (const std::string method : {"forward", "backward"}) {
+    BlockUnderTest block("PidController",
+                         R"({"Kp": 3, "Ki": 0, "Kd": 0.4, "derivative_pole": 60, "b": 0.5, "c": 0.2,
+                                              "method": ")" +
+                             method + "\"}",
+                         T);
+    for (double w : {0.0, 5.0, 100.0, 250.0}) {
+      const Complex z = std::polar(1.0, w * T), s = method == "forward" ? (z - 1.0) / T : (z - 1.0) / (T * z);
+      const Complex slope = 60.0 * s / (s + 60.0);
+      EXPECT_COMPLEX_NEAR(sampled_response(block, "reference", "command", w, T), 1.5 + 0.4 * 0.2 * slope,
+                          1e-11);
+      EXPECT_COMPLEX_NEAR(sampled_response(block, "measured", "command", w, T), -3.0 - 0.4 * slope, 1e-11);
+    }
+  }
+}
+
+TEST(PidController, IntegratesByTheRuleOfItsMethod) {
+  for (const std::string method : {"forward", "backward"}) {
+    BlockUnderTest block("PidController",
+                         R"({"Kp": 0, "Ki": 7, "Kd": 0, "derivative_pole": 60, "initial": 1.5,
+                                              "method": ")" +
+                             method + "\"}",
+                         T);
+    double integral = 1.5, last = 0;
+    for (int k = 0; k < 100; ++k) {
+      const double error = std::cos(0.3 * k);
+      integral += 7 * T * (method == "forward" ? last : error), last = error;
+      EXPECT_NEAR(block.sample("reference", error, "command"), integral, 1e-13) << method << " at " << k;
+    }
+  }
+}
+
+TEST(PidController, AnUnstableForwardRuleIsRefusedAtTheStart) {
+  const std::string text = R"("c": {"type": "Constant", "value": 1},
+      "pid": {"type": "PidController", "Kp": 1, "Ki": 1, "Kd": 1, "derivative_pole": 250, "method": "forward", "sample_time": 0.01,
+              "in": {"reference": "c.y", "measured": "c.y"}})";
+  EXPECT_THAT(run_of(diagram(text)).message, testing::HasSubstr("the forward rule is unstable"));
 }
 
 TEST(PidController, RefusesWhatCannotWork) {
