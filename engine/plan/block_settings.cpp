@@ -40,7 +40,7 @@ Value constant(const Parameter& parameter, const Place& place) {
   entry.members.push_back({"name", place, text_value(parameter.name, place)});
   entry.members.push_back({"value", place, std::move(number)});
   if (parameter.value.unit)
-    entry.members.push_back({"unit", place, text_value(to_string(*parameter.value.unit), place)});
+    entry.members.push_back({"unit", place, text_value(to_string(parameter.value.unit->in_si()), place)});
   return entry;
 }
 

@@ -13,11 +13,10 @@ namespace loopwright {
 /// A number written with a unit, or from a parameter with a unit, or a bare number where bare numbers are
 /// dimensionless. Points into the diagram.
 struct NumberWithUnit {
-  int block;  ///< index of the flat block
-  const ParameterInfo*
-      info;               ///< of the number, which may be inside a list or an object, or differ by element
-  std::string_view name;  ///< of the parameter that has it
-  const Value* value;     ///< null: omitted
+  int block;                  ///< index of the flat block
+  const ParameterInfo* info;  ///< of the number, which may be inside a list or an object, or one of several
+  std::string_view name;      ///< of the parameter that has it
+  const Value* value;         ///< null: omitted
 
   Unit unit() const { return value && value->unit ? *value->unit : Unit{}; }
 };
