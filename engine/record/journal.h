@@ -62,14 +62,19 @@ class JournalWriter {
 
 /// The contents of a journal, and its losses.
 struct JournalSurvey {
-  int64_t rows = 0;           ///< with valid checksums
-  int64_t lost_rows = 0;      ///< between valid rows, known from their numbers
-  int64_t dropped_rows = 0;   ///< never written, as the disk was too slow
-  int64_t damaged_bytes = 0;  ///< that belong to no valid chunk and are followed by complete chunks
-  int64_t tail_bytes = 0;     ///< that belong to no complete chunk, at the end of the file
-  bool has_end = false;       ///< the writer finished
+  int64_t rows = 0;            ///< with valid checksums
+  int64_t lost_rows = 0;       ///< between valid rows, known from their numbers
+  int64_t dropped_rows = 0;    ///< never written, as the disk was too slow
+  int64_t damaged_bytes = 0;   ///< that belong to no valid chunk and are followed by complete chunks
+  int64_t repeated_bytes = 0;  ///< of valid chunks whose rows another chunk has given already
+  int64_t tail_bytes = 0;      ///< that belong to no complete chunk, at the end of the file
+  bool has_end = false;        ///< the writer finished
+  bool is_reordered = false;   ///< the chunks of the file are in another order than their rows
   bool is_whole() const { return lost_rows == 0 && damaged_bytes == 0 && tail_bytes == 0; }
 };
+
+/// Whether a file of that path begins as a journal does. Allocates nothing.
+bool is_journal(const char* path) noexcept;
 
 /// Reads a journal with constant memory. Errors of the file give an InputError: it cannot be read, is not a
 /// journal, or has no valid heading.
@@ -84,7 +89,7 @@ class JournalReader {
   const JournalSurvey& survey() const { return survey_; }
   /// Columns without values, and all facts; for a truncated or damaged journal also "incomplete".
   const Recording& heading() const { return heading_; }
-  /// take(row) for every valid row, in order, until it returns false.
+  /// take(row) for every valid row, in the order in which they were written, until it returns false.
   void each_row(const std::function<bool(std::span<const double>)>& take) const;
 
  private:
@@ -93,16 +98,24 @@ class JournalReader {
     uint64_t rows_before = 0, dropped = 0;
     int64_t offset = 0, bytes = 0;  // of the complete chunk in the file
   };
+  /// Complete chunks of consecutive rows that follow one another in the file.
+  struct Stretch {
+    uint64_t first_row = 0, next_row = 0;
+    int64_t offset = 0, bytes = 0;
+  };
   void look_through();
+  bool read_head(int64_t offset, Chunk& chunk) const;
   bool read_chunk(int64_t offset, Chunk& chunk, std::string& payload) const;
   int64_t find_chunk(int64_t from, Chunk& chunk, std::string& payload) const;
-  uint64_t note_rows(const Chunk& chunk, uint64_t rows);
+  uint64_t rows_of(const Chunk& chunk) const;
+  void note_rows(const Chunk& chunk);
+  void count_rows(uint64_t rows_written);
   void tell_what_is_lost();
 
   std::string path_;
   int file_ = -1;
   int64_t size_ = 0;
-  std::vector<std::pair<int64_t, int64_t>> row_chunks_;  // offset and bytes of consecutive complete chunks
+  std::vector<Stretch> stretches_;  // sorted by their first row
   Recording heading_;
   JournalSurvey survey_;
 };

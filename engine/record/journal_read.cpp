@@ -78,6 +78,16 @@ Recording heading_of(std::string_view payload, bool& is_good) {
 
 }  // namespace
 
+bool is_journal(const char* path) noexcept {
+  const int file = ::open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (file < 0) return false;
+  char begin[journal::magic.size()];
+  const bool is_one =
+      read_at(file, 0, begin, sizeof begin) && std::string_view(begin, sizeof begin) == journal::magic;
+  ::close(file);
+  return is_one;
+}
+
 JournalReader::JournalReader(std::string path) : path_(std::move(path)) {
   file_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (file_ < 0) refuse(path_, fmt::format("the journal cannot be read: {}", std::strerror(errno)));
@@ -110,6 +120,14 @@ bool JournalReader::read_chunk(int64_t offset, Chunk& chunk, std::string& payloa
   return true;
 }
 
+/// Of a chunk that was read before: its payload is not checked again.
+bool JournalReader::read_head(int64_t offset, Chunk& chunk) const {
+  journal::ChunkHead head;
+  if (!read_at(file_, offset, reinterpret_cast<char*>(&head), sizeof head)) return false;
+  chunk = {head.kind, head.rows_before, head.dropped, offset, int64_t(sizeof head + head.size)};
+  return head.marker == journal::ChunkHead{}.marker && head.size <= journal::largest_payload;
+}
+
 /// The offset of the first valid chunk from there on; the size of the file if there is none.
 int64_t JournalReader::find_chunk(int64_t from, Chunk& chunk, std::string& payload) const {
   constexpr size_t window = 1 << 20;
@@ -125,11 +143,12 @@ int64_t JournalReader::find_chunk(int64_t from, Chunk& chunk, std::string& paylo
   return size_;
 }
 
-/// Scans the chunks of the whole file and records the locations of rows and the gaps between them.
+/// Scans the chunks of the whole file and records the locations of rows. Then the gaps between them are
+/// known.
 void JournalReader::look_through() {
   Chunk chunk;
   std::string payload;
-  uint64_t next_row = 0;
+  uint64_t rows_written = 0;
   bool has_heading = false;
   for (int64_t offset = int64_t(journal::magic.size()); offset < size_; offset = chunk.offset + chunk.bytes) {
     if (!read_chunk(offset, chunk, payload)) {
@@ -138,36 +157,65 @@ void JournalReader::look_through() {
       if (found == size_) break;
     }
     survey_.dropped_rows = std::max(survey_.dropped_rows, int64_t(chunk.dropped));
-    // Every chunk has the number of rows before it. Rows before the first valid heading are lost too.
-    if (chunk.rows_before > next_row) {
-      survey_.lost_rows += int64_t(chunk.rows_before - next_row);
-      next_row = chunk.rows_before;
-    }
+    rows_written = std::max(rows_written, chunk.rows_before);  // every chunk has the number of rows before it
     if (chunk.kind == journal::heading && !has_heading) {
+      Facts end = std::move(heading_.facts);  // of an end that came before
       heading_ = heading_of(payload, has_heading);
-    } else if (chunk.kind == journal::end) {
+      heading_.facts.insert(heading_.facts.end(), end.begin(), end.end());
+    } else if (chunk.kind == journal::end && !survey_.has_end) {
       const Facts facts = Texts(payload).facts();
       heading_.facts.insert(heading_.facts.end(), facts.begin(), facts.end());
       survey_.has_end = true;
     } else if (chunk.kind == journal::rows) {
-      const size_t row_bytes = heading_.columns.size() * sizeof(double);
-      if (has_heading && payload.size() % row_bytes == 0 && chunk.rows_before == next_row)
-        next_row += note_rows(chunk, payload.size() / row_bytes);
-      else
-        survey_.damaged_bytes += chunk.bytes;
+      note_rows(chunk);
     }
   }
   if (!has_heading)
     refuse(path_, "no heading of the journal is intact: it is not known what its numbers are");
+  count_rows(rows_written);
   tell_what_is_lost();
 }
 
-uint64_t JournalReader::note_rows(const Chunk& chunk, uint64_t rows) {
-  survey_.rows += int64_t(rows);
-  if (row_chunks_.empty() || row_chunks_.back().first + row_chunks_.back().second != chunk.offset)
-    row_chunks_.emplace_back(chunk.offset, 0);
-  row_chunks_.back().second += chunk.bytes;
-  return rows;
+/// 0: the chunk does not consist of whole rows, or the columns are not known yet.
+uint64_t JournalReader::rows_of(const Chunk& chunk) const {
+  const uint64_t bytes = uint64_t(chunk.bytes) - sizeof(journal::ChunkHead);
+  const uint64_t row_bytes = heading_.columns.size() * sizeof(double);
+  return row_bytes > 0 && bytes % row_bytes == 0 ? bytes / row_bytes : 0;
+}
+
+/// Extends the last stretch, or begins another one. Before the first valid heading each chunk is its own.
+void JournalReader::note_rows(const Chunk& chunk) {
+  const uint64_t rows = rows_of(chunk);
+  const bool continues = !stretches_.empty() && rows > 0 &&
+                         stretches_.back().offset + stretches_.back().bytes == chunk.offset &&
+                         stretches_.back().next_row == chunk.rows_before;
+  if (!continues) stretches_.push_back({chunk.rows_before, 0, chunk.offset, 0});
+  stretches_.back().next_row = rows > 0 ? chunk.rows_before + rows : 0;
+  stretches_.back().bytes += chunk.bytes;
+}
+
+/// Sorts the stretches and counts what they give. Chunks whose rows are there already, and chunks that are no
+/// whole rows, are left out here and in each_row().
+void JournalReader::count_rows(uint64_t rows_written) {
+  survey_.is_reordered = !std::ranges::is_sorted(stretches_, {}, &Stretch::first_row);
+  std::ranges::stable_sort(stretches_, {}, &Stretch::first_row);
+  Chunk chunk;
+  uint64_t next_row = 0;
+  for (const Stretch& stretch : stretches_)
+    for (int64_t offset = stretch.offset; offset < stretch.offset + stretch.bytes; offset += chunk.bytes) {
+      if (!read_head(offset, chunk)) refuse(path_, "the journal changed while it was read");
+      const uint64_t rows = rows_of(chunk);
+      if (rows == 0) {
+        survey_.damaged_bytes += chunk.bytes;
+      } else if (chunk.rows_before < next_row) {
+        survey_.repeated_bytes += chunk.bytes;
+      } else {
+        survey_.lost_rows += int64_t(chunk.rows_before - next_row);
+        survey_.rows += int64_t(rows);
+        next_row = chunk.rows_before + rows;
+      }
+    }
+  if (rows_written > next_row) survey_.lost_rows += int64_t(rows_written - next_row);
 }
 
 void JournalReader::tell_what_is_lost() {
@@ -176,6 +224,7 @@ void JournalReader::tell_what_is_lost() {
       std::ranges::any_of(facts, [](const auto& fact) { return fact.first == "incomplete"; });
   if (!survey_.has_end && !is_told)
     facts.emplace_back("incomplete", "the program was ended from outside; recovered from its journal");
+  if (!survey_.has_end) facts.emplace_back("rows", fmt::format("{}", survey_.rows));
   if (survey_.lost_rows > 0) facts.emplace_back("lost_rows", fmt::format("{}", survey_.lost_rows));
   if (survey_.dropped_rows > 0) facts.emplace_back("dropped_rows", fmt::format("{}", survey_.dropped_rows));
 }
@@ -185,10 +234,14 @@ void JournalReader::each_row(const std::function<bool(std::span<const double>)>&
   std::vector<double> row(columns);
   Chunk chunk;
   std::string payload;
-  for (const auto& [begin, bytes] : row_chunks_)
-    for (int64_t offset = begin; offset < begin + bytes; offset += chunk.bytes) {
+  uint64_t next_row = 0;
+  for (const Stretch& stretch : stretches_)
+    for (int64_t offset = stretch.offset; offset < stretch.offset + stretch.bytes; offset += chunk.bytes) {
       if (!read_chunk(offset, chunk, payload))
         throw std::runtime_error(fmt::format("\"{}\" changed while it was read", path_));
+      const uint64_t rows = rows_of(chunk);
+      if (rows == 0 || chunk.rows_before < next_row) continue;
+      next_row = chunk.rows_before + rows;
       for (size_t at = 0; at < payload.size(); at += columns * sizeof(double)) {
         std::memcpy(row.data(), payload.data() + at, columns * sizeof(double));
         if (!take(row)) return;

@@ -36,6 +36,11 @@ std::string to_text(const JournalReader& journal) {
   if (survey.lost_rows > 0 || survey.damaged_bytes > 0)
     text += fmt::format("  damaged: {} rows are lost between others, {} bytes do not check out\n",
                         survey.lost_rows, survey.damaged_bytes);
+  if (survey.is_reordered)
+    text += "  its parts were in another order in the file; the rows are in the order of their numbers\n";
+  if (survey.repeated_bytes > 0)
+    text += fmt::format("  {} bytes repeat rows that are there already and are left out\n",
+                        survey.repeated_bytes);
   if (survey.dropped_rows > 0)
     text += fmt::format("  {} rows were never written, as the disk did not take them in time\n",
                         survey.dropped_rows);

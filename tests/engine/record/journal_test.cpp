@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -158,6 +159,59 @@ TEST_F(Journal, RandomDamageNeverGivesAWrongNumber) {
       EXPECT_THAT(e.what(), HasSubstr("journal"));
     }
   }
+}
+
+/// The chunks of the file after its first bytes.
+std::vector<std::string> chunks_of(const std::string& bytes) {
+  std::vector<std::string> chunks;
+  for (size_t at = 8; at < bytes.size(); at += chunks.back().size()) {
+    uint64_t payload = 0;
+    std::memcpy(&payload, bytes.data() + at + 8, sizeof payload);
+    chunks.push_back(bytes.substr(at, 40 + payload));
+  }
+  return chunks;
+}
+
+TEST_F(Journal, ChunksInAnotherOrderGiveTheirRowsInOrder) {
+  write(9, 5, true, 0, 4);
+  const std::string whole = bytes_of(path);
+  std::vector<std::string> chunks = chunks_of(whole);
+  ASSERT_EQ(chunks.size(), 13u) << "nine of rows, three headings, the end";
+  std::mt19937 random(1);
+  for (int trial = 0; trial < 200; ++trial) {
+    std::shuffle(chunks.begin(), chunks.end(), random);
+    std::string bytes = whole.substr(0, 8);
+    for (const std::string& chunk : chunks) bytes += chunk;
+    put_bytes(path, bytes);
+    const JournalReader journal(path);
+    EXPECT_EQ(rows_that_are_right(journal), 45);
+    EXPECT_TRUE(journal.survey().is_whole() && journal.survey().has_end);
+    EXPECT_TRUE(journal.survey().is_reordered);
+    EXPECT_THAT(journal.heading().facts, Contains(Pair("outputs_safe", "confirmed")));
+    EXPECT_THAT(journal.heading().facts, Contains(Pair("title", testing::_)));
+  }
+}
+
+TEST_F(Journal, RowsThatAreThereTwiceAreTakenOnce) {
+  write(9, 5);
+  const std::string whole = bytes_of(path);
+  const std::vector<std::string> chunks = chunks_of(whole);
+  put_bytes(path, whole + chunks[3] + chunks[4]);
+  const JournalReader journal(path);
+  EXPECT_EQ(rows_that_are_right(journal), 45);
+  EXPECT_EQ(journal.survey().repeated_bytes, int64_t(chunks[3].size() + chunks[4].size()));
+  EXPECT_EQ(journal.survey().damaged_bytes, 0);
+  EXPECT_EQ(journal.survey().lost_rows, 0);
+}
+
+TEST_F(Journal, OneThatWasCutOffStatesHowManyRowsItHas) {
+  write(3, 4, false);
+  EXPECT_THAT(JournalReader(path).heading().facts, Contains(Pair("rows", "12")));
+  EXPECT_TRUE(is_journal(path.c_str()));
+  put_bytes(path, "");
+  EXPECT_FALSE(is_journal(path.c_str()));
+  std::filesystem::remove(path);
+  EXPECT_FALSE(is_journal(path.c_str()));
 }
 
 TEST_F(Journal, RowsThatTheDiskDidNotTakeAreTold) {
