@@ -18,7 +18,7 @@ constexpr int fatal[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGSYS, SIGTR
 // Data for the handler, resolved beforehand. One deployment at a time in a process.
 std::atomic<bool> is_guarded = false;
 std::atomic<int> guardian = 0, crashed = 0;  // threads
-std::atomic<const char*> last_words = nullptr;
+std::atomic<const char*> last_words = nullptr, words_of_a_hanging_stop = nullptr;
 std::atomic<int> wake = -1;
 std::atomic<CrashGuard::Stop> last_resort = nullptr;
 std::atomic<void*> last_resort_object = nullptr;
@@ -65,10 +65,10 @@ void stop_machine(const char* what) {
   }
   say("loopwright: ");
   say(what);
-  say(" in motion: ");
+  say(": ");
   const char* words = last_words.load();
-  say(words ? words
-            : "the stop did not come to its end; only the device's watchdog can put out its safe values");
+  if (!words) words = guardian == 0 ? "the device is not open" : words_of_a_hanging_stop.load();
+  say(words ? words : "the stop did not come to its end");
   say("\n");
 }
 
@@ -90,7 +90,7 @@ int thread_number() noexcept { return int(syscall(SYS_gettid)); }
 
 CrashGuard::CrashGuard() {
   if (is_guarded.exchange(true)) throw std::logic_error("two deployments at a time in one process");
-  crashed = 0, guardian = 0, last_words = nullptr;
+  crashed = 0, guardian = 0, last_words = nullptr, words_of_a_hanging_stop = nullptr;
   wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   if (wake < 0) {
     is_guarded = false;
@@ -118,6 +118,7 @@ void CrashGuard::begin_guardian(Stop stop, void* object) noexcept {
 void CrashGuard::end_guardian() noexcept { guardian = 0, last_resort = nullptr; }
 int CrashGuard::descriptor() const noexcept { return wake; }
 int CrashGuard::crashed_thread() noexcept { return crashed; }
+void CrashGuard::expect(const char* words) noexcept { words_of_a_hanging_stop = words; }
 void CrashGuard::release(const char* words) noexcept { last_words = words; }
 
 HandlerStack::HandlerStack() : memory_(64 * 1024) {

@@ -33,6 +33,9 @@ class CrashGuard {
   int descriptor() const noexcept;
   /// The thread that crashed; 0: none.
   static int crashed_thread() noexcept;
+  /// The final message if the stop does not come to its end, of static lifetime. It changes with the state of
+  /// the device. Without a guardian the device is not open, and the message says so.
+  static void expect(const char* words) noexcept;
   /// The guardian has finished.
   void release(const char* last_words) noexcept;
 };

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <semaphore>
 #include "hw/realtime/control_loop.h"
+#include "hw/realtime/last_words.h"
 #include "hw/realtime/log_writer.h"
 #include "hw/realtime/stop_signals.h"
 #include "hw/realtime/threads.h"
@@ -40,7 +41,9 @@ class Deployment {
         columns_(log_columns(plan, hardware)),
         ring_(std::make_shared<LogRing>(columns_.size(),
                                         rows_of_ring(plan, hardware, columns_.size(), options.ring_bytes))),
-        loop_(plan, hardware, device, clock(), *ring_, columns_) {
+        loop_(plan, hardware, device, clock(), *ring_, columns_),
+        last_words_(options.journal, device.description().watchdog.timeout > 0),
+        has_sent_(device.outputs_safe() != OutputsSafe::untouched) {
     for (const LogColumn& column : columns_)
       result_.recording.columns.push_back({column.name, column.unit, {}});
     auto& facts = result_.recording.facts;
@@ -49,16 +52,6 @@ class Deployment {
     facts.emplace_back("seed", fmt::format("{}", plan_.seed));
     facts.emplace_back("device", device_.description().path);
     for (const auto& [name, value] : plan_.parameters) facts.emplace_back("parameter " + name, value);
-    const std::string log =
-        options.journal.empty()
-            ? ""
-            : fmt::format("; the log: loopwright recover {} -o FILE.csv", options.journal);
-    const std::string_view ends[] = {
-        "the device took the safe values and is closed",
-        "the device's watchdog put out its safe values; the device is closed",
-        "safe values were sent, but it is not known whether the device took them",
-        "nothing was sent to the device"};
-    for (const std::string_view end : ends) last_words_.push_back(fmt::format("{}{}", end, log));
   }
 
   DeployResult run() {
@@ -69,6 +62,7 @@ class Deployment {
     const RealTimeProcess process(request, result_.system);
     make_log();
     CrashGuard guard;
+    guard.expect(has_sent_ ? LastWords::before_sampling() : LastWords::before_anything_is_sent());
     const GuardedThread watcher([&] { watch(signals, guard, request.priority); }, [&] { is_over_ = true; });
     is_guarded_.acquire();  // a crash before that would leave the device open
     try {
@@ -134,6 +128,7 @@ class Deployment {
       const DeviceUser::Use use(device_user_);
       try {
         started_ = device_.start(hardware_.period_s);
+        CrashGuard::expect(last_words_.while_sampling());
         if (started_.ok()) {
           if (options_.loop_begins) options_.loop_begins();
           loop_.run();
@@ -143,6 +138,7 @@ class Deployment {
         exception_in_loop_ = text_of_exception();
       }
       device_.stop();
+      CrashGuard::expect(LastWords::after_the_stop());
     }
     has_ended_ = true;
     is_done_.release();
@@ -166,6 +162,7 @@ class Deployment {
     result_.device.push_back(fact_about_crashes());
     if (status.ok()) {
       tell_ready();
+      has_sent_ = true, CrashGuard::expect(LastWords::before_sampling());
       status = device_.preset();
     }
     if (status.ok()) return true;
@@ -250,14 +247,14 @@ class Deployment {
   const char* stop_in_emergency() noexcept {
     device_.emergency_stop();
     loop_.request_stop();  // a loop that still runs stops the device itself
-    OutputsSafe safe = OutputsSafe::unknown;
+    OutputsSafe safe = has_sent_ ? OutputsSafe::unknown : OutputsSafe::untouched;
     if (device_user_.take_over(CrashGuard::crashed_thread(), CrashGuard::patience_ms / 2)) {
       device_.stop();
       device_.close();
       safe = device_.outputs_safe();
     }
     writer_->wait_for_pass(3 * LogWriter::every_ms);
-    return last_words_[size_t(safe)].c_str();
+    return last_words_.of(safe);
   }
 
   /// Shows the progress until the loop has ended.
@@ -275,6 +272,8 @@ class Deployment {
     if (result_.status == RunStatus::finished) explain_end();
     Facts facts{{"outputs_safe", std::string(to_name(result_.outputs_safe))}};
     if (result_.status != RunStatus::finished) facts.emplace_back("incomplete", result_.message);
+    facts.emplace_back("rows",
+                       fmt::format("{}", result_.statistics.cycles - result_.statistics.dropped_rows));
     require_known_outputs();
     end_log(facts);
     result_.statistics.longest_log_delay_s = writer_->longest_delay_s();
@@ -381,7 +380,8 @@ class Deployment {
   DeployResult result_;
   Status started_;
   std::string exception_in_loop_;
-  std::vector<std::string> last_words_;  // indexed by OutputsSafe
+  const LastWords last_words_;
+  std::atomic<bool> has_sent_;
   DeviceUser device_user_;
   std::binary_semaphore is_prepared_{0}, is_done_{0}, is_guarded_{0};
   std::atomic<Begin> begin_ = Begin::waits;

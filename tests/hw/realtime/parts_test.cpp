@@ -1,9 +1,16 @@
-// The small parts of the loop: ring buffer of the log, histogram, what the system grants.
+// The small parts of the loop: ring buffer of the log, histogram, what the system grants, messages of
+// crashes.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <csignal>
 #include <thread>
+#include "engine/record/journal.h"
+#include "hw/realtime/crash_guard.h"
 #include "hw/realtime/histogram.h"
+#include "hw/realtime/last_words.h"
 #include "hw/realtime/log_ring.h"
 #include "hw/realtime/system.h"
+#include "tests/engine/diagram/diagram_folder.h"
 
 namespace loopwright::hw {
 namespace {
@@ -62,6 +69,49 @@ TEST(System, WhatWasAskedForIsToldItemByItem) {
        {"real-time kernel", "memory locked", "processor kept awake", "SCHED_FIFO 80", "processor 1000 only"})
     EXPECT_NE(text.find(item), text.npos) << item;
   EXPECT_FALSE(report.all_granted()) << "there is no processor 1000";
+}
+
+TEST(LastWords, NameTheJournalOnlyWhileItIsThere) {
+  const DiagramFolder folder;
+  const std::string path = folder.path("log.csv.journal");
+  const LastWords words(path, true);
+  const std::string recover = "loopwright recover " + path;
+  EXPECT_THAT(words.of(OutputsSafe::confirmed), testing::Not(testing::HasSubstr("recover")));
+  const JournalWriter journal(path, {{{"time", "s", {}}}, {}});
+  EXPECT_THAT(words.of(OutputsSafe::confirmed), testing::HasSubstr(recover));
+  std::filesystem::resize_file(path, 0);
+  EXPECT_THAT(words.of(OutputsSafe::confirmed), testing::Not(testing::HasSubstr("recover")));
+  EXPECT_THAT(words.of(OutputsSafe::untouched), testing::StartsWith("nothing was sent to the device"));
+}
+
+TEST(LastWords, LeaveNothingToAWatchdogThatIsNotArmed) {
+  const LastWords with("", true), without("", false);
+  EXPECT_THAT(with.while_sampling(), testing::HasSubstr("only the device's watchdog"));
+  EXPECT_THAT(without.while_sampling(), testing::HasSubstr("there is no watchdog"));
+  EXPECT_THAT(with.before_sampling(), testing::HasSubstr("watchdog is not armed"));
+  EXPECT_THAT(with.before_anything_is_sent(), testing::HasSubstr("nothing was sent"));
+}
+
+/// Crashes while a guardian does not answer; without one if `words` is empty.
+void crash(const char* words) {
+  CrashGuard guard;
+  std::atomic<bool> begun = *words == 0;
+  std::thread guardian([&] {
+    if (!begun) guard.begin_guardian([](void*) { return ""; }, nullptr);
+    begun = true;
+    for (;;) pause();
+  });
+  while (!begun) std::this_thread::yield();
+  CrashGuard::expect(words);
+  raise(SIGABRT);
+}
+
+TEST(CrashMessage, SaysInWhichStateTheDeviceIs) {
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  setenv("ASAN_OPTIONS", "handle_abort=0:detect_leaks=0", 1);
+  EXPECT_EXIT(crash(""), testing::KilledBySignal(SIGABRT), "loopwright: SIGABRT: the device is not open");
+  EXPECT_EXIT(crash("it was not started"), testing::KilledBySignal(SIGABRT),
+              "loopwright: SIGABRT: it was not started");
 }
 
 }  // namespace
