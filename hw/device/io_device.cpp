@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include "hw/device/output.h"
 
 namespace loopwright::hw {
 namespace {
@@ -186,15 +187,10 @@ Status IoDevice::write(std::span<const double> values) noexcept {
   has_written_ = true, is_stopped_ = false, outputs_safe_ = OutputsSafe::unknown;
   for (size_t i = 0; i < values.size(); ++i) {
     const OutputChannel& output = description_->outputs[i];
-    double value = std::clamp(values[i], output.least(), output.greatest());
-    clamped_ += value != values[i];
-    if (const double step = output.maximum_rate * period_s_; step > 0) {
-      const double limited = std::clamp(value, applied_[i] - step, applied_[i] + step);
-      rate_limited_ += limited != value;
-      value = limited;
-    }
-    applied_[i] = value;
-    raw_out_[i] = output.volts(value);
+    const LimitedOutput sent = limited(output, values[i], applied_[i], period_s_);
+    clamped_ += sent.is_clamped, rate_limited_ += sent.is_rate_limited;
+    applied_[i] = sent.value;
+    raw_out_[i] = output.volts(sent.value);
   }
   return latch(send(raw_out_));
 }

@@ -176,6 +176,88 @@ TEST(Replay, AHoleInTheLogIsFound) {
   EXPECT_THAT(replayed(deployed, result.recording).fault, HasSubstr("row 701 is at 0.701 s"));
 }
 
+/// A device that clamps and slows down what the loop commands.
+const std::string narrow =
+    R"({"clock": {"time": "simulated"}, "outputs": {"drive": {"maximum": 0.9, "minimum": -0.6, "maximum_rate": 30}}})";
+
+Column& column_of(Recording& log, std::string_view name) {
+  for (Column& column : log.columns)
+    if (column.name == name) return column;
+  throw std::invalid_argument("no column " + std::string(name));
+}
+
+const ReplayedColumn& of(const Replay& replay, std::string_view name) {
+  for (const ReplayedColumn& column : replay.columns)
+    if (column.name == name) return column;
+  throw std::invalid_argument("not replayed: " + std::string(name));
+}
+
+TEST(Replay, WhatTheDeviceAppliedIsTheCommandWithinItsLimits) {
+  EmulatedCard card;
+  Deployed deployed(narrow);
+  hw::DeployResult result = deployed.run();
+  ASSERT_GT(result.statistics.clamped, 0) << result.message;
+  ASSERT_GT(result.statistics.rate_limited, 0);
+  const Replay again = replayed(deployed, result.recording);
+  EXPECT_TRUE(again.explains()) << to_text(again);
+  EXPECT_EQ(of(again, "stage.applied").differing, 0);
+
+  std::vector<double>& applied = column_of(result.recording, "stage.applied").values;
+  const double right = applied[700];
+  applied[700] = std::nextafter(right, 9.0);
+  const Replay edited = replayed(deployed, result.recording);
+  EXPECT_FALSE(edited.explains());
+  EXPECT_EQ(of(edited, "stage.applied").differing, 1);
+  EXPECT_EQ(of(edited, "stage.applied").first_row, 700);
+  applied = column_of(result.recording, "stage.command").values;
+  EXPECT_FALSE(replayed(deployed, result.recording).explains()) << "the limits are those of the device file";
+}
+
+TEST(Replay, WhatCannotBeVerifiedIsNamed) {
+  EmulatedCard card;
+  Deployed deployed(hw::in_virtual_time);
+  hw::DeployResult result = deployed.run();
+  result.recording.columns.push_back(
+      {"added", "", std::vector<double>(result.recording.columns[0].values.size())});
+  const Replay again = replayed(deployed, result.recording);
+  EXPECT_THAT(again.taken, testing::ElementsAre("stage.position", "loop.lateness", "loop.step_time", "added",
+                                                "outputs_safe"));
+  EXPECT_THAT(to_text(again), HasSubstr("not verified: stage.position, loop.lateness, loop.step_time"));
+}
+
+TEST(Replay, ALogThatWasCutShortIsToldAndIsNoExplanation) {
+  EmulatedCard card;
+  Deployed deployed(hw::in_virtual_time);
+  hw::DeployResult result = deployed.run();
+  Recording log = result.recording;
+  for (Column& c : log.columns) c.values.resize(500);
+  const Replay counted = replayed(deployed, log);
+  EXPECT_FALSE(counted.explains());
+  EXPECT_THAT(counted.fault,
+              HasSubstr("rows after 0.499 s are missing: the log states 3101 rows and has 500"));
+
+  std::erase_if(log.facts, [](const auto& fact) { return fact.first == "rows"; });
+  const Replay uncounted = replayed(deployed, log);
+  EXPECT_FALSE(uncounted.explains());
+  EXPECT_THAT(uncounted.fault, HasSubstr("rows after 0.499 s are missing: the run ends at 3.1 s"));
+
+  log.facts.emplace_back("incomplete", "interrupted by SIGINT");
+  const Replay interrupted = replayed(deployed, log);
+  EXPECT_TRUE(interrupted.explains()) << to_text(interrupted);
+  EXPECT_THAT(to_text(interrupted), HasSubstr("the log states that it is incomplete: interrupted by SIGINT"));
+}
+
+TEST(Replay, SamplesThatWereNotLostAreNoGap) {
+  EmulatedCard card;
+  Deployed deployed(hw::in_virtual_time);
+  hw::DeployResult result = deployed.run();
+  column_of(result.recording, "loop.lost").values[0] = 2;
+  EXPECT_THAT(replayed(deployed, result.recording).fault, HasSubstr("row 1: loop.lost is 2"));
+  column_of(result.recording, "loop.lost").values[0] = 0;
+  column_of(result.recording, "loop.lost").values[8] = 0.5;
+  EXPECT_THAT(replayed(deployed, result.recording).fault, HasSubstr("row 9: loop.lost is 0.5"));
+}
+
 TEST(Replay, AMissingColumnIsAProblem) {
   EmulatedCard card;
   Deployed deployed(hw::in_virtual_time);
