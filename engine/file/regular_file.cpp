@@ -8,6 +8,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "engine/file/output_files.h"
+
 namespace loopwright {
 namespace {
 
@@ -41,6 +43,7 @@ class OpenFile {
       reason_ = std::strerror(errno);
     else
       reason_ = kind_of(status_.st_mode);
+    if (reason_.empty()) reason_ = why_reserved(status_);
   }
   ~OpenFile() {
     if (file_ >= 0) ::close(file_);

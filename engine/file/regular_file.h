@@ -1,5 +1,5 @@
-/// Reads whole regular files into memory. A file without end, or one that makes its reader wait, is refused
-/// immediately.
+/// Reads whole regular files into memory. A file without end, one that makes its reader wait, or one that the
+/// program is going to write (output_files.h), is refused immediately.
 #pragma once
 #include <cstddef>
 #include <string>

@@ -104,7 +104,8 @@ void print_csv(std::FILE* stream, const Recording& recording) {
   put(recording, [&](std::string_view text) { std::fwrite(text.data(), 1, text.size(), stream); });
   if (std::fflush(stream) != 0 || std::ferror(stream))
     throw std::runtime_error(
-        fmt::format("the recording cannot be printed: {}", std::strerror(errno ? errno : EIO)));
+        fmt::format("the recording cannot be printed: {}",
+                    errno == EBADF ? "the standard output is closed" : std::strerror(errno ? errno : EIO)));
 }
 
 }  // namespace loopwright

@@ -86,7 +86,11 @@ void Progress::finish() {
 }
 
 void give_summary(const std::string& text, std::initializer_list<std::string_view> results) {
-  std::ranges::find(results, "-") == results.end() ? answer_text(text) : tell_text(text);
+  const bool is_in_file = std::ranges::any_of(results, [](std::string_view path) { return !path.empty(); });
+  if (std::ranges::find(results, "-") != results.end())
+    tell_text(text);
+  else
+    is_in_file ? remark_text(text) : answer_text(text);
 }
 
 void write_json(const std::string& path, const std::function<std::string()>& json) {
@@ -97,9 +101,9 @@ void write_json(const std::string& path, const std::function<std::string()>& jso
 }
 
 void give_answer(const std::string& text, const std::string& json_path,
-                 const std::function<std::string()>& json) {
+                 const std::function<std::string()>& json, std::string_view page) {
   write_json(json_path, json);
-  give_summary(text, {json_path});
+  give_summary(text, {json_path, page});
 }
 
 void reject_two_on_stdout(std::initializer_list<std::pair<std::string_view, std::string_view>> options) {

@@ -58,15 +58,16 @@ class Progress {
   double started_, last_;
 };
 
-/// Prints the summary for people: on stdout, or on stderr if one of these results goes to stdout ("-").
+/// Prints the summary for people: on stdout, or on stderr if one of these results goes to stdout ("-"). If
+/// none of them goes to a file either, the summary is the result itself and must not be lost.
 void give_summary(const std::string& text, std::initializer_list<std::string_view> results);
 
 /// Writes JSON if requested: to a file, or to stdout for "-".
 void write_json(const std::string& path, const std::function<std::string()>& json);
 
-/// Writes a result as a summary, and as JSON if requested.
+/// Writes a result as a summary, and as JSON if requested. `page`: another file that has the result, if any.
 void give_answer(const std::string& text, const std::string& json_path,
-                 const std::function<std::string()>& json);
+                 const std::function<std::string()>& json, std::string_view page);
 
 /// Two results on stdout could not be separated. Throws InputError.
 void reject_two_on_stdout(std::initializer_list<std::pair<std::string_view, std::string_view>> options);

@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
-#include <filesystem>
-#include <map>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include "engine/file/output_files.h"
 #include "engine/json/reader.h"
 
 namespace loopwright {
@@ -50,7 +52,7 @@ std::string name_of(const CLI::Option& option) {
 std::string what_it_takes(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   std::string text = type.starts_with("INT")     ? "a whole number"
-                     : type.starts_with("FLOAT") ? "a number"
+                     : type.starts_with("FLOAT") ? "a finite number"
                      : type.starts_with("TEXT")  ? "a text"
                                                  : type.substr(0, type.find(':'));
   if (type.find("NONNEGATIVE") != type.npos)
@@ -62,6 +64,13 @@ std::string what_it_takes(const CLI::Option& option) {
     text += fmt::format(" from {} to {}", type.substr(low + 4, middle - low - 4),
                         type.substr(middle + 3, end - middle - 3));
   return text;
+}
+
+void refuse_value(const CLI::Option& option, const std::string& found, Problems& problems) {
+  auto& p = problems.error({}, "", "", fmt::format("{} does not take this value", name_of(option)));
+  p.expected = fmt::format("{} with {}", name_of(option), what_it_takes(option));
+  p.found = found;
+  p.hint = option.get_description();
 }
 
 /// The option that CLI11's message is about: the message contains its name.
@@ -165,9 +174,10 @@ class Explanation {
     }
     const std::vector<std::string> values = option->results();
     const bool takes_none = option->get_items_expected_max() == 0;
-    auto& p = error(takes_none       ? fmt::format("{} takes no value", name)
-                    : values.empty() ? fmt::format("{} has no value", name)
-                                     : fmt::format("{} does not take this value", name));
+    if (!takes_none && !values.empty())
+      return refuse_value(*option, fmt::format("{}", fmt::join(values, " ")), problems_);
+    auto& p =
+        error(takes_none ? fmt::format("{} takes no value", name) : fmt::format("{} has no value", name));
     p.expected = takes_none ? name : fmt::format("{} with {}", name, what_it_takes(*option));
     p.found = fmt::format("{}", fmt::join(values, " "));
     p.hint = option->get_description();
@@ -186,6 +196,57 @@ class Explanation {
   Problems problems_;
 };
 
+// ---- values that CLI11 accepts ----
+
+bool is_whole_number(const CLI::Option& option) { return option.get_type_name().starts_with("INT"); }
+bool is_number(const CLI::Option& option) {
+  return is_whole_number(option) || option.get_type_name().starts_with("FLOAT");
+}
+
+/// CLI11 reads 99999999999999999999 as the greatest number, 010 as eight, and accepts "nan" for any range.
+bool is_in_range(const CLI::Option& option, const std::string& value) {
+  if (!is_whole_number(option)) return std::isfinite(std::strtod(value.c_str(), nullptr));
+  int64_t number = 0;
+  const char* const end = value.data() + value.size();
+  const auto [rest, code] = std::from_chars(value.data(), end, number);
+  return code == std::errc() && rest == end && (value == "0" || value[0] != '0');
+}
+
+struct NamedFile {
+  std::string option, path;
+  bool is_output;
+};
+
+bool is_output(const CLI::Option& option) {
+  constexpr std::array<std::string_view, 7> names = {"--output", "--report", "--json",      "--csv",
+                                                     "--svg",    "--model",  "--checkpoint"};
+  return !option.get_positional() && std::ranges::find(names, name_of(option)) != names.end();
+}
+bool is_input(const CLI::Option& option) {
+  constexpr std::array<std::string_view, 5> names = {"--replay", "--resume", "--on", "--blocks", "--effects"};
+  return option.get_positional() || std::ranges::find(names, name_of(option)) != names.end();
+}
+
+/// A checkpoint may take the place of the one that the run goes on from: that one has been read by then.
+bool is_resumed(const NamedFile& output, const std::vector<NamedFile>& files) {
+  return output.option == "--checkpoint" && std::ranges::any_of(files, [&](const NamedFile& file) {
+           return file.option == "--resume" && is_same_file(file.path, output.path);
+         });
+}
+
+void refuse_shared_files(const std::vector<NamedFile>& files, Problems& problems) {
+  for (size_t i = 0; i < files.size(); ++i)
+    for (size_t k = 0; k < i; ++k) {
+      const NamedFile &first = files[k], &second = files[i];
+      if (!(first.is_output || second.is_output) || !is_same_file(first.path, second.path)) continue;
+      if (is_resumed(first, {second}) || is_resumed(second, {first})) continue;
+      auto& p = problems.error({}, "", "",
+                               fmt::format("{} and {} name the same file", first.option, second.option));
+      p.found = first.path == second.path ? first.path : fmt::format("{} and {}", first.path, second.path);
+      p.hint = "an output needs a file of its own";
+    }
+}
+
 }  // namespace
 
 Problems explain(const CLI::App& app, const CLI::ParseError& error) {
@@ -193,34 +254,25 @@ Problems explain(const CLI::App& app, const CLI::ParseError& error) {
 }
 
 void check_values(const CLI::App& app) {
-  constexpr std::array<std::string_view, 7> outputs = {"-o,--output", "--output", "--report",    "--json",
-                                                       "--csv",       "--svg",    "--checkpoint"};
   Problems problems;
-  std::map<std::filesystem::path, std::pair<std::string, bool>> known;  // path → option, is an output
+  std::vector<NamedFile> files;
   for (const CLI::App* command : commands_of(app))
     for (const CLI::Option* option : command->get_options()) {
-      const std::string name = name_of(*option);
-      const bool is_output = !option->get_positional() && std::ranges::find(outputs, name) != outputs.end();
-      const bool is_input = option->get_positional() || name == "--replay";
       if (option->get_items_expected_max() == 0) continue;
       for (const std::string& value : option->results()) {
-        if (value.empty()) {
-          problems.error({}, "", "", fmt::format("{} has an empty value", name)).hint =
+        if (value.empty())
+          problems.error({}, "", "", fmt::format("{} has an empty value", name_of(*option))).hint =
               option->get_description();
-          continue;
-        }
-        if (value == "-" || !(is_output || is_input)) continue;
-        std::error_code code;
-        const auto path = std::filesystem::weakly_canonical(std::filesystem::absolute(value), code);
-        const auto [other, is_new] = known.try_emplace(path, name, is_output);
-        if (is_new || !(is_output || other->second.second)) continue;
-        auto& p = problems.error({}, "", "",
-                                 fmt::format("{} and {} name the same file", other->second.first, name));
-        p.found = value;
-        p.hint = "an output needs a file of its own";
+        else if (is_number(*option) && !is_in_range(*option, value))
+          refuse_value(*option, value, problems);
+        else if (value != "-" && (is_output(*option) || is_input(*option)))
+          files.push_back({name_of(*option), value, is_output(*option)});
       }
     }
+  refuse_shared_files(files, problems);
   if (problems.has_errors()) throw InputError(std::move(problems));
+  for (const NamedFile& file : files)
+    if (file.is_output && !is_resumed(file, files)) reserve_for_output(file.path, file.option);
 }
 
 }  // namespace loopwright

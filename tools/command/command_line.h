@@ -9,8 +9,9 @@ namespace loopwright {
 /// error.
 Problems explain(const CLI::App& app, const CLI::ParseError& error);
 
-/// Throws InputError for empty values, and for outputs of the chosen command with the path of another output
-/// or of an input.
+/// Throws InputError for empty values, numbers that are not finite or do not fit, and outputs of the chosen
+/// command that are the same file as another output or an input. Existing files of outputs are reserved
+/// (engine/file/output_files.h): the command cannot read them as its data either.
 void check_values(const CLI::App& app);
 
 }  // namespace loopwright

@@ -25,7 +25,8 @@ int run(const Arguments& a) {
   const std::string title = std::filesystem::path(a.experiment).filename().string();
   if (!a.report.empty())
     report::write_html(a.report, comparison_page(comparison, comparison.plan->title + " — " + title));
-  give_answer(to_text(comparison), a.json, [&] { return to_json(comparison); });
+  give_answer(
+      to_text(comparison), a.json, [&] { return to_json(comparison); }, a.report);
   if (comparison.run.status == RunStatus::finished) return done;
   tell("{}: {}\n", a.diagram.path, comparison.run.message);
   return comparison.run.status == RunStatus::interrupted ? interrupted : run_failed;

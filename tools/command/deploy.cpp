@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <optional>
+#include "engine/file/output_files.h"
 #include "engine/record/atomic_file.h"
 #include "engine/record/recording_file.h"
 #include "hw/drivers.h"
@@ -36,6 +37,22 @@ void reject_pipe(const std::string& path, std::string_view option, Problems& pro
   p.hint = "--json - writes the figures to the standard output, which may be a pipe";
 }
 
+/// Path of the growing journal: beside the file made from it. Empty: no log was requested, and none is kept.
+std::string journal_for(const Arguments& a) {
+  const std::string& target = a.output.empty() ? a.report : a.output;
+  return target.empty() ? "" : journal_of(target);
+}
+
+/// A result in the place of the journal would replace the log while it is the only copy.
+void reject_journal(const Arguments& a, Problems& problems) {
+  const std::string journal = journal_for(a);
+  for (const auto& [option, path] : {std::pair{"-o", a.output}, {"--report", a.report}, {"--json", a.json}}) {
+    if (journal.empty() || path.empty() || path == "-" || !is_same_file(path, journal)) continue;
+    auto& p = problems.error({}, "", "", fmt::format("{} {} is the journal of the log", option, path));
+    p.hint = "while the loop runs the log grows there; an output needs a file of its own";
+  }
+}
+
 void require_paths(const Arguments& a) {
   require_writable_file(a.output, "-o");
   require_writable_file(a.report, "--report");
@@ -46,6 +63,7 @@ void require_paths(const Arguments& a) {
   if (a.json != "-") reject_pipe(a.json, "--json", problems);
   if (!a.output.empty() && !is_recording_path(a.output))
     problems.error({}, "", "", fmt::format("-o {}: logs are written as .csv or .mat", a.output));
+  reject_journal(a, problems);
   if (problems.has_errors()) throw InputError(std::move(problems));
 }
 
@@ -118,31 +136,40 @@ class Results {
   template <class Write> void attempt(Write&& write) {
     try {
       write();
+    } catch (const InputError& e) {  // its text begins with "error:"
+      is_good_ = false;
+      say(fmt::format("{}\n", e.what()), patience_ms);
     } catch (const std::exception& e) {
       is_good_ = false;
       say(fmt::format("error: {}\n", e.what()), patience_ms);
     }
   }
 
+  static std::string kept(const std::string& path) {
+    return fmt::format("the log is kept in {0}: loopwright recover {0} -o FILE.csv\n", path);
+  }
+  static std::string kept_or_lost(const std::string& path) {
+    if (is_journal(path.c_str())) return kept(path);
+    return fmt::format("the log is lost: its journal {} was removed or overwritten during the run\n", path);
+  }
+
   void write_log(const Plan& plan, hw::DeployResult& result, const std::string& path) {
-    const std::string kept =
-        fmt::format("the log is kept in {0}: loopwright recover {0} -o FILE.csv\n", path);
     try {
-      if (result.log == hw::LogEnd::stalled) return is_good_ = false, say(kept, patience_ms);
+      if (result.log == hw::LogEnd::stalled) return is_good_ = false, say(kept(path), patience_ms);
       const JournalReader journal(path);
       if (journal.survey().rows > 0) {
         const int64_t begin = hw::wall_ns();
         // A second and third signal in quick succession do not destroy the log.
         const auto stops = [&] { return signals_.wait(0) != 0 && hw::wall_ns() - begin > 2'000'000'000; };
         if (!a_.output.empty() && !write_journal_as(a_.output, journal, stops))
-          return is_good_ = false, say(kept, patience_ms);
+          return is_good_ = false, say(kept_or_lost(path), patience_ms);
         if (!a_.report.empty()) write_report(plan, result, journal);
       } else if (!a_.report.empty()) {
         write_report(plan, result, journal);
       }
       std::remove(path.c_str());
     } catch (...) {
-      say(kept, patience_ms);
+      say(kept_or_lost(path), patience_ms);
       throw;
     }
   }
@@ -167,12 +194,6 @@ class Results {
   const hw::StopSignals& signals_;
   bool is_good_ = true;
 };
-
-/// Path of the growing journal: beside the file made from it. Empty: no log was requested, and none is kept.
-std::string journal_for(const Arguments& a) {
-  const std::string& target = a.output.empty() ? a.report : a.output;
-  return target.empty() ? "" : journal_of(target);
-}
 
 /// Empty if a device in use was not taken over.
 std::optional<hw::DeployResult> move(const Arguments& a, const Plan& plan, const hw::Hardware& hardware,
@@ -199,7 +220,6 @@ std::optional<hw::DeployResult> move(const Arguments& a, const Plan& plan, const
 }
 
 int run(const Arguments& a) {
-  hold_standard_descriptors();
   require_paths(a);
   const auto plan = load_plan(a.diagram.path, a.diagram.options());
   tell_text(to_text(plan->warnings));

@@ -29,7 +29,8 @@ int run(const Arguments& a) {
   if (a.trail)
     for (const std::string& line : diagnosis.trail) tell("{}\n", line);
   if (!a.report.empty()) report::write_html(a.report, diagnosis_page(diagnosis));
-  give_answer(to_text(diagnosis), a.json, [&] { return to_json(diagnosis); });
+  give_answer(
+      to_text(diagnosis), a.json, [&] { return to_json(diagnosis); }, a.report);
   return done;
 }
 

@@ -37,12 +37,13 @@ void print_warnings(const Problems& problems) {
 }
 
 void write_results(const LearnedModel& learned, const std::vector<ShownSamples>& shown,
-                   const std::vector<std::string>& notes, const std::string& json,
-                   const std::string& report) {
+                   const std::vector<std::string>& notes, const std::string& json, const std::string& report,
+                   const std::string& model) {
   if (!report.empty()) report::write_html(report, model_page(learned, shown, notes));
   std::string summary = model_summary(learned, shown);
   for (const std::string& note : notes) summary += fmt::format("  {}\n", note);
-  give_answer(summary, json, [&] { return model_json(learned, shown); });
+  give_answer(
+      summary, json, [&] { return model_json(learned, shown); }, model.empty() ? report : model);
 }
 
 int run_train(const TrainArguments& a) {
@@ -65,7 +66,7 @@ int run_train(const TrainArguments& a) {
   write_model(a.model, trained->learned);
   const ShownSamples own{"training", trained->samples->samples,
                          score(trained->learned.model, trained->samples->samples)};
-  write_results(trained->learned, {own}, trained->notes, a.json, a.report);
+  write_results(trained->learned, {own}, trained->notes, a.json, a.report, a.model);
   return done;
 }
 
@@ -85,7 +86,7 @@ int run_show(const ShowArguments& a) {
                      score(learned.model, collected->samples)});
   }
   print_warnings(problems);
-  write_results(learned, shown, {}, a.json, a.report);
+  write_results(learned, shown, {}, a.json, a.report, "");
   return done;
 }
 

@@ -65,7 +65,7 @@ int run(const Arguments& a) {
     write_csv(a.csv, to_recording(analysis));
   if (!a.report.empty()) report::write_html(a.report, linear_page(analysis));
   write_json(a.json, [&] { return to_json(analysis); });
-  give_summary(to_text(analysis), {a.json, a.csv});
+  give_summary(to_text(analysis), {a.json, a.csv, a.report});
   return done;
 }
 

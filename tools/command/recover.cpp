@@ -20,7 +20,7 @@ int run(const Arguments& a) {
   const std::atomic<bool>& interruption_flag = interruption();
   const JournalReader journal(a.journal);
   if (!write_journal_as(a.output, journal, [&] { return interruption_flag.load(); })) return interrupted;
-  fmt::print("{}{}: written\n", to_text(journal), a.output);
+  remark("{}{}: written\n", to_text(journal), a.output);
   const JournalSurvey& survey = journal.survey();
   return survey.lost_rows > 0 || survey.damaged_bytes > 0 ? run_failed : done;
 }

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <cmath>
 #include "engine/record/csv.h"
 #include "engine/record/recording_file.h"
 #include "tools/command/command.h"
@@ -24,8 +23,6 @@ void require_paths(const Arguments& a) {
   Problems problems;
   if (!a.output.empty() && a.output != "-" && !is_recording_path(a.output))
     problems.error({}, "", "", fmt::format("-o {}: recordings are written as .csv or .mat", a.output));
-  if (!std::isfinite(a.checkpoint_every))
-    problems.error({}, "", "", "--checkpoint-every is not finite").expected = "a number above zero";
   if (a.checkpoint.empty() != (a.checkpoint_every == 0))
     problems.error({}, "", "", "--checkpoint FILE and --checkpoint-every SECONDS go together");
   if (problems.has_errors()) throw InputError(std::move(problems));
@@ -83,7 +80,7 @@ int run(const Arguments& a) {
   else if (!a.output.empty())
     write_recording(a.output, result.recording);
   if (!a.report.empty()) report::write_html(a.report, run_page(*plan, result));
-  if (!a.quiet) give_summary(run_summary(*plan, result), {a.output});
+  if (!a.quiet) give_summary(run_summary(*plan, result), {a.output, a.report});
   if (result.status == RunStatus::finished) return done;
   tell("{}: {}\n", a.diagram.path, result.message);
   return result.status == RunStatus::interrupted ? interrupted : run_failed;

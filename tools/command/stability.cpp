@@ -23,7 +23,8 @@ int run(const Arguments& a) {
   const StabilityReport result = assess_stability(a.diagram.path, a.diagram.options(), request, options);
   progress.finish();
   if (!a.report.empty()) report::write_html(a.report, stability_page(result));
-  give_answer(to_text(result), a.json, [&] { return to_json(result); });
+  give_answer(
+      to_text(result), a.json, [&] { return to_json(result); }, a.report);
   return done;
 }
 

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <thread>
+#include "engine/file/output_files.h"
 #include "engine/record/atomic_file.h"
 #include "engine/record/recording_file.h"
 #include "engine/run/simulation.h"
@@ -31,10 +33,12 @@ struct Arguments {
 
 std::pair<int64_t, int64_t> shard_of(const std::string& text) {
   if (text.empty()) return {0, 1};
-  long long i = 0, n = 0;
-  int used = 0;
-  if (std::sscanf(text.c_str(), "%lld/%lld%n", &i, &n, &used) != 2 || size_t(used) != text.size() || i < 0 ||
-      i >= n)
+  int64_t i = -1, n = 0;
+  const char* const end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, i);
+  const auto second = first.ptr == end ? first : std::from_chars(first.ptr + 1, end, n);
+  const bool is_read = first.ec == std::errc() && second.ec == std::errc() && first.ptr != end;
+  if (!is_read || *first.ptr != '/' || second.ptr != end || i < 0 || i >= n)
     refuse(fmt::format("--shard {}", text), "i/n with 0 ≤ i < n, as in 3/16");
   return {i, n};
 }
@@ -79,7 +83,13 @@ void write_traces(const SweepPlan& plan, const std::string& folder, const SweepR
     if (i < most_trace_pages)
       report::write_html(trace_of(folder, runs[i], "html"), run_page(*diagram, result));
   }
-  answer("{} traces in {}/traces\n", runs.size(), folder);
+  remark("{} traces in {}/traces\n", runs.size(), folder);
+}
+
+/// The sweep reads none of the tables that it writes.
+void reserve_tables(const std::string& folder) {
+  for (const char* name : {"results.csv", "results.mat", "failures.txt"})
+    reserve_for_output(folder + '/' + name, "--output");
 }
 
 /// Returns the number of runs missing in the tables.
@@ -91,7 +101,7 @@ int64_t write_tables(const SweepPlan& plan, const std::string& folder) {
   std::string failures;
   for (const auto& [run, reason] : results.failures) failures += fmt::format("run {}: {}\n", run, reason);
   write_file(folder + "/failures.txt", failures);
-  answer("{} runs in {}/results.csv and .mat; {} failed{}\n", results.table.rows(), folder,
+  remark("{} runs in {}/results.csv and .mat; {} failed{}\n", results.table.rows(), folder,
          results.failures.size(), results.missing ? fmt::format("; {} are missing", results.missing) : "");
   if (results.missing == 0) write_traces(plan, folder, results);
   return results.missing;
@@ -127,13 +137,13 @@ int optimise(const SweepPlan& plan, const Arguments& a) {
   return best.interrupted ? interrupted : done;
 }
 
-int make(const SweepPlan& plan, const Arguments& a) {
+int make(const SweepPlan& plan, const Arguments& a, std::pair<int64_t, int64_t> shard) {
   if (a.folder.empty()) refuse("no folder for the results", "-o DIR");
   Ranks ranks;
   SweepOptions options;
   options.threads = a.threads, options.resume = a.resume;
   options.instruction_set = set_of(a.instruction_set);
-  std::tie(options.shard, options.shards) = shard_of(a.shard);
+  std::tie(options.shard, options.shards) = shard;
   ranks.join(options);
   options.interrupt = &interruption();
   Progress progress("sweep");
@@ -143,7 +153,7 @@ int make(const SweepPlan& plan, const Arguments& a) {
   ranks.wait();
   progress.finish();
   for (const std::string& note : outcome.notes) tell("{}\n", note);
-  answer("{}{} of {} runs done, {} now, {} of them failed\n", ranks.name(), outcome.done, outcome.runs,
+  remark("{}{} of {} runs done, {} now, {} of them failed\n", ranks.name(), outcome.done, outcome.runs,
          outcome.made, outcome.failed);
   if (options.shards == 1 && ranks.is_first()) write_tables(plan, a.folder);
   if (!outcome.interrupted) return done;
@@ -152,9 +162,11 @@ int make(const SweepPlan& plan, const Arguments& a) {
 }
 
 int run(const Arguments& a) {
+  const auto shard = shard_of(a.shard);
+  if (!a.folder.empty()) reserve_tables(a.folder);
   a.libraries.options();
   const SweepPlan plan = plan_of(a.file);
-  return a.minimise.empty() && a.maximise.empty() ? make(plan, a) : optimise(plan, a);
+  return a.minimise.empty() && a.maximise.empty() ? make(plan, a, shard) : optimise(plan, a);
 }
 
 int write_report(const std::string& folder, const std::string& page) {
@@ -168,7 +180,7 @@ int write_report(const std::string& folder, const std::string& page) {
     if (const std::string trace = trace_of(folder, run, "html"); std::filesystem::exists(trace))
       traces[run] = std::filesystem::absolute(trace).lexically_relative(home);
   report::write_html(path, sweep_page(plan, results, traces));
-  answer("{}\n", path);
+  remark("{}\n", path);
   return done;
 }
 
@@ -202,6 +214,7 @@ void add_sweep(CLI::App& app, std::function<void(std::function<int()>)> choose) 
   merged->add_option("folder", *folder, "Folder of a sweep")->required();
   merged->callback([=] {
     choose([=] {
+      reserve_tables(*folder);
       a->libraries.options();
       return write_tables(plan_of(sweep_file_of(*folder)), *folder) == 0 ? done : run_failed;
     });

@@ -1,5 +1,4 @@
 #include "tools/deploy/console.h"
-#include <fcntl.h>
 #include <poll.h>
 #include <unistd.h>
 #include <algorithm>
@@ -22,11 +21,6 @@ bool write_some(int descriptor, std::string_view& text, int milliseconds) noexce
 }
 
 }  // namespace
-
-void hold_standard_descriptors() noexcept {
-  for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor)
-    if (fcntl(descriptor, F_GETFD) < 0) (void)!open("/dev/null", O_RDWR);  // takes the lowest free number
-}
 
 bool write_text(int descriptor, std::string_view text, const std::function<bool()>& gives_up) noexcept {
   while (!text.empty()) {

@@ -5,10 +5,6 @@
 
 namespace loopwright {
 
-/// Opens /dev/null for standard descriptors that are closed. Otherwise a file or device opened later would
-/// get their numbers and receive the output. Called before anything is opened.
-void hold_standard_descriptors() noexcept;
-
 /// Writes the text. While the reader is slow, it asks every 0.1 s whether to give up. False: not everything
 /// was written. Never throws, and never raises SIGPIPE if that is ignored.
 bool write_text(int descriptor, std::string_view text, const std::function<bool()>& gives_up) noexcept;

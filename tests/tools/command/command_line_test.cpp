@@ -38,7 +38,6 @@ TEST(CommandLine, SlipsAreExplained) {
            {{"fit", "a.json", "b.json", "--parameters", "m", "-o", "./a.json"},
             {"diagram and --output name"}},
            {{"run", "a.json", "--resume", "c", "--run", "3"}, {"--resume", "--run", "do not go together"}},
-           {{"run", "a.json", "--checkpoint", "c", "--checkpoint-every", "nan"}, {"not finite"}},
            {{"gp"}, {"loopwright gp: no command is given", "one of train, show"}},
            {{"gp", "trian", "a.json"}, {"loopwright gp has no command \"trian\"", "did you mean \"train\"?"}},
            {{"gp", "train", "a.json"}, {"loopwright gp train: --model is missing"}},
@@ -53,6 +52,47 @@ TEST(CommandLine, SlipsAreExplained) {
     for (const char* foreign : {"RequiredError", "ExtrasError", "Could not convert", "Usage:"})
       EXPECT_FALSE(contains(outcome.err, foreign)) << what;
   }
+}
+
+TEST(CommandLine, ANumberIsFiniteAndIsTheNumberThatIsWritten) {
+  if (access(program().c_str(), X_OK) != 0) GTEST_SKIP() << program() << " is not built";
+  using Options = std::vector<std::pair<std::vector<std::string>, std::string>>;
+  const auto expect_refused = [](const Options& options, const std::vector<std::string>& values) {
+    for (const auto& [words, option] : options)
+      for (const std::string& value : values) {
+        std::vector<std::string> arguments = words;
+        arguments.insert(arguments.end(), {option, value});
+        const Outcome outcome = loopwright_program(arguments);
+        EXPECT_EQ(outcome.code, 2) << option << value << outcome.err;
+        EXPECT_TRUE(contains(outcome.err, option + " does not take this value")) << value << outcome.err;
+        EXPECT_TRUE(contains(outcome.err, "found: " + value)) << option << outcome.err;
+      }
+  };
+  expect_refused({{{"run", "a.json"}, "--run"},
+                  {{"fit", "a.json", "e.json", "--parameters", "m"}, "--iterations"},
+                  {{"sweep", "s.json"}, "--threads"},
+                  {{"sweep", "s.json"}, "--evaluations"},
+                  {{"deploy", "a.json"}, "--priority"},
+                  {{"deploy", "a.json"}, "--processor"}},
+                 {"9223372036854775808", "99999999999999999999", "010", "nan"});
+  expect_refused({{{"run", "a.json", "--checkpoint", "c"}, "--checkpoint-every"},
+                  {{"linearize", "a.json"}, "--at"},
+                  {{"linearize", "a.json"}, "--sample-time"},
+                  {{"linearize", "a.json"}, "--measure"},
+                  {{"linearize", "a.json"}, "--settle"},
+                  {{"stability", "a.json"}, "--kick"},
+                  {{"stability", "a.json"}, "--kick-duration"}},
+                 {"nan", "inf", "1e999"});
+  for (const char* shard : {"0/99999999999999999999", "3/2", "1/", "/2", "1", "-1/2", "1/2x"})
+    EXPECT_TRUE(contains(loopwright_program({"sweep", "s.json", "-o", "d", "--shard", shard}).err, "--shard"))
+        << shard;
+}
+
+TEST(CommandLine, TheGreatestNumberOfARunIsOne) {
+  if (access(program().c_str(), X_OK) != 0) GTEST_SKIP() << program() << " is not built";
+  const Outcome outcome = loopwright_program({"run", "none.json", "--run", "9223372036854775807"});
+  EXPECT_EQ(outcome.code, 2) << "there is no such diagram";
+  EXPECT_FALSE(contains(outcome.err, "--run")) << outcome.err;
 }
 
 TEST(CommandLine, HelpSaysTheExitCodes) {

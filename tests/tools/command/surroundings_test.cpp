@@ -43,6 +43,42 @@ TEST_F(Surroundings, AnAnswerThatCannotBeWrittenIsAFailure) {
   }
 }
 
+TEST_F(Surroundings, AResultForAStandardOutputThatIsClosedIsAFailure) {
+  folder.with("data.csv", "t,u\n0,2\n1,2\n")
+      .with("e.json", R"({"loopwright": 1, "data": "data.csv", "time": "t",
+    "compare": {"c.y": {"column": "u", "unit": "1"}}})")
+      .with("sweep.json", R"({"loopwright": 1, "diagram": "small.json",
+    "axes": {"c.value": {"values": [1, 2]}}, "metrics": {"a": {"final": "x.y"}}})");
+  for (const char* command :
+       {"schema", "blocks", "blocks --markdown", "--help", "--version", "check small.json", "plan small.json",
+        "run small.json", "run small.json -q -o -", "linearize small.json", "linearize small.json --json -",
+        "compare small.json e.json", "compare small.json e.json --json -",
+        "sweep sweep.json --minimize a --evaluations 2"}) {
+    ASSERT_EQ(shell(std::string("$P ") + command + " >out 2>err"), 0) << command << text("err");
+    EXPECT_EQ(shell(std::string("$P ") + command + " >&- 2>err"), 1) << command;
+    EXPECT_NE(text("err").find("the standard output is closed"), std::string::npos) << command << text("err");
+  }
+}
+
+TEST_F(Surroundings, AClosedStandardOutputHasNoOtherName) {
+  for (const char* name : {"/dev/stdout", "/proc/self/fd/1"}) {
+    const std::string command = std::string("$P linearize small.json --json ") + name;
+    EXPECT_EQ(shell(command + " >out 2>err"), 0) << name << text("err");
+    EXPECT_NE(shell(command + " >&- 2>err"), 0) << name;
+  }
+}
+
+TEST_F(Surroundings, ASummaryOfResultsInFilesMayBeLost) {
+  folder.with("sweep.json", R"({"loopwright": 1, "diagram": "small.json",
+    "axes": {"c.value": {"values": [1, 2]}}, "metrics": {"a": {"final": "x.y"}}})");
+  for (const char* command :
+       {"run small.json -o o.csv", "run small.json --report o.html", "linearize small.json --json o.json",
+        "sweep sweep.json -o results", "sweep merge results", "sweep report results"})
+    EXPECT_EQ(shell(std::string("$P ") + command + " >&- 2>err"), 0) << command << text("err");
+  EXPECT_TRUE(text("o.csv").ends_with("\n1,2,2\n"));
+  EXPECT_NE(text("results/results.csv"), "");
+}
+
 TEST_F(Surroundings, AReaderThatGoesAwayEndsTheProgramWithoutASignal) {
   EXPECT_EQ(shell("set -o pipefail; $P schema 2>err | head -c 1 >out; exit ${PIPESTATUS[0]}"), 1);
   EXPECT_EQ(text("err"), "") << "it has what it wanted";

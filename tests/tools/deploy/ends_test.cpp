@@ -227,8 +227,8 @@ TEST_F(EndsOfTheProgram, FiguresThatCannotBeWrittenFailAfterTheStop) {
       close(STDOUT_FILENO);
       if (*where) dup2(open(where, O_WRONLY), STDOUT_FILENO);
     });
-    const int code = wait();
-    EXPECT_EQ(code, *where ? 1 : 0) << err() << "a closed one was not asked for";
+    EXPECT_EQ(wait(), 1) << err();
+    EXPECT_THAT(err(), HasSubstr("the figures cannot be written to the standard output"));
     expect_stopped(where);
     expect_log(where, 0.9);
   }
@@ -258,6 +258,26 @@ TEST_F(EndsOfTheProgram, AFullDiskEndsTheRunSafelyAndKeepsWhatWasWritten) {
   EXPECT_THAT(err(),
               AllOf(HasSubstr("the log cannot be written: File too large"), HasSubstr("loopwright recover")));
   expect_recoverable("full disk", 0.2);
+}
+
+TEST_F(EndsOfTheProgram, AJournalThatIsGoneIsNotSaidToBeKept) {
+  for (const char* how : {"removed", "truncated"}) {
+    begin(logged());
+    ASSERT_TRUE(wait_until_driven()) << err();
+    std::this_thread::sleep_for(300ms);
+    if (std::string_view(how) == "removed")
+      std::filesystem::remove(journal());
+    else
+      std::filesystem::resize_file(journal(), 0);
+    std::this_thread::sleep_for(200ms);
+    kill(process_, SIGINT);
+    EXPECT_EQ(wait(), 130) << how << err();
+    expect_stopped(how);
+    EXPECT_THAT(err(), AllOf(HasSubstr("the log is lost: its journal " + journal()),
+                             Not(HasSubstr("is kept in")), Not(HasSubstr("error: error:"))))
+        << how;
+    EXPECT_FALSE(std::filesystem::exists(log())) << how;
+  }
 }
 
 TEST_F(EndsOfTheProgram, AStalledDiskHoldsUpNeitherTheLoopNorTheStop) {
