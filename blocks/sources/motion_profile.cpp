@@ -40,8 +40,8 @@ template <class Real> struct MotionProfile {
     Real position, velocity, acceleration;
   };
   struct Mode {
-    Real pass, piece;
-  };  // piece -1: not started
+    Real pass, piece, from, until;
+  };  // piece -1: not started; it lasts in [from, until), s
   static constexpr auto describe() {
     return block(
         "A smooth motion through given velocities.",
@@ -65,17 +65,24 @@ template <class Real> struct MotionProfile {
   void check(const Checker& checker) const;
   void prepare(double);
   void decide(const Instant& now, Mode& mode) const {
-    const Real time = now.time, pass = periods.at(time);
-    mode.pass = passes > 0 ? minimum(pass, Real(passes - 1.0)) : pass;
-    mode.piece = Real(-1.0);
-    for (size_t i = 0; i < pieces.size(); ++i)
-      mode.piece = select((pass >= 0.0) & (periods.time(mode.pass, pieces[i].begin) <= time), Real(double(i)),
-                          mode.piece);
+    const Real time = now.time;
+    if (!any((time < mode.from) | (time >= mode.until))) return;
+    const Real pass = maximum(periods.at(time), Real(0.0)), last = passes > 0 ? passes - 1.0 : infinity;
+    mode.pass = minimum(pass, last);
+    mode.piece = Real(-1.0), mode.from = Real(-infinity);
+    mode.until = select(mode.pass < last, periods.time(mode.pass + 1.0), Real(infinity));
+    for (size_t i = 0; i < pieces.size(); ++i) {
+      const Real begin = periods.time(mode.pass, pieces[i].begin);
+      const auto has_begun = begin <= time;
+      mode.piece = select(has_begun, Real(double(i)), mode.piece);
+      mode.from = select(has_begun, begin, mode.from);
+      mode.until = select(has_begun, mode.until, minimum(mode.until, begin));
+    }
   }
   void outputs(const Instant& now, const Mode& mode, Out& out) const {
     const Piece p = piece_at(mode.piece);
     const auto waits = mode.piece < 0.0;
-    const Real t = select(waits, Real(0.0), now.time - periods.time(mode.pass, p.begin)), s = t / p.duration;
+    const Real t = select(waits, Real(0.0), now.time - mode.from), s = t / p.duration;
     Real share, integral, slope;  // w, ∫w ds, dw/ds
     if (shape == RampShape::raised_cosine) {
       const auto wave = sine_cosine(Real(pi * s));
