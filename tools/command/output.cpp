@@ -62,10 +62,9 @@ bool finish_answers() {
   note_failure(std::fflush(stdout) != 0);
   if (first_failure == 0) return !std::ferror(stdout);  // the code that printed a recording has reported it
   // A reader that stopped after reading what it needed, such as `head`, needs no message.
-  const bool is_closed = stdout_was_closed && first_failure == EBADF;
   if (first_failure != EPIPE)
     tell("error: the answer cannot be written: {}\n",
-         is_closed ? "the standard output is closed" : std::strerror(first_failure));
+         stdout_was_closed ? "the standard output is closed" : std::strerror(first_failure));
   return false;
 }
 

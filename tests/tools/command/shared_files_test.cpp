@@ -26,8 +26,8 @@ class SharedFiles : public ::testing::Test {
     "compare": {"x.y": {"column": "x", "unit": "1"}}})")
         .with("measured.csv", "t,x\n0,0\n0.5,1\n1,2\n")
         .with("t.json", R"({"loopwright": 1, "recordings": ["measured.csv"], "position": {"column": "x"},
-    "velocity": {"column": "x"}, "label": {"columns": ["x"]}, "velocities": [0.1], "kernel": "product"})")
-        .with("effects/one.json", R"({"loopwright": 1, "effect": "one"})")
+    "velocity": {"column": "x"}, "label": {"columns": ["x"]}, "velocities": [0.1], "kernel": "product",
+    "period": {"value": 1, "unit": "m"}})")
         .with("s.json", R"({"loopwright": 1, "diagram": "of_results.json",
     "axes": {"x.initial": {"values": [1, 2]}}, "metrics": {"a": {"final": "x.y"}}})")
         .with("of_results.json", R"({"loopwright": 1, "solver": {"stop": 1, "step": 0.125}, "blocks": {
@@ -74,9 +74,6 @@ TEST_F(SharedFiles, AFileThatAnInputNamesIsNoOutput) {
             "--json",
             "measured.csv"},
            {{"diagnose", "top.json", "e.json", "--report", "measured.csv"}, "--report", "measured.csv"},
-           {{"diagnose", "top.json", "e.json", "--effects", "effects", "--json", "effects/one.json"},
-            "--json",
-            "one.json"},
            {{"gp", "train", "t.json", "--model", "measured.csv"}, "--model", "measured.csv"},
            {{"deploy", "top.json", "--report", "data.csv"}, "--report", "data.csv"},
            {{"sweep", "s.json", "-o", "tables"}, "--output", "results.csv"}}) {

@@ -56,7 +56,7 @@ Experiment cut_open(const Experiment& experiment, const Plan& plan, Problems& pr
   Place place;
   const std::string* port = role_port(experiment, "input", &place);
   if (!port) {
-    problems.error(place, "/roles", "", fmt::format("{}: no role \"input\"", experiment.path)).expected =
+    problems.error(experiment.place, "/roles", "", "no role \"input\"").expected =
         "\"roles\": {\"input\": the port that the recorded force, current or voltage drives, …}";
     return cut;
   }
