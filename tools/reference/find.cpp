@@ -23,6 +23,14 @@ std::string words_of(const BlockInfo& info) {
   return in_lower_case(text);
 }
 
+/// Also "anti-windup" for "anti_windup". Short words would be found across the borders of others.
+bool says(const BlockInfo& info, const std::string& lower, const std::string& plain) {
+  constexpr size_t longest_short_word = 4;
+  const std::string words = words_of(info);
+  return words.find(lower) != std::string::npos ||
+         (plain.size() > longest_short_word && plain_name(words).find(plain) != std::string::npos);
+}
+
 std::string line(std::string_view name, std::string_view text) {
   return fmt::format("  {:<34} {}\n", name, text);
 }
@@ -48,7 +56,7 @@ std::string found_blocks(std::string_view words) {
       elsewhere += line("  " + block->info.type, block->info.sentence);
   }
   for (const auto& [type, block] : all_blocks())
-    if (!lower.empty() && words_of(block.info).find(lower) != std::string::npos && !shown.contains(type))
+    if (!name.empty() && !shown.contains(type) && says(block.info, lower, name))
       by_text += line(type, block.info.sentence);
   std::string text;
   if (!by_name.empty()) text += "blocks\n" + by_name;
