@@ -2,13 +2,14 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <set>
-#include "engine/block/registry.h"
 #include "engine/diagram/expression.h"
 #include "engine/json/json.h"
 #include "engine/json/reader.h"
 #include "tools/effects/effect_values.h"
+#include "tools/effects/fragment_text.h"
 #include "tools/effects/nest.h"
 #include "tools/effects/setting_change.h"
+#include "tools/effects/take_out.h"
 #include "tools/effects/wire_reader.h"
 
 namespace loopwright {
@@ -24,8 +25,9 @@ class Inserter {
   Inserter(std::shared_ptr<const SourceFile> file, const InsertionSite& site, const Effect& effect,
            const std::vector<double>& fitted, const RecordSizes& sizes, Problems& problems)
       : site_(site),
-        effect_(effect),
+        effect_(site.can_be_taken_out ? with_switch(effect) : effect),
         values_(values_of(effect, sizes, fitted)),
+        fragment_(effect_, values_, site.units),
         problems_(problems),
         place_{file, 0},
         nest_(std::move(file), site, problems) {}
@@ -36,6 +38,7 @@ class Inserter {
     choose_names();
     for (const Attachment& attachment : effect_.attachments) attach(attachment);
     if (failed_) return {};
+    new_parameters_.write();
     result_.text = nest_.text();
     return std::move(result_);
   }
@@ -126,86 +129,41 @@ class Inserter {
           used, [&](const std::string& u) { return u == name || u.starts_with(name + "_"); });
     };
     base_ = effect_.name;
-    for (int i = 2; is_used(base_); ++i) base_ = fmt::format("{}_{}", effect_.name, i);
+    for (int i = 2; is_used(base_) || used.contains(switch_of(base_)); ++i)
+      base_ = fmt::format("{}_{}", effect_.name, i);
+    fragment_.name(base_, needed_.size() == 1);
   }
-  std::string name_of(const std::string& block) const {
-    return needed_.size() == 1 ? base_ : base_ + "_" + block;
-  }
+  std::string name_of(const std::string& block) const { return fragment_.name_of(block); }
 
   void add_blocks(const Level& level, const Value::Member& before) {
     if (were_added_) return;
     were_added_ = true;
+    FragmentText::Surroundings around;
+    around.wire = [&](std::string_view role) {
+      if (role == "input") return input_source_;
+      return role == "position" && !measured_source_.empty() ? measured_source_ : source_of(role, level);
+    };
+    around.initial = [&](std::string_view name) {
+      const Value::Member* start = mass_ ? mass_->value.find(name) : nullptr;
+      return start ? to_json(start->value) : "";
+    };
     std::string text;
     for (const Value::Member& block : effect_.blocks.members) {
       if (!needed_.contains(block.name)) continue;
+      const std::string path = joined(level.prefix, name_of(block.name));
       text += member_before(level.diagram->find("blocks")->value, before, name_of(block.name),
-                            block_text(block, level));
-      result_.blocks.push_back(joined(level.prefix, name_of(block.name)));
+                            fragment_.block(block, path, around, result_.settings));
+      result_.blocks.push_back(path);
+      uses_switch_ |= mentions_switch(block.value);
     }
     level.document->edits.insert(before.place.offset, text);
+    if (uses_switch_) declare_switch(level);
   }
 
-  std::string block_text(const Value::Member& block, const Level& level) {
-    std::string settings, wires;
-    const std::string path = joined(level.prefix, name_of(block.name));
-    for (const Value::Member& member : block.value.members) {
-      if (member.name == "in") {
-        for (const Value::Member& port : member.value.members)
-          wires += fmt::format("{}\"{}\": {}", wires.empty() ? "" : ", ", port.name,
-                               wires_text(port.value, level));
-      } else if (const std::string value = setting_text(block, member, path); !value.empty()) {
-        settings += fmt::format("{}\"{}\": {}", settings.empty() ? "" : ", ", member.name, value);
-      }
-    }
-    if (wires.empty()) return "{" + settings + "}";
-    const bool is_long = name_of(block.name).size() + settings.size() + wires.size() > 95;
-    return fmt::format("{{{},{}\"in\": {{{}}}}}", settings, is_long ? "\n " : " ", wires);
-  }
-  std::string wires_text(const Value& port, const Level& level) {
-    if (port.kind != Kind::list) return wire_in(port, level);
-    std::string list;
-    for (const Value& item : port.items) list += (list.empty() ? "" : ", ") + wire_in(item, level);
-    return "[" + list + "]";
-  }
-  std::string wire_in(const Value& wire, const Level& level) {
-    const std::string& source = wire.text;
-    const size_t dot = source.find('.');
-    if (dot != source.npos)
-      return fmt::format("\"{}{}\"", name_of(source.substr(0, dot)), source.substr(dot));
-    if (source == "input") return fmt::format("\"{}\"", input_source_);
-    return fmt::format("\"{}\"", source_of(source, level));
-  }
-  /// A setting as written in the new diagram; empty: it is left out.
-  std::string setting_text(const Value::Member& block, const Value::Member& setting,
-                           const std::string& path) {
-    const std::string& text = setting.value.text;
-    if (text == "=initial_position" || text == "=initial_velocity") {  // those of the motor
-      const Value::Member* start = mass_ ? mass_->value.find(text.substr(1)) : nullptr;
-      return start ? to_json(start->value) : "";
-    }
-    const std::string number = value_text(setting.value, path + "." + setting.name);
-    if (!is_factor(type_of(block.value), setting.name)) return number;
-    return values_.with_unit(setting.value, effect_, site_.units);
-  }
-  std::string value_text(const Value& value, const std::string& path) {
-    if (value.kind == Kind::text && value.text.starts_with('=')) {
-      const std::string name = value.text.substr(1);
-      if (effect_.find(name)) result_.settings.emplace_back(name, path);
-      return readable_number(values_.evaluate(value));
-    }
-    std::string items;
-    if (value.kind == Kind::list) {
-      for (size_t i = 0; i < value.items.size(); ++i)
-        items += (i ? ", " : "") + value_text(value.items[i], fmt::format("{}.{}", path, i));
-      return "[" + items + "]";
-    }
-    if (value.kind == Kind::object) {
-      for (const Value::Member& m : value.members)
-        items += fmt::format("{}\"{}\": {}", items.empty() ? "" : ", ", m.name,
-                             value_text(m.value, path + "." + m.name));
-      return "{" + items + "}";
-    }
-    return to_json(value);
+  /// The parameter that takes the effect out, in the diagram of its blocks.
+  void declare_switch(const Level& level) {
+    if (result_.taken_out_by.empty()) result_.taken_out_by = joined(level.prefix, switch_of(base_));
+    new_parameters_.add(level, switch_of(base_), 1, "", effect_.title + ": 1; 0 takes it out");
   }
 
   // ---- Attachments ----
@@ -298,6 +256,7 @@ class Inserter {
       return;
     }
     const std::string source = found->block + "." + found->port;
+    measured_source_ = source;  // behind the errors that the measured position already has
     if (found->output && found->output_level.diagram == found->level.diagram) {
       add_blocks(found->level, *block);
       const Value* wire = &found->output->value;
@@ -333,7 +292,8 @@ class Inserter {
     SettingChange change{values_.evaluate(attachment.add), "", base_ + "_" + parameter, effect_.title};
     for (const NameUse& use : names_in(attachment.add.text))
       if (const EffectParameter* p = effect_.find(use.name)) change.unit = unit_in(p->unit, site_.units);
-    const ChangedSetting changed = add_to_setting(sum_level_, setting.value, change);
+    if (site_.can_be_taken_out) declare_switch(sum_level_), change.times = switch_of(base_);
+    const ChangedSetting changed = add_to_setting(sum_level_, setting.value, change, new_parameters_);
     if (changed == ChangedSetting::nothing) {
       auto& p = error(fmt::format("nothing can be added to the setting \"{}.{}\"", block_path, parameter));
       p.expected = "a number or an expression in " + change.unit, p.found = shown(setting.value);
@@ -345,16 +305,18 @@ class Inserter {
   }
 
   const InsertionSite& site_;
-  const Effect& effect_;
+  const Effect effect_;
   EffectValues values_;
+  FragmentText fragment_;
+  NewParameters new_parameters_;
   Problems& problems_;
   Place place_;
   Nest nest_;
   Insertion result_;
-  bool failed_ = false, were_added_ = false;
+  bool failed_ = false, were_added_ = false, uses_switch_ = false;
   Level sum_level_;
   const Value::Member *sum_ = nullptr, *mass_ = nullptr;
-  std::string mass_prefix_, base_, input_source_;
+  std::string mass_prefix_, base_, input_source_, measured_source_;
   std::set<std::string> needed_;
 };
 

@@ -12,6 +12,7 @@ struct InsertionSite {
   RolePorts roles;  ///< force is required; position and input if the effect needs them
   std::map<std::string, std::string> variants;  ///< block path → variant that contains the machine
   MachineUnits units;
+  bool can_be_taken_out = false;  ///< a parameter of the new diagram, "with_cogging", takes it out when 0
 };
 
 /// A port of an experiment whose signal is at other ports of the new diagram.
@@ -34,6 +35,7 @@ struct Insertion {
   std::vector<MovedPort> input_at;
   /// The role "input" with which a further effect of the input acts after this one; empty: unchanged.
   std::string input_behind;
+  std::string taken_out_by;  ///< the parameter that takes it out when 0: "axis.with_cogging"; empty: none
 };
 
 /// The diagram of `file` with the effect added at the ports of its roles; `fitted` are the effect's fitted

@@ -36,26 +36,43 @@ std::string unit_beside(const Nest::Level& level, const std::string& expression,
   return is_bare ? "" : si;
 }
 
-/// A new parameter of the diagram.
-void declare(const Nest::Level& level, const SettingChange& change, double number, const std::string& unit) {
-  const std::string text =
-      fmt::format(R"({{"value": {}, {}"description": "{}"}})", readable_number(number),
-                  unit.empty() ? "" : fmt::format(R"("unit": "{}", )", unit), change.description);
-  TextEdits& edits = level.document->edits;
-  const Value::Member* list = level.diagram->find("parameters");
-  if (list && !list->value.members.empty()) {
-    const Value::Member& first = list->value.members.front();
-    edits.insert(first.place.offset, member_before(list->value, first, change.parameter, text));
-    return;
-  }
-  const Value::Member& blocks = *level.diagram->find("blocks");
-  edits.insert(blocks.place.offset, member_before(*level.diagram, blocks, "parameters",
-                                                  fmt::format(R"({{"{}": {}}})", change.parameter, text)));
-}
-
 }  // namespace
 
-ChangedSetting add_to_setting(const Nest::Level& level, const Value& setting, const SettingChange& change) {
+void NewParameters::add(const Nest::Level& level, const std::string& name, double number,
+                        const std::string& unit, const std::string& description) {
+  auto own = std::ranges::find(diagrams_, level.diagram, [](const OfDiagram& d) { return d.level.diagram; });
+  if (own == diagrams_.end()) own = diagrams_.insert(own, {level, {}});
+  if (std::ranges::any_of(own->list, [&](const auto& known) { return known.first == name; })) return;
+  own->list.emplace_back(
+      name, fmt::format(R"({{"value": {}, {}"description": "{}"}})", readable_number(number),
+                        unit.empty() ? "" : fmt::format(R"("unit": "{}", )", unit), description));
+}
+
+void NewParameters::write() const {
+  for (const OfDiagram& own : diagrams_) {
+    TextEdits& edits = own.level.document->edits;
+    const Value::Member* list = own.level.diagram->find("parameters");
+    const bool has_others = list && !list->value.members.empty();
+    std::string text;
+    for (const auto& [name, value] : own.list)
+      text += has_others ? member_before(list->value, list->value.members.front(), name, value)
+                         : fmt::format("{}\"{}\": {}", text.empty() ? "" : ", ", name, value);
+    if (has_others) {
+      edits.insert(list->value.members.front().place.offset, text);
+      continue;
+    }
+    if (list) {  // an empty one
+      edits.insert(list->value.place.offset + 1, text);
+      continue;
+    }
+    const Value::Member& blocks = *own.level.diagram->find("blocks");
+    edits.insert(blocks.place.offset,
+                 member_before(*own.level.diagram, blocks, "parameters", "{" + text + "}"));
+  }
+}
+
+ChangedSetting add_to_setting(const Nest::Level& level, const Value& setting, const SettingChange& change,
+                              NewParameters& parameters) {
   const Value::Member* inner = setting.find("value");
   const Value::Member* unit = setting.find("unit");
   const Value& value = inner ? inner->value : setting;
@@ -67,7 +84,9 @@ ChangedSetting add_to_setting(const Nest::Level& level, const Value& setting, co
   if (value.kind == Kind::number) {
     const auto add = in_unit(change, written);
     if (!add) return ChangedSetting::nothing;
-    replace(readable_number(value.number + *add));
+    replace(change.times.empty() ? readable_number(value.number + *add)
+                                 : fmt::format("\"={} + {}*({})\"", readable_number(value.number),
+                                               change.times, readable_number(*add)));
     return ChangedSetting::number;
   }
   if (value.kind != Kind::text || !value.text.starts_with('=')) return ChangedSetting::nothing;
@@ -75,10 +94,10 @@ ChangedSetting add_to_setting(const Nest::Level& level, const Value& setting, co
   const std::string own = unit_beside(level, expression, change.unit);
   const auto add = in_unit(change, own.empty() ? written : own);
   if (!add) return ChangedSetting::nothing;
-  declare(level, change, *add, own);
+  parameters.add(level, change.parameter, *add, own, change.description);
   const bool has_lower_rank = expression.find_first_of("?<>=&|") != expression.npos;
-  replace(
-      fmt::format("\"={} + {}\"", has_lower_rank ? "(" + expression + ")" : expression, change.parameter));
+  const std::string added = change.times.empty() ? change.parameter : change.times + "*" + change.parameter;
+  replace(fmt::format("\"={} + {}\"", has_lower_rank ? "(" + expression + ")" : expression, added));
   return ChangedSetting::parameter;
 }
 
