@@ -93,6 +93,9 @@ class Validator {
       }
       return "";
     }
+    if (key == "minItems")
+      return need(!value.is_array() || value.size() >= rule.get<size_t>(),
+                  "fewer than " + rule.dump() + " items");
     if (key == "items") {
       for (size_t i = 0; value.is_array() && i < value.size(); ++i)
         if (const std::string text = fault(rule, value[i], at + "/" + std::to_string(i)); !text.empty())
