@@ -1,7 +1,8 @@
 /// value = column(t) of a recording, held from sample to sample or interpolated linearly
 ///
 /// The file is read once, during the check. A sample takes effect a millionth of its interval early, so that
-/// times printed with few digits are not late by a tick.
+/// times printed with few digits are not late by a tick. A row with the time and the value of the row before
+/// is read once.
 #include <algorithm>
 #include <memory>
 #include "engine/block.h"
@@ -102,8 +103,12 @@ void RecordedColumn::check(const Checker& checker) {
   if (!times || !scale) return;
   if (!unit.empty() || !values->unit.empty()) known_unit = kept_in_si(*scale);
   auto loaded = std::make_shared<Table>();
-  loaded->time = loaded->begin = times->values;
-  loaded->value = in_si(*values, *scale).values;
+  const std::vector<double> all = in_si(*values, *scale).values;
+  for (size_t i = 0; i < all.size(); ++i) {
+    const bool repeats = i > 0 && times->values[i] == times->values[i - 1] && all[i] == all[i - 1];
+    if (!repeats) loaded->time.push_back(times->values[i]), loaded->value.push_back(all[i]);
+  }
+  loaded->begin = loaded->time;
   for (size_t i = 1; i < loaded->time.size(); ++i) {
     const double step = loaded->time[i] - loaded->time[i - 1];
     loaded->begin[i] -= 1e-6 * step;

@@ -11,6 +11,7 @@
 #include "engine/record/csv_syntax.h"
 #include "engine/json/problem_limit.h"
 #include "engine/record/text.h"
+#include "models/real/fraction.h"
 
 namespace loopwright {
 namespace {
@@ -78,14 +79,65 @@ double plain_step(double mean, double median, double steps) {
   return std::abs(decimal - mean) * steps <= least_told * mean ? decimal : mean;
 }
 
-/// A grid that is even except for missing samples; without `on_grid` if it is not even.
+/// [s] The last digit with which the times are written; 0: they have more than nine.
+double last_digit(std::span<const double> times) {
+  constexpr double rounding = 1e-6;  // of the digit
+  for (double digit = 1; digit > 0.5e-9; digit /= 10) {
+    bool all = true;
+    for (size_t i = 0; i < times.size() && all; ++i) {
+      const double count = times[i] / digit;
+      all = std::abs(count - std::round(count)) <= std::max(rounding, 1e-15 * std::abs(count));
+    }
+    if (all) return digit;
+  }
+  return 0;
+}
+
+/// The shortest decimal, or else the simplest fraction of a second, that the digits of the times cannot
+/// distinguish from the mean step: 1/750 for stamps that were rounded to microseconds.
+double simplest_step(double mean, double digit, double steps) {
+  constexpr int most_digits = 4;
+  if (digit == 0 || steps == 0) return mean;
+  for (int digits = 1; digits <= most_digits; ++digits) {
+    const double decimal = csv::parse_number(fmt::format("{:.{}g}", mean, digits)).value_or(mean);
+    if (std::abs(decimal - mean) * steps <= digit) return decimal;
+  }
+  const double per_second = 1 / std::round(1 / mean);
+  if (std::abs(per_second - mean) * steps <= digit) return per_second;
+  const auto fraction = to_fraction(mean, digit / (steps * mean));
+  return fraction && fraction->numerator > 0 ? fraction->value() : mean;
+}
+
+/// [sample times] The spread of the times around a grid.
+double spread(std::span<const double> times, std::span<const int64_t> sample, double sample_time) {
+  double low = 0, high = 0;
+  for (size_t i = 0; i < times.size(); ++i) {
+    const double off = times[i] - times.front() - double(sample[i]) * sample_time;
+    low = std::min(low, off), high = std::max(high, off);
+  }
+  return (high - low) / sample_time;
+}
+
+/// A grid that is even except for missing samples; without `on_grid` if it is not even. Jitter and rounding
+/// can make the median step wrong, and missing samples the mean: the one with the smaller spread is right.
 TimeAxis even_but_for_gaps(std::span<const double> times, double median, double tolerance) {
   TimeAxis axis{times.front(), median, false};
-  const std::vector<int64_t> sample = sample_numbers(times, median);
+  const double digit = last_digit(times), all_steps = double(times.size() - 1);
+  std::vector<int64_t> sample = sample_numbers(times, median);
+  double even = mean_step(times, double(sample.back()));
+  double mean = mean_step(times, all_steps);
+  std::vector<int64_t> by_mean = sample_numbers(times, mean);
+  mean = mean_step(times, double(by_mean.back()));
+  by_mean = sample_numbers(times, mean);
+  mean = mean_step(times, double(by_mean.back()));
+  if (spread(times, by_mean, mean) < spread(times, sample, even))
+    sample = std::move(by_mean), even = median = mean;
+  const double steps = double(sample.back());
   axis.missing = sample.back() - int64_t(times.size() - 1);
-  const double even = mean_step(times, double(sample.back()));
-  axis.on_grid = worst_deviation(times, even, [&](size_t i) { return sample[i]; }) <= tolerance;
-  axis.sample_time = axis.on_grid ? even : plain_step(even, median, double(sample.back()));
+  const double simple = simplest_step(even, digit, steps), apart = spread(times, sample, simple);
+  const bool is_rounded = apart * simple <= 1.001 * digit;
+  axis.on_grid = is_rounded || worst_deviation(times, even, [&](size_t i) { return sample[i]; }) <= tolerance;
+  axis.sample_time = axis.on_grid ? simple : plain_step(even, median, steps);
   return axis;
 }
 
@@ -101,7 +153,12 @@ TimeAxis check_time(const Column& time, Problems& problems, const TimeOptions& o
 
   const double even = mean_step(times, double(times.size() - 1));
   const double deviation = worst_deviation(times, even, [](size_t i) { return i; });
-  if (deviation <= options.tolerance) return {times.front(), even, true, true};
+  const double digit = last_digit(times), all_steps = double(times.size() - 1);
+  const double simple = simplest_step(even, digit, all_steps);
+  if (deviation <= options.tolerance) return {times.front(), simple, true, true};
+  const auto by_row = [](size_t i) { return i; };
+  if (digit < 0.5 * simple && worst_deviation(times, simple, by_row) * simple <= 1.001 * digit)
+    return {times.front(), simple, true, true};  // a fast record with rounded stamps
 
   const auto tell = [&](std::string message, std::string hint) {
     if (options.must_be_regular)

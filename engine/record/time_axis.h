@@ -29,8 +29,9 @@ struct TimeOptions {
 /// Errors: no rows, NaN or infinite times, times that do not increase (each with its row, counted from 1, and
 /// its time). Gaps are warnings with row and time, and so is an uneven grid; both are errors with
 /// must_be_regular. If times do not increase, the axis is {0, 0, false}. All problems have the location
-/// `place`, such as the key that named the column. A sample time that is a short decimal is returned as such:
-/// 0.001, not 0.0010000000000000002.
+/// `place`, such as the key that named the column. A sample time that is a short decimal or
+/// another simple fraction is returned as such: 0.001, not 0.0010000000000000002, and 1/750 for stamps that
+/// were rounded to microseconds. Stamps that were only rounded lie on the grid.
 TimeAxis check_time(const Column& time, Problems& problems, const TimeOptions& options = {},
                     const Place& place = {});
 

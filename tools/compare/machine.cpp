@@ -77,10 +77,10 @@ bool measure_motion(const Experiment& experiment, const Plan& plan, MeasuredMoti
   m.start = grid.start(), m.sample_time = grid.sample_time(), m.missing = grid.missing();
   for (size_t k = 0; k < grid.rows(); ++k) m.time.push_back(m.start + double(k) * m.sample_time);
   if (x) {
-    m.raw_position = grid.measured(experiment.data.find(x->port)->values);
+    m.raw_position = at_even_instants(grid.measured(experiment.data.find(x->port)->values), grid.duration());
     m.position_unit = experiment.data.find(x->port)->unit;
   } else {
-    m.velocity = grid.measured(experiment.data.find(v->port)->values);
+    m.velocity = at_even_instants(grid.measured(experiment.data.find(v->port)->values), grid.duration());
     const std::string& unit = experiment.data.find(v->port)->unit;
     m.position_unit = unit == "Hz"           ? "1"
                       : unit.ends_with("/s") ? unit.substr(0, unit.size() - 2)
@@ -306,7 +306,9 @@ std::optional<Machine> find_machine(const std::string& diagram, const Experiment
         *input_port);
     return {};
   }
-  machine.motion.input = EvenGrid(experiment).held(experiment.data.find(input->port)->values);
+  const EvenGrid grid(experiment);
+  machine.motion.input =
+      mean_over_even_samples(grid.held(experiment.data.find(input->port)->values), grid.duration());
   machine.motion.input_unit = experiment.data.find(input->port)->unit;
   machine.plan =
       driven_plan(diagram, experiment, options, *input, *input_port, is_driven, machine.motion, why);

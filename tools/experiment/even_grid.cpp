@@ -6,11 +6,60 @@
 namespace loopwright {
 namespace {
 
-/// [samples] If more than a hundredth of the time stamps deviate further from the grid, this is not jitter:
-/// their median step is not their mean step. A few rows may have been delayed.
-constexpr double most_jitter = 5, most_held_up = 0.01;
-/// A row whose stamp is further behind the previous one follows a lost sample.
-constexpr double gap = 1.5;
+/// [samples] If more than a hundredth of the time stamps deviate further from the grid, these are not late
+/// stamps of even samples. A few rows may have been delayed.
+constexpr double most_late = 5, most_held_up = 0.01;
+/// [samples] A step of irregular times from which on samples are missing in it.
+constexpr double gap = 2.5;
+/// The times along which the measured signals are rougher by this factor are wrong.
+constexpr double clearly_rougher = 1.2;
+
+/// The median deviation of a signal from the cubic through the two rows before and the two behind each row,
+/// over the faster half of the rows; per unit of independent noise.
+double roughness(const std::vector<double>& at, const std::vector<double>& value) {
+  constexpr size_t reach = 2, most = 20000;
+  const size_t n = value.size(), step = std::max<size_t>(1, n / most);
+  std::vector<std::pair<double, double>> rows;  // speed, deviation
+  for (size_t i = reach; i + reach < n; i += step) {
+    const size_t around[] = {i - 2, i - 1, i + 1, i + 2};
+    double deviation = value[i], squares = 1;
+    for (size_t j : around) {
+      double weight = 1;
+      for (size_t other : around)
+        if (other != j) weight *= (at[i] - at[other]) / (at[j] - at[other]);
+      deviation -= weight * value[j], squares += weight * weight;
+    }
+    rows.emplace_back(std::abs(value[i + reach] - value[i - reach]),
+                      std::abs(deviation) / std::sqrt(squares));
+  }
+  if (rows.size() < 20) return 0;
+  const auto half = rows.begin() + std::ptrdiff_t(rows.size() / 2);
+  std::ranges::nth_element(rows, half);
+  const auto middle = half + (rows.end() - half) / 2;
+  std::ranges::nth_element(half, middle, rows.end(), {}, &std::pair<double, double>::second);
+  return middle->second;
+}
+
+/// Whether the measured signals are smoother along their own times than along even samples.
+bool times_are_own(const Experiment& experiment, const std::vector<double>& own,
+                   const std::vector<int64_t>& sample) {
+  const std::vector<double> even(sample.begin(), sample.end());
+  double ratio = 1;
+  for (const RecordedSignal& signal : experiment.compared) {
+    const Column* column = experiment.data.find(signal.port);
+    if (!column) continue;
+    const double along_own = roughness(own, column->values), along_even = roughness(even, column->values);
+    if (along_own > 0 && along_even > 0) ratio = std::max(ratio, along_even / along_own);
+  }
+  return ratio > clearly_rougher;
+}
+
+/// The instants of samples of these durations, in sample times from the first.
+std::vector<double> instants(const std::vector<double>& duration) {
+  std::vector<double> at{0};
+  for (size_t k = 0; k + 1 < duration.size(); ++k) at.push_back(at.back() + duration[k]);
+  return at;
+}
 
 }  // namespace
 
@@ -23,9 +72,18 @@ EvenGrid::EvenGrid(const Experiment& experiment) : sample_time_(experiment.time.
   std::ranges::nth_element(starts, starts.begin() + std::ptrdiff_t(starts.size() / 2));
   const double middle = starts[starts.size() / 2];
   const auto far = std::ranges::count_if(
-      starts, [&](double start) { return std::abs(start - middle) > most_jitter * sample_time_; });
-  if (double(far) > most_held_up * double(time.size())) {
-    by_time(time);
+      starts, [&](double start) { return std::abs(start - middle) > most_late * sample_time_; });
+  const bool is_irregular = !experiment.time.on_grid && double(far) > most_held_up * double(time.size());
+  std::vector<double> own;
+  if (!experiment.time.on_grid)
+    for (double t : time) own.push_back((t - time.front()) / sample_time_);
+  if (is_irregular || (!own.empty() && times_are_own(experiment, own, sample))) {
+    std::vector<int64_t> behind(time.size());  // samples up to the next row
+    for (size_t row = 0; row + 1 < time.size(); ++row)
+      behind[row] = !is_irregular                   ? sample[row + 1] - sample[row]
+                    : own[row + 1] - own[row] > gap ? std::llround(own[row + 1] - own[row])
+                                                    : 1;
+    by_time(time, behind);
     return;
   }
   start_ = experiment.time.on_grid ? time.front() : std::round(middle / sample_time_) * sample_time_;
@@ -44,21 +102,23 @@ void EvenGrid::by_sample(const std::vector<int64_t>& sample) {
   for (double fraction : fraction_) missing_.push_back(fraction > 0);
 }
 
-void EvenGrid::by_time(const std::vector<double>& time) {
-  start_ = std::ceil(time.front() / sample_time_) * sample_time_;
-  for (double t : time) place_.push_back((t - start_) / sample_time_);
-  const auto samples = size_t(std::max(place_.back(), 0.0));
-  size_t row = 0;
-  bool is_any_missing = false;
-  for (size_t k = 0; k < samples; ++k) {
-    while (row + 2 < time.size() && place_[row + 1] <= double(k) + 1e-6) ++row;
-    const double step = place_[row + 1] - place_[row];
-    row_.push_back(row);
-    fraction_.push_back(std::clamp((double(k) - place_[row]) / step, 0.0, 1.0));
-    missing_.push_back(step > gap && fraction_.back() > 0);
-    is_any_missing |= missing_.back() != 0;
+void EvenGrid::by_time(const std::vector<double>& time, const std::vector<int64_t>& samples_behind) {
+  start_ = time.front();
+  for (size_t row = 0; row < time.size(); ++row) {
+    place_.push_back((time[row] - start_) / sample_time_);
+    const double count = double(std::max<int64_t>(samples_behind[row], 1));
+    for (double i = 0; i < count && (i == 0 || row + 1 < time.size()); ++i) {
+      row_.push_back(row), fraction_.push_back(i / count), missing_.push_back(i > 0);
+      duration_.push_back(row + 1 < time.size() ? (time[row + 1] - time[row]) / sample_time_ / count : 1.0);
+    }
   }
-  if (!is_any_missing) missing_.clear();
+  if (std::ranges::find(missing_, char(1)) == missing_.end()) missing_.clear();
+  if (duration_.size() < 2) return;
+  const double mean =
+      place_.back() / double(duration_.size() - 1);  // so that the even grid ends with the rows
+  sample_time_ *= mean;
+  for (double& place : place_) place /= mean;
+  for (double& duration : duration_) duration /= mean;
 }
 
 /// Per sample: slope of the parabola through the row and the two rows before or after it.
@@ -100,6 +160,43 @@ std::vector<double> EvenGrid::held(const std::vector<double>& column) const {
   values.reserve(row_.size());
   for (size_t row : row_) values.push_back(column[row]);
   return values;
+}
+
+std::vector<double> at_even_instants(const std::vector<double>& values, const std::vector<double>& duration) {
+  if (duration.empty() || values.size() < 4) return values;
+  const std::vector<double> at = instants(duration);
+  std::vector<double> even;
+  for (size_t k = 0, i = 0; k < values.size(); ++k) {
+    const double now = std::min(double(k), at.back());
+    while (i + 2 < at.size() && at[i + 1] <= now) ++i;
+    const size_t first = std::clamp<size_t>(i, 1, at.size() - 3) - 1;
+    double value = 0;
+    for (size_t j = first; j < first + 4; ++j) {
+      double weight = 1;
+      for (size_t other = first; other < first + 4; ++other)
+        if (other != j) weight *= (now - at[other]) / (at[j] - at[other]);
+      value += weight * values[j];
+    }
+    even.push_back(value);
+  }
+  return even;
+}
+
+std::vector<double> mean_over_even_samples(const std::vector<double>& held,
+                                           const std::vector<double>& duration) {
+  if (duration.empty()) return held;
+  const std::vector<double> at = instants(duration);
+  std::vector<double> mean(held.size());
+  for (size_t k = 0, i = 0; k < held.size(); ++k) {
+    const double end = double(k) + 1;
+    for (double now = double(k); now < end;) {
+      while (i + 1 < at.size() && at[i + 1] <= now) ++i;
+      const double until = i + 1 < at.size() ? std::min(end, at[i + 1]) : end;
+      mean[k] += (until - now) * held[i];
+      now = until;
+    }
+  }
+  return mean;
 }
 
 std::string too_many_missing(const Experiment& experiment) {

@@ -5,34 +5,48 @@
 
 namespace loopwright {
 
-/// Rows whose time stamps only jitter are placed on the grid one after the other. Samples without a row, such
-/// as lost samples of a device, keep their position on the grid, so later rows are not shifted forward.
+/// The samples of a record one after the other, with those that have no row, such as lost samples of a
+/// device, in their places, so that later rows are not shifted forward.
+///
+/// Times that are not even have one of two causes. Either the rows were sampled evenly and their stamps came
+/// late: then each row is a sample of the grid. Or they were sampled at these times: then samples differ in
+/// `duration`. The measured signals tell which: a smooth motion is rough along the wrong times.
 class EvenGrid {
  public:
   explicit EvenGrid(const Experiment& experiment);
 
   double start() const { return start_; }              ///< [s]
-  double sample_time() const { return sample_time_; }  ///< [s] the median if time stamps jitter
+  double sample_time() const { return sample_time_; }  ///< [s] the mean if samples differ
   size_t rows() const { return row_.size(); }
   /// Samples without a row; empty when there are none.
   const std::vector<char>& missing() const { return missing_; }
-  /// A measured column on the grid. Missing samples are bridged by a curve with the values and slopes of the
-  /// rows around them.
+  /// [sample times] From each sample to the next; empty when all are 1.
+  const std::vector<double>& duration() const { return duration_; }
+  /// A measured column at the samples. Missing samples are bridged by a curve with the values and slopes of
+  /// the rows around them.
   std::vector<double> measured(const std::vector<double>& column) const;
-  /// A command on the grid: held over missing samples, as a device holds it.
+  /// A command from each sample on: held over missing samples, as a device holds it.
   std::vector<double> held(const std::vector<double>& column) const;
 
  private:
   void by_sample(const std::vector<int64_t>& sample);
-  void by_time(const std::vector<double>& time);
+  void by_time(const std::vector<double>& time, const std::vector<int64_t>& samples_behind);
   double slope_at(const std::vector<double>& column, size_t row, bool is_before) const;
 
   double start_ = 0, sample_time_ = 0;
   std::vector<size_t> row_;       // at each sample its row, or the previous one
   std::vector<double> fraction_;  // fraction of the way to the next row
   std::vector<double> place_;     // [samples] of each row
+  std::vector<double> duration_;
   std::vector<char> missing_;
 };
+
+/// Values at samples of these durations as they were at even instants, by cubics through the four samples
+/// around each. Unchanged without durations.
+std::vector<double> at_even_instants(const std::vector<double>& values, const std::vector<double>& duration);
+/// The mean over each even sample of a command that is held from sample to sample.
+std::vector<double> mean_over_even_samples(const std::vector<double>& held,
+                                           const std::vector<double>& duration);
 
 /// A sentence if too many samples are missing for the record to be used; otherwise empty.
 std::string too_many_missing(const Experiment& experiment);

@@ -146,11 +146,43 @@ class Loader {
       return;
     }
     const size_t before = problems_.list().size();
-    const Recording data = read_recording(result_->data_path, problems_);
+    Recording data = read_recording(result_->data_path, problems_);
     if (data.columns.empty() || has_errors_from(before)) return;
+    leave_out_repeats(file, data, *member);
     read_time(file, data, *member);
     for (auto* list : {&result_->drives, &result_->compared})
       for (RecordedSignal& signal : *list) add_column(data, signal);
+  }
+  /// A row that a logger wrote twice, with the same time and the same numbers, is read once.
+  void leave_out_repeats(const Value& file, Recording& data, const Value::Member& names_data) {
+    const Value::Member* named = file.find("time");
+    Problems own;  // reported when the columns are read
+    const auto error = [&](std::string message) -> Problem& {
+      return own.error({}, "", "", std::move(message));
+    };
+    const auto time = time_in_seconds(data, named ? reader_.text(file, "time") : "", error);
+    if (!time || result_->is_map) return;
+    std::vector<const Column*> read;
+    for (const auto* list : {&result_->drives, &result_->compared})
+      for (const RecordedSignal& signal : *list)
+        if (const Column* column = find_column(data, signal.column, error)) read.push_back(column);
+    std::vector<char> repeats(time->values.size());
+    size_t count = 0;
+    for (size_t row = 1; row < repeats.size(); ++row) {
+      repeats[row] =
+          time->values[row] == time->values[row - 1] && std::ranges::all_of(read, [&](const Column* column) {
+            return column->values[row] == column->values[row - 1];
+          });
+      count += size_t(repeats[row]);
+    }
+    if (count == 0) return;
+    for (Column& column : data.columns) {
+      size_t row = 0;
+      std::erase_if(column.values, [&](double) { return repeats[row++] != 0; });
+    }
+    problems_.warning(names_data.place, "/data", "",
+                      fmt::format("{} row{} the same time and numbers as the row before: {} read once", count,
+                                  count == 1 ? " has" : "s have", count == 1 ? "it is" : "they are"));
   }
   bool has_errors_from(size_t begin) const {
     const auto& list = problems_.list();

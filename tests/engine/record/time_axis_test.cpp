@@ -48,6 +48,27 @@ TEST(TimeAxis, ToleratesRoundingAndNoMore) {
   EXPECT_TRUE(check_time(jitter, none, {.tolerance = 0.05}).regular);
 }
 
+TEST(TimeAxis, RecognizesRoundedStamps) {
+  for (const double rate : {750.0, 1024.0, 51200.0, 3.0})
+    for (const double digit : {1e-4, 1e-6, 1e-7}) {
+      if (digit > 0.4 / rate) continue;
+      SCOPED_TRACE(testing::Message() << rate << " Hz, digit " << digit);
+      Column stamps{"t", "s", {}};
+      for (int k = 0; k < 20'000; ++k) stamps.values.push_back(std::round((0.3 + k / rate) / digit) * digit);
+      Problems problems;
+      const TimeAxis axis = check_time(stamps, problems);
+      EXPECT_TRUE(axis.on_grid && axis.regular);
+      EXPECT_EQ(axis.sample_time, 1 / rate) << "to the last bit";
+      EXPECT_EQ(problems.text(), "");
+      stamps.values.erase(stamps.values.begin() + 700);
+      Problems of_gap;
+      const TimeAxis with_gap = check_time(stamps, of_gap);
+      EXPECT_TRUE(with_gap.on_grid && !with_gap.regular);
+      EXPECT_EQ(with_gap.missing, 1);
+      EXPECT_EQ(with_gap.sample_time, 1 / rate);
+    }
+}
+
 TEST(TimeAxis, NamesGapsWithRowAndTime) {
   Column column = grid(0, 0.001, 100);
   column.values.erase(column.values.begin() + 50, column.values.begin() + 53);

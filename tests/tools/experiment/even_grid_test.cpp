@@ -1,5 +1,5 @@
 // Rows of a record at their correct times, whatever is missing between them.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -83,6 +83,57 @@ TEST(EvenGrid, LossesAmongTremblingStampsAreCounted) {
   const EvenGrid grid(e);
   ASSERT_EQ(grid.rows(), 5000u);
   for (size_t k : {100, 101, 3000}) EXPECT_TRUE(grid.missing()[k]) << k;
+}
+
+/// Rows sampled at jittering instants, some of them lost; or evenly, with stamps that jitter.
+Experiment jittering(bool samples_jitter) {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> jitter(-0.3 * dt, 0.3 * dt);
+  std::vector<double> times, position;
+  for (int k = 0; k < 5000; ++k) {
+    const double stamp = k * dt + (k ? jitter(random) : 0);
+    if (k % 90 == 50) continue;
+    times.push_back(stamp), position.push_back(std::sin(9 * (samples_jitter ? stamp : k * dt)));
+  }
+  Experiment e = record(times);
+  e.data.columns.push_back({"x", "m", position});
+  e.compared.emplace_back();
+  e.compared.back().port = "x";
+  return e;
+}
+
+TEST(EvenGrid, RowsSampledAtJitteringInstantsKeepThem) {
+  const Experiment e = jittering(true);
+  const EvenGrid grid(e);
+  ASSERT_EQ(grid.rows(), 5000u);
+  ASSERT_EQ(grid.duration().size(), 5000u);
+  EXPECT_EQ(std::ranges::count(grid.missing(), char(1)), 56);
+  const std::vector<double> x = grid.measured(e.data.columns[1].values);
+  double t = grid.start();
+  for (size_t k = 0; k < grid.rows(); ++k) {
+    EXPECT_NEAR(x[k], std::sin(9 * t), 1e-6) << k;
+    t += grid.duration()[k] * grid.sample_time();
+  }
+  const std::vector<double> even = at_even_instants(x, grid.duration());
+  for (size_t k = 0; k < grid.rows(); ++k)
+    EXPECT_NEAR(even[k], std::sin(9 * (grid.start() + double(k) * grid.sample_time())), 1e-6) << k;
+}
+
+TEST(EvenGrid, EvenRowsWithJitteringStampsAreEven) {
+  const Experiment e = jittering(false);
+  const EvenGrid grid(e);
+  EXPECT_TRUE(grid.duration().empty());
+  const std::vector<double> x = grid.measured(e.data.columns[1].values);
+  ASSERT_EQ(x.size(), 5000u);
+  for (size_t k = 0; k < x.size(); ++k) EXPECT_NEAR(x[k], std::sin(9 * double(k) * dt), 1e-6) << k;
+}
+
+TEST(EvenGrid, TheMeanOfAHeldCommandOverEvenSamplesKeepsItsSum) {
+  const std::vector<double> held{1, 5, 2, 4}, duration{0.5, 1.5, 0.75, 1.25};
+  const std::vector<double> mean = mean_over_even_samples(held, duration);
+  EXPECT_THAT(mean, testing::ElementsAre(testing::DoubleEq(3), testing::DoubleEq(5), testing::DoubleEq(2.5),
+                                         testing::DoubleEq(4)));
+  EXPECT_EQ(mean_over_even_samples(held, {}), held);
 }
 
 TEST(EvenGrid, ARecordWithMoreGapsThanRowsIsRefused) {
