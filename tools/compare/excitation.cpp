@@ -101,6 +101,9 @@ double saturated_part(const MeasuredMotion& m) {
   return double(rows) / double(m.rows());
 }
 
+/// Shifts are tried in such steps, and told if they are at least two steps and so long [s].
+constexpr double lag_step_s = 1e-3, least_late_s = 7.5e-3;
+
 /// The force produced by the input compared with the force that the model needs: slope, correlation, and time
 /// shift in samples.
 struct InputMatch {
@@ -114,11 +117,12 @@ InputMatch match_input(const MeasuredMotion& m, const ForceResidual& residual) {
   std::vector<double> needed(m.rows());
   for (size_t k = 0; k < m.rows(); ++k) needed[k] = m.force[k] - residual.value[k];
   const int most = whole_between(std::ceil(0.1 / m.sample_time), 0, int(m.rows()));
+  const int step = std::max(1, whole_between(std::round(lag_step_s / m.sample_time), 0, most));
   InputMatch match;
   double at_zero = 0, best = 1e300;
-  for (int lag = -most; lag <= most; ++lag) {
+  for (int lag = -(most / step) * step; lag <= most; lag += step) {
     double uf = 0, uu = 0, ff = 0;
-    for (size_t k = 0; k < m.rows(); ++k) {
+    for (size_t k = 0; k < m.rows(); k += size_t(step)) {
       const ptrdiff_t other = ptrdiff_t(k) - lag;
       if (!m.counts[k] || other < 0 || other >= ptrdiff_t(m.rows())) continue;
       const double u = m.force[size_t(other)], f = needed[k];
@@ -132,7 +136,7 @@ InputMatch match_input(const MeasuredMotion& m, const ForceResidual& residual) {
     if (left < best) best = left, match.late_samples = lag;
   }
   match.gained = at_zero > 0 ? 1 - best / at_zero : 0;
-  match.is_at_end = std::abs(match.late_samples) == most;
+  match.is_at_end = std::abs(match.late_samples) + step > most;
   return match;
 }
 
@@ -152,7 +156,8 @@ void check_input(const MeasuredMotion& m, const ForceResidual& residual, std::ve
          "or the mass of the model",
          size > 20 || size < 0.05});
   const double late_s = match.late_samples * m.sample_time;
-  if (std::abs(match.late_samples) >= 8 && match.gained > 0.6 && match.slope > 0 && !match.is_at_end)
+  if (std::abs(match.late_samples) > 1 && std::abs(late_s) >= least_late_s && match.gained > 0.6 &&
+      match.slope > 0 && !match.is_at_end)
     faults.push_back(
         {"unsynchronised", fmt::format("input and motion fit best when shifted by {:.3g} ms", 1e3 * late_s),
          "effects that depend on acceleration or on fast changes of the input cannot be told from this "

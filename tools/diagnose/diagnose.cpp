@@ -1,10 +1,11 @@
 #include "tools/diagnose/diagnose.h"
 #include <algorithm>
 #include <cmath>
+#include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/catalogue.h"
 #include "tools/diagnose/search/conclude.h"
 #include "tools/diagnose/search/doubt.h"
-#include "tools/diagnose/verdict/remaining_force.h"
+#include "tools/diagnose/search/remaining_force.h"
 #include "tools/diagnose/verdict/improve.h"
 #include "tools/diagnose/search/prepare.h"
 #include "tools/diagnose/search/search.h"
@@ -126,8 +127,7 @@ class Inquiry {
   }
   /// Whether the held-out rows are explained much worse than the fitted rows.
   bool holds_out_something_else(const Conclusion& conclusion) const {
-    constexpr double most_held_out = 1.5;
-    return held_out_mean_square() > most_held_out * std::max(1.0, conclusion.estimate.mean_square);
+    return held_out_mean_square() > criteria::most_held_out * std::max(1.0, conclusion.estimate.mean_square);
   }
   void fit_all_rows() {
     for (Trial& trial : trials_.list) trial.held_out_from = trial.usable.size();
@@ -185,13 +185,12 @@ Conclusion conclusion_from(Inquiry& inquiry, std::vector<RecordFinding>& finding
 /// In the order of the staircase; but members that another effect could replace come after certain members,
 /// before the optional ones.
 std::vector<size_t> ranked(const Conclusion& conclusion, const Staircase& staircase) {
-  constexpr double sure = 0.9;
   size_t needed = 0;
   for (const DiagnosisStep& step : staircase.steps)
     if (!step.is_optional) needed += step.added.size();
   std::vector<size_t> order = staircase.order;
   std::stable_partition(order.begin(), order.begin() + std::ptrdiff_t(needed),
-                        [&](size_t m) { return conclusion.inclusion[m] >= sure; });
+                        [&](size_t m) { return conclusion.inclusion[m] >= criteria::sure; });
   return order;
 }
 
@@ -236,6 +235,7 @@ void tell_errors(const Trials& trials, const Conclusion& conclusion, const Inqui
   result.error_before = error(result.steps.front()), result.error_after = error(result.steps.back());
   const Noise& noise = conclusion.estimate.noise;
   result.noise_floor = residual_floor(trials, noise);
+  result.rows = fitted_numbers(trials) / trials.ports();
   result.mean_square = conclusion.estimate.mean_square;
   result.held_out_mean_square = inquiry.held_out_mean_square();
   result.portmanteau = conclusion.portmanteau;
@@ -279,9 +279,12 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   };
   const Catalogue catalogue = make_catalogue(folders, units, sizes, why_not);
   std::vector<InverseDynamics> inverse;
-  for (Trial& trial : trials.list) inverse.push_back(inverse_dynamics(trial, trials.rest_speed));
+  for (Trial& trial : trials.list) inverse.push_back(inverse_dynamics(trial));
+  trials.inverse = &inverse;
   Diagnosis result;
-  result.findings = look_at_records(trials, inverse), result.not_looked_for = catalogue.left_out;
+  result.findings = look_at_records(trials, inverse);
+  if (auto finding = too_few_rows(trials)) result.findings.push_back(std::move(*finding));
+  result.not_looked_for = catalogue.left_out;
   Inquiry inquiry(trials, motion, catalogue, sizes, progress);
   const Conclusion conclusion = conclusion_from(inquiry, result.findings);
   result.holds_out = std::ranges::any_of(

@@ -78,6 +78,7 @@ struct Diagnosis {
   std::vector<std::string> remainder_variables;  ///< on which the remainder depends
   std::vector<RemainderShare> dependence;
   bool was_interrupted = false;  ///< no other member has a meaning, nothing was written
+  size_t rows = 0;               ///< fitted rows that count: those behind the verdict
   double mean_square = 0, held_out_mean_square = 0, portmanteau = 0;
   double white_force = 0, slow_force = 0, slow_force_time_s = 0;
   std::vector<double> measurement_noise;

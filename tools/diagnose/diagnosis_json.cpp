@@ -45,6 +45,7 @@ std::string to_json(const Diagnosis& d) {
   for (const NotLookedFor& n : d.not_looked_for)
     for (const std::string& effect : n.effects)
       json["not_looked_for"].push_back({{"effect", effect}, {"why", n.why}});
+  json["prediction_errors"]["rows"] = d.rows;
   json["prediction_errors"]["mean_square"] = d.mean_square;
   if (d.holds_out) json["prediction_errors"]["held_out_mean_square"] = d.held_out_mean_square;
   json["prediction_errors"]["portmanteau_40"] = d.portmanteau;

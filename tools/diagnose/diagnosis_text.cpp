@@ -64,6 +64,7 @@ std::string to_text(const Diagnosis& d) {
                      held_out(shown(step.held_out_force_rmse, d.force_unit)),
                      shown(step.simulation_rmse, d.measured_unit), step.is_optional ? "  optional" : ""));
   line(fmt::format("  {:<42} {:>14}", "noise alone", shown(d.noise_floor, d.force_unit)));
+  line(fmt::format("This rests on {} rows of the record in motion.", d.rows));
   for (const SuggestedExperiment& e : d.suggested)
     line(fmt::format("To tell {} from {}: {}", e.between, e.and_effect, e.text));
   for (const RecordFinding& f : d.findings) line(fmt::format("The record: {}; {}.", f.what, f.cost));

@@ -13,6 +13,8 @@ Noise noise_of_record() {
   return noise;
 }
 
+constexpr Pace waits{0.002, 15, 50};
+
 struct Predicted {
   RecordedAxis files;
   AxisModel model;
@@ -26,7 +28,7 @@ struct Predicted {
         axis(model.linearize()),
         gains(gains_of(axis, noise_of_record(), model.nominal_inertia())),
         drives{model.record().input, std::vector<double>(model.record().rows(), 0.0), {}, {}, {}} {}
-  Prediction run() { return predict(model, axis, gains, drives, 0.002); }
+  Prediction run() { return predict(model, axis, gains, drives, waits); }
 };
 
 Truth short_record() {
@@ -79,7 +81,7 @@ TEST(Predictor, OtherGainsNeedNoOtherRun) {
   Noise other = noise_of_record();
   other.white *= 3, other.measurement[0] *= 0.5, other.memory = 1, other.step = 0.002;
   const Gains gains = gains_of(p.axis, other, p.model.nominal_inertia());
-  const std::vector<double> expected = predict(p.model, p.axis, gains, p.drives, 0.002).error;
+  const std::vector<double> expected = predict(p.model, p.axis, gains, p.drives, waits).error;
   const std::vector<double> error = with_gains(p.axis, first, p.gains, gains);
   double off = 0, size = 0;
   for (size_t k = 0; k < error.size(); ++k)

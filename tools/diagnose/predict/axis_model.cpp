@@ -30,6 +30,16 @@ void keep_only(Plan& plan, const std::vector<Number>& wanted) {
   });
 }
 
+/// Shorter ticks, so that samples can have any length.
+void divide_ticks(Plan& plan) {
+  constexpr int64_t parts = 1 << 16;
+  plan.clock.base.denominator *= parts;
+  for (int64_t* ticks : {&plan.step_ticks, &plan.record_ticks, &plan.start_tick, &plan.stop_tick})
+    *ticks *= parts;
+  for (Rate& rate : plan.rates) rate.period *= parts, rate.offset *= parts;
+  for (Plan::Block& block : plan.blocks) block.period *= parts, block.offset *= parts;
+}
+
 /// "axis.mass.mass": the inertia on which this force acts.
 std::string inertia_parameter(const Plan& plan, Run<double>& run, Number force) {
   for (const Plan::Block& block : plan.blocks) {
@@ -106,6 +116,9 @@ AxisModel::AxisModel(const std::string& path, const std::string& experiment_path
     if (behind >= 0 && is_sampled_between(*changed, behind, port.number)) port.number = behind;
   }
   silence(*changed, input_), silence(*changed, injected_);
+  if (!record_.duration.empty()) divide_ticks(*changed);
+  sample_ticks_ = record_.sample_time / changed->clock.time(1);
+  changed->step_ticks = std::max<int64_t>(1, std::llround(sample_ticks_));
   std::vector<Number> wanted{force_, position_, velocity_};
   for (const MeasuredPort& port : record_.measured) wanted.push_back(port.number);
   keep_only(*changed, wanted);
@@ -168,10 +181,10 @@ void AxisModel::place(double position, double velocity) {
   if (velocity_ >= plan_->signals) numbers_[velocity_] = velocity;
 }
 
-void AxisModel::step(double input, double force) {
+void AxisModel::step(double input, double force, double duration) {
   numbers_[input_] = input;
   numbers_[injected_] = force;
-  const int64_t end = run_->now().tick + plan_->step_ticks;
+  const int64_t end = run_->now().tick + std::max<int64_t>(1, std::llround(duration * sample_ticks_));
   while (run_->now().tick < end) run_->step_fixed(end, false, [] {});
   if (all_outputs_) run_->evaluate(0, true);
 }

@@ -62,8 +62,9 @@ class AxisModel {
 
   /// Back to the start: position and velocity as given, everything else at the diagram's initial values.
   void start(double position, double velocity);
-  /// Advances by a sample with held input and held force (added to the force role; pushes forward).
-  void step(double input, double force);
+  /// Advances by a sample, or `duration` sample times, with held input and held force (added to the force
+  /// role; pushes forward).
+  void step(double input, double force, double duration = 1);
   double position() const;
   double velocity() const;
   double measured(size_t port) const;
@@ -103,6 +104,7 @@ class AxisModel {
   Eigen::VectorXd sample_from(const Eigen::VectorXd& states, double input, double force);
 
   std::shared_ptr<const Plan> plan_;
+  double sample_ticks_ = 1;
   std::unique_ptr<Run<double>> run_;
   double* numbers_ = nullptr;  // the arena's
   Number input_ = -1, injected_ = -1, force_ = -1, position_ = -1, velocity_ = -1;

@@ -85,7 +85,8 @@ LinearAxis AxisModel::linearize_motion() {
                          (2 * change_of_u);
     const Eigen::VectorXd moved = sample_from(at, u, force_size) - sample_from(at, u, 0);
     for (Eigen::Index i = 0; i < n; ++i) {
-      const double change = std::max(1e-2 * std::abs(moved[i]), 1e-9);
+      // Far from zero a smaller change would drown in rounding.
+      const double change = std::max({1e-2 * std::abs(moved[i]), 1e-9, 1e-7 * std::abs(at[i])});
       Eigen::VectorXd up = at, down = at;
       up[i] += change, down[i] -= change;
       const Eigen::VectorXd high = sample_from(up, u, 0);

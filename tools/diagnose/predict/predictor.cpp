@@ -158,6 +158,7 @@ Path Path::first_samples(size_t count) const {
   for (auto* list : {&shorter.position, &shorter.velocity, &shorter.acceleration, &shorter.input,
                      &shorter.force, &shorter.predicted_position})
     list->resize(count);
+  if (!input_slope.empty()) shorter.input_slope.resize(count);
   shorter.rests.resize(count), shorter.turns.resize(count);
   return shorter;
 }
@@ -240,8 +241,15 @@ Prediction balance(AxisModel& model, const Gains& gains, const Drives& drives) {
 
 }  // namespace
 
+double correction_time(const LinearAxis& axis, const Gains& gains) {
+  const Eigen::Index n = axis.A.rows();
+  const Eigen::MatrixXd closed = axis.A * (Eigen::MatrixXd::Identity(n, n) - gains.K.topRows(n) * axis.C);
+  const double slowest = closed.eigenvalues().cwiseAbs().maxCoeff();
+  return slowest > 0 ? -1 / std::log(std::min(slowest, 1 - 1e-9)) : 0;
+}
+
 Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains, const Drives& drives,
-                   double rest_speed) {
+                   const Pace& pace) {
   const AxisRecord& record = model.record();
   if (record.is_map) return balance(model, gains, drives);
   const size_t rows = drives.input.size(), ports = record.measured.size();
@@ -249,10 +257,11 @@ Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains,
   Prediction result;
   result.error.resize(rows * ports), result.slow.resize(rows);
   Path& path = result.path;
-  path.identity = next_identity(), path.sample_time = record.sample_time, path.rest_speed = rest_speed;
+  path.identity = next_identity(), path.sample_time = record.sample_time;
   for (auto* list : {&path.position, &path.velocity, &path.acceleration}) list->resize(rows);
   path.input = drives.input, path.force = first_rows(model.driving_force(), rows);
   path.predicted_position.resize(rows), path.rests.resize(rows), path.turns.resize(rows);
+  if (!record.input_slope.empty()) path.input_slope = first_rows(record.input_slope, rows);
   const MeasuredPort* position = record.find("position");
   const MeasuredPort* velocity = record.find("velocity");
   const auto& first = record.measured.front().value;
@@ -277,13 +286,14 @@ Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains,
     }
     const double velocity_now = model.velocity();
     path.position[k] = model.position(), path.velocity[k] = velocity_now;
-    path.rests[k] = std::abs(velocity_now) < rest_speed;
+    path.rests[k] = std::abs(velocity_now) < pace.rest_speed;
     const bool turned = k > 0 && (velocity_now > 0) != (path.velocity[k - 1] > 0);
-    turning = turned || record.is_missing(k) ? samples_to_correct : std::max(0, turning - 1);
+    turning = turned || record.is_missing(k) ? pace.samples_to_correct : std::max(0, turning - 1);
     path.turns[k] = turning > 0;
     if (path.forgets(k)) d = 0;
     result.slow[k] = d;
-    model.step(drives.input[k], d - drives.force[k]);
+    const double duration = record.duration.empty() ? 1 : record.duration[k];
+    model.step(drives.input[k], d - drives.force[k], duration);
     for (size_t i = 0; i < states.size(); ++i) {
       const Eigen::Index at = Eigen::Index(i);
       double by = 0;
@@ -291,7 +301,7 @@ Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains,
       if (!drives.force_slope.empty()) by -= axis.push[at] * drives.force_slope[k];
       if (axis.slope_share[at] != 0) model.correct(states[i], axis.slope_share[at] * by);
     }
-    path.acceleration[k] = (model.velocity() - velocity_now) / record.sample_time;
+    path.acceleration[k] = (model.velocity() - velocity_now) / (duration * record.sample_time);
     d *= gains.memory;
   }
   return result;

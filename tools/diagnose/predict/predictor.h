@@ -25,13 +25,13 @@ struct Path {
   uint64_t identity = 0;  ///< equal only for equal paths, because results along a path are cached; 0: none
   double sample_time = 0;
   std::vector<double> position, velocity, acceleration, input;
+  std::vector<double> input_slope;         ///< of the recorded input; empty: held
   std::vector<double> force;               ///< the force produced by the recorded input
   std::vector<double> predicted_position;  ///< before the measurement of the sample itself
-  std::vector<char> rests;                 ///< slower than `rest_speed`
+  std::vector<char> rests;                 ///< slower than Pace::rest_speed
   /// For some samples after a reversal. There dry friction changes sign, at an instant known only to within a
   /// sample or two, and its force then is no slow force. The same holds for missing samples.
   std::vector<char> turns;
-  double rest_speed = 0;
   size_t samples() const { return rests.size(); }
   /// No slow force is estimated.
   bool forgets(size_t sample) const { return rests[sample] || turns[sample]; }
@@ -49,13 +49,20 @@ struct Prediction {
   Path path;
 };
 
-/// The time in which the predictor corrects an impact, or friction of the wrong sign.
-constexpr int samples_to_correct = 15;
+/// The waits of a record: see criteria.h.
+struct Pace {
+  double rest_speed = 0;       ///< [position/s]
+  int samples_to_correct = 1;  ///< until an impact, or friction of the wrong sign, is corrected
+  int samples_after_rest = 1;  ///< until the slow force is known again
+};
+
+/// [samples] The slowest time constant in which the predictor corrects position and velocity.
+double correction_time(const LinearAxis& axis, const Gains& gains);
 
 /// Steps the diagram along the record, as far as the drives extend: correct with the measurement, predict the
 /// next sample.
 Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains, const Drives& drives,
-                   double rest_speed);
+                   const Pace& pace);
 
 /// The errors that other gains would give on the same record, without stepping the diagram again.
 std::vector<double> with_gains(const LinearAxis& axis, const Prediction& prediction, const Gains& from,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include "tools/diagnose/criteria.h"
 #include "tools/experiment/even_grid.h"
 
 namespace loopwright::diagnosis {
@@ -35,17 +36,63 @@ Number number_of_role(const Experiment& experiment, const Plan& plan, std::strin
   return -1;
 }
 
+/// Mean and change over each sample of an input that goes on a straight line to the next row.
+void interpolate_input(AxisRecord& record) {
+  std::vector<double>& input = record.input;
+  record.input_slope.resize(input.size());
+  for (size_t k = 0; k + 1 < input.size(); ++k) {
+    record.input_slope[k] = input[k + 1] - input[k];
+    input[k] += record.input_slope[k] / 2;
+  }
+}
+
+/// Of a long record every so many rows are measurements. Between them the input keeps its mean and its first
+/// moment, which is all that the next position of a mass depends on.
+void thin(AxisRecord& record, size_t every) {
+  const std::vector<double> input = std::move(record.input), slope = std::move(record.input_slope);
+  const size_t rows = input.size() / every;
+  record.input.assign(rows, 0), record.input_slope.assign(rows, 0);
+  const double share = 1 / double(every);
+  for (size_t k = 0; k < rows; ++k)
+    for (size_t i = 0; i < every; ++i) {
+      const double from_middle = (double(i) + 0.5) * share - 0.5;
+      record.input[k] += share * input[k * every + i];
+      record.input_slope[k] += 12 * share * from_middle * input[k * every + i];
+      if (!slope.empty()) record.input_slope[k] += share * share * slope[k * every + i];
+    }
+  const auto keep = [&](auto& list) {
+    for (size_t k = 0; k < rows; ++k) list[k] = list[k * every];
+    list.resize(rows);
+  };
+  if (!record.missing.empty()) {
+    for (size_t k = 0; k < rows; ++k)
+      for (size_t i = 1; i < every; ++i) record.missing[k * every] |= record.missing[k * every + i];
+    keep(record.missing);
+  }
+  for (MeasuredPort& port : record.measured) keep(port.value);
+  record.sample_time *= double(every);
+}
+
+/// How many rows become one: see criteria.h.
+size_t rows_for_one(const AxisRecord& record) {
+  if (record.is_map || !record.duration.empty()) return 1;
+  const double wanted = double(record.rows()) / criteria::most_rows,
+               allowed = criteria::thinned_sample_s / record.sample_time;
+  return std::max<size_t>(1, whole_count(std::floor(std::min(std::ceil(wanted), allowed))));
+}
+
 }  // namespace
 
 MeasuredMotion measured_motion(const AxisRecord& record) {
   MeasuredMotion m;
-  m.start = record.start, m.sample_time = record.sample_time, m.input = record.input;
+  m.start = record.start, m.sample_time = record.sample_time;
   m.input_unit = record.input_unit, m.missing = record.missing;
   for (size_t k = 0; k < record.rows(); ++k) m.time.push_back(record.start + double(k) * record.sample_time);
+  m.input = mean_over_even_samples(record.input, record.duration);
   if (const MeasuredPort* position = record.find("position"))
-    m.raw_position = position->value;
+    m.raw_position = at_even_instants(position->value, record.duration);
   else
-    m.velocity = record.find("velocity")->value;
+    m.velocity = at_even_instants(record.find("velocity")->value, record.duration);
   smooth_motion(m);
   return m;
 }
@@ -95,7 +142,9 @@ AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Prob
   const EvenGrid grid(experiment);
   record.start = grid.start(), record.sample_time = grid.sample_time(), record.missing = grid.missing();
   const Column& input = *experiment.data.find(experiment.drives.front().port);
+  record.duration = grid.duration();
   record.input = grid.held(input.values);
+  if (experiment.drive_is_linear.front()) interpolate_input(record);
   record.input_unit = input.unit;
   record.is_map = experiment.is_map;
   for (const char* role : {"position", "velocity"}) {
@@ -110,6 +159,7 @@ AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Prob
       record.measured.push_back({role, wanted, unit, signal.resolution, grid.measured(column.values)});
     }
   }
+  if (const size_t every = rows_for_one(record); every > 1) thin(record, every);
   record.held_out_from = whole_between<size_t>(
       std::round(double(record.rows()) * (1 - experiment.hold_out_fraction)), 0, record.rows());
   if (record.measured.empty())

@@ -24,7 +24,11 @@ struct AxisRecord {
   double sample_time = 0;     ///< s
   double start = 0;           ///< s
   std::vector<char> missing;  ///< samples that were not recorded; empty: none
-  std::vector<double> input;  ///< SI; held from its sample to the next
+  std::vector<double> input;  ///< SI; the mean from its sample to the next
+  /// The change of the input from its sample to the next, where it is interpolated; empty: it is held.
+  std::vector<double> input_slope;
+  /// [sample times] From each row to the next, where the rows were not sampled evenly; empty: 1.
+  std::vector<double> duration;
   std::string input_unit;
   std::vector<MeasuredPort> measured;  ///< position first; at least one
   bool is_map = false;                 ///< rows are independent balances: see gather_balances

@@ -13,8 +13,9 @@ struct CandidateParameter {
   double low = 0, high = 0;
   bool logarithmic = false;  ///< scale on which it is stepped through, when nonlinear
   std::vector<double> grid;  ///< initial values of the search, when nonlinear
-  double span = 0;   ///< for a period: the stroke or time over which it repeats; determines its resolution
-  double start = 0;  ///< a typical value
+  double span = 0;    ///< for a period: the stroke or time over which it repeats; determines its resolution
+  double centre = 0;  ///< for a period: the middle of the record, where the phase is known best
+  double start = 0;   ///< a typical value
 
   /// Whether a value is at an end of the range; a fitted one is then reported as a warning, not as a result.
   bool ends_at(double value) const {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include "tools/diagnose/criteria.h"
 #include "tools/effects/effect_run.h"
 #include "models/real/whole.h"
 
@@ -159,6 +160,7 @@ Candidate candidate_of(const Effect& effect, std::shared_ptr<const EffectPlan> p
     if (p.is_period) {  // shorter ones fall between two samples
       const RecordSizes& sizes = compiled->plan->sizes;
       parameter.span = sizes.stroke;
+      parameter.centre = 0.5 * (sizes.lowest_position + sizes.highest_position);
       parameter.low = std::max(parameter.low, 4 * sizes.top_speed * sizes.sample_time);
       parameter.high = std::max(parameter.high, 2 * parameter.low);
     }
@@ -217,17 +219,19 @@ RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
     const Path& path = *paths[i];
     for (size_t k = 0; k < path.samples(); ++k) {
       low = std::min(low, path.predicted_position[k]), high = std::max(high, path.predicted_position[k]);
-      if (k < 10) continue;
+      if (double(k) * path.sample_time < criteria::speed_span_s || k == 0) continue;
       const double step = path.position[k] - path.position[k - 1];
       speeds.push_back(std::abs(models[i]->record().is_map ? step / path.sample_time : path.velocity[k]));
       if (path.rests[k]) continue;
       squared_force += path.force[k] * path.force[k], squared_input += path.input[k] * path.input[k];
       count += 1;
     }
-    for (size_t k = 20; k + 20 < path.samples(); k += 5)
+    const size_t half =
+        std::max<size_t>(1, whole_count(std::round(criteria::acceleration_span_s / 2 / path.sample_time)));
+    for (size_t k = half; k + half < path.samples(); k += std::max<size_t>(1, half / 4))
       sizes.top_acceleration =
-          std::max(sizes.top_acceleration,
-                   std::abs(path.velocity[k + 20] - path.velocity[k - 20]) / (40 * path.sample_time));
+          std::max(sizes.top_acceleration, std::abs(path.velocity[k + half] - path.velocity[k - half]) /
+                                               (2 * double(half) * path.sample_time));
     sizes.duration = std::max(sizes.duration, double(path.samples()) * path.sample_time);
     if (const MeasuredPort* position = models[i]->record().find("position"))
       sizes.resolution = std::max(sizes.resolution, position->resolution);

@@ -6,15 +6,14 @@
 #include <set>
 #include "tools/diagnose/search/doubt.h"
 #include "tools/diagnose/search/law_swaps.h"
+#include "tools/diagnose/search/remaining_force.h"
 #include "tools/diagnose/search/spectrum.h"
+#include "tools/diagnose/search/whiteness.h"
 
 namespace loopwright::diagnosis {
 namespace {
 
-constexpr double least_wald = 25, least_wald_per_row = 0.001, plain_wald_per_row = 0.01;
-constexpr double least_force = 0.005;          // of the driving force's rms
-constexpr double least_force_to_noise = 0.25;  // of the white noise
-constexpr double least_unique_force = 0.001;   // of the driving force's rms
+using namespace criteria;
 
 /// Indices of a member's parameters among the free ones. Only those that decide whether it is present: the
 /// linear ones, or the shape of a member without linear ones.
@@ -149,9 +148,8 @@ class Rivals {
   /// Whether it is as good on the same motion, and not much worse on its own motion. If the diagram itself
   /// quantizes, for example with an encoder, every run gives a different result.
   bool is_promised(const Proposal& proposal, const Estimate& other) const {
-    constexpr double much = 20;  // multiple of the reach
     return proposal.gain > 0 && other.is_valid &&
-           criterion_of(other) - criterion_of(estimate_) < much * reach_;
+           criterion_of(other) - criterion_of(estimate_) < most_promised_loss * reach_;
   }
   /// The best of the sets whose loss was computed, if it is also better with noise of its own: the search
   /// compared them under the noise known then. `doubt`: what its gain must exceed when the errors are not
@@ -161,7 +159,7 @@ class Rivals {
     if (!best_.is_valid || at_limit(best_) > at_limit(estimate_)) return {};
     maximise(trials_, best_);
     const double gain = criterion_of(estimate_) - criterion_of(best_);
-    return gain + preference(best_.members, estimate_.members) > std::max(clearly, doubt)
+    return gain + preference(best_.members, estimate_.members) > std::max(clearly_better, doubt)
                ? std::optional(std::move(best_))
                : std::nullopt;
   }
@@ -169,11 +167,10 @@ class Rivals {
  private:
   double criterion_of(const Estimate& estimate) const { return criterion(trials_, estimate, catalogue_); }
 
-  static constexpr double clearly = 3;
   Trials& trials_;
   const Estimate& estimate_;
   size_t catalogue_;
-  double reach_, best_loss_ = -clearly;
+  double reach_, best_loss_ = -clearly_better;
   Estimate best_;
 };
 
@@ -181,7 +178,7 @@ class Rivals {
 /// errors' autocorrelation. A set that is worse by less cannot be excluded. Beyond the limit of white errors
 /// there is no bound.
 double unexplained(double portmanteau) {
-  return std::clamp(portmanteau - double(portmanteau_lags), 0.0, most_portmanteau);
+  return std::clamp(portmanteau - double(criteria::portmanteau_lags), 0.0, criteria::most_portmanteau);
 }
 
 /// Whether one candidate replaces the same member.
@@ -202,6 +199,29 @@ std::vector<Substitute> substitutes_of(Rivals& rivals, size_t member,
   }
   std::ranges::stable_sort(list, {}, &Substitute::loss);
   return list;
+}
+
+/// Dry friction with a shape, where simpler dry friction leaves no more force along the smooth motion: only
+/// the moments after a breakaway speak for the shape, and these also depend on when exactly it happened.
+void add_simpler_friction(std::vector<Substitute>& list, const Trials& trials, Rivals& rivals,
+                          const Estimate& estimate, size_t member, const std::vector<Proposal>& exchanges) {
+  const Candidate& shaped = *estimate.members[member].candidate;
+  if (!trials.inverse || shaped.at_rest == AtRest::free) return;
+  const auto is_simpler = [&](const Proposal& p) {
+    if (p.removed != std::vector<size_t>{member} || p.added.size() != 1) return false;
+    const Candidate& other = *p.added.front().candidate;
+    return other.at_rest != AtRest::free && !other.is_unknown && other.acts == Acts::force &&
+           parameters_of(other) < parameters_of(shaped) &&
+           std::ranges::find(list, &other, &Substitute::candidate) == list.end();
+  };
+  const double left = residual_size(trials, *trials.inverse, estimate.members).fitted;
+  for (const Proposal& proposal : exchanges) {
+    if (!is_simpler(proposal)) continue;
+    const Estimate other = rivals.fitted(proposal);
+    if (!other.is_valid) continue;
+    const double with_other = residual_size(trials, *trials.inverse, other.members).fitted;
+    if (with_other <= criteria::same_balance * left) list.push_back({proposal.added.front().candidate, 0});
+  }
 }
 
 /// The same for several members at a time; the most promising are tried.
@@ -250,16 +270,17 @@ std::optional<Estimate> simplified(Rivals& rivals, const std::vector<Member>& me
 /// weakest first. The search judged them with noise that it knew only partly; a barely material member must
 /// explain more than noise that is fitted without it.
 void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
-  constexpr double barely = 2;
   Estimate& estimate = result.estimate;
   for (;;) {
     maximise(trials, estimate);
     result.weights = weigh_all(trials, estimate);
     if (estimate.members.empty()) return;
     std::vector<double> sizes;
-    for (const Weight& weight : result.weights) sizes.push_back(material(trials, estimate, weight));
+    for (size_t m = 0; m < estimate.members.size(); ++m)
+      sizes.push_back(spoils_balance(trials, estimate, m) ? 0
+                                                          : material(trials, estimate, result.weights[m]));
     const auto least = std::ranges::min_element(sizes);
-    if (*least >= barely) return;
+    if (*least >= barely_material) return;
     const size_t weakest = size_t(least - sizes.begin());
     std::vector<Member> members = estimate.members;
     members.erase(members.begin() + std::ptrdiff_t(weakest));
@@ -280,8 +301,9 @@ void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
 }
 
 /// Computes the alternatives, and from them the probability of each member.
-void ask_rivals(Conclusion& result, Evidence& evidence, const std::vector<Proposal>& exchanges,
-                const std::vector<Candidate>& candidates, const AxisModel& model, Rivals& rivals, double n) {
+void ask_rivals(const Trials& trials, Conclusion& result, Evidence& evidence,
+                const std::vector<Proposal>& exchanges, const std::vector<Candidate>& candidates,
+                const AxisModel& model, Rivals& rivals, double n) {
   const double reach = rivals.reach();
   // Far from its operating point the loss predicted by a linearization may be wrong by a hundred.
   const double far = std::max(100.0, 3 * reach);
@@ -300,6 +322,7 @@ void ask_rivals(Conclusion& result, Evidence& evidence, const std::vector<Propos
   for (size_t m = 0; m < members.size(); ++m) {
     result.weights[m].loss = -removal[m] * n / evidence.rows();
     result.substitutes.push_back(substitutes_of(rivals, m, near));
+    add_simpler_friction(result.substitutes.back(), trials, rivals, result.estimate, m, exchanges);
     double others = std::exp(-std::min(result.weights[m].loss, 600.0) / 2);
     for (const Substitute& s : result.substitutes[m]) others += std::exp(-std::max(s.loss, 0.0) / 4);
     result.inclusion.push_back(0.995 / (1 + others));
@@ -321,6 +344,9 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
     keep_material(trials, result, candidates.size());
   }
   result.portmanteau = portmanteau(trials, estimate.fitted);
+  if (result.portmanteau > criteria::most_portmanteau)
+    result.counts_portmanteau = portmanteau_of_counts(trials, estimate);
+  result.is_negligible = is_negligible(trials, estimate.members);
   const double n = double(fitted_numbers(trials));
   const std::vector<Shape> periodic = periodic_shapes(trials, estimate, candidates, 1);
   std::vector<const Shape*> all;
@@ -329,12 +355,13 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
   Evidence evidence(trials, estimate, all, candidates.size());
   const std::vector<Proposal> exchanges = evidence.exchanges();
   Rivals rivals(trials, estimate, candidates.size(),
-                std::max({10.0, 0.002 * n, unexplained(result.portmanteau)}));
+                std::max({least_gain, least_gain_per_row * n,
+                          unexplained(result.portmanteau - result.counts_portmanteau)}));
   std::optional<Estimate> instead;
   if (rounds > 0) instead = simplified(rivals, estimate.members, exchanges);
   if (!instead) {
-    ask_rivals(result, evidence, exchanges, candidates, *trials.list.front().model, rivals, n);
-    if (rounds > 0 && (instead = rivals.better(unexplained(result.portmanteau))))
+    ask_rivals(trials, result, evidence, exchanges, candidates, *trials.list.front().model, rivals, n);
+    if (rounds > 0 && (instead = rivals.better(unexplained(result.portmanteau - result.counts_portmanteau))))
       result.trail.push_back("with noise of its own another set does better");
   }
   if (instead) {
@@ -343,7 +370,7 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
     return next;
   }
   const Noise free = fit_noise(trials, estimate.fitted, estimate.noise, FreeNoise::all);
-  result.is_remainder_noise = free.slow() <= most_slow_noise * free.white;
+  result.is_remainder_noise = free.slow() <= criteria::most_slow_noise * free.white;
   return result;
 }
 
@@ -361,29 +388,11 @@ double material(const Trials& trials, const Estimate& estimate, const Weight& we
 
 std::vector<Weight> weigh_all(Trials& trials, Estimate& estimate) {
   work_out_covariance(trials, estimate);
-  if (portmanteau(trials, estimate.fitted) > most_portmanteau) widen_by_blocks(trials, estimate);
+  if (portmanteau(trials, estimate.fitted) > criteria::most_portmanteau) widen_by_blocks(trials, estimate);
+  refer_to_zero(estimate);
   std::vector<Weight> weights;
   for (size_t m = 0; m < estimate.members.size(); ++m) weights.push_back(weigh(trials, estimate, m));
   return weights;
-}
-
-double portmanteau(const Trials& trials, const std::vector<Fitted>& fitted) {
-  constexpr size_t lags = portmanteau_lags;
-  double sums[lags + 1] = {}, n = 0;
-  const size_t ports = trials.ports();
-  for (size_t t = 0; t < trials.list.size(); ++t) {
-    const Trial& trial = trials.list[t];
-    for (size_t k = 0; k < trial.held_out_from; ++k) {
-      if (!trial.usable[k]) continue;
-      n += 1;
-      for (size_t lag = 0; lag <= std::min(lags, k); ++lag)
-        if (trial.usable[k - lag])
-          sums[lag] += fitted[t].white[k * ports] * fitted[t].white[(k - lag) * ports];
-    }
-  }
-  double sum = 0;
-  for (size_t lag = 1; lag <= lags; ++lag) sum += sums[lag] * sums[lag];
-  return n * sum / (sums[0] * sums[0]);
 }
 
 Conclusion conclude(Trials& trials, const std::vector<Candidate>& candidates,

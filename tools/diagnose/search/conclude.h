@@ -1,5 +1,6 @@
 /// After the search: noise and parameters by maximum likelihood, material members, alternatives.
 #pragma once
+#include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/evidence.h"
 
 namespace loopwright::diagnosis {
@@ -30,10 +31,6 @@ struct OtherSet {
   double loss = 0;  ///< how much worse the criterion is with it
 };
 
-/// Above it the errors are not white. Encoder counts at a steady speed alone give up to 170.
-constexpr double most_portmanteau = 300;
-constexpr size_t portmanteau_lags = 40;
-
 struct Conclusion {
   Estimate estimate;
   std::vector<Weight> weights;                       ///< one per member
@@ -42,17 +39,19 @@ struct Conclusion {
   std::vector<double> inclusion;                     ///< probability that the effect is there, calibrated
   bool is_remainder_noise = true;                    ///< otherwise a slow force exceeds the noise
   double portmanteau = 0;          ///< n Σ ρ², 40 lags of the whitened errors; 40 when white
+  double counts_portmanteau = 0;   ///< what the counts of the sensor add to it, along this motion
+  bool is_negligible = false;      ///< the force that remains is not material, whatever its color
   std::vector<std::string> trail;  ///< what was removed, and why
 
   /// Whether the errors contain nothing more.
-  bool is_white() const { return is_remainder_noise && portmanteau <= most_portmanteau; }
+  bool is_white() const {
+    return is_negligible ||
+           (is_remainder_noise && portmanteau - counts_portmanteau <= criteria::most_portmanteau);
+  }
 };
 
 /// Joint maximum likelihood of parameters and noise; immaterial members are removed one by one.
 Conclusion conclude(Trials& trials, const std::vector<Candidate>& candidates,
                     const std::vector<Shape>& shapes, Estimate found);
-
-/// n Σ ρ² over 40 lags; near 40 when the errors are white.
-double portmanteau(const Trials& trials, const std::vector<Fitted>& fitted);
 
 }  // namespace loopwright::diagnosis

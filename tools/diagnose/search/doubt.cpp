@@ -3,29 +3,25 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include "tools/diagnose/criteria.h"
 
 namespace loopwright::diagnosis {
 namespace {
 
-constexpr double kept_error = 0.9;     // of a velocity's error from sample to sample
-constexpr double deviations = 2;       // of the errors that are tried
-constexpr double most_change = 2;      // of the force, caused by them, relative to the white noise
-constexpr double least_left = 0.2;     // of the moving rows
-constexpr double shifts_s[] = {1, 2};  // each gives a different error
-
 /// The path with a different, equally plausible estimation error.
-Path seen_otherwise(const Path& path, double shift_s) {
+Path seen_otherwise(const Path& path, const Pace& pace, double shift_s) {
   Path other = path;
   other.identity = 0;
   const size_t rows = path.samples(), shift = whole_count(shift_s / path.sample_time);
+  const double kept = std::pow(criteria::kept_velocity_error, 1.0 / pace.samples_to_correct);
   double error = 0;
   for (size_t k = 0; k < rows; ++k) {
     const size_t from = (k + rows - shift % rows) % rows;
     const double correction = from == 0 ? 0
                                         : path.velocity[from] - path.velocity[from - 1] -
                                               path.acceleration[from - 1] * path.sample_time;
-    error = kept_error * error + correction;
-    other.velocity[k] += deviations * error;
+    error = kept * error + correction;
+    other.velocity[k] += criteria::velocity_errors * error;
   }
   return other;
 }
@@ -36,14 +32,14 @@ std::vector<double> force_along(std::vector<Member> members, const Path& path) {
   return drives_of(members, path, path.input).force;
 }
 
-double most_change_of(const Trials& trials) { return most_change * search_noise(trials).white; }
+double most_change_of(const Trials& trials) { return criteria::most_doubt * search_noise(trials).white; }
 
 /// Marks the rows at which two forces differ by more than `most`, and the rows after them.
 void mark_where_they_differ(const std::vector<double>& one, const std::vector<double>& other, double most,
-                            std::vector<char>& rows) {
+                            const Pace& pace, std::vector<char>& rows) {
   int left = 0;
   for (size_t k = 0; k < rows.size(); ++k) {
-    left = std::abs(other[k] - one[k]) > most ? samples_to_correct : std::max(0, left - 1);
+    left = std::abs(other[k] - one[k]) > most ? pace.samples_to_correct : std::max(0, left - 1);
     if (left > 0) rows[k] = 1;
   }
 }
@@ -58,17 +54,20 @@ std::vector<double> force_at_start(const Candidate& candidate, const Columns& co
 }
 
 /// For one candidate. One shift is enough to rank the shapes, and costs half as much as two.
-void mark_doubtful(std::span<Shape> shapes, const Motion& motion, double most) {
+void mark_doubtful(std::span<Shape> shapes, const Trials& trials, const Motion& motion) {
   const Candidate& candidate = *shapes.front().candidate;
+  const double most = most_change_of(trials);
   std::vector<std::vector<double>> points;
   for (const Shape& shape : shapes) points.push_back(shape.nonlinear);
   for (size_t t = 0; t < motion.paths.size(); ++t) {
     const Path& path = *motion.paths[t];
+    const Pace& pace = trials.list[t].pace;
     for (Shape& shape : shapes) shape.doubtful.emplace_back(path.samples(), char(0));
-    const std::vector<Columns> others = candidate.columns_at(seen_otherwise(path, shifts_s[0]), points);
+    const std::vector<Columns> others =
+        candidate.columns_at(seen_otherwise(path, pace, criteria::doubt_shifts_s[0]), points);
     for (size_t i = 0; i < shapes.size(); ++i)
       mark_where_they_differ(force_at_start(candidate, shapes[i].columns[t]),
-                             force_at_start(candidate, others[i]), most, shapes[i].doubtful[t]);
+                             force_at_start(candidate, others[i]), most, pace, shapes[i].doubtful[t]);
   }
 }
 
@@ -81,11 +80,14 @@ bool may_be_doubtful(const std::vector<Member>& members) {
 std::vector<std::vector<char>> doubtful_rows(const Trials& trials, const Estimate& estimate) {
   const double most = most_change_of(trials);
   std::vector<std::vector<char>> doubtful;
-  for (const std::shared_ptr<const Path>& path : estimate.motion.paths) {
-    std::vector<char>& rows = doubtful.emplace_back(path->samples(), char(0));
-    const std::vector<double> force = force_along(estimate.members, *path);
-    for (const double shift : shifts_s)
-      mark_where_they_differ(force, force_along(estimate.members, seen_otherwise(*path, shift)), most, rows);
+  for (size_t t = 0; t < trials.list.size(); ++t) {
+    const Path& path = *estimate.motion.paths[t];
+    const Pace& pace = trials.list[t].pace;
+    std::vector<char>& rows = doubtful.emplace_back(path.samples(), char(0));
+    const std::vector<double> force = force_along(estimate.members, path);
+    for (const double shift : criteria::doubt_shifts_s)
+      mark_where_they_differ(force, force_along(estimate.members, seen_otherwise(path, pace, shift)), most,
+                             pace, rows);
   }
   return doubtful;
 }
@@ -96,7 +98,7 @@ void add_without_doubt(const Trials& trials, const Motion& motion, std::vector<S
   for (auto first = flying.begin(); first != flying.end();) {
     const auto is_other = [&](const Shape& shape) { return shape.candidate != first->candidate; };
     const auto end = std::find_if(first, flying.end(), is_other);
-    mark_doubtful({first, end}, motion, most_change_of(trials));
+    mark_doubtful({first, end}, trials, motion);
     first = end;
   }
   std::ranges::move(flying, std::back_inserter(shapes));
@@ -115,7 +117,7 @@ void leave_out_doubtful(Trials& trials, Estimate& estimate) {
         left += size_t(usable[t][k]);
       }
     // A shape that makes nearly all rows doubtful explains nothing.
-    if (double(left) < least_left * double(moving))
+    if (double(left) < criteria::least_without_doubt * double(moving))
       for (size_t t = 0; t < usable.size(); ++t) usable[t] = trials.list[t].moving;
   }
   bool changes = false;

@@ -1,6 +1,7 @@
 #include "tools/diagnose/search/evidence.h"
 #include <algorithm>
 #include <cmath>
+#include "tools/diagnose/criteria.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -22,7 +23,8 @@ std::vector<std::vector<double>> grid_points(const Candidate& candidate) {
 
 bool is_feasible(const Shape& shape, const Eigen::VectorXd& theta, Eigen::Index first) {
   const Candidate& candidate = *shape.candidate;
-  if (candidate.amplitude_is_one) return theta[first] > 0.6 && theta[first] < 1.7;
+  if (candidate.amplitude_is_one)
+    return theta[first] > criteria::least_step_to_shape && theta[first] < criteria::most_step_to_shape;
   for (size_t i = 0; i < candidate.linear.size(); ++i) {
     const double value = theta[first + Eigen::Index(i)];
     if (value < candidate.linear[i].low || value > candidate.linear[i].high) return false;
@@ -143,7 +145,8 @@ Evidence::Evidence(const Trials& trials, const Estimate& estimate, const std::ve
       for (size_t s = 0; s < shapes.size(); ++s) {
         if (shapes[s]->candidate->acts != acts || without_doubt(s) != s) continue;
         for (size_t c = 0; c < shapes[s]->columns[t].size(); ++c)
-          columns.push_back(&shapes[s]->columns[t][c]), places.push_back(&X_(top, first_column_[s] + int(c)));
+          columns.push_back(&shapes[s]->columns[t][c]),
+              places.push_back(X_.data() + X_.rows() * (first_column_[s] + int(c)) + top);
       }
       responses(fitted.axis, fitted.gains, path, acts, columns, rows[t], places);
     }

@@ -2,13 +2,11 @@
 #include <nlopt.h>
 #include <algorithm>
 #include <cmath>
+#include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/maximum_likelihood.h"
 
 namespace loopwright::diagnosis {
 namespace {
-
-/// Relative to the driving force's rms: a fiftieth of the smallest material force.
-constexpr double least_white = 1e-4;
 
 /// Logarithms of the free parameters of a noise.
 struct Coordinates {
@@ -66,21 +64,22 @@ double evaluate(unsigned, const double* x, double*, void* data) {
 }  // namespace
 
 Noise search_noise(const Trials& trials) {
-  constexpr double memory_s = 0.03;
   Noise noise = trials.noise;
-  noise.white = std::clamp(noise.white, 0.005 * trials.force_rms, 0.02 * trials.force_rms);
+  noise.white = std::clamp(noise.white, criteria::least_search_noise * trials.force_rms,
+                           criteria::most_search_noise * trials.force_rms);
   const double sample_time = trials.list.front().model->record().sample_time;
-  noise.memory = std::exp(-sample_time / memory_s);
-  noise.step = usual_slow_noise * noise.white * std::sqrt(1 - noise.memory * noise.memory);
+  noise.memory = std::exp(-sample_time / criteria::slow_memory_s);
+  noise.step = criteria::usual_slow_noise * noise.white * std::sqrt(1 - noise.memory * noise.memory);
   return noise;
 }
 
 Noise fit_noise(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& start, FreeNoise free) {
   Objective objective{trials, fitted, {free, start}};
   std::vector<double> x = objective.coordinates.of(start), low = x, high = x;
-  for (size_t i = 0; i < x.size(); ++i) low[i] -= std::log(30.0), high[i] += std::log(30.0);
+  for (size_t i = 0; i < x.size(); ++i)
+    low[i] -= std::log(criteria::noise_reach), high[i] += std::log(criteria::noise_reach);
   // If the sensor's quantization is the only noise, the force noise would go to zero.
-  low[0] = std::max(low[0], std::log(least_white * trials.force_rms));
+  low[0] = std::max(low[0], std::log(criteria::least_white_noise * trials.force_rms));
   x[0] = std::max(x[0], low[0]), high[0] = std::max(high[0], x[0]);
   nlopt_opt optimiser = nlopt_create(NLOPT_LN_BOBYQA, unsigned(x.size()));
   nlopt_set_min_objective(optimiser, evaluate, &objective);
@@ -97,14 +96,14 @@ Noise fit_noise(const Trials& trials, const std::vector<Fitted>& fitted, const N
 
 Noise fit_noise_alone(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& start,
                       FreeNoise free) {
-  constexpr double next_to_nothing = 0.01;
   // If it is nearly zero, or was set to zero, the likelihood is too flat to recover it.
   Noise from = start;
-  from.step = std::max(from.step, usual_slow_noise * from.white * std::sqrt(1 - from.memory * from.memory));
+  from.step =
+      std::max(from.step, criteria::usual_slow_noise * from.white * std::sqrt(1 - from.memory * from.memory));
   Noise noise = fit_noise(trials, fitted, from, free);
-  if (noise.slow() <= most_slow_noise * noise.white) return noise;
+  if (noise.slow() <= criteria::most_slow_noise * noise.white) return noise;
   noise.white = std::hypot(noise.white, noise.slow());
-  noise.step = next_to_nothing * noise.white * std::sqrt(1 - noise.memory * noise.memory);
+  noise.step = criteria::next_to_no_slow_noise * noise.white * std::sqrt(1 - noise.memory * noise.memory);
   return noise;
 }
 

@@ -1,6 +1,7 @@
 #include "tools/diagnose/search/hypothesis.h"
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace loopwright::diagnosis {
 namespace {
@@ -41,10 +42,10 @@ struct ChangedInput {
 };
 ChangedInput through(const std::vector<const Member*>& chain, const Path& path,
                      const std::vector<double>& raw_input) {
-  if (chain.empty()) return {raw_input, {}};
+  if (chain.empty()) return {raw_input, path.input_slope};
   Path upstream = path;
   upstream.input = raw_input, upstream.identity = 0;
-  std::vector<double> slope;
+  std::vector<double> slope = path.input_slope;
   for (const Member* member : chain)
     add_columns(*member, member->candidate->columns(upstream, member->nonlinear), upstream.input, slope, -1);
   return {std::move(upstream.input), std::move(slope)};
@@ -77,7 +78,9 @@ Columns derivatives(const Member& member, const Path& path) {
   Columns result = member.candidate->amplitude_is_one ? Columns{} : at[0];
   for (size_t i = 0; i < steps.size(); ++i) {
     std::vector<double> change(path.samples()), slope;
-    add_columns(member, at[i + 1], change, slope);
+    std::vector<Member> stepped{member};
+    set_value(stepped, {0, false, i}, shapes[i + 1][i]);
+    add_columns(stepped.front(), at[i + 1], change, slope);
     add_columns(member, at[0], change, slope, -1);
     result.emplace_back(divided(change, steps[i]), divided(slope, steps[i]));
   }
@@ -87,13 +90,13 @@ Columns derivatives(const Member& member, const Path& path) {
 /// The same for a member that changes the input, as consumed input at the end of the chain.
 Column input_derivative(std::vector<Member> members, const FreeParameter& parameter, const Path& path,
                         const std::vector<double>& raw_input) {
-  double& value = value_of(members, parameter);
   const CandidateParameter& range = range_of(members, parameter);
-  const double at = value, step = parameter.is_linear ? 1e-3 : difference_step(range, value);
+  const double at = value_of(members, parameter),
+               step = parameter.is_linear ? 1e-3 : difference_step(range, at);
   const double before = parameter.is_linear ? at - step : std::clamp(at - step, range.low, range.high);
-  value = at + step;
+  set_value(members, parameter, at + step);
   ChangedInput change = through(chain_of(members), path, raw_input);
-  value = before;
+  set_value(members, parameter, before);
   const ChangedInput low = through(chain_of(members), path, raw_input);
   change.slope.resize(std::max(change.slope.size(), low.slope.size()), 0.0);
   for (size_t k = 0; k < change.mean.size(); ++k) change.mean[k] -= low.mean[k];
@@ -111,6 +114,12 @@ void for_counted_rows(const Trials& trials, const std::vector<Fitted>& fitted, b
     for (size_t k = from; k < to; ++k)
       if (trial.usable[k]) f(fitted[t], std::span(fitted[t].white).subspan(k * ports, ports));
   }
+}
+
+std::vector<double> slope_of(const AxisRecord& record, size_t rows) {
+  std::vector<double> slope = record.input_slope;
+  if (!slope.empty()) slope.resize(rows);
+  return slope;
 }
 
 }  // namespace
@@ -151,6 +160,22 @@ const CandidateParameter& range_of(const std::vector<Member>& members, const Fre
   return p.is_linear ? candidate.linear[p.index] : candidate.nonlinear[p.index];
 }
 
+bool is_period(const Member& member, const FreeParameter& p) {
+  return member.candidate->is_periodic && member.linear.size() == 2 && !p.is_linear && p.index == 0;
+}
+
+void set_value(std::vector<Member>& members, const FreeParameter& p, double value) {
+  Member& member = members[p.member];
+  if (is_period(member, p)) {
+    const double centre = member.candidate->nonlinear[0].centre;
+    const double ahead = 2 * std::numbers::pi * centre * (1 / value - 1 / member.nonlinear[0]);
+    const double sine = member.linear[0], cosine = member.linear[1];
+    member.linear = {sine * std::cos(ahead) + cosine * std::sin(ahead),
+                     cosine * std::cos(ahead) - sine * std::sin(ahead)};
+  }
+  value_of(members, p) = value;
+}
+
 Drives drives_of(const std::vector<Member>& members, const Path& path, const std::vector<double>& raw_input) {
   Drives drives;
   ChangedInput changed = through(chain_of(members), path, raw_input);
@@ -185,10 +210,10 @@ std::vector<Fitted> run_members(Trials& trials, const std::vector<Member>& membe
     const std::vector<double>& raw = trials.list[t].input;
     Drives drives;
     if (motion.paths.empty())
-      drives = {raw, std::vector<double>(raw.size(), 0.0), {}, {}, {}};
+      drives = {raw, std::vector<double>(raw.size(), 0.0), {}, slope_of(model.record(), raw.size()), {}};
     else
       drives = drives_of(members, *motion.paths[t], raw);
-    fitted.prediction = predict(model, fitted.axis, fitted.gains, drives, trials.rest_speed);
+    fitted.prediction = predict(model, fitted.axis, fitted.gains, drives, trials.list[t].pace);
     fitted.white = fitted.prediction.error;
     whiten(fitted.white, fitted.gains);
     result.push_back(std::move(fitted));

@@ -11,9 +11,12 @@ namespace loopwright::diagnosis {
 /// The user requested an interruption.
 struct Interrupted {};
 
+struct InverseDynamics;
+
 /// One record with the model that follows it.
 struct Trial {
   std::unique_ptr<AxisModel> model;
+  Pace pace;
   std::vector<char> moving;   ///< rows that have been moving for some time, after the start, not damaged
   std::vector<char> usable;   ///< those of them that count: see leave_out_doubtful()
   std::vector<char> at_rest;  ///< rows at rest, after the start
@@ -27,10 +30,10 @@ struct Trial {
 struct Trials {
   std::vector<Trial> list;
   Noise noise;
-  double rest_speed = 0;
   bool nominal_holds = false;  ///< the user's diagram has dry friction that holds the axis
   double force_rms = 0;        ///< the force produced by the recorded inputs
   double lowest_position = 0, highest_position = 0, longest_s = 0;  ///< as in the first prediction
+  const std::vector<InverseDynamics>* inverse = nullptr;            ///< of each record; null: not yet known
   const std::atomic<bool>* interrupt =
       nullptr;  ///< once true, the next run along the records throws Interrupted
   size_t ports() const { return list.front().model->record().measured.size(); }
@@ -93,5 +96,10 @@ struct FreeParameter {
 std::vector<FreeParameter> free_parameters(const std::vector<Member>& members);
 double& value_of(std::vector<Member>& members, const FreeParameter& parameter);
 const CandidateParameter& range_of(const std::vector<Member>& members, const FreeParameter& parameter);
+/// Whether it is the period of a sine and a cosine.
+bool is_period(const Member& member, const FreeParameter& parameter);
+/// A period changes with the phase at the middle of the record kept: far from zero, a small change of it
+/// would otherwise shift the pattern by many periods. Derivatives with respect to a period are meant so too.
+void set_value(std::vector<Member>& members, const FreeParameter& parameter, double value);
 
 }  // namespace loopwright::diagnosis

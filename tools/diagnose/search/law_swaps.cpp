@@ -1,6 +1,7 @@
 #include "tools/diagnose/search/law_swaps.h"
 #include <algorithm>
 #include <cmath>
+#include "tools/diagnose/criteria.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -76,9 +77,8 @@ std::vector<Proposal> law_swaps(const std::vector<Member>& members, const std::v
 }
 
 double preference(const std::vector<Member>& members, const std::vector<Member>& other) {
-  constexpr double alike = 20;  // the same law under slightly different noise
   if (members.size() != other.size()) return 0;
-  return alike * (int(has_gain(other)) - int(has_gain(members)));
+  return criteria::same_law * (int(has_gain(other)) - int(has_gain(members)));
 }
 
 bool has_gain(const std::vector<Member>& members) {

@@ -1,15 +1,16 @@
 #include "tools/diagnose/search/maximum_likelihood.h"
+#include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/rest.h"
 #include "models/real/whole.h"
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 namespace loopwright::diagnosis {
 namespace {
 
-constexpr double least_gain = 0.01;   // of an iteration, in twice the log-likelihood
-constexpr double same_motion = 0.01;  // two models that differ less in ln(mean square) have the same motion
+using criteria::same_motion;
 
 struct NormalEquations {
   Eigen::MatrixXd G;
@@ -79,7 +80,7 @@ std::vector<Member> moved(std::vector<Member> members, const std::vector<FreePar
                           const Eigen::VectorXd& step, double fraction) {
   for (size_t i = 0; i < free.size(); ++i) {
     const CandidateParameter& range = range_of(members, free[i]);
-    double& value = value_of(members, free[i]);
+    const double value = value_of(members, free[i]);
     double by = fraction * step[Eigen::Index(i)];
     if (!free[i].is_linear) {
       const double most = range.span > 0      ? 0.2 * value * value / range.span
@@ -87,7 +88,7 @@ std::vector<Member> moved(std::vector<Member> members, const std::vector<FreePar
                                               : (range.high - range.low) / 6;
       by = std::clamp(by, -most, most);
     }
-    value = std::clamp(value + by, range.low, range.high);
+    set_value(members, free[i], std::clamp(value + by, range.low, range.high));
   }
   return members;
 }
@@ -101,6 +102,16 @@ Estimate evaluated(Trials& trials, std::vector<Member> members, const Noise& noi
   estimate.against_at_rest = against_at_rest(trials, estimate.members, estimate.fitted, noise);
   estimate.is_valid = std::isfinite(estimate.mean_square);
   return estimate;
+}
+
+/// The motion that an estimate predicted replaces the one on which it ran, unless it explains the record
+/// worse with it: along its own wrong velocity, friction of the wrong sign confirms itself.
+void take_own_motion(Trials& trials, Estimate& estimate, double far) {
+  Estimate own = on_own_motion(trials, estimate);
+  if (own.is_valid && own.profile <= estimate.profile + far)
+    estimate = std::move(own);
+  else
+    estimate.motion.profile = estimate.profile;
 }
 
 }  // namespace
@@ -120,21 +131,21 @@ Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& n
   for (int i = 0; i < iterations && best.is_valid && !free.empty(); ++i) {
     const NormalEquations equations = normal_equations(trials, best.members, best.fitted, best.motion);
     const Eigen::VectorXd step = step_in_range(equations, best.members, free);
-    if (step.dot(equations.b) < least_gain * best.mean_square) break;  // predicted gain of the step
+    if (step.dot(equations.b) < criteria::least_step_gain * best.mean_square)
+      break;  // predicted gain of the step
     const double before = best.profile;
     double fraction = 1;
     for (int shorter = 0; shorter < 4 && best.profile == before; ++shorter, fraction *= 0.35) {
       Estimate next = evaluated(trials, moved(best.members, free, step, fraction), noise, best.motion);
       if (next.profile < before) best = std::move(next);
     }
-    if (!(best.profile < before - least_gain)) break;
-    if (std::abs(best.profile - best.motion.profile) > far) best = on_own_motion(trials, std::move(best));
+    if (!(best.profile < before - criteria::least_step_gain)) break;
+    if (std::abs(best.profile - best.motion.profile) > far) take_own_motion(trials, best, far);
   }
   return best;
 }
 
 void widen_by_blocks(const Trials& trials, Estimate& estimate) {
-  constexpr double block_s = 0.5;
   const Eigen::Index n = estimate.covariance.rows();
   if (n == 0) return;
   const size_t ports = trials.ports();
@@ -144,7 +155,7 @@ void widen_by_blocks(const Trials& trials, Estimate& estimate) {
     const Fitted& fitted = estimate.fitted[t];
     const Path& path = *estimate.motion.paths[t];
     const Sensitivity s = sensitivity(estimate.members, path, fitted, trial.input);
-    const size_t block = std::max<size_t>(1, whole_count(block_s / path.sample_time));
+    const size_t block = std::max<size_t>(1, whole_count(criteria::independent_block_s / path.sample_time));
     Eigen::VectorXd sum(n), score(n);
     for (size_t start = 0; start < trial.held_out_from; start += block) {
       sum.setZero();
@@ -163,6 +174,23 @@ void widen_by_blocks(const Trials& trials, Estimate& estimate) {
   const Eigen::VectorXd alike = (C * between * C).diagonal(), independent = (C * within * C).diagonal();
   const Eigen::VectorXd factor = alike.cwiseQuotient(independent.cwiseMax(1e-300)).cwiseMax(1.0).cwiseSqrt();
   estimate.covariance = factor.asDiagonal() * C * factor.asDiagonal();
+}
+
+/// From the phase at the middle of the record to that at zero, in which sine and cosine are told.
+void refer_to_zero(Estimate& estimate) {
+  const std::vector<FreeParameter> free = free_parameters(estimate.members);
+  Eigen::MatrixXd to_zero = Eigen::MatrixXd::Identity(estimate.covariance.rows(), estimate.covariance.cols());
+  for (size_t i = 0; i < free.size(); ++i) {
+    const Member& member = estimate.members[free[i].member];
+    if (!is_period(member, free[i])) continue;
+    const double period = member.nonlinear[0], centre = member.candidate->nonlinear[0].centre;
+    const double rate = -2 * std::numbers::pi * centre / (period * period);
+    for (size_t j = 0; j < free.size(); ++j)
+      if (free[j].member == free[i].member && free[j].is_linear)
+        to_zero(Eigen::Index(j), Eigen::Index(i)) =
+            free[j].index == 0 ? rate * member.linear[1] : -rate * member.linear[0];
+  }
+  estimate.covariance = to_zero * estimate.covariance * to_zero.transpose();
 }
 
 void work_out_covariance(Trials& trials, Estimate& estimate) {

@@ -34,11 +34,6 @@ enum class FreeNoise { with_random_walk, white_and_slow, all };
 /// around the start.
 Noise fit_noise(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& start, FreeNoise free);
 
-/// The slow force of an amplifier, as a fraction of the white force.
-constexpr double usual_slow_noise = 0.3;
-/// A slow force above this fraction of the white force is not noise but something that the model lacks.
-constexpr double most_slow_noise = 0.8;
-
 /// fit_noise; but if the slow force is more than noise, all of it is counted as white. Otherwise the
 /// predictor would follow what the model lacks, and effects fitted with it would lose their steady parts to
 /// it.
@@ -49,7 +44,9 @@ Noise fit_noise_alone(const Trials& trials, const std::vector<Fitted>& fitted, c
 /// the sandwich estimator by blocks (Liang and Zeger 1986), a factor for each parameter, never less than one.
 void widen_by_blocks(const Trials& trials, Estimate& estimate);
 
-/// Fills Estimate::covariance.
+/// Fills Estimate::covariance; sine and cosine of a pattern with the phase at the middle of the record.
 void work_out_covariance(Trials& trials, Estimate& estimate);
+/// The same with the phase at zero.
+void refer_to_zero(Estimate& estimate);
 
 }  // namespace loopwright::diagnosis

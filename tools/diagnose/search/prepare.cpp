@@ -2,13 +2,11 @@
 #include "models/real/whole.h"
 #include <algorithm>
 #include <cmath>
+#include "tools/diagnose/criteria.h"
 #include "tools/experiment/experiment_ports.h"
 
 namespace loopwright::diagnosis {
 namespace {
-
-constexpr double settling_s = 0.1;  // rows after the start that do not count
-constexpr int memory_of_rest = 50;  // rows after a rest that do not count: the slow force decays in 30
 
 double quantile(std::vector<double> values, double fraction) {
   if (values.empty()) return 0;
@@ -18,6 +16,11 @@ double quantile(std::vector<double> values, double fraction) {
   return *at;
 }
 
+/// [rows] Half of a time, at least one.
+size_t half_span(double seconds, double sample_time) {
+  return std::max<size_t>(1, whole_count(std::round(seconds / 2 / sample_time)));
+}
+
 std::vector<double> speeds(const AxisRecord& record) {
   std::vector<double> speed;
   if (const MeasuredPort* velocity = record.find("velocity")) {
@@ -25,7 +28,7 @@ std::vector<double> speeds(const AxisRecord& record) {
     return speed;
   }
   const std::vector<double>& x = record.measured.front().value;
-  const size_t span = 5;
+  const size_t span = half_span(criteria::speed_span_s, record.sample_time);
   for (size_t k = span; k + span < x.size(); ++k)
     speed.push_back(std::abs(x[k + span] - x[k - span]) / (2 * double(span) * record.sample_time));
   return speed;
@@ -40,30 +43,70 @@ double measurement_noise(const MeasuredPort& port) {
   const double normal = quantile(difference, 0.5) / (0.6745 * std::sqrt(20.0));
   double scale = 0;
   for (double v : port.value) scale = std::max(scale, std::abs(v));
-  return std::max({normal, port.resolution / std::sqrt(12.0), 1e-9 * scale, 1e-15});
+  return std::max({normal, port.resolution / std::sqrt(12.0), criteria::least_sensor_noise * scale, 1e-15});
 }
 
 Noise first_guess(const Trials& trials) {
   Noise noise;
-  noise.white = 0.01 * trials.force_rms;
-  noise.step = 0.3 * noise.white;
+  noise.white = criteria::usual_white_noise * trials.force_rms;
+  noise.step = criteria::usual_slow_noise * noise.white;
   for (const MeasuredPort& port : trials.list.front().model->record().measured)
     noise.measurement.push_back(trials.has_map() ? noise.white : measurement_noise(port));
   return noise;
+}
+
+/// The waits that a record affords if it has many rows.
+Pace pace_of(AxisModel& model, const Noise& noise, double rest_speed) {
+  const LinearAxis axis = model.linearize();
+  const double constant = correction_time(axis, gains_of(axis, noise, model.nominal_inertia()));
+  const double sample_time = model.record().sample_time, memory = criteria::slow_memory_s / sample_time;
+  const auto rows = [](double wait) {
+    return int(std::max<size_t>(criteria::least_correction, whole_count(std::ceil(wait))));
+  };
+  return {rest_speed,
+          rows(std::max(criteria::correction * constant, criteria::correction_s / sample_time - 1e-9)),
+          rows(std::max(criteria::after_rest * memory, criteria::correction_after_rest * constant))};
+}
+
+/// Shorter waits; false if they are as short as they may be.
+bool shorten(Pace& pace) {
+  const auto shorter = [](int rows) {
+    return std::max(criteria::least_correction, int(criteria::shorter_wait * rows));
+  };
+  const Pace before = pace;
+  pace.samples_to_correct = shorter(pace.samples_to_correct);
+  pace.samples_after_rest = shorter(pace.samples_after_rest);
+  return pace.samples_to_correct < before.samples_to_correct ||
+         pace.samples_after_rest < before.samples_after_rest;
 }
 
 /// Rows while moving, some time after the last rest or reversal; and rows at rest.
 void mark_usable(Trial& trial, const Path& path, bool is_map) {
   const size_t rows = path.samples();
   trial.moving.assign(rows, 1), trial.at_rest.assign(rows, 0);
-  int since_rest = memory_of_rest;
-  const int start = is_map ? 1 : int(whole_count(std::ceil(settling_s / path.sample_time)));
+  int since_rest = trial.pace.samples_after_rest;
+  const int start = is_map ? 1 : int(whole_count(std::ceil(criteria::settling_s / path.sample_time)));
   for (size_t k = 0; k < rows; ++k) {
     since_rest = path.rests[k] ? 0 : since_rest + 1;
-    trial.moving[k] = since_rest > memory_of_rest && !path.turns[k] && int(k) >= start;
+    trial.moving[k] = since_rest > trial.pace.samples_after_rest && !path.turns[k] && int(k) >= start;
     trial.at_rest[k] = path.rests[k] && int(k) >= start;
   }
   trial.usable = trial.moving;
+}
+
+/// The rows that count along the nominal diagram's prediction. Where reversals follow each other so fast that
+/// the waits leave too few, these become shorter.
+std::vector<Fitted> mark_usable(Trials& trials) {
+  for (;;) {
+    std::vector<Fitted> nominal = run_members(trials, {}, {}, trials.noise);
+    for (size_t t = 0; t < trials.list.size(); ++t)
+      mark_usable(trials.list[t], nominal[t].prediction.path, trials.has_map());
+    bool is_shorter = false;
+    if (double(fitted_numbers(trials)) < criteria::plenty_of_rows * double(trials.ports()) &&
+        !trials.has_map())
+      for (Trial& trial : trials.list) is_shorter |= shorten(trial.pace);
+    if (!is_shorter) return nominal;
+  }
 }
 
 /// The noise of a motion and that of a map are not related.
@@ -102,13 +145,12 @@ Trials prepare(const std::string& diagram, const std::vector<std::string>& exper
   }
   reject_mixed(trials);
   trials.run_along(Trials::Rows::all);
-  trials.rest_speed = 0.005 * quantile(speed, 0.99);
   trials.force_rms = std::sqrt(square / double(std::max<size_t>(n, 1)));
   trials.noise = first_guess(trials);
+  const double rest_speed = criteria::rest_speed * quantile(speed, 0.99);
+  for (Trial& trial : trials.list) trial.pace = pace_of(*trial.model, trials.noise, rest_speed);
   trials.nominal_holds = trials.list.front().model->holds_at_rest(1e-3 * trials.force_rms);
-  std::vector<Fitted> nominal = run_members(trials, {}, {}, trials.noise);
-  for (size_t t = 0; t < trials.list.size(); ++t)
-    mark_usable(trials.list[t], nominal[t].prediction.path, trials.has_map());
+  std::vector<Fitted> nominal = mark_usable(trials);
   trials.noise = fit_noise(trials, nominal, trials.noise, FreeNoise::with_random_walk);
   nominal = run_members(trials, {}, {}, trials.noise);
   trials.lowest_position = 1e300, trials.highest_position = -1e300;

@@ -2,15 +2,18 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include "models/real/whole.h"
+#include "tools/diagnose/criteria.h"
 
 namespace loopwright::diagnosis {
 namespace {
 
-constexpr double worse_at_rest = 4;    // than in motion: errors that the set does not explain occur there too
-constexpr double least_freedom = 0.4;  // of the motion of a free axis under noise; reduced by control
-constexpr double most_freedom = 3;     // more is motion
-constexpr size_t apart = 6;            // samples: enough for a deviation, too few to correct all of it
-constexpr size_t glance = 36;          // samples: enough to average out steps of the encoder
+using namespace criteria;
+
+/// [rows]
+size_t rows_in(double seconds, double sample_time, size_t least) {
+  return std::max(least, whole_count(std::round(seconds / sample_time)));
+}
 
 AtRest at_rest(const std::vector<Member>& members) {
   AtRest result = AtRest::free;
@@ -40,7 +43,7 @@ struct Swerve {
   double square = 0;
   size_t glances = 0;
 };
-Swerve swerve_at_rest(const Trials& trials, size_t lag) {
+Swerve swerve_at_rest(const Trials& trials, size_t lag, size_t glance) {
   constexpr double median_to_mean = 0.9;
   std::vector<double> glances;
   for (const Trial& trial : trials.list) {
@@ -65,12 +68,15 @@ Swerve swerve_at_rest(const Trials& trials, size_t lag) {
 
 /// The axis moves as if nothing held it.
 double against_held(const Trials& trials, const Noise& noise) {
-  const Swerve swerve = swerve_at_rest(trials, apart);
-  if (swerve.glances == 0) return 0;
   const AxisModel& model = *trials.list.front().model;
-  const double T = model.record().sample_time, kick = noise.white / model.nominal_inertia() * T * T;
+  const double T = model.record().sample_time;
+  const size_t apart = rows_in(deviation_s, T, 2), glance = rows_in(glance_s, T, 3 * apart);
+  const Swerve swerve = swerve_at_rest(trials, apart, glance);
+  if (swerve.glances == 0) return 0;
+  const double kick = noise.white / model.nominal_inertia() * T * T;
   // From sample to sample hardly anything but the sensor changes, including its steps.
-  const double sensor = std::max(swerve_at_rest(trials, 1).square, 6 * std::pow(noise.measurement[0], 2));
+  const double sensor =
+      std::max(swerve_at_rest(trials, 1, glance).square, 6 * std::pow(noise.measurement[0], 2));
   const double free = kick * kick * 2 * std::pow(double(apart), 3) / 3, seen = swerve.square - sensor;
   if (seen < least_freedom * free || seen > most_freedom * free || seen < sensor) return 0;
   return double(swerve.glances * glance) / double(2 * apart) * std::log1p(seen / sensor);

@@ -9,8 +9,8 @@ namespace loopwright::diagnosis {
 /// fitted to any set.
 ///   nothing in the set holds:  n ln(m / 4) where the mean square m of the whitened errors at rest is more
 ///                              than four times that in motion: a force was there and moved nothing
-///   something in it holds:     n/12 ln(1 + d / s) where the second difference x(k) - 2 x(k-6) + x(k-12) of
-///                              the position has the mean square d + s (median of means over 36), s is the
+///   something in it holds:     n/12 ln(1 + d / s) where the second difference over twice 6 ms of
+///                              the position has the mean square d + s (median of means over 36 ms), s is the
 ///                              sensor's (the same from sample to sample), and d is about what noise alone
 ///                              causes on a free axis: nothing held it
 /// If the set or the user's own diagram yields at rest, both are undecided: 0.

@@ -8,6 +8,7 @@
 #include "tools/diagnose/search/conclude.h"
 #include "tools/diagnose/search/doubt.h"
 #include "tools/diagnose/search/law_swaps.h"
+#include "tools/diagnose/search/remaining_force.h"
 #include "tools/diagnose/search/spectrum.h"
 
 namespace loopwright::diagnosis {
@@ -16,7 +17,6 @@ namespace {
 constexpr size_t most_effects = 8;
 constexpr size_t tried_extensions = 4;
 constexpr size_t tried_exchanges = 3;
-constexpr double clearly = 3;  // improvement, in the criterion
 
 class Search {
  public:
@@ -114,7 +114,7 @@ class Search {
     return *evidence_;
   }
 
-  bool is_much_left() const { return best_.mean_square >= 8; }
+  bool is_much_left() const { return best_.mean_square >= criteria::much_left; }
 
   /// False when nothing more was found.
   bool grow(size_t most) {
@@ -136,7 +136,8 @@ class Search {
       if (pair.gain > 2 * single) proposals.resize(std::min<size_t>(proposals.size(), 2));
       proposals.push_back(pair);
     }
-    const double least = std::max(10.0, 0.002 * double(fitted_numbers(trials_)));
+    const double least =
+        std::max(criteria::least_gain, criteria::least_gain_per_row * double(fitted_numbers(trials_)));
     std::vector<std::pair<double, Estimate>> tried;
     for (const Proposal& proposal : proposals) {
       Estimate trial = refined(applied(proposal, best_.members), 2);
@@ -161,7 +162,12 @@ class Search {
     leave_out_doubtful(trials_, best_);
     for (size_t m = best_.members.size(); m < weights.size(); ++m) {
       const Weight& w = weights[m];
-      if (material(trials_, trial, w) >= 1) continue;
+      const bool spoils = spoils_balance(trials_, trial, m);
+      if (material(trials_, trial, w) >= 1 && !spoils) continue;
+      if (spoils) {
+        trail_.push_back("spoils the balance of the forces: " + trial.members[m].candidate->name);
+        return false;
+      }
       trail_.push_back(fmt::format("not material: {}, χ² {:.0f}, force {:.3g}, unique {:.3g}",
                                    trial.members[m].candidate->name, w.wald, w.force_rms, w.unique_force));
       return false;
@@ -187,7 +193,10 @@ class Search {
   }
 
   /// A spline adapts itself to small errors of an effect: it must explain a tenth more.
-  double worth_losing_names() const { return std::max(20.0, 0.1 * double(fitted_numbers(trials_))); }
+  double worth_losing_names() const {
+    return std::max(criteria::least_gain_without_name,
+                    criteria::least_gain_without_name_per_row * double(fitted_numbers(trials_)));
+  }
   static bool has_unknown(const Estimate& e) {
     return std::ranges::any_of(e.members, [](const Member& m) { return m.candidate->is_unknown; });
   }
@@ -258,7 +267,7 @@ class Search {
         for (const Proposal& swap : law_swaps(best_.members, candidates_, *trials_.list.front().model))
           others.push_back(applied(swap, best_.members));
       Estimate best;
-      double best_gain = clearly;
+      double best_gain = criteria::clearly_better;
       for (const std::vector<Member>& members : others) {
         Estimate trial = pruned(refined(members, 4));
         const double gain = gain_of(trial);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include "tools/diagnose/verdict/verdict.h"
 #include "models/real/whole.h"
+#include "tools/diagnose/criteria.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -14,10 +15,11 @@ struct Remainder {
 };
 
 Remainder remainder_of(const Trials& trials, const std::vector<Fitted>& fitted) {
-  constexpr size_t together = 10;
   Remainder r;
   for (size_t t = 0; t < trials.list.size(); ++t) {
     const Path& path = fitted[t].prediction.path;
+    const size_t together =
+        std::max<size_t>(1, whole_count(std::round(criteria::remainder_mean_s / path.sample_time)));
     const std::vector<double>& slow = fitted[t].prediction.slow;
     const auto add = [&](std::vector<double>& list, const std::vector<double>& of, size_t k) {
       double sum = 0;
@@ -56,10 +58,10 @@ struct Hats {
 /// Explained share of the remainder on blocks that the smoother was not fitted to; `side` splits it into two
 /// smoothers.
 double explained(const std::vector<double>& force, const std::vector<double>& variable, size_t knots,
-                 const std::vector<double>* side) {
+                 size_t block, const std::vector<double>* side) {
   const Hats hats(variable, knots);
   const size_t width = hats.knots.size();
-  constexpr size_t folds = 5, block = 125;
+  constexpr size_t folds = 5;
   double left = 0, whole = 0;
   for (size_t fold = 0; fold < folds; ++fold) {
     const Eigen::Index n = Eigen::Index(width) * (side ? 2 : 1);
@@ -93,15 +95,17 @@ double explained(const std::vector<double>& force, const std::vector<double>& va
 std::vector<RemainderShare> dependence_of(const Trials& trials, const std::vector<Fitted>& fitted) {
   const Remainder r = remainder_of(trials, fitted);
   if (r.force.size() < 200) return {};
+  const double mean_s = std::max(criteria::remainder_mean_s, trials.list.front().model->record().sample_time);
+  const size_t block = std::max<size_t>(1, whole_count(std::round(criteria::remainder_block_s / mean_s)));
   std::vector<RemainderShare> list;
-  list.push_back({"position", explained(r.force, r.position, 40, nullptr)});
+  list.push_back({"position", explained(r.force, r.position, 40, block, nullptr)});
   if (!trials.has_map()) {
-    list.push_back({"velocity", explained(r.force, r.velocity, 20, nullptr)});
-    list.push_back({"acceleration", explained(r.force, r.acceleration, 12, nullptr)});
-    list.push_back({"input", explained(r.force, r.input, 12, nullptr)});
-    list.push_back({"time", explained(r.force, r.time, 40, nullptr)});
+    list.push_back({"velocity", explained(r.force, r.velocity, 20, block, nullptr)});
+    list.push_back({"acceleration", explained(r.force, r.acceleration, 12, block, nullptr)});
+    list.push_back({"input", explained(r.force, r.input, 12, block, nullptr)});
+    list.push_back({"time", explained(r.force, r.time, 40, block, nullptr)});
   }
-  const double direction = explained(r.force, r.position, 40, &r.velocity);
+  const double direction = explained(r.force, r.position, 40, block, &r.velocity);
   if (direction > list.front().share + 0.05) list.push_back({"position,direction", direction});
   std::ranges::stable_sort(list, std::ranges::greater{}, &RemainderShare::share);
   return list;

@@ -1,9 +1,23 @@
 /// Faults of a record and missing excitation, with their consequences.
 #include <fmt/format.h>
 #include "tools/compare/excitation.h"
+#include "tools/diagnose/criteria.h"
 #include "tools/diagnose/verdict/verdict.h"
 
 namespace loopwright::diagnosis {
+
+std::optional<RecordFinding> too_few_rows(const Trials& trials) {
+  const size_t rows = fitted_numbers(trials) / trials.ports();
+  if (trials.has_map() || double(rows) >= criteria::least_rows) return {};
+  size_t all = 0;
+  for (const Trial& trial : trials.list) all += trial.held_out_from;
+  return RecordFinding{
+      fmt::format("of {} rows that may be fitted, {} count", all, rows),
+      fmt::format("no verdict rests on fewer than {}: record faster, longer, or with longer ways between "
+                  "reversals; rows at rest and just after a rest or a reversal do not count",
+                  criteria::least_rows),
+      true};
+}
 
 std::vector<RecordFinding> look_at_records(const Trials& trials,
                                            const std::vector<InverseDynamics>& inverse) {

@@ -3,7 +3,7 @@
 #pragma once
 #include "tools/diagnose/search/conclude.h"
 #include "tools/diagnose/diagnosis.h"
-#include "tools/diagnose/verdict/remaining_force.h"
+#include "tools/diagnose/search/remaining_force.h"
 
 namespace loopwright::diagnosis {
 

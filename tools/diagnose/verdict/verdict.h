@@ -2,13 +2,15 @@
 #pragma once
 #include "tools/diagnose/search/conclude.h"
 #include "tools/diagnose/diagnosis.h"
-#include "tools/diagnose/verdict/remaining_force.h"
+#include "tools/diagnose/search/remaining_force.h"
 #include "tools/effects/effect.h"
 
 namespace loopwright::diagnosis {
 
 /// Faults of the records and missing excitation, with their consequences.
 std::vector<RecordFinding> look_at_records(const Trials& trials, const std::vector<InverseDynamics>& inverse);
+/// Fatal: fewer fitted rows than a verdict needs.
+std::optional<RecordFinding> too_few_rows(const Trials& trials);
 
 /// Verdict, remainder and its variables, the latter along `motion`. `tight` is the noise of the search: with
 /// the final noise, the slow force has absorbed the remainder.

@@ -1,10 +1,12 @@
-#include "tools/diagnose/verdict/remaining_force.h"
+#include "tools/diagnose/search/remaining_force.h"
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
 #include "tools/compare/zero_phase.h"
 #include "models/real/whole.h"
+#include "tools/diagnose/criteria.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -41,7 +43,7 @@ std::vector<double> net_forces(AxisModel& model, const Path& path, const std::ve
 
 }  // namespace
 
-InverseDynamics inverse_dynamics(Trial& trial, double rest_speed) {
+InverseDynamics inverse_dynamics(Trial& trial) {
   AxisModel& model = *trial.model;
   const AxisRecord& record = model.record();
   InverseDynamics result;
@@ -51,15 +53,16 @@ InverseDynamics inverse_dynamics(Trial& trial, double rest_speed) {
   if (record.is_map) {
     path = creep_along(record, record.rows());
   } else {
-    path.sample_time = record.sample_time, path.rest_speed = rest_speed;
+    path.sample_time = record.sample_time;
     path.position = path.predicted_position = result.motion.position;
     path.velocity = result.motion.velocity, path.acceleration = result.motion.acceleration;
-    path.input = record.input;
+    path.input = result.motion.input;
     path.rests.resize(record.rows()), path.turns.resize(record.rows());
-    for (size_t k = 0; k < record.rows(); ++k) path.rests[k] = std::abs(path.velocity[k]) < rest_speed;
+    for (size_t k = 0; k < record.rows(); ++k)
+      path.rests[k] = std::abs(path.velocity[k]) < trial.pace.rest_speed;
   }
   path.force = model.driving_force();
-  result.net_force = net_forces(model, path, record.input);
+  result.net_force = net_forces(model, path, path.input);
   for (size_t k = 0; k < record.rows(); ++k)
     result.residual.push_back(result.net_force[k] - model.nominal_inertia() * path.acceleration[k]);
   return result;
@@ -82,10 +85,10 @@ std::vector<double> residual_with(const Trial& trial, const InverseDynamics& inv
       for (size_t k = 0; k < residual.size(); ++k)
         consumed[k] += member.linear[c] * double((*columns[c].mean)[k]);
   }
-  const Drives changed = drives_of(others, inverse.path, record.input);
+  const Drives changed = drives_of(others, inverse.path, inverse.path.input);
   const std::vector<double> force = at_samples(consumed, record);
   for (size_t k = 0; k < residual.size(); ++k) residual[k] -= force[k];
-  if (changed.input != record.input) {
+  if (changed.input != inverse.path.input) {
     const std::vector<double> net = net_forces(*trial.model, inverse.path, changed.input);
     for (size_t k = 0; k < residual.size(); ++k) residual[k] += net[k] - inverse.net_force[k];
   }
@@ -106,6 +109,44 @@ ResidualSize residual_size(const Trials& trials, const std::vector<InverseDynami
     }
   }
   return {std::sqrt(sum[0] / std::max(n[0], 1.0)), n[1] > 0 ? std::sqrt(sum[1] / n[1]) : 0};
+}
+
+ForceShare share_of_force(const Trials& trials, const std::vector<InverseDynamics>& inverse,
+                          const std::vector<Member>& with, const std::vector<Member>& without) {
+  std::vector<std::array<double, 2>> blocks;  // Σ residual · force, Σ force²
+  for (size_t t = 0; t < trials.list.size(); ++t) {
+    const Trial& trial = trials.list[t];
+    const std::vector<double> left = residual_with(trial, inverse[t], with),
+                              before = residual_with(trial, inverse[t], without);
+    const size_t block =
+        std::max<size_t>(1, whole_count(criteria::independent_block_s / inverse[t].motion.sample_time));
+    for (size_t k = 0; k < std::min(trial.held_out_from, left.size()); ++k) {
+      if (k % block == 0) blocks.push_back({});
+      if (!inverse[t].motion.counts[k]) continue;
+      const double force = before[k] - left[k];
+      blocks.back()[0] += before[k] * force, blocks.back()[1] += force * force;
+    }
+  }
+  double by_force = 0, squares = 0, scatter = 0;
+  for (const auto& [product, square] : blocks) by_force += product, squares += square;
+  if (squares <= 0) return {};
+  const double slope = by_force / squares;
+  for (const auto& [product, square] : blocks) scatter += std::pow(product - slope * square, 2);
+  return {slope, std::sqrt(scatter) / squares};
+}
+
+bool spoils_balance(const Trials& trials, const Estimate& estimate, size_t member) {
+  if (!trials.inverse) return false;
+  std::vector<Member> others = estimate.members;
+  others.erase(others.begin() + std::ptrdiff_t(member));
+  const ForceShare share = share_of_force(trials, *trials.inverse, estimate.members, others);
+  return share.found + criteria::sure_deviations * share.deviation < criteria::least_force_share;
+}
+
+bool is_negligible(const Trials& trials, const std::vector<Member>& members) {
+  if (!trials.inverse) return false;
+  const ResidualSize left = residual_size(trials, *trials.inverse, members);
+  return std::max(left.fitted, left.held_out) <= criteria::negligible_force * trials.force_rms;
 }
 
 double residual_floor(const Trials& trials, const Noise& noise) {

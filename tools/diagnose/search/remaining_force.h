@@ -14,7 +14,7 @@ struct InverseDynamics {
   std::vector<double> residual;   ///< net force minus inertia × acceleration
 };
 
-InverseDynamics inverse_dynamics(Trial& trial, double rest_speed);
+InverseDynamics inverse_dynamics(Trial& trial);
 
 /// The nominal residual minus the force that the members consume, filtered below 80 Hz (or a tenth of the
 /// sampling rate).
@@ -26,6 +26,23 @@ struct ResidualSize {
 };
 ResidualSize residual_size(const Trials& trials, const std::vector<InverseDynamics>& inverse,
                            const std::vector<Member>& members);
+
+/// The force that distinguishes two sets of members, as far as the residual shows it.
+struct ForceShare {
+  double found = 1;  ///< slope of the residual without it over the force: 1 if it is there, 0 if it is not
+  double deviation = 0;  ///< standard deviation, from blocks of half a second
+};
+/// Over the fitted rows; `without` is a subset of `with`.
+ForceShare share_of_force(const Trials& trials, const std::vector<InverseDynamics>& inverse,
+                          const std::vector<Member>& with, const std::vector<Member>& without);
+
+/// Whether a member makes the balance of the forces along the smooth motion worse. In a closed loop the input
+/// answers to disturbances that the record of the motion does not yet show: a delay, a lag or a mode can
+/// then predict a part of the noise, but does not fit the motion itself.
+bool spoils_balance(const Trials& trials, const Estimate& estimate, size_t member);
+
+/// Whether the force that the members leave is too small to matter, in the fitted rows and in the others.
+bool is_negligible(const Trials& trials, const std::vector<Member>& members);
 
 /// The residual that the noise alone would leave, from its spectrum.
 double residual_floor(const Trials& trials, const Noise& noise);

@@ -1,0 +1,184 @@
+// Ordinary flaws of records: the answer is that of the same motion without them, or says why not.
+#include <gmock/gmock.h>
+#include "tests/tools/diagnose/diagnosed.h"
+#include "tests/tools/diagnose/flawed_axis.h"
+
+namespace loopwright {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+Diagnosis diagnosis_of(const FlawedMachine& machine) {
+  const FlawedAxis axis(machine);
+  return diagnose(axis.diagram(), {axis.experiment()});
+}
+
+/// Coulomb friction of 0.3 N and nothing else.
+void expect_friction(const Diagnosis& d, double level = 0.3) {
+  EXPECT_EQ(name_of(d.verdict), "explained") << to_text(d);
+  ASSERT_THAT(names(d), ElementsAre("coulomb_friction")) << to_text(d);
+  expect_parameter(d.effects[0], "level", level, 0.1 * level, "N");
+}
+void expect_nothing(const Diagnosis& d) {
+  EXPECT_EQ(name_of(d.verdict), "nothing_missing") << to_text(d);
+  EXPECT_THAT(names(d), IsEmpty());
+}
+void expect_cogging(const Diagnosis& d, double amplitude, double pitch) {
+  ASSERT_THAT(names(d), ElementsAre("cogging")) << to_text(d);
+  expect_parameter(d.effects[0], "pitch", pitch, 1e-2 * pitch, "m");
+  double square = 0;
+  for (const DiagnosedParameter& p : d.effects[0].parameters)
+    if (p.name == "sine" || p.name == "cosine") square += p.value * p.value;
+  EXPECT_NEAR(std::sqrt(square), amplitude, 0.05 * amplitude);
+}
+
+FlawedMachine with_friction() {
+  FlawedMachine machine;
+  machine.coulomb = 0.3;
+  return machine;
+}
+
+// Rows.
+
+TEST(Rows, AnOscillationOfFewRowsBetweenItsTurnsIsJudged) {
+  FlawedMachine machine;
+  machine.oscillation_hz = 40, machine.stroke = 5e-4, machine.duration = 8;
+  const Diagnosis d = diagnosis_of(machine);
+  expect_nothing(d);
+  EXPECT_GE(d.rows, 200u);
+  machine.oscillation_hz = 20, machine.stroke = 2e-3, machine.coulomb = 0.8;
+  expect_friction(diagnosis_of(machine), 0.8);
+}
+
+TEST(Rows, TooFewOfThemGiveNoVerdictAndAreCounted) {
+  FlawedMachine machine;
+  machine.oscillation_hz = 10, machine.stroke = 0.02, machine.sample_time = 0.02, machine.duration = 5;
+  const Diagnosis d = diagnosis_of(machine);
+  EXPECT_EQ(name_of(d.verdict), "unexplained");
+  EXPECT_THAT(names(d), IsEmpty());
+  EXPECT_LT(d.rows, 200u);
+  EXPECT_THAT(d.findings, testing::Contains(testing::Field(&RecordFinding::cost,
+                                                           testing::HasSubstr("no verdict rests on fewer"))));
+}
+
+class Rate : public testing::TestWithParam<double> {};
+
+TEST_P(Rate, DoesNotChangeTheAnswer) {
+  FlawedMachine machine = with_friction();
+  machine.sample_time = 1 / GetParam();
+  machine.duration = GetParam() < 500 ? 40 : GetParam() > 5000 ? 6 : 20;
+  if (GetParam() < 500) machine.resolution = 1e-6;
+  expect_friction(diagnosis_of(machine));
+  machine.coulomb = 0;
+  expect_nothing(diagnosis_of(machine));
+}
+INSTANTIATE_TEST_SUITE_P(Of, Rate, testing::Values(100, 1000, 8000));
+
+// Time stamps.
+
+TEST(Stamps, TimesAtWhichTheRowsWereSampledAreFollowed) {
+  for (const double jitter : {0.02, 0.2, 0.3}) {
+    SCOPED_TRACE(jitter);
+    FlawedMachine machine;
+    machine.jitter = jitter;
+    expect_nothing(diagnosis_of(machine));
+    machine.coulomb = 0.3;
+    if (jitter <= 0.2) expect_friction(diagnosis_of(machine));  // beyond: see docs/known_gaps.md
+  }
+  FlawedMachine machine;
+  machine.jitter = 0.3, machine.cogging = 0.2;
+  expect_cogging(diagnosis_of(machine), 0.2, machine.pitch);
+}
+
+TEST(Stamps, LateStampsOfEvenRowsAreNotFollowed) {
+  FlawedMachine machine = with_friction();
+  machine.stamp_jitter = 0.3;
+  expect_friction(diagnosis_of(machine));
+}
+
+TEST(Stamps, RoundedOnesAreRecognized) {
+  for (const auto& [rate, quantum] : {std::pair(750.0, 1e-4), {750.0, 1e-6}, {1024.0, 1e-4}}) {
+    SCOPED_TRACE(rate);
+    FlawedMachine machine = with_friction();
+    machine.sample_time = 1 / rate, machine.stamp_quantum = quantum;
+    expect_friction(diagnosis_of(machine));
+  }
+}
+
+TEST(Stamps, LostAndRepeatedRowsDoNoHarm) {
+  FlawedMachine machine = with_friction();
+  machine.loses_every = 60;
+  expect_friction(diagnosis_of(machine));
+  machine.loses_every = 0, machine.repeats_every = 300;
+  expect_friction(diagnosis_of(machine));
+}
+
+// Origin.
+
+TEST(Origin, APatternFarFromZeroIsOnePattern) {
+  for (const double strokes : {9, -100}) {
+    SCOPED_TRACE(strokes);
+    FlawedMachine machine;
+    machine.origin = strokes * machine.stroke;
+    expect_nothing(diagnosis_of(machine));
+    machine.cogging = 0.2;
+    expect_cogging(diagnosis_of(machine), 0.2, machine.pitch);
+  }
+}
+
+// Inputs between samples.
+
+TEST(LinearInput, IsFollowedAlongItsLine) {
+  FlawedMachine machine;
+  machine.input_is_linear = true;
+  const Diagnosis right = diagnosis_of(machine);
+  expect_nothing(right);
+  EXPECT_NEAR(right.white_force, machine.force_noise, 0.05 * machine.force_noise);
+  EXPECT_NEAR(right.measurement_noise[0], std::hypot(5e-8, 2e-7 / std::sqrt(12.0)), 2e-9);
+  machine.coulomb = 0.3;
+  expect_friction(diagnosis_of(machine));
+}
+
+// Noise.
+
+TEST(NoNoise, ASimulatedRecordIsExplained) {
+  FlawedMachine machine;
+  machine.force_noise = machine.sensor_noise = machine.resolution = 0;
+  expect_nothing(diagnosis_of(machine));
+  machine.coulomb = 0.6;
+  const Diagnosis d = diagnosis_of(machine);
+  EXPECT_EQ(name_of(d.verdict), "explained") << to_text(d);
+  ASSERT_THAT(names(d), ElementsAre("coulomb_friction")) << to_text(d);
+  EXPECT_NEAR(d.effects[0].parameters[0].value, 0.6, 1e-3);
+}
+
+TEST(NoNoise, OnlyCountsAreNoMissingEffect) {
+  FlawedMachine machine;
+  machine.force_noise = machine.sensor_noise = 0;
+  expect_nothing(diagnosis_of(machine));
+}
+
+TEST(Counts, CoarseOnesAreNoMissingEffect) {
+  for (const double resolution : {1e-5, 5e-5}) {
+    SCOPED_TRACE(resolution);
+    FlawedMachine machine;
+    machine.resolution = resolution, machine.sensor_noise = 0.02 * resolution;
+    expect_nothing(diagnosis_of(machine));
+  }
+}
+
+// Last bits.
+
+TEST(LastBits, DoNotChangeTheAnswer) {
+  FlawedMachine machine = with_friction();
+  const Diagnosis exact = diagnosis_of(machine);
+  machine.last_bits = 1e-12;
+  const Diagnosis rounded = diagnosis_of(machine);
+  EXPECT_EQ(exact.verdict, rounded.verdict);
+  EXPECT_EQ(names(exact), names(rounded));
+  EXPECT_NEAR(exact.mean_square, rounded.mean_square, 1e-4);
+}
+
+}  // namespace
+}  // namespace loopwright

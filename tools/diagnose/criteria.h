@@ -1,0 +1,143 @@
+/// Every number that decides something in the diagnosis, with its unit and its reason. Times are in seconds,
+/// or in multiples of a time constant of the predictor (the model's poles under the record's noise); none is
+/// a number of rows of the record, so that the same motion recorded faster or slower gets the same answer.
+#pragma once
+#include <cstddef>
+
+namespace loopwright::diagnosis::criteria {
+
+// Rows that count.
+
+/// [s] After the start of a record: the predictor begins with a guessed velocity.
+constexpr double settling_s = 0.1;
+/// [time constants of the predictor's motion] After a reversal, or an impact. Dry friction changes its sign
+/// within a sample or two of it; after five time constants a hundredth of that error is left.
+constexpr double correction = 5;
+/// [s] Nor less than this: what the controller does about the error is over by then.
+constexpr double correction_s = 15e-3;
+/// [rows] The fewest of them: position, velocity and force must be measured once each.
+constexpr int least_correction = 3;
+/// [s] Memory of a slow force of amplifiers and cables, as the predictor assumes it.
+constexpr double slow_memory_s = 0.03;
+/// [slow_memory_s] After a rest, at which the slow force is forgotten: e^(-5/3) = 19 % of it is missing then.
+constexpr double after_rest = 5.0 / 3;
+/// [time constants of the predictor's motion] Nor less than this: at breakaway the velocity is wrong too.
+constexpr double correction_after_rest = 10;
+/// [rows] The waits above are kept if they leave so many; otherwise, as in a fast oscillation, each is
+/// shortened by the factor until they do.
+constexpr double plenty_of_rows = 1000, shorter_wait = 0.7;
+/// [top speed] Slower counts as at rest: the sign of friction is not certain there.
+constexpr double rest_speed = 0.005;
+/// [rows] Fewer fitted rows support no verdict: 40 lags and three noises are estimated from them.
+constexpr double least_rows = 200;
+
+/// [rows] Of a longer record, sampled faster than necessary, several rows become one of at most this length
+/// [s]: the search runs hundreds of shapes along all of them.
+constexpr double most_rows = 120000, thinned_sample_s = 2e-3;
+
+// Noise.
+
+/// [force of the input, rms] A fiftieth of the smallest material force. If the sensor's counts are the only
+/// noise, the force noise would go to zero, and with it every tolerance of the model.
+constexpr double least_white_noise = 1e-4;
+/// [force of the input, rms] The first guess, and its range during the search: small, so that a missing
+/// effect is not taken for noise.
+constexpr double usual_white_noise = 0.01, least_search_noise = 0.005, most_search_noise = 0.02;
+/// [white force] Slow force of an amplifier.
+constexpr double usual_slow_noise = 0.3;
+/// [white force] A larger slow force is not noise but something that the model lacks.
+constexpr double most_slow_noise = 0.8;
+/// [white force] The slow force that remains when it is counted as white.
+constexpr double next_to_no_slow_noise = 0.01;
+/// [factor] The likelihood looks for each noise within this of its start.
+constexpr double noise_reach = 30;
+/// [greatest position] Numbers of a record have some nine digits.
+constexpr double least_sensor_noise = 1e-9;
+
+// Whiteness of the prediction errors.
+
+/// [lags] n Σ ρ² over them is near their number if the errors are white.
+constexpr size_t portmanteau_lags = 40;
+/// [s] Errors that are closer are added up first, so that the lags cover 40 ms at any rate.
+constexpr double portmanteau_lag_s = 1e-3;
+/// Above it the errors are not white. Encoder counts at a steady speed alone give up to 170.
+constexpr double most_portmanteau = 300;
+
+/// [force of the input, rms] A smaller force that remains, below 80 Hz, does not matter: a simulated record
+/// has no noise beside which the rest of a model's error could be judged.
+constexpr double negligible_force = 1e-3;
+
+// Effects.
+
+/// Of the force of an effect, as far as the balance of forces along the smooth motion shows it: 1 if it is
+/// there, 0 if it is not, with a bias where a controller answers to noise.
+constexpr double least_force_share = 0.3;
+/// [standard deviations] By which the share must be below.
+constexpr double sure_deviations = 2;
+/// [residual force] Two sets within this factor balance the forces alike.
+constexpr double same_balance = 1.02;
+/// [s] Errors further apart are independent.
+constexpr double independent_block_s = 0.5;
+
+// Sets of effects, compared by twice the negative log-likelihood with the price of their parameters.
+
+/// [χ²] Five standard deviations; and shares of the rows, below which a model is not exact enough to tell: of
+/// certainty, and of a size that needs no large force, because a delay acts only for moments.
+constexpr double least_wald = 25, least_wald_per_row = 0.001, plain_wald_per_row = 0.01;
+/// [force of the input, rms] Of a material effect; and of the part of it that no other effect could replace.
+constexpr double least_force = 0.005, least_unique_force = 0.001;
+/// [white force] Of a material effect.
+constexpr double least_force_to_noise = 0.25;
+/// [thresholds above] A member within this of one of them must do better than noise fitted without it.
+constexpr double barely_material = 2;
+/// [criterion] What an effect must save, absolutely and for each row: within it sets are alternatives.
+constexpr double least_gain = 10, least_gain_per_row = 0.002;
+/// [criterion] The same for a function without a name, which adapts itself to small errors of an effect.
+constexpr double least_gain_without_name = 20, least_gain_without_name_per_row = 0.1;
+/// [criterion] A set is clearly better; two sets that state the same law of motion differ by the noise alone.
+constexpr double clearly_better = 3, same_law = 20;
+/// [reach of an alternative] A promising set may lose so much on its own motion.
+constexpr double most_promised_loss = 20;
+/// [mean square] The search starts again from functions without a name.
+constexpr double much_left = 8;
+/// A delay or a lag replaces a step from 0 to its shape; the step that the errors ask for must be near 1.
+constexpr double least_step_to_shape = 0.6, most_step_to_shape = 1.7;
+/// [twice the log-likelihood] A smaller gain ends the iterations of a fit.
+constexpr double least_step_gain = 0.01;
+/// [ln(mean square)] Two models that differ less have the same motion.
+constexpr double same_motion = 0.01;
+/// [mean square of the fitted rows] The held-out rows show something else.
+constexpr double most_held_out = 1.5;
+/// [probability] Of an effect that ranks among the certain ones.
+constexpr double sure = 0.9;
+
+// Rest.
+
+/// [mean square in motion] Errors that the set does not explain occur at rest too.
+constexpr double worse_at_rest = 4;
+/// [motion of a free axis under noise] Control reduces it; more is motion.
+constexpr double least_freedom = 0.4, most_freedom = 3;
+/// [s] Enough for a deviation, too little to correct all of it; and enough to average the encoder's steps.
+constexpr double deviation_s = 6e-3, glance_s = 36e-3;
+
+// Impacts of a load that flies through a gap.
+
+/// [of it] What is left of a velocity error after the time of correction.
+constexpr double kept_velocity_error = 0.2;
+/// [standard deviations] Of the velocity errors that are tried.
+constexpr double velocity_errors = 2;
+/// [white force] A row at which the force changes by more, because of them, is doubtful.
+constexpr double most_doubt = 2;
+/// [moving rows] A shape that leaves fewer of them without doubt explains nothing.
+constexpr double least_without_doubt = 0.2;
+/// [s] Each gives another velocity error.
+constexpr double doubt_shifts_s[] = {1, 2};
+
+// Sizes of the motion.
+
+/// [s] Speeds and accelerations are differences over such times.
+constexpr double speed_span_s = 10e-3, acceleration_span_s = 40e-3;
+/// [s] The remainder is averaged over such times, and its dependence tested on blocks of the second length.
+constexpr double remainder_mean_s = 10e-3, remainder_block_s = 1.25;
+
+}  // namespace loopwright::diagnosis::criteria

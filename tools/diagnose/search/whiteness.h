@@ -1,0 +1,16 @@
+/// Whether prediction errors are white.
+#pragma once
+#include "tools/diagnose/search/maximum_likelihood.h"
+
+namespace loopwright::diagnosis {
+
+/// n Σ ρ² over 40 lags, of the port and the spacing at which it is greatest: rows, and sums of rows over a
+/// millisecond. Near 40 when the errors are white.
+double portmanteau(const Trials& trials, const std::vector<Fitted>& fitted);
+
+/// What the counts of the first sensor add to the portmanteau: at slow speeds their errors are not white. The
+/// estimated motion is counted anew, and the errors of that count are filtered as the predictor filters them,
+/// beside white noise.
+double portmanteau_of_counts(const Trials& trials, const Estimate& estimate);
+
+}  // namespace loopwright::diagnosis
