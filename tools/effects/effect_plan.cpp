@@ -222,7 +222,10 @@ std::shared_ptr<const EffectPlan> compile_effect(const Effect& effect, const Mac
                     });
     check_bindings(*result, own);
   }
-  for (const Problem& problem : own.list()) problems.add(problem);
+  for (Problem problem : own.list()) {  // what lies between the blocks and their bench has no file of its own
+    if (!problem.place.file) problem.place = effect.blocks.place;
+    problems.add(std::move(problem));
+  }
   if (!plan || own.has_errors()) return nullptr;
   return result;
 }
