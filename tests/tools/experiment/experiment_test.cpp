@@ -125,7 +125,7 @@ TEST_F(Experiments, TimesThatDoNotRiseAreAnError) {
 }
 
 TEST_F(Experiments, TimesThatRepeatAreAnError) {
-  folder.with("data.csv", "t,F,x_mm\n0,1,1\n0.1,1,1\n0.1,1,1\n0.2,1,1\n");
+  folder.with("data.csv", "t,F,x_mm\n0,1,1\n0.1,1,1\n0.1,1,2\n0.2,1,1\n");  // which of the two holds?
   expect_refusal({"error:"});
 }
 

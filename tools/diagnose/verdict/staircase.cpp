@@ -9,6 +9,10 @@ bool corrects_nominal(const Member& member) {
   return member.candidate->name == "inertia" || member.candidate->name == "viscous_friction";
 }
 
+/// A correction of the nominal diagram that leaves 99 % of the missing force only trades with effects that
+/// are still to come, as damping does with eddy-current drag.
+constexpr double least_benefit_of_a_correction = 0.99;
+
 std::string shown_name(const Candidate& candidate) {
   return candidate.is_unknown ? "an unknown force of " + candidate.form : candidate.name;
 }
@@ -74,7 +78,8 @@ class Climb {
       rest.erase(rest.begin() + std::ptrdiff_t(i));
       Stage without = fitted(rest, stage.estimate);
       const double n = double(fitted_numbers(trials_));
-      if (without.criterion - stage.criterion > 0.02 * n) continue;
+      const bool lowers_the_force = stage.force < least_benefit_of_a_correction * without.force;
+      if (lowers_the_force && without.criterion - stage.criterion > 0.02 * n) continue;
       return without_idle_corrections(std::move(without), is_correction);
     }
     return stage;
