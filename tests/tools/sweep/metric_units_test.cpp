@@ -111,7 +111,7 @@ std::vector<double> values_of(const std::string& axis) {
   const SweepPlan plan = folder.plan();
   std::vector<double> values;
   for (int64_t run = 0; run < plan.runs(); ++run) {
-    const auto& text = plan.options(run).set.back().second;
+    const std::string text = plan.options(run).set.back().second;
     values.push_back(plan.design().point(run)[0]);
     EXPECT_TRUE(text.ends_with(plan.sweep().axes[0].unit)) << text;
   }
