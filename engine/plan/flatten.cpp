@@ -5,46 +5,11 @@
 #include <optional>
 #include <unordered_set>
 #include "engine/plan/block_settings.h"
-#include "engine/plan/block_table.h"
+#include "engine/plan/block_values.h"
+#include "engine/plan/scope.h"
 
 namespace loopwright {
 namespace {
-
-/// One diagram of the nesting, with the meaning of its names.
-struct Scope {
-  const Diagram* diagram;
-  std::string prefix;       // "" or "stage."
-  const BlockEntry* entry;  // in the parent; null at the top level
-  Scope* parent;
-  /// The result for a block: an index in the flat list, a subdiagram, or nothing after errors.
-  struct Part {
-    int flat_block = -1;
-    Scope* inner = nullptr;
-  };
-  std::vector<Part> parts{};  // of each block
-  BlockTable blocks{diagram->blocks};
-};
-
-/// The scalar blocks of a diagram, contiguous in memory. They exist as long as any of them is in use.
-class BlockValues {
- public:
-  BlockValues() = default;
-  BlockValues(const BlockValues&) = delete;
-  BlockValues& operator=(const BlockValues&) = delete;
-  ~BlockValues() {
-    for (const auto& [value, kernels] : values_) kernels->destroy(value);
-  }
-  void* add(const Kernels<double>& kernels) {
-    void* const memory = memory_.allocate(kernels.size, 64);
-    kernels.construct(memory);
-    values_.emplace_back(memory, &kernels);
-    return memory;
-  }
-
- private:
-  std::pmr::monotonic_buffer_resource memory_;
-  std::vector<std::pair<void*, const Kernels<double>*>> values_;
-};
 
 class Flattener {
  public:
@@ -240,21 +205,6 @@ class Flattener {
         at, reader,
         fmt::format("\"{}\" is neither an input of this diagram nor of the form block.output", at.source),
         names, name, outputs_of(scope, name));
-  }
-
-  /// The outputs of a block whose name stands in place of one of its outputs.
-  static std::string outputs_of(const Scope& scope, const std::string& name) {
-    const int block = scope.blocks.find(name);
-    if (block < 0) return "";
-    std::vector<std::string> outputs;
-    const BlockEntry& entry = scope.diagram->blocks[size_t(block)];
-    if (entry.subdiagram)
-      for (const DiagramOutput& output : entry.subdiagram->outputs)
-        outputs.push_back(name + "." + output.name);
-    else if (const BlockType* type = find_block(entry.type))
-      for (const PortInfo& port : type->info.outputs)
-        outputs.push_back(fmt::format("{}.{}", name, port.name));
-    return outputs.empty() ? "" : fmt::format("did you mean \"{}\"?", fmt::join(outputs, "\" or \""));
   }
 
   FlatWire resolve_inside(Scope& inner, std::string_view rest, const Wire& at, const std::string& reader,

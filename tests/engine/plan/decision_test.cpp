@@ -5,8 +5,8 @@
 
 namespace loopwright {
 
-/// The sign of the input as it was decided; the output reads the mode only.
-struct DecidedSign {
+/// The ports of the following blocks, whose output is the sign that they decided.
+struct SignBlock {
   struct In {
     double u;
   };
@@ -20,53 +20,30 @@ struct DecidedSign {
     return block("Sign of a signal.", input(&In::u, "u", "", "Signal"),
                  output(&Out::y, "y", "", "Sign").from_memory());
   }
+};
+
+struct DecidedSign : SignBlock {
   void decide(const In& in, Mode& mode) const { mode.sign = in.u > 0 ? 1.0 : -1.0; }
   void outputs(const Mode& mode, Out& out) const { out.y = mode.sign; }
 };
 LOOPWRIGHT_BLOCK(DecidedSign)
 
 /// The same, and it accepts the input of each instant: its output is the decided sign of the present input.
-struct RememberedSign {
-  struct In {
-    double u;
-  };
-  struct Out {
-    double y;
-  };
-  struct Mode {
-    double sign;
-  };
+struct RememberedSign : SignBlock {
   struct Memory {
     double last;
   };
-  static constexpr auto describe() {
-    return block("Sign of a signal that it remembers.", input(&In::u, "u", "", "Signal"),
-                 output(&Out::y, "y", "", "Sign").from_memory());
-  }
   void decide(const In& in, Mode& mode) const { mode.sign = in.u > 0 ? 1.0 : -1.0; }
   void outputs(const Mode& mode, Out& out) const { out.y = mode.sign; }
   void accept(const In& in, Memory& memory) const { memory.last = in.u; }
 };
 LOOPWRIGHT_BLOCK(RememberedSign)
 
-/// The sign that it accepted at the instant before: its decision reads memory only.
-struct DelayedSign {
-  struct In {
-    double u;
-  };
-  struct Out {
-    double y;
-  };
-  struct Mode {
-    double sign;
-  };
+/// The opposite of the sign that it accepted at the instant before: its decision reads memory only.
+struct DelayedSign : SignBlock {
   struct Memory {
     double last;
   };
-  static constexpr auto describe() {
-    return block("Sign of a signal at the accepted instant before.", input(&In::u, "u", "", "Signal"),
-                 output(&Out::y, "y", "", "Sign").from_memory());
-  }
   void decide(const Memory& memory, Mode& mode) const { mode.sign = memory.last > 0 ? -1.0 : 1.0; }
   void outputs(const Mode& mode, Out& out) const { out.y = mode.sign; }
   void accept(const In& in, Memory& memory) const { memory.last = in.u; }

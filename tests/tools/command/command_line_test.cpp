@@ -55,7 +55,6 @@ TEST(CommandLine, SlipsAreExplained) {
 }
 
 TEST(CommandLine, ANumberIsFiniteAndIsTheNumberThatIsWritten) {
-  if (access(program().c_str(), X_OK) != 0) GTEST_SKIP() << program() << " is not built";
   using Options = std::vector<std::pair<std::vector<std::string>, std::string>>;
   const auto expect_refused = [](const Options& options, const std::vector<std::string>& values) {
     for (const auto& [words, option] : options)
@@ -89,7 +88,6 @@ TEST(CommandLine, ANumberIsFiniteAndIsTheNumberThatIsWritten) {
 }
 
 TEST(CommandLine, TheGreatestNumberOfARunIsOne) {
-  if (access(program().c_str(), X_OK) != 0) GTEST_SKIP() << program() << " is not built";
   const Outcome outcome = loopwright_program({"run", "none.json", "--run", "9223372036854775807"});
   EXPECT_EQ(outcome.code, 2) << "there is no such diagram";
   EXPECT_FALSE(contains(outcome.err, "--run")) << outcome.err;

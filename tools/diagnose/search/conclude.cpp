@@ -15,87 +15,6 @@ namespace {
 
 using namespace criteria;
 
-/// Indices of a member's parameters among the free ones. Only those that decide whether it is present: the
-/// linear ones, or the shape of a member without linear ones.
-std::vector<Eigen::Index> existence(const std::vector<Member>& members, size_t member) {
-  std::vector<Eigen::Index> places;
-  const std::vector<FreeParameter> free = free_parameters(members);
-  const bool by_shape = members[member].candidate->amplitude_is_one;
-  for (size_t i = 0; i < free.size(); ++i)
-    if (free[i].member == member && free[i].is_linear != by_shape) places.push_back(Eigen::Index(i));
-  return places;
-}
-
-/// Quadratic form of theta with the inverse of the covariance that remains when the parameters at `known` are
-/// known and those at neither `known` nor `places` are estimated with them.
-double chi_square(const Eigen::MatrixXd& information, const Eigen::VectorXd& theta,
-                  const std::vector<Eigen::Index>& places, const std::vector<Eigen::Index>& known) {
-  std::vector<Eigen::Index> free = places;
-  for (Eigen::Index i = 0; i < information.rows(); ++i)
-    if (std::ranges::find(places, i) == places.end() && std::ranges::find(known, i) == known.end())
-      free.push_back(i);
-  const Eigen::MatrixXd covariance = information(free, free).inverse();
-  const Eigen::Index n = Eigen::Index(places.size());
-  const Eigen::VectorXd at = theta(places);
-  return at.dot(covariance.topLeftCorner(n, n).ldlt().solve(at));
-}
-
-/// χ² of the parameters that decide whether a member is present, alone and with all others known. Its own
-/// shape is taken as known: a drift much longer than the record is certain even if its size and time are not
-/// determined separately.
-std::pair<double, double> wald(Estimate& estimate, size_t member) {
-  const std::vector<FreeParameter> free = free_parameters(estimate.members);
-  const std::vector<Eigen::Index> places = existence(estimate.members, member);
-  const Eigen::VectorXd scale = estimate.covariance.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd correlation = scale.asDiagonal() * estimate.covariance * scale.asDiagonal();
-  const Eigen::MatrixXd information = scale.asDiagonal() * correlation.inverse() * scale.asDiagonal();
-  Eigen::VectorXd theta(Eigen::Index(free.size()));
-  std::vector<Eigen::Index> shape, others;
-  for (size_t i = 0; i < free.size(); ++i) {
-    const Eigen::Index at = Eigen::Index(i);
-    theta[at] = value_of(estimate.members, free[i]);
-    if (std::ranges::find(places, at) != places.end()) continue;
-    others.push_back(at);
-    if (free[i].member == member) shape.push_back(at);
-  }
-  return {chi_square(information, theta, places, shape), chi_square(information, theta, places, others)};
-}
-
-/// Root mean square of the force that a member consumes over the fitted rows.
-double force_rms(const Trials& trials, const Estimate& estimate, size_t index) {
-  const Member& member = estimate.members[index];
-  double sum = 0, n = 0;
-  for (size_t t = 0; t < trials.list.size(); ++t) {
-    const Trial& trial = trials.list[t];
-    const Fitted& fitted = estimate.fitted[t];
-    const Columns columns = member.candidate->columns(*estimate.motion.paths[t], member.nonlinear);
-    std::vector<float> whole(columns[0].mean->size());
-    for (size_t c = 0; c < columns.size(); ++c)
-      for (size_t k = 0; k < whole.size(); ++k) whole[k] += float(member.linear[c]) * (*columns[c].mean)[k];
-    std::vector<double> seen(whole.begin(), whole.end());
-    if (member.candidate->acts == Acts::input)
-      for (double& u : seen) u *= trial.model->force_per_input();
-    if (member.candidate->acts == Acts::sensor) {
-      const Column feigned(whole);
-      const Column* const one = &feigned;
-      seen = responses(fitted.axis, fitted.gains, fitted.prediction.path, Acts::sensor, {&one, 1}).front();
-      for (double& e : seen) e *= estimate.noise.white;
-    }
-    for (size_t k = 0; k < trial.held_out_from; ++k)
-      if (trial.usable[k]) sum += seen[k] * seen[k], n += 1;
-  }
-  return std::sqrt(sum / std::max(n, 1.0));
-}
-
-Weight weigh(const Trials& trials, Estimate& estimate, size_t member) {
-  Weight weight;
-  const auto [among_others, alone] = wald(estimate, member);
-  weight.wald = among_others;
-  weight.force_rms = force_rms(trials, estimate, member);
-  weight.unique_force = weight.force_rms * std::sqrt(std::min(1.0, among_others / std::max(alone, 1e-300)));
-  return weight;
-}
-
 void maximise(Trials& trials, Estimate& estimate) {
   for (int round = 0; round < 2; ++round) {
     const Noise noise = fit_noise_alone(trials, estimate.fitted, estimate.noise, FreeNoise::all);
@@ -375,25 +294,6 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
 }
 
 }  // namespace
-
-double material(const Trials& trials, const Estimate& estimate, const Weight& weight) {
-  const double n = double(fitted_numbers(trials));
-  const double least_force_now =
-      std::max(least_force * trials.force_rms, least_force_to_noise * estimate.noise.white);
-  // A delay acts only for moments, but is clearly visible.
-  const double size = std::max(weight.force_rms / least_force_now, weight.wald / (plain_wald_per_row * n));
-  return std::min({weight.wald / std::max(least_wald, least_wald_per_row * n), size,
-                   weight.unique_force / (least_unique_force * trials.force_rms)});
-}
-
-std::vector<Weight> weigh_all(Trials& trials, Estimate& estimate) {
-  work_out_covariance(trials, estimate);
-  if (portmanteau(trials, estimate.fitted) > criteria::most_portmanteau) widen_by_blocks(trials, estimate);
-  refer_to_zero(estimate);
-  std::vector<Weight> weights;
-  for (size_t m = 0; m < estimate.members.size(); ++m) weights.push_back(weigh(trials, estimate, m));
-  return weights;
-}
 
 Conclusion conclude(Trials& trials, const std::vector<Candidate>& candidates,
                     const std::vector<Shape>& shapes, Estimate found) {

@@ -2,23 +2,9 @@
 #pragma once
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/evidence.h"
+#include "tools/diagnose/search/weight.h"
 
 namespace loopwright::diagnosis {
-
-/// The evidence for one member, and its size.
-struct Weight {
-  double wald = 0;          ///< χ²: squared distance from zero in standard deviations
-  double force_rms = 0;     ///< of the force it consumes, over the fitted rows; sensor: the equivalent force
-  double unique_force = 0;  ///< the part of it that no other member could replace
-  double loss = 0;          ///< loss of the criterion without it
-};
-
-/// Computes the covariance of an estimate with the given noise, and the weight of every member.
-std::vector<Weight> weigh_all(Trials& trials, Estimate& estimate);
-
-/// How far a member is above all thresholds of certainty and force; a member below one of them is not
-/// accepted.
-double material(const Trials& trials, const Estimate& estimate, const Weight& weight);
 
 struct Substitute {
   const Candidate* candidate = nullptr;
