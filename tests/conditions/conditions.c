@@ -13,24 +13,9 @@ bool is_clean(uint64_t seed) {
   return round == 0 || round == 3 || round == 6;
 }
 
-/// The reference motion while it moves, with the force that it needs.
-static Path path_of(const Setting* s) {
-  const double moving_m_per_s = 0.002, step_s = fmax(0.001, s->sample_time_s);
-  const int most = (int)(s->motion.stop_s / step_s) + 1;
-  double* all = calloc(5 * (size_t)most, sizeof *all);
-  if (!all) abort();
-  Path path = {0, all, all + most, all + 2 * most, all + 3 * most, all + 4 * most};
-  for (int k = 0; k < most; ++k) {
-    const Wanted wanted = motion_at(&s->motion, k * step_s);
-    const double x = wanted.position_m, v = wanted.velocity_m_per_s, a = wanted.acceleration_m_per_s2;
-    if (fabs(v) < moving_m_per_s) continue;
-    path.time_s[path.count] = k * step_s;
-    path.position_m[path.count] = x;
-    path.velocity_m_per_s[path.count] = v;
-    path.acceleration_m_per_s2[path.count] = a;
-    path.force_n[path.count++] = s->nominal.mass_kg * a + plant_resisting_force(&s->nominal, x, v, 0);
-  }
-  return path;
+/// In steps of a millisecond or more.
+static Path path_of_setting(const Setting* s) {
+  return path_of(&s->motion, &s->nominal, fmax(0.001, s->sample_time_s));
 }
 
 /// Effects with a force of their own along the path, by which a strong and a weak one can be told.
@@ -133,7 +118,7 @@ Hidden hidden_draw(uint64_t seed) {
   h.stages[0] = h.setting.nominal;
   const bool clean = is_clean(seed);
   if (clean) h.setting.late_s = 0;
-  Path path = path_of(&h.setting);
+  Path path = path_of_setting(&h.setting);
   bool found = false;
   while (!found) {
     draw_names(&h, clean ? 0 : draw_count(h.setting.condition, &random), &random);
@@ -149,7 +134,7 @@ bool hidden_with(uint64_t seed, Condition condition, const Effect effects[], int
   h->stages[0] = h->setting.nominal;
   h->setting.late_s = 0;
   memcpy(h->effects, effects, (size_t)count * sizeof *effects);
-  Path path = path_of(&h->setting);
+  Path path = path_of_setting(&h->setting);
   const bool found = draw_visible(h, &path, &random, 20);
   free(path.time_s);
   return found;

@@ -121,7 +121,6 @@ static Model model_of(const Setting* s, const Physics* truth) {
 }
 
 static double mean_force(Effect effect, const Physics* before, const Physics* after, const Record* r, int k) {
-  const double moving_m_per_s = 0.002;
   if (fabs(r->true_velocity_m_per_s[k]) < moving_m_per_s ||
       fabs(r->true_velocity_m_per_s[k + 1]) < moving_m_per_s)
     return 0;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "conditions.h"
+#include "tests/hidden_effects/program.h"
 
 static int usage(void) {
   fputs(
@@ -15,15 +16,6 @@ static int usage(void) {
       "--quiet: without noise and counts\n",
       stderr);
   return 2;
-}
-
-static int index_of(const char* name, const char* const names[], int count) {
-  for (int i = 0; i < count; ++i)
-    if (strcmp(name, names[i]) == 0) return i;
-  fprintf(stderr, "\"%s\" is none of", name);
-  for (int i = 0; i < count; ++i) fprintf(stderr, " %s", names[i]);
-  fputc('\n', stderr);
-  return -1;
 }
 
 int main(int argc, char** argv) {

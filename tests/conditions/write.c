@@ -5,19 +5,7 @@
 #include <sys/stat.h>
 
 #include "conditions.h"
-
-static FILE* create(const char* folder, const char* name) {
-  char path[4096];
-  snprintf(path, sizeof path, "%s/%s", folder, name);
-  FILE* file = fopen(path, "w");
-  if (!file) fprintf(stderr, "%s: %s\n", path, strerror(errno));
-  return file;
-}
-
-static bool done(FILE* file) {
-  const bool good = !ferror(file);
-  return fclose(file) == 0 && good;
-}
+#include "tests/hidden_effects/program.h"
 
 static const double degrees = 57.29577951308232;
 

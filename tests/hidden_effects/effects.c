@@ -1,6 +1,7 @@
 #include "effects.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #include "hw/emulator/elementary.h"
 
@@ -182,4 +183,22 @@ void effect_write(FILE* file, Effect effect, const Physics* p) {
     default:
       fputs("{}", file);
   }
+}
+
+Path path_of(const Motion* motion, const Physics* nominal, double step_s) {
+  const int most = (int)(motion->stop_s / step_s) + 1;
+  double* all = calloc(5 * (size_t)most, sizeof *all);
+  if (!all) abort();
+  Path path = {0, all, all + most, all + 2 * most, all + 3 * most, all + 4 * most};
+  for (int k = 0; k < most; ++k) {
+    const Wanted wanted = motion_at(motion, k * step_s);
+    const double x = wanted.position_m, v = wanted.velocity_m_per_s, a = wanted.acceleration_m_per_s2;
+    if (fabs(v) < moving_m_per_s) continue;
+    path.time_s[path.count] = k * step_s;
+    path.position_m[path.count] = x;
+    path.velocity_m_per_s[path.count] = v;
+    path.acceleration_m_per_s2[path.count] = a;
+    path.force_n[path.count++] = nominal->mass_kg * a + plant_resisting_force(nominal, x, v, 0);
+  }
+  return path;
 }

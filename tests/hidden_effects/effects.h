@@ -53,6 +53,12 @@ typedef struct {
   double *time_s, *position_m, *velocity_m_per_s, *acceleration_m_per_s2, *force_n;
 } Path;
 
+/// Slower than this, an axis counts as standing.
+static const double moving_m_per_s = 0.002;
+
+/// In equal steps; the caller frees time_s, which holds all arrays.
+Path path_of(const Motion* motion, const Physics* nominal, double step_s);
+
 /// Additional force that the physics requires of the motor; without loads, delay, lag and inertia.
 double consumed_force(const Physics* physics, double position_m, double velocity_m_per_s, double time_s,
                       double input_n);

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "program.h"
 #include "write.h"
 
 static int usage(void) {
@@ -13,15 +14,6 @@ static int usage(void) {
       "decides\n",
       stderr);
   return 2;
-}
-
-static int index_of(const char* name, const char* const names[], int count) {
-  for (int i = 0; i < count; ++i)
-    if (strcmp(name, names[i]) == 0) return i;
-  fprintf(stderr, "\"%s\" is none of", name);
-  for (int i = 0; i < count; ++i) fprintf(stderr, " %s", names[i]);
-  fputc('\n', stderr);
-  return -1;
 }
 
 int main(int argc, char** argv) {

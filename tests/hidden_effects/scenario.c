@@ -9,7 +9,6 @@
 const char* const kind_names[KINDS] = {"clean", "hidden", "outside"};
 const double sample_time_s = 0.001;
 
-static const double moving_m_per_s = 0.002;
 enum { SUBSTEPS = 10 };
 
 const Physics* scenario_truth(const Scenario* scenario) { return &scenario->stages[scenario->effect_count]; }
@@ -168,25 +167,6 @@ static bool worth_asking(Scenario* scenario) {
   return good;
 }
 
-static Path path_of(const Scenario* scenario) {
-  const Physics* nominal = &scenario->stages[0];
-  const int most = (int)(scenario->motion.stop_s / sample_time_s) + 1;
-  double* all = calloc(5 * (size_t)most, sizeof *all);
-  if (!all) abort();
-  Path path = {0, all, all + most, all + 2 * most, all + 3 * most, all + 4 * most};
-  for (int k = 0; k < most; ++k) {
-    const Wanted wanted = motion_at(&scenario->motion, k * sample_time_s);
-    const double x = wanted.position_m, v = wanted.velocity_m_per_s, a = wanted.acceleration_m_per_s2;
-    if (fabs(v) < moving_m_per_s) continue;
-    path.time_s[path.count] = k * sample_time_s;
-    path.position_m[path.count] = x;
-    path.velocity_m_per_s[path.count] = v;
-    path.acceleration_m_per_s2[path.count] = a;
-    path.force_n[path.count++] = nominal->mass_kg * a + plant_resisting_force(nominal, x, v, 0);
-  }
-  return path;
-}
-
 static void draw_names(Scenario* scenario, int wanted, Random* random) {
   scenario->effect_count = 0;
   while (scenario->effect_count < wanted) {
@@ -241,7 +221,7 @@ Scenario scenario_draw(uint64_t seed) {
   scenario.trajectory = trajectories_of_20[random_below(&random, 20)];
   draw_setting(&scenario, &random);
   const int wanted = scenario.kind == CLEAN ? 0 : 1 + random_below(&random, scenario.kind == HIDDEN ? 3 : 2);
-  Path path = path_of(&scenario);
+  Path path = path_of(&scenario.motion, &scenario.stages[0], sample_time_s);
   bool found = false;
   while (!found) {
     draw_names(&scenario, wanted, &random);
@@ -262,7 +242,7 @@ bool scenario_hiding(uint64_t seed, Trajectory trajectory, const Effect effects[
     scenario->effects[i] = effects[i];
     if (effects[i] >= CATALOGUE) scenario->kind = OUTSIDE;
   }
-  Path path = path_of(scenario);
+  Path path = path_of(&scenario->motion, &scenario->stages[0], sample_time_s);
   bool found = false;
   for (int attempt = 0; attempt < 20 && !found; ++attempt)
     found = draw_magnitudes(scenario, &path, &random) && worth_asking(scenario);

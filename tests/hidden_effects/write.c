@@ -1,5 +1,7 @@
 #include "write.h"
 
+#include "program.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -7,19 +9,6 @@
 #include <sys/stat.h>
 
 enum { SUBSTEPS = 10 };
-
-static FILE* create(const char* folder, const char* name) {
-  char path[4096];
-  snprintf(path, sizeof path, "%s/%s", folder, name);
-  FILE* file = fopen(path, "w");
-  if (!file) fprintf(stderr, "%s: %s\n", path, strerror(errno));
-  return file;
-}
-
-static bool done(FILE* file) {
-  const bool good = !ferror(file);
-  return fclose(file) == 0 && good;
-}
 
 static bool write_record(const char* folder, const char* name, const Record* record,
                          const Record* true_model) {
