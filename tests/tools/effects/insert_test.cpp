@@ -7,6 +7,7 @@
 #include "engine/diagram/in_memory.h"
 #include "engine/json/json.h"
 #include "tests/engine/written_diagram.h"
+#include "tests/tools/effects/amplified_mass.h"
 #include "tests/tools/effects/axis_sizes.h"
 #include "where.h"
 
@@ -295,13 +296,7 @@ TEST(Insertion, NamesThePortsThatReadTheInputFromNowOn) {
 /// The second effect of the input acts behind the first: the first one's port reaches both.
 TEST(Insertion, ASecondEffectOfTheInputIsReachedThroughTheFirst) {
   DiagramFolder folder;
-  folder.with("top.json",
-              R"({"loopwright": 1, "solver": {"method": "rk4", "step": 0.0001, "stop": 0.1}, "blocks": {
-    "push": {"type": "Constant", "value": {"value": 0, "unit": "N"}},
-    "amp": {"type": "Gain", "gain": 1, "in": {"u": "push.y"}},
-    "net": {"type": "Sum", "in": {"terms": ["amp.y"]}},
-    "mass": {"type": "Mass", "mass": 1, "in": {"force": "net.sum"}}},
-    "log": ["amp.y"]})");
+  folder.with("top.json", amplified_mass);
   const InsertionSite site{{{"force", "net.sum"}, {"input", "amp.u"}}, {}, {}};
   auto file = source(folder.path("top.json"));
   for (const auto& [name, size, port] :

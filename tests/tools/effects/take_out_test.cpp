@@ -5,6 +5,7 @@
 #include "engine/diagram/in_memory.h"
 #include "engine/json/json.h"
 #include "tests/engine/written_diagram.h"
+#include "tests/tools/effects/amplified_mass.h"
 #include "tests/tools/effects/axis_sizes.h"
 #include "tools/effects/insert.h"
 #include "where.h"
@@ -130,13 +131,7 @@ TEST(TakingOut, TwoErrorsOfASensorAddUp) {
 /// Even if an effect reads the command in several blocks, an experiment drives one port.
 TEST(TakingOut, AnEffectOfADrivenPortIsDrivenAtOnePort) {
   DiagramFolder folder;
-  folder.with("top.json",
-              R"({"loopwright": 1, "solver": {"method": "rk4", "step": 0.0001, "stop": 0.1}, "blocks": {
-    "push": {"type": "Constant", "value": {"value": 0, "unit": "N"}},
-    "amp": {"type": "Gain", "gain": 1, "in": {"u": "push.y"}},
-    "net": {"type": "Sum", "in": {"terms": ["amp.y"]}},
-    "mass": {"type": "Mass", "mass": 1, "in": {"force": "net.sum"}}},
-    "log": ["amp.y"]})");
+  folder.with("top.json", amplified_mass);
   const InsertionSite site{{{"force", "net.sum"}, {"input", "amp.u"}}, {}, {}, true};
   for (const char* name : {"force_gain", "actuator_lag", "input_delay", "force_saturation"}) {
     const Effect effect = effect_named(name);
