@@ -5,6 +5,7 @@
 #include <numeric>
 #include "engine/json/file_kind.h"
 #include "engine/json/json.h"
+#include "engine/json/nearest_file.h"
 #include "engine/json/reader.h"
 #include "engine/json/stated_number.h"
 #include "engine/record/column_units.h"
@@ -140,9 +141,9 @@ class Loader {
     if (result_->data_path.empty()) {
       auto& p = reader_.error(*member, fmt::format("the data file \"{}\" is not there", name));
       p.expected = tried.front() + (tried.size() > 1 ? ", or below $LOOPWRIGHT_DATA" : "");
-      p.hint = tried.size() > 1
-                   ? ""
-                   : "the environment variable LOOPWRIGHT_DATA may name a folder of measurements";
+      p.hint = nearest_file_hint(tried.front());
+      if (p.hint.empty() && tried.size() == 1)
+        p.hint = "the environment variable LOOPWRIGHT_DATA may name a folder of measurements";
       return;
     }
     const size_t before = problems_.list().size();
