@@ -33,13 +33,14 @@ class Loader {
       return nullptr;
     reader_.reject_unknown(file,
                            {"$schema", "loopwright", "title", "description", "data", "time", "drive",
-                            "compare", "roles", "hold_out", "rows"},
+                            "compare", "roles", "sites", "hold_out", "rows"},
                            "an experiment");
     reader_.check_version(file);
     result_->title = reader_.text(file, "title"), result_->place = file.place;
     read_signals(file, "drive", result_->drives);
     read_signals(file, "compare", result_->compared);
     read_roles(file);
+    read_sites(file);
     read_hold_out(file);
     read_kind_of_rows(file);
     read_data(file);
@@ -109,6 +110,16 @@ class Loader {
       result_->roles.ports.emplace_back(role.name, reader_.text(roles->value, role.name));
       result_->roles.places.push_back(role.place);
     }
+  }
+  void read_sites(const Value& file) {
+    const Value::Member* sites = file.find("sites");
+    if (!sites || !reader_.expect(sites->value, Value::Kind::list, "\"sites\"", "a list of ports")) return;
+    for (const Value& site : sites->value.items)
+      if (reader_.expect(site, Value::Kind::text, "a site", "a port, \"axis.net_force.sum\""))
+        result_->sites.push_back({site.text, site.place});
+    if (result_->roles.ports.empty()) return;
+    auto& p = reader_.error(*sites, "the sites of an axis follow from its roles");
+    p.expected = "\"roles\" or \"sites\"";
   }
   void read_hold_out(const Value& file) {
     const Value::Member* hold_out = file.find("hold_out");
