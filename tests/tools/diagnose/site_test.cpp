@@ -58,17 +58,17 @@ struct Passed {
     return int(std::ranges::find(model.sites(), name, &Site::name) - model.sites().begin());
   }
   int variable(const std::string& name) const {
-    return int(std::ranges::find(model.variables(), name, &Variable::name) - model.variables().begin());
+    return int(std::ranges::find(model.variables(), name, &SiteVariable::name) - model.variables().begin());
   }
 };
 
 /// The errors of the model with a small term, against the linear response to the term along the path.
 void expect_response(Passed& p, const std::string& site, const std::string& variable,
                      const std::string& shape_name) {
-  Term term;
+  SiteTerm term;
   term.shape = &*std::ranges::find(named_shapes(), shape_name, &TermShape::name);
   term.site = p.site(site), term.variable = p.variable(variable);
-  const Variable& v = p.model.variables().at(size_t(term.variable));
+  const SiteVariable& v = p.model.variables().at(size_t(term.variable));
   std::array<std::vector<double>, 3> phi;
   double largest = 0;
   for (size_t part = 0; part < 3; ++part)

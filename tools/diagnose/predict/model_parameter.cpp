@@ -14,16 +14,31 @@ struct Tunable {
   double value;
 };
 
+/// The number at a path, or those of the objects in the list there, such as the constants of an Expression.
+/// False if there is nothing.
+bool add_tunables(const std::string& path, const ParameterInfo& info, Run<double>& run,
+                  std::vector<Tunable>& list) {
+  if (const double* at = run.parameter(path)) {
+    if (std::isfinite(*at) && *at != 0) list.push_back({path, std::string(info.unit), *at});
+    return true;
+  }
+  bool has_any = false;
+  for (const ParameterInfo& field : info.fields) {
+    if (info.kind == ParameterKind::object)
+      has_any |= add_tunables(path + "." + std::string(field.name), field, run, list);
+    for (size_t i = 0; info.kind == ParameterKind::list; ++i, has_any = true)
+      if (!add_tunables(fmt::format("{}.{}.{}", path, i, field.name), field, run, list)) break;
+  }
+  return has_any;
+}
+
 /// The plain numbers of blocks that are not sources: a source is recorded or known.
 std::vector<Tunable> tunables(const Plan& plan, Run<double>& run) {
   std::vector<Tunable> list;
   for (const Plan::Block& block : plan.blocks) {
     if (block.inputs.empty()) continue;
-    for (const ParameterInfo& info : block.type->info.parameters) {
-      const std::string path = block.path + "." + std::string(info.name);
-      const double* at = run.parameter(path);
-      if (at && std::isfinite(*at) && *at != 0) list.push_back({path, std::string(info.unit), *at});
-    }
+    for (const ParameterInfo& info : block.type->info.parameters)
+      add_tunables(block.path + "." + std::string(info.name), info, run, list);
   }
   return list;
 }

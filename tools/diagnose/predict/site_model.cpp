@@ -121,7 +121,7 @@ SiteModel::SiteModel(const std::string& diagram, const std::string& experiment_p
   if (problems.has_errors()) explain_failure(diagram, {experiment_path}, options, std::move(problems));
   find_variables();
   for (const RecordedInput& input : record_.inputs)  // the user's name for it
-    for (Variable& variable : variables_)
+    for (SiteVariable& variable : variables_)
       if (variable.name == driver_of(input.port) + ".y") variable.name = input.port;
   Problems ignored;  // a diagram whose inputs only the record provides
   const auto stated = load_diagram(diagram, options, ignored);
@@ -138,7 +138,7 @@ void SiteModel::complete_units(const Plan& stated) {
     if (quantity == Quantity::other) quantity = quantity_of(unit);
   };
   for (Site& site : sites_) complete(site.name, site.unit, site.quantity);
-  for (Variable& variable : variables_)
+  for (SiteVariable& variable : variables_)
     if (variable.minus < 0) complete(variable.name, variable.unit, variable.quantity);
 }
 
@@ -215,12 +215,12 @@ std::string SiteModel::state_name(int state) const {
   return block.path;
 }
 
-void SiteModel::use(std::span<const double> factors, std::span<const Term> terms) {
+void SiteModel::use(std::span<const double> factors, std::span<const SiteTerm> terms) {
   for (size_t i = 0; i < parameters_.size(); ++i) parameters_[i].set(factors[i]);
   for (SiteSignal& signal : signals_) signal.terms.clear(), signal.held = signal.ramp = 0;
-  for (const Term& term : terms)
+  for (const SiteTerm& term : terms)
     signals_[size_t(term.site)].terms.emplace_back(
-        term, term.variable < 0 ? Variable{} : variables_[size_t(term.variable)]);
+        term, term.variable < 0 ? SiteVariable{} : variables_[size_t(term.variable)]);
   run_->reset({plan_->seed, 0});
 }
 

@@ -18,7 +18,7 @@ template <class Real> class Run;
 namespace loopwright::diagnosis {
 
 /// A signal of the diagram on which a term may depend, or the difference of two states of one unit.
-struct Variable {
+struct SiteVariable {
   std::string name;
   Number number = -1, minus = -1;  ///< minus: the state that is subtracted; -1: none
   std::optional<Unit> unit;
@@ -34,7 +34,7 @@ struct Variable {
 enum class Nearness { unusable, far, near };
 
 /// An effect at a site: Σ coefficient · column(variable; nonlinear).
-struct Term {
+struct SiteTerm {
   const TermShape* shape = nullptr;
   int site = -1;
   int variable = -1;  ///< -1: a constant
@@ -56,7 +56,7 @@ struct Term {
 struct SiteSignal {
   double held = 0;                         ///< over a sample
   double ramp = 0, begin = 0, length = 1;  ///< from -ramp to ramp within [begin, begin + length] s
-  std::vector<std::pair<Term, Variable>> terms;
+  std::vector<std::pair<SiteTerm, SiteVariable>> terms;
   const double* numbers = nullptr;  ///< of the run
 
   double value(double time) const {
@@ -77,7 +77,7 @@ class SiteModel {
   const SignalRecord& record() const { return record_; }
   const Plan& plan() const { return *plan_; }
   const std::vector<Site>& sites() const { return sites_; }
-  const std::vector<Variable>& variables() const { return variables_; }
+  const std::vector<SiteVariable>& variables() const { return variables_; }
   const std::vector<ModelParameter>& parameters() const { return parameters_; }
   Nearness nearness(int site, int variable) const {
     return nearness_[size_t(site) * variables_.size() + size_t(variable)];
@@ -97,7 +97,7 @@ class SiteModel {
 
   /// Values as factors of the diagram's own, and terms. Takes effect at once; the initial states are those of
   /// the diagram.
-  void use(std::span<const double> factors, std::span<const Term> terms);
+  void use(std::span<const double> factors, std::span<const SiteTerm> terms);
   std::vector<double> initial_states() const;
 
   /// The states at the next time stamp; false if they become non-finite or a block stops. `middle`: also
@@ -125,7 +125,7 @@ class SiteModel {
   double* numbers_ = nullptr;  // the arena's
   std::vector<Site> sites_;
   std::vector<SiteSignal> signals_;  // one for each site; its block points to it
-  std::vector<Variable> variables_;
+  std::vector<SiteVariable> variables_;
   std::vector<ModelParameter> parameters_;
   std::vector<Nearness> nearness_;
   std::vector<int> own_;

@@ -98,7 +98,7 @@ void SiteModel::find_variables() {
     if (is_generated(block.path)) continue;
     for (size_t o = 0; o < block.outputs.size(); ++o) {
       if (block.output_lengths[o] != 1) continue;
-      Variable variable;
+      SiteVariable variable;
       variable.number = block.outputs[o], variable.is_state = is_state(*plan_, variable.number);
       if (!variable.is_state && order_of(*plan_, variable.number) < 0) continue;
       variable.name = plan_->name_of(variable.number), variable.unit = block.output_units[o];
@@ -111,7 +111,7 @@ void SiteModel::find_variables() {
   const size_t plain = variables_.size();
   for (size_t a = 0; a < plain; ++a)
     for (size_t b = a + 1; b < plain; ++b) {
-      const Variable first = variables_[a], second = variables_[b];
+      const SiteVariable first = variables_[a], second = variables_[b];
       if (!first.is_state || !second.is_state || !first.unit || first.unit != second.unit) continue;
       variables_.push_back(
           {first.name + " - " + second.name, first.number, second.number, first.unit, first.quantity, true});
@@ -127,7 +127,7 @@ void SiteModel::find_nearness() {
     drives_state_.push_back(around.drives_state());
     own_.push_back(-1);
     for (size_t v = 0; v < variables_.size(); ++v) {
-      const Variable& variable = variables_[v];
+      const SiteVariable& variable = variables_[v];
       if (!sites_[s].own_signal.empty() && variable.name == sites_[s].own_signal) own_[s] = int(v);
       if (!variable.is_state && order_of(*plan_, variable.number) > place) continue;
       const bool is_near = around.has(variable.number) && (variable.minus < 0 || around.has(variable.minus));

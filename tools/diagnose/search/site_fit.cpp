@@ -74,7 +74,7 @@ Eigen::VectorXd SiteFitter::whitened(const SitePass& pass) const {
 
 double SiteFitter::step_of(const SiteHypothesis& h, const FittedNumber& number) const {
   if (number.kind == FittedNumber::Kind::factor) return 1e-5 * h.factors[size_t(number.owner)];
-  const Term& term = h.terms[size_t(number.owner)];
+  const SiteTerm& term = h.terms[size_t(number.owner)];
   if (number.kind == FittedNumber::Kind::coefficient) return 1e-3 * term.unit[size_t(number.index)];
   return 1e-4 * (term.high[size_t(number.index)] - term.low[size_t(number.index)]);
 }
@@ -103,7 +103,7 @@ void SiteFitter::keep_within_limits(SiteHypothesis& h, const FittedNumber& numbe
   if (number.kind == FittedNumber::Kind::factor)
     value = std::clamp(std::clamp(value, before / 3, before * 3), 1 / widest_factor, widest_factor);
   if (number.kind != FittedNumber::Kind::nonlinear) return;
-  const Term& term = h.terms[size_t(number.owner)];
+  const SiteTerm& term = h.terms[size_t(number.owner)];
   const double low = term.low[size_t(number.index)], high = term.high[size_t(number.index)];
   const double most = low > 0 ? std::max(before / 2, 0.01 * (high - low)) : 0.2 * (high - low);
   value = std::clamp(std::clamp(value, before - most, before + most), low, high);

@@ -12,7 +12,7 @@ namespace loopwright::diagnosis {
 struct SiteHypothesis {
   std::vector<double> factors;  ///< of its parameters; 1: as the diagram states
   std::vector<bool> is_free;    ///< which parameters are fitted
-  std::vector<Term> terms;
+  std::vector<SiteTerm> terms;
   SiteNoise noise;
   double objective = 0;         ///< -2 ln L with this noise
   double scaled_objective = 0;  ///< the same with the best common scale of the noise

@@ -70,7 +70,7 @@ class Ranking {
  private:
   /// An output that is only a multiple of a state, as of a Gain, is no variable of its own.
   void find_multiples() {
-    const std::vector<Variable>& variables = fitter_.model().variables();
+    const std::vector<SiteVariable>& variables = fitter_.model().variables();
     is_multiple_.assign(variables.size(), false);
     std::vector<Eigen::VectorXd> directions;
     for (const bool states : {true, false})
@@ -98,7 +98,7 @@ class Ranking {
     return kind == Site::Kind::input || kind == Site::Kind::block;
   }
   bool is_there(const TermShape& shape, int site, int variable) const {
-    return std::ranges::any_of(at_.terms, [&](const Term& t) {
+    return std::ranges::any_of(at_.terms, [&](const SiteTerm& t) {
       return t.shape == &shape && t.site == site && t.variable == variable && shape.name != "periodic";
     });
   }
@@ -118,9 +118,9 @@ class Ranking {
       values[k] = fitter_.model().variables()[size_t(variable)].at(&pass_.path[0][k * pass_.numbers]);
     return values;
   }
-  Term term_of(const TermShape& shape, int site, int variable, const std::vector<double>& values,
+  SiteTerm term_of(const TermShape& shape, int site, int variable, const std::vector<double>& values,
                const std::array<double, most_nonlinear>& start) const {
-    Term term;
+    SiteTerm term;
     term.shape = &shape, term.site = site, term.variable = variable, term.nonlinear = start;
     const auto [low, high] = std::ranges::minmax(values);
     const double largest = std::max(std::abs(low), std::abs(high));
@@ -132,9 +132,9 @@ class Ranking {
     return term;
   }
   /// The responses of the errors to the term's columns, at coefficients of one.
-  Eigen::MatrixXd responses(Term& term) {
-    const Variable none;
-    const Variable& variable = term.variable < 0 ? none : fitter_.model().variables()[size_t(term.variable)];
+  Eigen::MatrixXd responses(SiteTerm& term) {
+    const SiteVariable none;
+    const SiteVariable& variable = term.variable < 0 ? none : fitter_.model().variables()[size_t(term.variable)];
     Eigen::MatrixXd columns(Eigen::Index(pass_.error.size()), term.shape->columns);
     for (int c = 0; c < term.shape->columns; ++c) {
       double square = 0;
@@ -160,7 +160,7 @@ class Ranking {
     SiteCandidate best;
     for (const auto& start : starts) {
       if (shape.starts && !(start[0] != 0 || start[1] != 0)) continue;
-      Term term = term_of(shape, site, variable, values, start);
+      SiteTerm term = term_of(shape, site, variable, values, start);
       Eigen::MatrixXd columns = responses(term);
       if (!columns.allFinite()) continue;
       const Eigen::VectorXd energy = columns.colwise().squaredNorm().transpose();
@@ -175,7 +175,7 @@ class Ranking {
     list.push_back(best);
   }
   /// Least squares of the remaining errors; the gain in -2 ln L.
-  double explain(const Eigen::MatrixXd& columns, Term& term) const {
+  double explain(const Eigen::MatrixXd& columns, SiteTerm& term) const {
     const Eigen::VectorXd norm = columns.colwise().norm().transpose();
     if (!(norm.maxCoeff() > 0)) return 0;
     Eigen::VectorXd weight(norm.size());
@@ -227,12 +227,12 @@ class Ranking {
 
 }  // namespace
 
-double cost_of(const SiteModel& model, const Term& term) {
+double cost_of(const SiteModel& model, const SiteTerm& term) {
   double cost = term.shape->cost;
   const Site& site = model.sites()[size_t(term.site)];
   if (site.kind == Site::Kind::sum && !model.drives_state(term.site)) cost += of_indirect_sum;
   if (term.variable < 0 || term.variable == model.own_variable(term.site)) return cost;
-  const Variable& variable = model.variables()[size_t(term.variable)];
+  const SiteVariable& variable = model.variables()[size_t(term.variable)];
   if (model.nearness(term.site, term.variable) == Nearness::far) cost += of_far;
   if (!variable.is_state) cost += of_derived;
   if (variable.minus >= 0) cost += of_difference;

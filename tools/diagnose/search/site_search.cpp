@@ -9,6 +9,7 @@ namespace {
 
 constexpr size_t fitted_keys = 5;  // candidates that are confirmed by real fits
 constexpr size_t most_terms = 5;
+constexpr int most_first_substeps = 64;
 /// In -2 ln L: what a term must gain, also per reading.
 constexpr double least_gain = 25, least_gain_per_reading = 0.002;
 /// In the criterion: what an added term and an exchange must gain, and within what a rival is declared.
@@ -58,7 +59,7 @@ class SiteSearch {
   /// -2 ln L + p ln n + twice the cost of the prior.
   double criterion(const SiteHypothesis& h) {
     double sum = h.objective + double(size_of(h)) * std::log(readings_);
-    for (const Term& term : h.terms) sum += 2 * cost_of(model(), term) + 2 * std::log(double(keys_));
+    for (const SiteTerm& term : h.terms) sum += 2 * cost_of(model(), term) + 2 * std::log(double(keys_));
     return sum;
   }
 
@@ -67,7 +68,10 @@ class SiteSearch {
     constexpr int rounds = 3;  // the sizes of the first pass are guesses
     for (int round = 0; round < rounds; ++round) {
       h.noise = fitter_.filter().guess_noise();
-      if (!fitter_.pass(h, true, pass_)) return false;
+      while (!fitter_.pass(h, true, pass_)) {  // a fast state needs shorter steps
+        if (model().substeps() >= most_first_substeps) return false;
+        model().set_substeps(2 * model().substeps());
+      }
       fitter_.filter().learn_scales(pass_);
       fitter_.filter().choose_substeps(pass_);
     }
@@ -157,7 +161,7 @@ class SiteSearch {
   void exchange(SiteHypothesis& at) {
     for (size_t t = 0; t < at.terms.size(); ++t) {
       SiteHypothesis without = at;
-      const Term term = at.terms[t];
+      const SiteTerm term = at.terms[t];
       without.terms.erase(without.terms.begin() + std::ptrdiff_t(t));
       std::vector<SiteCandidate> others = rank_terms(fitter_, without, named_shapes());
       std::erase_if(others, [&](const SiteCandidate& c) { return c.is_same_key(term); });
@@ -245,7 +249,7 @@ class SiteSearch {
 
 }  // namespace
 
-std::string describe(const SiteModel& model, const Term& term) {
+std::string describe(const SiteModel& model, const SiteTerm& term) {
   std::string text = fmt::format("{}: {}", model.sites()[size_t(term.site)].name, term.shape->name);
   if (term.variable >= 0) text += fmt::format("({})", model.variables()[size_t(term.variable)].name);
   return text;

@@ -11,14 +11,14 @@ namespace loopwright::diagnosis {
 /// A term that explains the record as well as one of the found ones.
 struct SiteRival {
   size_t of = 0;  ///< the found term
-  Term term;
+  SiteTerm term;
   double worse = 0;  ///< by how much its criterion is higher
 };
 
 /// Other parameters that explain the record as well.
 struct ParameterRival {
   std::vector<int> moved;   ///< instead of those that moved
-  std::vector<Term> terms;  ///< a term in place of all moved parameters, if not empty
+  std::vector<SiteTerm> terms;  ///< a term in place of all moved parameters, if not empty
   double worse = 0;
 };
 
@@ -36,6 +36,6 @@ struct SiteSearchResult {
 std::optional<SiteSearchResult> search_sites(SiteFitter& fitter,
                                              const std::function<void(const char*, double)>& progress);
 
-std::string describe(const SiteModel& model, const Term& term);
+std::string describe(const SiteModel& model, const SiteTerm& term);
 
 }  // namespace loopwright::diagnosis

@@ -10,14 +10,12 @@ namespace {
 
 /// n Σ ρ² over 40 lags is near 40 when nothing is left; the largest of a thousand records is below this.
 constexpr double most_portmanteau = 120;
-/// [of the site's rms] A smaller term is optional.
-constexpr double least_share = 0.005;
 /// A simulation that is worse than the nominal diagram's by more than this contradicts the answer.
 constexpr double worse_simulation = 1.05;
 
 std::string unit_text(const std::optional<Unit>& unit) { return unit ? to_string(unit->in_si()) : ""; }
 
-std::string unit_of_coefficient(const SiteModel& model, const Term& term) {
+std::string unit_of_coefficient(const SiteModel& model, const SiteTerm& term) {
   const Site& site = model.sites()[size_t(term.site)];
   if (term.variable < 0 || term.shape->power == 0) return unit_text(site.unit);
   const std::optional<Unit>& of_signal = model.variables()[size_t(term.variable)].unit;
@@ -72,7 +70,7 @@ class Telling {
     SitePass pass;
     const bool has_path = fitted_.pass(h, true, pass);
     for (size_t t = 0; t < search_.found.terms.size(); ++t) {
-      const Term& term = search_.found.terms[t];
+      const SiteTerm& term = search_.found.terms[t];
       const Site& site = model_.sites()[size_t(term.site)];
       DiagnosedEffect effect;
       effect.name = term.shape->name, effect.title = term.shape->title;
@@ -98,7 +96,7 @@ class Telling {
       result_.effects.push_back(std::move(effect));
     }
   }
-  double size_of_term(const SitePass& pass, const Term& term) const {
+  double size_of_term(const SitePass& pass, const SiteTerm& term) const {
     double square = 0;
     for (size_t k = 0; k < pass.rows; ++k) {
       const double* numbers = &pass.path[0][k * pass.numbers];
@@ -124,7 +122,7 @@ class Telling {
     for (const ParameterRival& rival : search_.parameter_rivals) {
       OtherExplanation other{moved, {}};
       for (int i : rival.moved) other.effects.push_back(model_.parameters()[size_t(i)].name);
-      for (const Term& term : rival.terms) other.effects.push_back(describe(model_, term));
+      for (const SiteTerm& term : rival.terms) other.effects.push_back(describe(model_, term));
       result_.other_explanations.push_back(std::move(other));
     }
   }
@@ -144,7 +142,7 @@ class Telling {
     std::vector<std::string> named;
     for (const SiteHypothesis& h : search_.steps) {
       std::vector<std::string> added;
-      for (const Term& term : h.terms)
+      for (const SiteTerm& term : h.terms)
         if (const std::string name = describe(model_, term); std::ranges::find(named, name) == named.end())
           added.push_back(name), named.push_back(name);
       add(h, added);
