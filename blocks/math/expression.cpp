@@ -10,47 +10,11 @@
 /// matters, use blocks instead. An infinite or NaN result stops the run.
 #include <fmt/format.h>
 #include <algorithm>
-#include "engine/block.h"
-#include "engine/diagram/formula_parser.h"
+#include "blocks/math/formula.h"
 
 namespace loopwright::blocks {
 
-/// A compiled formula with storage for its variables. A copy is empty, as the compiled code points to its own
-/// variables.
-struct Formula {
-  FormulaParser parser;
-  std::vector<double> variables;
-  Formula() = default;
-  Formula(const Formula&) {}
-  Formula& operator=(const Formula&) { return *this; }
-
-  /// Throws mu::ParserError. `half_turn` replaces π, to determine its effect on the result.
-  void compile(const std::string& text, const std::vector<std::string_view>& names,
-               double* half_turn = nullptr) {
-    parser = FormulaParser();
-    if (half_turn)
-      parser.DefineVar("pi", half_turn);
-    else
-      parser.DefineConst("pi", pi);
-    variables.assign(names.size(), 1.0);
-    for (size_t i = 0; i < names.size(); ++i) parser.DefineVar(std::string(names[i]), &variables[i]);
-    parser.set_formula(text);
-    parser.Eval();  // compiles the formula, so that later calls do not allocate
-  }
-};
-
 struct Expression {
-  struct NamedNumber {
-    std::string name;
-    double value = 0;
-    std::string unit;
-    static constexpr auto describe() {
-      return fields(
-          parameter(&NamedNumber::name, "name", "", "What the formula calls it"),
-          parameter(&NamedNumber::value, "value", "", "The number, in SI"),
-          parameter(&NamedNumber::unit, "unit", "", "Its unit; a plain number when empty").optional());
-    }
-  };
   std::string formula;
   std::vector<std::string> names;
   std::vector<NamedNumber> constants;

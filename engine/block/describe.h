@@ -36,6 +36,19 @@ template <class Real> struct Many {
   LW_INLINE const Real& operator[](int i) const { return *wire[i]; }
 };
 
+template <class Real> struct Port;
+
+/// The inputs that an instance declares in its settings (engine/block/instance_ports.h), in their order.
+template <class Real> struct NamedInputs {
+  const Port<Real>* port = nullptr;
+  LW_INLINE const Real& operator[](int i) const { return *port[i].data; }
+};
+/// The outputs that an instance declares in its settings.
+template <class Real> struct NamedOutputs {
+  const Port<Real>* port = nullptr;
+  LW_INLINE Real& operator[](int i) const { return *port[i].data; }
+};
+
 /// The optional result of a method: `return fault_if(in.x <= 0.0, "the logarithm of …");` stops these lanes,
 /// the others continue.
 struct Fault {

@@ -1,5 +1,6 @@
 /// The properties of a block type, independent of the scalar.
 #pragma once
+#include "engine/block/instance_ports.h"
 #include "engine/block/instance_units.h"
 #include "engine/block/kernels.h"
 #include "engine/block/memory_layout.h"
@@ -7,7 +8,8 @@
 namespace loopwright {
 
 struct PortInfo {
-  enum class Shape { scalar, vector, many };
+  /// named: as many scalar ports as the instance declares
+  enum class Shape { scalar, vector, many, named };
   std::string_view name, unit, sentence;
   Shape shape = Shape::scalar;
   uint64_t fed_by = 0;       ///< outputs: mask of the inputs that feed through
@@ -52,12 +54,17 @@ struct BlockInfo {
   /// The output is the product of the wires of the first input, each raised to this power.
   double (*unit_power)(const void* block, int wire);
   FormulaUnit (*formula_unit)(const void* block, std::span<const Unit> of_wires);
+  // Ports of an instance, each null if there are none.
+  std::vector<InstancePort> (*input_ports)(const void* block);
+  std::vector<InstancePort> (*output_ports)(const void* block);
 };
 
 template <class Entry> constexpr PortInfo::Shape shape_of() {
   using T = typename Entry::Type;
   if constexpr (requires(T t) { t.wire; })
     return PortInfo::Shape::many;
+  else if constexpr (requires(T t) { t.port; })
+    return PortInfo::Shape::named;
   else if constexpr (requires(T t) { t.data(); })
     return PortInfo::Shape::vector;
   else
@@ -172,6 +179,10 @@ template <class B> BlockInfo info_of(std::string_view type) {
     info.formula_unit = [](const void* p, std::span<const Unit> of_wires) {
       return static_cast<const B*>(p)->formula_unit(of_wires);
     };
+  if constexpr (requires(const B b) { b.input_ports(); })
+    info.input_ports = [](const void* p) { return static_cast<const B*>(p)->input_ports(); };
+  if constexpr (requires(const B b) { b.output_ports(); })
+    info.output_ports = [](const void* p) { return static_cast<const B*>(p)->output_ports(); };
   return info;
 }
 

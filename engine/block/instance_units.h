@@ -1,7 +1,9 @@
 /// The units of a block instance that its description does not give.
 #pragma once
+#include <optional>
 #include <string>
 #include <string_view>
+#include "engine/json/problem.h"
 #include "engine/unit/rescaling.h"
 
 namespace loopwright {
@@ -14,13 +16,14 @@ struct UnitClaim {
   std::string_view parameter;  ///< the parameter that determines it, for messages
 };
 
-/// `FormulaUnit formula_unit(std::span<const Unit> of_wires) const` of a block whose only output is a
-/// function of its only input, a Many port.
+/// `FormulaUnit formula_unit(std::span<const Unit> of_wires) const` of a block whose first output is a
+/// function of its inputs, which have no units of their own.
 struct FormulaUnit {
   UnitFinding finding = UnitFinding::no_result;
   Unit unit;
-  std::string_view parameter;  ///< the parameter that holds the function, for messages
-  std::string found;           ///< the function and the units of its arguments, if they are mixed
+  std::string_view parameter;    ///< the parameter that holds the function, for messages
+  std::optional<Place> place{};  ///< of the function, if it is not that of the parameter
+  std::string found;             ///< the function and the units of its arguments, if they are mixed
 };
 
 }  // namespace loopwright

@@ -13,6 +13,8 @@ template <class R> LW_INLINE void attach(Vector<const R>& to, const Port<R>& w) 
 }
 template <class R> LW_INLINE void attach(Vector<R>& to, const Port<R>& w) { to = {w.data, size_t(w.length)}; }
 template <class R> LW_INLINE void attach(Many<R>& to, const Port<R>& w) { to = {w.many, w.length}; }
+template <class R> LW_INLINE void attach(NamedInputs<R>& to, const Port<R>& w) { to = {&w}; }
+template <class R> LW_INLINE void attach(NamedOutputs<R>& to, const Port<R>& w) { to = {&w}; }
 
 /// The inputs in the mask; any other scalar reads NaN, so that an undeclared feedthrough is detected
 /// immediately.

@@ -35,8 +35,9 @@ class Checker {
   Problems& problems_;
 };
 
-/// A `file` is a text that names a file, relative to the file in which it stands.
-enum class ParameterKind { number, whole, flag, text, file, choice, list, object };
+/// A `file` is a text that names a file, relative to the file in which it stands. A `by_name` is an object
+/// whose keys are names that the block does not know beforehand.
+enum class ParameterKind { number, whole, flag, text, file, choice, list, object, by_name };
 
 /// A parameter as used by the schema, the reference, error texts and sweeps.
 struct ParameterInfo {
@@ -50,7 +51,7 @@ struct ParameterInfo {
   std::string default_text;               ///< as JSON; empty without default
   std::vector<std::string_view> choices;  ///< of a choice
   std::vector<ParameterInfo> fields;      ///< of an object, or of the objects in a list
-  std::vector<ParameterInfo> element;     ///< of a list: one entry that describes its items
+  std::vector<ParameterInfo> element;     ///< of a list, or by name: one entry that describes its items
 };
 
 /// Names of an enumeration, in the order of its values: `constexpr auto names_of(Interpolation) { return
@@ -63,6 +64,10 @@ template <class T>
 concept Described = requires {
   T::describe();
 };
+/// Values by name, {"velocity": 3, "enable": 1}, in the order of the file.
+template <class T> struct ByName { std::vector<std::pair<std::string, T>> entries; };
+template <class T> inline constexpr bool is_by_name = false;
+template <class T> inline constexpr bool is_by_name<ByName<T>> = true;
 template <class T>
 concept List = requires(T t) {
   t.resize(1);
@@ -109,6 +114,10 @@ template <class Real, class T> Real* tunable(T& at, std::string_view path) {
         i = 10 * i + size_t(digit - '0');
       }
       return i < at.size() ? tunable<Real>(at[i], tail) : nullptr;
+    } else if constexpr (is_by_name<T>) {
+      for (auto& [name, value] : at.entries)
+        if (name == head) return tunable<Real>(value, tail);
+      return nullptr;
     } else {
       return nullptr;
     }
@@ -158,6 +167,10 @@ void read(T& to, const Value& value, const reading::Range& range, const std::str
     narrow.high = std::min(range.high, double(std::numeric_limits<T>::max()));
     int64_t number = 0;
     if (reading::whole(number, value, narrow, block, problems)) to = T(number);
+  } else if constexpr (is_by_name<T>) {
+    if (!reading::object(value, block, problems)) return;
+    for (const Value::Member& member : value.members)
+      read(to.entries.emplace_back(member.name, 0).second, member.value, range, block, problems);
   } else if constexpr (List<T>) {
     if (!reading::list(value, block, range.sentence, problems)) return;
     to.resize(value.items.size());
@@ -206,6 +219,13 @@ template <class T, class Real> void describe_type(ParameterInfo& info) {
     element.plain_when_bare = info.plain_when_bare;
     describe_type<typename T::value_type, Real>(element);
     info.fields = element.fields;
+    info.tunable = element.tunable;
+    info.element.push_back(std::move(element));
+  } else if constexpr (is_by_name<T>) {
+    info.kind = ParameterKind::by_name;
+    ParameterInfo element;
+    element.unit = info.unit;
+    describe_type<typename decltype(T::entries)::value_type::second_type, Real>(element);
     info.tunable = element.tunable;
     info.element.push_back(std::move(element));
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
+#include "engine/diagram/run_condition.h"
 #include "engine/diagram/wires.h"
 #include "engine/diagram/solver_settings.h"
 
@@ -119,7 +120,8 @@ class BlockReader {
   void read_subdiagram(const Value& body, BlockEntry& entry, std::vector<Edit> edits,
                        std::vector<VariantChoice> variants, bool is_variant) {
     for (const Value::Member& member : body.members) {
-      constexpr std::array known = {"diagram", "parameters", "in", "description"};
+      constexpr std::array known = {"diagram",    "parameters",   "in",   "description",
+                                    "enabled_by", "triggered_by", "edge", "while_disabled"};
       const bool is_known = std::ranges::find(known, member.name) != known.end();
       if (is_known && !(is_variant && member.name == "in")) continue;
       if (member.name != "parameters" && is_misplaced_key(member, is_variant)) continue;
@@ -133,6 +135,7 @@ class BlockReader {
         problem.hint = "parameters of the diagram stand in \"parameters\"";
     }
     reader_.text(body, "description");
+    entry.condition = read_run_condition(body, reader_);
     const Value& path = body.find("diagram")->value;
     const bool is_inline = path.kind == Value::Kind::object;
     const bool has_path =

@@ -35,6 +35,17 @@ struct PortWires {
   std::vector<Wire> wires;
 };
 
+/// When a subdiagram runs: while a signal is true, or at each of its edges.
+struct RunCondition {
+  std::string key;              ///< "enabled_by" or "triggered_by"
+  Place place;                  ///< of the key
+  Wire wire;                    ///< in the diagram that contains the subdiagram
+  std::string kind = "level";   ///< or the edge: "rising", "falling", "either"
+  bool resets_states = false;   ///< states start anew when it is enabled; otherwise they are held
+  bool resets_outputs = false;  ///< outputs are 0 while it is disabled; otherwise they are held
+  bool is_triggered() const { return kind != "level"; }
+};
+
 /// A block, or a subdiagram in place of a block. Of a block with variants only the active variant is kept.
 struct BlockEntry {
   std::string name;
@@ -45,7 +56,8 @@ struct BlockEntry {
   Boxed<Value> sample_time, sample_offset;  ///< numbers in s
   std::vector<PortWires> in;
   std::shared_ptr<const Diagram> subdiagram;
-  std::string variant;  ///< name of the active variant; empty without variants
+  std::shared_ptr<const RunCondition> condition;  ///< of a subdiagram; null: it runs all the time
+  std::string variant;                            ///< name of the active variant; empty without variants
 };
 
 struct DiagramInput {

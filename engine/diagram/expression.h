@@ -33,8 +33,8 @@ struct ExpressionSite {
 };
 
 /// The value of an expression (without its '='), or nothing after a problem. It may use + - * / ^,
-/// comparisons, ?:, && and ||, pi, e, and sin cos tan asin acos atan atan2 sinh cosh tanh asinh acosh atanh
-/// sqrt exp ln log log2 log10 abs sign rint min max sum avg.
+/// comparisons, ?:, &&, || and !, pi, e, and sin cos tan asin acos atan atan2 sinh cosh tanh asinh acosh
+/// atanh sqrt exp ln log log2 log10 abs sign rint min max sum avg.
 ///
 /// The unit of the result is determined by rescaling (engine/unit/rescaling.h); mixing units is a problem. A
 /// result of parameters without units is a bare number. A parameter in Hz has the value of its cycles per

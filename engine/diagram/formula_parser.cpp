@@ -33,6 +33,7 @@ FormulaParser::FormulaParser() {
   DefineFun("log2", binary_logarithm);
   DefineFun("log10", decimal_logarithm);
   DefineOprt(std::string(1, parsed_power), any_power, mu::prPOW, mu::oaRIGHT, true);
+  DefineInfixOprt("!", [](double x) { return x == 0 ? 1.0 : 0.0; });
 }
 
 void FormulaParser::set_formula(const std::string& text) {

@@ -5,7 +5,7 @@
 namespace loopwright {
 
 /// muParser with the functions of models/real and its own power function. muParser would call the C library,
-/// whose bits differ between processors. Everything else is unchanged muParser.
+/// whose bits differ between processors. `!` is the logical not. Everything else is unchanged muParser.
 class FormulaParser : public mu::Parser {
  public:
   FormulaParser();

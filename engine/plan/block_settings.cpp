@@ -44,6 +44,16 @@ Value constant(const Parameter& parameter, const Place& place) {
   return entry;
 }
 
+/// The texts that are formulas, also inside lists and objects.
+void find_formulas(const Value& settings, std::vector<const Value*>& found) {
+  for (const Value& item : settings.items) find_formulas(item, found);
+  for (const Value::Member& member : settings.members)
+    if (member.value.kind != Value::Kind::text)
+      find_formulas(member.value, found);
+    else if (member.name == "formula" || member.name == "when")
+      found.push_back(&member.value);
+}
+
 }  // namespace
 
 bool takes_numbers_by_element(const BlockInfo& info) {
@@ -79,11 +89,14 @@ std::vector<Value> settings_by_element(const BlockInfo& info, const Value& setti
 
 std::optional<Value> settings_with_constants(const BlockInfo& info, const Value& settings,
                                              const std::vector<Parameter>& parameters) {
-  const Value::Member* const formula = settings.find("formula");
-  if (!formula || formula->value.kind != Value::Kind::text || !find_parameter(info, "constants")) return {};
+  if (!find_parameter(info, "constants")) return {};
+  std::vector<const Value*> formulas;
+  find_formulas(settings, formulas);
+  if (formulas.empty()) return {};
   std::vector<std::string_view> hidden;
-  if (const Value::Member* names = settings.find("names"))
-    for (const Value& name : names->value.items) hidden.push_back(name.text);
+  for (const std::string_view key : {"names", "inputs"})
+    if (const Value::Member* names = settings.find(key))
+      for (const Value& name : names->value.items) hidden.push_back(name.text);
   const Value::Member* const written = settings.find("constants");
   if (written)
     for (const Value& entry : written->value.items)
@@ -92,14 +105,15 @@ std::optional<Value> settings_with_constants(const BlockInfo& info, const Value&
   Value list;
   if (written) list = written->value;
   list.kind = Value::Kind::list;
-  list.place = written ? written->value.place : formula->value.place;
-  for (const NameUse& use : names_in(formula->value.text)) {
-    if (use.is_function || std::ranges::find(hidden, use.name) != hidden.end()) continue;
-    const auto parameter = std::ranges::find(parameters, use.name, &Parameter::name);
-    if (parameter == parameters.end() || parameter->value.kind != Value::Kind::number) continue;
-    list.items.push_back(constant(*parameter, formula->value.place));
-    hidden.push_back(use.name);
-  }
+  list.place = written ? written->value.place : formulas[0]->place;
+  for (const Value* const formula : formulas)
+    for (const NameUse& use : names_in(formula->text)) {
+      if (use.is_function || std::ranges::find(hidden, use.name) != hidden.end()) continue;
+      const auto parameter = std::ranges::find(parameters, use.name, &Parameter::name);
+      if (parameter == parameters.end() || parameter->value.kind != Value::Kind::number) continue;
+      list.items.push_back(constant(*parameter, formula->place));
+      hidden.push_back(use.name);
+    }
   if (list.items.empty()) return {};
   Value result = settings;
   std::erase_if(result.members, [](const Value::Member& member) { return member.name == "constants"; });

@@ -16,8 +16,9 @@ bool takes_numbers_by_element(const BlockInfo& info);
 std::vector<Value> settings_by_element(const BlockInfo& info, const Value& settings, const std::string& path,
                                        Problems& problems);
 
-/// The settings of a block that has a "formula" and "constants", with a constant for every number among the
-/// parameters of the diagram that the formula names. A name in "names" or "constants" hides the parameter.
+/// The settings of a block that has formulas and "constants", with a constant for every number among the
+/// parameters of the diagram that its formulas name. Formulas are the texts "formula" and "when", also inside
+/// lists. A name in "names", "inputs" or "constants" hides the parameter.
 /// Nothing for other blocks, and for formulas without such names.
 std::optional<Value> settings_with_constants(const BlockInfo& info, const Value& settings,
                                              const std::vector<Parameter>& parameters);

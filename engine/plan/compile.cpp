@@ -7,6 +7,7 @@
 #include <span>
 #include <tuple>
 #include <unordered_map>
+#include "engine/plan/gates.h"
 #include "engine/plan/layout.h"
 #include "engine/plan/order.h"
 #include "engine/plan/shapes.h"
@@ -234,7 +235,10 @@ std::string hash_of_structure(const Plan& plan) {
     for (const auto& port : block.inputs)
       for (Number n : port) add(n);
     add(block.period), add(block.offset), add(block.first_state);
+    if (block.gate >= 0) add(plan.gates[size_t(block.gate)].on);
   }
+  for (const Plan::Gate& gate : plan.gates)
+    for (const int block : gate.restarts) add(block);
   for (const auto& [name, value] : plan.parameters) hash.add(name).add("=").add(value).add("\n");
   for (const Plan::Logged& logged : plan.log) hash.add(logged.name), add(logged.number);
   for (int64_t n : {plan.clock.base.numerator, plan.clock.base.denominator, plan.start_tick, plan.stop_tick,
@@ -289,12 +293,14 @@ std::shared_ptr<const Plan> compile(const Diagram& diagram, Problems& problems) 
   }
   const auto lists = std::make_shared<Plan::Lists>();
   plan->lists = lists;
+  lists->instance_types = flat.instance_types;
   const Layout layout(flat, *plan, *lists);
   std::vector<int> flat_of_block;
   for (size_t f = 0; f < flat.blocks.size(); ++f)
     flat_of_block.insert(flat_of_block.end(), size_t(flat.blocks[f].width), int(f));
   flat_of_block.resize(plan->blocks.size(), -1);
   find_times(diagram, flat, flat_of_block, *plan, problems);
+  add_gates(flat, flat_of_block, *plan, problems);
   add_sources(units, flat_of_block, *plan, *lists);
   add_log(flat, layout, units, *plan, problems);
   add_ports(flat, layout, *plan, *lists);
@@ -302,6 +308,7 @@ std::shared_ptr<const Plan> compile(const Diagram& diagram, Problems& problems) 
     plan->block_of_state.insert(plan->block_of_state.end(), size_t(plan->blocks[b].states), int(b));
   plan->without_unit = wires_without_unit(flat, units);
   find_order(*plan, diagram.solver.algebraic_loops.value == "solve", problems);
+  check_gates(*plan, problems);
   if (problems.has_errors()) return nullptr;
   add_crossings(*plan);
   add_rates_to_log(*plan);

@@ -6,6 +6,7 @@
 #include <unordered_set>
 #include "engine/plan/block_settings.h"
 #include "engine/plan/block_values.h"
+#include "engine/plan/gates.h"
 #include "engine/plan/scope.h"
 
 namespace loopwright {
@@ -20,8 +21,10 @@ class Flattener {
     flat_.settings.effective.reserve(diagram.parameters.size() + 2 * diagram.blocks.size());
     flat_.settings.add(diagram.parameters);
     Scope& top = add_scope(diagram, "", nullptr, nullptr);
+    for (size_t i = 0; i < scopes_.size(); ++i) make_gate(scopes_[i]);
     for (size_t i = 0; i < scopes_.size(); ++i) wire_blocks(scopes_[i]);  // the deque no longer grows
     for (size_t i = 0; i < scopes_.size(); ++i) check_subdiagram_wires(scopes_[i]);
+    for (size_t i = 0; i < scopes_.size(); ++i) wire_gate(scopes_[i]);
     add_log(top);
     add_names();
     return std::move(flat_);
@@ -30,6 +33,12 @@ class Flattener {
  private:
   Scope& add_scope(const Diagram& diagram, std::string prefix, const BlockEntry* entry, Scope* parent) {
     Scope& scope = scopes_.emplace_back(Scope{&diagram, std::move(prefix), entry, parent});
+    if (parent) scope.gate = parent->gate;
+    if (entry && entry->condition) {
+      flat_.gates.push_back({-1, scope.gate, entry, entry->condition->is_triggered()});
+      if (scope.gate >= 0) flat_.gates.back().is_triggered |= flat_.gates[size_t(scope.gate)].is_triggered;
+      scope.gate = int(flat_.gates.size()) - 1;
+    }
     scope.parts.reserve(diagram.blocks.size());
     for (const BlockEntry& block : diagram.blocks) {
       scope.blocks.add(scope.parts.size());
@@ -55,6 +64,7 @@ class Flattener {
       unknown_type(flat.path, entry);
       return -1;
     }
+    flat.gate = scope.gate;
     const Value& settings = settings_of(*scope.diagram, *flat.type, entry);
     const auto by_element = settings_by_element(flat.type->info, settings, flat.path, problems_);
     if (by_element.size() < 2) {
@@ -67,12 +77,50 @@ class Flattener {
       }
       flat.value = flat.elements[0];
     }
+    if (auto own = instance_type(*flat.type, flat.value.get()))
+      flat.type = flat_.instance_types.emplace_back(std::move(own)).get();
     flat_.settings.add(int(flat_.blocks.size()), *flat.type, settings, flat.path);
     flat.inputs.resize(flat.type->info.inputs.size());
     flat.output_lengths.assign(flat.type->info.outputs.size(), 1);
     flat_.blocks.push_back(std::move(flat));
     scope_of_block_.push_back(&scope);
     return int(flat_.blocks.size()) - 1;
+  }
+
+  /// The Enable block of a subdiagram, and the blocks of outputs that are reset.
+  void make_gate(Scope& scope) {
+    if (!scope.entry || !scope.entry->condition) return;
+    check_gate_names(*scope.entry, scope.prefix.substr(0, scope.prefix.size() - 1), problems_);
+    flat_.gates[size_t(scope.gate)].block = make_block(scope, "Enable", gate_name);
+    if (scope.entry->condition->resets_outputs)
+      for (const DiagramOutput& output : scope.diagram->outputs)
+        scope.reset_outputs.push_back(make_block(scope, "EnabledOutput", output.name));
+  }
+  int make_block(Scope& inner, std::string_view type, std::string_view name) {
+    BlockEntry& entry = flat_.made_entries.emplace_back(entry_of_gate(*inner.entry, type));
+    entry.name = inner.entry->name + "." + std::string(name);
+    return add_block(*inner.parent, entry);
+  }
+  void wire_gate(Scope& scope) {
+    if (!scope.entry || !scope.entry->condition) return;
+    const RunCondition& condition = *scope.entry->condition;
+    const FlatGate& gate = flat_.gates[size_t(scope.gate)];
+    if (gate.block < 0) return;
+    const std::string path = scope.prefix.substr(0, scope.prefix.size() - 1);
+    FlatBlock& enable = flat_.blocks[size_t(gate.block)];
+    enable.inputs[0].push_back(resolve(*scope.parent, condition.wire.source, condition.wire, path, 0));
+    for (size_t o = 0; o < scope.diagram->outputs.size(); ++o) {
+      const DiagramOutput& output = scope.diagram->outputs[o];
+      const FlatWire source =
+          resolve(scope, output.source.source, output.source, scope.prefix + output.name, 0);
+      if (scope.reset_outputs.empty()) {
+        check_held_output(flat_, scope.gate, output, source, path, problems_);
+        continue;
+      }
+      FlatBlock& block = flat_.blocks[size_t(scope.reset_outputs[o])];
+      block.inputs[0].push_back(source);
+      block.inputs[1].push_back(made_wire(gate.block, condition.wire));
+    }
   }
 
   /// As in the file, or with the parameters of the diagram that its formula names.
@@ -217,13 +265,13 @@ class Flattener {
     const std::string name(rest.substr(0, bracket)),
         element(bracket == rest.npos ? "" : rest.substr(bracket));
     std::vector<std::string> names;
-    for (const DiagramOutput& output : inner.diagram->outputs) {
-      if (output.name == name)
-        return with_element(
-            resolve(inner, output.source.source, output.source, inner.prefix + name, depth + 1), element, at,
-            reader);
+    for (size_t o = 0; o < inner.diagram->outputs.size(); ++o) {
+      const DiagramOutput& output = inner.diagram->outputs[o];
+      if (output.name == name) return with_element(output_of(inner, o, depth), element, at, reader);
       names.push_back(output.name);
     }
+    if (name == gate_name && inner.entry->condition)
+      return made_wire(flat_.gates[size_t(inner.gate)].block, at);
     for (const DiagramInput& input : inner.diagram->inputs)
       if (input.name == name) return resolve_input(inner, name, element, at, reader, depth + 1);
     if (rest.find('.') != rest.npos) return resolve(inner, rest, at, reader, depth + 1);
@@ -231,6 +279,18 @@ class Flattener {
                 fmt::format("the subdiagram \"{}\" has no output \"{}\"",
                             inner.prefix.substr(0, inner.prefix.size() - 1), name),
                 names, name);
+  }
+
+  /// The source of an output of a subdiagram, as its surroundings see it.
+  FlatWire output_of(Scope& inner, size_t o, int depth) {
+    const DiagramOutput& output = inner.diagram->outputs[o];
+    if (!inner.reset_outputs.empty()) return made_wire(inner.reset_outputs[o], output.source);
+    return resolve(inner, output.source.source, output.source, inner.prefix + output.name, depth + 1);
+  }
+  static FlatWire made_wire(int block, const Wire& at) {
+    FlatWire wire;
+    wire.block = block, wire.output = 0, wire.at = &at;
+    return wire;
   }
 
   FlatWire resolve_port(int block, std::string_view rest, const Wire& at, const std::string& reader,
@@ -347,10 +407,13 @@ class Flattener {
     std::swap(unheard, problems_);
     for (Scope& scope : scopes_) {
       auto& outputs = scope.entry ? flat_.names : flat_.outputs;
-      for (const DiagramOutput& output : scope.diagram->outputs)
-        outputs.push_back(
-            {scope.prefix + output.name, resolve(scope, output.source.source, output.source, "", 0)});
+      for (size_t o = 0; o < scope.diagram->outputs.size(); ++o)
+        outputs.push_back({scope.prefix + scope.diagram->outputs[o].name, output_of(scope, o, 0)});
       if (!scope.entry) continue;
+      if (scope.entry->condition)
+        flat_.names.push_back(
+            {scope.prefix + std::string(gate_name),
+             made_wire(flat_.gates[size_t(scope.gate)].block, scope.entry->condition->wire)});
       for (const DiagramInput& input : scope.diagram->inputs)
         flat_.names.push_back(
             {scope.prefix + input.name, resolve_input(scope, input.name, "", Wire{input.name, {}}, "", 0)});

@@ -30,6 +30,15 @@ struct FlatBlock {
   FlatInputs inputs;
   int width = 1;                         ///< number of elements, if scalar ports are wired with vectors
   std::pmr::vector<int> output_lengths;  ///< of the port of one element; 1 until the shapes are known
+  int gate = -1;                         ///< of the subdiagram that contains it; -1: it runs all the time
+};
+
+/// Decides when a subdiagram runs.
+struct FlatGate {
+  int block = -1;                     ///< the Enable block made for it
+  int parent = -1;                    ///< the gate of the diagram around it; -1: none
+  const BlockEntry* entry = nullptr;  ///< the subdiagram
+  bool is_triggered = false;          ///< or something around it
 };
 
 struct FlatLog {
@@ -48,7 +57,10 @@ struct FlatDiagram {
   std::unique_ptr<std::pmr::monotonic_buffer_resource> memory =
       std::make_unique<std::pmr::monotonic_buffer_resource>();
   std::vector<FlatBlock> blocks;
-  Settings settings;                    ///< of the blocks, in their order
+  std::vector<FlatGate> gates;                                   ///< each after the gates around it
+  std::deque<BlockEntry> made_entries;                           ///< of the blocks that are made for gates
+  std::vector<std::shared_ptr<const BlockType>> instance_types;  ///< of blocks with ports of their own
+  Settings settings;                                             ///< of the blocks, in their order
   std::deque<Value> extended_settings;  ///< of blocks whose formula names parameters of the diagram
   std::vector<FlatLog> log;
   std::vector<FlatName> names;    ///< ports of blocks have plain names: path.port

@@ -25,6 +25,7 @@ class Order {
 
   void run() {
     add_vertices();
+    find_restarted_states();
     add_edges();
     std::vector<int> component(vertices_.size());
     const int components = boost::strong_components(
@@ -84,14 +85,33 @@ class Order {
     for (size_t i = 0; i < inputs.size(); ++i)
       if (fed >> i & 1)
         for (Number n : inputs[i]) f(int(i), n);
+    if (const int gate = plan_.blocks[size_t(vertex.block)].gate; gate >= 0)
+      f(of_gate, plan_.gates[size_t(gate)].on);
+  }
+  static constexpr int of_gate = -1;  // in place of an input
+  /// The vertex that computes a number; -1: it is a state, or a constant. A state that may start anew comes
+  /// from its gate.
+  int vertex_of(Number n) const {
+    if (n < plan_.signals) return vertex_of_number_[size_t(n)];
+    return restarted_states_.empty() ? -1 : restarted_states_[size_t(n - plan_.signals)];
+  }
+  void find_restarted_states() {
+    for (const Plan::Gate& gate : plan_.gates) {
+      for (const int b : gate.restarts) {
+        const Plan::Block& block = plan_.blocks[size_t(b)];
+        if (block.states == 0) continue;
+        restarted_states_.resize(size_t(plan_.states), -1);
+        std::fill_n(restarted_states_.begin() + block.first_state, block.states,
+                    vertex_of_number_[size_t(gate.on)]);
+      }
+    }
   }
   void add_edges() {
     std::vector<std::pair<size_t, size_t>> edges;  // sorted by the vertex that needs the other
     edges.reserve(vertices_.size() * 2);
     for (size_t v = 0; v < vertices_.size(); ++v) {
       for_each_need(int(v), [&](int, Number n) {
-        if (n < plan_.signals && vertex_of_number_[size_t(n)] >= 0)
-          edges.emplace_back(v, size_t(vertex_of_number_[size_t(n)]));
+        if (const int source = vertex_of(n); source >= 0) edges.emplace_back(v, size_t(source));
       });
       if (reads_decision(int(v))) edges.emplace_back(v, size_t(decision_[size_t(vertices_[v].block)]));
     }
@@ -118,10 +138,27 @@ class Order {
     const int64_t period = std::gcd(std::gcd(a.period, b.period), std::abs(a.offset - b.offset));
     return {Rate::Kind::sampled, period, std::min(a.offset, b.offset) % period};
   }
+  Rate rate_of_number(Number n) const {
+    const int source = vertex_of_number_[size_t(n)];
+    return source < 0 ? Rate{} : rate_of_[size_t(source)];
+  }
+  /// What is triggered runs at the samples of its trigger. A trigger is sampled with its own signal.
+  std::optional<Rate> rate_by_trigger(int v) const {
+    const Vertex& vertex = vertices_[size_t(v)];
+    const Plan::Block& block = plan_.blocks[size_t(vertex.block)];
+    if (block.gate >= 0 && plan_.gates[size_t(block.gate)].is_triggered)
+      return rate_of_number(plan_.gates[size_t(block.gate)].on);
+    const auto gate = std::ranges::find(plan_.gates, vertex.block, &Plan::Gate::block);
+    if (gate == plan_.gates.end() || !gate->is_edge || block.inputs[0].empty()) return {};
+    if (vertex.group >= 0) return rate_of_[size_t(decision_[size_t(vertex.block)])];
+    const Number trigger = block.inputs[0][0];
+    return trigger < plan_.signals ? rate_of_number(trigger) : Rate{Rate::Kind::continuous, 0, 0};
+  }
   Rate own_rate(int v) const {
     const Vertex& vertex = vertices_[size_t(v)];
     const Plan::Block& block = plan_.blocks[size_t(vertex.block)];
     if (block.period > 0) return {Rate::Kind::sampled, block.period, block.offset};
+    if (const auto rate = rate_by_trigger(v)) return *rate;
     if (info(vertex.block).uses_time || info(vertex.block).is_continuous)
       return {Rate::Kind::continuous, 0, 0};
     Rate rate;
@@ -148,6 +185,11 @@ class Order {
   void add_ring(const std::vector<int>& members, const std::vector<int>& component) {
     const std::string text = ring_text(members, component);
     if (!solve_algebraic_loops_) return tell_algebraic_loop(members, text, "");
+    for (int v : members)
+      if (plan_.blocks[size_t(vertices_[size_t(v)].block)].gate >= 0)
+        return tell_algebraic_loop(members, text,
+                                   "It holds a block of a subdiagram that does not always run; such an "
+                                   "algebraic loop cannot be solved.");
     for (int v : members)
       if (vertices_[size_t(v)].group < 0)
         return tell_algebraic_loop(
@@ -212,12 +254,13 @@ class Order {
       int next = -1;
       std::string step;
       for_each_need(at, [&](int i, Number n) {
-        const int source = n < plan_.signals ? vertex_of_number_[size_t(n)] : -1;
+        const int source = vertex_of(n);
         if (next >= 0 || source < 0 || component[size_t(source)] != component[size_t(at)]) return;
         next = source;
         const Plan::Block& block = plan_.blocks[size_t(vertices_[size_t(at)].block)];
-        step =
-            fmt::format("{} -> {}.{}", plan_.name_of(n), block.path, block.type->info.inputs[size_t(i)].name);
+        step = i == of_gate ? fmt::format("{} -> {}, which it enables", plan_.name_of(n), block.path)
+                            : fmt::format("{} -> {}.{}", plan_.name_of(n), block.path,
+                                          block.type->info.inputs[size_t(i)].name);
       });
       if (next < 0) {  // an output group that needs its block's decision
         next = decision_[size_t(vertices_[size_t(at)].block)];
@@ -277,6 +320,10 @@ class Order {
         need_inputs(int(b), for_events);
       if (decision_[b] >= 0 && plan_.blocks[b].period == 0) for_events[size_t(decision_[b])] = true;
     }
+    // What is switched off keeps the signals of that instant, whether or not a row is recorded there.
+    for (size_t v = 0; v < vertices_.size(); ++v)
+      if (plan_.blocks[size_t(vertices_[v].block)].gate >= 0)
+        for_events[v] = true, need_inputs(vertices_[v].block, for_events);
     // A loop is solved starting from its last solution: the number of solutions must not depend on the
     // recording.
     for (size_t v = 0; v < vertices_.size(); ++v)
@@ -300,11 +347,12 @@ class Order {
   void need_inputs(int block, std::vector<bool>& needed) {
     std::vector<int> todo;
     const auto want = [&](Number n) {
-      const int v = n < plan_.signals ? vertex_of_number_[size_t(n)] : -1;
+      const int v = vertex_of(n);
       if (v >= 0 && !needed[size_t(v)]) needed[size_t(v)] = true, todo.push_back(v);
     };
     for (const auto& port : plan_.blocks[size_t(block)].inputs)
       for (Number n : port) want(n);
+    if (const int gate = plan_.blocks[size_t(block)].gate; gate >= 0) want(plan_.gates[size_t(gate)].on);
     while (!todo.empty()) {
       const int v = todo.back();
       todo.pop_back();
@@ -318,6 +366,7 @@ class Order {
   Graph graph_;
   std::vector<Vertex> vertices_;
   std::vector<int> first_vertex_, decision_, vertex_of_number_;
+  std::vector<int> restarted_states_;  // the vertex of the gate of each state, or -1; empty: there are none
   std::vector<Rate> rate_of_;
   std::vector<int> entry_of_vertex_;  // -1: part of an algebraic loop that is an error
 };

@@ -39,6 +39,19 @@ struct Plan {
     std::vector<std::optional<Unit>> output_units;     ///< of all blocks
     std::string port_names;
     std::vector<Number> port_numbers;
+    std::vector<std::shared_ptr<const BlockType>> instance_types;  ///< of blocks with ports of their own
+  };
+
+  /// Decides when the blocks of a subdiagram run.
+  struct Gate {
+    int block = -1;             ///< the Enable block
+    Number on = -1;             ///< above one half: they run
+    int parent = -1;            ///< the gate of the diagram around it; -1: none
+    bool is_triggered = false;  ///< they run at single samples: its own, or those of a gate around it
+    bool is_edge = false;       ///< it is triggered itself
+    std::vector<int> restarts;  ///< blocks that start anew when it is switched on
+    std::string key;            ///< "enabled_by" or "triggered_by"
+    Place place;                ///< of the key
   };
 
   /// One block on scalars; a block wired with vectors of n elements occurs n times.
@@ -57,6 +70,7 @@ struct Plan {
     int first_crossing = 0;
     int first_buffer = 0;  ///< as an offset from the start of the buffers
     std::span<const int> buffer_lengths;
+    int gate = -1;  ///< that decides when it runs; -1: always
   };
 
   /// One entry of the order: a group of outputs of a block, its decision, or an algebraic loop to be solved.
@@ -101,6 +115,7 @@ struct Plan {
   std::string title;
   std::shared_ptr<const Lists> lists;  ///< shared by copies of the plan
   std::vector<Block> blocks;
+  std::vector<Gate> gates;
   std::vector<Entry> order;  ///< every output and decision in order of evaluation
   std::vector<AlgebraicLoop> algebraic_loops;
   std::vector<Rate> rates;  ///< the distinct sampled rates

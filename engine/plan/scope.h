@@ -13,12 +13,15 @@ struct Scope {
   std::string prefix;       // "" or "stage."
   const BlockEntry* entry;  // in the parent; null at the top level
   Scope* parent;
+  int gate = -1;  ///< that decides when its blocks run; -1: they run all the time
   /// The result for a block: an index in the flat list, a subdiagram, or nothing after errors.
   struct Part {
     int flat_block = -1;
     Scope* inner = nullptr;
   };
   std::vector<Part> parts{};  // of each block
+  /// The blocks made for its outputs, if these are reset while it is disabled; otherwise empty.
+  std::vector<int> reset_outputs{};
   BlockTable blocks{diagram->blocks};
 };
 

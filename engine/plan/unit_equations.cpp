@@ -65,18 +65,19 @@ void UnitEquations::add_number(const NumberWithUnit& number) {
   equations_.push_back(equation);
 }
 
-/// The output of a product or formula.
+/// The first output of a product or formula.
 void UnitEquations::add_rule(int b) {
   const FlatBlock& block = flat_.blocks[size_t(b)];
   const BlockInfo& info = block.type->info;
   Rule& rule = rules_.emplace_back();
   rule.is_formula = info.formula_unit != nullptr;
-  for (size_t i = 0; i < block.inputs[0].size(); ++i) {
-    const FlatWire& wire = block.inputs[0][i];
-    const End source = wire.is_resolved() ? output_end(wire) : open_input_end(wire);
-    if (!source.expression) return;
-    rule.arguments.push_back({source, rule.is_formula ? 1.0 : info.unit_power(block.value.get(), int(i))});
-  }
+  for (const auto& port : block.inputs)
+    for (const FlatWire& wire : port) {
+      const End source = wire.is_resolved() ? output_end(wire) : open_input_end(wire);
+      if (!source.expression) return;
+      const int i = int(rule.arguments.size());
+      rule.arguments.push_back({source, rule.is_formula ? 1.0 : info.unit_power(block.value.get(), i)});
+    }
   equations_.push_back({{b, &types_of_blocks_[size_t(b)]->of_output(0), info.outputs[0].name},
                         {-1, &no_unit, {}},
                         &block.entry->place,

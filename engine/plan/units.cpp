@@ -315,7 +315,7 @@ class Solver {
     if (!unit || (unit->finding != UnitFinding::mixed && unit->finding != UnitFinding::mixed_turns)) return;
     const FlatBlock& block = flat_.blocks[size_t(equation.left.block)];
     const Value::Member* const at = block.entry->settings.find(unit->parameter);
-    const Place& place = at ? at->value.place : *equation.place;
+    const Place& place = unit->place ? *unit->place : at ? at->value.place : *equation.place;
     auto& p = problems_.error(place, place.pointer(), block.path,
                               unit->finding == UnitFinding::mixed
                                   ? "the formula mixes units"

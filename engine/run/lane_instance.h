@@ -1,5 +1,6 @@
 /// A block in a run of many lanes: with its lane kernels if the module has them, otherwise lane by lane.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <vector>
@@ -60,6 +61,33 @@ template <class Real> class LaneByLane {
     return faults;
   }
 
+  /// The step of a call in these lanes only, counted from the first lane of its arena.
+  static uint64_t only(const Call<Real>& call, uint64_t lanes) {
+    LaneByLane& self = of(call);
+    self.selected_ = lanes;
+    const uint64_t faults = call.step(call);
+    self.selected_ = ~uint64_t(0);
+    return faults;
+  }
+  /// States, memory and modes of these lanes as at the start of the run.
+  static uint64_t start_anew(const Call<Real>& call, uint64_t lanes) {
+    LaneByLane& self = of(call);
+    uint64_t faults = 0;
+    for (int lane = 0; lane < width; ++lane) {
+      if (!(lanes >> lane & 1)) continue;
+      self.take(call, lane);
+      const Call<double> scalar = self.scalar_call(call, lane);
+      std::ranges::fill(self.state_, 0.0);
+      for (const Port<double>& buffer : self.buffers_) std::fill_n(buffer.data, buffer.length, 0.0);
+      Fault fault =
+          self.kernels_.start(scalar.block, scalar.state, scalar.memory, scalar.buffers, scalar.mode);
+      fault.lanes <<= call.first_lane + lane;
+      if (fault.lanes) faults |= report_fault(call.report, call.index, fault);
+      self.put(call, lane);
+    }
+    return faults;
+  }
+
   template <Step<double> Kernels<double>::*method> bool has() const { return kernels_.*method != nullptr; }
   /// A method of the scalar block in every lane. Returns the faults, one bit for each lane.
   template <Step<double> Kernels<double>::*method> static uint64_t step(const Call<Real>& call) {
@@ -84,7 +112,7 @@ template <class Real> class LaneByLane {
   uint64_t each_lane(const Call<Real>& call, Step<double> method) {
     uint64_t answer = 0;
     for (int lane = 0; lane < width; ++lane) {
-      if (call.report[call.first_lane + lane].block >= 0)
+      if (call.report[call.first_lane + lane].block >= 0 || !(selected_ >> lane & 1))
         continue;  // the results of a lane that has failed are not used
       take(call, lane);
       jumped_ = 0;
@@ -139,8 +167,9 @@ template <class Real> class LaneByLane {
   std::vector<std::vector<const double*>> in_places_;
   std::vector<Port<double>> in_, out_, buffers_;
   std::vector<double> state_, rate_;
-  std::vector<double> mode_;  // its bytes, stored as doubles; not used for computation
-  uint64_t jumped_ = 0;       // of the present lane
+  std::vector<double> mode_;          // its bytes, stored as doubles; not used for computation
+  uint64_t jumped_ = 0;               // of the present lane
+  uint64_t selected_ = ~uint64_t(0);  // lanes in which the block runs
 };
 
 /// A block that depends only on time, such as a reference. As long as no parameter of a single lane has been
@@ -222,7 +251,7 @@ template <class Real> class BlockInstance {
 
   explicit BlockInstance(const Plan::Block& block) {
     const auto found = lane_kernels<Real>().find(block.type->info.type);
-    if (found == lane_kernels<Real>().end()) {
+    if (found == lane_kernels<Real>().end() || block.gate >= 0) {
       lane_by_lane_ = std::make_unique<LaneByLane<Real>>(block);
       return;
     }

@@ -19,6 +19,7 @@
 #include "engine/run/block_instance.h"
 #include "engine/run/calls_by_rate.h"
 #include "engine/run/algebraic_loop.h"
+#include "engine/run/conditional_call.h"
 #include "engine/solve/ode.h"
 
 namespace loopwright {
@@ -152,6 +153,8 @@ template <class Real> class Run {
   std::vector<bool> blocks_in_stages() const;
   Call<Real> slope_call(Call<Real> call, size_t stage, bool is_last);
   void forget_faults() {
+    for (const auto& gates : gates_)
+      for (const auto& gate : gates) gate->forget();
     failed_ = 0;
     std::fill(reports_.begin(), reports_.end(), FaultReport{});
   }
@@ -170,6 +173,12 @@ template <class Real> class Run {
   void repeat_after_jumps(const std::vector<Call<Real>>& calls);
   void evaluate_again(uint64_t jumped, const std::vector<Call<Real>>& calls);
   Call<Real> call_of(const Plan::Entry& entry, const std::vector<Call<Real>>& base);
+  enum class At { decision, step };  ///< with new decisions, or inside a step
+  Call<Real> conditional(const Plan::Entry& entry, Call<Real> call, At at);
+  using Conditional = ConditionalCall<Real>;
+  Call<Real> conditional(Call<Real> call, typename Conditional::Kind kind = Conditional::Kind::compute,
+                         int numbers = 0, bool is_last = false);
+  Call<Real> gate_call(size_t gate, Call<Real> call);
   uint64_t mask_of(const Rate& rate) const;
   LW_INLINE void run(const std::vector<Call<Real>>& calls) {
     uint64_t bad = 0;
@@ -199,6 +208,8 @@ template <class Real> class Run {
   std::vector<std::vector<Call<Real>>> base_;  // one for each block, without a step
   bool signals_are_current_ = false;           ///< by reuse_signals()
   std::vector<std::unique_ptr<AlgebraicLoopSolver<Real>>> algebraic_loops_;
+  std::vector<std::unique_ptr<Conditional>> conditional_;  // calls point to these
+  std::vector<std::vector<std::unique_ptr<GateCall<Real>>>> gates_;
   std::vector<Call<Real>> constants_, early_, between_, stage_, for_events_, held_, accepts_, jumps_,
       crossings_, slopes_;
   // For fixed-step methods, for each stage; see run_stages.h.
@@ -220,6 +231,7 @@ template <class Real> class Run {
 
 }  // namespace loopwright
 
+#include "engine/run/run_conditions.h"
 #include "engine/run/run_construction.h"
 #include "engine/run/run_stages.h"
 #include "engine/run/run_step.h"

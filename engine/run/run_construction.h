@@ -152,6 +152,8 @@ template <class Real> template <class T> void Run<Real>::take_turns(std::vector<
 }
 
 template <class Real> void Run<Real>::schedule() {
+  gates_.resize(base_.size());
+  for (auto& gates : gates_) gates.resize(plan_.gates.size());
   for (const auto& base : base_) schedule_arena(base);
   if (width > 1 && !jumps_.empty()) kept_.resize(evaluated_ * width * size_t(arenas_));
   take_turns(outputs_.all), take_turns(updates_.all), take_turns(between_);
@@ -162,7 +164,8 @@ template <class Real> void Run<Real>::schedule() {
 template <class Real> void Run<Real>::schedule_arena(const std::vector<Call<Real>>& base) {
   using Kind = Plan::Entry::Kind;
   for (const Plan::Entry& entry : plan_.order) {
-    const Call<Real> call = call_of(entry, base);
+    const Call<Real> plain = call_of(entry, base);
+    const Call<Real> call = conditional(entry, plain, At::decision);
     if (entry.rate.kind == Rate::Kind::constant) {
       constants_.push_back(call);
       continue;
@@ -170,22 +173,27 @@ template <class Real> void Run<Real>::schedule_arena(const std::vector<Call<Real
     outputs_.all.emplace_back(mask_of(entry.rate), call);
     if (is_evaluated_early(entry)) early_.push_back(call);
     if (entry.rate.kind != Rate::Kind::continuous) continue;
-    if (entry.kind != Kind::decide) held_.push_back(call);
-    const bool decides = entry.kind == Kind::decide;
     if (entry.in_stages || entry.for_events) between_.push_back(call);
-    if (entry.in_stages && !decides) stage_.push_back(call);
-    if (entry.for_events && !decides) for_events_.push_back(call);
+    if (entry.kind == Kind::decide) continue;
+    const Call<Real> held = conditional(entry, plain, At::step);
+    held_.push_back(held);
+    if (entry.in_stages) stage_.push_back(held);
+    if (entry.for_events) for_events_.push_back(held);
   }
   for (size_t b = 0; b < plan_.blocks.size(); ++b) {
     const Plan::Block& block = plan_.blocks[b];
     const BlockInstance<Real>& instance = instances_[0][b];
     Call<Real> call = base[b];
-    if ((call.step = instance.derivatives())) slopes_.push_back(call);
+    if ((call.step = instance.derivatives()))
+      slopes_.push_back(conditional(call, Conditional::Kind::slope, block.states));
     if ((call.step = instance.accept())) accepts_.push_back(call);
-    if ((call.step = instance.jump())) jumps_.push_back(call);
+    if ((call.step = instance.jump())) jumps_.push_back(conditional(call));
     if ((call.step = instance.update()))
-      updates_.all.emplace_back(mask_of({Rate::Kind::sampled, block.period, block.offset}), call);
-    if ((call.step = instance.crossings()) && block.first_crossing >= 0) crossings_.push_back(call);
+      updates_.all.emplace_back(mask_of({Rate::Kind::sampled, block.period, block.offset}),
+                                conditional(call));
+    if ((call.step = instance.crossings()) && block.first_crossing >= 0)
+      crossings_.push_back(
+          conditional(call, Conditional::Kind::crossing, int(block.type->info.crossings.size())));
     if constexpr (width == 1)
       if (block.type->info.next_stop && block.period == 0)
         stops_.emplace_back(call.block, block.type->info.next_stop);

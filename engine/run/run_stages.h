@@ -43,7 +43,7 @@ void Run<Real>::schedule_stage(size_t stage, size_t stages, std::vector<Call<Rea
   for (Call<Real>& call : base) call.now = &stage_now_[stage];
   for (const Plan::Entry& entry : plan_.order)
     if (stage > 0 && entry.in_stages && entry.kind != Plan::Entry::Kind::decide)
-      stages_.push_back(call_of(entry, base));
+      stages_.push_back(conditional(entry, call_of(entry, base), At::step));
   for (size_t b = 0; b < plan_.blocks.size(); ++b)
     if (instances_[0][b].derivatives()) stages_.push_back(slope_call(base[b], stage, stage + 1 == stages));
 }
@@ -63,7 +63,7 @@ template <class Real> Call<Real> Run<Real>::slope_call(Call<Real> call, size_t s
                                             {slope_[0] + first, slope_[1] + first, slope_[2] + first},
                                             &weight_[stage]});
   }
-  return call;
+  return conditional(call, Conditional::Kind::slope, call.states);
 }
 
 template <class Real> void Run<Real>::integrate(int64_t ticks) {

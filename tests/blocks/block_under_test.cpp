@@ -39,6 +39,7 @@ void BlockUnderTest::build(std::string_view settings) {
   if (problems_.has_errors()) return;
   info().check(block_, Checker(value, "block", problems_));
   if (problems_.has_errors()) return;
+  own_type_ = instance_type(type_, block_);
 
   for (size_t i = 0; i < info().inputs.size(); ++i) {
     const PortInfo& port = info().inputs[i];

@@ -24,7 +24,8 @@ class BlockUnderTest {
   BlockUnderTest(const BlockUnderTest&) = delete;
   BlockUnderTest& operator=(const BlockUnderTest&) = delete;
 
-  const BlockInfo& info() const { return type_.info; }
+  /// With the ports of this instance.
+  const BlockInfo& info() const { return own_type_ ? own_type_->info : type_.info; }
   const Problems& problems() const { return problems_; }
 
   // Wires. An input that was never set reads its default, or 0. An unknown name throws std::invalid_argument.
@@ -93,6 +94,7 @@ class BlockUnderTest {
   size_t state_of(std::string_view output) const;
 
   const BlockType& type_;
+  std::shared_ptr<const BlockType> own_type_;  // null: it has no ports of its own
   Setup setup_;
   Problems problems_;
   std::unique_ptr<std::byte[]> storage_;  // over-allocated, so that block_ can be aligned inside

@@ -58,6 +58,7 @@ TEST_P(Behaviour, OutputsFollowTheDeclaredInputsAndNoOthers) {
       block->restore(settled);
     }
   }
+  if (info().input_ports) return;  // the settings decide which inputs an output follows
   for (size_t o = 0; o < seen.size(); ++o)
     for (size_t i = 0; i < info().inputs.size(); ++i)
       EXPECT_TRUE(!feeds(info().outputs[o], i) || (seen[o] >> i & 1))

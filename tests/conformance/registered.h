@@ -7,7 +7,8 @@ namespace loopwright {
 
 class EveryBlock : public testing::TestWithParam<std::string> {
  protected:
-  const BlockInfo& info() const { return find_block(GetParam())->info; }
+  /// With the ports of its first specimen, if the settings declare ports.
+  const BlockInfo& info() const { return info_of_specimen(GetParam()); }
   const Kernels<double>& kernels() const { return find_block(GetParam())->kernels; }
   const std::vector<Specimen>& specimens() const { return specimens_of(GetParam()); }
 };

@@ -118,6 +118,8 @@ Collection collect_all() {
       collect(*diagram, file.filename().string() + ": ", all);
   }
   for (const Specimen& specimen : further) all[specimen.type].push_back(specimen);
+  for (auto& [type, list] : all)  // one with the same ports in every test
+    if (find_block(type)->info.input_ports) list.resize(1);
   return all;
 }
 
@@ -128,6 +130,15 @@ const std::vector<Specimen>& specimens_of(std::string_view type) {
   static const std::vector<Specimen> none;
   const auto found = all.find(type);
   return found == all.end() ? none : found->second;
+}
+
+const BlockInfo& info_of_specimen(const std::string& type) {
+  const BlockInfo& info = find_block(type)->info;
+  if (!info.input_ports && !info.output_ports) return info;
+  static std::map<std::string, std::unique_ptr<BlockUnderTest>> benches;
+  auto& block = benches[type];
+  if (!block) block = bench(specimens_of(type).front());
+  return block->info();
 }
 
 std::unique_ptr<BlockUnderTest> bench(const Specimen& specimen) {

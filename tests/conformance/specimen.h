@@ -19,6 +19,9 @@ struct Specimen {
 /// The distinct occurrences of a block type in diagrams/; empty if no diagram uses it.
 const std::vector<Specimen>& specimens_of(std::string_view type);
 
+/// Of a type whose settings declare ports: with the ports of its first specimen.
+const BlockInfo& info_of_specimen(const std::string& type);
+
 /// The block on a test bench, started, with all inputs connected.
 std::unique_ptr<BlockUnderTest> bench(const Specimen& specimen);
 

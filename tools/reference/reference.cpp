@@ -36,6 +36,8 @@ std::string kind_text(const ParameterInfo& p) {
     case ParameterKind::list:
       return "list of " + kind_text(p.element.front()) +
              (p.element.front().kind == ParameterKind::object ? "s" : "");
+    case ParameterKind::by_name:
+      return kind_text(p.element.front()) + "s by name";
     case ParameterKind::object:
       return "object";
   }

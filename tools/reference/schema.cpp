@@ -57,6 +57,9 @@ Json type_schema(const ParameterInfo& p) {
     case ParameterKind::list:
       schema = {{"type", "array"}, {"items", type_schema(p.element.front())}};
       break;
+    case ParameterKind::by_name:
+      schema = {{"type", "object"}, {"additionalProperties", type_schema(p.element.front())}};
+      break;
     case ParameterKind::object:
       schema = object_schema(p.fields);
       break;
@@ -73,6 +76,10 @@ Json wires_schema(const BlockInfo& info) {
   Json in = {{"type", "object"}, {"additionalProperties", false}, {"properties", Json::object()}};
   Json required = Json::array();
   for (const PortInfo& port : info.inputs) {
+    if (port.shape == PortInfo::Shape::named) {
+      in["additionalProperties"] = {{"$ref", "#/$defs/wire"}, {"description", port.sentence}};
+      continue;
+    }
     Json wire = {{"$ref", port.shape == PortInfo::Shape::many ? "#/$defs/wires" : "#/$defs/wire"}};
     wire["description"] =
         std::string(port.sentence) + (port.unit.empty() ? "" : " [" + std::string(port.unit) + "]");

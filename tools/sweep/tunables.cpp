@@ -75,6 +75,7 @@ std::string skeleton(const Plan& plan) {
       text += " |";
       for (const Number n : port) text += fmt::format(" {}", n);
     }
+    if (block.gate >= 0) text += fmt::format(" if {}", plan.gates[size_t(block.gate)].on);
     for (const ParameterInfo& info : block.type->info.parameters) {
       const auto setting = settings.find(fmt::format("{}.{}", block.path, info.name));
       if (setting != settings.end())
