@@ -21,9 +21,9 @@ struct UnitClaim {
 struct FormulaUnit {
   UnitFinding finding = UnitFinding::no_result;
   Unit unit;
-  std::string_view parameter;    ///< the parameter that holds the function, for messages
+  std::string_view parameter;  ///< the parameter that holds the function, for messages
   std::optional<Place> place{};  ///< of the function, if it is not that of the parameter
-  std::string found;             ///< the function and the units of its arguments, if they are mixed
+  std::string found;           ///< the function and the units of its arguments, if they are mixed
 };
 
 }  // namespace loopwright

@@ -35,8 +35,8 @@ class Checker {
   Problems& problems_;
 };
 
-/// A `file` is a text that names a file, relative to the file in which it stands. A `by_name` is an object
-/// whose keys are names that the block does not know beforehand.
+/// A `file` is a text that names a file, relative to the file in which it stands. A `by_name` is an object whose
+/// keys are names that the block does not know beforehand.
 enum class ParameterKind { number, whole, flag, text, file, choice, list, object, by_name };
 
 /// A parameter as used by the schema, the reference, error texts and sweeps.
@@ -65,7 +65,9 @@ concept Described = requires {
   T::describe();
 };
 /// Values by name, {"velocity": 3, "enable": 1}, in the order of the file.
-template <class T> struct ByName { std::vector<std::pair<std::string, T>> entries; };
+template <class T> struct ByName {
+  std::vector<std::pair<std::string, T>> entries;
+};
 template <class T> inline constexpr bool is_by_name = false;
 template <class T> inline constexpr bool is_by_name<ByName<T>> = true;
 template <class T>

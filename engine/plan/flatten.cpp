@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <deque>
 #include <optional>
-#include <unordered_set>
 #include "engine/plan/block_settings.h"
 #include "engine/plan/block_values.h"
 #include "engine/plan/gates.h"
-#include "engine/plan/scope.h"
+#include "engine/plan/wire_resolver.h"
 
 namespace loopwright {
 namespace {
@@ -108,11 +107,11 @@ class Flattener {
     if (gate.block < 0) return;
     const std::string path = scope.prefix.substr(0, scope.prefix.size() - 1);
     FlatBlock& enable = flat_.blocks[size_t(gate.block)];
-    enable.inputs[0].push_back(resolve(*scope.parent, condition.wire.source, condition.wire, path, 0));
+    enable.inputs[0].push_back(wires_.resolve(*scope.parent, condition.wire.source, condition.wire, path, 0));
     for (size_t o = 0; o < scope.diagram->outputs.size(); ++o) {
       const DiagramOutput& output = scope.diagram->outputs[o];
       const FlatWire source =
-          resolve(scope, output.source.source, output.source, scope.prefix + output.name, 0);
+          wires_.resolve(scope, output.source.source, output.source, scope.prefix + output.name, 0);
       if (scope.reset_outputs.empty()) {
         check_held_output(flat_, scope.gate, output, source, path, problems_);
         continue;
@@ -174,7 +173,8 @@ class Flattener {
       }
       auto& sources = flat.inputs[size_t(port - info.inputs.begin())];
       sources.reserve(sources.size() + wires.wires.size());
-      for (const Wire& wire : wires.wires) sources.push_back(resolve(scope, wire.source, wire, flat.path, 0));
+      for (const Wire& wire : wires.wires)
+        sources.push_back(wires_.resolve(scope, wire.source, wire, flat.path, 0));
     }
     for (size_t i = 0; i < info.inputs.size(); ++i) {
       const bool listed = std::ranges::any_of(
@@ -195,155 +195,6 @@ class Flattener {
     const std::string near = nearest_name(wires.port, names);
     p.expected = names.empty() ? "no inputs" : fmt::format("{}", fmt::join(names, ", "));
     if (!near.empty()) p.hint = fmt::format("did you mean \"{}\"?", near);
-  }
-
-  /// Follows a name to its block output, through diagram inputs, subdiagram outputs and nested paths.
-  FlatWire resolve(Scope& scope, std::string_view text, const Wire& at, const std::string& reader,
-                   int depth) {
-    if (depth > 200)
-      return fail(at, reader, "the wire leads round in a circle of subdiagram outputs", {}, "");
-    const size_t dot = text.find('.');
-    const std::string_view head = text.substr(0, dot);
-    if (dot == text.npos) {
-      const auto bracket = head.find('[');
-      return resolve_input(scope, std::string(head.substr(0, bracket)),
-                           std::string(bracket == head.npos ? "" : head.substr(bracket)), at, reader, depth);
-    }
-    const std::string_view rest = text.substr(dot + 1);
-    if (const int block = scope.blocks.find(head); block >= 0) {
-      const auto& [flat_block, inner] = scope.parts[size_t(block)];
-      if (inner) return resolve_inside(*inner, rest, at, reader, depth);
-      if (flat_block >= 0) return resolve_port(flat_block, rest, at, reader, depth);
-      return unresolved(at);  // already reported
-    }
-    std::vector<std::string> names;
-    for (const BlockEntry& entry : scope.diagram->blocks) names.push_back(entry.name);
-    return fail(at, reader, fmt::format("there is no block \"{}{}\"", scope.prefix, head), names,
-                std::string(head));
-  }
-
-  static FlatWire unresolved(const Wire& at) {
-    FlatWire wire;
-    wire.at = &at;
-    return wire;
-  }
-
-  FlatWire resolve_input(Scope& scope, const std::string& name, const std::string& element, const Wire& at,
-                         const std::string& reader, int depth) {
-    std::vector<std::string> names;
-    for (const DiagramInput& input : scope.diagram->inputs) {
-      if (input.name == name) {
-        if (!scope.parent && open_) {
-          FlatWire wire = unresolved(at);
-          wire.output = int(&input - scope.diagram->inputs.data());
-          return wire;
-        }
-        if (!scope.parent)
-          return fail(at, reader,
-                      fmt::format("the input \"{}\" of the diagram has no source: it is the top", name), {},
-                      "");
-        for (const PortWires& wires : scope.entry->in)
-          if (wires.port == name && wires.wires.size() == 1) {
-            FlatWire wire =
-                resolve(*scope.parent, wires.wires[0].source, wires.wires[0], scope.prefix + name, depth + 1);
-            return with_element(wire, element, at, reader);
-          }
-        return {};  // reported by check_subdiagram_wires
-      }
-      names.push_back(input.name);
-    }
-    for (const BlockEntry& entry : scope.diagram->blocks) names.push_back(entry.name + ".…");
-    return fail(
-        at, reader,
-        fmt::format("\"{}\" is neither an input of this diagram nor of the form block.output", at.source),
-        names, name, outputs_of(scope, name));
-  }
-
-  FlatWire resolve_inside(Scope& inner, std::string_view rest, const Wire& at, const std::string& reader,
-                          int depth) {
-    const size_t bracket = rest.find('[');
-    const std::string name(rest.substr(0, bracket)),
-        element(bracket == rest.npos ? "" : rest.substr(bracket));
-    std::vector<std::string> names;
-    for (size_t o = 0; o < inner.diagram->outputs.size(); ++o) {
-      const DiagramOutput& output = inner.diagram->outputs[o];
-      if (output.name == name) return with_element(output_of(inner, o, depth), element, at, reader);
-      names.push_back(output.name);
-    }
-    if (name == gate_name && inner.entry->condition)
-      return made_wire(flat_.gates[size_t(inner.gate)].block, at);
-    for (const DiagramInput& input : inner.diagram->inputs)
-      if (input.name == name) return resolve_input(inner, name, element, at, reader, depth + 1);
-    if (rest.find('.') != rest.npos) return resolve(inner, rest, at, reader, depth + 1);
-    return fail(at, reader,
-                fmt::format("the subdiagram \"{}\" has no output \"{}\"",
-                            inner.prefix.substr(0, inner.prefix.size() - 1), name),
-                names, name);
-  }
-
-  /// The source of an output of a subdiagram, as its surroundings see it.
-  FlatWire output_of(Scope& inner, size_t o, int depth) {
-    const DiagramOutput& output = inner.diagram->outputs[o];
-    if (!inner.reset_outputs.empty()) return made_wire(inner.reset_outputs[o], output.source);
-    return resolve(inner, output.source.source, output.source, inner.prefix + output.name, depth + 1);
-  }
-  static FlatWire made_wire(int block, const Wire& at) {
-    FlatWire wire;
-    wire.block = block, wire.output = 0, wire.at = &at;
-    return wire;
-  }
-
-  FlatWire resolve_port(int block, std::string_view rest, const Wire& at, const std::string& reader,
-                        int depth) {
-    FlatBlock& flat = flat_.blocks[size_t(block)];
-    const size_t bracket = rest.find('[');
-    const std::string name(rest.substr(0, bracket)),
-        element(bracket == rest.npos ? "" : rest.substr(bracket));
-    const BlockInfo& info = flat.type->info;
-    for (size_t o = 0; o < info.outputs.size(); ++o)
-      if (info.outputs[o].name == name) {
-        FlatWire wire;
-        wire.block = block, wire.output = int(o), wire.at = &at;
-        return with_element(std::move(wire), element, at, reader);
-      }
-    if (reader == "log")  // an input may be logged: this records its source
-      for (const PortWires& wires : flat.entry->in)
-        if (wires.port == name && wires.wires.size() == 1)
-          return with_element(
-              resolve(*scope_of_block_[size_t(block)], wires.wires[0].source, at, reader, depth + 1), element,
-              at, reader);
-    std::vector<std::string> names;
-    for (const PortInfo& output : info.outputs) names.emplace_back(output.name);
-    return fail(at, reader, fmt::format("{} \"{}\" has no output \"{}\"", info.type, flat.path, name), names,
-                name);
-  }
-
-  FlatWire with_element(FlatWire wire, const std::string& element, const Wire& at,
-                        const std::string& reader) {
-    if (element.empty() || !wire.is_resolved()) return wire;
-    const bool is_index = element.size() >= 3 && element.size() <= 9 && element.back() == ']' &&
-                          element.find_first_not_of("0123456789", 1) == element.size() - 1;
-    if (!is_index) return fail(at, reader, fmt::format("\"{}\" is not an element", at.source), {}, "");
-    if (wire.element >= 0)
-      return fail(at, reader, fmt::format("\"{}\" is already one element", at.source), {}, "");
-    wire.element = std::stoi(element.substr(1));
-    return wire;
-  }
-
-  FlatWire fail(const Wire& at, const std::string& reader, std::string message,
-                std::vector<std::string> names, const std::string& wrong, std::string hint = "") {
-    if (!told_.insert(at.place.pointer() + message).second)
-      return {};  // a wire into a subdiagram may have many readers
-    auto& p = problems_.error(at.place, at.place.pointer(), reader, std::move(message));
-    p.found = "\"" + at.source + "\"";
-    const std::string near = wrong.empty() ? "" : nearest_name(wrong, names);
-    if (!hint.empty())
-      p.hint = std::move(hint);
-    else if (!near.empty())
-      p.hint = fmt::format("did you mean \"{}\"?", near);
-    else if (!names.empty() && names.size() <= 12)
-      p.expected = fmt::format("one of {}", fmt::join(names, ", "));
-    return {};
   }
 
   /// Checks the wires into a subdiagram: one for every input, and none to an input that does not exist.
@@ -372,11 +223,11 @@ class Flattener {
                    fmt::format("the input \"{}\" takes one wire", wires.port))
             .found = fmt::format("a list of {}", wires.wires.size());
       } else {
-        for (const Wire& wire : wires.wires) resolve(*scope.parent, wire.source, wire, path, 0);
+        for (const Wire& wire : wires.wires) wires_.resolve(*scope.parent, wire.source, wire, path, 0);
       }
     }
     for (const DiagramOutput& output : scope.diagram->outputs)
-      resolve(scope, output.source.source, output.source, scope.prefix + output.name, 0);
+      wires_.resolve(scope, output.source.source, output.source, scope.prefix + output.name, 0);
   }
 
   void add_log(Scope& top) {
@@ -394,9 +245,9 @@ class Flattener {
             flat_.log.push_back({fmt::format("{}.{}", block.path, block.type->info.outputs[o].name), source});
           }
         }
-        if (!any) fail(wire, "log", fmt::format("nothing matches \"{}\"", wire.source), {}, "");
+        if (!any) wires_.fail(wire, "log", fmt::format("nothing matches \"{}\"", wire.source), {}, "");
       } else {
-        flat_.log.push_back({wire.source, resolve(top, wire.source, wire, "log", 0)});
+        flat_.log.push_back({wire.source, wires_.resolve(top, wire.source, wire, "log", 0)});
       }
     }
   }
@@ -408,15 +259,15 @@ class Flattener {
     for (Scope& scope : scopes_) {
       auto& outputs = scope.entry ? flat_.names : flat_.outputs;
       for (size_t o = 0; o < scope.diagram->outputs.size(); ++o)
-        outputs.push_back({scope.prefix + scope.diagram->outputs[o].name, output_of(scope, o, 0)});
+        outputs.push_back({scope.prefix + scope.diagram->outputs[o].name, wires_.output_of(scope, o, 0)});
       if (!scope.entry) continue;
       if (scope.entry->condition)
         flat_.names.push_back(
             {scope.prefix + std::string(gate_name),
              made_wire(flat_.gates[size_t(scope.gate)].block, scope.entry->condition->wire)});
       for (const DiagramInput& input : scope.diagram->inputs)
-        flat_.names.push_back(
-            {scope.prefix + input.name, resolve_input(scope, input.name, "", Wire{input.name, {}}, "", 0)});
+        flat_.names.push_back({scope.prefix + input.name,
+                               wires_.resolve_input(scope, input.name, "", Wire{input.name, {}}, "", 0)});
     }
     std::swap(unheard, problems_);
   }
@@ -428,7 +279,7 @@ class Flattener {
   std::shared_ptr<BlockValues> values_ = std::make_shared<BlockValues>();
   std::deque<Scope> scopes_;
   std::vector<Scope*> scope_of_block_;
-  std::unordered_set<std::string> told_;
+  WireResolver wires_{flat_, scope_of_block_, open_, problems_};
 };
 
 }  // namespace

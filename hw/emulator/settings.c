@@ -30,6 +30,8 @@ static const struct setting settings[] = {
     WORLD("dac.hold", dac_hold),
     WORLD("analog.noise", analog_noise),
     WORLD("analog.per_ampere", analog_per_ampere),
+    WORLD("switch.position", switch_position),
+    WORLD("switch.volts", switch_volts),
     WORLD("watchdog.longest", watchdog_longest),
     WORLD("watchdog.zero_only", watchdog_zero_only),
     WORLD("watchdog.needs_all", watchdog_needs_all),

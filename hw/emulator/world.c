@@ -121,6 +121,7 @@ static struct sample take_sample(struct world* w) {
   s.velocity[0] = w->plant.velocity * w->encoder_sign * w->encoder_scale / w->resolution * w->card.quadrature[0] / 4;
   s.analog[0] = w->plant.current * w->analog_per_ampere;
   for (int i = 1; i < CHANNELS; ++i) s.analog[i] = w->card.volts[i]; /* outputs looped back */
+  if (w->switch_volts != 0) s.analog[1] = w->plant.position < w->switch_position ? w->switch_volts : 0;
   for (int i = 0; i < CHANNELS; ++i) s.analog[i] += w->analog_noise * noise(w);
   return s;
 }

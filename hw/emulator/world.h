@@ -88,6 +88,7 @@ struct world {
   double resolution, encoder_bits, encoder_sign, encoder_scale, encoder_drift;
   double dac_bits, dac_hold, dac_latched_nan;
   double analog_noise, analog_per_ampere;
+  double switch_position, switch_volts; /* m; volts at analog input 1 below it, 0: there is no switch */
   double watchdog_longest, watchdog_zero_only, watchdog_needs_all;
   double watchdog_write_error; /* of a write after expiry, unspecified by any source; 0: silently ignored */
   double refuses_watchdog, refuses_ranges, refuses_options, refuses_termination, refuses_filter, refuses_write,

@@ -1,12 +1,26 @@
 #include "tools/linearize/linear_diagram.h"
 #include "models/real/whole.h"
 #include <cmath>
+#include <fmt/format.h>
 #include <stdexcept>
 
 namespace loopwright {
 
+/// Blocks that may stand still have no slopes that hold for small motions around every instant.
+static void refuse_gates(const Plan& plan) {
+  if (plan.gates.empty()) return;
+  Problems problems;
+  for (const Plan::Gate& gate : plan.gates)
+    problems
+        .error(gate.place, gate.place.pointer(), plan.blocks[size_t(gate.block)].path,
+               "a subdiagram that does not always run cannot be linearized")
+        .hint = fmt::format("without \"{}\" it always runs", gate.key);
+  throw InputError(std::move(problems));
+}
+
 LinearDiagram linearize(const Run<double>& run) {
   const Plan& plan = run.plan();
+  refuse_gates(plan);
   LinearDiagram diagram;
   diagram.plan = &plan;
   diagram.time = run.now().time;

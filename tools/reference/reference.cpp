@@ -46,7 +46,10 @@ std::string kind_text(const ParameterInfo& p) {
 
 std::string facts_text(const ParameterInfo& p) {
   std::string text = kind_text(p);
-  if (!p.unit.empty()) text += fmt::format(" in {}", p.unit);
+  if (p.unit == unit_of_output)
+    text += " in the units of the outputs";
+  else if (!p.unit.empty())
+    text += fmt::format(" in {}", p.unit);
   if (const std::string range = range_text(p); !range.empty()) text += ", " + range;
   if (p.has_default) text += fmt::format(", default {}", p.default_text.empty() ? "none" : p.default_text);
   return text;

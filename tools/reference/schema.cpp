@@ -10,7 +10,7 @@ using Json = nlohmann::ordered_json;
 
 std::string described(const ParameterInfo& p) {
   std::string text(p.sentence);
-  if (!p.unit.empty()) text += " [" + std::string(p.unit) + "]";
+  if (!p.unit.empty() && p.unit != unit_of_output) text += " [" + std::string(p.unit) + "]";
   return text;
 }
 
@@ -134,6 +134,16 @@ Json solver_schema() {
   return {{"type", "object"}, {"additionalProperties", false}, {"properties", properties}};
 }
 
+/// Of a subdiagram that is enabled.
+Json while_disabled_schema() {
+  const Json choice = {{"enum", {"hold", "reset"}}, {"default", "hold"}};
+  return {{"anyOf", Json::array({choice,
+                                 {{"type", "object"},
+                                  {"additionalProperties", false},
+                                  {"properties", {{"states", choice}, {"outputs", choice}}}}})},
+          {"description", "What becomes of states and outputs while it does not run"}};
+}
+
 }  // namespace
 
 std::string diagram_schema() {
@@ -170,6 +180,14 @@ std::string diagram_schema() {
         {"diagram",
          {{"anyOf", Json::array({{{"type", "string"}}, {{"$ref", "#/$defs/diagram"}}})},
           {"description", "A subdiagram: its file, relative to this one, or the diagram itself"}}},
+        {"enabled_by",
+         {{"$ref", "#/$defs/wire"}, {"description", "Of a subdiagram: it runs while this signal is true"}}},
+        {"while_disabled", while_disabled_schema()},
+        {"triggered_by",
+         {{"$ref", "#/$defs/wire"},
+          {"description", "Of a subdiagram: it runs at the edges of this sampled signal"}}},
+        {"edge",
+         {{"enum", {"rising", "falling", "either"}}, {"description", "At which edges it is triggered"}}},
         {"variants", {{"type", "object"}, {"additionalProperties", {{"$ref", "#/$defs/block"}}}}},
         {"variant", {{"type", "string"}}}}},
       {"anyOf",
