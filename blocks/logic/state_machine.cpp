@@ -58,8 +58,7 @@ struct StateMachine : MachineSettings {
   std::vector<InstancePort> output_ports() const {
     std::vector<InstancePort> ports;
     for (const MachineOutput& output : declared_outputs)
-      ports.push_back(
-          {output.name, output.unit.empty() ? "$" + output.name : output.unit, "Set by the states"});
+      ports.push_back({output.name, output.unit, "Set by the states"});
     return ports;
   }
   FormulaUnit formula_unit(std::span<const Unit> of_wires) const { return unit_of_guards(*this, of_wires); }
@@ -76,7 +75,7 @@ struct StateMachine : MachineSettings {
     for (const int state : next.enters)
       for (const auto& [output, value] : chart.states[size_t(state)].set) out.outputs[output] = value;
     out.state = next.enters.empty() ? memory.active : next.enters.back();
-    return fault_if(next.failed, "a guard is not a number");
+    return fault_if(next.failed, "an input or a guard is not a number");
   }
   Fault update(const In& in, Memory& memory) const {
     const Next next = find_next(in, memory);
@@ -88,7 +87,7 @@ struct StateMachine : MachineSettings {
         memory.values[size_t(output)] = value;
       memory.active = state;
     }
-    return fault_if(next.failed, "a guard is not a number");
+    return fault_if(next.failed, "an input or a guard is not a number");
   }
 
  private:
@@ -97,6 +96,8 @@ struct StateMachine : MachineSettings {
     bool failed = false;
   };
   Next find_next(const In& in, const Memory& memory) const {
+    for (size_t i = 0; i < inputs.size(); ++i)
+      if (std::isnan(in.inputs[int(i)])) return {{}, true};
     if (memory.active < 0) return {chart.enters};
     for (const int state : chart.states[size_t(memory.active)].chain)
       for (const ChartTransition& transition : chart.states[size_t(state)].transitions) {

@@ -9,7 +9,7 @@ struct MachineOutput {
   static constexpr auto describe() {
     return fields(
         parameter(&MachineOutput::name, "name", "", "Name of the port"),
-        parameter(&MachineOutput::unit, "unit", "", "Its unit; that of what reads it when empty").optional());
+        parameter(&MachineOutput::unit, "unit", "", "Its unit; a plain number when empty").optional());
   }
 };
 

@@ -38,6 +38,7 @@ void name_fields(ParameterInfo& parameter, const std::vector<PortInfo>& outputs)
   if (parameter.kind != ParameterKind::by_name || parameter.element[0].unit != unit_of_output) return;
   const ParameterInfo pattern = parameter.element[0];
   parameter.kind = ParameterKind::object;
+  parameter.unit = {};
   parameter.element.clear();
   for (const PortInfo& output : outputs) {
     ParameterInfo& field = parameter.fields.emplace_back(pattern);

@@ -62,7 +62,7 @@ struct task {
 
 struct card {
   int is_open;
-  int64_t openings; /* number of openings */
+  int64_t openings;         /* number of openings */
   double volts[CHANNELS];   /* at the terminals */
   double pending[CHANNELS]; /* written, but held until the next sample */
   double output_low[CHANNELS], output_high[CHANNELS];
@@ -91,18 +91,18 @@ struct world {
   double switch_position, switch_volts; /* m; volts at analog input 1 below it, 0: there is no switch */
   double watchdog_longest, watchdog_zero_only, watchdog_needs_all;
   double watchdog_write_error; /* of a write after expiry, unspecified by any source; 0: silently ignored */
-  double refuses_watchdog, refuses_ranges, refuses_options, refuses_termination, refuses_filter, refuses_write,
-      refuses_overflow_mode;
+  double refuses_watchdog, refuses_ranges, refuses_options, refuses_termination, refuses_filter,
+      refuses_write, refuses_overflow_mode;
   struct fault faults[FAULT_POINTS];
-  double unplug_at;                                   /* sample */
-  double lose_from, lose_count;                       /* samples that are not stored */
-  double lose_every, lose_length;                     /* number not stored, repeatedly */
-  double lose_told;                                   /* counted as overflows, if those drop the oldest */
-  double bad_from, bad_count, bad_volts;              /* samples of analog input 0 with this reading */
-  double stall_at, stall_seconds;                     /* the read of that sample is delayed */
-  double glitch_at, glitch_count, glitch_counts;      /* samples, counts */
-  double stuck_at;                                    /* sample */
-  double hang_at;                                     /* read */
+  double unplug_at;                              /* sample */
+  double lose_from, lose_count;                  /* samples that are not stored */
+  double lose_every, lose_length;                /* number not stored, repeatedly */
+  double lose_told;                              /* counted as overflows, if those drop the oldest */
+  double bad_from, bad_count, bad_volts;         /* samples of analog input 0 with this reading */
+  double stall_at, stall_seconds;                /* the read of that sample is delayed */
+  double glitch_at, glitch_count, glitch_counts; /* samples, counts */
+  double stuck_at;                               /* sample */
+  double hang_at;                                /* read */
   struct plant plant;
   /* state */
   struct card card;

@@ -27,6 +27,10 @@ Value with_whole_paths(Value settings) {
 std::vector<int> wires_of(const BlockEntry& entry, const Diagram& diagram, const BlockInfo& info) {
   std::vector<int> wires;
   for (const PortInfo& input : info.inputs) {
+    if (input.shape == PortInfo::Shape::named) {
+      wires.insert(wires.end(), entry.in.size(), 1);
+      continue;
+    }
     int count = input.shape == PortInfo::Shape::scalar ? 1 : 0;
     for (const PortWires& port : entry.in)
       if (port.port == input.name && input.shape == PortInfo::Shape::many) count = int(port.wires.size());

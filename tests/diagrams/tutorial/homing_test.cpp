@@ -47,7 +47,8 @@ void expect_homed_and_moved(const Recording& recording, double place) {
   EXPECT_LT(greatest(command), 10.0);
 }
 
-/// The command is zero from the sample at which the fault is seen, however far the axis is from its reference.
+/// The command is zero from the sample at which the fault is seen, however far the axis is from its
+/// reference.
 void expect_switched_off(const Recording& recording, const std::vector<int>& states) {
   EXPECT_EQ(states_of(recording), states);
   const size_t at = first_row_of(recording, fault);
@@ -69,7 +70,7 @@ RunResult simulated(const std::vector<std::pair<std::string, std::string>>& set 
 TEST(Homing, InSimulationFindsTheSwitchAndMoves) {
   // The encoder counts from the start: the switch is where the axis did not stand.
   for (const double start : {0.0373, 0.0011, 0.0999}) {
-    const auto result = simulated({{"machine_side.initial_position", fmt::format("{}", start)}});
+    const auto result = simulated({{"machine_side.initial_position", fmt::format("{} m", start)}});
     expect_homed_and_moved(result.recording, -start);
   }
 }
@@ -108,12 +109,14 @@ hw::EmulatedCard card_with_switch(double place) {
 }
 
 TEST(Homing, OnTheCardFindsTheSwitchAndMoves) {
-  constexpr double place = 0.0123;
+  constexpr double place = 0.0123, start = 0.04;  // m, of the switch, and from there to the axis
   const hw::EmulatedCard card = card_with_switch(place);
   const hw::DeployResult result = deployed();
   EXPECT_EQ(result.status, RunStatus::finished) << result.message;
   EXPECT_EQ(result.outputs_safe, hw::OutputsSafe::confirmed);
-  expect_homed_and_moved(result.recording, place);
+  expect_homed_and_moved(result.recording, -start);
+  EXPECT_NEAR(card.get("plant.position"), place + goal, 1e-4) << "of the motor itself";
+  EXPECT_EQ(card.get("dac.0"), 0);
 }
 
 TEST(Homing, OnTheCardAnEncoderThatStandsStillSwitchesTheAxisOff) {

@@ -65,22 +65,22 @@ TEST(Gates, RefusesAnOutputThatWouldNotBeHeld) {
 }
 
 TEST(Gates, RefusesTheNameOfItsOwnSignal) {
-  EXPECT_THAT(problems_of(with_part(enabled, R"("enabled": {"type": "Gain", "in": {"u": "u"}})")),
+  EXPECT_THAT(problems_of(with_part(enabled, R"("enabled": {"type": "Gain", "gain": 1, "in": {"u": "u"}})")),
               HasSubstr("the name \"enabled\" is in use"));
 }
 
 TEST(Gates, RefusesAConditionOnItsOwnOutput) {
-  const std::string text = problems_of(diagram(R"("u": {"type": "Clock"},
-    "part": {"in": {"u": "u.time"}, "enabled_by": "part.y",
-             "diagram": {"inputs": {"u": ""}, "blocks": {"g": {"type": "Gain", "in": {"u": "u"}}}, "outputs": {"y": "g.y"}}})"));
+  const std::string text = problems_of(diagram(R"("u": {"type": "Constant", "value": 1},
+    "part": {"in": {"u": "u.y"}, "enabled_by": "part.y",
+             "diagram": {"inputs": {"u": ""}, "blocks": {"g": {"type": "Gain", "gain": 1, "in": {"u": "u"}}}, "outputs": {"y": "g.y"}}})"));
   EXPECT_THAT(text, AllOf(HasSubstr("algebraic loop"), HasSubstr("which it enables")));
 }
 
 TEST(Gates, RefusesAVectorAsItsCondition) {
-  const std::string text = problems_of(
-      diagram(R"("u": {"type": "Clock"}, "p": {"type": "Pack", "in": {"elements": ["u.time", "u.time"]}},
-    "part": {"in": {"u": "u.time"}, "enabled_by": "p.y",
-             "diagram": {"inputs": {"u": ""}, "blocks": {"g": {"type": "Gain", "in": {"u": "u"}}}, "outputs": {"y": "g.y"}}})"));
+  const std::string text = problems_of(diagram(
+      R"("u": {"type": "Constant", "value": 1}, "p": {"type": "Pack", "in": {"elements": ["u.y", "u.y"]}},
+    "part": {"in": {"u": "u.y"}, "enabled_by": "p.y",
+             "diagram": {"inputs": {"u": ""}, "blocks": {"g": {"type": "Gain", "gain": 1, "in": {"u": "u"}}}, "outputs": {"y": "g.y"}}})"));
   EXPECT_THAT(text, HasSubstr("takes one logic value"));
 }
 
