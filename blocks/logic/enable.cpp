@@ -31,8 +31,7 @@ template <class Real> struct Enable {
         "Decides when a subdiagram runs.",
         parameter(&Enable::kind, "kind", "", "While the signal is true, or at which of its edges").optional(),
         input(&In::u, "u", "", "Logic value that enables or triggers"),
-        output(&Out::on, "on", "", "1 while the subdiagram runs, else 0").from_memory(),
-        crossing(&Crossings::u, "u"));
+        output(&Out::on, "on", "", "1 while the subdiagram runs, else 0"), crossing(&Crossings::u, "u"));
   }
   void start(Mode& mode) const { mode = {0.0, unknown_truth}; }
   Fault decide(const In& in, Mode& mode) const {
