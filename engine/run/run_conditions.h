@@ -9,11 +9,11 @@ namespace loopwright {
 /// before.
 template <class Real> Call<Real> Run<Real>::conditional(const Plan::Entry& entry, Call<Real> call, At at) {
   if (plan_.gates.empty() || entry.kind == Plan::Entry::Kind::algebraic_loop) return call;
-  const auto gate = std::ranges::find(plan_.gates, entry.block, &Plan::Gate::block);
-  if (gate != plan_.gates.end() && entry.kind == Plan::Entry::Kind::outputs)
-    call = gate_call(size_t(gate - plan_.gates.begin()), call);
   const bool is_last = at == At::decision && entry.rate.kind == Rate::Kind::continuous;
-  return conditional(call, Conditional::Kind::compute, 0, is_last);
+  call = conditional(call, Conditional::Kind::compute, 0, is_last);
+  const auto gate = std::ranges::find(plan_.gates, entry.block, &Plan::Gate::block);
+  if (gate == plan_.gates.end() || entry.kind != Plan::Entry::Kind::outputs) return call;
+  return gate_call(size_t(gate - plan_.gates.begin()), call);  // around its own condition
 }
 
 /// Any other call of a block.
