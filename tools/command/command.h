@@ -40,6 +40,7 @@ void add_recover(CLI::App& app, std::function<void(std::function<int()>)> choose
 void add_probe(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_linearize(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_stability(CLI::App& app, std::function<void(std::function<int()>)> choose);
+void add_completion(CLI::App& app, std::function<void(std::function<int()>)> choose);
 
 /// Reports exchanged arguments, `loopwright compare EXPERIMENT DIAGRAM`, as such. Throws InputError.
 void reject_swapped(const std::string& diagram, const std::vector<std::string>& experiments);

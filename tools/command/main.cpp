@@ -36,6 +36,7 @@ int run_program(int count, char** arguments) {
   add_probe(app, choose);
   add_linearize(app, choose);
   add_stability(app, choose);
+  add_completion(app, choose);
   try {
     app.parse(count, arguments);
     check_values(app);

@@ -41,7 +41,7 @@ TEST_F(Installed, EveryCommandWorksFromWhereItWasMovedTo) {
   EXPECT_TRUE(fs::exists(folder.path("moved/share/loopwright/docs/blocks.md")));
   EXPECT_TRUE(fs::exists(folder.path("moved/include/loopwright/engine/block.h")));
   const std::string job = folder.path("moved/") + diagrams + "linear_motor/common_job.json";
-  EXPECT_EQ(shell("PYTHONPATH=$(echo " + folder.path("moved/lib/python3*/site-packages") +
+  EXPECT_EQ(shell("PYTHONPATH=$(echo " + folder.path("moved/lib/python3/dist-packages") +
                   ") /usr/bin/python3 -B -c \"import loopwright; loopwright.load('" + job + "').run()\""),
             0);
   folder.with("moved/loop.json", R"({"loopwright": 1, "solver": {"stop": 1, "step": 0.1}, "blocks": {
