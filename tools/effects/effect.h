@@ -57,6 +57,7 @@ struct EffectParameter {
   int points = 0;               ///< part of the range that a search tries first; 0: the default
   Value low, high, start;       ///< numbers or expressions over quantities; a low of 0 is a sign limit
   Value value;                  ///< of one that is not fitted: over quantities and other parameters
+  bool is_bounded = false;      ///< not fitted, but an effect with a value outside low … high is none
   Place place;
 };
 

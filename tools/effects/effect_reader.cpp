@@ -126,7 +126,7 @@ class FormReader {
     const Value::Member* value = body.find("value");
     parameter.is_fitted = !value;
     if (value)
-      parameter.value = value->value, reject_fit_keys(body);
+      parameter.value = value->value, reject_fit_keys(body), read_plausible_range(body, parameter);
     else
       read_fit(body, parameter);
     if (std::ranges::any_of(record_sizes, [&](const NamedSize& s) { return s.name == member.name; }))
@@ -134,10 +134,23 @@ class FormReader {
     effect_.parameters.push_back(std::move(parameter));
   }
   void reject_fit_keys(const Value& body) {
-    for (const char* key : {"range", "start", "scale", "points", "linear", "period"})
+    for (const char* key : {"start", "scale", "points", "linear", "period"})
       if (const auto* misplaced = body.find(key))
         reader_.error(*misplaced, fmt::format("\"{}\" is of no use: a \"value\" is given", key)).hint =
             "leave out \"value\" for a parameter that is to be fitted";
+  }
+  /// Over quantities and other parameters, as its value.
+  void read_plausible_range(const Value& body, EffectParameter& parameter) {
+    const Value::Member* range = body.find("range");
+    if (!range ||
+        !reader_.expect(range->value, Kind::list, "\"range\"", "a list of lowest and highest value"))
+      return;
+    if (range->value.items.size() != 2) {
+      reader_.error(*range, "a range has two ends").found = shown(range->value);
+      return;
+    }
+    parameter.low = range->value.items[0], parameter.high = range->value.items[1];
+    parameter.is_bounded = true;
   }
   void read_fit(const Value& body, EffectParameter& parameter) {
     const Value::Member* range = body.find("range");
