@@ -79,7 +79,7 @@ def judge(options, seed):
     truth = read(folder / "truth.json")
     (folder / "truth.json").unlink()  # the diagnosis must not read it
     answered, error, seconds = run([options.loopwright, "diagnose", folder / "nominal.json", folder / "train.experiment.json",
-                                    "--json", folder / "answer.json", "-o", folder / "improved.json"])
+                                    "--json", folder / "answer.json", "-o", folder / "improved.json", "--all"])
     result = {"truth": truth, "answer": read(folder / "answer.json") if answered else None, "time_s": seconds,
               "failure": "" if answered else error[-2000:]}
     result |= figures(options, folder, truth)

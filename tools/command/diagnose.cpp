@@ -9,7 +9,7 @@ struct Arguments {
   DiagramArguments diagram;
   std::vector<std::string> experiments, catalogues;
   std::string json, report, improved;
-  bool trail = false;
+  bool trail = false, all = false;
 };
 
 int run(const Arguments& a) {
@@ -19,7 +19,7 @@ int run(const Arguments& a) {
   reject_swapped(a.diagram.path, a.experiments);
   DiagnoseOptions options;
   options.load = a.diagram.options(), options.catalogues = a.catalogues,
-  options.improved_diagram = a.improved;
+  options.improved_diagram = a.improved, options.writes_all = a.all;
   options.interrupt = &interruption();
   Progress progress("diagnose");
   options.progress = [&](const char*, double done) { progress.show(done, 1); };
@@ -45,6 +45,7 @@ void add_diagnose(CLI::App& app, std::function<void(std::function<int()>)> choos
   command->add_option("--json", a->json, "Write the diagnosis as JSON; - for stdout");
   command->add_option("--report", a->report, "Write an HTML page that tells the story");
   command->add_option("-o,--output", a->improved, "Write the diagram with the effects that were found");
+  command->add_flag("--all", a->all, "Write the optional effects too");
   command->add_flag("--trail", a->trail, "Show what the search tried");
   command->callback([=] { choose([=] { return run(*a); }); });
 }

@@ -73,14 +73,19 @@ std::string force_text(const Comparison& comparison) {
   std::ranges::stable_sort(ranked, std::greater{}, &Dependence::share);
   std::string depends;
   for (const Dependence& d : ranked) {
-    if (d.share <= 0) continue;
+    if (d.share <= 0 || d.variable == "offset") continue;
     std::string name = d.variable;
     std::ranges::replace(name, '_', ' ');
     depends += fmt::format("{}{} {:.0f} %", depends.empty() ? "" : ", ", name, 100 * d.share);
     if (d.at > 0)
       depends += fmt::format(" (period {})", shown(1 / d.at, d.variable[0] == 's' ? position : "s"));
   }
-  text += fmt::format("  it depends on: {}\n", depends.empty() ? "nothing that this record shows" : depends);
+  std::string constant;
+  for (const Dependence& d : f.dependence)
+    if (d.variable == "offset" && d.share >= 0.005)
+      constant = fmt::format("a constant is {:.0f} % of it; the rest ", 100 * d.share);
+  text += fmt::format("  {}depends on: {}\n", constant.empty() ? "it " : constant,
+                      depends.empty() ? "nothing that this record shows" : depends);
   text += "  it lies in: ";
   for (const ResidualShare& s : f.where)
     if (s.axis == "segment" && s.of_rows > 0)

@@ -214,9 +214,10 @@ std::vector<Identifiability> identifiable(const RecordContent& c, const std::vec
   return result;
 }
 
-std::vector<RecordFault> faults_of(const Machine& machine, const ForceResidual& residual,
-                                   const RecordContent& c) {
-  const MeasuredMotion& m = machine.motion;
+namespace {
+
+/// Of what one record may lack and another contain.
+std::vector<RecordFault> common_faults(const MeasuredMotion& m, const RecordContent& c) {
   std::vector<RecordFault> faults;
   const double moving = double(std::ranges::count(m.counts, 1)) * m.sample_time;
   if (c.sizes.duration < 2 || moving < 1)
@@ -229,6 +230,15 @@ std::vector<RecordFault> faults_of(const Machine& machine, const ForceResidual& 
   if (c.speeds < 2)
     faults.push_back({"one_speed", "nearly all motion is at one speed",
                       "friction of any kind, drag and periodic errors of force or encoder look alike"});
+  if (const double part = saturated_part(m); part > 0.01)
+    faults.push_back(
+        {"saturated", fmt::format("the input stands at its limit for {:.1f} % of the record", 100 * part),
+         "the controller is out of the loop there; the recorded command may not be the force that acted"});
+  return faults;
+}
+
+std::vector<RecordFault> own_faults(const MeasuredMotion& m, const ForceResidual& residual) {
+  std::vector<RecordFault> faults;
   size_t gaps = 0;
   for (size_t k = 0; k < m.rows(); ++k) gaps += m.is_missing(k) && (k == 0 || !m.is_missing(k - 1));
   const auto lost = std::ranges::count(m.missing, char(1));
@@ -242,11 +252,60 @@ std::vector<RecordFault> faults_of(const Machine& machine, const ForceResidual& 
         {"outliers",
          fmt::format("{} sample{} of the position leap out of line", count, count == 1 ? "" : "s"),
          "each spoils the residual for some hundredths of a second around it"});
-  if (const double part = saturated_part(m); part > 0.01)
-    faults.push_back(
-        {"saturated", fmt::format("the input stands at its limit for {:.1f} % of the record", 100 * part),
-         "the controller is out of the loop there; the recorded command may not be the force that acted"});
   check_input(m, residual, faults);
+  return faults;
+}
+
+/// Motions as one; the rows at the seams do not count.
+MeasuredMotion one_after_the_other(const std::vector<RecordView>& records) {
+  MeasuredMotion all = records.front().motion;
+  all.missing.clear();
+  for (size_t r = 1; r < records.size(); ++r) {
+    const MeasuredMotion& m = records[r].motion;
+    const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+    append(all.time, m.time), append(all.position, m.position), append(all.velocity, m.velocity);
+    append(all.acceleration, m.acceleration), append(all.input, m.input), append(all.force, m.force);
+    append(all.raw_position, m.raw_position), append(all.counts, m.counts);
+    if (!m.counts.empty()) all.counts[all.counts.size() - m.counts.size()] = 0;
+  }
+  return all;
+}
+
+}  // namespace
+
+std::vector<RecordFault> faults_of(const Machine& machine, const ForceResidual& residual,
+                                   const RecordContent& c) {
+  std::vector<RecordFault> faults = common_faults(machine.motion, c);
+  std::ranges::move(own_faults(machine.motion, residual), std::back_inserter(faults));
+  return faults;
+}
+
+RecordContent content_of(const std::vector<RecordView>& records) {
+  const MeasuredMotion m = one_after_the_other(records);
+  RecordContent all = records.front().content;
+  all.directions = directions_in(m), all.speeds = speeds_in(m);
+  for (size_t r = 1; r < records.size(); ++r) {
+    const RecordContent& c = records[r].content;
+    all.sizes.duration += c.sizes.duration;
+    all.sizes.lowest_position = std::min(all.sizes.lowest_position, c.sizes.lowest_position);
+    all.sizes.highest_position = std::max(all.sizes.highest_position, c.sizes.highest_position);
+    all.sizes.top_speed = std::max(all.sizes.top_speed, c.sizes.top_speed);
+    all.sizes.top_acceleration = std::max(all.sizes.top_acceleration, c.sizes.top_acceleration);
+    all.accelerations = std::max(all.accelerations, c.accelerations);
+    all.reversals += c.reversals, all.passes = std::max(all.passes, c.passes);
+    all.varied_force |= c.varied_force;
+  }
+  all.sizes.stroke = all.sizes.highest_position - all.sizes.lowest_position;
+  return all;
+}
+
+std::vector<RecordFault> faults_of(const std::vector<RecordView>& records) {
+  std::vector<RecordFault> faults = common_faults(one_after_the_other(records), content_of(records));
+  for (size_t r = 0; r < records.size(); ++r)
+    for (RecordFault& fault : own_faults(records[r].motion, records[r].residual)) {
+      if (records.size() > 1) fault.text = fmt::format("record {}: {}", r + 1, fault.text);
+      faults.push_back(std::move(fault));
+    }
   return faults;
 }
 

@@ -37,4 +37,16 @@ struct RecordFault {
 std::vector<RecordFault> faults_of(const Machine& machine, const ForceResidual& residual,
                                    const RecordContent& content);
 
+/// One of several records of a machine.
+struct RecordView {
+  const MeasuredMotion& motion;
+  const ForceResidual& residual;
+  const RecordContent& content;
+};
+/// What the records contain together.
+RecordContent content_of(const std::vector<RecordView>& records);
+/// Directions, speeds, duration and the limit of the input are those of all records together: a motion that
+/// goes one way is no fault if another record goes the other way. Further faults are named with their record.
+std::vector<RecordFault> faults_of(const std::vector<RecordView>& records);
+
 }  // namespace loopwright

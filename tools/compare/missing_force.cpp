@@ -67,6 +67,21 @@ constexpr std::array<const char*, 6> variable_names = {"position",  "velocity", 
 
 }  // namespace
 
+NoiseFloor noise_floor(const MeasuredMotion& m, const std::vector<double>& residual) {
+  NoiseFloor floor;
+  if (const size_t lag = find_repeat(m); lag > 0) {
+    floor.repeat_s = double(lag) * m.sample_time;
+    floor.value = floor_of_repeats(m, residual, lag);
+    floor.source = fmt::format("the spread between repeats of the motion, {:.4g} s apart", floor.repeat_s);
+  }
+  if (floor.value > 0) return floor;
+  floor.value = floor_of_smooth_parts(thinned(m, residual));
+  floor.source =
+      "what smooth functions of position, velocity, acceleration and time leave; a repeated "
+      "motion would tell it without a model";
+  return floor;
+}
+
 ForceResidual force_residual(const Machine& machine, const std::vector<double>& acceleration) {
   const MeasuredMotion& m = machine.motion;
   ForceResidual result;
@@ -81,19 +96,8 @@ ForceResidual force_residual(const Machine& machine, const std::vector<double>& 
   result.rmse = rms_where(result.value, m.counts);
   const double driving = rms_where(m.force, m.counts);
   result.relative_percent = driving > 0 ? 100 * result.rmse / driving : 0;
-  const size_t lag = find_repeat(m);
-  if (lag > 0) {
-    result.repeat_s = double(lag) * m.sample_time;
-    result.noise_floor = floor_of_repeats(m, result.value, lag);
-    result.floor_source =
-        fmt::format("the spread between repeats of the motion, {:.4g} s apart", result.repeat_s);
-  }
-  if (result.noise_floor == 0) {
-    result.noise_floor = floor_of_smooth_parts(thinned(m, result.value));
-    result.floor_source =
-        "what smooth functions of position, velocity, acceleration and time leave; a repeated "
-        "motion would tell it without a model";
-  }
+  const NoiseFloor floor = noise_floor(m, result.value);
+  result.noise_floor = floor.value, result.repeat_s = floor.repeat_s, result.floor_source = floor.source;
   return result;
 }
 
@@ -162,10 +166,19 @@ std::vector<ResidualShare> where_it_lies(const Machine& machine, const ForceResi
   return shares;
 }
 
+/// [mean square of the residual] Less beside a constant depends on nothing that matters.
+constexpr double least_beside_constant = 0.005;
+
 std::vector<Dependence> dependences(const Machine& machine, const ForceResidual& residual) {
   const MeasuredMotion& m = machine.motion;
   const auto variables = variables_of(m);
-  const Rows rows = thinned(m, residual.value);
+  Rows rows = thinned(m, residual.value);
+  // An offset is a function of every variable, and none of them explains it.
+  double mean = 0, square = 0;
+  for (double r : rows.residual)
+    mean += r / double(rows.residual.size()), square += r * r / double(rows.residual.size());
+  for (double& r : rows.residual) r -= mean;
+  const double rest = square > 0 ? 1 - mean * mean / square : 1;
   std::vector<Dependence> result;
   for (size_t v = 0; v < variables.size(); ++v) {
     std::vector<double> column;
@@ -177,6 +190,9 @@ std::vector<Dependence> dependences(const Machine& machine, const ForceResidual&
   if (line.share > result[0].share)
     result[0].share = line.share;  // a fine pattern is also a function of position
   result.push_back(strongest_line(rows, "temporal_frequency", rows.time));
+  if (rest < least_beside_constant)
+    for (Dependence& d : result) d.share = 0;
+  result.push_back({"offset", 1 - rest});
   return result;
 }
 

@@ -26,14 +26,23 @@ struct ResidualShare {
   double of_rows = 0;  ///< fraction of the rows that count
 };
 
-/// How much of the residual a function of one variable explains, on blocks of the record that it was not
-/// fitted to. The share explained by chance alone counts as zero.
+/// How much of the residual beside a constant a function of one variable explains, on blocks of the record
+/// that it was not fitted to. The share explained by chance alone counts as zero. The share of the variable
+/// "offset" is that of the constant in the squared residual.
 struct Dependence {
   std::string variable;
   double share = 0;      ///< 0 to 1
   double by_chance = 0;  ///< the largest share for residuals of random sign per block
   double at = 0;         ///< frequency of the strongest line: [1/position] or [Hz]; else 0
 };
+
+/// What noise alone would leave of a residual force, seen without a model.
+struct NoiseFloor {
+  double value = 0, repeat_s = 0;  ///< repeat_s: after which the motion repeats; 0: it does not
+  std::string source;
+};
+/// Half of the spread between repeats of the motion, else what smooth functions of the motion leave.
+NoiseFloor noise_floor(const MeasuredMotion& motion, const std::vector<double>& residual);
 
 /// `acceleration`: of the model, over each sample (model_acceleration).
 ForceResidual force_residual(const Machine& machine, const std::vector<double>& acceleration);

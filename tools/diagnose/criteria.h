@@ -133,6 +133,47 @@ constexpr double least_without_doubt = 0.2;
 /// [s] Each gives another velocity error.
 constexpr double doubt_shifts_s[] = {1, 2};
 
+// Pitches of a rotary axis.
+
+/// [periods] By which a pitch drifts from a whole part of a turn over the whole record: a line whose height
+/// varies along the way is seen off its place by as much. More contradicts.
+constexpr double most_drift = 0.2;
+/// [turns] On less, the next whole number is about as close, and the likelihood decides.
+constexpr double nearly_a_turn = 0.9;
+
+// Acceptance by simulation.
+
+/// [time constants of the predictor's motion] Length of a window that is simulated freely. The predictor
+/// leaves an error of the measurement after one of them; over fifty, a force that moves nothing else than
+/// the noise within one has moved the axis by hundreds of its deviations.
+constexpr double horizon = 50;
+/// [rows] Nor fewer: an offset and a slope are estimated in each window.
+constexpr double least_horizon_rows = 20;
+/// [windows] The horizon is shorter if fewer fit into a record: their scatter decides.
+constexpr double plenty_of_windows = 15;
+/// [windows] Fewer decide nothing.
+constexpr double least_windows = 3;
+/// [strokes] A larger error in a window is a divergence: no friction and no stop is that far off.
+constexpr double most_strokes = 10;
+/// [standard errors] Of the mean difference of two simulations between windows: one record in a thousand
+/// calls the better one worse by chance.
+constexpr double worse_deviations = 3;
+/// [mean square error] A smaller worsening has no consequence: the parameters' own uncertainty makes as much.
+constexpr double least_worsening = 0.01;
+
+/// [noise floor of compare] Above it the residual force is no noise, as repeats of the motion show it.
+constexpr double most_over_floor = 1.25;
+/// [numbers] Smooth functions of the motion and lines, as compare fits them, have so many levels. They follow
+/// that share of the noise of a record that has one independent value in each memory of the slow force.
+constexpr double levels_of_smooth_functions = 134;
+/// [independent values] A larger share of them leaves no floor to compare with.
+constexpr double most_levels = 0.5;
+/// [periods of the residual's cut-off frequency] Around a reversal or a rest, where the filter smears the leap
+/// of dry friction: a tenth of it is left after one.
+constexpr double blur = 1;
+/// [force of the input, rms] Excess over it that is material, as an effect of this size is.
+constexpr double least_excess = least_force;
+
 // Sizes of the motion.
 
 /// [s] Speeds and accelerations are differences over such times.

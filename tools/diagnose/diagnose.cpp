@@ -8,10 +8,10 @@
 #include "tools/diagnose/search/conclude.h"
 #include "tools/diagnose/search/doubt.h"
 #include "tools/diagnose/search/remaining_force.h"
+#include "tools/diagnose/verdict/acceptance.h"
 #include "tools/diagnose/verdict/improve.h"
 #include "tools/diagnose/search/prepare.h"
 #include "tools/diagnose/search/search.h"
-#include "tools/diagnose/verdict/staircase.h"
 #include "tools/diagnose/search/unknown.h"
 #include "tools/diagnose/verdict/verdict.h"
 
@@ -85,6 +85,12 @@ std::vector<DiagnosedParameter> parameters_of_member(const Conclusion& conclusio
     list.push_back({range.name, without_idle_brackets(unit_in(range.unit, units)), value, value - half,
                     value + half, range.ends_at(value)});
   }
+  if (const Member& member = members[index]; member.is_part_of_turn) {
+    const CandidateParameter& pitch = member.candidate->nonlinear[0];
+    const double value = member.nonlinear[0];
+    list.push_back({pitch.name, without_idle_brackets(unit_in(pitch.unit, units)), value, value, value, false,
+                    conclusion.turn / value});
+  }
   return list;
 }
 
@@ -126,6 +132,17 @@ class Inquiry {
                                      fit_members(trials_, {}, search_noise(trials_), fitted_motion_, 0));
     look_at_all_rows(conclusion);
     return conclusion;
+  }
+  /// The same without a member.
+  Conclusion without(const Conclusion& conclusion, size_t member) {
+    const std::vector<Shape> shapes = shapes_along_fitted_rows();
+    std::vector<Member> members = conclusion.estimate.members;
+    members.erase(members.begin() + std::ptrdiff_t(member));
+    const Estimate& e = conclusion.estimate;
+    Conclusion rest = conclude(trials_, catalogue_.candidates, shapes,
+                               fit_members(trials_, members, e.noise, e.motion, 8), true);
+    look_at_all_rows(rest);
+    return rest;
   }
   /// Whether the held-out rows are explained much worse than the fitted rows.
   bool holds_out_something_else(const Conclusion& conclusion) const {
@@ -197,9 +214,12 @@ std::vector<size_t> ranked(const Conclusion& conclusion, const Staircase& stairc
 }
 
 /// Effects by rank, alternatives, and the experiments that would distinguish them.
-void tell_effects(const Conclusion& conclusion, const std::vector<size_t>& order, const Catalogue& catalogue,
+void tell_effects(const Conclusion& conclusion, const Staircase& staircase, const Catalogue& catalogue,
                   const MachineUnits& units, Diagnosis& result) {
-  for (size_t index : order) {
+  std::vector<size_t> optional;
+  for (size_t step = staircase.necessary(); step < staircase.steps.size(); ++step)
+    std::ranges::copy(staircase.added[step], std::back_inserter(optional));
+  for (size_t index : ranked(conclusion, staircase)) {
     const Member& member = conclusion.estimate.members[index];
     if (member.candidate->is_unknown) continue;
     const Effect& effect = effect_of(catalogue, member.candidate);
@@ -211,7 +231,8 @@ void tell_effects(const Conclusion& conclusion, const std::vector<size_t>& order
                           conclusion.inclusion[index],
                           {},
                           conclusion.weights[index].force_rms,
-                          conclusion.weights[index].loss};
+                          conclusion.weights[index].loss,
+                          std::ranges::find(optional, index) != optional.end()};
     for (const Substitute& other : conclusion.substitutes[index]) {
       if (std::ranges::find(found.alternatives, other.candidate->name) != found.alternatives.end()) continue;
       if (other.candidate->name == effect.name) continue;
@@ -288,24 +309,39 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   if (auto finding = too_few_rows(trials)) result.findings.push_back(std::move(*finding));
   result.not_looked_for = catalogue.left_out;
   Inquiry inquiry(trials, motion, catalogue, sizes, progress);
-  const Conclusion conclusion = conclusion_from(inquiry, result.findings);
+  const Improver improver(diagram, experiments, options.load, catalogue, units, sizes);
+  progress("simulating the diagram with the effects", 0.85);
+  Acceptance accepted =
+      accept(conclusion_from(inquiry, result.findings), trials, inverse, improver, options.load,
+             catalogue.candidates.size(),
+             [&](const Conclusion& c, size_t member) { return inquiry.without(c, member); });
+  const Conclusion& conclusion = accepted.conclusion;
+  const Staircase& staircase = accepted.staircase;
+  result.refused = std::move(accepted.refused);
+  if (!accepted.why_not_run.empty()) result.contradictions.push_back(std::move(accepted.why_not_run));
   result.holds_out = std::ranges::any_of(
       trials.list, [](const Trial& trial) { return trial.held_out_from < trial.usable.size(); });
   result.diagram = diagram, result.experiments = experiments, result.trail = conclusion.trail;
   result.title = models.front()->plan().title;
   result.force_unit = units.force, result.position_unit = units.position;
   result.measured_unit = models.front()->record().measured.front().unit;
-  progress("the staircase of the error", 0.85);
-  const Staircase staircase = climb(trials, conclusion, inverse, catalogue.candidates.size());
   result.steps = staircase.steps;
-  tell_effects(conclusion, ranked(conclusion, staircase), catalogue, units, result);
+  if (!accepted.runs.empty())
+    result.simulation_horizon_s = accepted.runs.back().horizon_s,
+    result.simulation_diverged = accepted.runs.back().diverged,
+    result.simulation_is_worse = accepted.is_worse;
+  tell_effects(conclusion, staircase, catalogue, units, result);
   tell_errors(trials, conclusion, inquiry, result);
   trials.run_along(Trials::Rows::all);
-  judge(trials, conclusion, inquiry.motion_of_all_rows(), search_noise(trials), result);
+  judge(trials, conclusion, inquiry.motion_of_all_rows(), search_noise(trials), inverse, result);
   if (!options.improved_diagram.empty()) {
+    const size_t last = options.writes_all ? staircase.steps.size() : staircase.necessary();
+    ImprovedDiagram improved = improver.with(staircase.members[last - 1]);
     result.improved = options.improved_diagram;
-    result.experiment_ports = write_improved(diagram, experiments, options.load, catalogue,
-                                             conclusion.estimate, units, sizes, result.improved);
+    result.improved_experiments = write(improved, experiments, result.improved);
+    result.experiment_ports = std::move(improved.moved);
+    result.taken_out_by = std::move(improved.taken_out_by);
+    result.improved_notes = std::move(improved.notes);
   }
   result.curves = residual_curves(trials, inverse.front(), conclusion);
   return result;

@@ -14,6 +14,7 @@ struct DiagnoseOptions {
   std::vector<std::string>
       catalogues;                ///< folders with effect files; empty: the catalogue of the installation
   std::string improved_diagram;  ///< path of the diagram with the effects; empty: not written
+  bool writes_all = false;       ///< also the optional effects
   std::function<void(const char* stage, double done)> progress;
   const std::atomic<bool>* interrupt = nullptr;  ///< once true, the diagnosis ends soon, without a verdict
 };

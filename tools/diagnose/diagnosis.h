@@ -12,6 +12,7 @@ struct DiagnosedParameter {
   std::string name, unit;
   double value = 0, low = 0, high = 0;  ///< SI; 95 % interval
   bool at_limit = false;                ///< the range of the catalogue ends here: a warning, not a result
+  double times_a_turn = 0;              ///< of a pitch that is a whole part of a turn; 0: fitted
 };
 
 struct DiagnosedEffect {
@@ -21,6 +22,7 @@ struct DiagnosedEffect {
   std::vector<std::string> alternatives;  ///< indistinguishable from it by this record
   double force_rms = 0;                   ///< SI
   double evidence = 0;                    ///< loss of the criterion without it
+  bool is_optional = false;               ///< written into the improved diagram only on request
   // Without roles: where it acts, and on what it depends.
   std::string site, site_unit;
   std::vector<std::string> variables;
@@ -40,8 +42,8 @@ struct OtherExplanation {
 /// The errors with the effects up to this one.
 struct DiagnosisStep {
   std::vector<std::string> added;
-  double force_rmse = 0, held_out_force_rmse = 0,
-         simulation_rmse = 0;  ///< held out: see Diagnosis::holds_out
+  double force_rmse = 0, held_out_force_rmse = 0;  ///< held out: see Diagnosis::holds_out
+  double simulation_rmse = 0;  ///< of the measured signal, held out where there is a hold-out: see FreeRun
   bool is_optional = false;    ///< after the knee: small improvement
 };
 
@@ -60,6 +62,11 @@ struct RecordFinding {
 struct NotLookedFor {
   std::vector<std::string> effects;
   std::string why;
+};
+
+/// An effect that the prediction errors asked for, but that does not stand.
+struct RefusedEffect {
+  std::string effect, why;
 };
 
 /// A share of the remaining error that a variable explains.
@@ -88,6 +95,8 @@ struct Diagnosis {
   bool has_roles = true;      ///< an axis; without roles any diagram, and no force is singled out
   std::vector<MovedParameter> moved_parameters;  ///< without roles
   std::vector<std::string> not_observable;       ///< without roles: sentences
+  std::vector<RefusedEffect> refused;
+  std::vector<std::string> contradictions;  ///< why the records are not explained although errors are white
   std::vector<std::string> remainder_variables;  ///< on which the remainder depends
   std::vector<RemainderShare> dependence;
   bool was_interrupted = false;  ///< no other member has a meaning, nothing was written
@@ -95,7 +104,14 @@ struct Diagnosis {
   double mean_square = 0, held_out_mean_square = 0, portmanteau = 0;
   double white_force = 0, slow_force = 0, slow_force_time_s = 0;
   std::vector<double> measurement_noise;
-  std::string improved;                     ///< the diagram that was written
+  double simulation_horizon_s = 0;                                ///< after which each simulation begins anew
+  bool is_simulated() const { return simulation_horizon_s > 0; }  ///< otherwise a map, or too short
+  bool simulation_diverged = false;                               ///< of the diagram with all effects
+  bool simulation_is_worse = false;                               ///< the same, than of the nominal diagram
+  std::string improved;                                           ///< the diagram that was written
+  std::vector<std::string> improved_experiments;  ///< written for it, with the ports that it moved
+  std::vector<std::string> taken_out_by;          ///< its parameters that take out one effect each when 0
+  std::vector<std::string> improved_notes;        ///< how functions without a name are written
   std::vector<MovedPort> experiment_ports;  ///< that an experiment must name differently with that diagram
   std::vector<std::string> trail;
   struct Curves {

@@ -13,11 +13,12 @@ std::string to_json(const Diagnosis& d) {
     if (!d.has_roles) entry["site"] = effect.site, entry["variables"] = effect.variables;
     for (const DiagnosedParameter& p : effect.parameters) {
       entry["parameters"][p.name] = {{"value", p.value}, {"unit", p.unit}, {"low", p.low}, {"high", p.high}};
+      if (p.times_a_turn > 0) entry["parameters"][p.name]["times_a_turn"] = p.times_a_turn;
       if (p.at_limit) entry["parameters"][p.name]["at_limit"] = true;
     }
     entry["inclusion"] = effect.inclusion;
     entry["alternatives"] = effect.alternatives;
-    entry["force_rms"] = effect.force_rms;
+    entry["force_rms"] = effect.force_rms, entry["optional"] = effect.is_optional;
     json["effects"].push_back(std::move(entry));
   }
   if (!d.has_roles) {
@@ -37,6 +38,7 @@ std::string to_json(const Diagnosis& d) {
     entry["simulation_rmse"] = step.simulation_rmse, entry["optional"] = step.is_optional;
     json["steps"].push_back(std::move(entry));
   }
+  json["simulation"] = {{"horizon_s", d.simulation_horizon_s}, {"diverged", d.simulation_diverged}};
   json["error"] = {{"before", d.error_before},
                    {"after", d.error_after},
                    {"noise_floor", d.noise_floor},
@@ -49,6 +51,9 @@ std::string to_json(const Diagnosis& d) {
     json["suggested_experiments"].push_back({{"text", e.text}, {"between", {e.between, e.and_effect}}});
   json["record"] = nlohmann::ordered_json::array();
   for (const RecordFinding& f : d.findings) json["record"].push_back({{"finding", f.what}, {"cost", f.cost}});
+  json["refused"] = nlohmann::ordered_json::array();
+  for (const RefusedEffect& r : d.refused) json["refused"].push_back({{"effect", r.effect}, {"why", r.why}});
+  json["contradictions"] = d.contradictions;
   json["not_looked_for"] = nlohmann::ordered_json::array();
   for (const NotLookedFor& n : d.not_looked_for)
     for (const std::string& effect : n.effects)
@@ -65,6 +70,8 @@ std::string to_json(const Diagnosis& d) {
   json["experiment_ports"] = nlohmann::ordered_json::array();
   for (const MovedPort& moved : d.experiment_ports)
     json["experiment_ports"].push_back({{"from", moved.from}, {"to", moved.to}});
+  json["improved_experiments"] = d.improved_experiments;
+  json["taken_out_by"] = d.taken_out_by;
   return json.dump(2) + "\n";
 }
 

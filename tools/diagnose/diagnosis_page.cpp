@@ -134,14 +134,17 @@ void add_held_out(const Diagnosis& d, report::Table& table) {
 
 report::Section staircase(const Diagnosis& d) {
   report::Section section{"The staircase of the error", {}};
-  report::Table table{{"Diagram", "Residual force, fitted", "Position after 0.1 s", ""},
-                      {},
-                      "Each row has all parameters fitted anew."};
+  report::Table table{
+      {"Diagram", "Residual force, fitted",
+       d.is_simulated() ? fmt::format("Simulated {:.3g} s ahead", d.simulation_horizon_s) : "", ""},
+      {},
+      "Each row has all parameters fitted anew."};
   for (const DiagnosisStep& step : d.steps) {
     std::vector<std::string> names;
     for (const std::string& name : step.added) names.push_back(words(name));
     table.rows.push_back({names.empty() ? "nominal" : "+ " + joined(names, " + "),
-                          shown(step.force_rmse, d.force_unit), shown(step.simulation_rmse, d.measured_unit),
+                          shown(step.force_rmse, d.force_unit),
+                          d.is_simulated() ? shown(step.simulation_rmse, d.measured_unit) : "",
                           step.is_optional ? "optional: past the knee" : ""});
   }
   table.rows.push_back({"noise alone", shown(d.noise_floor, d.force_unit), "", ""});
@@ -188,6 +191,12 @@ report::Section what_next(const Diagnosis& d) {
     section.items.push_back(
         report::Notice{f.is_fatal ? report::Notice::Severity::error : report::Notice::Severity::warning,
                        fmt::format("The record: {}. What it costs: {}.", f.what, f.cost)});
+  for (const std::string& why : d.contradictions)
+    section.items.push_back(
+        report::Notice{report::Notice::Severity::error, "The record is not explained: " + why + "."});
+  for (const RefusedEffect& r : d.refused)
+    section.items.push_back(report::Notice{report::Notice::Severity::warning,
+                                           fmt::format("Not accepted: {}; {}.", words(r.effect), r.why)});
   for (const NotLookedFor& n : d.not_looked_for)
     section.items.push_back(
         report::Notice{report::Notice::Severity::warning,

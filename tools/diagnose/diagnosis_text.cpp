@@ -35,12 +35,17 @@ std::string to_text(const Diagnosis& d) {
       break;
   }
   for (const DiagnosedEffect& effect : d.effects) {
-    line(fmt::format("  {}{}  ({}, force {} rms, probability {:.2f})", effect.name,
+    line(fmt::format("  {}{}  ({}, force {} rms, probability {:.2f}{})", effect.name,
                      effect.form.empty() ? "" : " of the " + effect.form, effect.title,
-                     shown(effect.force_rms, d.force_unit), effect.inclusion));
+                     shown(effect.force_rms, d.force_unit), effect.inclusion,
+                     effect.is_optional ? ", optional" : ""));
     for (const DiagnosedParameter& p : effect.parameters)
-      line(fmt::format("    {} = {}  ({} … {}){}", p.name, shown(p.value, p.unit), shown(p.low, p.unit),
-                       shown(p.high, p.unit), p.at_limit ? "  at the limit of its range" : ""));
+      if (p.times_a_turn > 0)
+        line(fmt::format("    {} = {}  ({:.0f} times a turn)", p.name, shown(p.value, p.unit),
+                         p.times_a_turn));
+      else
+        line(fmt::format("    {} = {}  ({} … {}){}", p.name, shown(p.value, p.unit), shown(p.low, p.unit),
+                         shown(p.high, p.unit), p.at_limit ? "  at the limit of its range" : ""));
     for (const std::string& other : effect.alternatives)
       line(fmt::format("    or {}: these two cannot be told apart by this record", other));
   }
@@ -57,21 +62,30 @@ std::string to_text(const Diagnosis& d) {
     return d.holds_out ? fmt::format(" {:>14}", words) : "";
   };
   line(fmt::format("  {:<42} {:>14}{} {:>14}", "residual force", "fitted", held_out("held out"),
-                   "0.1 s ahead"));
+                   d.is_simulated() ? fmt::format("{:.3g} s ahead", d.simulation_horizon_s) : ""));
   for (const DiagnosisStep& step : d.steps)
     line(fmt::format("  {:<42} {:>14}{} {:>14}{}",
                      step.added.empty() ? "nominal diagram" : "+ " + joined(step.added, " + "),
                      shown(step.force_rmse, d.force_unit),
                      held_out(shown(step.held_out_force_rmse, d.force_unit)),
-                     shown(step.simulation_rmse, d.measured_unit), step.is_optional ? "  optional" : ""));
+                     d.is_simulated() ? shown(step.simulation_rmse, d.measured_unit) : "",
+                     step.is_optional ? "  optional" : ""));
   line(fmt::format("  {:<42} {:>14}", "noise alone", shown(d.noise_floor, d.force_unit)));
   line(fmt::format("This rests on {} rows of the record in motion.", d.rows));
   for (const SuggestedExperiment& e : d.suggested)
     line(fmt::format("To tell {} from {}: {}", e.between, e.and_effect, e.text));
   for (const RecordFinding& f : d.findings) line(fmt::format("The record: {}; {}.", f.what, f.cost));
+  for (const std::string& why : d.contradictions) line("Not explained: " + why + ".");
+  for (const RefusedEffect& r : d.refused) line(fmt::format("Not accepted: {}; {}.", r.effect, r.why));
   for (const NotLookedFor& n : d.not_looked_for)
     line(fmt::format("Not looked for: {}; {}.", joined(n.effects, ", "), n.why));
+  for (const std::string& note : d.improved_notes) line(note);
+  if (!d.taken_out_by.empty())
+    line(fmt::format("Each of these takes one effect out of {} when 0: {}.", d.improved,
+                     joined(d.taken_out_by, ", ")));
   for (const MovedPort& moved : d.experiment_ports) line(words_of(moved));
+  if (!d.improved_experiments.empty())
+    line("Written with the new ports: " + joined(d.improved_experiments, ", ") + ".");
   return text;
 }
 

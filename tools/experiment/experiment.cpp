@@ -127,7 +127,7 @@ class Loader {
         !reader_.expect(hold_out->value, Value::Kind::object, "\"hold_out\"", "{\"fraction\": 0.3}"))
       return;
     reader_.reject_unknown(hold_out->value, {"fraction"}, "\"hold_out\"");
-    result_->hold_out_fraction = reader_.optional_number(hold_out->value, "fraction", 0, 0, 0.9);
+    result_->hold_out_fraction = reader_.optional_number(hold_out->value, "fraction", 0, 0, 1);
   }
 
   void read_kind_of_rows(const Value& file) {

@@ -1,6 +1,6 @@
 /// Comparisons, fits, diagnoses, sweeps and linear systems: each as its text, JSON and page.
 #include <pybind11/eigen.h>
-#include "tools/compare/compare.h"
+#include "tools/compare/several.h"
 #include "tools/diagnose/diagnose.h"
 #include "tools/fit/fit.h"
 #include "tools/linearize/analysis.h"
@@ -21,22 +21,24 @@ struct Answer {
   std::function<std::string()> html;  // empty: there is no page
 };
 
-Answer compare_with(const LoadedDiagram& diagram, const std::string& experiment) {
+Answer compare_with(const LoadedDiagram& diagram, const std::vector<std::string>& experiments) {
   return interruptible([&](const std::atomic<bool>& interrupt) {
     RunOptions options;
     options.interrupt = &interrupt;
-    auto found = std::make_shared<Comparison>(compare(diagram.path, experiment, diagram.options, options));
-    return Answer{to_text(*found), to_json(*found),
-                  [found, experiment] { return report::to_html(comparison_page(*found, experiment)); }};
+    auto found =
+        std::make_shared<SeveralComparisons>(compare(diagram.path, experiments, diagram.options, options));
+    return Answer{to_text(*found), to_json(*found), [found] {
+                    return report::to_html(comparison_page(*found, found->records.front().plan->title));
+                  }};
   });
 }
 
-std::pair<Answer, std::string> fit_to(const LoadedDiagram& diagram, const std::string& experiment,
-                                      const std::vector<std::string>& parameters, int iterations) {
+std::pair<Answer, std::string> fit_to(const LoadedDiagram& diagram,
+                                      const std::vector<std::string>& experiments,
+                                      const std::vector<std::string>& parameters, FitOptions options) {
   return interruptible([&](const std::atomic<bool>& interrupt) {
-    FitOptions options;
-    options.interrupt = &interrupt, options.most_iterations = iterations;
-    const Fit found = fit(diagram.path, experiment, parameters, diagram.options, options);
+    options.interrupt = &interrupt;
+    const Fit found = fit(diagram.path, experiments, parameters, diagram.options, options);
     Problems problems;
     std::string text = with_fitted_values(diagram.path, found, problems);
     if (problems.has_errors()) text.clear();  // values in other files or expressions: there is no such text
@@ -45,10 +47,11 @@ std::pair<Answer, std::string> fit_to(const LoadedDiagram& diagram, const std::s
 }
 
 Answer diagnose_with(const LoadedDiagram& diagram, const std::vector<std::string>& experiments,
-                     const std::string& improved) {
+                     const std::string& improved, bool writes_all) {
   return interruptible([&](const std::atomic<bool>& interrupt) {
     DiagnoseOptions options;
-    options.load = diagram.options, options.improved_diagram = improved, options.interrupt = &interrupt;
+    options.load = diagram.options, options.improved_diagram = improved, options.writes_all = writes_all;
+    options.interrupt = &interrupt;
     auto found = std::make_shared<Diagnosis>(diagnose(diagram.path, experiments, options));
     if (found->was_interrupted) return Answer{};
     return Answer{to_text(*found), to_json(*found),
@@ -102,7 +105,16 @@ void add_answers(py::module_& module) {
       .def_readonly("json", &Answer::json)
       .def("html", [](const Answer& a) { return a.html ? a.html() : std::string(); });
   module.def("compare", &compare_with);
-  module.def("fit", &fit_to);
+  module.def("fit", [](const LoadedDiagram& diagram, const std::vector<std::string>& experiments,
+                       const std::vector<std::string>& parameters, int iterations,
+                       std::vector<std::string> of_each, std::vector<std::string> held_out,
+                       const std::map<std::string, std::pair<double, double>>& ranges, bool offsets) {
+    FitOptions options;
+    options.most_iterations = iterations, options.takes_offsets_out = offsets;
+    options.of_each = std::move(of_each), options.held_out = std::move(held_out);
+    for (const auto& [path, range] : ranges) options.ranges.push_back({path, range.first, range.second});
+    return fit_to(diagram, experiments, parameters, std::move(options));
+  });
   module.def("diagnose", &diagnose_with);
 
   py::class_<SweepAnswer>(module, "SweepAnswer")

@@ -113,6 +113,19 @@ TEST(ForceResidual, NamesTheVariableOnWhichItDepends) {
   }
 }
 
+/// A constant is a function of every variable, and none of them explains it.
+TEST(ForceResidual, AConstantIsCreditedToNoVariable) {
+  Record record;
+  record.extra = [](double, double, double, double) { return 2.0; };
+  const Comparison constant = record.compared();
+  for (const Dependence& d : constant.force->dependence)
+    EXPECT_NEAR(d.share, d.variable == "offset" ? 1 : 0, 0.01) << d.variable;
+  record.extra = [](double, double v, double, double) { return 2.0 + (v > 0 ? 1 : -1); };
+  const Comparison both = record.compared();
+  EXPECT_NEAR(share(both, "offset"), 0.8, 0.05);
+  EXPECT_GT(share(both, "direction"), 0.85);
+}
+
 TEST(ForceResidual, ARepeatedMotionTellsItsNoiseFloor) {
   Record record;
   record.phase = [](double t) { return 2 * M_PI * t / 3; };  // repeats every three seconds

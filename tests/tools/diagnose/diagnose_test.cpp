@@ -108,17 +108,19 @@ TEST(Diagnose, NamesThePortWithWhichTheExperimentReachesAnEffectOfTheInput) {
   options.improved_diagram = axis.file("improved.json");
   const Diagnosis before = diagnose(axis.diagram(), {axis.experiment()}, options);
   ASSERT_THAT(names(before), ElementsAre("force_gain")) << to_text(before);
+  // The effect and the way around it when it is taken out both read the input: one port for both.
   ASSERT_EQ(before.experiment_ports.size(), 1u);
   EXPECT_EQ(before.experiment_ports[0].from, "motor.u");
-  EXPECT_THAT(before.experiment_ports[0].to, ElementsAre("force_gain.u"));
-  EXPECT_THAT(to_text(before), HasSubstr("must name force_gain.u in the place of motor.u"));
+  EXPECT_THAT(before.experiment_ports[0].to, ElementsAre("force_gain_input.u"));
+  EXPECT_THAT(to_text(before), HasSubstr("must name force_gain_input.u in the place of motor.u"));
   const auto json = nlohmann::json::parse(to_json(before));
   EXPECT_EQ(json["experiment_ports"][0]["from"], "motor.u");
-  EXPECT_EQ(json["experiment_ports"][0]["to"][0], "force_gain.u");
+  EXPECT_EQ(json["experiment_ports"][0]["to"][0], "force_gain_input.u");
 
   std::ifstream in(axis.experiment());
   std::string text(std::istreambuf_iterator<char>(in), {});
-  for (size_t at = 0; (at = text.find("\"motor.u\"")) != text.npos;) text.replace(at, 9, "\"force_gain.u\"");
+  for (size_t at = 0; (at = text.find("\"motor.u\"")) != text.npos;)
+    text.replace(at, 9, "\"force_gain_input.u\"");
   std::ofstream(axis.file("moved.experiment.json")) << text;
   const Diagnosis after = diagnose(axis.file("improved.json"), {axis.file("moved.experiment.json")});
   EXPECT_EQ(after.verdict, Verdict::nothing_missing) << to_text(after);

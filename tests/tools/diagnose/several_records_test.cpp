@@ -76,6 +76,27 @@ TEST(SeveralRecords, OneSlowBackwardAndOneFastForwardNameCoulombFriction) {
   expect_parameter(d.effects[0], "level", 0.15, 0.005, "N");
 }
 
+/// Held out as a whole, a record judges what the other one says.
+TEST(SeveralRecords, AWholeRecordCanBeHeldOut) {
+  HiddenAxis axis;
+  Physics truth = axis.nominal();
+  truth.coulomb_n = 0.2, truth.cogging = {0.1, 0.024, 0.3};
+  const std::string fitted = axis.record("fitted", truth, there_and_back(0.2, 0.4));
+  const std::string judge = axis.record("judge", truth, there_and_back(0.15, 0.3));
+  std::ifstream in(judge);
+  std::string text(std::istreambuf_iterator<char>(in), {});
+  text.insert(text.rfind('}'), R"(, "hold_out": {"fraction": 1})");
+  std::ofstream(judge) << text;
+  const Diagnosis d = diagnose(axis.diagram(), {fitted, judge}), alone = diagnose(axis.diagram(), {fitted});
+  ASSERT_EQ(names(d), names(alone)) << to_text(d);
+  ASSERT_THAT(names(d), testing::UnorderedElementsAre("coulomb_friction", "cogging")) << to_text(d);
+  EXPECT_TRUE(d.holds_out);
+  EXPECT_EQ(d.verdict, Verdict::explained) << to_text(d);
+  EXPECT_NEAR(d.held_out_mean_square, 1, 0.15);
+  EXPECT_LT(d.error_after, 0.2 * d.error_before);
+  EXPECT_THROW(diagnose(axis.diagram(), {judge}), InputError);
+}
+
 TEST(SeveralRecords, NothingIsMissingWhenNeitherLacksAnything) {
   HiddenAxis axis;
   const Diagnosis d = diagnose(axis.diagram(), {axis.record("forward", axis.nominal(), one_way(1)),

@@ -25,7 +25,7 @@ class Fitted : public testing::Test {
     "viscous":   {"type": "ViscousFriction", "damping": "=damping", "in": {"velocity": "mass.velocity"}},
     "net_force": {"type": "Sum", "signs": "+-", "in": {"terms": ["motor.y", "viscous.force"]}},
     "mass":      {"type": "Mass", "mass": "=mass", "initial_position": {"value": 0, "unit": "m"},
-                  "in": {"force": "net_force.sum"}},
+                  "initial_velocity": {"value": 0, "unit": "m/s"}, "in": {"force": "net_force.sum"}},
     "further":   {"type": "ConstantForce", "level": "=spare"}
   }
 }
@@ -36,7 +36,18 @@ class Fitted : public testing::Test {
     record(1);
   }
   /// With normal noise of 1 mm.
-  void record(uint64_t seed) {
+  void record(uint64_t seed) { folder.with("data.csv", data(seed)); }
+  /// Another record, whose sensor has an offset, beginning in motion.
+  std::string further(const std::string& name, uint64_t seed, double speed, double offset,
+                      const char* more = "") {
+    folder.with(name + ".csv", data(seed, speed, offset));
+    folder.with(name + ".json", fmt::format(R"({{"loopwright": 1, "data": "{}.csv", "time": "t",
+      "drive": {{"motor.u": {{"column": "u", "unit": "N", "interpolation": "linear"}}}},
+      "compare": {{"mass.position": {{"column": "x", "unit": "m"}}}}{}}})",
+                                            name, more));
+    return folder.path(name + ".json");
+  }
+  std::string data(uint64_t seed, double speed = 0, double offset = 0) const {
     std::string text = heading;
     const double m = 2, b = 3, w = 2;
     // v' = (u - b v)/m: v = A sin wt + B (e^{-bt/m} - cos wt) with these factors.
@@ -44,16 +55,16 @@ class Fitted : public testing::Test {
     for (int k = 0; k <= 800; ++k) {
       const double t = k * 0.01;
       const double x = sine / w * (1 - std::cos(w * t)) - cosine / w * std::sin(w * t) +
-                       cosine * m / b * (1 - std::exp(-b * t / m));
+                       (cosine + speed) * m / b * (1 - std::exp(-b * t / m)) + offset;
       const UniformPair u = uniform_pair(seed, 1, uint64_t(k));
       const double noise = 1e-3 * std::sqrt(-2 * std::log(u.first)) * std::cos(2 * M_PI * u.second);
       if (loses_every > 0 && k % loses_every == loses_every - 1) continue;
       text += fmt::format("{:.12g},{:.12g},{:.9g}\n", t / time_unit, std::sin(w * t), x + noise);
     }
-    folder.with("data.csv", text);
+    return text;
   }
   Fit fitted(const std::vector<std::string>& parameters) {
-    return fit(folder.path("axis.json"), folder.path("e.json"), parameters);
+    return fit(folder.path("axis.json"), {folder.path("e.json")}, parameters);
   }
   DiagramFolder folder;
   std::string heading = "t,u,x\n";
@@ -119,7 +130,7 @@ TEST_F(Fitted, WrongNamesInExperimentAndParametersAreToldAtOnce) {
   folder.with("wrong.json", R"({"loopwright": 1, "data": "data.csv", "time": "t",
     "drive": {"moter.u": {"column": "v", "unit": "N"}}, "compare": {"mass.positon": {"column": "x", "unit": "m"}}})");
   try {
-    fit(folder.path("axis.json"), folder.path("wrong.json"), {"mas"});
+    fit(folder.path("axis.json"), {folder.path("wrong.json")}, {"mas"});
     FAIL() << "was not refused";
   } catch (const InputError& error) {
     for (const char* part : {"did you mean \"motor\"?", "the data have no column \"v\"",
@@ -142,6 +153,86 @@ TEST_F(Fitted, BoundsAreThoseOfTheBlocks) {
   const Fit result = fitted({"damping", "mass"});
   EXPECT_EQ(result.parameters[0].least, 0);
   EXPECT_EQ(result.parameters[1].least, 0);
+}
+
+/// Mass and damping are shared; each record has its own speed at the start and its own zero.
+TEST_F(Fitted, RecordsShareParametersAndHaveTheirOwnStartsAndOffsets) {
+  const std::vector<double> speeds = {0.3, -0.2};
+  const std::string one = further("one", 1, speeds[0], 0.05), two = further("two", 2, speeds[1], -0.02),
+                    other = further("other", 3, 0, 0.01);
+  FitOptions options;
+  options.of_each = {"mass.initial_velocity"}, options.takes_offsets_out = true, options.held_out = {other};
+  const Fit result = fit(folder.path("axis.json"), {one, two}, {"mass", "damping"}, {}, options);
+  ASSERT_EQ(result.parameters.size(), 2u);
+  EXPECT_NEAR(result.parameters[0].value, 2, 0.05);
+  EXPECT_NEAR(result.parameters[1].value, 3, 0.05);
+  ASSERT_EQ(result.records.size(), 3u);
+  for (size_t r = 0; r < 2; ++r) {
+    ASSERT_EQ(result.records[r].parameters.size(), 1u);
+    const FittedParameter& speed = result.records[r].parameters[0];
+    EXPECT_NEAR(speed.value, speeds[r], 0.01);
+    EXPECT_GT(speed.high - speed.low, 1e-5);
+    EXPECT_LT(speed.high - speed.low, 0.02);
+    EXPECT_NEAR(result.records[r].signals[0].after, 1e-3, 1e-4);
+  }
+  EXPECT_TRUE(result.records[2].is_held_out);
+  EXPECT_EQ(result.records[2].signals[0].after, 0) << "no row of it is fitted";
+  EXPECT_NEAR(result.records[2].signals[0].held_out_after, 1e-3, 2e-4);
+  EXPECT_GT(result.records[2].signals[0].held_out_before, 5e-3);
+}
+
+TEST_F(Fitted, AnExperimentCanHoldItsWholeRecordOut) {
+  const std::string fitted_record = further("one", 1, 0, 0),
+                    held_out = further("two", 2, 0, 0, R"(, "hold_out": {"fraction": 1})");
+  const Fit result = fit(folder.path("axis.json"), {fitted_record, held_out}, {"mass", "damping"});
+  const Fit alone = fit(folder.path("axis.json"), {fitted_record}, {"mass", "damping"});
+  for (size_t i = 0; i < 2; ++i) EXPECT_DOUBLE_EQ(result.parameters[i].value, alone.parameters[i].value);
+  EXPECT_NEAR(result.signals[0].held_out_after, 1e-3, 1e-4);
+  try {
+    fit(folder.path("axis.json"), {held_out}, {"mass"});
+    FAIL() << "was not refused";
+  } catch (const InputError& error) {
+    EXPECT_TRUE(has(error.what(), "every record is held out")) << error.what();
+  }
+}
+
+/// The record asks for a damping of 3; the mass would become negative if it were -3.
+TEST_F(Fitted, ParametersKeepTheirSignAndStayInTheirRange) {
+  FitOptions options;
+  options.ranges = {{"damping", 0.5, 2.5}};
+  const Fit bounded =
+      fit(folder.path("axis.json"), {folder.path("e.json")}, {"mass", "damping"}, {}, options);
+  EXPECT_NEAR(bounded.parameters[1].value, 2.5, 1e-6);
+  EXPECT_TRUE(
+      std::ranges::any_of(bounded.warnings, [](const std::string& w) { return has(w, "at the limit"); }));
+  const LoadOptions reversed{.set = {{"motor.gain", "-1"}}};
+  const Fit kept = fit(folder.path("axis.json"), {folder.path("e.json")}, {"motor.gain"}, reversed);
+  EXPECT_LE(kept.parameters[0].value, 0);
+  options.ranges = {{"motor.gain", -2, 2}};
+  const Fit free = fit(folder.path("axis.json"), {folder.path("e.json")}, {"motor.gain", "mass", "damping"},
+                       {.set = {{"motor.gain", "-0.1"}, {"mass", "2 kg"}}}, options);
+  EXPECT_GT(free.parameters[0].value, 0);
+  options.ranges = {{"dampin", 0, 1}};
+  EXPECT_THROW(fit(folder.path("axis.json"), {folder.path("e.json")}, {"damping"}, {}, options), InputError);
+  options.ranges = {{"damping", 2, 5}};
+  EXPECT_THROW(fit(folder.path("axis.json"), {folder.path("e.json")}, {"damping"}, {}, options), InputError)
+      << "it begins at 1";
+}
+
+/// From anywhere, with any number of iterations.
+TEST_F(Fitted, NeverEndsWorseThanItBegan) {
+  for (const char* mass : {"0.01 kg", "2 kg", "900 kg"})
+    for (const int iterations : {1, 2, 40}) {
+      FitOptions options;
+      options.most_iterations = iterations;
+      const LoadOptions start{.set = {{"mass", mass}}};
+      const Fit result =
+          fit(folder.path("axis.json"), {folder.path("e.json")}, {"mass", "damping"}, start, options);
+      EXPECT_LE(result.signals[0].after, result.signals[0].before * (1 + 1e-12)) << mass << " " << iterations;
+      if (!result.has_converged) {
+        EXPECT_TRUE(has(to_text(result), "did not settle"));
+      }
+    }
 }
 
 TEST_F(Fitted, AMisspeltParameterIsAnError) {

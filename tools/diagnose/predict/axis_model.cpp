@@ -4,6 +4,7 @@
 #include <cmath>
 #include "engine/run/run.h"
 #include "tools/experiment/experiment_ports.h"
+#include "tools/experiment/sensor_gains.h"
 #include "tools/compare/machine.h"
 #include "tools/diagnose/predict/injection.h"
 
@@ -20,14 +21,6 @@ const std::pair<std::string, Place> role(const Experiment& experiment, std::stri
 Number number_of(const Plan& plan, const std::string& port) {
   const std::vector<Number> numbers = plan.find(port);
   return numbers.size() == 1 ? numbers[0] : -1;
-}
-
-/// Only the blocks that the axis needs are computed; the controller, now disconnected, is not.
-void keep_only(Plan& plan, const std::vector<Number>& wanted) {
-  const std::vector<bool> needed = blocks_behind(plan, wanted, {});
-  std::erase_if(plan.order, [&](const Plan::Entry& entry) {
-    return entry.kind != Plan::Entry::Kind::algebraic_loop && !needed[size_t(entry.block)];
-  });
 }
 
 /// Shorter ticks, so that samples can have any length.
@@ -73,6 +66,20 @@ std::vector<bool> blocks_behind(const Plan& plan, const std::vector<Number>& wan
   return needed;
 }
 
+void keep_only(Plan& plan, const std::vector<Number>& wanted) {
+  const std::vector<bool> needed = blocks_behind(plan, wanted, {});
+  std::erase_if(plan.order, [&](const Plan::Entry& entry) {
+    return entry.kind != Plan::Entry::Kind::algebraic_loop && !needed[size_t(entry.block)];
+  });
+}
+
+double step_by_samples(Plan& plan, const AxisRecord& record) {
+  if (!record.duration.empty()) divide_ticks(plan);
+  const double ticks = record.sample_time / plan.clock.time(1);
+  plan.step_ticks = std::max<int64_t>(1, std::llround(ticks));
+  return ticks;
+}
+
 AxisModel::AxisModel(const std::string& path, const std::string& experiment_path,
                      const LoadOptions& options) {
   Problems problems;
@@ -80,7 +87,8 @@ AxisModel::AxisModel(const std::string& path, const std::string& experiment_path
   const auto whole = load_diagram(path, options, problems);
   const auto whole_plan = whole ? compile(*whole, problems) : nullptr;
   if (!experiment || !whole_plan || problems.has_errors()) throw InputError(std::move(problems));
-  const Experiment cut = cut_open(in_units_of_ports(*whole_plan, *experiment), *whole_plan, problems);
+  const Experiment cut = cut_open(
+      without_sensor_gains(*whole_plan, in_units_of_ports(*whole_plan, *experiment)), *whole_plan, problems);
   const auto [force_port, force_place] = role(cut, "force");
   if (force_port.empty())
     problems.error(cut.place, "/roles", "", "no role \"force\"").expected =
@@ -116,9 +124,7 @@ AxisModel::AxisModel(const std::string& path, const std::string& experiment_path
     if (behind >= 0 && is_sampled_between(*changed, behind, port.number)) port.number = behind;
   }
   silence(*changed, input_), silence(*changed, injected_);
-  if (!record_.duration.empty()) divide_ticks(*changed);
-  sample_ticks_ = record_.sample_time / changed->clock.time(1);
-  changed->step_ticks = std::max<int64_t>(1, std::llround(sample_ticks_));
+  sample_ticks_ = step_by_samples(*changed, record_);
   std::vector<Number> wanted{force_, position_, velocity_};
   for (const MeasuredPort& port : record_.measured) wanted.push_back(port.number);
   keep_only(*changed, wanted);

@@ -36,6 +36,13 @@ struct LinearAxis {
 std::vector<bool> blocks_behind(const Plan& plan, const std::vector<Number>& wanted,
                                 const std::vector<int>& beyond);
 
+/// Only the blocks that the axis needs are computed; the controller, now disconnected, is not.
+void keep_only(Plan& plan, const std::vector<Number>& wanted);
+
+/// A solver step becomes a sample of the record, whose samples may have any length. Returns the ticks of a
+/// sample time.
+double step_by_samples(Plan& plan, const AxisRecord& record);
+
 class AxisModel {
  public:
   /// The diagram at `path`, driven by the experiment's input alone. Throws InputError with every problem.

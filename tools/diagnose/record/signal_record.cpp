@@ -63,6 +63,11 @@ SignalRecord read_signal_record(const Experiment& experiment, Problems& problems
   }
   record.held_out_from = whole_between<size_t>(
       std::round(double(record.rows()) * (1 - experiment.hold_out_fraction)), 0, record.rows());
+  if (record.held_out_from < fewest_rows) {
+    auto& p = problems.error(experiment.place, "/hold_out", "", "too few rows are left to fit");
+    p.expected = fmt::format("at least {} rows", fewest_rows);
+    p.found = fmt::format("{}", record.held_out_from);
+  }
   return record;
 }
 

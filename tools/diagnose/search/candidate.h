@@ -47,6 +47,8 @@ struct Candidate {
   Columns columns(const Path& path, const std::vector<double>& shape) const {
     return std::move(columns_at(path, {shape}).front());
   }
+  /// Whether computed parameters are within the ranges that their effect states; empty: it states none.
+  std::function<bool(const Member& member)> is_plausible;
   /// How much of the consumed force is a mass times the acceleration of the moving part; empty: none. This
   /// part is added to the model's own mass, where it acts without delay.
   std::function<double(const Member& member)> added_inertia;
@@ -56,6 +58,11 @@ struct Candidate {
 struct Member {
   const Candidate* candidate = nullptr;
   std::vector<double> linear, nonlinear;
+  /// Its pitch is a whole part of a turn, and is not fitted: see snap_to_turn().
+  bool is_part_of_turn = false;
+
+  /// Whether a nonlinear parameter is fitted; the pitch is the first one.
+  bool is_free(size_t nonlinear_index) const { return !is_part_of_turn || nonlinear_index > 0; }
 };
 
 }  // namespace loopwright::diagnosis

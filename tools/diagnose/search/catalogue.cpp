@@ -127,14 +127,24 @@ struct Compiled {
     }
     return result;
   }
-  double added_inertia(const Member& member) const {
+  EffectValues values(const Member& member) const {
     std::vector<double> fitted(plan->fitted.size());
     for (size_t i = 0; i < linear.size(); ++i) fitted[linear[i]] = member.linear[i];
     for (size_t i = 0; i < nonlinear.size(); ++i) fitted[nonlinear[i]] = member.nonlinear[i];
+    return values_of(plan->effect, plan->sizes, fitted);
+  }
+  double added_inertia(const Member& member) const {
     double sum = 0;
     for (const Attachment& a : plan->effect.attachments)
-      if (adds_inertia(a)) sum += values_of(plan->effect, plan->sizes, fitted).evaluate(a.add);
+      if (adds_inertia(a)) sum += values(member).evaluate(a.add);
     return sum;
+  }
+  bool is_plausible(const Member& member) const {
+    const EffectValues now = values(member);
+    return std::ranges::all_of(plan->effect.parameters, [&](const EffectParameter& p) {
+      return !p.is_bounded ||
+             (now.at(p.name) >= now.evaluate(p.low) && now.at(p.name) <= now.evaluate(p.high));
+    });
   }
 };
 
@@ -179,6 +189,8 @@ Candidate candidate_of(const Effect& effect, std::shared_ptr<const EffectPlan> p
   candidate.columns_at = [compiled](const Path& path, const std::vector<std::vector<double>>& shapes) {
     return compiled->columns(path, shapes);
   };
+  if (std::ranges::any_of(effect.parameters, &EffectParameter::is_bounded))
+    candidate.is_plausible = [compiled](const Member& member) { return compiled->is_plausible(member); };
   if (std::ranges::any_of(effect.attachments, adds_inertia))
     candidate.added_inertia = [compiled](const Member& member) { return compiled->added_inertia(member); };
   return candidate;

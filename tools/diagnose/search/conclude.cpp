@@ -248,13 +248,14 @@ void ask_rivals(const Trials& trials, Conclusion& result, Evidence& evidence,
   }
 }
 
-/// Joint maximum likelihood, repeated with a set that is as good with fewer members, or better: at most
-/// `rounds` times.
+/// Joint maximum likelihood, repeated with a simpler set that is as good, or at most `rounds` times with a
+/// better one. `stays`: not repeated.
 Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
-                     const std::vector<Shape>& shapes, Estimate found, int rounds) {
+                     const std::vector<Shape>& shapes, Estimate found, int rounds, bool stays) {
   Conclusion result;
   Estimate& estimate = result.estimate;
-  estimate = std::move(found);
+  result.turn = trials.turn;
+  estimate = snap_to_turn(trials, std::move(found));
   leave_out_doubtful(trials, estimate);
   const bool was_doubtful = may_be_doubtful(estimate.members);
   keep_material(trials, result, candidates.size());
@@ -277,14 +278,15 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
                 std::max({least_gain, least_gain_per_row * n,
                           unexplained(result.portmanteau - result.counts_portmanteau)}));
   std::optional<Estimate> instead;
-  if (rounds > 0) instead = simplified(rivals, estimate.members, exchanges);
+  if (!stays) instead = simplified(rivals, estimate.members, exchanges);
   if (!instead) {
     ask_rivals(trials, result, evidence, exchanges, candidates, *trials.list.front().model, rivals, n);
-    if (rounds > 0 && (instead = rivals.better(unexplained(result.portmanteau - result.counts_portmanteau))))
+    if (!stays && rounds > 0 &&
+        (instead = rivals.better(unexplained(result.portmanteau - result.counts_portmanteau))))
       result.trail.push_back("with noise of its own another set does better");
   }
   if (instead) {
-    Conclusion next = concluded(trials, candidates, shapes, std::move(*instead), rounds - 1);
+    Conclusion next = concluded(trials, candidates, shapes, std::move(*instead), rounds - 1, false);
     next.trail.insert(next.trail.begin(), result.trail.begin(), result.trail.end());
     return next;
   }
@@ -296,9 +298,9 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
 }  // namespace
 
 Conclusion conclude(Trials& trials, const std::vector<Candidate>& candidates,
-                    const std::vector<Shape>& shapes, Estimate found) {
+                    const std::vector<Shape>& shapes, Estimate found, bool stays) {
   constexpr int rounds = 2;
-  return concluded(trials, candidates, shapes, std::move(found), rounds);
+  return concluded(trials, candidates, shapes, std::move(found), rounds, stays);
 }
 
 }  // namespace loopwright::diagnosis

@@ -24,6 +24,7 @@ struct Conclusion {
   std::vector<OtherSet> other_sets;                  ///< within reach, best first
   std::vector<double> inclusion;                     ///< probability that the effect is there, calibrated
   bool is_remainder_noise = true;                    ///< otherwise a slow force exceeds the noise
+  double turn = 0;                                   ///< see Trials::turn
   double portmanteau = 0;          ///< n Σ ρ², 40 lags of the whitened errors; 40 when white
   double counts_portmanteau = 0;   ///< what the counts of the sensor add to it, along this motion
   bool is_negligible = false;      ///< the force that remains is not material, whatever its color
@@ -36,8 +37,9 @@ struct Conclusion {
   }
 };
 
-/// Joint maximum likelihood of parameters and noise; immaterial members are removed one by one.
+/// Joint maximum likelihood of parameters and noise; immaterial members are removed one by one. Sets that are
+/// as good with fewer members, or better, take its place, unless it `stays`.
 Conclusion conclude(Trials& trials, const std::vector<Candidate>& candidates,
-                    const std::vector<Shape>& shapes, Estimate found);
+                    const std::vector<Shape>& shapes, Estimate found, bool stays = false);
 
 }  // namespace loopwright::diagnosis

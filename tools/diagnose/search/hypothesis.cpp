@@ -70,9 +70,10 @@ Columns derivatives(const Member& member, const Path& path) {
   std::vector<std::vector<double>> shapes{member.nonlinear};
   std::vector<double> steps;
   for (size_t i = 0; i < member.nonlinear.size(); ++i) {
+    if (!member.is_free(i)) continue;
     shapes.push_back(member.nonlinear);
     steps.push_back(difference_step(member.candidate->nonlinear[i], member.nonlinear[i]));
-    shapes.back()[i] += steps[i];
+    shapes.back()[i] += steps.back();
   }
   std::vector<Columns> at = member.candidate->columns_at(path, shapes);
   Columns result = member.candidate->amplitude_is_one ? Columns{} : at[0];
@@ -145,7 +146,8 @@ std::vector<FreeParameter> free_parameters(const std::vector<Member>& members) {
   for (size_t m = 0; m < members.size(); ++m) {
     if (!members[m].candidate->amplitude_is_one)
       for (size_t i = 0; i < members[m].linear.size(); ++i) free.push_back({m, true, i});
-    for (size_t i = 0; i < members[m].nonlinear.size(); ++i) free.push_back({m, false, i});
+    for (size_t i = 0; i < members[m].nonlinear.size(); ++i)
+      if (members[m].is_free(i)) free.push_back({m, false, i});
   }
   return free;
 }

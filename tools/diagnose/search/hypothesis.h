@@ -34,6 +34,7 @@ struct Trials {
   double force_rms = 0;        ///< the force produced by the recorded inputs
   double lowest_position = 0, highest_position = 0, longest_s = 0;  ///< as in the first prediction
   const std::vector<InverseDynamics>* inverse = nullptr;            ///< of each record; null: not yet known
+  double turn = 0;  ///< [position] after which everything on a rotary axis repeats; 0: not rotary
   const std::atomic<bool>* interrupt =
       nullptr;  ///< once true, the next run along the records throws Interrupted
   size_t ports() const { return list.front().model->record().measured.size(); }

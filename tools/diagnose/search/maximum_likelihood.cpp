@@ -100,7 +100,10 @@ Estimate evaluated(Trials& trials, std::vector<Member> members, const Noise& noi
   estimate.mean_square = mean_square(trials, estimate.fitted);
   estimate.profile = profile(trials, estimate.fitted);
   estimate.against_at_rest = against_at_rest(trials, estimate.members, estimate.fitted, noise);
-  estimate.is_valid = std::isfinite(estimate.mean_square);
+  estimate.is_valid =
+      std::isfinite(estimate.mean_square) && std::ranges::all_of(estimate.members, [](const Member& m) {
+        return !m.candidate->is_plausible || m.candidate->is_plausible(m);
+      });
   return estimate;
 }
 
@@ -137,12 +140,33 @@ Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& n
     double fraction = 1;
     for (int shorter = 0; shorter < 4 && best.profile == before; ++shorter, fraction *= 0.35) {
       Estimate next = evaluated(trials, moved(best.members, free, step, fraction), noise, best.motion);
-      if (next.profile < before) best = std::move(next);
+      if (next.is_valid && next.profile < before) best = std::move(next);
     }
     if (!(best.profile < before - criteria::least_step_gain)) break;
     if (std::abs(best.profile - best.motion.profile) > far) take_own_motion(trials, best, far);
   }
   return best;
+}
+
+Estimate snap_to_turn(Trials& trials, Estimate estimate) {
+  const double span = trials.highest_position - trials.lowest_position;
+  for (size_t m = 0; trials.turn > 0 && m < estimate.members.size(); ++m) {
+    const Candidate& candidate = *estimate.members[m].candidate;
+    if (!candidate.is_periodic || candidate.repeats_in_time || estimate.members[m].is_part_of_turn) continue;
+    const double pitch = estimate.members[m].nonlinear[0];
+    const double times = std::round(trials.turn / pitch);
+    if (times < 1 || std::abs(span / pitch - span * times / trials.turn) > criteria::most_drift) continue;
+    std::vector<Member> members = estimate.members;
+    members[m].nonlinear[0] = trials.turn / times, members[m].is_part_of_turn = true;
+    Estimate snapped = fit_members(trials, std::move(members), estimate.noise, estimate.motion, 3);
+    const double most_loss =
+        std::max(criteria::least_gain, criteria::least_gain_per_row * double(fitted_numbers(trials)));
+    // On less than a turn the next whole number is about as close.
+    const bool is_whole_turn = span >= criteria::nearly_a_turn * trials.turn;
+    if (snapped.is_valid && (is_whole_turn || snapped.profile - estimate.profile <= most_loss))
+      estimate = std::move(snapped);
+  }
+  return estimate;
 }
 
 void widen_by_blocks(const Trials& trials, Estimate& estimate) {

@@ -22,6 +22,11 @@ struct Estimate {
 Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& noise, const Motion& motion,
                      int iterations);
 
+/// On a rotary axis what belongs to motor, bearing or encoder repeats a whole number of times a turn, and a
+/// pitch that is wrong by a thousandth is wrong by a period after a few turns. Every pitch that the records
+/// cannot tell from such a part of a turn is set to it and no longer fitted.
+Estimate snap_to_turn(Trials& trials, Estimate estimate);
+
 /// The same on the motion that it estimated itself.
 Estimate on_own_motion(Trials& trials, Estimate estimate);
 

@@ -2,6 +2,7 @@
 #include "models/real/whole.h"
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include "tools/diagnose/criteria.h"
 #include "tools/experiment/experiment_ports.h"
 
@@ -109,6 +110,13 @@ std::vector<Fitted> mark_usable(Trials& trials) {
   }
 }
 
+void reject_without_fitted_rows(const Trials& trials) {
+  if (std::ranges::any_of(trials.list, [](const Trial& trial) { return trial.held_out_from > 0; })) return;
+  Problems problems;
+  problems.error({}, "/hold_out", "", "every record is held out as a whole").expected = "a record to fit";
+  throw InputError(std::move(problems));
+}
+
 /// The noise of a motion and that of a map are not related.
 void reject_mixed(const Trials& trials) {
   Problems problems;
@@ -144,7 +152,10 @@ Trials prepare(const std::string& diagram, const std::vector<std::string>& exper
     trials.list.push_back(std::move(trial));
   }
   reject_mixed(trials);
+  reject_without_fitted_rows(trials);
   trials.run_along(Trials::Rows::all);
+  if (const MeasuredPort* position = trials.list.front().model->record().find("position"))
+    if (position->unit == "rad") trials.turn = 2 * std::numbers::pi;
   trials.force_rms = std::sqrt(square / double(std::max<size_t>(n, 1)));
   trials.noise = first_guess(trials);
   const double rest_speed = criteria::rest_speed * quantile(speed, 0.99);

@@ -30,12 +30,6 @@ std::vector<double> at_samples(const std::vector<double>& held, const AxisRecord
   return mean;
 }
 
-bool misses_samples(const AxisRecord& record, size_t from, size_t to) {
-  for (size_t k = from; k < to; ++k)
-    if (record.is_missing(k)) return true;
-  return false;
-}
-
 /// For the model along a path, at the instants of its rows.
 std::vector<double> net_forces(AxisModel& model, const Path& path, const std::vector<double>& input) {
   return model.net_forces(path.position, path.velocity, input, AxisModel::At::mean);
@@ -96,6 +90,23 @@ std::vector<double> residual_with(const Trial& trial, const InverseDynamics& inv
     for (size_t k = 1; k + 1 < residual.size(); ++k)
       residual[k] += mass * (changed.sensor[k + 1] - 2 * changed.sensor[k] + changed.sensor[k - 1]) / (T * T);
   return zero_phase_low_pass(residual, force_cutoff(T), T);
+}
+
+MeasuredMotion away_from_turns(const InverseDynamics& inverse) {
+  MeasuredMotion motion = inverse.motion;
+  const double T = motion.sample_time;
+  const size_t reach = std::max<size_t>(1, whole_count(std::ceil(criteria::blur / (force_cutoff(T) * T))));
+  size_t after = reach + 1;  // rows since the last one
+  for (size_t k = 0; k < motion.rows(); ++k) {
+    const bool turns = k > 0 && motion.velocity[k] * motion.velocity[k - 1] <= 0;
+    after = turns || inverse.path.rests[k] ? 0 : after + 1;
+    if (after > reach) continue;
+    motion.counts[k] = 0;
+    if (after == 0)
+      std::fill(motion.counts.begin() + std::ptrdiff_t(k - std::min(k, reach)),
+                motion.counts.begin() + std::ptrdiff_t(k), 0);
+  }
+  return motion;
 }
 
 ResidualSize residual_size(const Trials& trials, const std::vector<InverseDynamics>& inverse,
@@ -166,33 +177,6 @@ double residual_floor(const Trials& trials, const Noise& noise) {
     sum += filter * filter * (hold * (noise.white * noise.white + slow) + motion * motion);
   }
   return std::sqrt(sum / points);
-}
-
-double short_horizon_error(Trials& trials, const Estimate& estimate, double horizon_s) {
-  if (trials.has_map()) return std::nan("");  // no motion to predict
-  double sum = 0, n = 0;
-  double inertia = 0;
-  for (const Member& member : estimate.members)
-    if (member.candidate->added_inertia) inertia += member.candidate->added_inertia(member);
-  for (size_t t = 0; t < trials.list.size(); ++t) {
-    AxisModel& model = *trials.list[t].model;
-    const AxisRecord& record = model.record();
-    const Path& path = estimate.fitted[t].prediction.path;
-    const Drives drives = drives_of(estimate.members, *estimate.motion.paths[t], trials.list[t].input);
-    model.set_added_inertia(inertia);
-    model.start(path.position[0], path.velocity[0]);
-    const size_t horizon = std::max<size_t>(2, whole_count(horizon_s / record.sample_time));
-    for (size_t start = 0; start + horizon < path.samples(); start += horizon) {
-      if (!trials.list[t].usable[start] || !trials.list[t].usable[start + horizon]) continue;
-      if (misses_samples(record, start, start + horizon)) continue;
-      model.place(path.position[start], path.velocity[start]);
-      for (size_t k = start; k < start + horizon; ++k) model.step(drives.input[k], -drives.force[k]);
-      const double sensor = drives.sensor.empty() ? 0 : drives.sensor[start + horizon];
-      const double error = model.measured(0) + sensor - record.measured[0].value[start + horizon];
-      sum += error * error, n += 1;
-    }
-  }
-  return n > 0 ? std::sqrt(sum / n) : 0;
 }
 
 }  // namespace loopwright::diagnosis

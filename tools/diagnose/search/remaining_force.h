@@ -21,6 +21,10 @@ InverseDynamics inverse_dynamics(Trial& trial);
 std::vector<double> residual_with(const Trial& trial, const InverseDynamics& inverse,
                                   const std::vector<Member>& members);
 
+/// The measured motion, in which only rows count that the filter of the residual does not mix with a reversal
+/// or a rest: there the force of dry friction leaps, at an instant that the motion shows only roughly.
+MeasuredMotion away_from_turns(const InverseDynamics& inverse);
+
 struct ResidualSize {
   double fitted = 0, held_out = 0;  ///< root mean square; held_out 0 without held-out rows
 };
@@ -46,9 +50,5 @@ bool is_negligible(const Trials& trials, const std::vector<Member>& members);
 
 /// The residual that the noise alone would leave, from its spectrum.
 double residual_floor(const Trials& trials, const Noise& noise);
-
-/// Root mean squared error of the first measured port when the model runs freely for this time, repeatedly
-/// started from correct states.
-double short_horizon_error(Trials& trials, const Estimate& estimate, double horizon_s = 0.1);
 
 }  // namespace loopwright::diagnosis

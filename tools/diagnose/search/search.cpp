@@ -150,7 +150,7 @@ class Search {
     for (auto& [gain, trial] : tried)
       if (!best.is_valid && adds_material(trial)) best = std::move(trial);
     if (!best.is_valid) return note("no extension"), false;
-    take(fit_members(trials_, best.members, noise_, best.motion, 6));
+    take(snap_to_turn(trials_, fit_members(trials_, best.members, noise_, best.motion, 6)));
     note("extended");
     return true;
   }

@@ -40,6 +40,21 @@ Variable direction_of(double transition_distance) {
   };
 }
 
+/// The four spline functions that are not zero at a fraction of the range, and the first one's index.
+struct SplinePieces {
+  size_t first;
+  double value[spline_degree + 1];
+};
+SplinePieces spline_pieces(size_t levels, double fraction) {
+  const size_t intervals = levels - spline_degree;
+  const double at = std::clamp(fraction, 0.0, 1.0) * double(intervals);
+  const size_t i = std::min(size_t(at), intervals - 1);
+  const double t = at - double(i), left = 1 - t;
+  return {i,
+          {left * left * left / 6, (4 - 3 * t * t * (2 - t)) / 6, (4 - 3 * left * left * (2 - left)) / 6,
+           t * t * t / 6}};
+}
+
 /// Σ level_i · B_i(variable) · factor: a cubic spline over uniform intervals.
 Candidate spline(std::string variables, size_t levels, double low, double high, Variable variable,
                  Variable factor) {
@@ -49,16 +64,11 @@ Candidate spline(std::string variables, size_t levels, double low, double high, 
   for (size_t i = 0; i < levels; ++i) candidate.linear.push_back({"level", "", -1e300, 1e300, false, {}});
   candidate.columns_at = [=](const Path& path, const std::vector<std::vector<double>>& shapes) {
     std::vector<std::vector<float>> values(levels, std::vector<float>(path.samples()));
-    const size_t intervals = levels - 3;
     const std::vector<double> along = variable(path), factors = factor(path);
     for (size_t k = 0; k < path.samples(); ++k) {
-      const double at = std::clamp((along[k] - low) / (high - low), 0.0, 1.0) * double(intervals);
-      const size_t i = std::min(size_t(at), intervals - 1);
-      const double t = at - double(i), left = 1 - t, size = factors[k] / 6;
-      values[i][k] = float(size * left * left * left);
-      values[i + 1][k] = float(size * (4 - 3 * t * t * (2 - t)));
-      values[i + 2][k] = float(size * (4 - 3 * left * left * (2 - left)));
-      values[i + 3][k] = float(size * t * t * t);
+      const SplinePieces pieces = spline_pieces(levels, (along[k] - low) / (high - low));
+      for (size_t i = 0; i <= spline_degree; ++i)
+        values[pieces.first + i][k] = float(factors[k] * pieces.value[i]);
     }
     Columns columns;
     for (std::vector<float>& column : values) columns.emplace_back(std::move(column));
@@ -101,13 +111,24 @@ Candidate tone(const RecordSizes& sizes) {
 
 }  // namespace
 
+double spline_at(const std::vector<double>& levels, double fraction) {
+  const SplinePieces pieces = spline_pieces(levels.size(), fraction);
+  double sum = 0;
+  for (size_t i = 0; i <= spline_degree; ++i) sum += levels[pieces.first + i] * pieces.value[i];
+  return sum;
+}
+
+double transition_of_direction(const RecordSizes& sizes) {
+  return std::max(1e-6 * sizes.stroke, sizes.resolution);
+}
+
 std::vector<Candidate> unknown_forces(const RecordSizes& sizes, bool is_map) {
   const double low = sizes.lowest_position, high = sizes.highest_position, top = sizes.top_speed;
   const Variable one = each_sample([](const Path&, size_t) { return 1.0; });
   const Variable acceleration = each_sample([](const Path& path, size_t k) { return path.acceleration[k]; });
   const Variable time = each_sample([](const Path& path, size_t k) { return double(k) * path.sample_time; });
   const Variable position = each_sample(middle_position), velocity = each_sample(middle_velocity);
-  const Variable direction = direction_of(std::max(1e-6 * sizes.stroke, sizes.resolution));
+  const Variable direction = direction_of(transition_of_direction(sizes));
   const Candidate of_position = spline("position", 60, low, high, position, one),
                   of_direction = spline("position,direction", 24, low, high, position, direction);
   if (is_map) return {of_position, of_direction};

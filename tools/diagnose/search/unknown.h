@@ -11,4 +11,11 @@ namespace loopwright::diagnosis {
 /// position and direction.
 std::vector<Candidate> unknown_forces(const RecordSizes& sizes, bool is_map);
 
+constexpr size_t spline_degree = 3;
+/// A function's value from its levels at a fraction of its range: a cubic spline over levels - 3 uniform
+/// intervals.
+double spline_at(const std::vector<double>& levels, double fraction);
+/// [position] The distance over which "direction" changes its sign.
+double transition_of_direction(const RecordSizes& sizes);
+
 }  // namespace loopwright::diagnosis

@@ -10,6 +10,12 @@ using namespace criteria;
 
 namespace {
 
+/// The 95 % quantile of χ² with so many degrees of freedom (Wilson and Hilferty 1931).
+double chi_square_95(double n) {
+  const double cube_root = 1 - 2 / (9 * n) + 1.645 * std::sqrt(2 / (9 * n));
+  return n * cube_root * cube_root * cube_root;
+}
+
 /// Indices of a member's parameters among the free ones. Only those that decide whether it is present: the
 /// linear ones, or the shape of a member without linear ones.
 std::vector<Eigen::Index> existence(const std::vector<Member>& members, size_t member) {
@@ -38,7 +44,11 @@ double chi_square(const Eigen::MatrixXd& information, const Eigen::VectorXd& the
 /// χ² of the parameters that decide whether a member is present, alone and with all others known. Its own
 /// shape is taken as known: a drift much longer than the record is certain even if its size and time are not
 /// determined separately.
-std::pair<double, double> wald(Estimate& estimate, size_t member) {
+struct Wald {
+  double among_others = 0, alone = 0, with_own_shape = 0;
+  size_t parameters = 0;
+};
+Wald wald(Estimate& estimate, size_t member) {
   const std::vector<FreeParameter> free = free_parameters(estimate.members);
   const std::vector<Eigen::Index> places = existence(estimate.members, member);
   const Eigen::VectorXd scale = estimate.covariance.diagonal().cwiseSqrt().cwiseInverse();
@@ -53,7 +63,8 @@ std::pair<double, double> wald(Estimate& estimate, size_t member) {
     others.push_back(at);
     if (free[i].member == member) shape.push_back(at);
   }
-  return {chi_square(information, theta, places, shape), chi_square(information, theta, places, others)};
+  return {chi_square(information, theta, places, shape), chi_square(information, theta, places, others),
+          chi_square(information, theta, places, {}), places.size()};
 }
 
 /// Root mean square of the force that a member consumes over the fitted rows.
@@ -84,8 +95,9 @@ double force_rms(const Trials& trials, const Estimate& estimate, size_t index) {
 
 Weight weigh(const Trials& trials, Estimate& estimate, size_t member) {
   Weight weight;
-  const auto [among_others, alone] = wald(estimate, member);
+  const auto [among_others, alone, with_own_shape, parameters] = wald(estimate, member);
   weight.wald = among_others;
+  weight.certainty = with_own_shape / chi_square_95(double(parameters));
   weight.force_rms = force_rms(trials, estimate, member);
   weight.unique_force = weight.force_rms * std::sqrt(std::min(1.0, among_others / std::max(alone, 1e-300)));
   return weight;

@@ -1,4 +1,4 @@
-/// Faults of a record and missing excitation, with their consequences.
+/// Faults of records and missing excitation, with their consequences.
 #include <fmt/format.h>
 #include "tools/compare/excitation.h"
 #include "tools/diagnose/criteria.h"
@@ -21,20 +21,23 @@ std::optional<RecordFinding> too_few_rows(const Trials& trials) {
 
 std::vector<RecordFinding> look_at_records(const Trials& trials,
                                            const std::vector<InverseDynamics>& inverse) {
-  std::vector<RecordFinding> findings;
+  std::vector<ForceResidual> residuals(trials.list.size());
+  std::vector<RecordContent> contents;
+  std::vector<RecordView> records;
   for (size_t t = 0; t < trials.list.size(); ++t) {
     const AxisModel& model = *trials.list[t].model;
     Machine machine;
     machine.motion = inverse[t].motion, machine.mass = model.nominal_inertia();
-    ForceResidual residual;
-    residual.value = residual_with(trials.list[t], inverse[t], {});
+    residuals[t].value = residual_with(trials.list[t], inverse[t], {});
     const MeasuredPort* position = model.record().find("position");
-    const RecordContent content = content_of(machine, residual, position ? position->resolution : 0);
-    const std::string of = trials.list.size() > 1 ? fmt::format("record {}: ", t + 1) : "";
-    for (const RecordFault& fault : faults_of(machine, residual, content)) {
-      if (trials.has_map() && fault.name != "one_direction") continue;  // a map has no times and no speeds
-      findings.push_back({of + fault.text, fault.cost, fault.is_fatal, fault.may_be_physics});
-    }
+    contents.push_back(content_of(machine, residuals[t], position ? position->resolution : 0));
+  }
+  for (size_t t = 0; t < trials.list.size(); ++t)
+    records.push_back({inverse[t].motion, residuals[t], contents[t]});
+  std::vector<RecordFinding> findings;
+  for (const RecordFault& fault : faults_of(records)) {
+    if (trials.has_map() && fault.name != "one_direction") continue;  // a map has no times and no speeds
+    findings.push_back({fault.text, fault.cost, fault.is_fatal, fault.may_be_physics});
   }
   return findings;
 }

@@ -105,6 +105,12 @@ void mark_knee(std::vector<DiagnosisStep>& steps) {
 
 }  // namespace
 
+size_t Staircase::necessary() const {
+  size_t count = steps.size();
+  while (count > 1 && steps[count - 1].is_optional) --count;
+  return count;
+}
+
 Staircase climb(Trials& trials, const Conclusion& conclusion, const std::vector<InverseDynamics>& inverse,
                 size_t catalogue) {
   Staircase result;
@@ -118,11 +124,11 @@ Staircase climb(Trials& trials, const Conclusion& conclusion, const std::vector<
       if (std::ranges::find(before, m) == before.end()) added.push_back(m);
     std::ranges::stable_sort(added, {},
                              [&](size_t m) { return corrects_nominal(conclusion.estimate.members[m]); });
+    result.members.push_back(stage.estimate.members), result.added.push_back(added);
     for (size_t m : added)
       step.added.push_back(shown_name(*conclusion.estimate.members[m].candidate)), result.order.push_back(m);
     const ResidualSize size = residual_size(trials, inverse, stage.estimate.members);
     step.force_rmse = size.fitted, step.held_out_force_rmse = size.held_out;
-    step.simulation_rmse = short_horizon_error(trials, stage.estimate);
     before = stage.members;
     result.steps.push_back(std::move(step));
   }

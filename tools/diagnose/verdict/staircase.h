@@ -8,8 +8,13 @@
 namespace loopwright::diagnosis {
 
 struct Staircase {
-  std::vector<size_t> order;         ///< of the members, largest weight first
-  std::vector<DiagnosisStep> steps;  ///< the nominal diagram, then one step per effect
+  std::vector<size_t> order;                 ///< of the members, largest weight first
+  std::vector<DiagnosisStep> steps;          ///< the nominal diagram, then one step per effect
+  std::vector<std::vector<Member>> members;  ///< of each step, all that it has, fitted together
+  std::vector<std::vector<size_t>> added;    ///< to each step: indices of the conclusion's members
+
+  /// Steps up to the last one that is not optional.
+  size_t necessary() const;
 };
 
 /// Removes the members again, each time the least important one; the remaining ones are fitted again.

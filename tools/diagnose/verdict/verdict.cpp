@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include "tools/compare/missing_force.h"
+#include "tools/diagnose/criteria.h"
 
 namespace loopwright::diagnosis {
 
@@ -25,15 +27,49 @@ void add_variables(std::vector<std::string>& list, std::string_view joined) {
   }
 }
 
+/// Why the residual force is no noise, in words; empty: it may be.
+std::string force_above_noise(const Trials& trials, const std::vector<InverseDynamics>& inverse,
+                              const std::vector<Member>& members) {
+  // An impact that is predicted a moment too late leaves a large force for a moment.
+  const bool has_impacts = std::ranges::any_of(members, [](const Member& m) { return m.candidate->flies; });
+  if (trials.has_map() || has_impacts) return {};
+  for (size_t t = 0; t < trials.list.size(); ++t) {
+    const MeasuredMotion motion = away_from_turns(inverse[t]);
+    const std::vector<double> residual = residual_with(trials.list[t], inverse[t], members);
+    double square = 0, n = 0;
+    for (size_t k = 0; k < residual.size(); ++k)
+      if (motion.counts[k]) square += residual[k] * residual[k], n += 1;
+    if (n < criteria::least_rows) continue;
+    const double rms = std::sqrt(square / n);
+    const NoiseFloor floor = noise_floor(motion, residual);
+    const double independent = n * motion.sample_time / criteria::slow_memory_s,
+                 followed = floor.repeat_s > 0 ? 0 : criteria::levels_of_smooth_functions / independent;
+    if (floor.value <= 0 || followed > criteria::most_levels) continue;
+    const double most = criteria::most_over_floor / std::sqrt(1 - followed);
+    const double excess = std::sqrt(std::max(0.0, rms * rms - floor.value * floor.value));
+    if (rms > most * floor.value && excess > criteria::least_excess * trials.force_rms)
+      return fmt::format("the residual force is {:.2f} times what noise alone leaves, seen from {}",
+                         rms / floor.value, floor.source);
+  }
+  return {};
+}
+
 }  // namespace
 
 void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, const Noise& tight,
-           Diagnosis& diagnosis) {
+           const std::vector<InverseDynamics>& inverse, Diagnosis& diagnosis) {
   const Estimate& e = conclusion.estimate;
   for (const Member& member : e.members)
     if (member.candidate->is_unknown) add_variables(diagnosis.remainder_variables, member.candidate->form);
   const bool has_unknown = !diagnosis.remainder_variables.empty();
-  const bool is_not_white = !conclusion.is_white();
+  bool is_not_white = !conclusion.is_white();
+  if (std::string why = force_above_noise(trials, inverse, e.members); !why.empty())
+    diagnosis.contradictions.push_back(std::move(why));
+  if (diagnosis.simulation_diverged)
+    diagnosis.contradictions.push_back("the diagram with these effects diverges when it is simulated");
+  else if (diagnosis.simulation_is_worse)
+    diagnosis.contradictions.push_back("the diagram simulates worse with these effects than without them");
+  is_not_white |= !diagnosis.contradictions.empty();
   if (is_not_white || has_unknown) {
     std::vector<Member> named;
     std::ranges::copy_if(e.members, std::back_inserter(named),

@@ -13,9 +13,11 @@ std::vector<RecordFinding> look_at_records(const Trials& trials, const std::vect
 std::optional<RecordFinding> too_few_rows(const Trials& trials);
 
 /// Verdict, remainder and its variables, the latter along `motion`. `tight` is the noise of the search: with
-/// the final noise, the slow force has absorbed the remainder.
+/// the final noise, the slow force has absorbed the remainder. Nothing is explained as long as the residual
+/// force of `inverse` dynamics exceeds the noise that repeats of the motion show, or as the diagram with the
+/// effects simulates worse.
 void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, const Noise& tight,
-           Diagnosis& diagnosis);
+           const std::vector<InverseDynamics>& inverse, Diagnosis& diagnosis);
 
 /// The experiment of the catalogue that distinguishes the two.
 SuggestedExperiment separating_experiment(const Effect& effect, const std::string& other);

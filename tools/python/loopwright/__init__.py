@@ -406,23 +406,30 @@ def read(path, allow_not_finite=False):
     return Recording(_core.read(_os.fspath(path), allow_not_finite))
 
 
-def compare(diagram, experiment):
-    """Holds a diagram against a recording, as `loopwright compare`."""
-    answer = _core.compare(_loaded(diagram)._diagram, _os.fspath(experiment))
+def _paths(experiments):
+    """One path or several."""
+    one = isinstance(experiments, (str, _os.PathLike))
+    return [_os.fspath(e) for e in ([experiments] if one else experiments)]
+
+
+def compare(diagram, experiments):
+    """Holds a diagram against one recording or several, as `loopwright compare`."""
+    answer = _core.compare(_loaded(diagram)._diagram, _paths(experiments))
     return Answer(answer.text, answer.json, answer.html)
 
 
-def fit(diagram, experiment, parameters, iterations=40):
-    """Refines parameters so that the simulation meets the recording, as `loopwright fit`."""
-    return Fit(*_core.fit(_loaded(diagram)._diagram, _os.fspath(experiment), list(parameters), iterations))
+def fit(diagram, experiments, parameters, iterations=40, of_each=(), hold_out=(), ranges=None, offsets=False):
+    """Refines parameters so that the simulation meets one recording or several, as `loopwright fit`.
+    `ranges`: {"mass": (80, 120)} in SI units."""
+    return Fit(*_core.fit(_loaded(diagram)._diagram, _paths(experiments), list(parameters), iterations, list(of_each),
+                          _paths(hold_out), dict(ranges or {}), offsets))
 
 
-def diagnose(diagram, experiments, improved=None):
-    """Finds the effect that a diagram lacks, as `loopwright diagnose`. `improved`: where to write the diagram with it."""
-    if isinstance(experiments, (str, _os.PathLike)):
-        experiments = [experiments]
+def diagnose(diagram, experiments, improved=None, all=False):
+    """Finds the effect that a diagram lacks, as `loopwright diagnose`. `improved`: where to write the diagram with it;
+    `all`: with the optional effects too."""
     improved = _os.fspath(improved) if improved else ""
-    answer = _core.diagnose(_loaded(diagram)._diagram, [_os.fspath(e) for e in experiments], improved)
+    answer = _core.diagnose(_loaded(diagram)._diagram, _paths(experiments), improved, all)
     return Diagnosis(answer, improved)
 
 

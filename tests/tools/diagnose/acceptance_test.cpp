@@ -1,0 +1,109 @@
+// An effect stands only if the diagram simulates no worse with it.
+#include <gmock/gmock.h>
+#include <numbers>
+#include "tests/tools/diagnose/diagnosed.h"
+#include "tests/tools/diagnose/hidden_axis.h"
+#include "tools/diagnose/verdict/free_run.h"
+
+namespace loopwright {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+diagnosis::FreeRun run_of(std::vector<double> squares, bool diverged = false) {
+  return {0.1, std::move(squares), diverged};
+}
+
+TEST(Acceptance, ARunIsWorseOnlyBeyondTheScatterBetweenWindows) {
+  std::vector<double> before, alike, worse;
+  for (int i = 0; i < 40; ++i) {
+    const double scatter = 0.3 * std::sin(7.0 * i);
+    before.push_back(1 + scatter), alike.push_back(1 + 0.3 * std::sin(11.0 * i)),
+        worse.push_back(1.2 + scatter);
+  }
+  EXPECT_FALSE(is_worse(run_of(before), run_of(alike)));
+  EXPECT_FALSE(is_worse(run_of(before), run_of(before)));
+  EXPECT_TRUE(is_worse(run_of(before), run_of(worse)));
+  EXPECT_FALSE(is_worse(run_of(worse), run_of(before)));
+  EXPECT_TRUE(is_worse(run_of(before), run_of(before, true)));
+}
+
+/// A few windows of fast motion scatter so much that they hide what every window shows.
+TEST(Acceptance, ARunIsWorseIfEveryWindowIsWhateverItsSize) {
+  std::vector<double> before, after;
+  for (int i = 0; i < 40; ++i) {
+    const double size = i % 13 == 0 ? 1e4 : 1;
+    before.push_back(size), after.push_back(size * (1.5 + 0.3 * std::sin(7.0 * i)));
+  }
+  EXPECT_TRUE(is_worse(run_of(before), run_of(after)));
+  EXPECT_FALSE(is_worse(run_of(after), run_of(before)));
+}
+
+/// A delay that is not there improves what is noise a little and spoils every acceleration.
+TEST(Acceptance, ARunIsWorseIfSeveralWindowsAreFarWorse) {
+  std::vector<double> before, several, one;
+  for (int i = 0; i < 80; ++i) {
+    before.push_back(1 + 0.8 * std::sin(7.0 * i));
+    several.push_back(i % 20 == 3 ? 30 + i : 0.95 * before.back());
+    one.push_back(i == 3 ? 100 : 0.95 * before.back());  // an impact that came too late
+  }
+  EXPECT_TRUE(is_worse(run_of(before), run_of(several)));
+  EXPECT_FALSE(is_worse(run_of(before), run_of(one)));
+}
+
+/// Each step of the staircase simulates better, and the last one down to the noise.
+TEST(Acceptance, TheStaircaseOfTheSimulationFalls) {
+  HiddenAxis axis;
+  Physics truth = axis.nominal();
+  truth.coulomb_n = 0.2, truth.cogging = {0.15, 0.024, 0.3};
+  const Diagnosis d = diagnose(axis.diagram(), {axis.record("record", truth, there_and_back(0.2, 0.4))});
+  ASSERT_THAT(names(d), testing::UnorderedElementsAre("coulomb_friction", "cogging")) << to_text(d);
+  EXPECT_EQ(d.verdict, Verdict::explained);
+  EXPECT_THAT(d.refused, IsEmpty()) << to_text(d);
+  for (size_t i = 1; i < d.steps.size(); ++i)
+    EXPECT_LT(d.steps[i].simulation_rmse, d.steps[i - 1].simulation_rmse) << to_text(d);
+  EXPECT_LT(d.steps.back().simulation_rmse, 0.1 * d.steps.front().simulation_rmse) << to_text(d);
+  EXPECT_GT(d.simulation_horizon_s, 0.03);
+  EXPECT_LT(d.simulation_horizon_s, 0.3);
+}
+
+/// No effect that is named has an interval with zero in it.
+TEST(Acceptance, NoIntervalContainsZero) {
+  HiddenAxis axis;
+  for (const double drag : {0.0, 0.02, 0.2}) {
+    Physics truth = axis.nominal();
+    truth.quadratic_n_s2_per_m2 = drag, truth.offset_n = 0.05;
+    const Diagnosis d = diagnose(axis.diagram(), {axis.record("record", truth, there_and_back(0.2, 0.4))});
+    for (const DiagnosedEffect& effect : d.effects) {
+      if (effect.parameters.size() != 1) continue;
+      EXPECT_GT(effect.parameters[0].low * effect.parameters[0].high, 0) << effect.name << "\n" << to_text(d);
+    }
+  }
+}
+
+/// Cogging 24 times a turn is 24 times a turn, although the record alone says 23.97 or 24.03.
+TEST(Acceptance, PitchesOfARotaryAxisAreWholePartsOfATurn) {
+  HiddenMachine machine;
+  machine.position_unit = "rad", machine.force_unit = "N*m";
+  HiddenAxis axis(machine);
+  Physics truth = axis.nominal();
+  const double turn = 2 * std::numbers::pi;
+  truth.cogging = {0.15, turn / 240, 0.3};
+  const Diagnosis d = diagnose(axis.diagram(), {axis.record("record", truth, there_and_back(0.4, 0.4))});
+  ASSERT_THAT(names(d), ElementsAre("cogging")) << to_text(d);
+  const auto pitch = std::ranges::find(d.effects[0].parameters, "pitch", &DiagnosedParameter::name);
+  ASSERT_NE(pitch, d.effects[0].parameters.end());
+  EXPECT_EQ(pitch->times_a_turn, 240);
+  EXPECT_DOUBLE_EQ(pitch->value, turn / 240);
+  // A gear between motor and encoder: the data contradict a whole number.
+  truth.cogging.pitch_m = turn / 240.5;
+  const Diagnosis geared = diagnose(axis.diagram(), {axis.record("geared", truth, there_and_back(0.4, 0.4))});
+  ASSERT_THAT(names(geared), ElementsAre("cogging")) << to_text(geared);
+  const auto free = std::ranges::find(geared.effects[0].parameters, "pitch", &DiagnosedParameter::name);
+  EXPECT_EQ(free->times_a_turn, 0);
+  EXPECT_NEAR(free->value, turn / 240.5, 1e-5);
+}
+
+}  // namespace
+}  // namespace loopwright

@@ -1,0 +1,92 @@
+// The diagram that a diagnosis writes, run on the record: it has the error that the staircase promises.
+#include <gmock/gmock.h>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include "engine/json/json.h"
+#include "tests/tools/diagnose/diagnosed.h"
+#include "tests/tools/diagnose/hidden_axis.h"
+#include "tools/compare/compare.h"
+
+namespace loopwright {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+
+/// The residual force of the written diagram on the record, with the experiment that goes with it.
+double residual_of(const Diagnosis& d, const std::string& experiment) {
+  const std::string with = d.improved_experiments.empty() ? experiment : d.improved_experiments.front();
+  const Comparison c = compare(d.improved, with);
+  EXPECT_TRUE(c.force) << c.why_no_force;
+  return c.force ? c.force->residual.rmse : 0;
+}
+
+Diagnosis written(const HiddenAxis& axis, const std::string& experiment, bool all = true) {
+  DiagnoseOptions options;
+  options.improved_diagram = axis.file("improved.json"), options.writes_all = all;
+  return diagnose(axis.diagram(), {experiment}, options);
+}
+
+/// The experiment drives "motor.u", before which the delay stands: without the experiment that is written
+/// beside the diagram it would bypass it.
+TEST(ImprovedDiagram, HasTheErrorThatIsPromisedWithEffectsOfForceInputAndSensor) {
+  HiddenAxis axis;
+  Physics truth = axis.nominal();
+  truth.coulomb_n = 0.2, truth.delay_s = 3e-3;
+  const std::string record = axis.record("record", truth, there_and_back(0.2, 0.4));
+  const Diagnosis d = written(axis, record);
+  ASSERT_THAT(names(d), testing::UnorderedElementsAre("coulomb_friction", "input_delay")) << to_text(d);
+  ASSERT_THAT(d.improved_experiments, SizeIs(1)) << to_text(d);
+  EXPECT_EQ(d.improved_experiments[0], axis.file("improved.record.experiment.json"));
+  EXPECT_NEAR(residual_of(d, record), d.steps.back().force_rmse, 0.1 * d.steps.back().force_rmse)
+      << to_text(d);
+  const Comparison bypassed = compare(d.improved, record);
+  EXPECT_GT(bypassed.force->residual.rmse, 1.5 * d.steps.back().force_rmse) << "with the old experiment";
+  EXPECT_THAT(d.taken_out_by, testing::UnorderedElementsAre("with_coulomb_friction", "with_input_delay"));
+  const Comparison nominal = compare(d.improved, d.improved_experiments[0],
+                                     {.set = {{"with_coulomb_friction", "0"}, {"with_input_delay", "0"}}});
+  EXPECT_NEAR(nominal.force->residual.rmse, d.steps.front().force_rmse, 0.1 * d.steps.front().force_rmse);
+}
+
+/// A bump on the track is in no effect file.
+TEST(ImprovedDiagram, ContainsAnUnknownFunctionAsALookupWithItsRange) {
+  HiddenAxis axis;
+  Physics truth = axis.nominal();
+  truth.bump_n = 1, truth.bump_m = 0.1, truth.bump_width_m = 0.015;
+  const std::string record = axis.record("record", truth, there_and_back(0.2, 0.4));
+  const Diagnosis d = written(axis, record);
+  EXPECT_THAT(d.remainder_variables, Contains("position")) << to_text(d);
+  std::ifstream in(d.improved);
+  const std::string text(std::istreambuf_iterator<char>(in), {});
+  EXPECT_THAT(text, HasSubstr("Lookup1D"));
+  EXPECT_THAT(text, HasSubstr("\"outside\": \"hold\""));
+  EXPECT_THAT(to_text(d), HasSubstr("beyond them its ends are held"));
+  EXPECT_NEAR(residual_of(d, record), d.steps.back().force_rmse, 0.15 * d.steps.back().force_rmse)
+      << to_text(d);
+}
+
+/// What is written without --all is the diagram of the last step that is not optional.
+TEST(ImprovedDiagram, LeavesOptionalEffectsOutUnlessAllAreWanted) {
+  HiddenMachine machine;
+  machine.force_noise = 0.002;
+  HiddenAxis axis(machine);
+  Physics truth = axis.nominal();
+  truth.coulomb_n = 0.6, truth.cogging = {0.03, 0.024, 0.3};
+  const std::string record = axis.record("record", truth, there_and_back(0.2, 0.4));
+  const Diagnosis few = written(axis, record, false);
+  ASSERT_GE(few.steps.size(), 3u) << to_text(few);
+  ASSERT_TRUE(few.steps.back().is_optional) << to_text(few);
+  size_t last = few.steps.size() - 1;
+  while (few.steps[last].is_optional) --last;
+  EXPECT_NEAR(residual_of(few, record), few.steps[last].force_rmse, 0.1 * few.steps[last].force_rmse);
+  EXPECT_THAT(few.taken_out_by, Not(Contains("with_cogging")));
+  const Diagnosis all = written(axis, record, true);
+  EXPECT_NEAR(residual_of(all, record), all.steps.back().force_rmse, 0.1 * all.steps.back().force_rmse);
+  EXPECT_THAT(all.taken_out_by, Contains("with_cogging"));
+}
+
+}  // namespace
+}  // namespace loopwright

@@ -1,0 +1,103 @@
+#include "tools/diagnose/verdict/acceptance.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <optional>
+#include "tools/diagnose/wording.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+struct Refusal {
+  size_t member;
+  std::string why;
+};
+
+std::string shown_name(const Member& member) {
+  return member.candidate->is_unknown ? "a function of " + member.candidate->form : member.candidate->name;
+}
+
+/// Whether a part of the mass moves by itself. Its motion is not measured, and swings on from window to
+/// window; where it is at the beginning of one decides more than whether it exists.
+bool has_own_load(const std::vector<Member>& members) {
+  return std::ranges::any_of(members, [](const Member& member) {
+    const Candidate& candidate = *member.candidate;
+    return !candidate.nonlinear.empty() && candidate.added_inertia && candidate.added_inertia(member) < 0;
+  });
+}
+
+class Judge {
+ public:
+  Judge(Trials& trials, const std::vector<InverseDynamics>& inverse, const Improver& improver,
+        const LoadOptions& load)
+      : trials_(trials), inverse_(inverse), improver_(improver), load_(load) {}
+
+  void run(Acceptance& state) {
+    state.runs.clear();
+    try {
+      for (const std::vector<Member>& members : state.staircase.members)
+        state.runs.push_back(run_freely(improver_.with(members), improver_, load_, trials_, inverse_,
+                                        state.conclusion.estimate.noise));
+    } catch (const InputError& error) {
+      state.runs.clear();
+      state.why_not_run = "the diagram with the effects cannot be run: " + error.problems.text();
+    }
+  }
+
+  std::optional<Refusal> refused(const Acceptance& state) {
+    for (size_t i = 1; i < state.runs.size(); ++i)
+      if (is_worse(state.runs[i - 1], state.runs[i]) &&
+          (state.runs[i].diverged || !has_own_load(state.staircase.members[i])))
+        return why_worse(state, i);
+    for (size_t i = 1; i < state.runs.size(); ++i)
+      for (size_t m : state.staircase.added[i])
+        if (state.conclusion.weights[m].certainty < 1 && !is_worse(state.runs[i], state.runs[i - 1]))
+          return Refusal{m, "its interval contains zero, and the diagram simulates no worse without it"};
+    return {};
+  }
+
+ private:
+  Refusal why_worse(const Acceptance& state, size_t step) {
+    const std::string& unit = trials_.list.front().model->record().measured.front().unit;
+    const FreeRun &before = state.runs[step - 1], &after = state.runs[step];
+    const size_t member = state.staircase.added[step].front();
+    if (after.diverged) return {member, "the diagram with it diverges when it is simulated"};
+    return {member, fmt::format("the diagram simulates worse with it: {} instead of {}",
+                                shown(after.rmse(), unit), shown(before.rmse(), unit))};
+  }
+
+  Trials& trials_;
+  const std::vector<InverseDynamics>& inverse_;
+  const Improver& improver_;
+  const LoadOptions& load_;
+};
+
+}  // namespace
+
+Acceptance accept(Conclusion conclusion, Trials& trials, const std::vector<InverseDynamics>& inverse,
+                  const Improver& improver, const LoadOptions& load, size_t catalogue,
+                  const std::function<Conclusion(const Conclusion&, size_t)>& without) {
+  Acceptance state;
+  state.conclusion = std::move(conclusion);
+  Judge judge(trials, inverse, improver, load);
+  for (;;) {
+    state.staircase = climb(trials, state.conclusion, inverse, catalogue);
+    judge.run(state);
+    const std::optional<Refusal> refusal = judge.refused(state);
+    if (!refusal) break;
+    const std::string name = shown_name(state.conclusion.estimate.members[refusal->member]);
+    state.refused.push_back({name, refusal->why});
+    std::vector<std::string> trail = state.conclusion.trail;
+    trail.push_back(name + ": " + refusal->why);
+    state.conclusion = without(state.conclusion, refusal->member);
+    std::ranges::move(state.conclusion.trail, std::back_inserter(trail));
+    state.conclusion.trail = std::move(trail);
+  }
+  for (size_t i = 0; i < state.runs.size(); ++i)
+    state.staircase.steps[i].simulation_rmse = state.runs[i].rmse();
+  if (!state.runs.empty())
+    state.is_worse =
+        is_worse(state.runs.front(), state.runs.back()) && !has_own_load(state.staircase.members.back());
+  return state;
+}
+
+}  // namespace loopwright::diagnosis

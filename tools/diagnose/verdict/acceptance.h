@@ -1,0 +1,26 @@
+/// An effect stands only if the diagram simulates no worse with it.
+#pragma once
+#include <functional>
+#include "tools/diagnose/verdict/free_run.h"
+#include "tools/diagnose/verdict/staircase.h"
+
+namespace loopwright::diagnosis {
+
+struct Acceptance {
+  Conclusion conclusion;
+  Staircase staircase;
+  std::vector<FreeRun> runs;  ///< one per step of the staircase; empty if the diagram cannot be run
+  std::vector<RefusedEffect> refused;
+  bool is_worse = false;    ///< with all effects, than the nominal diagram
+  std::string why_not_run;  ///< empty: it was run
+};
+
+/// Removes effects one by one as long as the diagram with one of them simulates worse than without it (unless
+/// a load moves by itself, and the diagram does not diverge), or as the interval of one contains zero while
+/// the diagram simulates no worse without it. `without(conclusion, member)` is the conclusion from the
+/// others.
+Acceptance accept(Conclusion conclusion, Trials& trials, const std::vector<InverseDynamics>& inverse,
+                  const Improver& improver, const LoadOptions& load, size_t catalogue,
+                  const std::function<Conclusion(const Conclusion&, size_t)>& without);
+
+}  // namespace loopwright::diagnosis
