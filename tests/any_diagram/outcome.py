@@ -89,10 +89,12 @@ def classify(result):
         return "over_limit"
     if answer is None:
         return "refused" if is_refusal(result) else "crash"
-    if is_right(found_terms(answer), found_parameters(answer), truth):
-        return "exact"
-    if any(is_right(*choice, truth) for choice in declared(answer)):
-        return "declared"
+    terms, parameters = found_terms(answer), found_parameters(answer)
+    if terms or parameters or answer["verdict"] == "nothing_missing":
+        if is_right(terms, parameters, truth):
+            return "exact"
+        if any(is_right(*choice, truth) for choice in declared(answer)):
+            return "declared"
     return "flagged" if flagged(result) else "silent"
 
 

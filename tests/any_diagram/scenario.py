@@ -32,9 +32,14 @@ def chosen_places(plant, kind, draw):
     while len(places) < count and draw_from:
         place = draw.choice(draw_from)
         places.append(place)
-        # Not twice the same variable at a port, nor two distortions: their sum may have another name.
-        draw_from = [p for p in draw_from if not (p.site == place.site and (p.names == place.names or LAWS[p.law].is_distortion))]
+        draw_from = [p for p in draw_from if not (p.site == place.site and have_one_name(p, place))]
     return places
+
+
+def have_one_name(place, other):
+    """Two laws at one port whose sum may have another name: of the same variable, distortions, or a constant that radiation contains."""
+    laws = {place.law, other.law}
+    return place.names == other.names or LAWS[place.law].is_distortion or laws == {"constant", "radiation"}
 
 
 def sized(place, nominal, memory, draw):

@@ -9,10 +9,13 @@ namespace {
 /// [of its energy] What must be left of a column after projection.
 constexpr double least_energy = 2e-3;
 constexpr double weakest_direction = 1e-7;
+/// In -2 ln L: what the second of two terms that are ranked together must gain.
+constexpr double least_gain_of_second = 40;
 /// Nats, beside those of the shape.
 constexpr double of_far = 6, of_derived = 3, of_difference = 2, of_indirect_sum = 3;
 
-/// Far from its site a variable enters by plain laws only.
+/// Far from its site a variable enters by plain laws only, and so does a recorded input or the output of a
+/// filter into its own distortion: others would resemble saturation and dead zone.
 bool is_plain(const TermShape& shape) {
   return shape.name == "linear" || shape.name == "signed_square" || shape.name == "square" ||
          shape.name == "cube";
@@ -36,7 +39,8 @@ Eigen::MatrixXd basis_of(const Eigen::MatrixXd& J) {
 
 class Ranking {
  public:
-  Ranking(SiteFitter& fitter, SiteHypothesis hypothesis) : fitter_(fitter), at_(std::move(hypothesis)) {
+  Ranking(SiteFitter& fitter, SiteHypothesis hypothesis, bool with_constants)
+      : fitter_(fitter), at_(std::move(hypothesis)), with_constants_(with_constants) {
     is_good_ = fitter_.pass(at_, true, pass_);
     if (!is_good_) return;
     const Eigen::MatrixXd J = fitter_.jacobian(at_, pass_);
@@ -53,6 +57,7 @@ class Ranking {
     const SiteModel& model = fitter_.model();
     for (int site = 0; site < int(model.sites().size()); ++site) {
       if (!model.sites()[size_t(site)].is_searched || !acts(site)) continue;
+      has_constant_ = false;
       for (const TermShape& shape : shapes) {
         if (shape.of == TermShape::Of::nothing && !is_distorted(site))
           rank(shape, site, -1, list);
@@ -106,7 +111,8 @@ class Ranking {
     const SiteModel& model = fitter_.model();
     const Nearness nearness = model.nearness(site, variable);
     if (nearness == Nearness::unusable) return false;
-    if (is_distorted(site) ? variable != model.own_variable(site) : is_multiple_[size_t(variable)])
+    if (is_distorted(site) ? variable != model.own_variable(site) || !is_plain(shape)
+                           : is_multiple_[size_t(variable)])
       return false;
     if (nearness == Nearness::far && !is_plain(shape)) return false;
     return shape.fits(model.sites()[size_t(site)].quantity, model.variables()[size_t(variable)].quantity);
@@ -157,7 +163,7 @@ class Ranking {
     const std::vector<double> values = signal(variable);
     std::vector<std::array<double, most_nonlinear>> starts{{}};
     if (shape.starts) starts = shape.starts(values);
-    SiteCandidate best;
+    SiteCandidate best, best_pair;
     for (const auto& start : starts) {
       if (shape.starts && !(start[0] != 0 || start[1] != 0)) continue;
       SiteTerm term = term_of(shape, site, variable, values, start);
@@ -169,10 +175,31 @@ class Ranking {
         if (!(columns.col(c).squaredNorm() > least_energy * energy[c])) columns.col(c).setZero();
       const double gain = explain(columns, term);
       if (gain > best.gain) best.gain = gain, best.term = term;
+      if (shape.of == TermShape::Of::nothing)
+        constant_ = term, constant_gain_ = gain, constant_column_ = columns, has_constant_ = gain > 0;
+      else if (goes_with_constant(shape))
+        pair(columns, term, std::max(gain, constant_gain_), best_pair);
     }
-    if (best.gain <= 0) return;
-    best.cost = cost_of(fitter_.model(), best.term);
-    list.push_back(best);
+    for (SiteCandidate* candidate : {&best, &best_pair}) {
+      if (candidate->gain <= 0) continue;
+      candidate->cost = cost_of(fitter_.model(), candidate->term);
+      if (candidate->constant) candidate->cost += cost_of(fitter_.model(), *candidate->constant);
+      list.push_back(*candidate);
+    }
+  }
+  bool goes_with_constant(const TermShape& shape) const {
+    return with_constants_ && has_constant_ && (is_plain(shape) || shape.name == "absolute" || shape.name == "sign");
+  }
+  /// The term together with a constant, if both gain clearly more than the better of them.
+  void pair(const Eigen::MatrixXd& column, const SiteTerm& term, double gain_of_one, SiteCandidate& best) const {
+    Eigen::MatrixXd both(column.rows(), 2);
+    both << column, constant_column_;
+    SiteTerm joint = term;
+    const double gain = explain(both, joint);
+    if (gain < gain_of_one + least_gain_of_second || gain <= best.gain) return;
+    best.gain = gain, best.constant = constant_, best.term = joint;
+    best.constant->coefficient[0] = joint.coefficient[1];
+    best.term.coefficient[1] = 0;
   }
   /// Least squares of the remaining errors; the gain in -2 ln L.
   double explain(const Eigen::MatrixXd& columns, SiteTerm& term) const {
@@ -218,6 +245,11 @@ class Ranking {
   SiteFitter& fitter_;
   SiteHypothesis at_;
   SitePass pass_;
+  const bool with_constants_;
+  SiteTerm constant_;  // at the site that is ranked
+  Eigen::MatrixXd constant_column_;
+  double constant_gain_ = 0;
+  bool has_constant_ = false;
   bool is_good_ = false;
   std::vector<bool> is_multiple_;
   Eigen::MatrixXd basis_;
@@ -240,8 +272,8 @@ double cost_of(const SiteModel& model, const SiteTerm& term) {
 }
 
 std::vector<SiteCandidate> rank_terms(SiteFitter& fitter, SiteHypothesis hypothesis,
-                                      std::span<const TermShape> shapes) {
-  return Ranking(fitter, std::move(hypothesis)).run(shapes);
+                                      std::span<const TermShape> shapes, bool with_constants) {
+  return Ranking(fitter, std::move(hypothesis), with_constants).run(shapes);
 }
 
 }  // namespace loopwright::diagnosis

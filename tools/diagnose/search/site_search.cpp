@@ -7,7 +7,7 @@
 namespace loopwright::diagnosis {
 namespace {
 
-constexpr size_t fitted_keys = 5;  // candidates that are confirmed by real fits
+constexpr size_t fitted_keys = 5, fitted_pairs = 2;  // candidates that are confirmed by real fits
 constexpr size_t most_terms = 5;
 constexpr int most_first_substeps = 64;
 /// In -2 ln L: what a term must gain, also per reading.
@@ -103,6 +103,7 @@ class SiteSearch {
     for (const SiteCandidate& candidate : candidates) {
       if (candidate.gain < std::max(promising * gain_needed(), promising_beside_best * most)) continue;
       SiteHypothesis trial = at;
+      if (candidate.constant) trial.terms.push_back(*candidate.constant);
       trial.terms.push_back(candidate.term);
       if (candidate.term.shape->of == TermShape::Of::own) trial.terms.back().coefficient[0] = 1;
       fitter_.refine(trial, 5, true);
@@ -123,7 +124,10 @@ class SiteSearch {
   /// The best candidates after parameters and terms, at first also those about the nominal parameters: a
   /// strong term bends the parameters that are fitted without it.
   std::vector<SiteCandidate> candidates(const SiteHypothesis& at) {
-    std::vector<SiteCandidate> ranked = rank_terms(fitter_, at, named_shapes());
+    std::vector<SiteCandidate> ranked = rank_terms(fitter_, at, named_shapes(), true), pairs;
+    std::ranges::copy_if(ranked, std::back_inserter(pairs), [](const auto& c) { return bool(c.constant); });
+    std::erase_if(ranked, [](const auto& c) { return bool(c.constant); });
+    pairs.resize(std::min(fitted_pairs, pairs.size()));
     keys_ = std::max<size_t>(keys_, ranked.size());
     std::vector<SiteCandidate> list(ranked.begin(),
                                     ranked.begin() + std::ptrdiff_t(std::min(fitted_keys, ranked.size())));
@@ -136,6 +140,7 @@ class SiteSearch {
           list.push_back(c);
         break;
       }
+    std::ranges::copy(pairs, std::back_inserter(list));
     return list;
   }
 

@@ -1,0 +1,57 @@
+"""The plants of the benchmark, against what their equations must satisfy."""
+
+import json
+import pathlib
+import random
+import tempfile
+import unittest
+
+import scenario
+import simulate
+from laws import LAWS
+
+
+class Generator(unittest.TestCase):
+    def test_every_plant_has_a_diagram_for_its_ports_and_places(self):
+        for make in scenario.PLANTS:
+            plant = make()
+            with self.subTest(plant=plant.kind):
+                self.assertEqual(len(plant.initial), len(plant.rate(list(plant.initial), [0.0] * len(plant.drives),
+                                                                    {n: v for n, (v, _) in plant.parameters.items()}, lambda port, value: value)))
+                for place in plant.places:
+                    self.assertIn(place.site.split(".")[0], plant.blocks)
+                    self.assertIn(place.law, LAWS)
+                for port, _, _ in plant.outputs:
+                    self.assertIn(port.split(".")[0], plant.blocks)
+
+    def test_all_ports_of_places_and_noise_are_in_the_equations(self):
+        for make in scenario.PLANTS:
+            plant, seen = make(), set()
+            p = {n: v for n, (v, _) in plant.parameters.items()}
+            plant.rate(list(plant.initial), [0.1] * len(plant.drives), p, lambda port, value: (seen.add(port), value)[1])
+            self.assertLessEqual({place.site for place in plant.places} | set(plant.noise), seen, plant.kind)
+
+    def test_what_is_hidden_gains_and_a_law_that_parameters_replace_does_not(self):
+        plant = next(make() for make in scenario.PLANTS if make.__name__ == "duffing")
+        p = {n: v for n, (v, _) in plant.parameters.items()}
+        cube = simulate.Hidden(next(q for q in plant.places if q.law == "cube"), 0.0, -5e8)
+        record = simulate.run(plant, p, [cube], plant.drive(random.Random(1)), random.Random(2), {"net.sum": 0.05}, (1e-7,))
+        short = simulate.Record(record.u[:400], record.y[:400], record.x[:400], record.sites)
+        filter_ = simulate.Filter(plant, p, [cube], short, {"net.sum": 0.05}, (1e-7,))
+        gain, of_mass = simulate.gains(filter_, p, [cube], {"mass": 0.2}, list(p), 400)
+        self.assertGreater(gain, scenario.LEAST_GAIN)
+        self.assertGreater(of_mass, scenario.LEAST_GAIN)
+
+    def test_a_seed_always_gives_the_same_files(self):
+        texts = []
+        for _ in range(2):
+            with tempfile.TemporaryDirectory() as name:
+                truth = scenario.generate(120_065, name)
+                folder = pathlib.Path(name)
+                texts.append([(folder / f).read_text() for f in ("record.csv", "diagram.json", "record.experiment.json", "truth.json")])
+                self.assertEqual(json.loads(texts[-1][3])["seed"], truth["seed"])
+        self.assertEqual(texts[0], texts[1])
+
+
+if __name__ == "__main__":
+    unittest.main()
