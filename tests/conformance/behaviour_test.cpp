@@ -217,6 +217,7 @@ std::vector<double> visible(BlockUnderTest& block, double time) {
 /// Blocks whose mode also stores values that a solver sees only later, so that some changes need no event.
 bool remembers(std::string_view type) {
   return type == "Backlash" ||           // the last output, which the present one follows in any case
+         type == "Encoder" ||            // zero with its sign
          type == "Integrator" ||         // that the reset fired at the last event, and no more
          type == "MotionFeedforward" ||  // the direction, also where there is no Coulomb friction
          type == "Quantizer";            // zero with its sign

@@ -22,7 +22,7 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-KINDS = ("sh", "json", "cpp", "text", "diff")
+KINDS = ("sh", "json", "cpp", "python", "text", "diff")
 # In reading order: the README's demo makes files that other pages use.
 FIRST = ["README.md", "docs/diagram_format.md", "docs/hardware.md", "docs/paper.md"]
 

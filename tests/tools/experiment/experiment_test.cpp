@@ -153,7 +153,7 @@ TEST_F(Experiments, UnknownKeysAndMissingPartsAreErrors) {
   expect_refusal({"\"hold\" or \"linear\""});
   folder.experiment(drive, R"("stage.position": {"column": "x_mm", "unit": "mm"})",
                     R"(, "hold_out": {"fraction": 2})");
-  expect_refusal({"\"fraction\" is out of range", "from 0 to 0.9"});
+  expect_refusal({"\"fraction\" is out of range", "from 0 to 1"});
   folder.experiment(drive, R"("stage.position": {"column": "x_mm", "unit": "mm"})",
                     R"(, "roles": {"speed": "stage.velocity"})");
   expect_refusal({"speed"});
