@@ -328,7 +328,7 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   result.steps = staircase.steps;
   if (!accepted.runs.empty())
     result.simulation_horizon_s = accepted.runs.back().horizon_s,
-    result.simulation_diverged = accepted.runs.back().diverged,
+    result.simulation_diverged = accepted.diverges,
     result.simulation_is_worse = accepted.is_worse;
   tell_effects(conclusion, staircase, catalogue, units, result);
   tell_errors(trials, conclusion, inquiry, result);

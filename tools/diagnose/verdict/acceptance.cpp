@@ -45,8 +45,7 @@ class Judge {
 
   std::optional<Refusal> refused(const Acceptance& state) {
     for (size_t i = 1; i < state.runs.size(); ++i)
-      if (is_worse(state.runs[i - 1], state.runs[i]) &&
-          (state.runs[i].diverged || !has_own_load(state.staircase.members[i])))
+      if (is_worse(state.runs[i - 1], state.runs[i]) && !has_own_load(state.staircase.members[i]))
         return why_worse(state, i);
     for (size_t i = 1; i < state.runs.size(); ++i)
       for (size_t m : state.staircase.added[i])
@@ -94,9 +93,10 @@ Acceptance accept(Conclusion conclusion, Trials& trials, const std::vector<Inver
   }
   for (size_t i = 0; i < state.runs.size(); ++i)
     state.staircase.steps[i].simulation_rmse = state.runs[i].rmse();
-  if (!state.runs.empty())
-    state.is_worse =
-        is_worse(state.runs.front(), state.runs.back()) && !has_own_load(state.staircase.members.back());
+  if (!state.runs.empty() && !has_own_load(state.staircase.members.back())) {
+    state.is_worse = is_worse(state.runs.front(), state.runs.back());
+    state.diverges = state.runs.back().diverged;
+  }
   return state;
 }
 

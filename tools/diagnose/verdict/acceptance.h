@@ -12,13 +12,14 @@ struct Acceptance {
   std::vector<FreeRun> runs;  ///< one per step of the staircase; empty if the diagram cannot be run
   std::vector<RefusedEffect> refused;
   bool is_worse = false;    ///< with all effects, than the nominal diagram
+  bool diverges = false;    ///< the diagram with all of them, unless a load moves by itself
   std::string why_not_run;  ///< empty: it was run
 };
 
 /// Removes effects one by one as long as the diagram with one of them simulates worse than without it (unless
-/// a load moves by itself, and the diagram does not diverge), or as the interval of one contains zero while
-/// the diagram simulates no worse without it. `without(conclusion, member)` is the conclusion from the
-/// others.
+/// a load moves by itself: where it is at the beginning of a window is not known), or as the interval of one
+/// contains zero while the diagram simulates no worse without it. `without(conclusion, member)` is the
+/// conclusion from the others.
 Acceptance accept(Conclusion conclusion, Trials& trials, const std::vector<InverseDynamics>& inverse,
                   const Improver& improver, const LoadOptions& load, size_t catalogue,
                   const std::function<Conclusion(const Conclusion&, size_t)>& without);
