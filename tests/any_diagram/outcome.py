@@ -1,6 +1,6 @@
 """What an answer about a diagram without roles is worth, and the tables of the benchmark of any diagram.
 
-A result is {"truth", "answer", "exit", "time_s", "over_limit", "text"}, as tests/batch/batch.py writes it. A term is (site, shape, variable).
+A result is what tests/batch/classes.py says. A term is (site, shape, variable).
 What the record hardly shows (`counts` is false) may be named or not.
 """
 
@@ -9,19 +9,10 @@ import pathlib
 import re
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "hidden_effects"))
-import score  # noqa: E402  tables and quantiles
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "batch"))
+from classes import CLASSES, said_without_answer, score, tables, without_answer  # noqa: E402
 
-CLASSES = ("exact", "declared", "flagged", "silent", "refused", "over_limit", "crash")
-MEANING = {
-    "exact": "terms with their sites, and moved parameters, are the hidden ones; outside the catalogue: a function at the right site",
-    "declared": "a declared alternative is the hidden set",
-    "flagged": "not right, and the answer says that something remains",
-    "silent": "not right, and the answer says that everything is explained",
-    "refused": "no answer, with a reason",
-    "over_limit": "no answer within the time limit",
-    "crash": "ended by a signal, or without a reason",
-}
+EXACT = "terms with their sites, and moved parameters, are the hidden ones; outside the catalogue: a function at the right site"
 UNKNOWN = "unknown"  # what the answer calls a function without a name
 
 
@@ -75,20 +66,14 @@ def declared(answer):
         yield [*kept, *filter(None, there)], moved
 
 
-def is_refusal(result):
-    return result["exit"] in (1, 2) and result["text"].strip() != ""
-
-
 def flagged(result):
     return result["answer"] is not None and result["answer"]["verdict"] in ("partly_explained", "unexplained")
 
 
 def classify(result):
     truth, answer = result["truth"], result["answer"]
-    if result["over_limit"]:
-        return "over_limit"
-    if answer is None:
-        return "refused" if is_refusal(result) else "crash"
+    if answer is None or result["over_limit"]:
+        return without_answer(result)
     terms, parameters = found_terms(answer), found_parameters(answer)
     if terms or parameters or answer["verdict"] == "nothing_missing":
         if is_right(terms, parameters, truth):
@@ -167,7 +152,7 @@ def grouped(results, key):
 def said(result):
     answer = result["answer"]
     if answer is None:
-        return f"exit {result['exit']}: " + " ".join(result["text"].split())[:300]
+        return said_without_answer(result)
     named = [f"{site} {shape}({variable})" for site, shape, variable in found_terms(answer)] + found_parameters(answer)
     return f"{answer['verdict']}: {', '.join(named) or 'nothing'}"
 
@@ -193,12 +178,4 @@ def group_table(name, rows):
 
 
 def text(s):
-    """The summary as Markdown tables."""
-    marks = {True: "met", False: "**missed**", None: "not measured"}
-    parts = [f"{s['scenarios']} scenarios",
-             score.table(["bar", "measured", "n", "must be", ""],
-                         [[b["bar"], score.number(b["value"]) + (f" {b['unit']}" if b["unit"] and b["value"] is not None else ""), b["n"],
-                           score.limit(b), marks[b["met"]] if score.limit(b) else ""] for b in s["bars"]]),
-             "\n".join(f"- {c}: {MEANING[c]}" for c in CLASSES), group_table("plant", s["by_plant"]), group_table("class", s["by_class"]),
-             "Not right (in brackets what the record gains in −2 ln L):\n" + "\n".join("- " + line for line in s["not_right"])]
-    return "\n\n".join(parts) + "\n"
+    return tables(s, EXACT, group_table("plant", s["by_plant"]), group_table("class", s["by_class"]))

@@ -1,26 +1,16 @@
 """What an answer of `loopwright diagnose` is worth, and the tables of the conditions benchmark.
 
-A result is {"truth", "answer", "exit", "time_s", "over_limit", "text"}: the truth of the scenario, the JSON of the answer (None if there is
-none), the exit code (negative: the signal), the CPU seconds, whether the time limit ended it, and what the program said.
+A result is what tests/batch/classes.py says.
 """
 
 import itertools
 import pathlib
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "hidden_effects"))
-import score  # noqa: E402  the rules of the axis benchmark
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "batch"))
+from classes import CLASSES, said_without_answer, score, tables, without_answer  # noqa: E402
 
-CLASSES = ("exact", "declared", "flagged", "silent", "refused", "over_limit", "crash")
-MEANING = {
-    "exact": "the set is the hidden one; of a clean record, nothing_missing",
-    "declared": "a declared alternative is the hidden set",
-    "flagged": "not right, and the answer says that something remains",
-    "silent": "not right, and the answer says that everything is explained",
-    "refused": "no answer, with a reason",
-    "over_limit": "no answer within the time limit",
-    "crash": "ended by a signal, or without a reason",
-}
+EXACT = "the set is the hidden one; of a clean record, nothing_missing"
 # What stands for an effect whose own shape the record hardly shows.
 SIMPLER = {"stribeck_friction": {"coulomb_friction"}, "presliding_hysteresis": {"coulomb_friction"}}
 
@@ -46,16 +36,10 @@ def acceptable(names, truth):
     return must <= names <= must | may
 
 
-def is_refusal(result):
-    return result["exit"] in (1, 2) and result["text"].strip() != ""
-
-
 def classify(result):
     truth, answer = result["truth"], result["answer"]
-    if result["over_limit"]:
-        return "over_limit"
-    if answer is None:
-        return "refused" if is_refusal(result) else "crash"
+    if answer is None or result["over_limit"]:
+        return without_answer(result)
     names = score.found_names(result)
     if not names:
         if not required(truth) and answer["verdict"] == "nothing_missing":
@@ -107,7 +91,7 @@ def grouped(results, key):
 def said(result):
     answer = result["answer"]
     if answer is None:
-        return f"exit {result['exit']}: " + " ".join(result["text"].split())[:300]
+        return said_without_answer(result)
     named = ", ".join(e["effect"] + (f" or {'/'.join(score.alternatives(e))}" if score.alternatives(e) else "")
                       for e in score.found(result))
     return f"{answer['verdict']}: {named or 'no effect'}"
@@ -138,13 +122,4 @@ def group_table(name, rows):
 
 
 def text(s):
-    """The summary as Markdown tables."""
-    marks = {True: "met", False: "**missed**", None: "not measured"}
-    parts = [f"{s['scenarios']} scenarios",
-             score.table(["bar", "measured", "n", "must be", ""],
-                         [[b["bar"], score.number(b["value"]) + (f" {b['unit']}" if b["unit"] and b["value"] is not None else ""), b["n"],
-                           score.limit(b), marks[b["met"]] if score.limit(b) else ""] for b in s["bars"]]),
-             "\n".join(f"- {c}: {MEANING[c]}" for c in CLASSES),
-             group_table("condition", s["by_condition"]), group_table("variant", s["by_variant"]),
-             "Not right (in brackets what the record gains in −2 ln L):\n" + "\n".join("- " + line for line in s["not_right"])]
-    return "\n\n".join(parts) + "\n"
+    return tables(s, EXACT, group_table("condition", s["by_condition"]), group_table("variant", s["by_variant"]))

@@ -18,12 +18,12 @@ def test_the_examples_of_the_guide_run(root, tmp_path, monkeypatch):
         exec(compile(block, f"docs/python.md, example {number + 1}", "exec"), names)
 
 
-def test_the_stubs_name_what_the_package_has(root):
+def test_the_type_declarations_name_what_the_package_has(root):
     import ast
     import loopwright
-    stub = ast.parse((pathlib.Path(loopwright.__file__).resolve().parent / "__init__.pyi").read_text())
-    classes = {node.name: node for node in stub.body if isinstance(node, ast.ClassDef)}
-    functions = {node.name for node in stub.body if isinstance(node, ast.FunctionDef)}
+    declared = ast.parse((pathlib.Path(loopwright.__file__).resolve().parent / "__init__.pyi").read_text())
+    classes = {node.name: node for node in declared.body if isinstance(node, ast.ClassDef)}
+    functions = {node.name for node in declared.body if isinstance(node, ast.FunctionDef)}
     assert set(loopwright.__all__) == set(classes) | functions | set()
     for name, node in classes.items():
         stated = {item.name for item in node.body if isinstance(item, ast.FunctionDef)}

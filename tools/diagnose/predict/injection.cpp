@@ -1,25 +1,10 @@
 #include "tools/diagnose/predict/injection.h"
 #include <fmt/format.h>
 #include <algorithm>
+#include "tools/diagnose/predict/block_value.h"
 
 namespace loopwright::diagnosis {
 namespace {
-
-Value text_value(std::string text) {
-  Value value;
-  value.kind = Value::Kind::text, value.text = std::move(text);
-  return value;
-}
-
-void set_member(Value& object, const std::string& name, Value value) {
-  object.kind = Value::Kind::object;
-  for (Value::Member& member : object.members)
-    if (member.name == name) {
-      member.value = std::move(value);
-      return;
-    }
-  object.members.push_back({name, object.place, std::move(value)});
-}
 
 /// An additional + term.
 bool extend(BlockEntry& sum) {

@@ -3,25 +3,10 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include "tools/diagnose/predict/block_value.h"
 
 namespace loopwright::diagnosis {
 namespace {
-
-Value text_value(std::string text) {
-  Value value;
-  value.kind = Value::Kind::text, value.text = std::move(text);
-  return value;
-}
-
-void set_member(Value& object, const std::string& name, Value value) {
-  object.kind = Value::Kind::object;
-  for (Value::Member& member : object.members)
-    if (member.name == name) {
-      member.value = std::move(value);
-      return;
-    }
-  object.members.push_back({name, object.place, std::move(value)});
-}
 
 BlockEntry block_of_type(std::string type, std::string name, const Place& place) {
   BlockEntry block;
@@ -96,7 +81,7 @@ class Rewriter {
     Site site;
     site.kind = kind, site.name = prefix_ + port, site.own_signal = std::move(own);
     const std::string name = fmt::format("term at {}", sites_.size());  // no block of a file has a space
-    site.placeholder = prefix_ + name;
+    site.term_block = prefix_ + name;
     if (const std::vector<Number> numbers = plan_.find(site.name); numbers.size() == 1)
       site.unit = plan_.unit_of(numbers[0]);
     site.quantity = quantity_of(site.unit);

@@ -21,7 +21,7 @@ struct Site {
   };
   Kind kind = Kind::sum;
   std::string name;         ///< the port at which the term acts, "axis.net_force.sum"
-  std::string placeholder;  ///< path of the block of the rewritten diagram that provides the term
+  std::string term_block;  ///< path of the block of the rewritten diagram that provides the term
   std::string own_signal;   ///< the distorted port; empty at a Sum
   std::optional<Unit> unit;
   Quantity quantity = Quantity::other;

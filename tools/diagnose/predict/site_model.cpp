@@ -155,7 +155,7 @@ void SiteModel::build(const std::string& path, const LoadOptions& options, const
   auto plan = std::make_shared<Plan>(*compiled);
   signals_.resize(sites_.size());
   for (size_t s = 0; s < sites_.size(); ++s) {
-    const int block = block_at(*plan, sites_[s].placeholder);
+    const int block = block_at(*plan, sites_[s].term_block);
     plan->blocks[size_t(block)].type = &site_block_type();
     plan->blocks[size_t(block)].value = std::make_shared<SiteBlock>(SiteBlock{&signals_[s]});
     evaluate_late(*plan, block);

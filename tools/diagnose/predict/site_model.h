@@ -52,7 +52,7 @@ struct SiteTerm {
   }
 };
 
-/// What the placeholder of a site adds: read by its block inside every evaluation.
+/// What the term's block of a site adds: read by its block inside every evaluation.
 struct SiteSignal {
   double held = 0;                         ///< over a sample
   double ramp = 0, begin = 0, length = 1;  ///< from -ramp to ramp within [begin, begin + length] s

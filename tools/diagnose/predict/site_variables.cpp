@@ -121,7 +121,7 @@ void SiteModel::find_variables() {
 void SiteModel::find_nearness() {
   nearness_.assign(sites_.size() * variables_.size(), Nearness::unusable);
   for (size_t s = 0; s < sites_.size(); ++s) {
-    const Number term = plan_->find(sites_[s].placeholder + ".y").front();
+    const Number term = plan_->find(sites_[s].term_block + ".y").front();
     const int place = order_of(*plan_, term);
     const Neighbourhood around(*plan_, term);
     drives_state_.push_back(around.drives_state());
