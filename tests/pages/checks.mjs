@@ -47,8 +47,8 @@ export function diagramFaults() {
     for (const { name, box, node } of nodes) {
       const texts = [...node.querySelectorAll("text")];
       for (const text of texts) {
-        const t = text.getBoundingClientRect(), below = t.top >= box.bottom - 1;
-        if (!below && (t.left < box.left - 1 || t.right > box.right + 1 || t.bottom > box.bottom + 1)) found.push(`"${text.textContent}" leaves ${name}`);
+        const t = text.getBoundingClientRect(), outside = t.top >= box.bottom - 1 || t.bottom <= box.top + 5;
+        if (!outside && (t.left < box.left - 1 || t.right > box.right + 1 || t.bottom > box.bottom + 1)) found.push(`"${text.textContent}" leaves ${name}`);
         for (const other of nodes) if (other.node !== node && !apart(t, other.box)) found.push(`"${text.textContent}" of ${name} covers ${other.name}`);
       }
     }

@@ -26,7 +26,7 @@ async function faultsOf(page) {
 }
 
 async function settled(page) {
-  await page.waitForFunction(() => [...document.querySelectorAll("figure.block-diagram")].every((f) => "drawn" in f.dataset), { timeout: 60_000 });
+  await page.waitForFunction(() => [...document.querySelectorAll("figure.block-diagram")].every((f) => "drawn" in f.dataset), null, { timeout: 60_000 });
   await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
 }
 

@@ -45,10 +45,10 @@ function boxContents(node, size, box, ports) {
     y += size.curve.height + 4;
   }
   size.lines.forEach((line, k) => { out += text(middle, y + 11 + k * TEXT_LINE, line, FONT.face, "face"); });
-  return out + portTexts(size, box, ports);
+  return out + drawPortNames(size, box, ports);
 }
 
-function portTexts({ left, right }, box, ports) {
+function drawPortNames({ left, right }, box, ports) {
   let out = "";
   left.forEach((name, k) => { if (name) out += text(box.x + 6, ports.in[k].y + 4, name, FONT.port, "port", "start"); });
   right.forEach((name, k) => { if (name) out += text(box.x + box.width - 6, ports.out[k].y + 4, name, FONT.port, "port", "end"); });

@@ -86,6 +86,7 @@ export function drawMarks(plot, u) {
   ctx.strokeStyle = ctx.fillStyle = variable("--soft");
   ctx.lineWidth = ratio;
   ctx.font = font(11 * ratio);
+  ctx.textAlign = "left";
   ctx.setLineDash([5 * ratio, 4 * ratio]);
   (plot.marks ?? []).forEach(({ axis: key, value, label }, k) => {
     const at = u.valToPos(value, key, true);

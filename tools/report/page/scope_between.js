@@ -103,6 +103,7 @@ export function drawCursors(plot, u, color, font) {
   ctx.strokeStyle = ctx.fillStyle = color;
   ctx.lineWidth = uPlot.pxRatio;
   ctx.font = font;
+  ctx.textAlign = "left";
   [...times].sort((p, q) => p - q).forEach((time, k) => {
     const x = u.valToPos(time, "x", true);
     if (x < bbox.left || x > bbox.left + bbox.width) return;
