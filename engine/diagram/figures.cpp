@@ -26,7 +26,8 @@ void read_band(const Value& value, const Reader& reader, FigureRequest& request)
 
 std::vector<FigureRequest> read_figures(const Value& list, const Reader& reader) {
   std::vector<FigureRequest> requests;
-  if (!reader.expect(list, Value::Kind::list, "\"figures\"", "a list of objects: [" + std::string(shape) + "]"))
+  if (!reader.expect(list, Value::Kind::list, "\"figures\"",
+                     "a list of objects: [" + std::string(shape) + "]"))
     return requests;
   for (const Value& item : list.items) {
     if (!reader.expect(item, Value::Kind::object, "an entry of \"figures\"", shape)) continue;
@@ -37,7 +38,8 @@ std::vector<FigureRequest> read_figures(const Value& list, const Reader& reader)
       continue;
     }
     FigureRequest request{read_wire(signal->value, "\"signal\"", reader),
-                          read_wire(reference->value, "\"reference\"", reader), {}};
+                          read_wire(reference->value, "\"reference\"", reader),
+                          {}};
     if (const auto* band = item.find("band")) read_band(band->value, reader, request);
     if (!request.signal.source.empty() && !request.reference.source.empty())
       requests.push_back(std::move(request));

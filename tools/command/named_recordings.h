@@ -6,6 +6,7 @@ namespace loopwright {
 
 /// File names without their folders, where that distinguishes them; otherwise the paths. The recordings must
 /// outlive the result.
-std::vector<NamedRecording> named(const std::vector<std::string>& paths, const std::vector<Recording>& recordings);
+std::vector<NamedRecording> named(const std::vector<std::string>& paths,
+                                  const std::vector<Recording>& recordings);
 
 }  // namespace loopwright

@@ -7,13 +7,15 @@
 
 namespace loopwright {
 
-std::vector<NamedRecording> named(const std::vector<std::string>& paths, const std::vector<Recording>& recordings) {
+std::vector<NamedRecording> named(const std::vector<std::string>& paths,
+                                  const std::vector<Recording>& recordings) {
   std::set<std::string> names;
   for (const std::string& path : paths) names.insert(std::filesystem::path(path).filename().string());
   std::vector<NamedRecording> list;
   for (size_t i = 0; i < recordings.size(); ++i)
-    list.push_back({names.size() == paths.size() ? std::filesystem::path(paths[i]).filename().string() : paths[i],
-                    &recordings[i]});
+    list.push_back(
+        {names.size() == paths.size() ? std::filesystem::path(paths[i]).filename().string() : paths[i],
+         &recordings[i]});
   return list;
 }
 
@@ -40,7 +42,9 @@ int report_recordings(const Arguments& a) {
 void add_report(CLI::App& app, std::function<void(std::function<int()>)> choose) {
   CLI::App* command = app.add_subcommand("report", "Lay recordings over each other on a page");
   auto a = std::make_shared<Arguments>();
-  command->add_option("recordings", a->recordings, "Recordings, .csv or .mat; the others are held against the first")
+  command
+      ->add_option("recordings", a->recordings,
+                   "Recordings, .csv or .mat; the others are held against the first")
       ->required();
   command->add_option("-o,--output", a->page, "Write this HTML page")->required();
   command->callback([=] { choose([=] { return report_recordings(*a); }); });

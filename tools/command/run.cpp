@@ -68,7 +68,8 @@ std::vector<FollowedSignal> pairs_to_judge(const Diagram& diagram, const Plan& p
   return followed;
 }
 
-/// Recordings that a page shows beside the run. They are read before the run, so that a mistake costs no time.
+/// Recordings that a page shows beside the run. They are read before the run, so that a mistake costs no
+/// time.
 std::vector<Recording> read_beside(const Arguments& a) {
   Problems problems;
   if (!a.beside.empty() && a.report.empty())
@@ -102,15 +103,15 @@ int run(const Arguments& a) {
   const WatchedLimits watched(*plan);
   RunResult result = simulate(is_watched ? watched.plan() : *plan, options);
   progress.finish();
-  const RunFigures figures =
-      run_figures(followed, result.recording,
-                  is_watched ? watched.take(result.recording) : std::vector<TimeAtLimit>());
+  const RunFigures figures = run_figures(
+      followed, result.recording, is_watched ? watched.take(result.recording) : std::vector<TimeAtLimit>());
   for (const std::string& warning : result.warnings) tell("{}: warning: {}\n", a.diagram.path, warning);
   if (a.output == "-")
     print_csv(stdout, result.recording);
   else if (!a.output.empty())
     write_recording(a.output, result.recording);
-  if (!a.report.empty()) report::write_html(a.report, run_page(diagram.get(), *plan, result, figures, named(a.beside, others)));
+  if (!a.report.empty())
+    report::write_html(a.report, run_page(diagram.get(), *plan, result, figures, named(a.beside, others)));
   if (!a.quiet) give_summary(run_summary(*plan, result, figures), {a.output, a.report});
   if (result.status == RunStatus::finished) return done;
   tell("{}: {}\n", a.diagram.path, result.message);

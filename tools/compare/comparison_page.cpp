@@ -48,18 +48,23 @@ std::vector<report::Notice> verdict(const Comparison& c) {
   using Severity = report::Notice::Severity;
   std::vector<report::Notice> notices;
   if (c.run.status != RunStatus::finished)
-    notices.push_back({Severity::error, "The simulation did not reach the end of the record: " + c.run.message});
+    notices.push_back(
+        {Severity::error, "The simulation did not reach the end of the record: " + c.run.message});
   for (const ComparedSignal& s : c.signals) {
     // Below half a step of the sensor nothing can be told from the model.
     const bool below_resolution = s.resolution > 0 && s.max_abs <= 0.5 * s.resolution;
     constexpr double poor = 50;  // % fit: a model half as good as none
-    const Severity severity = below_resolution ? Severity::good : s.fit_percent < poor ? Severity::error : Severity::note;
+    const Severity severity = below_resolution       ? Severity::good
+                              : s.fit_percent < poor ? Severity::error
+                                                     : Severity::note;
     notices.push_back(
-        {severity, fmt::format("{}: the model is off by {} rms and {} at most, {:.3g} % of the measured signal (rms){}.",
-                               s.name, shown(s.rmse, s.unit), shown(s.max_abs, s.unit), s.relative_percent,
-                               below_resolution          ? "; this is less than the sensor resolves"
-                               : s.fit_percent < poor ? "; it does not describe the record"
-                                                         : "")});
+        {severity,
+         fmt::format(
+             "{}: the model is off by {} rms and {} at most, {:.3g} % of the measured signal (rms){}.",
+             s.name, shown(s.rmse, s.unit), shown(s.max_abs, s.unit), s.relative_percent,
+             below_resolution       ? "; this is less than the sensor resolves"
+             : s.fit_percent < poor ? "; it does not describe the record"
+                                    : "")});
   }
   return notices;
 }
@@ -101,10 +106,9 @@ report::Page comparison_page(const Comparison& c, const std::string& title) {
   page.facts = {
       {"Diagram", c.plan->title}, {"Plan", c.plan->hash}, {"Rows", fmt::format("{}", c.time.size())}};
   if (c.missing_samples > 0) page.facts.push_back({"Missing samples", fmt::format("{}", c.missing_samples)});
-  report::Table table{
-      {"Signal", "Error, RMS", "Error, greatest", "Mean error", "Relative (%)", "Fit (%)"},
-      {},
-      "Simulated minus measured; fit is 100 (1 − ‖y − ŷ‖ / ‖y − mean y‖)"};
+  report::Table table{{"Signal", "Error, RMS", "Error, greatest", "Mean error", "Relative (%)", "Fit (%)"},
+                      {},
+                      "Simulated minus measured; fit is 100 (1 − ‖y − ŷ‖ / ‖y − mean y‖)"};
   for (const ComparedSignal& s : c.signals)
     table.rows.push_back({s.name, shown(s.rmse, s.unit), shown(s.max_abs, s.unit), shown(s.mean, s.unit),
                           fmt::format("{:.2f}", s.relative_percent), fit_text(s.fit_percent)});

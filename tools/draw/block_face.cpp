@@ -24,12 +24,14 @@ std::string polynomial(const std::vector<double>& coefficients, std::string_view
   for (size_t i = 0; i < coefficients.size(); ++i) {
     if (coefficients[i] == 0) continue;
     const int power = rises ? -int(i) : int(coefficients.size() - 1 - i);
-    const std::string symbol =
-        power == 0 ? "" : power == 1 ? std::string(variable) : std::string(variable) + superscript(power);
+    const std::string symbol = power == 0   ? ""
+                               : power == 1 ? std::string(variable)
+                                            : std::string(variable) + superscript(power);
     const double size = std::abs(coefficients[i]);
     const std::string number = size == 1 && power != 0 ? "" : fmt::format("{:.4g}", size);
     const std::string sign = coefficients[i] < 0 ? "−" : terms.empty() ? "" : "+";
-    terms.push_back(sign + (terms.empty() ? "" : " ") + number + (number.empty() || symbol.empty() ? "" : " ") + symbol);
+    terms.push_back(sign + (terms.empty() ? "" : " ") + number +
+                    (number.empty() || symbol.empty() ? "" : " ") + symbol);
   }
   if (terms.empty()) return "0";
   if (terms.size() > most_terms) terms = {terms.front(), "+ …", terms.back()};
@@ -73,9 +75,11 @@ std::optional<GraphFace> dynamics(const ShownSettings& s) {
   if (type == "LowPass")
     return text_face(fmt::format("low-pass {}\n{}", s.text("order"), s.quantity("cutoff")));
   if (type == "TransferFunction" || type == "StrictlyProperTransferFunction")
-    return fraction(polynomial(s.numbers("numerator"), "s", false), polynomial(s.numbers("denominator"), "s", false));
+    return fraction(polynomial(s.numbers("numerator"), "s", false),
+                    polynomial(s.numbers("denominator"), "s", false));
   if (type == "DiscreteTransferFunction")
-    return fraction(polynomial(s.numbers("numerator"), "z", true), polynomial(s.numbers("denominator"), "z", true));
+    return fraction(polynomial(s.numbers("numerator"), "z", true),
+                    polynomial(s.numbers("denominator"), "z", true));
   if (type == "DiscreteIntegrator") {
     const std::string method = s.text("method");
     if (method == "forward") return fraction("T", "z − 1");
@@ -98,8 +102,8 @@ std::optional<GraphFace> dynamics(const ShownSettings& s) {
 /// Controllers and filters show what they are tuned with.
 std::string tuning(const ShownSettings& s) {
   if (s.room() != "control") return {};
-  return listed(s, {"Kp", "Ki", "Kd", "proportional", "integral", "derivative", "cutoff", "center", "frequency", "width", "mass", "damping",
-                    "zero", "pole", "gain", "time_constant"});
+  return listed(s, {"Kp", "Ki", "Kd", "proportional", "integral", "derivative", "cutoff", "center",
+                    "frequency", "width", "mass", "damping", "zero", "pole", "gain", "time_constant"});
 }
 
 /// Laws of force show their first parameter beside their characteristic.

@@ -47,7 +47,8 @@ Strokes table(const ShownSettings& s) {
   Stroke stroke;
   const size_t stride = std::max<size_t>(1, x.size() / 60);
   for (size_t i = 0; i < x.size(); i += stride)
-    stroke.emplace_back(-1 + 2 * (x[i] - x.front()) / span_x, span_y > 0 ? -0.9 + 1.8 * (y[i] - low) / span_y : 0);
+    stroke.emplace_back(-1 + 2 * (x[i] - x.front()) / span_x,
+                        span_y > 0 ? -0.9 + 1.8 * (y[i] - low) / span_y : 0);
   return {stroke};
 }
 
@@ -60,7 +61,16 @@ const std::map<std::string_view, Strokes>& fixed() {
       {"Chirp", {sampled([](double x) { return 0.8 * std::sin(9 * std::pow((x + 1) / 2, 2) * 2); })}},
       {"Multisine", {sampled([](double x) { return 0.45 * (std::sin(4 * x) + std::sin(11 * x + 1)); })}},
       {"PulseTrain",
-       {{{-1, -0.7}, {-0.7, -0.7}, {-0.7, 0.7}, {-0.2, 0.7}, {-0.2, -0.7}, {0.3, -0.7}, {0.3, 0.7}, {0.8, 0.7}, {0.8, -0.7}, {1, -0.7}}}},
+       {{{-1, -0.7},
+         {-0.7, -0.7},
+         {-0.7, 0.7},
+         {-0.2, 0.7},
+         {-0.2, -0.7},
+         {0.3, -0.7},
+         {0.3, 0.7},
+         {0.8, 0.7},
+         {0.8, -0.7},
+         {1, -0.7}}}},
       {"Noise", {noise()}},
       {"Clock", {{{-1, -0.8}, {1, 0.8}}}},
       {"MotionProfile", {sampled([](double x) { return 0.8 * std::tanh(3 * x); })}},
@@ -88,10 +98,22 @@ const std::map<std::string_view, Strokes>& fixed() {
       {"SmoothCoulombFriction", {sampled([](double x) { return 0.6 * std::tanh(6 * x); })}},
       {"DirectionDependentFriction", {{{-1, -0.4}, {0, -0.4}, {0, 0.75}, {1, 0.75}}}},
       {"StribeckFriction",
-       {{{-1, -0.45}, {-0.6, -0.45}, {-0.3, -0.55}, {-0.12, -0.8}, {0, -0.9}, {0, 0.9}, {0.12, 0.8}, {0.3, 0.55}, {0.6, 0.45}, {1, 0.45}}}},
-      {"LuGreFriction", {{{-0.9, -0.7}, {0.1, -0.55}, {0.6, 0.2}, {0.9, 0.7}, {-0.1, 0.55}, {-0.6, -0.2}, {-0.9, -0.7}}}},
-      {"DahlFriction", {{{-0.9, -0.7}, {0.1, -0.55}, {0.6, 0.2}, {0.9, 0.7}, {-0.1, 0.55}, {-0.6, -0.2}, {-0.9, -0.7}}}},
-      {"PreslidingFriction", {{{-0.9, -0.7}, {0.1, -0.55}, {0.6, 0.2}, {0.9, 0.7}, {-0.1, 0.55}, {-0.6, -0.2}, {-0.9, -0.7}}}},
+       {{{-1, -0.45},
+         {-0.6, -0.45},
+         {-0.3, -0.55},
+         {-0.12, -0.8},
+         {0, -0.9},
+         {0, 0.9},
+         {0.12, 0.8},
+         {0.3, 0.55},
+         {0.6, 0.45},
+         {1, 0.45}}}},
+      {"LuGreFriction",
+       {{{-0.9, -0.7}, {0.1, -0.55}, {0.6, 0.2}, {0.9, 0.7}, {-0.1, 0.55}, {-0.6, -0.2}, {-0.9, -0.7}}}},
+      {"DahlFriction",
+       {{{-0.9, -0.7}, {0.1, -0.55}, {0.6, 0.2}, {0.9, 0.7}, {-0.1, 0.55}, {-0.6, -0.2}, {-0.9, -0.7}}}},
+      {"PreslidingFriction",
+       {{{-0.9, -0.7}, {0.1, -0.55}, {0.6, 0.2}, {0.9, 0.7}, {-0.1, 0.55}, {-0.6, -0.2}, {-0.9, -0.7}}}},
       {"CoggingForce", {sampled([](double x) { return 0.7 * std::sin(9.42 * x); })}},
       {"ForceRipple", {sampled([](double x) { return 0.4 + 0.25 * std::sin(12.5 * x); })}},
       {"ThermalDrift", {sampled([](double x) { return 0.7 - 1.4 * std::exp(-2 * (x + 1)); })}},

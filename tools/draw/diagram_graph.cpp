@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <map>
+#include <set>
 #include "engine/plan/unit_expressions.h"
 #include "tools/draw/block_face.h"
 #include "tools/draw/signal_rates.h"
@@ -19,9 +20,27 @@ struct Level {
   const Diagram* diagram = nullptr;
   size_t container = 0;  ///< the node around it; not of the outermost diagram
   bool is_outermost = false;
-  std::map<std::string_view, size_t> nodes;                 ///< by name of the block
+  std::map<std::string_view, size_t> nodes;                  ///< by name of the block
   std::map<std::string_view, std::unique_ptr<Level>> inner;  ///< of subdiagrams
 };
+
+/// "$y/$u" with N and V is "N/V", as one would write it; empty where names would need brackets or cancel.
+std::string substituted(std::string_view text, const UnitExpression& expression,
+                        const std::vector<std::optional<Unit>>& variables) {
+  if (size_t(std::ranges::count(text, '$')) != expression.factors.size()) return {};
+  std::string out;
+  std::set<std::string> used;
+  for (const UnitFactor& factor : expression.factors) {  // in the order of the text
+    const size_t dollar = text.find('$');
+    const auto& variable = variables[size_t(factor.variable)];
+    const std::string name = variable ? to_string(*variable) : "";
+    if (name.empty() || name == "1" || name.find_first_of("*/^ ") != name.npos || !used.insert(name).second)
+      return {};
+    out += std::string(text.substr(0, dollar)) + name;
+    text.remove_prefix(std::min(text.find_first_of("*/^", dollar), text.size()));
+  }
+  return out + std::string(text);
+}
 
 class GraphBuilder {
  public:
@@ -75,7 +94,8 @@ class GraphBuilder {
 
   report::GraphNode subdiagram_node(const BlockEntry& block, const std::string& path) {
     const Diagram& inside = *block.subdiagram;
-    report::GraphNode node{path, std::filesystem::path(inside.path).filename().string(), "subdiagram", {}, {}, {}, inside.title};
+    report::GraphNode node{
+        path, std::filesystem::path(inside.path).filename().string(), "subdiagram", {}, {}, {}, inside.title};
     for (const DiagramInput& input : inside.inputs) node.inputs.push_back(port(path, input.name));
     for (const DiagramOutput& output : inside.outputs) node.outputs.push_back(port(path, output.name));
     return node;
@@ -102,7 +122,8 @@ class GraphBuilder {
   }
 
   /// A unit in the description of a parameter follows from the units of the wires at the block.
-  std::function<std::string(std::string_view)> parameter_units(const BlockType& type, const std::string& path) const {
+  std::function<std::string(std::string_view)> parameter_units(const BlockType& type,
+                                                               const std::string& path) const {
     const auto known = std::make_shared<TypeUnits>(type.info);
     std::vector<std::optional<Unit>> variables(known->variables());
     const auto learn = [&](const UnitExpression& expression, std::string_view port) {
@@ -112,10 +133,12 @@ class GraphBuilder {
       if (unit) variables[size_t(expression.factors[0].variable)] = *unit * power(expression.constant, -1);
     };
     for (size_t i = 0; i < type.info.inputs.size(); ++i) learn(known->of_input(i), type.info.inputs[i].name);
-    for (size_t o = 0; o < type.info.outputs.size(); ++o) learn(known->of_output(o), type.info.outputs[o].name);
+    for (size_t o = 0; o < type.info.outputs.size(); ++o)
+      learn(known->of_output(o), type.info.outputs[o].name);
     return [known, variables](std::string_view text) -> std::string {
       if (text.find('$') == text.npos) return std::string(text);
       const UnitExpression& expression = known->of(text);
+      if (std::string plain = substituted(text, expression, variables); !plain.empty()) return plain;
       Unit unit = expression.constant;
       for (const UnitFactor& factor : expression.factors) {
         const auto& variable = variables[size_t(factor.variable)];

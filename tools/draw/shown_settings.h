@@ -19,8 +19,8 @@ class ShownSettings {
 
   const std::string& type() const { return type_.info.type; }
   const std::string& room() const { return type_.info.room; }
-  std::string text(std::string_view parameter) const;  ///< without quotes; empty if there is none
-  double number(std::string_view parameter) const;     ///< SI; NaN if there is none
+  std::string text(std::string_view parameter) const;             ///< without quotes; empty if there is none
+  double number(std::string_view parameter) const;                ///< SI; NaN if there is none
   std::vector<double> numbers(std::string_view parameter) const;  ///< of a flat list; empty otherwise
   /// "4 N/m", "40 mm": short, with the unit at hand; empty if it is no number.
   std::string quantity(std::string_view parameter) const;

@@ -38,7 +38,8 @@ SignalRates::SignalRates(const Plan& plan) : plan_(plan) {
   };
   for (const Plan::Entry& entry : plan.order) {
     if (entry.kind == Plan::Entry::Kind::algebraic_loop)
-      for (const Plan::Entry& inner : plan.algebraic_loops[size_t(entry.block)].entries) mark(inner, entry.rate);
+      for (const Plan::Entry& inner : plan.algebraic_loops[size_t(entry.block)].entries)
+        mark(inner, entry.rate);
     else
       mark(entry, entry.rate);
   }

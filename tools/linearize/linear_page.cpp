@@ -28,7 +28,8 @@ struct Bode {
   report::Plot gain, phase;
   explicit Bode(const std::string& unit) {
     gain.x = phase.x = {"Frequency", "Hz", true};
-    gain.y = {unit.empty() ? "Gain" : fmt::format("Gain, 0 dB = 1 {}", unit), "dB", false}, phase.y = {"Phase", "°", false};
+    gain.y = {unit.empty() ? "Gain" : fmt::format("Gain, 0 dB = 1 {}", unit), "dB", false},
+    phase.y = {"Phase", "°", false};
     gain.group = phase.group = "frequency";
   }
   void add(const std::string& name, const std::vector<double>& frequency,

@@ -22,13 +22,13 @@ std::string face_json(const GraphFace& face) {
   for (const auto& stroke : face.strokes) {
     strokes += strokes.size() > 1 ? ",[" : "[";
     for (const auto& [x, y] : stroke)
-      fmt::format_to(std::back_inserter(strokes), "{}[{:.3g},{:.3g}]", strokes.back() == '[' ? "" : ",", x, y);
+      fmt::format_to(std::back_inserter(strokes), "{}[{:.3g},{:.3g}]", strokes.back() == '[' ? "" : ",", x,
+                     y);
     strokes += ']';
   }
-  return fmt::format(
-      R"({{"shape":"{}","text":{},"numerator":{},"denominator":{},"strokes":{}],"axes":{}}})",
-      shapes[std::size_t(face.shape)], json_string(face.text), json_string(face.numerator),
-      json_string(face.denominator), strokes, face.has_axes);
+  return fmt::format(R"({{"shape":"{}","text":{},"numerator":{},"denominator":{},"strokes":{}],"axes":{}}})",
+                     shapes[std::size_t(face.shape)], json_string(face.text), json_string(face.numerator),
+                     json_string(face.denominator), strokes, face.has_axes);
 }
 
 std::string end_json(const GraphEnd& end) {
@@ -60,12 +60,12 @@ std::string graph_json(const Graph& graph) {
   for (const std::string& rate : graph.rates) separate(), out += json_string(rate);
   out += "],\"nodes\":[";
   for (const GraphNode& node : graph.nodes)
-    separate(), fmt::format_to(
-                    std::back_inserter(out),
-                    R"({{"path":{},"type":{},"room":{},"inputs":{},"outputs":{},"face":{},"details":{}}})",
-                    json_string(node.path), json_string(node.type), json_string(node.room),
-                    ports_json(node.inputs), ports_json(node.outputs), face_json(node.face),
-                    json_string(node.details));
+    separate(),
+        fmt::format_to(std::back_inserter(out),
+                       R"({{"path":{},"type":{},"room":{},"inputs":{},"outputs":{},"face":{},"details":{}}})",
+                       json_string(node.path), json_string(node.type), json_string(node.room),
+                       ports_json(node.inputs), ports_json(node.outputs), face_json(node.face),
+                       json_string(node.details));
   out += "],\n\"edges\":[";
   for (const GraphEdge& edge : graph.edges)
     separate(), out += fmt::format("[{},{}]", end_json(edge.from), end_json(edge.to));

@@ -51,8 +51,14 @@ ChildResult draw_with_node(const std::string& program, const Graph& graph, const
 }
 
 std::vector<std::string> browser(const std::string& program, const std::filesystem::path& folder) {
-  return {program, "--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--no-first-run",
-          "--hide-scrollbars", "--user-data-dir=" + (folder / "profile").string()};
+  return {program,
+          "--headless",
+          "--no-sandbox",
+          "--disable-gpu",
+          "--disable-background-networking",
+          "--no-first-run",
+          "--hide-scrollbars",
+          "--user-data-dir=" + (folder / "profile").string()};
 }
 
 /// The page leaves the picture, encoded, in the title of its document.
@@ -60,11 +66,15 @@ ChildResult draw_with_browser(const std::string& program, const Graph& graph, co
   const TemporaryFolder folder;
   const std::filesystem::path page = folder.path() / "page.html";
   std::ofstream(page) << fmt::format(
-      "<!DOCTYPE html><meta charset=\"utf-8\"><script type=\"text/plain\" id=\"elk\">{}</script><script>\n{}\n"
+      "<!DOCTYPE html><meta charset=\"utf-8\"><script type=\"text/plain\" "
+      "id=\"elk\">{}</script><script>\n{}\n"
       "(async () => {{\n"
-      "  const bytes = Uint8Array.from(atob(document.getElementById(\"elk\").textContent), (c) => c.charCodeAt(0));\n"
-      "  const text = await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream(\"gzip\"))).text();\n"
-      "  const script = document.createElement(\"script\"); script.textContent = text; document.head.append(script);\n"
+      "  const bytes = Uint8Array.from(atob(document.getElementById(\"elk\").textContent), (c) => "
+      "c.charCodeAt(0));\n"
+      "  const text = await new Response(new Blob([bytes]).stream().pipeThrough(new "
+      "DecompressionStream(\"gzip\"))).text();\n"
+      "  const script = document.createElement(\"script\"); script.textContent = text; "
+      "document.head.append(script);\n"
       "  const svg = await drawing(new ELK());\n"
       "  document.documentElement.innerHTML = \"[[\" + encodeURIComponent(svg) + \"]]\";\n"
       "}})();\n</script>",
@@ -74,7 +84,8 @@ ChildResult draw_with_browser(const std::string& program, const Graph& graph, co
   ChildResult result = run_program(arguments, "", options.time_limit);
   if (!result.succeeded) return result;
   const std::size_t begin = result.output.find("[["), end = result.output.find("]]", begin);
-  if (begin == std::string::npos || end == std::string::npos) return {false, {}, program + " gave no picture"};
+  if (begin == std::string::npos || end == std::string::npos)
+    return {false, {}, program + " gave no picture"};
   std::string svg;
   for (std::size_t i = begin + 2; i < end; ++i)
     if (result.output[i] == '%') {
@@ -109,7 +120,9 @@ GraphPicture draw_svg(const Graph& graph, const GraphOptions& options) {
     if (result.succeeded && result.output.starts_with("<svg")) return {std::move(result.output), {}};
     failures += "\n  " + (result.succeeded ? program + " gave no picture" : result.failure);
   }
-  return {{}, "the diagram could not be drawn; this needs node or chromium (Debian packages nodejs, chromium):" + failures};
+  return {{},
+          "the diagram could not be drawn; this needs node or chromium (Debian packages nodejs, chromium):" +
+              failures};
 }
 
 GraphPicture draw_png(const Graph& graph, const GraphOptions& options) {
@@ -117,8 +130,9 @@ GraphPicture draw_png(const Graph& graph, const GraphOptions& options) {
   if (drawn.bytes.empty()) return drawn;
   const TemporaryFolder folder;
   const auto page = folder.path() / "page.html", picture = folder.path() / "picture.png";
-  std::ofstream(page) << "<!DOCTYPE html><meta charset=\"utf-8\"><style>body { margin: 0; } svg { display: block; }</style>"
-                      << drawn.bytes;
+  std::ofstream(page)
+      << "<!DOCTYPE html><meta charset=\"utf-8\"><style>body { margin: 0; } svg { display: block; }</style>"
+      << drawn.bytes;
   std::vector<std::string> arguments = browser(options.rasterizer, folder.path());
   arguments.insert(arguments.end(),
                    {"--force-device-scale-factor=2", "--screenshot=" + picture.string(),
@@ -128,8 +142,9 @@ GraphPicture draw_png(const Graph& graph, const GraphOptions& options) {
   const ChildResult result = run_program(arguments, "", options.time_limit);
   std::string bytes = content(picture);
   if (bytes.empty())
-    return {{}, "the picture could not be written as PNG; this needs chromium (Debian package chromium):\n  " +
-                    (result.succeeded ? options.rasterizer + " gave no picture" : result.failure)};
+    return {{},
+            "the picture could not be written as PNG; this needs chromium (Debian package chromium):\n  " +
+                (result.succeeded ? options.rasterizer + " gave no picture" : result.failure)};
   return {std::move(bytes), {}};
 }
 

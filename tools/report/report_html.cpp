@@ -1,4 +1,5 @@
 #include "tools/report/report.h"
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <fmt/format.h>
@@ -210,7 +211,10 @@ void HtmlWriter::put_item(const Graph& graph) {
   put("<figure class=\"block-diagram\">\n<div class=\"canvas\" tabindex=\"0\"></div>\n"
       "<script type=\"application/json\">{}</script>\n",
       graph_json(graph));
-  put_caption("Figure", figures_, graph.caption, {}, "Click on a subdiagram to open or close it");
+  const bool has_subdiagrams = std::any_of(graph.nodes.begin(), graph.nodes.end(),
+                                           [](const GraphNode& n) { return n.room == "subdiagram"; });
+  put_caption("Figure", figures_, graph.caption, {},
+              has_subdiagrams ? "Click on a subdiagram to open or close it" : "");
   out_ += "</figure>\n";
 }
 
@@ -284,11 +288,11 @@ std::string HtmlWriter::write() {
     out_ += "</section>\n";
   }
   out_ += "</main>\n";
-  if (has_diagram_)
-    put("<!-- {} -->\n<script type=\"text/plain\" id=\"elk\">{}</script>\n", assets::elk_notice,
-        assets::elk_packed);
-  put("<script>\n/*\nuPlot: {}*/\n{}\n(() => {{\n\"use strict\";\n{}}})();\n</script>\n</body>\n</html>\n",
-      assets::uplot_license, assets::uplot_js, assets::page_js);
+  if (has_diagram_) put("<script type=\"text/plain\" id=\"elk\">{}</script>\n", assets::elk_packed);
+  put("<script>\n/*\nuPlot: {}\n{}\n*/\n{}\n(() => {{\n\"use "
+      "strict\";\n{}}})();\n</script>\n</body>\n</html>\n",
+      assets::uplot_license, has_diagram_ ? assets::elk_notice : std::string_view(), assets::uplot_js,
+      assets::page_js);
   return std::move(out_);
 }
 

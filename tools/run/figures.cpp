@@ -25,7 +25,8 @@ double band_of(const Value& value, const Plan::Logged& signal, Problems& problem
   const Value::Member *number = value.find("value"), *unit = value.find("unit");
   const auto written = unit ? parse_unit(unit->value.text) : std::optional<Unit>(signal.unit);
   if (!written || (signal.unit_is_known && !written->fits(signal.unit))) {
-    auto& problem = problems.error(value.place, value.place.pointer(), "", "the unit of \"band\" does not fit");
+    auto& problem =
+        problems.error(value.place, value.place.pointer(), "", "the unit of \"band\" does not fit");
     problem.expected = to_string(signal.unit), problem.found = unit->value.text;
     return 0;
   }
@@ -51,7 +52,8 @@ std::vector<FollowedSignal> requested(const std::vector<FigureRequest>& requests
     };
     const Plan::Logged *signal = find(request.signal), *reference = find(request.reference);
     if (!signal || !reference) continue;
-    found.push_back({signal->name, reference->name, unit_text(*signal), band_of(request.band, *signal, problems), false});
+    found.push_back(
+        {signal->name, reference->name, unit_text(*signal), band_of(request.band, *signal, problems), false});
   }
   return found;
 }
@@ -89,7 +91,8 @@ double start_of_move(const std::vector<double>& reference, size_t end) {
 }
 
 TrackingFigures::Move last_move(const FollowedSignal& followed, const std::vector<double>& time,
-                                const std::vector<double>& reference, const std::vector<double>& signal, size_t end) {
+                                const std::vector<double>& reference, const std::vector<double>& signal,
+                                size_t end) {
   TrackingFigures::Move move;
   const double from = start_of_move(reference, end), target = reference.back();
   move.end = time[end], move.size = target - from;
@@ -97,7 +100,8 @@ TrackingFigures::Move last_move(const FollowedSignal& followed, const std::vecto
   move.band = followed.band > 0 ? followed.band : usual_band * std::abs(move.size);
   const double sign = move.size < 0 ? -1 : 1;
   size_t settled = time.size();
-  for (size_t i = end; i < time.size(); ++i) move.overshoot = std::max(move.overshoot, sign * (signal[i] - target));
+  for (size_t i = end; i < time.size(); ++i)
+    move.overshoot = std::max(move.overshoot, sign * (signal[i] - target));
   while (settled > end && std::abs(signal[settled - 1] - target) <= move.band) --settled;
   if (settled < time.size()) move.settling = time[settled] - move.end;
   const size_t tail = std::max(end, time.size() - std::max<size_t>(2, (time.size() - end) / 10));
@@ -123,7 +127,8 @@ std::vector<FollowedSignal> guessed_signals(const Plan& plan) {
     found.push_back({actual->name, wanted->name, unit_text(*actual), 0, true});
   };
   const auto signs_of = [&](const std::string& path) {
-    const auto entry = std::ranges::find(plan.parameters, path + ".signs", &std::pair<std::string, std::string>::first);
+    const auto entry =
+        std::ranges::find(plan.parameters, path + ".signs", &std::pair<std::string, std::string>::first);
     return entry == plan.parameters.end() ? std::string() : entry->second;
   };
   for (const Plan::Block& block : plan.blocks) {
@@ -178,9 +183,11 @@ std::optional<TrackingFigures> tracking_figures(const FollowedSignal& followed, 
   const size_t begin = figures.move ? rest : 0, rows = time.size() - begin;
   const double band = figures.move ? figures.move->band : 0;
   constexpr double growth = 1.5;
-  const double thirds[] = {greatest(error, begin, begin + rows / 3), greatest(error, begin + rows / 3, begin + 2 * rows / 3),
+  const double thirds[] = {greatest(error, begin, begin + rows / 3),
+                           greatest(error, begin + rows / 3, begin + 2 * rows / 3),
                            greatest(error, begin + 2 * rows / 3, time.size())};
-  figures.grows = figures.move && rows >= 30 && thirds[2] > band && thirds[1] > growth * thirds[0] && thirds[2] > growth * thirds[1];
+  figures.grows = figures.move && rows >= 30 && thirds[2] > band && thirds[1] > growth * thirds[0] &&
+                  thirds[2] > growth * thirds[1];
   figures.grows = figures.grows || swings_up(error);
   return figures;
 }

@@ -34,13 +34,13 @@ struct TrackingFigures {
 
   /// The last move of the reference, if it comes to rest before the end of the run.
   struct Move {
-    double end = 0;         ///< s, when the reference stops
-    double size = 0;        ///< of the reference, signed
-    bool is_jump = false;   ///< within a row: overshoot counts from the jump
-    double band = 0;        ///< around the target
-    double overshoot = 0;   ///< beyond the target in the direction of the move; at least 0
+    double end = 0;                  ///< s, when the reference stops
+    double size = 0;                 ///< of the reference, signed
+    bool is_jump = false;            ///< within a row: overshoot counts from the jump
+    double band = 0;                 ///< around the target
+    double overshoot = 0;            ///< beyond the target in the direction of the move; at least 0
     std::optional<double> settling;  ///< s from `end` until |e| stays within the band; nothing: it does not
-    double ripple = 0;      ///< half of the range of e over the last tenth of the time after the move
+    double ripple = 0;  ///< half of the range of e over the last tenth of the time after the move
   };
   std::optional<Move> move;
   /// |e| grows from third to third of the time after the move, or of the run: oscillations that build up.

@@ -9,7 +9,7 @@ namespace loopwright {
 
 /// The share of time that a block spends at a limit.
 struct TimeAtLimit {
-  std::string block;  ///< "controller.command"
+  std::string block;         ///< "controller.command"
   double low = 0, high = 0;  ///< of the time of the run, 0 to 1
 };
 

@@ -48,15 +48,16 @@ void add_signals(report::Page& page, const std::vector<NamedRecording>& runs,
 
 }  // namespace
 
-report::Page run_page(const Diagram* diagram, const Plan& plan, const RunResult& result, const RunFigures& figures,
-                      const std::vector<NamedRecording>& beside) {
+report::Page run_page(const Diagram* diagram, const Plan& plan, const RunResult& result,
+                      const RunFigures& figures, const std::vector<NamedRecording>& beside) {
   report::Page page;
   page.title = plan.title.empty() ? "A run" : plan.title;
   page.subtitle = fmt::format("Simulation, {}", progress_note(plan, result));
   page.facts = {{"Plan", plan.hash}, {"Seed", fmt::format("{}", plan.seed)}};
   report::Section outcome{"Outcome", {}};
   for (report::Notice& notice : verdict(plan, result, figures)) outcome.items.push_back(std::move(notice));
-  if (report::KeyNumbers key = key_numbers(figures); !key.numbers.empty()) outcome.items.push_back(std::move(key));
+  if (report::KeyNumbers key = key_numbers(figures); !key.numbers.empty())
+    outcome.items.push_back(std::move(key));
   for (const Problem& warning : plan.warnings)
     outcome.items.push_back(report::Notice{report::Notice::Severity::warning, to_string(warning)});
   for (const std::string& warning : result.warnings)

@@ -38,7 +38,8 @@ std::vector<Scope> grouped(const std::vector<NamedRecording>& runs) {
   for (size_t c = 1; c < first.columns.size(); ++c) {
     const Column& column = first.columns[c];
     const double peak = peak_of(column);
-    auto scope = std::ranges::find_if(scopes, [&](const Scope& s) { return s.takes(column, peak, most_signals); });
+    auto scope =
+        std::ranges::find_if(scopes, [&](const Scope& s) { return s.takes(column, peak, most_signals); });
     if (scope == scopes.end()) scope = scopes.insert(scopes.end(), {column.unit, peak, {}});
     scope->signals.push_back(column.name);
   }
@@ -65,7 +66,8 @@ std::string axis_label(const std::vector<std::string>& signals) {
 }
 
 /// The values of a column at other times, linear between rows; NaN outside.
-std::vector<double> at_times(const Recording& recording, const Column& column, const std::vector<double>& times) {
+std::vector<double> at_times(const Recording& recording, const Column& column,
+                             const std::vector<double>& times) {
   const std::vector<double>& own = recording.columns.front().values;
   std::vector<double> values;
   size_t row = 0;
@@ -76,8 +78,8 @@ std::vector<double> at_times(const Recording& recording, const Column& column, c
     else if (own[row] == t || row + 1 == own.size())
       values.push_back(column.values[row]);
     else
-      values.push_back(column.values[row] +
-                       (column.values[row + 1] - column.values[row]) * (t - own[row]) / (own[row + 1] - own[row]));
+      values.push_back(column.values[row] + (column.values[row + 1] - column.values[row]) * (t - own[row]) /
+                                                (own[row + 1] - own[row]));
   }
   return values;
 }
@@ -109,11 +111,17 @@ std::vector<report::Plot> scopes(const std::vector<NamedRecording>& runs,
                                  const std::function<bool(const std::string&)>& is_held) {
   std::vector<report::Plot> plots;
   for (const Scope& scope : grouped(runs)) {
-    report::Plot plot{"", {"Time", "s", false}, {axis_label(scope.signals), scope.unit == "1" ? "" : scope.unit, false}, {}, "time", ""};
+    report::Plot plot{"",
+                      {"Time", "s", false},
+                      {axis_label(scope.signals), scope.unit == "1" ? "" : scope.unit, false},
+                      {},
+                      "time",
+                      ""};
     for (const std::string& signal : scope.signals)
       for (const NamedRecording& run : runs)
         if (const Column* column = run.recording->find(signal))
-          plot.series.push_back({curve_name(signal, run, runs.size()), run.recording->columns[0].values, column->values,
+          plot.series.push_back({curve_name(signal, run, runs.size()), run.recording->columns[0].values,
+                                 column->values,
                                  is_held(signal) ? Series::Shape::steps : Series::Shape::line});
     plot.title = joined(scope.signals) + " over time";
     plots.push_back(std::move(plot));
@@ -125,14 +133,21 @@ std::vector<report::Plot> spectra(const std::vector<NamedRecording>& runs) {
   std::vector<report::Plot> plots;
   constexpr size_t most_plots = 8;
   for (const Scope& scope : grouped(runs)) {
-    report::Plot plot{"", {"Frequency", "Hz", true}, {"Amplitude", scope.unit == "1" ? "" : scope.unit, true}, {}, "spectrum", ""};
+    report::Plot plot{"",
+                      {"Frequency", "Hz", true},
+                      {"Amplitude", scope.unit == "1" ? "" : scope.unit, true},
+                      {},
+                      "spectrum",
+                      ""};
     for (const std::string& signal : scope.signals)
       for (const NamedRecording& run : runs) {
         const Column* column = run.recording->find(signal);
-        if (!column || !std::ranges::all_of(column->values, [](double v) { return std::isfinite(v); })) continue;
+        if (!column || !std::ranges::all_of(column->values, [](double v) { return std::isfinite(v); }))
+          continue;
         AmplitudeSpectrum s = amplitude_spectrum(column->values, even_step(run.recording->columns[0].values));
         if (!s.frequency.empty() && peak_of(*column) > 0)
-          plot.series.push_back({curve_name(signal, run, runs.size()), std::move(s.frequency), std::move(s.amplitude)});
+          plot.series.push_back(
+              {curve_name(signal, run, runs.size()), std::move(s.frequency), std::move(s.amplitude)});
       }
     plot.title = "Amplitude spectrum of " + joined(scope.signals);
     plot.caption = "The whole run without its mean, under a Hann window";
@@ -156,8 +171,8 @@ report::Table signal_table(const std::vector<NamedRecording>& runs) {
       const RowUnit shown(peak_of(*column), unit_text(*column));
       std::vector<std::string> row{column->name};
       if (runs.size() > 1) row.push_back(run.name);
-      for (std::string cell : {shown.unit, shown(low), shown(high), shown(sum / count), shown(std::sqrt(squares / count)),
-                               shown(column->values.back())})
+      for (std::string cell : {shown.unit, shown(low), shown(high), shown(sum / count),
+                               shown(std::sqrt(squares / count)), shown(column->values.back())})
         row.push_back(std::move(cell));
       table.rows.push_back(std::move(row));
     }
@@ -166,20 +181,29 @@ report::Table signal_table(const std::vector<NamedRecording>& runs) {
 
 report::Section differences(const std::vector<NamedRecording>& runs) {
   report::Section section{"Differences", {}};
-  report::Table table{{"Signal", "Run", "Unit", "RMS", "Greatest", "At (s)"}, {}, fmt::format("What the runs have more than {}, over the common time", runs.front().name)};
+  report::Table table{
+      {"Signal", "Run", "Unit", "RMS", "Greatest", "At (s)"},
+      {},
+      fmt::format("What the runs have more than {}, over the common time", runs.front().name)};
   std::vector<report::Plot> plots;
   std::string left_out;
   const Recording& first = *runs.front().recording;
   const std::vector<double>& time = first.columns.front().values;
   for (size_t c = 1; c < first.columns.size(); ++c) {
     const Column& column = first.columns[c];
-    report::Plot plot{"Difference of " + column.name + " to " + runs.front().name, {"Time", "s", false}, {column.name, unit_text(column), false}, {}, "time", ""};
+    report::Plot plot{"Difference of " + column.name + " to " + runs.front().name,
+                      {"Time", "s", false},
+                      {column.name, unit_text(column), false},
+                      {},
+                      "time",
+                      ""};
     for (size_t r = 1; r < runs.size(); ++r) {
       const Column* other = runs[r].recording->find(column.name);
       if (!other || unit_text(*other) != unit_text(column)) {
-        left_out += fmt::format("{}{} {}", left_out.empty() ? "" : "; ", runs[r].name,
-                                other ? fmt::format("has {} in {}, not {}", column.name, other->unit, column.unit)
-                                      : "has no " + column.name);
+        left_out +=
+            fmt::format("{}{} {}", left_out.empty() ? "" : "; ", runs[r].name,
+                        other ? fmt::format("has {} in {}, not {}", column.name, other->unit, column.unit)
+                              : "has no " + column.name);
         continue;
       }
       std::vector<double> difference = at_times(*runs[r].recording, *other, time);
@@ -193,13 +217,16 @@ report::Section differences(const std::vector<NamedRecording>& runs) {
       }
       if (count == 0) continue;
       const RowUnit shown(most, unit_text(column));
-      table.rows.push_back({column.name, runs[r].name, shown.unit, shown(std::sqrt(squares / double(count))), shown(most), fmt::format("{:.6g}", at)});
+      table.rows.push_back({column.name, runs[r].name, shown.unit, shown(std::sqrt(squares / double(count))),
+                            shown(most), fmt::format("{:.6g}", at)});
       if (most > 0) plot.series.push_back({runs[r].name, time, std::move(difference)});
     }
     if (!plot.series.empty()) plots.push_back(std::move(plot));
   }
   section.items.push_back(std::move(table));
-  if (!left_out.empty()) section.items.push_back(report::Notice{report::Notice::Severity::warning, "Not compared: " + left_out + "."});
+  if (!left_out.empty())
+    section.items.push_back(
+        report::Notice{report::Notice::Severity::warning, "Not compared: " + left_out + "."});
   for (report::Plot& plot : plots) section.items.push_back(std::move(plot));
   return section;
 }

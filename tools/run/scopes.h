@@ -13,9 +13,9 @@ struct NamedRecording {
   const Recording* recording;  ///< its first column is the time
 };
 
-/// Scopes of the signals of the first recording, each signal beside the same signal of the others. A scope has
-/// one unit and similar magnitudes, so that a small error is not hidden by a large motion. `is_held`: whether
-/// a signal keeps its value between rows.
+/// Scopes of the signals of the first recording, each signal beside the same signal of the others. A scope
+/// has one unit and similar magnitudes, so that a small error is not hidden by a large motion. `is_held`:
+/// whether a signal keeps its value between rows.
 std::vector<report::Plot> scopes(const std::vector<NamedRecording>& runs,
                                  const std::function<bool(const std::string&)>& is_held);
 

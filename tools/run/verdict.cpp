@@ -22,16 +22,17 @@ std::string subject(const TrackingFigures& t) { return t.followed.signal; }
 
 std::string tracking_sentence(const TrackingFigures& t) {
   const std::string& unit = t.followed.unit;
-  std::string text = fmt::format("{} follows {} with an error of {} rms, at most {} at {}", subject(t),
-                                 t.followed.reference, shown(t.rms, unit), shown(t.greatest, unit), shown(t.at, "s"));
+  std::string text =
+      fmt::format("{} follows {} with an error of {} rms, at most {} at {}", subject(t), t.followed.reference,
+                  shown(t.rms, unit), shown(t.greatest, unit), shown(t.at, "s"));
   if (!t.move) return text + "; the reference never comes to rest.";
   const auto& move = *t.move;
   text += move.settling
               ? fmt::format("; it settles within ±{} {} after the reference {}", shown(move.band, unit),
                             *move.settling > 0 ? shown(*move.settling, "s") : "at once",
                             move.is_jump ? "jumps" : "stops")
-              : fmt::format("; it does not settle within ±{} after the reference {} at {}", shown(move.band, unit),
-                            move.is_jump ? "jumps" : "stops", shown(move.end, "s"));
+              : fmt::format("; it does not settle within ±{} after the reference {} at {}",
+                            shown(move.band, unit), move.is_jump ? "jumps" : "stops", shown(move.end, "s"));
   text += move.overshoot > 0 ? fmt::format(", overshoot {} ({} of the move)", shown(move.overshoot, unit),
                                            percent(move.overshoot / std::abs(move.size)))
                              : ", without overshoot";
@@ -55,23 +56,26 @@ std::optional<Notice> early_end(const RunResult& result) {
     case RunStatus::finished:
       return std::nullopt;
     case RunStatus::interrupted:
-      return Notice{Severity::warning, "The run was " + result.message + "; what was computed until then is shown."};
+      return Notice{Severity::warning,
+                    "The run was " + result.message + "; what was computed until then is shown."};
     case RunStatus::failed:
       break;
   }
-  return Notice{Severity::error, "The run failed: " + result.message + ". What was computed until then is shown."};
+  return Notice{Severity::error,
+                "The run failed: " + result.message + ". What was computed until then is shown."};
 }
 
 std::string guess_sentence(const RunFigures& figures) {
   for (const TrackingFigures& t : figures.tracking)
     if (t.followed.is_guess)
-      return " That it is to follow this reference is a guess from the wires; \"figures\" in the diagram states it.";
+      return " That it is to follow this reference is a guess from the wires; \"figures\" in the diagram "
+             "states it.";
   return "";
 }
 
 std::string limit_sentence(const TimeAtLimit& share) {
-  return fmt::format("{} is at its limits for {} of the time ({} at the upper, {} at the lower one).", share.block,
-                     percent(share.low + share.high), percent(share.high), percent(share.low));
+  return fmt::format("{} is at its limits for {} of the time ({} at the upper, {} at the lower one).",
+                     share.block, percent(share.low + share.high), percent(share.high), percent(share.low));
 }
 
 }  // namespace
@@ -93,7 +97,8 @@ std::vector<Notice> verdict(const Plan& plan, const RunResult& result, const Run
   if (auto end = early_end(result)) notices.push_back(std::move(*end));
   std::vector<const TrackingFigures*> by_weight;
   for (const TrackingFigures& t : figures.tracking) by_weight.push_back(&t);
-  std::ranges::stable_sort(by_weight, std::greater(), [](const TrackingFigures* t) { return int(severity(*t)); });
+  std::ranges::stable_sort(by_weight, std::greater(),
+                           [](const TrackingFigures* t) { return int(severity(*t)); });
   for (const TrackingFigures* t : by_weight)
     notices.push_back({severity(*t), (t->grows ? growth_sentence(*t) : "") + tracking_sentence(*t) +
                                          (t == by_weight.back() ? guess_sentence(figures) : "")});
@@ -105,12 +110,14 @@ std::vector<Notice> verdict(const Plan& plan, const RunResult& result, const Run
   }
   constexpr double worth_a_warning = 0.01;  // of the time
   for (const TimeAtLimit& share : figures.limits)
-    if (share.low + share.high > worth_a_warning) notices.push_back({Severity::warning, limit_sentence(share)});
+    if (share.low + share.high > worth_a_warning)
+      notices.push_back({Severity::warning, limit_sentence(share)});
   if (figures.tracking.empty() && result.status == RunStatus::finished)
-    notices.push_back({Severity::note,
-                       fmt::format("The run reached its stop time, {:g} s. Which signal is to follow which is not "
-                                   "known: \"figures\" in the diagram states it, and the run is judged.",
-                                   plan.clock.time(plan.stop_tick))});
+    notices.push_back(
+        {Severity::note,
+         fmt::format("The run reached its stop time, {:g} s. Which signal is to follow which is not "
+                     "known: \"figures\" in the diagram states it, and the run is judged.",
+                     plan.clock.time(plan.stop_tick))});
   return notices;
 }
 
@@ -130,7 +137,8 @@ report::KeyNumbers key_numbers(const RunFigures& figures) {
       add("Settling", *t.move->settling, "s", "within ±" + shown(t.move->band, t.followed.unit));
     else
       key.numbers.push_back({"Settling", "never", "", "within ±" + shown(t.move->band, t.followed.unit)});
-    add("Overshoot", 100 * t.move->overshoot / std::abs(t.move->size), "%", shown(t.move->overshoot, t.followed.unit));
+    add("Overshoot", 100 * t.move->overshoot / std::abs(t.move->size), "%",
+        shown(t.move->overshoot, t.followed.unit));
   }
   for (const TimeAtLimit& share : figures.limits)
     if (key.numbers.size() < 8)
@@ -143,7 +151,8 @@ std::string figures_text(const RunFigures& figures) {
   for (const TrackingFigures& t : figures.tracking)
     text += fmt::format("  {}{}{}\n", t.grows ? growth_sentence(t) : "", tracking_sentence(t),
                         t.followed.is_guess ? " (a guess from the wires)" : "");
-  for (const std::string& name : figures.swinging) text += fmt::format("  {} swings more and more: perhaps unstable\n", name);
+  for (const std::string& name : figures.swinging)
+    text += fmt::format("  {} swings more and more: perhaps unstable\n", name);
   for (const TimeAtLimit& share : figures.limits)
     if (share.low + share.high > 0) text += "  " + limit_sentence(share) + "\n";
   return text;

@@ -36,9 +36,10 @@ TEST(GraphPicture, ShowsBlocksSubdiagramsAndWiresFromLeftToRight) {
   ASSERT_EQ(picture.failure, "");
   const std::string& svg = picture.bytes;
   EXPECT_EQ(fault_in_html(svg), "");
-  for (const std::string_view text : {">feedback</text>", ">PdController</text>", ">friction</text>", ">stage</text>",
-                                      "class=\"node mechanics\"", "class=\"frame\"",
-                                      "reference.position (m) → feedback.reference", ">1 ms</text>", ">m s²</text>"})
+  for (const std::string_view text :
+       {">feedback</text>", ">PdController</text>", ">friction</text>", ">stage</text>",
+        "class=\"node mechanics\"", "class=\"frame\"", "reference.position (m) → feedback.reference",
+        ">1 ms</text>", ">m s²</text>"})
     EXPECT_THAT(svg, HasSubstr(text));
   EXPECT_EQ(count(svg, "<g class=\"wire "), servo_graph().edges.size() + 1) << "and one line in the legend";
   EXPECT_LT(left_of(svg, "reference"), left_of(svg, "feedback"));
@@ -66,7 +67,8 @@ TEST(GraphPicture, ClosesSubdiagramsBelowADepth) {
 TEST(GraphPicture, NamesOfAnyKindAreHarmless) {
   if (!is_there("node")) GTEST_SKIP() << "node is not installed";
   const std::string evil = "a\"]; b -> c </script><script>alert(1)</script>\\";
-  Graph graph{evil, {evil}, {{evil, evil, evil, {{evil, evil, evil, 0}}, {{evil, evil, evil, 0}}, {}, evil}}, {}};
+  Graph graph{
+      evil, {evil}, {{evil, evil, evil, {{evil, evil, evil, 0}}, {{evil, evil, evil, 0}}, {}, evil}}, {}};
   graph.edges = {{{0, GraphEnd::Side::output, 0}, {0, GraphEnd::Side::input, 0}}};
   const GraphPicture picture = draw_svg(graph);
   ASSERT_EQ(picture.failure, "");
@@ -83,10 +85,12 @@ TEST(GraphPicture, ABrowserDrawsTheSameAsNode) {
 }
 
 TEST(GraphPicture, WithoutAProgramSaysWhatToInstall) {
-  const GraphPicture picture = draw_svg(servo_graph(), {.interpreters = {"no-such-program-as-this", "false"}});
+  const GraphPicture picture =
+      draw_svg(servo_graph(), {.interpreters = {"no-such-program-as-this", "false"}});
   EXPECT_EQ(picture.bytes, "");
   EXPECT_THAT(picture.failure, HasSubstr("Debian packages nodejs, chromium"));
-  EXPECT_THAT(picture.failure, HasSubstr("no-such-program-as-this could not be started: No such file or directory"));
+  EXPECT_THAT(picture.failure,
+              HasSubstr("no-such-program-as-this could not be started: No such file or directory"));
   EXPECT_THAT(picture.failure, HasSubstr("false ended with code 1"));
 }
 

@@ -65,7 +65,8 @@ inline GraphEnd graph_end(const Graph& graph, std::string_view text, GraphEnd::S
   for (std::size_t n = 0; n < graph.nodes.size(); ++n) {
     const auto& ports = side == GraphEnd::Side::input ? graph.nodes[n].inputs : graph.nodes[n].outputs;
     for (std::size_t p = 0; p < ports.size(); ++p)
-      if (graph.nodes[n].path == text.substr(0, cut) && ports[p].name == text.substr(cut + 1)) return {n, side, p};
+      if (graph.nodes[n].path == text.substr(0, cut) && ports[p].name == text.substr(cut + 1))
+        return {n, side, p};
   }
   throw std::invalid_argument("no port " + std::string(text));
 }

@@ -19,9 +19,10 @@ Recording second_order(double damping, double omega = 20, double stop = 3) {
   const double damped = omega * std::sqrt(std::abs(1 - damping * damping));
   for (int i = 0; i <= int(stop * 10000); ++i) {
     const double t = i * 1e-4, s = t - 0.1;
-    const double y = s < 0 ? 0
-                           : 2 * (1 - std::exp(-damping * omega * s) *
-                                          (std::cos(damped * s) + damping * omega / damped * std::sin(damped * s)));
+    const double y =
+        s < 0 ? 0
+              : 2 * (1 - std::exp(-damping * omega * s) *
+                             (std::cos(damped * s) + damping * omega / damped * std::sin(damped * s)));
     recording.columns[0].values.push_back(t);
     recording.columns[1].values.push_back(s < 0 ? 0 : 2);
     recording.columns[2].values.push_back(y);
@@ -39,11 +40,13 @@ TEST(TrackingFigures, OvershootAndSettlingOfASecondOrderStep) {
   EXPECT_NEAR(figures->move->size, 2, 1e-12);
   EXPECT_NEAR(figures->move->overshoot, 2 * std::exp(-pi * damping / std::sqrt(1 - damping * damping)), 1e-6);
   EXPECT_NEAR(figures->move->band, 0.04, 1e-12);
-  // The last time at which the error is 2 %, found by bisection on the closed form between its last two extremes.
+  // The last time at which the error is 2 %, found by bisection on the closed form between its last two
+  // extremes.
   ASSERT_TRUE(figures->move->settling);
   const double damped = omega * std::sqrt(1 - damping * damping);
   const auto error = [&](double s) {
-    return std::exp(-damping * omega * s) * std::abs(std::cos(damped * s) + damping * omega / damped * std::sin(damped * s));
+    return std::exp(-damping * omega * s) *
+           std::abs(std::cos(damped * s) + damping * omega / damped * std::sin(damped * s));
   };
   double last = 0;
   for (double s = 0; s < 2; s += 1e-5)
@@ -73,7 +76,8 @@ TEST(TrackingFigures, AnUndampedLoopDoesNotSettleButDoesNotGrow) {
 TEST(TrackingFigures, ADeclaredBandCounts) {
   FollowedSignal wide = pair;
   wide.band = 0.5;
-  const auto narrow = tracking_figures(pair, second_order(0.3)), loose = tracking_figures(wide, second_order(0.3));
+  const auto narrow = tracking_figures(pair, second_order(0.3)),
+             loose = tracking_figures(wide, second_order(0.3));
   EXPECT_LT(*loose->move->settling, *narrow->move->settling);
 }
 
@@ -87,7 +91,8 @@ constexpr std::string_view steps = R"("stop": 3, "step": 0.001)";
 
 RunFigures figures_of(const std::string& more, std::vector<std::string>* columns = nullptr) {
   DiagramFolder folder;
-  const LoadedDiagram loaded = load_diagram_and_plan(folder.with("top.json", diagram(servo, steps, more)).path("top.json"));
+  const LoadedDiagram loaded =
+      load_diagram_and_plan(folder.with("top.json", diagram(servo, steps, more)).path("top.json"));
   Problems problems;
   const auto followed = followed_signals(*loaded.diagram, *loaded.plan, problems);
   if (problems.has_errors()) throw InputError(std::move(problems));
@@ -115,8 +120,14 @@ TEST(RunFigures, AreDeclaredInTheDiagram) {
 }
 
 TEST(RunFigures, MistakesInTheDeclarationAreProblems) {
-  EXPECT_THROW(figures_of(R"(, "log": ["stage.position"], "figures": [{"signal": "stage.position", "reference": "reference.y"}])"), InputError);
-  EXPECT_THROW(figures_of(R"(, "figures": [{"signal": "stage.position", "reference": "reference.y", "band": {"value": 5, "unit": "kg"}}])"), InputError);
+  EXPECT_THROW(
+      figures_of(
+          R"(, "log": ["stage.position"], "figures": [{"signal": "stage.position", "reference": "reference.y"}])"),
+      InputError);
+  EXPECT_THROW(
+      figures_of(
+          R"(, "figures": [{"signal": "stage.position", "reference": "reference.y", "band": {"value": 5, "unit": "kg"}}])"),
+      InputError);
   EXPECT_THROW(figures_of(R"(, "figures": [{"signal": "stage.position"}])"), InputError);
   EXPECT_THROW(figures_of(R"(, "figures": {"signal": "stage.position"})"), InputError);
 }
@@ -133,11 +144,11 @@ TEST(RunFigures, TimeAtLimitsIsAShareAndLeavesTheRecordingAlone) {
 
 TEST(AmplitudeSpectrum, OfASineIsItsAmplitudeAtItsFrequency) {
   std::vector<double> values;
-  for (int i = 0; i < 4096; ++i) values.push_back(5 + 0.7 * std::sin(2 * pi * 50 * i * 1e-3 * 1024 / 1000));
-  const AmplitudeSpectrum s = amplitude_spectrum(values, 1e-3 * 1024 / 1000);
+  for (int i = 0; i < 4096; ++i) values.push_back(5 + 0.7 * std::sin(2 * pi * 200 * i / 4096));
+  const AmplitudeSpectrum s = amplitude_spectrum(values, 1e-3);
   const auto peak = std::ranges::max_element(s.amplitude) - s.amplitude.begin();
-  EXPECT_NEAR(s.frequency[size_t(peak)], 50, 0.25);
-  EXPECT_NEAR(s.amplitude[size_t(peak)], 0.7, 0.02);
+  EXPECT_NEAR(s.frequency[size_t(peak)], 200 / 4.096, 1e-9);
+  EXPECT_NEAR(s.amplitude[size_t(peak)], 0.7, 1e-6);
 }
 
 TEST(Differences, AreTakenOverTheCommonTimeInTheSameUnit) {
@@ -149,7 +160,8 @@ TEST(Differences, AreTakenOverTheCommonTimeInTheSameUnit) {
   const auto& table = std::get<report::Table>(section.items.at(0));
   ASSERT_EQ(table.rows.size(), 1u);
   EXPECT_EQ(table.rows[0], (std::vector<std::string>{"y", "b.csv", "µm", "1", "1", table.rows[0][5]}));
-  EXPECT_NE(std::get<report::Notice>(section.items.at(1)).text.find("b.csv has r in mm, not m"), std::string::npos);
+  EXPECT_NE(std::get<report::Notice>(section.items.at(1)).text.find("b.csv has r in mm, not m"),
+            std::string::npos);
 }
 
 }  // namespace

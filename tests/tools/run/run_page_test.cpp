@@ -34,17 +34,19 @@ LoadedDiagram loaded(std::string_view text) {
 TEST(RunPage, HasOutcomeSignalsDiagramSolverAndParameters) {
   const std::string html = page_of(loaded(diagram(blocks, dopri, R"(, "title": "A <small> servo")")));
   EXPECT_EQ(report::fault_in_html(html), "");
-  for (const char* part : {"A &lt;small&gt; servo", "stage.position follows reference.y", "a guess from the wires",
-                           "Restarts after samples and events", "Events of relay.threshold", "gain.gain", "4 "})
+  for (const char* part :
+       {"A &lt;small&gt; servo", "stage.position follows reference.y", "a guess from the wires",
+        "Restarts after samples and events", "Events of relay.threshold", "gain.gain", "4 "})
     EXPECT_TRUE(has(html, part)) << part;
   EXPECT_FALSE(has(html, "A <small>")) << "what a file says is text, not markup";
 }
 
 TEST(RunPage, OfAFailedRunSaysWhy) {
-  EXPECT_TRUE(has(page_of(loaded(diagram(
-                      R"("x": {"type": "Integrator", "initial": 1, "in": {"u": "p.product"}}, "p": {"type": "Product", "in": {"factors": ["x.y", "x.y"]}})",
-                      R"("stop": 10, "step": 0.01)"))),
-                  "The run failed: the run diverged"));
+  EXPECT_TRUE(has(
+      page_of(loaded(diagram(
+          R"("x": {"type": "Integrator", "initial": 1, "in": {"u": "p.product"}}, "p": {"type": "Product", "in": {"factors": ["x.y", "x.y"]}})",
+          R"("stop": 10, "step": 0.01)"))),
+      "The run failed: the run diverged"));
 }
 
 TEST(DiagramGraph, HasABlockForEachAWireForEachReaderAndWhatTheyShow) {
