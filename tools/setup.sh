@@ -1,6 +1,6 @@
 #!/bin/bash
-# Prepares this machine to build Loopwright: installs the missing packages of tools/dependencies.txt, and the plotting
-# library of report pages. It may be run repeatedly: installed packages are left unchanged.
+# Prepares this machine to build Loopwright: installs the missing packages of tools/dependencies.txt, and the
+# JavaScript packages of report pages and their tests. It may be run repeatedly: installed packages are left unchanged.
 set -euo pipefail
 export DEBIAN_FRONTEND=noninteractive
 
@@ -36,14 +36,16 @@ install_packages() {
   fi
 }
 
-# A copy of the lock file beside the installed files shows whether the lock file has changed since.
-install_plotting_library() {
-  local stamp=$tools/report/node_modules/.installed-lock
-  ! cmp -s "$tools/report/package-lock.json" "$stamp" || return 0
-  say "installing the plotting library into tools/report/node_modules"
-  (cd "$tools/report" && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error >/dev/null)
-  cp "$tools/report/package-lock.json" "$stamp"
+# JavaScript packages into FOLDER/node_modules. A copy of the lock file beside the installed files shows whether the lock
+# file has changed since.
+install_scripts() {
+  local folder=$1 stamp=$1/node_modules/.installed-lock
+  ! cmp -s "$folder/package-lock.json" "$stamp" || return 0
+  say "installing the JavaScript packages of $folder"
+  (cd "$folder" && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error >/dev/null)
+  cp "$folder/package-lock.json" "$stamp"
 }
 
 install_packages
-install_plotting_library
+install_scripts "$tools/report"       # plots and layout of report pages
+install_scripts "$tools/../tests/pages"  # drives chromium in tests

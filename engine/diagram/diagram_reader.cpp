@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include "engine/diagram/block_reader.h"
 #include "engine/diagram/diagram_load.h"
+#include "engine/diagram/figures.h"
 #include "engine/diagram/ports.h"
 #include "engine/json/reader.h"
 #include "engine/diagram/solver_settings.h"
@@ -30,7 +31,7 @@ class DiagramReader {
     diagram_->description = reader_.text(root, "description");
     reader_.reject_unknown(root,
                            {"$schema", "loopwright", "title", "description", "parameters", "solver", "blocks",
-                            "inputs", "outputs", "log"},
+                            "inputs", "outputs", "log", "figures"},
                            "a diagram");
     read_parameters(root);
     read_solver(root);
@@ -38,6 +39,7 @@ class DiagramReader {
     diagram_->inputs = read_inputs_of_diagram(root, reader_);
     diagram_->outputs = read_outputs_of_diagram(root, reader_);
     if (const auto* log = root.find("log")) diagram_->log = read_log(log->value, reader_);
+    if (const auto* figures = root.find("figures")) read_figures(figures->value, reader_);
     report_unused_options();
     diagram_->parameters = scope_.take_parameters();
     return diagram_;

@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include "engine/plan/gates.h"
 #include "engine/plan/layout.h"
+#include "engine/plan/load.h"
 #include "engine/plan/order.h"
 #include "engine/plan/shapes.h"
 #include "engine/plan/times.h"
@@ -325,13 +326,16 @@ WiresWithoutUnit check_part(const Diagram& diagram, Problems& problems) {
   return wires_without_unit(flat, check_units(flat, diagram, problems));
 }
 
-std::shared_ptr<const Plan> load_plan(const std::string& path, const LoadOptions& options) {
+LoadedDiagram load_diagram_and_plan(const std::string& path, const LoadOptions& options) {
   Problems problems;
-  const auto diagram = load_diagram(path, options, problems);
-  std::shared_ptr<const Plan> plan;
-  if (diagram) plan = compile(*diagram, problems);
-  if (!plan || problems.has_errors()) throw InputError(std::move(problems));
-  return plan;
+  LoadedDiagram loaded{load_diagram(path, options, problems), nullptr};
+  if (loaded.diagram) loaded.plan = compile(*loaded.diagram, problems);
+  if (!loaded.plan || problems.has_errors()) throw InputError(std::move(problems));
+  return loaded;
+}
+
+std::shared_ptr<const Plan> load_plan(const std::string& path, const LoadOptions& options) {
+  return load_diagram_and_plan(path, options).plan;
 }
 
 std::vector<Number> Plan::find(std::string_view port) const {

@@ -26,6 +26,7 @@ struct DiagramArguments {
 /// Adds a subcommand; `action` receives the exit code.
 void add_check(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_run(CLI::App& app, std::function<void(std::function<int()>)> choose);
+void add_report(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_plan(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_new(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_blocks(CLI::App& app, std::function<void(std::function<int()>)> choose);

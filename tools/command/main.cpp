@@ -22,6 +22,7 @@ int run_program(int count, char** arguments) {
   const auto choose = [&](std::function<int()> chosen) { action = std::move(chosen); };
   add_check(app, choose);
   add_run(app, choose);
+  add_report(app, choose);
   add_plan(app, choose);
   add_new(app, choose);
   add_blocks(app, choose);

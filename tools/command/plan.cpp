@@ -1,16 +1,41 @@
 #include <fmt/format.h>
+#include "engine/plan/load.h"
 #include "engine/record/atomic_file.h"
 #include "tools/command/command.h"
-#include "tools/run/run_page.h"
+#include "tools/draw/diagram_graph.h"
+#include "tools/report/graph_picture.h"
 
 namespace loopwright {
 namespace {
 
-void write_picture(const Plan& plan, const std::string& path) {
-  for (const report::Item& item : report::graph_picture(graph_of(plan))) {
-    if (const auto* picture = std::get_if<report::Picture>(&item)) write_file(path, picture->svg);
-    if (const auto* notice = std::get_if<report::Notice>(&item)) tell("{}\n", notice->text);
-  }
+struct Arguments {
+  DiagramArguments diagram;
+  std::string svg, png;
+  size_t depth = report::GraphOptions{}.depth;
+};
+
+/// Draws before it writes: a picture that cannot be made leaves no file. Returns whether it was written.
+bool write_picture(const std::string& path, const report::GraphPicture& picture) {
+  if (picture.bytes.empty())
+    tell("{}: {}\n", path, picture.failure);
+  else
+    write_file(path, picture.bytes);
+  return !picture.bytes.empty();
+}
+
+int plan(const Arguments& a) {
+  require_writable_file(a.svg, "--svg");
+  require_writable_file(a.png, "--png");
+  const auto [diagram, plan] = load_diagram_and_plan(a.diagram.path, a.diagram.options());
+  tell_text(to_text(plan->warnings));
+  answer("{}", describe(*plan));
+  if (a.svg.empty() && a.png.empty()) return done;
+  const report::Graph graph = diagram_graph(*diagram, *plan);
+  const report::GraphOptions options{.depth = a.depth};
+  bool written = true;
+  if (!a.svg.empty()) written &= write_picture(a.svg, report::draw_svg(graph, options));
+  if (!a.png.empty()) written &= write_picture(a.png, report::draw_png(graph, options));
+  return written ? done : run_failed;
 }
 
 }  // namespace
@@ -18,23 +43,13 @@ void write_picture(const Plan& plan, const std::string& path) {
 void add_plan(CLI::App& app, std::function<void(std::function<int()>)> choose) {
   CLI::App* command =
       app.add_subcommand("plan", "Show order, rates, states and algebraic loops of a diagram");
-  struct Arguments {
-    DiagramArguments diagram;
-    std::string svg;
-  };
   auto a = std::make_shared<Arguments>();
   a->diagram.add_to(*command);
-  command->add_option("--svg", a->svg, "Draw the diagram into this file");
-  command->callback([=] {
-    choose([=]() -> int {
-      require_writable_file(a->svg, "--svg");
-      const auto plan = load_plan(a->diagram.path, a->diagram.options());
-      tell_text(to_text(plan->warnings));
-      answer("{}", describe(*plan));
-      if (!a->svg.empty()) write_picture(*plan, a->svg);
-      return done;
-    });
-  });
+  command->add_option("--svg", a->svg, "Draw the diagram into this file (needs node or chromium)");
+  command->add_option("--png", a->png, "Draw the diagram into this file (needs chromium)");
+  command->add_option("--depth", a->depth, "Open subdiagrams down to this depth in the picture; 0: none")
+      ->check(CLI::NonNegativeNumber);
+  command->callback([=] { choose([=] { return plan(*a); }); });
 }
 
 }  // namespace loopwright

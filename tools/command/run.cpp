@@ -1,9 +1,11 @@
 #include <fmt/format.h>
+#include "engine/plan/load.h"
 #include "engine/record/csv.h"
 #include "engine/record/recording_file.h"
 #include "tools/command/command.h"
 #include "tools/deploy/replay.h"
 #include "tools/run/run_page.h"
+#include "tools/command/named_recordings.h"
 
 namespace loopwright {
 namespace {
@@ -11,6 +13,7 @@ namespace {
 struct Arguments {
   DiagramArguments diagram;
   std::string output, report, checkpoint, resume, replay;
+  std::vector<std::string> beside;
   double checkpoint_every = 0;
   int64_t run = 0;
   bool quiet = false, strict_units = false;
@@ -57,13 +60,36 @@ void warn_of_hardware(const Plan& plan) {
            block.path);
 }
 
+/// Known before the run, so that a mistake in "figures" costs no time.
+std::vector<FollowedSignal> pairs_to_judge(const Diagram& diagram, const Plan& plan) {
+  Problems problems;
+  std::vector<FollowedSignal> followed = followed_signals(diagram, plan, problems);
+  if (problems.has_errors()) throw InputError(std::move(problems));
+  return followed;
+}
+
+/// Recordings that a page shows beside the run. They are read before the run, so that a mistake costs no
+/// time.
+std::vector<Recording> read_beside(const Arguments& a) {
+  Problems problems;
+  if (!a.beside.empty() && a.report.empty())
+    problems.error({}, "", "", "--beside lays recordings over the run on a page: it needs --report");
+  std::vector<Recording> recordings;
+  for (const std::string& path : a.beside)
+    recordings.push_back(read_recording(path, problems, {.allow_not_finite = true}));
+  if (problems.has_errors()) throw InputError(std::move(problems));
+  return recordings;
+}
+
 int run(const Arguments& a) {
   require_paths(a);
-  const auto plan = load_plan(a.diagram.path, a.diagram.options());
+  const auto [diagram, plan] = load_diagram_and_plan(a.diagram.path, a.diagram.options());
   if (a.strict_units) require_units(*plan);
   tell_text(to_text(plan->warnings));
   if (!a.replay.empty()) return replay_log(a, *plan);
   warn_of_hardware(*plan);
+  const std::vector<Recording> others = read_beside(a);
+  const std::vector<FollowedSignal> followed = pairs_to_judge(*diagram, *plan);
   Progress progress("run");
   take_time_after_interruption();  // the computed results are written
   RunOptions options;
@@ -72,15 +98,21 @@ int run(const Arguments& a) {
   options.resume_file = a.resume;
   options.interrupt = &interruption();
   if (!a.quiet) options.progress = [&](double time, double stop) { progress.show(time, stop); };
-  const RunResult result = simulate(*plan, options);
+  // A checkpoint has the columns of the log and no others.
+  const bool is_watched = a.checkpoint.empty() && a.resume.empty();
+  const WatchedLimits watched(*plan);
+  RunResult result = simulate(is_watched ? watched.plan() : *plan, options);
   progress.finish();
+  const RunFigures figures = run_figures(
+      followed, result.recording, is_watched ? watched.take(result.recording) : std::vector<TimeAtLimit>());
   for (const std::string& warning : result.warnings) tell("{}: warning: {}\n", a.diagram.path, warning);
   if (a.output == "-")
     print_csv(stdout, result.recording);
   else if (!a.output.empty())
     write_recording(a.output, result.recording);
-  if (!a.report.empty()) report::write_html(a.report, run_page(*plan, result));
-  if (!a.quiet) give_summary(run_summary(*plan, result), {a.output, a.report});
+  if (!a.report.empty())
+    report::write_html(a.report, run_page(diagram.get(), *plan, result, figures, named(a.beside, others)));
+  if (!a.quiet) give_summary(run_summary(*plan, result, figures), {a.output, a.report});
   if (result.status == RunStatus::finished) return done;
   tell("{}: {}\n", a.diagram.path, result.message);
   return result.status == RunStatus::interrupted ? interrupted : run_failed;
@@ -94,6 +126,8 @@ void add_run(CLI::App& app, std::function<void(std::function<int()>)> choose) {
   a->diagram.add_to(*command);
   command->add_option("-o,--output", a->output, "Write the recording: .csv, .mat, or - for CSV on stdout");
   command->add_option("--report", a->report, "Write an HTML page with scopes and statistics");
+  command->add_option("--beside", a->beside, "Lay this recording over the run on the page; may be repeated")
+      ->allow_extra_args(false);
   command->add_option("--run", a->run, "Number of the run: another one has other noise")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--checkpoint", a->checkpoint, "Set the run aside in this file while it goes on");

@@ -77,11 +77,11 @@ void write_traces(const SweepPlan& plan, const std::string& folder, const SweepR
     if (interruption()) return;
     RunOptions options;
     options.run = runs[i];
-    const auto diagram = plan.plan_of(runs[i]);
-    const RunResult result = simulate(*diagram, options);
+    const auto run = plan.plan_of(runs[i]);
+    const RunResult result = simulate(*run, options);
     write_recording(trace_of(folder, runs[i], "csv"), result.recording);
     if (i < most_trace_pages)
-      report::write_html(trace_of(folder, runs[i], "html"), run_page(*diagram, result));
+      report::write_html(trace_of(folder, runs[i], "html"), run_page(nullptr, *run, result, run_figures(guessed_signals(*run), result.recording, {})));
   }
   remark("{} traces in {}/traces\n", runs.size(), folder);
 }

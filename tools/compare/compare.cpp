@@ -147,6 +147,7 @@ Comparison compare_signals(const std::string& diagram_path, const Experiment& re
   if (!plan) explain_failure(diagram_path, {recorded.path}, options, std::move(problems));
   const Experiment experiment = in_units_of_ports(*plan, recorded);
   Comparison comparison;
+  comparison.diagram = diagram;
   comparison.plan = std::make_shared<Plan>(logging(*plan, experiment, problems));
   if (problems.has_errors()) throw InputError(std::move(problems));
   for (const Problem& problem : problems.list()) comparison.warnings.push_back(to_string(problem));

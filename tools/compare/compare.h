@@ -45,7 +45,8 @@ struct Comparison {
   std::vector<double> position, velocity;  ///< measured or simulated, according to the roles; empty: unknown
   std::string position_unit, velocity_unit, position_source, velocity_source;
   RunResult run;
-  std::shared_ptr<const Plan> plan;
+  std::shared_ptr<const Diagram> diagram;
+  std::shared_ptr<const Plan> plan;  ///< compiled from it
   std::optional<ForceAnalysis> force;
   std::string why_no_force;     ///< what the experiment lacks for it
   bool is_closed_loop = false;  ///< the signals above are those of the whole loop: its input was not driven

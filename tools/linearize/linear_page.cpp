@@ -16,22 +16,25 @@ std::vector<double> in_hertz(const std::vector<double>& frequency) {
   for (double f : frequency) hertz.push_back(f / (2 * pi));
   return hertz;
 }
-std::vector<double> gains(const std::vector<Complex>& response) {
+/// 20 log₁₀ |G|; no gain is a gap.
+std::vector<double> decibels(const std::vector<Complex>& response) {
   std::vector<double> gain;
-  for (const Complex& value : response) gain.push_back(std::abs(value));
+  for (const Complex& value : response)
+    gain.push_back(std::abs(value) > 0 ? 20 * std::log10(std::abs(value)) : std::nan(""));
   return gain;
 }
 
 struct Bode {
   report::Plot gain, phase;
-  explicit Bode(std::string unit) {
+  explicit Bode(const std::string& unit) {
     gain.x = phase.x = {"Frequency", "Hz", true};
-    gain.y = {"Gain", std::move(unit), true}, phase.y = {"Phase", "°", false};
+    gain.y = {unit.empty() ? "Gain" : fmt::format("Gain, 0 dB = 1 {}", unit), "dB", false},
+    phase.y = {"Phase", "°", false};
     gain.group = phase.group = "frequency";
   }
   void add(const std::string& name, const std::vector<double>& frequency,
            const std::vector<Complex>& response, Series::Shape shape = Series::Shape::line) {
-    gain.series.push_back({name, in_hertz(frequency), gains(response), shape});
+    gain.series.push_back({name, in_hertz(frequency), decibels(response), shape});
     phase.series.push_back({name, in_hertz(frequency), unwrapped_degrees(response), shape});
   }
 };
@@ -64,6 +67,28 @@ report::Section responses(const LinearAnalysis& analysis) {
   return section;
 }
 
+/// Crossovers and margins as lines: where |L| is 0 dB the phase margin is read, where the phase is -180° the
+/// gain margin.
+void mark_margins(const Margins& m, Bode& bode) {
+  using report::Mark;
+  bode.gain.marks.push_back({Mark::Along::y, 0, "0 dB"});
+  bode.phase.marks.push_back({Mark::Along::y, -180, "−180°"});
+  const auto add = [&](double frequency, const std::string& gain, const std::string& phase) {
+    if (!std::isfinite(frequency) || frequency <= 0) return;
+    bode.gain.marks.push_back({Mark::Along::x, frequency / (2 * pi), gain});
+    bode.phase.marks.push_back({Mark::Along::x, frequency / (2 * pi), phase});
+  };
+  if (std::isfinite(m.phase))
+    add(m.phase_frequency, fmt::format("crossover {:.4g} Hz", m.phase_frequency / (2 * pi)),
+        fmt::format("phase margin {:.1f}°", m.phase * 180 / pi));
+  if (std::isfinite(m.gain))
+    add(m.gain_frequency, fmt::format("gain margin {:.3g} dB", 20 * std::log10(m.gain)),
+        fmt::format("−180° at {:.4g} Hz", m.gain_frequency / (2 * pi)));
+  if (m.lower_gain > 0)
+    add(m.lower_gain_frequency, fmt::format("lower gain margin {:.3g} dB", 20 * std::log10(m.lower_gain)),
+        fmt::format("−180° at {:.4g} Hz", m.lower_gain_frequency / (2 * pi)));
+}
+
 report::Section loop_section(const LoopAnalysis& loop) {
   const Margins& m = loop.margins;
   report::Section section{fmt::format("Loop cut at {}", loop.port), {}};
@@ -94,11 +119,13 @@ report::Section loop_section(const LoopAnalysis& loop) {
   std::vector<Complex> sensitivity;
   for (const Complex& value : loop.response) sensitivity.push_back(1.0 / (1.0 + value));
   bode.gain.series.push_back(
-      {"1/(1 + L)", in_hertz(loop.frequency), gains(sensitivity), Series::Shape::line});
+      {"1/(1 + L)", in_hertz(loop.frequency), decibels(sensitivity), Series::Shape::line});
+  mark_margins(m, bode);
   section.items.push_back(std::move(bode.gain));
   section.items.push_back(std::move(bode.phase));
   section.items.push_back([&] {
     report::Plot nyquist;
+    nyquist.equal_axes = true;
     nyquist.title = "Nyquist";
     nyquist.x = {"Re L", "", false}, nyquist.y = {"Im L", "", false};
     Series curve{"L", {}, {}, Series::Shape::line}, point{"-1", {-1}, {0}, Series::Shape::points},

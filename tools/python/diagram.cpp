@@ -1,6 +1,7 @@
 #include "tools/python/diagram.h"
 #include "engine/run/simulation.h"
 #include "tools/python/interruptible.h"
+#include "tools/draw/diagram_graph.h"
 #include "tools/python/module.h"
 #include "tools/run/run_page.h"
 
@@ -9,10 +10,12 @@ namespace {
 
 namespace py = pybind11;
 
-/// A run keeps its plan: the page needs the blocks and wires.
+/// A run keeps its diagram and plan: the page needs the blocks and wires.
 struct FinishedRun {
+  std::shared_ptr<const Diagram> diagram;
   std::shared_ptr<const Plan> plan;
   std::shared_ptr<RunResult> result;
+  RunFigures figures;
 };
 
 FinishedRun run(const LoadedDiagram& diagram, int64_t number, const std::optional<py::function>& progress) {
@@ -24,7 +27,15 @@ FinishedRun run(const LoadedDiagram& diagram, int64_t number, const std::optiona
     if (progress) options.progress = progress_to(*progress);
     return simulate(*diagram.plan, options);
   }));
-  return {diagram.plan, std::move(result)};
+  Problems problems;
+  const std::vector<FollowedSignal> followed = followed_signals(*diagram.diagram, *diagram.plan, problems);
+  if (problems.has_errors()) throw InputError(std::move(problems));
+  RunFigures figures = run_figures(followed, result->recording, {});
+  return {diagram.diagram, diagram.plan, std::move(result), std::move(figures)};
+}
+
+std::string page_of(const FinishedRun& run) {
+  return report::to_html(run_page(run.diagram.get(), *run.plan, *run.result, run.figures));
 }
 
 /// The columns live in the result and keep it alive.
@@ -57,7 +68,7 @@ py::dict statistics(const FinishedRun& run) {
 report::Page diagram_page(const LoadedDiagram& diagram) {
   report::Page page;
   page.title = diagram.plan->title.empty() ? diagram.path : diagram.plan->title;
-  page.sections.push_back({"Diagram", report::graph_picture(graph_of(*diagram.plan))});
+  page.sections.push_back({"Diagram", {diagram_graph(*diagram.diagram, *diagram.plan)}});
   return page;
 }
 
@@ -65,8 +76,8 @@ report::Page diagram_page(const LoadedDiagram& diagram) {
 
 LoadedDiagram load(const std::string& path, LoadOptions options) {
   const py::gil_scoped_release release;
-  auto plan = load_plan(path, options);
-  return {path, std::move(options), std::move(plan)};
+  auto [diagram, plan] = load_diagram_and_plan(path, options);
+  return {path, std::move(options), std::move(diagram), std::move(plan)};
 }
 
 void add_diagram(py::module_& module) {
@@ -77,10 +88,10 @@ void add_diagram(py::module_& module) {
       .def_property_readonly("warnings", [](const FinishedRun& r) { return r.result->warnings; })
       .def_property_readonly("columns", &columns)
       .def("statistics", &statistics)
-      .def("summary", [](const FinishedRun& r) { return run_summary(*r.plan, *r.result); })
-      .def("html", [](const FinishedRun& r) { return report::to_html(run_page(*r.plan, *r.result)); })
+      .def("summary", [](const FinishedRun& r) { return run_summary(*r.plan, *r.result, r.figures); })
+      .def("html", &page_of)
       .def("report", [](const FinishedRun& r, const std::string& path) {
-        report::write_html(path, run_page(*r.plan, *r.result));
+        report::write_html(path, run_page(r.diagram.get(), *r.plan, *r.result, r.figures));
       });
   py::class_<LoadedDiagram>(module, "LoadedDiagram")
       .def_readonly("path", &LoadedDiagram::path)

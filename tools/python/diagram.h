@@ -2,14 +2,15 @@
 #pragma once
 #include <memory>
 #include <string>
-#include "engine/plan/plan.h"
+#include "engine/plan/load.h"
 
 namespace loopwright::python {
 
 struct LoadedDiagram {
   std::string path;
   LoadOptions options;
-  std::shared_ptr<const Plan> plan;
+  std::shared_ptr<const Diagram> diagram;
+  std::shared_ptr<const Plan> plan;  ///< compiled from it
 };
 
 using Settings = std::vector<std::pair<std::string, std::string>>;

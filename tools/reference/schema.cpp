@@ -144,6 +144,17 @@ Json while_disabled_schema() {
           {"description", "What becomes of states and outputs while it does not run"}};
 }
 
+Json figures_schema() {
+  return {{"type", "object"},
+          {"description", "A logged signal and the logged reference that it is to follow"},
+          {"required", {"signal", "reference"}},
+          {"additionalProperties", false},
+          {"properties",
+           {{"signal", {{"type", "string"}}},
+            {"reference", {{"type", "string"}}},
+            {"band", {{"description", "Within it the signal has settled; 2 % of the last move when left out"}}}}}};
+}
+
 }  // namespace
 
 std::string diagram_schema() {
@@ -228,7 +239,8 @@ std::string diagram_schema() {
         {"inputs", {{"type", "object"}, {"additionalProperties", input_schema}}},
         {"outputs", {{"type", "object"}, {"additionalProperties", output_schema}}},
         {"blocks", {{"type", "object"}, {"additionalProperties", {{"$ref", "#/$defs/block"}}}}},
-        {"log", {{"type", "array"}, {"items", {{"type", "string"}}}}}}},
+        {"log", {{"type", "array"}, {"items", {{"type", "string"}}}}},
+        {"figures", {{"type", "array"}, {"items", figures_schema()}}}}},
       {"additionalProperties", false}};
   Json schema = definitions["diagram"];
   schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";

@@ -1,54 +1,29 @@
-/// A block diagram as a picture, laid out by the program `dot` of Graphviz.
+/// Pictures of block diagrams as files: drawn by the scripts of pages, which Node.js or Chromium runs.
 #pragma once
 #include <chrono>
+#include <optional>
 #include <string>
-#include <vector>
-#include "tools/report/report.h"
+#include "tools/report/graph.h"
 
 namespace loopwright::report {
 
-/// One block. A path with dots, "stage.friction", places it in the frame "stage".
-struct GraphNode {
-  std::string path;
-  std::string type;  ///< "ViscousFriction"
-  std::string room;  ///< determines the color: sources, math, continuous, discrete, control, mechanics,
-                     ///  sensors, learning, io
-  std::vector<std::string> inputs, outputs;  ///< names of ports, drawn on the left and right
-};
-
-/// One wire, from an output port to an input port. Edges whose nodes are not in the graph are ignored.
-struct GraphEdge {
-  std::string from, from_port;  ///< path of a node, name of its output
-  std::string to, to_port;
-  std::string label;  ///< written beside the wire; empty: none
-  std::string unit;   ///< of the signal; shown with the label, and alone when the pointer is on the wire
-};
-
-struct Graph {
-  std::string caption;
-  std::vector<GraphNode> nodes;
-  std::vector<GraphEdge> edges;
-};
-
 struct GraphOptions {
-  std::string program = "dot";
-  std::chrono::milliseconds time_limit{10'000};
-  std::size_t most_nodes = 300;  ///< above it, subdiagrams are drawn closed
+  std::size_t depth = 32;  ///< subdiagrams are open down to this depth; 0: all are closed
+  std::vector<std::string> interpreters{"node", "chromium"};  ///< those tried, in this order
+  std::string rasterizer = "chromium";                        ///< makes a PNG of an SVG
+  std::chrono::milliseconds time_limit{60'000};
 };
 
-/// The picture, followed or replaced by notices: subdiagrams drawn closed because of their number, or no
-/// picture because dot is absent, fails or takes too long (then the wires are listed as text). Never throws
-/// in these cases.
-std::vector<Item> graph_picture(const Graph& graph, const GraphOptions& options = {});
+/// A picture, or why there is none.
+struct GraphPicture {
+  std::string bytes;    ///< the file; empty: there is none
+  std::string failure;  ///< in one or more lines, with what to install
+};
 
-/// The same diagram with one node in place of each top-level subdiagram; wires within one are omitted,
-/// parallel ones merged.
-Graph with_closed_subdiagrams(const Graph& graph);
+/// An SVG file that stands alone, with its colors written out.
+GraphPicture draw_svg(const Graph& graph, const GraphOptions& options = {});
 
-/// The wires, one per line: "reference.position → feedback.reference  m". Blocks without wires follow.
-std::string graph_text(const Graph& graph);
-
-/// Source text for dot.
-std::string graph_source(const Graph& graph);
+/// The same as PNG, two pixels for each unit of the SVG.
+GraphPicture draw_png(const Graph& graph, const GraphOptions& options = {});
 
 }  // namespace loopwright::report

@@ -9,6 +9,7 @@
 #include <utility>
 #include <variant>
 #include <vector>
+#include "tools/report/graph.h"
 
 namespace loopwright::report {
 
@@ -31,6 +32,14 @@ struct Axis {
   bool logarithmic = false;  ///< base 10
 };
 
+/// A line across a plot at a value of one axis: a crossover, a margin, a limit.
+struct Mark {
+  enum class Along { x, y };
+  Along axis = Along::x;
+  double value = 0;
+  std::string label;  ///< short: "62.1° at 45 Hz"
+};
+
 /// A scope. Plots of one page with the same `group` share their x axis: zoom, pan and cursor are linked, and
 /// adjacent plots are stacked closely.
 struct Plot {
@@ -39,6 +48,8 @@ struct Plot {
   std::vector<Series> series;
   std::string group;    ///< empty: independent
   std::string caption;  ///< sentences below the plot
+  std::vector<Mark> marks;
+  bool equal_axes = false;  ///< a unit has the same length on both axes: circles are round
 };
 
 /// Columns whose cells are numbers are right-aligned. Rows may be shorter than the head, never longer.
@@ -81,7 +92,7 @@ struct Notice {
   std::string text;
 };
 
-using Item = std::variant<Paragraph, KeyNumbers, Plot, Table, Picture, Code, Notice>;
+using Item = std::variant<Paragraph, KeyNumbers, Plot, Table, Picture, Graph, Code, Notice>;
 
 struct Section {
   std::string title;

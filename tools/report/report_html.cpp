@@ -1,4 +1,5 @@
 #include "tools/report/report.h"
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <fmt/format.h>
@@ -37,6 +38,7 @@ class HtmlWriter {
   void put_item(const Plot& plot);
   void put_item(const Table& table);
   void put_item(const Picture& picture);
+  void put_item(const Graph& graph);
   void put_item(const Code& code);
   void put_item(const Notice& notice);
 
@@ -45,6 +47,7 @@ class HtmlWriter {
   const Page& page_;
   std::size_t point_limit_;  ///< of one series
   int figures_ = 0, tables_ = 0;
+  bool has_diagram_ = false;
   std::string out_;
 };
 
@@ -93,6 +96,16 @@ std::string numbers_json(std::span<const double> values, bool logarithmic) {
     else
       fmt::format_to(std::back_inserter(out), "{:.{}g}", value, digits);
   }
+  return out + ']';
+}
+
+std::string marks_json(const std::vector<Mark>& marks) {
+  std::string out = "[";
+  for (const Mark& mark : marks)
+    if (std::isfinite(mark.value))
+      fmt::format_to(std::back_inserter(out), R"({}{{"axis":"{}","value":{},"label":{}}})",
+                     out.size() > 1 ? "," : "", mark.axis == Mark::Along::x ? "x" : "y", mark.value,
+                     json_string(mark.label));
   return out + ']';
 }
 
@@ -154,7 +167,8 @@ void HtmlWriter::put_item(const Plot& plot) {
   for (const Series& series : plot.series)
     if (series.x.size() > point_limit_) thinned = std::max(thinned, series.x.size());
   put("<figure class=\"plot\" data-group=\"{}\">\n<div class=\"scope\"></div>\n", escape_html(plot.group));
-  put(R"(<script type="application/json">{{"x":{},"y":{},"series":[)", axis_json(plot.x), axis_json(plot.y));
+  put(R"(<script type="application/json">{{"title":{},"x":{},"y":{},"equal":{},"marks":{},"series":[)",
+      json_string(plot.title), axis_json(plot.x), axis_json(plot.y), plot.equal_axes, marks_json(plot.marks));
   for (const Series& series : plot.series) {
     if (&series != &plot.series.front()) out_ += ",\n";
     put_series(plot, series);
@@ -192,6 +206,18 @@ void HtmlWriter::put_item(const Picture& picture) {
   out_ += "</figure>\n";
 }
 
+void HtmlWriter::put_item(const Graph& graph) {
+  has_diagram_ = true;
+  put("<figure class=\"block-diagram\">\n<div class=\"canvas\" tabindex=\"0\"></div>\n"
+      "<script type=\"application/json\">{}</script>\n",
+      graph_json(graph));
+  const bool has_subdiagrams = std::any_of(graph.nodes.begin(), graph.nodes.end(),
+                                           [](const GraphNode& n) { return n.room == "subdiagram"; });
+  put_caption("Figure", figures_, graph.caption, {},
+              has_subdiagrams ? "Click on a subdiagram to open or close it" : "");
+  out_ += "</figure>\n";
+}
+
 void HtmlWriter::put_item(const Code& code) {
   out_ += "<figure class=\"code\">\n";
   if (!code.caption.empty()) put("<figcaption>{}</figcaption>\n", escape_html(code.caption));
@@ -220,10 +246,12 @@ void HtmlWriter::put_head() {
 <style>
 {}
 {}</style>
+<style id="diagram-style">
+{}</style>
 </head>
 <body>
 )",
-      escape_html(page_.title), assets::uplot_css, assets::page_css);
+      escape_html(page_.title), assets::uplot_css, assets::page_css, assets::diagram_css);
 }
 
 void HtmlWriter::put_title() {
@@ -259,8 +287,12 @@ std::string HtmlWriter::write() {
       std::visit([this](const auto& value) { put_item(value); }, item);
     out_ += "</section>\n";
   }
-  put("</main>\n<script>\n/*\nuPlot: {}*/\n{}\n{}</script>\n</body>\n</html>\n", assets::uplot_license,
-      assets::uplot_js, assets::page_js);
+  out_ += "</main>\n";
+  if (has_diagram_) put("<script type=\"text/plain\" id=\"elk\">{}</script>\n", assets::elk_packed);
+  put("<script>\n/*\nuPlot: {}\n{}\n*/\n{}\n(() => {{\n\"use "
+      "strict\";\n{}}})();\n</script>\n</body>\n</html>\n",
+      assets::uplot_license, has_diagram_ ? assets::elk_notice : std::string_view(), assets::uplot_js,
+      assets::page_js);
   return std::move(out_);
 }
 

@@ -197,6 +197,11 @@ struct ItemText {
            indented(picture.text, "  ");
   }
 
+  std::string operator()(const Graph& graph) {
+    return wrapped(fmt::format("Figure {}. {}", ++figures, graph.caption), page_width, "") +
+           indented(graph_text(graph), "  ");
+  }
+
   std::string operator()(const Code& code) {
     return (code.caption.empty() ? "" : code.caption + ":\n") + indented(code.text, "    ");
   }

@@ -2,64 +2,14 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include "tools/draw/diagram_graph.h"
 
 namespace loopwright {
 namespace {
 
-std::string unit_text(const Column& column) { return column.unit == "1" ? "" : column.unit; }
-
-double peak_of(const Column& column) {
-  double peak = 0;
-  for (double v : column.values) peak = std::max(peak, std::abs(v));
-  return peak;
-}
-
-/// A scope under construction: signals of one unit and of similar magnitude, so that agreement is visible and
-/// a small error is not hidden by a large motion.
-struct Scope {
-  std::string unit;
-  double peak;
-  report::Plot plot;
-  bool takes(const Column& column, double size) const {
-    constexpr size_t most_signals = 6;
-    constexpr double like = 30;
-    return !unit.empty() && unit == column.unit && plot.series.size() < most_signals && size <= like * peak &&
-           peak <= like * size;
-  }
-};
-
-std::vector<report::Plot> scopes(const Plan& plan, const Recording& recording) {
-  std::vector<Scope> scopes;
-  for (size_t c = 1; c < recording.columns.size(); ++c) {
-    const Column& column = recording.columns[c];
-    const double peak = peak_of(column);
-    auto scope = std::ranges::find_if(scopes, [&](const Scope& s) { return s.takes(column, peak); });
-    if (scope == scopes.end()) {
-      scopes.push_back({column.unit, peak, {}});
-      scope = scopes.end() - 1;
-      scope->plot.x = {"Time", "s", false};
-      scope->plot.y = {column.name, unit_text(column), false};
-      scope->plot.group = "time";
-    }
-    const bool held = plan.log[c - 1].rate.kind == Rate::Kind::sampled;
-    scope->plot.series.push_back({column.name, recording.columns[0].values, column.values,
-                                  held ? report::Series::Shape::steps : report::Series::Shape::line});
-    if (scope->plot.series.size() > 1) scope->plot.y.label = "Signals";
-  }
-  std::vector<report::Plot> plots;
-  for (Scope& scope : scopes) {
-    for (const report::Series& series : scope.plot.series)
-      scope.plot.caption += (scope.plot.caption.empty() ? "" : ", ") + series.name;
-    scope.plot.caption += ".";
-    plots.push_back(std::move(scope.plot));
-  }
-  return plots;
-}
-
 report::Table statistics(const Plan& plan, const RunResult& result) {
   const RunStatistics& s = result.statistics;
-  report::Table table;
-  table.head = {"Quantity", "Value"};
+  report::Table table{{"Quantity", "Value"}, {}, "How the run was computed"};
   const auto row = [&](std::string name, std::string value) {
     table.rows.push_back({std::move(name), std::move(value)});
   };
@@ -79,91 +29,66 @@ report::Table statistics(const Plan& plan, const RunResult& result) {
   return table;
 }
 
-report::Table signal_table(const Recording& recording) {
-  report::Table table;
-  table.head = {"Signal", "Unit", "Least", "Greatest", "RMS", "Last"};
-  for (size_t c = 1; c < recording.columns.size(); ++c) {
-    const Column& column = recording.columns[c];
-    if (column.values.empty()) continue;
-    const auto [low, high] = std::ranges::minmax(column.values);
-    double square = 0;
-    for (double v : column.values) square += v * v;
-    table.rows.push_back({column.name, unit_text(column), fmt::format("{:.6g}", low),
-                          fmt::format("{:.6g}", high),
-                          fmt::format("{:.6g}", std::sqrt(square / double(column.values.size()))),
-                          fmt::format("{:.6g}", column.values.back())});
-  }
-  return table;
+std::string progress_note(const Plan& plan, const RunResult& result) {
+  return fmt::format("{} of {:g} s, {}", fmt::format("{:g}", result.time), plan.clock.time(plan.stop_tick),
+                     to_name(plan.method));
 }
 
-report::Notice ending(const Plan& plan, const RunResult& result) {
-  using Severity = report::Notice::Severity;
-  switch (result.status) {
-    case RunStatus::finished:
-      return {Severity::good,
-              fmt::format("The run reached its stop time, {:g} s.", plan.clock.time(plan.stop_tick))};
-    case RunStatus::interrupted:
-      return {Severity::warning,
-              "The run was " + result.message + "; what was computed until then is shown."};
-    case RunStatus::failed:
-      break;
-  }
-  return {Severity::error, "The run failed: " + result.message + ". What was computed until then is shown."};
+void add_signals(report::Page& page, const std::vector<NamedRecording>& runs,
+                 const std::function<bool(const std::string&)>& is_held) {
+  report::Section signals{"Signals", {}};
+  for (report::Plot& plot : scopes(runs, is_held)) signals.items.push_back(std::move(plot));
+  signals.items.push_back(signal_table(runs));
+  page.sections.push_back(std::move(signals));
+  if (runs.size() > 1) page.sections.push_back(differences(runs));
+  report::Section spectrum{"Spectra", {}};
+  for (report::Plot& plot : spectra(runs)) spectrum.items.push_back(std::move(plot));
+  if (!spectrum.items.empty()) page.sections.push_back(std::move(spectrum));
 }
 
 }  // namespace
 
-report::Graph graph_of(const Plan& plan) {
-  report::Graph graph;
-  for (const Plan::Block& block : plan.blocks) {
-    report::GraphNode node{block.path, block.type->info.type, block.type->info.room, {}, {}};
-    for (const PortInfo& port : block.type->info.inputs) node.inputs.emplace_back(port.name);
-    for (const PortInfo& port : block.type->info.outputs) node.outputs.emplace_back(port.name);
-    graph.nodes.push_back(std::move(node));
-  }
-  for (const Plan::Block& block : plan.blocks)
-    for (size_t i = 0; i < block.inputs.size(); ++i) {
-      std::pair<int, int> last{-1, -1};
-      for (Number n : block.inputs[i]) {
-        const auto source = plan.source_of(n);
-        if (source.first < 0 || source == last) continue;
-        last = source;
-        const Plan::Block& from = plan.blocks[size_t(source.first)];
-        const auto& unit = from.output_units[size_t(source.second)];
-        graph.edges.push_back({from.path, std::string(from.type->info.outputs[size_t(source.second)].name),
-                               block.path, std::string(block.type->info.inputs[i].name), "",
-                               unit ? to_string(*unit) : ""});
-      }
-    }
-  return graph;
-}
-
-report::Page run_page(const Plan& plan, const RunResult& result) {
+report::Page run_page(const Diagram* diagram, const Plan& plan, const RunResult& result,
+                      const RunFigures& figures, const std::vector<NamedRecording>& beside) {
   report::Page page;
   page.title = plan.title.empty() ? "A run" : plan.title;
-  page.subtitle = "Simulation";
+  page.subtitle = fmt::format("Simulation, {}", progress_note(plan, result));
   page.facts = {{"Plan", plan.hash}, {"Seed", fmt::format("{}", plan.seed)}};
-  report::Section outcome{"Outcome", {ending(plan, result)}};
+  report::Section outcome{"Outcome", {}};
+  for (report::Notice& notice : verdict(plan, result, figures)) outcome.items.push_back(std::move(notice));
+  if (report::KeyNumbers key = key_numbers(figures); !key.numbers.empty())
+    outcome.items.push_back(std::move(key));
   for (const Problem& warning : plan.warnings)
     outcome.items.push_back(report::Notice{report::Notice::Severity::warning, to_string(warning)});
   for (const std::string& warning : result.warnings)
     outcome.items.push_back(report::Notice{report::Notice::Severity::warning, warning});
-  report::Section signals{"Signals", {}};
-  for (report::Plot& plot : scopes(plan, result.recording)) signals.items.push_back(std::move(plot));
-  signals.items.push_back(signal_table(result.recording));
-  report::Section diagram{"Diagram", {}};
-  for (report::Item& item : report::graph_picture(graph_of(plan))) diagram.items.push_back(std::move(item));
-  report::Table parameters{{"Parameter", "Value"}, {}, "Effective values, defaults included."};
+  page.sections.push_back(std::move(outcome));
+  std::vector<NamedRecording> runs{{"this run", &result.recording}};
+  runs.insert(runs.end(), beside.begin(), beside.end());
+  add_signals(page, runs, [&](const std::string& signal) {
+    const auto logged = std::ranges::find(plan.log, signal, &Plan::Logged::name);
+    return logged != plan.log.end() && logged->rate.kind == Rate::Kind::sampled;
+  });
+  report::Table parameters{{"Parameter", "Value"}, {}, "Effective values, defaults included"};
   for (const auto& [name, value] : plan.parameters) parameters.rows.push_back({name, value});
-  page.sections = {std::move(outcome),
-                   std::move(signals),
-                   std::move(diagram),
-                   {"Solver", {statistics(plan, result)}},
-                   {"Parameters", {std::move(parameters)}}};
+  if (diagram) page.sections.push_back({"Diagram", {diagram_graph(*diagram, plan)}});
+  page.sections.push_back({"Solver", {statistics(plan, result)}});
+  page.sections.push_back({"Parameters", {std::move(parameters)}});
   return page;
 }
 
-std::string run_summary(const Plan& plan, const RunResult& result) {
+report::Page recordings_page(const std::vector<NamedRecording>& recordings) {
+  report::Page page;
+  for (const NamedRecording& recording : recordings) {
+    page.title += (page.title.empty() ? "" : ", ") + recording.name;
+    page.facts.push_back({recording.name, fmt::format("{} rows", recording.recording->rows())});
+  }
+  page.subtitle = recordings.size() > 1 ? "Recordings laid over each other" : "A recording";
+  add_signals(page, recordings, [](const std::string&) { return false; });
+  return page;
+}
+
+std::string run_summary(const Plan& plan, const RunResult& result, const RunFigures& figures) {
   std::string text = fmt::format("{}: {} of {:g} s in {:.3g} s, {} steps of {}, {} rows\n",
                                  result.status == RunStatus::finished ? "done"
                                  : result.status == RunStatus::failed ? "failed"
@@ -171,6 +96,7 @@ std::string run_summary(const Plan& plan, const RunResult& result) {
                                  fmt::format("{:g}", result.time), plan.clock.time(plan.stop_tick),
                                  result.statistics.wall_seconds, result.statistics.steps,
                                  to_name(plan.method), result.statistics.rows);
+  text += figures_text(figures);
   size_t width = 6;
   for (const Column& column : result.recording.columns) width = std::max(width, column.name.size());
   text += fmt::format("  {:<{}}  {:>13} {:>13} {:>13}  unit\n", "signal", width, "least", "greatest", "last");

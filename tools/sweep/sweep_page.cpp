@@ -1,4 +1,5 @@
 #include "tools/sweep/sweep_page.h"
+#include <filesystem>
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
@@ -136,11 +137,16 @@ std::string index_text(double index, double error) {
 report::Table indices(const SweepPlan& plan, const std::vector<AxisEffect>& effects, size_t metric) {
   report::Table table;
   table.head = {"Axis", "First-order index", "Total index", "Mean at the least value", "at the greatest"};
-  for (const AxisEffect& effect : effects)
-    table.rows.push_back({effect.axis, index_text(effect.first_order, effect.first_order_error),
+  for (const AxisEffect& effect : effects) {
+    // What an axis explains by itself is part of what it explains in all: an estimate beyond that is noise.
+    const double first = effect.total ? std::min(effect.first_order, *effect.total) : effect.first_order;
+    const double error = effect.total ? std::max(effect.first_order_error, effect.first_order - first)
+                                      : effect.first_order_error;
+    table.rows.push_back({effect.axis, index_text(first, error),
                           effect.total ? index_text(*effect.total, effect.total_error) : "",
                           text(effect.bins.empty() ? std::nan("") : effect.bins.front().mean),
                           text(effect.bins.empty() ? std::nan("") : effect.bins.back().mean)});
+  }
   table.caption = fmt::format(
       "Share of the variance of {} that each axis explains by itself, and with all interactions{}; ± is "
       "twice the standard error of the estimate.",
@@ -248,8 +254,8 @@ report::Page sweep_page(const SweepPlan& plan, const SweepResults& results, cons
   report::Page page;
   page.title = sweep.title.empty() ? "Sweep" : sweep.title;
   page.facts = {
-      {"Sweep", sweep.path},
-      {"Diagram", sweep.diagram},
+      {"Sweep", std::filesystem::path(sweep.path).filename().string()},
+      {"Diagram", std::filesystem::path(sweep.diagram).filename().string()},
       {"Runs", fmt::format("{} of {}", report::grouped(table.rows()), report::grouped(size_t(plan.runs())))},
       {"Failed", report::grouped(results.failures.size())},
       {"Results", plan.hash()}};

@@ -13,97 +13,98 @@ using ::testing::HasSubstr;
 using ::testing::MatchesRegex;
 using ::testing::Not;
 
-Graph chain(size_t frames, size_t blocks_in_each) {
-  Graph graph{"Chain", {}, {}};
-  for (size_t f = 0; f < frames; ++f)
-    for (size_t b = 0; b < blocks_in_each; ++b) {
-      const std::string path = "axis" + std::to_string(f) + ".block" + std::to_string(b);
-      if (!graph.nodes.empty()) graph.edges.push_back({graph.nodes.back().path, "out", path, "in", "", "m"});
-      graph.nodes.push_back({path, "Gain", "math", {"in"}, {"out"}});
-    }
-  return graph;
+size_t count(std::string_view text, std::string_view part) {
+  size_t found = 0;
+  for (size_t at = 0; (at = text.find(part, at)) != text.npos; ++at) ++found;
+  return found;
 }
 
-TEST(GraphPicture, ShowsBlocksFramesAndWires) {
-  const auto items = graph_picture(servo_graph());
-  ASSERT_EQ(items.size(), 1u);
-  ASSERT_TRUE(std::holds_alternative<Picture>(items[0]));
-  const std::string& svg = std::get<Picture>(items[0]).svg;
+bool is_there(const std::string& program) {
+  return run_program({"sh", "-c", "command -v " + program}, "", 20s).succeeded;
+}
+
+/// Left edge of the rectangle of a block, whose title begins with its path.
+double left_of(const std::string& svg, const std::string& path) {
+  const size_t node = svg.find("<title>" + path + "  (");
+  EXPECT_NE(node, svg.npos) << path;
+  return std::strtod(svg.c_str() + svg.find(" x=\"", node) + 4, nullptr);
+}
+
+TEST(GraphPicture, ShowsBlocksSubdiagramsAndWiresFromLeftToRight) {
+  if (!is_there("node")) GTEST_SKIP() << "node is not installed";
+  const GraphPicture picture = draw_svg(servo_graph());
+  ASSERT_EQ(picture.failure, "");
+  const std::string& svg = picture.bytes;
   EXPECT_EQ(fault_in_html(svg), "");
   for (const std::string_view text :
        {">feedback</text>", ">PdController</text>", ">friction</text>", ">stage</text>",
-        "class=\"node mechanics\"", "class=\"cluster\"", "reference.position (m) → feedback.reference"})
+        "class=\"node mechanics\"", "class=\"frame\"", "reference.position (m) → feedback.reference",
+        ">1 ms</text>", ">m s²</text>"})
     EXPECT_THAT(svg, HasSubstr(text));
-  size_t wires = 0;
-  for (size_t at = 0; (at = svg.find("class=\"edge\"", at)) != svg.npos; ++at) ++wires;
-  EXPECT_EQ(wires, servo_graph().edges.size());
+  EXPECT_EQ(count(svg, "<g class=\"wire "), servo_graph().edges.size() + 1) << "and one line in the legend";
+  EXPECT_LT(left_of(svg, "reference"), left_of(svg, "feedback"));
+  EXPECT_LT(left_of(svg, "feedback"), left_of(svg, "command"));
+  EXPECT_LT(left_of(svg, "command"), left_of(svg, "stage.motor"));
+  EXPECT_LT(left_of(svg, "stage.motor"), left_of(svg, "stage.mass"));
+  EXPECT_LT(left_of(svg, "stage.mass"), left_of(svg, "encoder"));
 }
 
-TEST(GraphPicture, TakesFontsFromThePageAndSharesNoNamesWithOtherPictures) {
-  const auto items = graph_picture(servo_graph());
-  const std::string& svg = std::get<Picture>(items.at(0)).svg;
-  EXPECT_THAT(svg, Not(HasSubstr("font-family")));
-  EXPECT_THAT(svg, Not(HasSubstr(" id=")));
-  EXPECT_THAT(svg, Not(HasSubstr("<?xml")));
-  EXPECT_THAT(svg, Not(HasSubstr("<!")));
+TEST(GraphPicture, StandsAloneWithItsColors) {
+  if (!is_there("node")) GTEST_SKIP() << "node is not installed";
+  const std::string svg = draw_svg(servo_graph()).bytes;
+  EXPECT_THAT(svg, Not(HasSubstr("var(")));
+  EXPECT_THAT(svg, HasSubstr("fill: #fbe5de")) << "the color of controllers";
+  EXPECT_THAT(svg, Not(HasSubstr("<script")));
+}
+
+TEST(GraphPicture, ClosesSubdiagramsBelowADepth) {
+  if (!is_there("node")) GTEST_SKIP() << "node is not installed";
+  const std::string svg = draw_svg(servo_graph(), {.depth = 0}).bytes;
+  EXPECT_THAT(svg, HasSubstr(">stage</text>"));
+  EXPECT_THAT(svg, Not(HasSubstr(">friction</text>")));
 }
 
 TEST(GraphPicture, NamesOfAnyKindAreHarmless) {
+  if (!is_there("node")) GTEST_SKIP() << "node is not installed";
   const std::string evil = "a\"]; b -> c </script><script>alert(1)</script>\\";
-  const Graph graph{evil,
-                    {{evil, evil, evil, {evil}, {evil}}, {"b", "", "", {}, {}}},
-                    {{evil, evil, "b", evil, evil, evil}}};
-  const auto items = graph_picture(graph);
-  ASSERT_TRUE(std::holds_alternative<Picture>(items.at(0)));
-  const std::string& svg = std::get<Picture>(items[0]).svg;
-  EXPECT_THAT(svg, Not(HasSubstr("<script")));
-  EXPECT_EQ(fault_in_html(svg), "");
+  Graph graph{
+      evil, {evil}, {{evil, evil, evil, {{evil, evil, evil, 0}}, {{evil, evil, evil, 0}}, {}, evil}}, {}};
+  graph.edges = {{{0, GraphEnd::Side::output, 0}, {0, GraphEnd::Side::input, 0}}};
+  const GraphPicture picture = draw_svg(graph);
+  ASSERT_EQ(picture.failure, "");
+  EXPECT_THAT(picture.bytes, Not(HasSubstr("<script")));
+  EXPECT_EQ(fault_in_html(picture.bytes), "");
+  EXPECT_THAT(graph_json(graph), Not(HasSubstr("</script")));
 }
 
-TEST(GraphPicture, DrawsManyBlocksWithSubdiagramsClosed) {
-  const auto items = graph_picture(chain(10, 31));
-  ASSERT_EQ(items.size(), 2u);
-  const std::string& svg = std::get<Picture>(items[0]).svg;
-  EXPECT_THAT(svg, HasSubstr(">axis9</text>"));
-  EXPECT_THAT(svg, HasSubstr(">31 blocks</text>"));
-  EXPECT_THAT(svg, Not(HasSubstr("block30")));
-  EXPECT_THAT(std::get<Notice>(items[1]).text, HasSubstr("310 blocks"));
+TEST(GraphPicture, ABrowserDrawsTheSameAsNode) {
+  if (!is_there("node") || !is_there("chromium")) GTEST_SKIP() << "node or chromium is not installed";
+  const GraphPicture picture = draw_svg(servo_graph(), {.interpreters = {"chromium"}});
+  EXPECT_EQ(picture.failure, "");
+  EXPECT_EQ(picture.bytes, draw_svg(servo_graph()).bytes);
 }
 
-TEST(GraphPicture, ClosingMergesWiresAndKeepsLoopsOfSingleBlocks) {
-  Graph graph = chain(2, 3);
-  graph.nodes.push_back({"gain", "Gain", "math", {"in"}, {"out"}});
-  graph.edges.push_back({"axis1.block0", "out", "gain", "in", "", ""});
-  graph.edges.push_back({"axis1.block2", "out", "gain", "in", "", ""});
-  graph.edges.push_back({"gain", "out", "gain", "in", "", ""});
-  const Graph closed = with_closed_subdiagrams(graph);
-  EXPECT_EQ(graph_text(closed), "axis0 → axis1\naxis1 → gain\ngain → gain\n");
-  ASSERT_EQ(closed.nodes.size(), 3u);
-  EXPECT_EQ(closed.nodes[2].type, "Gain");
-}
-
-TEST(GraphPicture, WithoutDotTheWiresAreListed) {
-  GraphOptions options;
-  options.program = "no-such-program-as-this";
-  const auto items = graph_picture(chain(1, 2), options);
-  ASSERT_EQ(items.size(), 2u);
-  EXPECT_THAT(std::get<Notice>(items[0]).text,
+TEST(GraphPicture, WithoutAProgramSaysWhatToInstall) {
+  const GraphPicture picture =
+      draw_svg(servo_graph(), {.interpreters = {"no-such-program-as-this", "false"}});
+  EXPECT_EQ(picture.bytes, "");
+  EXPECT_THAT(picture.failure, HasSubstr("Debian packages nodejs, chromium"));
+  EXPECT_THAT(picture.failure,
               HasSubstr("no-such-program-as-this could not be started: No such file or directory"));
-  EXPECT_EQ(std::get<Code>(items[1]).text, "axis0.block0.out → axis0.block1.in  m\n");
+  EXPECT_THAT(picture.failure, HasSubstr("false ended with code 1"));
 }
 
-TEST(GraphPicture, ADotThatFailsOrSaysNothingIsReported) {
-  GraphOptions options;
-  options.program = "false";
-  EXPECT_THAT(std::get<Notice>(graph_picture(chain(1, 2), options).at(0)).text,
-              HasSubstr("false ended with code 1"));
-  options.program = "true";
-  EXPECT_THAT(std::get<Notice>(graph_picture(chain(1, 2), options).at(0)).text,
-              HasSubstr("true gave no picture"));
+TEST(Graph, DownToADepthKeepsWiresBetweenTheRest) {
+  const Graph top = down_to(servo_graph(), 0);
+  EXPECT_EQ(top.nodes.size(), 7u);
+  EXPECT_EQ(top.edges.size(), 11u);
+  EXPECT_THAT(graph_text(top), HasSubstr("stage.position → encoder.position  m\n"));
+  EXPECT_THAT(graph_text(top), Not(HasSubstr("friction")));
 }
 
-TEST(GraphPicture, AnEmptyDiagramIsDrawn) {
-  EXPECT_TRUE(std::holds_alternative<Picture>(graph_picture({}).at(0)));
+TEST(Graph, AnEmptyDiagramIsDrawn) {
+  if (!is_there("node")) GTEST_SKIP() << "node is not installed";
+  EXPECT_EQ(draw_svg({}).failure, "");
 }
 
 TEST(RunProgram, PassesInputAndOutputOfAnySize) {

@@ -8,7 +8,7 @@ addEventListener("load", async () => {
   };
   const overlay = (k) => figures[k].querySelector(".u-over");
   const zoomed = () => figures.map((figure) => +!figure.querySelector(".reset").hidden).join("");
-  const readings = (k) => [...figures[k].querySelectorAll("output")].map((output) => output.textContent).join("|");
+  const readings = (k) => [".abscissa", "button output"].flatMap((kind) => [...figures[k].querySelectorAll(kind)]).map((output) => output.textContent).join("|");
   const seen = { errors, canvases: document.querySelectorAll("canvas").length };
   const drawn = (canvas) => canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data.some((byte) => byte > 0);
   seen.drawn = [...document.querySelectorAll("canvas")].filter(drawn).length;

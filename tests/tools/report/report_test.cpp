@@ -35,7 +35,10 @@ std::string plot_data(const Page& page) {
 TEST(ReportHtml, HasOneScopeAFigureAndOneSetOfDataForEachPlot) {
   const std::string html = to_html(sample_page());
   EXPECT_EQ(count(html, "<div class=\"scope\">"), 5u);
-  EXPECT_EQ(count(html, "<script type=\"application/json\">"), 5u);
+  EXPECT_EQ(count(html, "<script type=\"application/json\">"), 6u) << "five plots and a diagram";
+  EXPECT_EQ(count(html, "<figure class=\"block-diagram\">"), 1u);
+  EXPECT_EQ(count(html, "id=\"elk\""), 1u);
+  EXPECT_THAT(html, HasSubstr("Eclipse Public License 2.0")) << "required by the license of elkjs";
   EXPECT_THAT(html, HasSubstr("<b>Figure 6.</b> Open loop, magnitude."));
   EXPECT_THAT(html, HasSubstr("<b>Table 1.</b> Effects that were tried."));
 }
@@ -63,10 +66,23 @@ TEST(ReportHtml, CarriesItsScriptsAndStylesAndLoadsNothing) {
 }
 
 TEST(ReportHtml, EmbeddedFilesAreTheFilesByteForByte) {
-  std::ifstream file(LOOPWRIGHT_SOURCE "/tools/report/page.js", std::ios::binary);
+  std::ifstream file(LOOPWRIGHT_SOURCE "/tools/report/page/page.css", std::ios::binary);
   std::ostringstream bytes;
   bytes << file.rdbuf();
-  EXPECT_TRUE(assets::page_js == bytes.str());
+  EXPECT_TRUE(assets::page_css == bytes.str());
+}
+
+TEST(ReportHtml, ModulesAreJoinedWithoutImportsAndExports) {
+  EXPECT_THAT(std::string(assets::page_js), Not(HasSubstr("\nimport ")));
+  EXPECT_THAT(std::string(assets::page_js), Not(HasSubstr("\nexport ")));
+  for (const char* part : {"function buildLegend", "class DiagramView", "function readingOrder"})
+    EXPECT_THAT(std::string(assets::page_js), HasSubstr(part));
+}
+
+TEST(ReportHtml, APageWithoutADiagramCarriesNoLayoutLibrary) {
+  const std::string html = to_html(Page{"Plain", "", {}, {}});
+  EXPECT_EQ(count(html, "id=\"elk\""), 0u);
+  EXPECT_LT(html.size(), 150'000u);
 }
 
 TEST(ReportHtml, TextOfAnyKindStaysText) {
@@ -178,7 +194,7 @@ TEST(ReportText, TellsTheSameStory) {
   EXPECT_THAT(text, HasSubstr("\nSolver      rk4, step 0.1 ms\n"));
   EXPECT_THAT(text, HasSubstr("  Tracking error, RMS  4.31 µm  (was 14.2 µm)\n"));
   EXPECT_THAT(text, HasSubstr("Warning: The experiment never moves faster"));
-  EXPECT_THAT(text, HasSubstr("feedback.command → command.terms  V\n"));
+  EXPECT_THAT(text, HasSubstr("feedback.command → command.terms[0]  V\n"));
   EXPECT_THAT(text, HasSubstr("  Coulomb friction  level        0.612  N  "));
   EXPECT_THAT(text, HasSubstr("    \"friction\": {"));
   EXPECT_THAT(text, Not(HasSubstr("<")));

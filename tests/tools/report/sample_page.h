@@ -1,9 +1,11 @@
 /// A page with all elements, as a comparison would give it. The data are synthetic.
 #pragma once
+#include <stdexcept>
+#include <tuple>
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include "tools/report/graph_picture.h"
+#include "tools/report/graph.h"
 #include "tools/report/report.h"
 
 namespace loopwright::report {
@@ -46,41 +48,73 @@ inline ServoRun servo_run(double stop = 2.6) {
   return run;
 }
 
+/// Adds a node with ports by name.
+inline void add_node(Graph& graph, std::string path, std::string type, std::string room,
+                     const std::vector<std::string>& inputs, const std::vector<std::string>& outputs) {
+  GraphNode node{std::move(path), std::move(type), std::move(room), {}, {}, {}, ""};
+  for (const std::string& name : inputs) node.inputs.push_back({name, "", "", -1});
+  for (const std::string& name : outputs) node.outputs.push_back({name, "", "", 0});
+  graph.nodes.push_back(std::move(node));
+}
+
+/// "stage>command": an input of the subdiagram stage as seen from inside, or an output of it.
+inline GraphEnd graph_end(const Graph& graph, std::string_view text, GraphEnd::Side side) {
+  const std::size_t inner = text.find('>'), cut = inner != text.npos ? inner : text.rfind('.');
+  if (inner != text.npos)
+    side = side == GraphEnd::Side::output ? GraphEnd::Side::input : GraphEnd::Side::output;
+  for (std::size_t n = 0; n < graph.nodes.size(); ++n) {
+    const auto& ports = side == GraphEnd::Side::input ? graph.nodes[n].inputs : graph.nodes[n].outputs;
+    for (std::size_t p = 0; p < ports.size(); ++p)
+      if (graph.nodes[n].path == text.substr(0, cut) && ports[p].name == text.substr(cut + 1))
+        return {n, side, p};
+  }
+  throw std::invalid_argument("no port " + std::string(text));
+}
+
+inline void add_wire(Graph& graph, std::string_view from, std::string_view to, const std::string& unit) {
+  const GraphEnd source = graph_end(graph, from, GraphEnd::Side::output);
+  GraphNode& node = graph.nodes[source.node];
+  (source.side == GraphEnd::Side::output ? node.outputs : node.inputs)[source.port].unit = unit;
+  graph.edges.push_back({source, graph_end(graph, to, GraphEnd::Side::input)});
+}
+
 inline Graph servo_graph() {
-  Graph graph{
-      "The diagram that was run: linear motor stage with feedforward and disturbance observer", {}, {}};
-  graph.nodes = {
-      {"reference", "MotionProfile", "sources", {}, {"position", "velocity", "acceleration"}},
-      {"feedback", "PdController", "control", {"reference", "measured"}, {"command"}},
-      {"feedforward", "Feedforward", "control", {"velocity", "acceleration"}, {"command"}},
-      {"observer", "DisturbanceObserver", "control", {"command", "position"}, {"disturbance"}},
-      {"command", "Sum", "math", {"terms"}, {"sum"}},
-      {"stage.motor", "LinearMotor", "mechanics", {"command"}, {"force"}},
-      {"stage.cogging", "Cogging", "mechanics", {"position"}, {"force"}},
-      {"stage.friction", "ViscousFriction", "mechanics", {"velocity"}, {"force"}},
-      {"stage.net_force", "Sum", "math", {"terms"}, {"sum"}},
-      {"stage.mass", "Mass", "mechanics", {"force"}, {"position", "velocity"}},
-      {"encoder", "Encoder", "sensors", {"position"}, {"measured"}},
-  };
-  graph.edges = {
-      {"reference", "position", "feedback", "reference", "", "m"},
-      {"reference", "velocity", "feedforward", "velocity", "", "m/s"},
-      {"reference", "acceleration", "feedforward", "acceleration", "", "m/s^2"},
-      {"encoder", "measured", "feedback", "measured", "position", "m"},
-      {"feedback", "command", "command", "terms", "", "V"},
-      {"feedforward", "command", "command", "terms", "", "V"},
-      {"observer", "disturbance", "command", "terms", "", "V"},
-      {"command", "sum", "stage.motor", "command", "command", "V"},
-      {"command", "sum", "observer", "command", "", "V"},
-      {"encoder", "measured", "observer", "position", "", "m"},
-      {"stage.motor", "force", "stage.net_force", "terms", "", "N"},
-      {"stage.cogging", "force", "stage.net_force", "terms", "", "N"},
-      {"stage.friction", "force", "stage.net_force", "terms", "", "N"},
-      {"stage.net_force", "sum", "stage.mass", "force", "", "N"},
-      {"stage.mass", "position", "stage.cogging", "position", "", "m"},
-      {"stage.mass", "velocity", "stage.friction", "velocity", "", "m/s"},
-      {"stage.mass", "position", "encoder", "position", "", "m"},
-  };
+  Graph graph{"Linear motor stage with feedforward and disturbance observer", {"1 ms"}, {}, {}};
+  add_node(graph, "reference", "MotionProfile", "sources", {}, {"position", "velocity", "acceleration"});
+  add_node(graph, "feedback", "PdController", "control", {"reference", "measured"}, {"command"});
+  add_node(graph, "feedforward", "Feedforward", "control", {"velocity", "acceleration"}, {"command"});
+  add_node(graph, "observer", "DisturbanceObserver", "control", {"command", "position"}, {"disturbance"});
+  add_node(graph, "command", "Sum", "math", {"terms[0]", "terms[1]", "terms[2]"}, {"sum"});
+  add_node(graph, "stage", "stage.json", "subdiagram", {"command"}, {"position"});
+  add_node(graph, "stage.motor", "LinearMotor", "mechanics", {"command"}, {"force"});
+  add_node(graph, "stage.friction", "ViscousFriction", "mechanics", {"velocity"}, {"force"});
+  add_node(graph, "stage.net_force", "Sum", "math", {"terms[0]", "terms[1]"}, {"sum"});
+  add_node(graph, "stage.mass", "Mass", "mechanics", {"force"}, {"position", "velocity"});
+  add_node(graph, "encoder", "Encoder", "sensors", {"position"}, {"measured"});
+  GraphNode& sum = graph.nodes[8];
+  sum.face.shape = GraphFace::Shape::circle;
+  sum.inputs[0].sign = "+", sum.inputs[1].sign = "−";
+  graph.nodes[7].face.strokes = {{{-1, -1}, {1, 1}}};
+  graph.nodes[9].face.numerator = "1", graph.nodes[9].face.denominator = "m s²";
+  for (const auto& [from, to, unit] : std::vector<std::tuple<const char*, const char*, const char*>>{
+           {"reference.position", "feedback.reference", "m"},
+           {"reference.velocity", "feedforward.velocity", "m/s"},
+           {"reference.acceleration", "feedforward.acceleration", "m/s^2"},
+           {"encoder.measured", "feedback.measured", "m"},
+           {"feedback.command", "command.terms[0]", "V"},
+           {"feedforward.command", "command.terms[1]", "V"},
+           {"observer.disturbance", "command.terms[2]", "V"},
+           {"command.sum", "stage.command", "V"},
+           {"command.sum", "observer.command", "V"},
+           {"encoder.measured", "observer.position", "m"},
+           {"stage>command", "stage.motor.command", "V"},
+           {"stage.motor.force", "stage.net_force.terms[0]", "N"},
+           {"stage.friction.force", "stage.net_force.terms[1]", "N"},
+           {"stage.net_force.sum", "stage.mass.force", "N"},
+           {"stage.mass.velocity", "stage.friction.velocity", "m/s"},
+           {"stage.mass.position", "stage>position", "m"},
+           {"stage.position", "encoder.position", "m"}})
+    add_wire(graph, from, to, unit);
   return graph;
 }
 
@@ -148,7 +182,7 @@ inline Page sample_page() {
              "The experiment never moves faster than 0.25 m/s; terms with the square of the speed cannot "
              "be told from viscous friction."});
 
-  Section diagram{"Diagram", graph_picture(servo_graph())};
+  Section diagram{"Diagram", {servo_graph()}};
   Section signals{"Signals", servo_plots(run)};
 
   Section residual{"What the model leaves", {}};

@@ -1,0 +1,53 @@
+#include <filesystem>
+#include <set>
+#include "engine/record/recording_file.h"
+#include "tools/command/command.h"
+#include "tools/command/named_recordings.h"
+#include "tools/run/run_page.h"
+
+namespace loopwright {
+
+std::vector<NamedRecording> named(const std::vector<std::string>& paths,
+                                  const std::vector<Recording>& recordings) {
+  std::set<std::string> names;
+  for (const std::string& path : paths) names.insert(std::filesystem::path(path).filename().string());
+  std::vector<NamedRecording> list;
+  for (size_t i = 0; i < recordings.size(); ++i)
+    list.push_back(
+        {names.size() == paths.size() ? std::filesystem::path(paths[i]).filename().string() : paths[i],
+         &recordings[i]});
+  return list;
+}
+
+namespace {
+
+struct Arguments {
+  std::vector<std::string> recordings;
+  std::string page;
+};
+
+int report_recordings(const Arguments& a) {
+  require_writable_file(a.page, "-o");
+  Problems problems;
+  std::vector<Recording> recordings;
+  for (const std::string& path : a.recordings)
+    recordings.push_back(read_recording(path, problems, {.allow_not_finite = true}));
+  if (problems.has_errors()) throw InputError(std::move(problems));
+  report::write_html(a.page, recordings_page(named(a.recordings, recordings)));
+  return done;
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, std::function<void(std::function<int()>)> choose) {
+  CLI::App* command = app.add_subcommand("report", "Lay recordings over each other on a page");
+  auto a = std::make_shared<Arguments>();
+  command
+      ->add_option("recordings", a->recordings,
+                   "Recordings, .csv or .mat; the others are held against the first")
+      ->required();
+  command->add_option("-o,--output", a->page, "Write this HTML page")->required();
+  command->callback([=] { choose([=] { return report_recordings(*a); }); });
+}
+
+}  // namespace loopwright
