@@ -38,7 +38,7 @@ function Ports({ node }: { node: GraphNode }) {
   return (
     <>
       {node.places.map((place) => {
-        const is_source = place.side === "EAST";
+        const is_source = place.id.startsWith("out:");
         return (
           <Handle key={place.id} id={place.id} type={is_source ? "source" : "target"} position={SIDES[place.side]}
             className={place.connected ? "port connected" : "port"} style={{ left: place.x, top: place.y }} title={placeTitle(place)} />
@@ -69,7 +69,7 @@ export const BlockNode = memo(function BlockNode({ data, selected }: NodeProps<B
   return (
     <div className={classes.filter(Boolean).join(" ") + rate} style={{ width, height }} title={description(node)} data-block={node.name} data-type={block?.type ?? node.kind}>
       <svg className="outline" width={width} height={height} aria-hidden="true"><Outline node={node} /></svg>
-      {tint && <svg className="outline tint" width={width} height={height} aria-hidden="true" style={{ opacity: 0.15 + 0.65 * Math.min(1, tint.share) }}><Outline node={node} /></svg>}
+      {tint && <svg className="outline tint" width={width} height={height} aria-hidden="true" style={{ opacity: 0.08 + 0.4 * Math.min(1, tint.share) }}><Outline node={node} /></svg>}
       <div className="content">{shape === "terminal" ? <span className="symbol">{node.name}</span> : node.look.content}</div>
       <Ports node={node} />
       {block && <div className="block-name">{block.name}{block.variant && <span className="variant"> {block.variant}</span>}</div>}

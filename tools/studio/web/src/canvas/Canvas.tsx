@@ -76,12 +76,13 @@ function Diagram() {
     if (!graph || !layout) return [];
     const colours = signal_colours(plots);
     return graph.edges.map((edge): WireFlowEdge => {
-      const name = signal_name(view!.inside, edge.signal);
+      const name = signal_name(view!.inside, edge.signal), series = name ? colours.get(name) ?? -1 : -1;
+      const colour = edge.wire.clash ? "var(--error)" : edge.id === selected_wire ? "var(--accent)" : series >= 0 ? `var(--series-${series})` : "var(--wire)";
       return {
         id: edge.id, type: "wire", source: edge.from, target: edge.to, sourceHandle: edge.from_port, targetHandle: edge.to_port,
         selected: edge.id === selected_wire, ariaLabel: `wire from ${edge.signal} to ${edge.input}`, interactionWidth: 16,
-        data: { edge, points: layout.routes[edge.id] ?? null, series: name ? colours.get(name) ?? -1 : -1, label: edge.signal + (edge.wire.unit && edge.wire.unit !== "1" ? ` [${prettyUnit(edge.wire.unit)}]` : "") },
-        markerEnd: { type: MarkerType.ArrowClosed, width: 11, height: 11, color: "var(--wire)" },
+        data: { edge, points: layout.routes[edge.id] ?? null, series, label: edge.signal + (edge.wire.unit && edge.wire.unit !== "1" ? ` [${prettyUnit(edge.wire.unit)}]` : "") },
+        markerEnd: { type: MarkerType.ArrowClosed, width: series >= 0 ? 8 : 11, height: series >= 0 ? 8 : 11, color: colour },
       };
     });
   }, [graph, layout, plots, selected_wire, view]);

@@ -13,7 +13,7 @@ export interface WireData extends Record<string, unknown> {
 export type WireFlowEdge = Edge<WireData, "wire">;
 
 const CORNER = 5;       // px, radius
-const NEAR = 1.5;       // px: an end of the route is where the port is
+const NEAR = 7;         // px: an end of the route is where the port is, whose mark has a width
 
 /** A line through points with rounded corners. */
 export function rounded(points: Point[]): string {

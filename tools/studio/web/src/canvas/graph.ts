@@ -1,6 +1,7 @@
 // From a view of the diagram to what the canvas draws: nodes with places for wires, and edges between them.
 import type { LayoutEdge, LayoutNode, LayoutPort, Side } from "../layout/messages";
 import type { Block, View, WireEntry } from "../protocol/types";
+import { flow_of } from "./flow";
 import { look, terminalLook, type Look } from "./symbols";
 
 export interface Place {
@@ -50,9 +51,12 @@ export function graph_of(view: View): Graph {
     nodes.set(`output:${output.name}`, { id: `output:${output.name}`, name: output.name, kind: "output", block: null, look: terminalLook(output.name), places: [], unit: output.unit, description: output.description });
 
   const edges = edges_of(view, nodes);
-  mark_back_edges(edges);
-  for (const node of nodes.values()) place_ports(node, edges);
-  return { nodes: [...nodes.values()], edges: edges.filter((edge) => has_place(nodes, edge.from, edge.from_port) && has_place(nodes, edge.to, edge.to_port)) };
+  const { order, returning } = flow_of([...nodes.keys()], edges);
+  for (const node of nodes.values()) {
+    place_ports(node, edges);
+    if (returning.has(node.id)) turn_around(node);
+  }
+  return { nodes: order.map((id) => nodes.get(id)!), edges: edges.filter((edge) => has_place(nodes, edge.from, edge.from_port) && has_place(nodes, edge.to, edge.to_port)) };
 }
 
 const has_place = (nodes: Map<string, GraphNode>, id: string, place: string): boolean =>
@@ -73,26 +77,13 @@ function edges_of(view: View, nodes: Map<string, GraphNode>): GraphEdge[] {
   });
 }
 
-/** Wires that close a loop, seen from the sources: they are drawn from right to left, below. */
-function mark_back_edges(edges: GraphEdge[]): void {
-  const leaving = new Map<string, GraphEdge[]>(), entering = new Map<string, number>();
-  for (const edge of edges) {
-    leaving.set(edge.from, [...(leaving.get(edge.from) ?? []), edge]);
-    entering.set(edge.to, (entering.get(edge.to) ?? 0) + 1);
+/** A block of the return path has its inputs on the right. */
+function turn_around(node: GraphNode): void {
+  for (const place of node.places) {
+    if (place.side === "SOUTH") continue;
+    place.side = place.side === "WEST" ? "EAST" : "WEST";
+    place.x = node.look.width - place.x;
   }
-  const state = new Map<string, "open" | "done">();
-  const visit = (id: string): void => {
-    state.set(id, "open");
-    for (const edge of leaving.get(id) ?? []) {
-      const target = state.get(edge.to);
-      if (target === "open") edge.back = true;
-      else if (target === undefined) visit(edge.to);
-    }
-    state.set(id, "done");
-  };
-  const ids = [...new Set(edges.flatMap((edge) => [edge.from, edge.to]))];
-  for (const id of ids) if (!entering.get(id) && !state.has(id)) visit(id);
-  for (const id of ids) if (!state.has(id)) visit(id);
 }
 
 /** Inputs on the left, outputs on the right; what a circle subtracts from behind enters it from below. */
@@ -137,6 +128,7 @@ export function layout_request(graph: Graph): { nodes: LayoutNode[]; edges: Layo
     nodes: graph.nodes.map((node) => ({
       id: node.id, width: node.look.width, height: node.look.height, label_width: node.block ? node.name.length * LABEL_CHARACTER : 0,
       ports: node.places.map(({ id, side, x, y }): LayoutPort => ({ id, side, x, y })),
+      end: node.kind === "input" ? "first" : node.kind === "output" ? "last" : "",
       fixed: node.block?.position ? { x: node.block.position[0], y: node.block.position[1] } : null,
     })),
     edges: graph.edges.map(({ id, from, from_port, to, to_port, back }) => ({ id, from, from_port, to, to_port, back })),

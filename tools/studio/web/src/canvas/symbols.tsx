@@ -28,7 +28,7 @@ const cut = (text: string, most: number): string => (text.length > most ? text.s
 
 const EXPONENTS = "⁰¹²³⁴⁵⁶⁷⁸⁹";
 /** Text of the file as a formula is printed: 2*pi*f^2 as 2·π·f². */
-export const typeset = (text: string): string => prettyUnit(text.replace(/^=\s*/, "")).replace(/\bpi\b/g, "π")
+export const typeset = (text: string): string => (text.trim() === "1" ? "1" : prettyUnit(text.replace(/^=\s*/, ""))).replace(/\bpi\b/g, "π")
   .replace(/\s*·\s*/g, "·").replace(/\^(\d)/g, (_, digit: string) => EXPONENTS[Number(digit)]!).replace(/-/g, "−");
 
 const setting = (block: Block, name: string): string => block.settings.find((entry) => entry.name === name)?.text ?? "";

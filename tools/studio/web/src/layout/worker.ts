@@ -9,7 +9,7 @@ const OPTIONS = {
   "elk.layered.spacing.nodeNodeBetweenLayers": "44", "elk.spacing.nodeNode": "30", "elk.spacing.edgeNode": "18", "elk.spacing.edgeEdge": "12",
   "elk.layered.spacing.edgeNodeBetweenLayers": "18", "elk.layered.spacing.edgeEdgeBetweenLayers": "12",
   "elk.layered.nodePlacement.strategy": "NETWORK_SIMPLEX", "elk.layered.considerModelOrder.strategy": "NODES_AND_EDGES",
-  "elk.layered.cycleBreaking.strategy": "GREEDY", "elk.layered.feedbackEdges": "true", "elk.separateConnectedComponents": "false",
+  "elk.layered.cycleBreaking.strategy": "MODEL_ORDER", "elk.layered.feedbackEdges": "true", "elk.separateConnectedComponents": "false",
   "elk.padding": "[top=20,left=20,bottom=20,right=20]",
 };
 const LABEL_HEIGHT = 16;    // px, of the name below a block
@@ -32,13 +32,14 @@ async function arrange({ nodes, edges }: LayoutRequest): Promise<Layout> {
     id: "diagram", layoutOptions: OPTIONS,
     children: nodes.map((node) => ({
       id: node.id, width: node.width, height: node.height,
-      layoutOptions: { "elk.portConstraints": "FIXED_POS", "elk.nodeLabels.placement": "OUTSIDE V_BOTTOM H_CENTER" },
+      layoutOptions: { "elk.portConstraints": "FIXED_POS", "elk.nodeLabels.placement": "OUTSIDE V_BOTTOM H_CENTER",
+                       ...(node.end ? { "elk.layered.layering.layerConstraint": node.end === "first" ? "FIRST" : "LAST" } : {}) },
       labels: [{ text: node.id, width: node.label_width, height: LABEL_HEIGHT }],
       ports: node.ports.map((port) => ({ id: `${node.id}/${port.id}`, width: 0, height: 0, x: port.x, y: port.y, layoutOptions: { "elk.port.side": port.side } })),
     })),
     edges: edges.map((edge): ElkExtendedEdge => ({
       id: edge.id, sources: [`${edge.from}/${edge.from_port}`], targets: [`${edge.to}/${edge.to_port}`],
-      layoutOptions: { "elk.layered.priority.direction": edge.back ? "0" : "10", "elk.layered.priority.straightness": edge.back ? "0" : "5" },
+      layoutOptions: { "elk.layered.priority.straightness": edge.back ? "0" : "5" },
     })),
   };
   const result = await elk.layout(graph);

@@ -1,6 +1,6 @@
 // The selected block, or, with nothing selected, the diagram itself: its parameters with their sliders, its solver.
 import { prettyUnit } from "../numbers";
-import { edit } from "../state/document";
+import { edit, open } from "../state/document";
 import { sweep } from "../state/run";
 import { useStudio } from "../state/store";
 import type { Parameter, View } from "../protocol/types";
@@ -54,6 +54,7 @@ function ParameterRow({ parameter, editable }: { parameter: Parameter; editable:
 function DiagramPanel({ view }: { view: View }) {
   const run = useStudio((state) => state.run);
   const writable = useStudio((state) => state.document?.writable ?? false) && view.editable;
+  const file_inside = useStudio((state) => state.file_inside);
   const sliders = view.parameters.flatMap((parameter) => (parameter.slider ? [parameter.slider] : []));
   const start_sweep = (form: HTMLFormElement) => {
     const data = new FormData(form), of = (key: string) => sliders.find((slider) => slider.set === data.get(key));
@@ -66,6 +67,7 @@ function DiagramPanel({ view }: { view: View }) {
         <h2>{view.title || "Diagram"}</h2>
         {view.description && <p className="soft description">{view.description}</p>}
         {!view.editable && <p className="hint">This part is defined by another file. Open that file to change it.</p>}
+        {!view.editable && file_inside && <p className="buttons"><button type="button" onClick={() => void open(file_inside)}>Open {file_inside.split("/").pop()}</button></p>}
       </div>
       <div className="section">
         <h3>Parameters</h3>

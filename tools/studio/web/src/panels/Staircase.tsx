@@ -7,17 +7,14 @@ const WIDTH = 320, HEIGHT = 132, LEFT = 4, RIGHT = 4, TOP = 22, BOTTOM = 22;  //
 export function Staircase({ steps, floor, unit, running }: { steps: Step[]; floor: number | null; unit: string; running: boolean }) {
   const shown = steps.filter((step) => step.error !== null);
   if (!shown.length) return null;
-  const largest = Math.max(...shown.map((step) => step.error!)), least = Math.min(...shown.map((step) => step.error!), floor ?? Infinity);
-  // A logarithmic scale when the error falls by more than a factor of ten: the last steps count.
-  const logarithmic = largest > 10 * least && least > 0;
-  const bottom = least / 1.6;
-  const share = (value: number) => (logarithmic ? Math.log(value / bottom) / Math.log(largest / bottom) : value / largest);
+  const largest = Math.max(...shown.map((step) => step.error!));
+  const share = (value: number) => value / largest;
   const y = (value: number) => TOP + (HEIGHT - TOP - BOTTOM) * (1 - Math.max(0, Math.min(1, share(value))));
   const width = (WIDTH - LEFT - RIGHT) / Math.max(shown.length, 3);
   const words = shown.map((step, i) => `${i ? "with " + (step.added.join(" and ") || "nothing") : "as it is"}: ${quantity(step.error, unit, 3)}`).join(", ");
   return (
     <svg className={running ? "staircase running" : "staircase"} viewBox={`0 0 ${WIDTH} ${HEIGHT}`} role="img" aria-label={`Error ${words}${floor !== null ? `, noise ${quantity(floor, unit, 3)}` : ""}`} data-steps={shown.length}>
-      {floor !== null && <><rect className="floor" x={0} width={WIDTH} y={y(floor)} height={HEIGHT - BOTTOM - y(floor)} /><text className="floor-label" x={WIDTH - 4} y={y(floor) - 4} textAnchor="end">noise {quantity(floor, unit, 2)}</text></>}
+      {floor !== null && <><rect className="floor"  x={0} width={WIDTH} y={y(floor)} height={HEIGHT - BOTTOM - y(floor)} /><text className="floor-label" x={WIDTH - 4} y={11} textAnchor="end">noise {quantity(floor, unit, 2)}</text></>}
       {shown.map((step, i) => {
         const left = LEFT + i * width, top = y(step.error!), name = i ? "+ " + step.added.map((entry) => entry.replace(/_/g, " ")).join(", ") : "as it is";
         return (

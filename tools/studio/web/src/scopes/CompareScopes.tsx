@@ -8,8 +8,10 @@ import type { Compared, Comparison, Signal } from "../protocol/types";
 import { Plot } from "./Plot";
 import type { Curve } from "./drawing";
 import { set_cursor } from "./RunScopes";
+import { LEGEND_HEIGHT, NUMBERS_HEIGHT, useRoom } from "./size";
 
-const MEASURED_HEIGHT = 150, ERROR_HEIGHT = 160, RESIDUAL_HEIGHT = 150;  // px
+const VERDICT_HEIGHT = 36, RESIDUAL_HEIGHT = 160;  // px
+const bounded = (size: number, least: number, most: number): number => Math.round(Math.max(least, Math.min(most, size)));
 const show_range = (range: Range | null): void => patch({ range });
 
 /** In a range of time, the program sends what lies in it in full detail. */
@@ -44,7 +46,7 @@ function Verdict({ signal, before }: { signal: Compared; before: Compared | unde
 export function CompareScopes() {
   const comparison = useStudio((state) => state.comparison), before = useStudio((state) => state.comparison_before);
   const preview = useStudio((state) => state.preview), range = useStudio((state) => state.range), cursors = useStudio((state) => state.cursors);
-  const detail = useDetail(comparison, range);
+  const detail = useDetail(comparison, range), { ref, room } = useRoom();
   const plots = useMemo(() => (comparison?.signals ?? []).map((signal) => {
     const now = (what: "measured" | "simulated" | "error") => {
       const zoomed = detail.get(`${what} ${signal.name}`);
@@ -72,14 +74,17 @@ export function CompareScopes() {
   }), [comparison, before]);
   if (!comparison) return <p className="empty">Drop a recording (CSV, MAT) on the page, or choose an experiment under Measurements.</p>;
   const floor = comparison.force?.noise_floor;
+  // Both plots of a signal fit into the room; the error, which is what matters, gets the larger part.
+  const space = room - VERDICT_HEIGHT - 2 * LEGEND_HEIGHT - NUMBERS_HEIGHT;
+  const measured_height = bounded(0.38 * space, 80, 170), error_height = bounded(0.62 * space, 110, 260) + NUMBERS_HEIGHT;
   return (
-    <div className="comparison">
+    <div className="comparison" ref={ref}>
       {plots.map(({ signal, old, both, error }) => (
         <div key={signal.name} className="pair">
           <Verdict signal={signal} before={old} />
-          <Plot title={`${signal.name}, measured and simulated`} curves={both} group="record" x_label="time" x_unit="s" y_unit={signal.unit} height={MEASURED_HEIGHT} show_x={false}
+          <Plot title={`${signal.name}, measured and simulated`} curves={both} group="record" x_label="time" x_unit="s" y_unit={signal.unit} height={measured_height} show_x={false}
             range={range} cursors={cursors} on_zoom={(from, to) => show_range({ from, to })} on_reset={() => show_range(null)} on_cursor={set_cursor} />
-          <Plot title={`Error of ${signal.name}`} curves={error} group="record" x_label="time" x_unit="s" y_unit={signal.unit} height={ERROR_HEIGHT} show_x
+          <Plot title={`Error of ${signal.name}`} curves={error} group="record" x_label="time" x_unit="s" y_unit={signal.unit} height={error_height} show_x
             range={range} cursors={cursors} on_zoom={(from, to) => show_range({ from, to })} on_reset={() => show_range(null)} on_cursor={set_cursor}
             band={signal.resolution ? { low: -signal.resolution / 2, high: signal.resolution / 2, label: "" } : null} />
         </div>

@@ -26,8 +26,8 @@ export function RunScopes() {
     return plots.map((names) => names.flatMap((name) => {
       const colour = colours.get(name) ?? 0;
       return [
-        ...curve_of(ghost && ghost.run !== run?.run ? ghost : null, name, colour, "ghost", `${name} before`),
-        ...pinned.filter((other) => other.run !== run?.run).flatMap((other) => curve_of(other, name, colour, "pinned", `${name} of ${other.name || `run ${other.run}`}`)),
+        ...curve_of(ghost && ghost.run !== run?.run ? ghost : null, name, colour, "ghost", "before"),
+        ...pinned.filter((other) => other.run !== run?.run).flatMap((other) => curve_of(other, name, colour, "pinned", other.name || `run ${other.run}`)),
         ...curve_of(run, name, colour, "line", name),
       ];
     }));

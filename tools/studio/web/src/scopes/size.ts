@@ -1,9 +1,11 @@
 // How high a plot is: all of them share the room, none becomes too flat to read.
 import { useEffect, useRef, useState, type RefObject } from "react";
 
-const LEAST = 96, MOST = 300, LEGEND = 24, NUMBERS = 22;  // px
+export const LEGEND_HEIGHT = 24, NUMBERS_HEIGHT = 22;  // px
+const LEAST = 96, MOST = 300;  // px
 
-export function usePlotHeight(count: number): { ref: RefObject<HTMLDivElement | null>; height: (is_last: boolean) => number } {
+/** The height of what scrolls around an element. */
+export function useRoom(): { ref: RefObject<HTMLDivElement | null>; room: number } {
   const ref = useRef<HTMLDivElement>(null), [room, setRoom] = useState(0);
   useEffect(() => {
     const scroller = ref.current?.closest(".plots");
@@ -12,6 +14,11 @@ export function usePlotHeight(count: number): { ref: RefObject<HTMLDivElement | 
     observer.observe(scroller);
     return () => observer.disconnect();
   }, []);
-  const each = Math.max(LEAST, Math.min(MOST, Math.floor((room - 10 - NUMBERS) / Math.max(1, count)) - LEGEND));
-  return { ref, height: (is_last) => each + (is_last ? NUMBERS : 0) };
+  return { ref, room };
+}
+
+export function usePlotHeight(count: number): { ref: RefObject<HTMLDivElement | null>; height: (is_last: boolean) => number } {
+  const { ref, room } = useRoom();
+  const each = Math.max(LEAST, Math.min(MOST, Math.floor((room - 10 - NUMBERS_HEIGHT) / Math.max(1, count)) - LEGEND_HEIGHT));
+  return { ref, height: (is_last) => each + (is_last ? NUMBERS_HEIGHT : 0) };
 }

@@ -31,7 +31,7 @@ export async function open(path: string, inside = ""): Promise<void> {
   });
   patch({ selected: [], selected_wire: "", highlighted: [] });
   show(document, inside);
-  for (const listener of after_change) listener();
+  if (!same || before.document?.revision !== document.revision) for (const listener of after_change) listener();
 }
 
 /** Shows what the program says about the file. */
@@ -136,9 +136,10 @@ export async function resolve(keep: "mine" | "theirs"): Promise<void> {
 
 /** Enters a subdiagram; one that another file defines is opened as that file. */
 export function enter(name: string): void {
-  const { document, inside } = get();
-  if (document?.view?.blocks.some((block) => block.name === name && block.subdiagram))
-    void open(document.path, inside ? `${inside}.${name}` : name);
+  const { document, inside } = get(), block = document?.view?.blocks.find((entry) => entry.name === name && entry.subdiagram);
+  if (!document || !block) return;
+  if (block.file) patch({ file_inside: block.file });
+  void open(document.path, inside ? `${inside}.${name}` : name);
 }
 export function leave(): void {
   const { document, inside } = get();

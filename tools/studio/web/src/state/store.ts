@@ -22,6 +22,7 @@ export interface State {
   text: string;                          // of the document
   text_from_program: number;             // counts changes of the text that did not come from the text view
   inside: string;
+  file_inside: string;                   // the file that was entered last
   variants: Record<string, string>;
   selected: string[];                    // names of blocks of the present level
   selected_wire: string;                 // "axis.force#0"; empty: none
@@ -62,7 +63,7 @@ export interface State {
 }
 
 const initial: State = {
-  connection: "connecting", folder: "", files: [], document: null, text: "", text_from_program: 0, inside: "", variants: {},
+  connection: "connecting", folder: "", files: [], document: null, text: "", text_from_program: 0, inside: "", file_inside: "", variants: {},
   selected: [], selected_wire: "", highlighted: [], jump: null,
   overrides: {}, run: null, ghost: null, pinned: [], runs: [], plots: [], plots_chosen: false, range: null, cursors: null,
   scope_tab: "run", linear: null, sweep: null,
