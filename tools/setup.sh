@@ -1,6 +1,6 @@
 #!/bin/bash
-# Prepares this machine to build Loopwright: installs the missing packages of tools/dependencies.txt, and the plotting
-# library of report pages. It may be run repeatedly: installed packages are left unchanged.
+# Prepares this machine to build Loopwright: installs the missing packages of tools/dependencies.txt, and the packages
+# of report pages and of the studio. It may be run repeatedly: installed packages are left unchanged.
 set -euo pipefail
 export DEBIAN_FRONTEND=noninteractive
 
@@ -36,14 +36,16 @@ install_packages() {
   fi
 }
 
-# A copy of the lock file beside the installed files shows whether the lock file has changed since.
-install_plotting_library() {
-  local stamp=$tools/report/node_modules/.installed-lock
-  ! cmp -s "$tools/report/package-lock.json" "$stamp" || return 0
-  say "installing the plotting library into tools/report/node_modules"
-  (cd "$tools/report" && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error >/dev/null)
-  cp "$tools/report/package-lock.json" "$stamp"
+# The packages of a page. A copy of the lock file beside the installed files shows whether the lock file has changed since.
+install_page_packages() {
+  local folder=$1 what=$2
+  local stamp=$tools/$folder/node_modules/.installed-lock
+  ! cmp -s "$tools/$folder/package-lock.json" "$stamp" || return 0
+  say "installing $what into tools/$folder/node_modules"
+  (cd "$tools/$folder" && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error >/dev/null)
+  cp "$tools/$folder/package-lock.json" "$stamp"
 }
 
 install_packages
-install_plotting_library
+install_page_packages report 'the plotting library'
+install_page_packages studio/web 'the packages of the studio'

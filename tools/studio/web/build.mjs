@@ -1,5 +1,6 @@
 // Bundles the page into one folder:  node build.mjs [FOLDER] [--development]
-// Writes index.html, studio.js, studio.css, layout-worker.js and licenses.txt. Checks the size of the first page.
+// Writes index.html, studio.js, studio.css, layout-worker.js and licenses.txt, each also compressed (.gz), and checks the
+// size of the first page.
 import { build } from "esbuild";
 import { cpSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
@@ -23,7 +24,11 @@ await build({ ...common, entryPoints: { "layout-worker": "src/layout/worker.ts" 
 cpSync(join(here, "index.html"), join(folder, "index.html"));
 writeFileSync(join(folder, "licenses.txt"), licenses());
 
-const size = (name) => gzipSync(readFileSync(join(folder, name)), { level: 9 }).length;
+// The program serves the compressed files.
+const files = ["index.html", "studio.js", "studio.css", "layout-worker.js", "licenses.txt"];
+const compressed = new Map(files.map((name) => [name, gzipSync(readFileSync(join(folder, name)), { level: 9 })]));
+for (const [name, bytes] of compressed) writeFileSync(join(folder, name + ".gz"), bytes);
+const size = (name) => compressed.get(name).length;
 const first_page = size("index.html") + size("studio.js") + size("studio.css");
 console.log(`first page: ${(first_page / 1024).toFixed(0)} KB gzip, layout worker: ${(size("layout-worker.js") / 1024).toFixed(0)} KB gzip`);
 if (!development && first_page > largest_first_page) {
