@@ -39,12 +39,12 @@ export function SliderField({ slider, label }: { slider: Slider; label: string }
         aria-valuetext={`${value} ${slider.unit}`} data-set={slider.set}
         onPointerDown={begin_sliding} onPointerUp={end_sliding} onFocus={begin_sliding} onBlur={end_sliding}
         onChange={(event) => slide(slider, to_value(Number(event.target.value) / STEPS))} />
-      <output htmlFor={id}>{override === undefined ? "" : `${+value.toPrecision(4)} ${prettyUnit(slider.unit)}`}</output>
       {override !== undefined && (
-        <>
+        <div className="override">
+          <output htmlFor={id}>{+value.toPrecision(4)} {prettyUnit(slider.unit)}</output><span className="soft">not in the file</span>
           <button type="button" className="small" title="Write this number into the file" onClick={() => void keep_override(slider.set)}>Write</button>
-          <button type="button" className="small quiet" title={`Back to the file's ${quantity(slider.value, slider.unit)}`} aria-label={`Reset ${label}`} onClick={() => forget_override(slider.set)}>↺</button>
-        </>
+          <button type="button" className="small" title={`Back to the file's ${quantity(slider.value, slider.unit)}`} aria-label={`Reset ${label}`} onClick={() => forget_override(slider.set)}>Reset</button>
+        </div>
       )}
     </div>
   );

@@ -2,7 +2,7 @@
 import { useEffect, useRef, useState, type RefObject } from "react";
 
 export const LEGEND_HEIGHT = 24, NUMBERS_HEIGHT = 22;  // px
-const LEAST = 96, MOST = 300;  // px
+const LEAST = 70, MOST = 300;  // px
 
 /** The height of what scrolls around an element. */
 export function useRoom(): { ref: RefObject<HTMLDivElement | null>; room: number } {
