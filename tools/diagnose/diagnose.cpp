@@ -281,6 +281,12 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   std::vector<InverseDynamics> inverse;
   for (Trial& trial : trials.list) inverse.push_back(inverse_dynamics(trial));
   trials.inverse = &inverse;
+  if (options.found)
+    trials.found = [&](const std::vector<Member>& members) {
+      std::vector<std::string> names;
+      for (const Member& member : members) names.push_back(shown_name(*member.candidate));
+      options.found(names, residual_size(trials, inverse, members).fitted);
+    };
   Diagnosis result;
   result.findings = look_at_records(trials, inverse);
   if (auto finding = too_few_rows(trials)) result.findings.push_back(std::move(*finding));
@@ -300,10 +306,11 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   tell_errors(trials, conclusion, inquiry, result);
   trials.run_along(Trials::Rows::all);
   judge(trials, conclusion, inquiry.motion_of_all_rows(), search_noise(trials), result);
+  result.additions = additions(catalogue, conclusion.estimate, units, sizes);
   if (!options.improved_diagram.empty()) {
     result.improved = options.improved_diagram;
-    result.experiment_ports = write_improved(diagram, experiments, options.load, catalogue,
-                                             conclusion.estimate, units, sizes, result.improved);
+    result.experiment_ports =
+        write_improved(diagram, experiments, options.load, result.additions, result.improved);
   }
   result.curves = residual_curves(trials, inverse.front(), conclusion);
   return result;

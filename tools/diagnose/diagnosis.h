@@ -59,6 +59,19 @@ struct RemainderShare {
   double share = 0;
 };
 
+/// An effect with its fitted parameters, as it can be added to the diagram.
+struct AddedEffect {
+  Effect effect;
+  std::vector<double> fitted;  ///< SI, in the order of the effect's file
+  int stage = 0;               ///< effects of an earlier stage are added first
+};
+/// The effects that were found, in the order in which they are added.
+struct Additions {
+  std::vector<AddedEffect> effects;
+  MachineUnits units;
+  RecordSizes sizes;
+};
+
 enum class Verdict { nothing_missing, explained, partly_explained, unexplained };
 std::string_view name_of(Verdict verdict);
 
@@ -82,6 +95,7 @@ struct Diagnosis {
   double mean_square = 0, held_out_mean_square = 0, portmanteau = 0;
   double white_force = 0, slow_force = 0, slow_force_time_s = 0;
   std::vector<double> measurement_noise;
+  Additions additions;
   std::string improved;                     ///< the diagram that was written
   std::vector<MovedPort> experiment_ports;  ///< that an experiment must name differently with that diagram
   std::vector<std::string> trail;

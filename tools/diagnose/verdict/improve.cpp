@@ -73,38 +73,64 @@ WhyNot attachable(const std::string& diagram, const std::string& experiment_path
   };
 }
 
-std::vector<MovedPort> write_improved(const std::string& diagram,
-                                      const std::vector<std::string>& experiment_paths,
-                                      const LoadOptions& load, const Catalogue& catalogue,
-                                      const Estimate& estimate, const MachineUnits& units,
-                                      const RecordSizes& sizes, const std::string& target) {
-  Problems problems;
-  Experiments experiments;
-  for (const std::string& path : experiment_paths) experiments.push_back(load_experiment(path, problems));
-  auto file = read_source(diagram, {}, problems);
-  if (!file || std::ranges::find(experiments, nullptr) != experiments.end())
-    throw InputError(std::move(problems));
-  InsertionSite site{experiments.front()->roles.ports, load.variants, units};
-  MovedPorts moved_ports(experiments);
-  std::vector<Member> members = estimate.members;  // in the direction of the signal
-  std::ranges::stable_sort(members, {}, [](const Member& m) { return m.candidate->stage; });
-  for (const Member& member : members) {
+Additions additions(const Catalogue& catalogue, const Estimate& estimate, const MachineUnits& units,
+                    const RecordSizes& sizes) {
+  Additions result{{}, units, sizes};
+  for (const Member& member : estimate.members) {
     if (member.candidate->is_unknown) continue;
     const Effect& effect = catalogue.effects[size_t(member.candidate - catalogue.candidates.data())];
-    const auto inserted = insert_effect(file, site, effect, fitted_values(effect, member), sizes, problems);
+    result.effects.push_back({effect, fitted_values(effect, member), int(member.candidate->stage)});
+  }
+  std::ranges::stable_sort(result.effects, {}, &AddedEffect::stage);
+  return result;
+}
+
+std::vector<MovedPort> write_improved(const std::string& diagram, const std::vector<std::string>& paths,
+                                      const LoadOptions& load, const Additions& additions,
+                                      const std::string& target) {
+  Problems problems;
+  Experiments experiments;
+  for (const std::string& path : paths) experiments.push_back(load_experiment(path, problems));
+  const auto file = read_source(diagram, {}, problems);
+  if (!file || std::ranges::find(experiments, nullptr) != experiments.end())
+    throw InputError(std::move(problems));
+  const Improvement improved = improve(file, experiments, load.variants, additions);
+  const std::string folder = std::filesystem::path(target).parent_path().string();
+  write_file(target, moved_to_folder({diagram, improved.text}, folder.empty() ? "." : folder));
+  return improved.ports;
+}
+
+}  // namespace loopwright::diagnosis
+
+namespace loopwright {
+
+Improvement improve(std::shared_ptr<const SourceFile> file,
+                    const std::vector<std::shared_ptr<const Experiment>>& experiments,
+                    const std::map<std::string, std::string>& variants, const Additions& additions,
+                    const std::string& input) {
+  Problems problems;
+  InsertionSite site{experiments.front()->roles.ports, variants, additions.units};
+  const auto set_input = [&](const std::string& port) {
+    for (auto& [role, own] : site.roles)
+      if (role == "input" && !port.empty()) own = port;
+  };
+  set_input(input);
+  diagnosis::MovedPorts moved_ports(experiments);
+  Improvement result{file->text, {}, {}, input};
+  for (const AddedEffect& added : additions.effects) {
+    auto inserted = insert_effect(file, site, added.effect, added.fitted, additions.sizes, problems);
     if (!inserted) throw InputError(std::move(problems));
     moved_ports.add(*inserted);
     for (auto& [role, port] : site.roles)
       for (const auto& [from, to] : inserted->measured_at)
         if (port == from) port = to.front();
-    if (!inserted->input_behind.empty())
-      for (auto& [role, port] : site.roles)
-        if (role == "input") port = inserted->input_behind;
-    file = std::make_shared<SourceFile>(SourceFile{diagram, inserted->text});
+    set_input(inserted->input_behind);
+    if (!inserted->input_behind.empty()) result.input = inserted->input_behind;
+    std::ranges::move(inserted->blocks, std::back_inserter(result.blocks));
+    file = std::make_shared<SourceFile>(SourceFile{file->name, std::move(inserted->text)});
   }
-  const std::string folder = std::filesystem::path(target).parent_path().string();
-  write_file(target, moved_to_folder(*file, folder.empty() ? "." : folder));
-  return moved_ports.list();
+  result.text = file->text, result.ports = moved_ports.list();
+  return result;
 }
 
-}  // namespace loopwright::diagnosis
+}  // namespace loopwright

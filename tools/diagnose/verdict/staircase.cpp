@@ -13,10 +13,6 @@ bool corrects_nominal(const Member& member) {
 /// are still to come, as damping does with eddy-current drag.
 constexpr double least_benefit_of_a_correction = 0.99;
 
-std::string shown_name(const Candidate& candidate) {
-  return candidate.is_unknown ? "an unknown force of " + candidate.form : candidate.name;
-}
-
 struct Stage {
   std::vector<size_t> members;  ///< for the conclusion
   Estimate estimate;
@@ -104,6 +100,10 @@ void mark_knee(std::vector<DiagnosisStep>& steps) {
 }
 
 }  // namespace
+
+std::string shown_name(const Candidate& candidate) {
+  return candidate.is_unknown ? "an unknown force of " + candidate.form : candidate.name;
+}
 
 Staircase climb(Trials& trials, const Conclusion& conclusion, const std::vector<InverseDynamics>& inverse,
                 size_t catalogue) {

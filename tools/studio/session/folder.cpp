@@ -169,6 +169,11 @@ std::string Folder::path_of(const std::string& relative) const {
   return path_ == "." ? relative : path_ + (path_.ends_with('/') ? "" : "/") + relative;
 }
 
+std::string Folder::relative(const std::string& path) const {
+  const std::string begin = path_ == "." ? "" : path_ + (path_.ends_with('/') ? "" : "/");
+  return path.starts_with(begin) ? path.substr(begin.size()) : path;
+}
+
 bool Folder::is_writable(const std::string& relative) const {
   std::string name;
   const Handle folder = folder_of(relative, name);
@@ -229,6 +234,12 @@ std::optional<Folder::Found> Folder::replace(const std::string& relative, const 
     if (!fresh.exchange(name)) fresh.keep();
   }
   return Found{read(relative)};
+}
+
+void Folder::remove(const std::string& relative, std::string_view expected) const {
+  std::string name;
+  const Handle folder = folder_of(relative, name);
+  if (folder && read(relative) == expected) ::unlinkat(folder.number(), name.c_str(), 0);
 }
 
 void Folder::make_own_folder(const std::string& name) const {

@@ -30,6 +30,8 @@ class Folder {
   /// The path of a file for reading, DIR/axis.json. Throws Refused for a path that is absolute, has "..", a
   /// hidden part or a suffix that the studio does not know. A symbolic link is followed.
   std::string path_of(const std::string& relative) const;
+  /// The path of a request for a path that path_of() gave.
+  std::string relative(const std::string& path) const;
   /// Whether the file, or its folder if there is none, is below DIR without any symbolic link.
   bool is_writable(const std::string& relative) const;
 
@@ -45,6 +47,9 @@ class Folder {
   };
   std::optional<Found> replace(const std::string& relative, const std::optional<std::string>& expected,
                                std::string_view text) const;
+
+  /// Removes a file that still has these contents.
+  void remove(const std::string& relative, std::string_view expected) const;
 
   /// Creates DIR/.loopwright, or a folder in it. Files in it may be read and written with their path.
   void make_own_folder(const std::string& name) const;
