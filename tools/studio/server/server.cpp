@@ -42,7 +42,7 @@ RequestHead head_of(const Request& request) {
 Response answer(const Request& request, int status, std::string body, std::string_view type) {
   Response response{http::status(status), request.version()};
   response.set(http::field::content_type, std::string(type));
-  response.set(http::field::content_security_policy, std::string(policy));
+  response.set("Content-Security-Policy", std::string(policy));
   response.set("Cross-Origin-Resource-Policy", "same-origin");
   response.set("Cross-Origin-Opener-Policy", "same-origin");
   response.set("X-Content-Type-Options", "nosniff");

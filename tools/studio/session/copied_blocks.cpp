@@ -58,7 +58,7 @@ class Rewiring {
   void rename(const Value& wire, TextChanges& changes) const {
     const auto name = names_.find(first_of(wire.text));
     if (wire.kind != Kind::text || name == names_.end() || wire.text.find('.') == std::string::npos) return;
-    changes.push_back(replaced(wire, quoted(name->second + wire.text.substr(wire.text.find('.')))));
+    changes.push_back(replaced(wire, in_quotes(name->second + wire.text.substr(wire.text.find('.')))));
   }
 
   const Level& level_;
@@ -70,8 +70,8 @@ class Rewiring {
 std::string copied_blocks(const Level& level, const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names)
-    text += fmt::format("{}\n  {}: {}", text.empty() ? "" : ",", quoted(name), source_of(required_block(level, name).value));
-  return fmt::format("{{{}: {{{}\n}}}}", quoted(key), text);
+    text += fmt::format("{}\n  {}: {}", text.empty() ? "" : ",", in_quotes(name), source_of(required_block(level, name).value));
+  return fmt::format("{{{}: {{{}\n}}}}", in_quotes(key), text);
 }
 
 std::vector<CopiedBlock> renamed_copies(const std::string& text, const Level& level) {

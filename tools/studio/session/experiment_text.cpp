@@ -13,19 +13,19 @@ using Kind = Value::Kind;
 /// Lines of an object, values in one column.
 std::string lines_of(const std::vector<std::pair<std::string, std::string>>& entries) {
   size_t width = 0;
-  for (const auto& [name, value] : entries) width = std::max(width, quoted(name).size());
+  for (const auto& [name, value] : entries) width = std::max(width, in_quotes(name).size());
   std::string text;
   for (const auto& [name, value] : entries)
-    text += fmt::format("{}\n    {}:{} {}", text.empty() ? "" : ",", quoted(name),
-                        std::string(width - quoted(name).size(), ' '), value);
+    text += fmt::format("{}\n    {}:{} {}", text.empty() ? "" : ",", in_quotes(name),
+                        std::string(width - in_quotes(name).size(), ' '), value);
   return "{" + text + "\n  }";
 }
 
 std::string signal_text(const Value& column, bool drives) {
-  std::string text = fmt::format("{{\"column\": {}", quoted(required_text(column, "column")));
+  std::string text = fmt::format("{{\"column\": {}", in_quotes(required_text(column, "column")));
   const auto add = [&](const char* key) {
     if (const std::string_view value = text_in(column, key); !value.empty())
-      text += fmt::format(", \"{}\": {}", key, quoted(value));
+      text += fmt::format(", \"{}\": {}", key, in_quotes(value));
   };
   add("unit");
   add(drives ? "interpolation" : "resolution");
@@ -33,7 +33,7 @@ std::string signal_text(const Value& column, bool drives) {
 }
 
 TextChange renamed_name(const Value::Member& member, const std::string& to) {
-  return {member.place.offset, member.place.offset + quoted(member.name).size(), quoted(to)};
+  return {member.place.offset, member.place.offset + in_quotes(member.name).size(), in_quotes(to)};
 }
 
 }  // namespace
@@ -51,13 +51,13 @@ std::string experiment_text(const Value& request, const std::string& data) {
   }
   if (const Value::Member* list = request.find("roles"))
     for (const Value::Member& role : list->value.members)
-      if (role.value.kind == Kind::text && !role.value.text.empty()) roles.emplace_back(role.name, quoted(role.value.text));
+      if (role.value.kind == Kind::text && !role.value.text.empty()) roles.emplace_back(role.name, in_quotes(role.value.text));
   std::string text = "{\n  \"loopwright\": 1,\n";
   if (const std::string_view title = text_in(request, "title"); !title.empty())
-    text += fmt::format("  \"title\": {},\n", quoted(title));
-  text += fmt::format("  \"data\": {},\n", quoted(data));
+    text += fmt::format("  \"title\": {},\n", in_quotes(title));
+  text += fmt::format("  \"data\": {},\n", in_quotes(data));
   if (const std::string_view time = text_in(request, "time"); !time.empty())
-    text += fmt::format("  \"time\": {},\n", quoted(time));
+    text += fmt::format("  \"time\": {},\n", in_quotes(time));
   if (!drives.empty()) text += fmt::format("  \"drive\": {},\n", lines_of(drives));
   text += fmt::format("  \"compare\": {}", lines_of(compared));
   if (!roles.empty()) text += fmt::format(",\n  \"roles\": {}", lines_of(roles));
@@ -84,7 +84,7 @@ std::string with_ports_renamed(const std::string& path, const std::string& text,
   if (const Value::Member* roles = parsed.root.find("roles"))
     for (const Value::Member& role : roles->value.members)
       if (const std::string to = new_name(role.value.text); to != role.value.text)
-        changes.push_back(replaced(role.value, quoted(to)));
+        changes.push_back(replaced(role.value, in_quotes(to)));
   std::ranges::sort(changes, {}, &TextChange::from);
   return applied(text, changes);
 }

@@ -60,7 +60,7 @@ std::string value_that_fits(const ParameterInfo& parameter, const Value* example
     case ParameterKind::flag:
       return "false";
     case ParameterKind::choice:
-      return quoted(parameter.choices.empty() ? "" : parameter.choices.front());
+      return in_quotes(parameter.choices.empty() ? "" : parameter.choices.front());
     case ParameterKind::list:
       return "[1]";
     case ParameterKind::object:
@@ -82,7 +82,7 @@ std::string usual_sample_time(const Level& level) {
 std::string new_block(const BlockType& type, const Value& intent, const Level& level) {
   const BlockInfo& info = type.info;
   const Value::Member* given = intent.find("settings");
-  std::string text = fmt::format("{{\"type\": {}", quoted(info.type));
+  std::string text = fmt::format("{{\"type\": {}", in_quotes(info.type));
   const auto typed = [&](std::string_view name, const ParameterInfo* parameter) -> std::string {
     const Value::Member* member = given && given->value.kind == Kind::object ? given->value.find(name) : nullptr;
     if (!member) return "";
@@ -96,7 +96,7 @@ std::string new_block(const BlockType& type, const Value& intent, const Level& l
   for (const ParameterInfo& parameter : info.parameters) {
     std::string value = typed(parameter.name, &parameter);
     if (value.empty() && !parameter.has_default) value = value_that_fits(parameter, shown);
-    if (!value.empty()) text += fmt::format(", {}: {}", quoted(parameter.name), value);
+    if (!value.empty()) text += fmt::format(", {}: {}", in_quotes(parameter.name), value);
   }
   if (const Value::Member* in = intent.find("in"); in && in->value.kind == Kind::object && in->value.members.size())
     text += ", \"in\": " + to_json(in->value);
@@ -111,7 +111,7 @@ void place(const Value& value, const std::string& path, IntentEffects& effects) 
 /// The change that adds a block to a level, which may have none yet.
 TextChange with_block(const Level& level, const std::string& name, const std::string& block) {
   const Value::Member* blocks = level.diagram->find("blocks");
-  if (!blocks) return with_top_member(*level.diagram, "blocks", fmt::format("{{{}: {}}}", quoted(name), block));
+  if (!blocks) return with_top_member(*level.diagram, "blocks", fmt::format("{{{}: {}}}", in_quotes(name), block));
   return with_member(blocks->value, name, block, "    ");
 }
 
@@ -145,7 +145,7 @@ void add_subdiagram(const Value& intent, const IntentContext& context, Draft& dr
   const std::string path = joined(level.inside, name);
   effects.blocks.push_back(path), effects.what = fmt::format("add {}", path);
   if (const Value::Member* position = intent.find("position")) place(position->value, path, effects);
-  draft.change({with_block(level, name, fmt::format("{{\"diagram\": {}}}", quoted(file)))});
+  draft.change({with_block(level, name, fmt::format("{{\"diagram\": {}}}", in_quotes(file)))});
 }
 
 /// Whether a source reads one of the blocks.
@@ -167,7 +167,7 @@ TextChanges without_wires(const Value& body, const Value::Member& port, const st
     std::string rest;
     for (size_t i = 0; i < out.size(); ++i)
       if (!out[i]) rest += signs->value.text[i];
-    changes.push_back(replaced(signs->value, quoted(rest)));
+    changes.push_back(replaced(signs->value, in_quotes(rest)));
   }
   return changes;
 }

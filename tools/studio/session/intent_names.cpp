@@ -15,7 +15,7 @@ TextChange renamed_member(const Value::Member& member, const std::string& to) {
   const std::string& text = member.place.file->text;
   size_t end = member.place.offset + 1;
   while (end < text.size() && text[end] != '"') end += text[end] == '\\' ? 2 : 1;
-  return {member.place.offset, end + 1, quoted(to)};
+  return {member.place.offset, end + 1, in_quotes(to)};
 }
 
 /// Every source in a diagram: wires into blocks, of outputs, and recorded signals.
@@ -48,7 +48,7 @@ TextChanges renamed_sources(const Value& diagram, const std::string& path, const
   TextChanges changes;
   each_source(diagram, [&](const Value& source) {
     if (source.text.starts_with(path + "."))
-      changes.push_back(replaced(source, quoted(new_path + source.text.substr(path.size()))));
+      changes.push_back(replaced(source, in_quotes(new_path + source.text.substr(path.size()))));
   });
   return changes;
 }
@@ -120,7 +120,7 @@ class ParameterUses {
       changed.replace(skip + uses[i].offset, name_.size(), to_);
       is_used = true;
     }
-    if (is_used) changes_.push_back(replaced(text, quoted(changed)));
+    if (is_used) changes_.push_back(replaced(text, in_quotes(changed)));
   }
 
   const std::string name_, to_;

@@ -28,28 +28,28 @@ void add(const Level& level, const Value& intent, const std::string& name, Draft
   if (!description.empty()) {
     const bool has_unit = json.starts_with("{\"value\": ");
     if (has_unit) json.pop_back();
-    json = fmt::format("{}, \"description\": {}}}", has_unit ? json : "{\"value\": " + json, quoted(description));
+    json = fmt::format("{}, \"description\": {}}}", has_unit ? json : "{\"value\": " + json, in_quotes(description));
   }
   if (parameters)
     draft.change({with_member(parameters->value, name, json, "    ")});
   else
-    draft.change({with_top_member(*level.diagram, "parameters", fmt::format("{{{}: {}}}", quoted(name), json))});
+    draft.change({with_top_member(*level.diagram, "parameters", fmt::format("{{{}: {}}}", in_quotes(name), json))});
 }
 
 void describe(const Level& level, const std::string& name, const std::string& text, Draft& draft) {
   const Value& value = required_parameter(level, name).value;
   if (value.kind != Kind::object || !value.find("value")) {
     if (!text.empty())
-      draft.change({replaced(value, fmt::format("{{\"value\": {}, \"description\": {}}}", source_of(value), quoted(text)))});
+      draft.change({replaced(value, fmt::format("{{\"value\": {}, \"description\": {}}}", source_of(value), in_quotes(text)))});
     return;
   }
   const auto member = std::ranges::find(value.members, "description", &Value::Member::name);
   if (member == value.members.end()) {
-    if (!text.empty()) draft.change({with_member(value, "description", quoted(text))});
+    if (!text.empty()) draft.change({with_member(value, "description", in_quotes(text))});
   } else if (text.empty()) {
     draft.change({without_member(value, size_t(member - value.members.begin()))});
   } else {
-    draft.change({replaced(member->value, quoted(text))});
+    draft.change({replaced(member->value, in_quotes(text))});
   }
 }
 

@@ -95,7 +95,7 @@ void set(const Value& intent, const IntentContext& context, Draft& draft, Intent
       draft.change(written(find_setting(parameters->value, steps), typed, nullptr));
     } else if (!typed.empty()) {
       if (!is_name(setting)) throw Refused(fmt::format("there is no parameter \"{}\"", setting));
-      const std::string json = fmt::format("{{{}: {}}}", quoted(setting), json_of_typed(typed, nullptr));
+      const std::string json = fmt::format("{{{}: {}}}", in_quotes(setting), json_of_typed(typed, nullptr));
       draft.change({with_member(body, "parameters", json)});
     }
     return;
@@ -115,11 +115,11 @@ void choose_variant(const Value& intent, const IntentContext& context, Draft& dr
   effects.blocks.push_back(joined(level.inside, name));
   effects.what = fmt::format("variant {} of {}", variant, name);
   if (const Value::Member* chosen = block.find("variant"))
-    draft.change({replaced(chosen->value, quoted(variant))});
+    draft.change({replaced(chosen->value, in_quotes(variant))});
   else if (variants + 1 != block.members.end())
-    draft.change({with_member_before(block, size_t(variants + 1 - block.members.begin()), "variant", quoted(variant))});
+    draft.change({with_member_before(block, size_t(variants + 1 - block.members.begin()), "variant", in_quotes(variant))});
   else
-    draft.change({with_member(block, "variant", quoted(variant))});
+    draft.change({with_member(block, "variant", in_quotes(variant))});
 }
 
 void set_solver(const Value& intent, const IntentContext& context, Draft& draft, IntentEffects& effects) {
@@ -134,7 +134,7 @@ void set_solver(const Value& intent, const IntentContext& context, Draft& draft,
     draft.change(written(find_setting(solver->value, path), typed, is_text ? &text : nullptr));
   else if (!typed.empty())
     draft.change({with_top_member(*level.diagram, "solver",
-                                  fmt::format("{{{}: {}}}", quoted(name), json_of_typed(typed, is_text ? &text : nullptr)))});
+                                  fmt::format("{{{}: {}}}", in_quotes(name), json_of_typed(typed, is_text ? &text : nullptr)))});
 }
 
 void set_top_text(const std::string& name, const Value& intent, const IntentContext& context, Draft& draft) {
@@ -142,11 +142,11 @@ void set_top_text(const std::string& name, const Value& intent, const IntentCont
   const std::string text = required_text(intent, "text");
   const auto member = std::ranges::find(level.diagram->members, name, &Value::Member::name);
   if (member == level.diagram->members.end()) {
-    if (!text.empty()) draft.change({with_top_member(*level.diagram, name, quoted(text))});
+    if (!text.empty()) draft.change({with_top_member(*level.diagram, name, in_quotes(text))});
   } else if (text.empty()) {
     draft.change({without_member(*level.diagram, size_t(member - level.diagram->members.begin()))});
   } else {
-    draft.change({replaced(member->value, quoted(text))});
+    draft.change({replaced(member->value, in_quotes(text))});
   }
 }
 

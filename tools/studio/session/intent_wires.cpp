@@ -61,24 +61,24 @@ void connect_output(const Level& level, const std::string& from, const std::stri
   if (!output) throw Refused(fmt::format("the diagram has no output \"{}\"", to));
   const Value::Member* source = output->value.kind == Kind::object ? output->value.find("source") : nullptr;
   if (source)
-    draft.change({replaced(source->value, quoted(from))});
+    draft.change({replaced(source->value, in_quotes(from))});
   else if (output->value.kind == Kind::object)
-    draft.change({with_member(output->value, "source", quoted(from))});
+    draft.change({with_member(output->value, "source", in_quotes(from))});
   else
-    draft.change({replaced(output->value, quoted(from))});
+    draft.change({replaced(output->value, in_quotes(from))});
 }
 
 TextChanges added_to(const Target& target, const Value& wires, const std::string& from) {
   TextChanges changes;
   if (wires.kind == Kind::list)
-    changes.push_back(with_item(wires, quoted(from)));
+    changes.push_back(with_item(wires, in_quotes(from)));
   else
-    changes.push_back(replaced(wires, fmt::format("[{}, {}]", source_of(wires), quoted(from))));
+    changes.push_back(replaced(wires, fmt::format("[{}, {}]", source_of(wires), in_quotes(from))));
   char added = '+';
   if (const Value::Member* signs = signs_of(*target.body, target.port, added)) {
     const size_t wires_now = wires.kind == Kind::list ? wires.items.size() : 1;
     if (signs->value.text.size() == wires_now)  // otherwise the author is in the middle of a change
-      changes.push_back(replaced(signs->value, quoted(signs->value.text + added)));
+      changes.push_back(replaced(signs->value, in_quotes(signs->value.text + added)));
   }
   return changes;
 }
@@ -93,24 +93,24 @@ void connect(const Value& intent, const IntentContext& context, Draft& draft, In
   effects.blocks.push_back(target.path);
   const Value::Member* in = target.block->value.find("in");
   if (!in) {
-    draft.change({with_member(target.block->value, "in", fmt::format("{{{}: {}}}", quoted(target.port), quoted(from)))});
+    draft.change({with_member(target.block->value, "in", fmt::format("{{{}: {}}}", in_quotes(target.port), in_quotes(from)))});
     return;
   }
   if (in->value.kind != Kind::object) throw Refused("\"in\" is no object");
   const Value::Member* port = in->value.find(target.port);
   if (!port) {
     const bool is_list = takes_many(*target.body, target.port);
-    draft.change({with_member(in->value, target.port, is_list ? fmt::format("[{}]", quoted(from)) : quoted(from))});
+    draft.change({with_member(in->value, target.port, is_list ? fmt::format("[{}]", in_quotes(from)) : in_quotes(from))});
     return;
   }
   const Value& wires = port->value;
   const int64_t index = optional_whole(intent, "index", -1);
   if (wires.kind == Kind::list && index >= 0 && index < int64_t(wires.items.size()))
-    draft.change({replaced(wires.items[size_t(index)], quoted(from))});
+    draft.change({replaced(wires.items[size_t(index)], in_quotes(from))});
   else if (takes_many(*target.body, target.port) && (wires.kind == Kind::list || index != 0))
     draft.change(added_to(target, wires, from));
   else
-    draft.change({replaced(wires, quoted(from))});
+    draft.change({replaced(wires, in_quotes(from))});
 }
 
 void disconnect(const Value& intent, const IntentContext& context, Draft& draft, IntentEffects& effects) {
@@ -130,7 +130,7 @@ void disconnect(const Value& intent, const IntentContext& context, Draft& draft,
     if (const Value::Member* signs = signs_of(*target.body, target.port, added);
         signs && signs->value.text.size() == port->value.items.size()) {
       std::string rest = signs->value.text;
-      changes.push_back(replaced(signs->value, quoted(rest.erase(index, 1))));
+      changes.push_back(replaced(signs->value, in_quotes(rest.erase(index, 1))));
     }
     draft.change(std::move(changes));
     return;
@@ -152,7 +152,7 @@ void log(const Value& intent, const IntentContext& context, Draft& draft, Intent
   if (log && log->value.kind == Kind::list) {
     const auto found = std::ranges::find(log->value.items, port, &Value::text);
     const bool is_there = found != log->value.items.end();
-    if (is_wanted && !is_there) draft.change({with_item(log->value, quoted(port))});
+    if (is_wanted && !is_there) draft.change({with_item(log->value, in_quotes(port))});
     if (!is_wanted && is_there) draft.change({without_item(log->value, size_t(found - log->value.items.begin()))});
     return;
   }
@@ -164,7 +164,7 @@ void log(const Value& intent, const IntentContext& context, Draft& draft, Intent
   else
     std::erase(names, port);
   std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + quoted(name);
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + in_quotes(name);
   draft.change({with_top_member(*level.diagram, "log", "[" + list + "]")});
 }
 

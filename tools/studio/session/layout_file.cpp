@@ -27,7 +27,7 @@ std::optional<std::string> layout_text(const Layout& layout) {
   constexpr double farthest = 1e6;  // pixels; a canvas is smaller
   std::string lines;
   for (const auto& [block, position] : layout)
-    lines += fmt::format("{}\n    {}: [{:.0f}, {:.0f}]", lines.empty() ? "" : ",", quoted(block),
+    lines += fmt::format("{}\n    {}: [{:.0f}, {:.0f}]", lines.empty() ? "" : ",", in_quotes(block),
                          std::clamp(position.first, -farthest, farthest),
                          std::clamp(position.second, -farthest, farthest));
   return fmt::format("{{\n  \"positions\": {{{}\n  }}\n}}\n", lines);

@@ -36,7 +36,7 @@ size_t width_of_names(const Value& object) {
 }
 
 std::string member_text(const Value& object, const std::string& name, const std::string& value) {
-  std::string member = fmt::format("{}:", quoted(name));
+  std::string member = fmt::format("{}:", in_quotes(name));
   const size_t width = width_of_names(object);
   return member + std::string(member.size() < width ? width - member.size() : 1, ' ') + value;
 }
@@ -96,7 +96,7 @@ TextChange with_item(const Value& list, const std::string& item) { return with_e
 TextChange without_member(const Value& object, size_t index) { return without_entry(object, index); }
 TextChange without_item(const Value& list, size_t index) { return without_entry(list, index); }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   Value value;
   value.kind = Value::Kind::text;
   value.text = text;

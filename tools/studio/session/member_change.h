@@ -27,6 +27,6 @@ TextChange without_member(const Value& object, size_t index);
 TextChange without_item(const Value& list, size_t index);
 
 /// A text in quotes.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 }  // namespace loopwright::studio

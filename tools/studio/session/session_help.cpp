@@ -113,7 +113,7 @@ std::string explained(const At& at, const BlockType* type, size_t depth, const V
 }
 
 void option(Json& list, const std::string& label, std::string_view detail) {
-  list.push_back({{"label", label}, {"detail", detail}, {"apply", quoted(label)}});
+  list.push_back({{"label", label}, {"detail", detail}, {"apply", in_quotes(label)}});
 }
 
 /// Every output that a block of the level may read.

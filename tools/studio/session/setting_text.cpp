@@ -43,15 +43,15 @@ struct Typed {
 Typed read_typed(const std::string& typed, const ParameterInfo* info) {
   const std::string text = trimmed(typed);
   if (text.empty()) throw Refused("a value is missing");
-  if (text.starts_with('=')) return {quoted(text), "", "", true};
+  if (text.starts_with('=')) return {in_quotes(text), "", "", true};
   if (is_text_kind(info)) {
     const auto json = text.starts_with('"') ? json_value(text) : std::nullopt;
-    return {json ? text : quoted(text), "", "", false};
+    return {json ? text : in_quotes(text), "", "", false};
   }
   if (const auto json = json_value(text)) return {text, "", "", json->kind == Kind::number};
   if (const auto number = number_and_unit(text)) {
     const std::string digits = fmt::format("{}", number->number);
-    return {fmt::format("{{\"value\": {}, \"unit\": {}}}", digits, quoted(number->unit_text)), digits,
+    return {fmt::format("{{\"value\": {}, \"unit\": {}}}", digits, in_quotes(number->unit_text)), digits,
             number->unit_text, false};
   }
   if (is_number_kind(info))
@@ -59,7 +59,7 @@ Typed read_typed(const std::string& typed, const ParameterInfo* info) {
                               "expression (=2*pi*f)",
                               text));
   if (text.find_first_of("{}[]\"") != text.npos) throw Refused(fmt::format("{} is not JSON", text));
-  return {quoted(text), "", "", false};
+  return {in_quotes(text), "", "", false};
 }
 
 }  // namespace
@@ -94,9 +94,9 @@ TextChanges retyped(const Value& old, const std::string& typed, const ParameterI
   TextChanges changes{replaced(number->value, read.number)};
   if (!unit) {
     const size_t at = end_of(number->value);
-    changes.push_back({at, at, fmt::format(", \"unit\": {}", quoted(read.unit))});
+    changes.push_back({at, at, fmt::format(", \"unit\": {}", in_quotes(read.unit))});
   } else if (unit->value.text != read.unit) {
-    changes.push_back(replaced(unit->value, quoted(read.unit)));
+    changes.push_back(replaced(unit->value, in_quotes(read.unit)));
   }
   return changes;
 }

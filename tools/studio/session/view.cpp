@@ -63,8 +63,6 @@ Shown find_shown(const CheckedText& text, const std::string& inside, const Varia
   return shown;
 }
 
-std::string unit_text(const std::optional<Unit>& unit) { return unit ? to_string(*unit) : ""; }
-
 class View {
  public:
   View(const CheckedText& text, Shown shown, const Variants& variants, const Layout& layout)
@@ -194,6 +192,7 @@ class View {
     const auto rate = rates_.find(path);
     json["rate"] = rate == rates_.end() ? 0 : rate->second.first;
     json["sample_time"] = rate == rates_.end() ? 0.0 : rate->second.second;
+    json["position"] = nullptr;
     if (const auto position = layout_.find(path); position != layout_.end())
       json["position"] = {position->second.first, position->second.second};
     json["problems"] = problems_of(member, path);
