@@ -24,7 +24,7 @@ export async function open(path: string, inside = ""): Promise<void> {
   const document = await attempt(ask<Document>("open", { path, inside, variants: before.variants }));
   if (!document) return;
   const same = before.document?.path === path;
-  patch(same ? {} : {
+  patch(same || !before.document ? {} : {
     run: null, ghost: null, pinned: [], runs: [], plots: [], plots_chosen: false, range: null, cursors: null, overrides: {}, linear: null,
     sweep: null, columns: null, experiment: "", comparison: null, comparison_before: null, diagnosis: null, staircase: [],
     preview: null, added: [], scope_tab: "run",
