@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <map>
 #include <set>
 #include "engine/json/reader.h"
 
@@ -64,6 +65,8 @@ double score(const ColumnGuess& column, const PortOfDiagram& port, const std::ve
       points += 4;
     else if (std::ranges::find(all, word) != all.end())
       points += 1;
+    else if (meanings_of({word}) == std::array<bool, 5>{})
+      points -= 0.5;  // it says something else, too: true_model_position
   }
   for (size_t i = 0; i < quantities; ++i)
     if (own_meanings[i] && port_meanings[i]) points += 2;
@@ -74,8 +77,10 @@ double score(const ColumnGuess& column, const PortOfDiagram& port, const std::ve
   if (is_reference && port_is_reference) points += 2;
   if (points < 2) return 0;
   if (!column.unit.empty() && port.unit) points += 1;
-  const bool has_role = std::ranges::any_of(roles, [&](const RoleGuess& role) { return role.port == port.path; });
-  return points + (has_role ? 0.5 : 0) - 0.2 * double(depth_of(port.path));
+  // No sensor shows the sum of forces.
+  for (const RoleGuess& role : roles)
+    if (role.port == port.path) points += role.role == "force" ? -2 : 0.5;
+  return points < 2 ? 0 : points - 0.2 * double(depth_of(port.path));
 }
 
 /// "force_N" → force and N. A last word that is no unit stays.
@@ -213,6 +218,24 @@ std::vector<RoleGuess> guess_roles(const Plan& plan, const std::vector<PortOfDia
   return roles;
 }
 
+namespace {
+
+/// The ports that go with a column, best first; the points of the best.
+double add_candidates(ColumnGuess& guess, bool drives, const std::vector<PortOfDiagram>& ports,
+                      const std::vector<RoleGuess>& roles) {
+  std::vector<std::pair<double, const PortOfDiagram*>> scored;
+  for (const PortOfDiagram& port : ports)
+    if (const double points = score(guess, port, roles); points > 0 && port.is_input == drives)
+      scored.emplace_back(points, &port);
+  std::ranges::stable_sort(scored, std::ranges::greater{}, [](const auto& s) { return s.first; });
+  constexpr size_t most_candidates = 12;
+  for (size_t i = 0; i < std::min(scored.size(), most_candidates); ++i)
+    guess.candidates.push_back(scored[i].second->path);
+  return scored.empty() ? 0 : scored.front().first;
+}
+
+}  // namespace
+
 std::vector<ColumnGuess> guess_columns(const Recording& record, const std::vector<PortOfDiagram>& ports,
                                        const std::vector<RoleGuess>& roles) {
   using Use = ColumnGuess::Use;
@@ -235,29 +258,30 @@ std::vector<ColumnGuess> guess_columns(const Recording& record, const std::vecto
   }
   if (!has_time && record.is_ordered && !guesses.empty())
     guesses.front().use = Use::time, guesses.front().why = "the first column";
-  std::set<std::string> taken;
-  for (size_t c = 0; c < guesses.size(); ++c) {
-    ColumnGuess& guess = guesses[c];
-    if (guess.use == Use::time) continue;
+  // The whole loop runs along its reference; without one, the machine runs along its force.
+  const auto drives = [&](const ColumnGuess& guess) {
     const auto own = meanings_of(words_of(guess.name));
-    // The whole loop runs along its reference; without one, the machine runs along its force.
-    const bool drives = own[reference] || (!has_reference && own[force]);
-    std::vector<std::pair<double, const PortOfDiagram*>> scored;
-    for (const PortOfDiagram& port : ports)
-      if (const double points = score(guess, port, roles); points >= 2)
-        scored.emplace_back(points + (port.is_input == drives ? 0.4 : 0), &port);
-    std::ranges::stable_sort(scored, std::ranges::greater{}, [](const auto& s) { return s.first; });
-    constexpr size_t most_candidates = 12;
-    for (const auto& [points, port] : scored) {
-      if (guess.candidates.size() == most_candidates) break;
-      if (port->is_input == drives) guess.candidates.push_back(port->path);
+    return own[reference] || (!has_reference && own[force]);
+  };
+  std::vector<std::pair<double, size_t>> best;  // of each column with a port
+  for (size_t c = 0; c < guesses.size(); ++c) {
+    if (guesses[c].use == Use::time) continue;
+    const double points = add_candidates(guesses[c], drives(guesses[c]), ports, roles);
+    if (points > 0) best.emplace_back(points, c);
+  }
+  std::ranges::stable_sort(best, std::ranges::greater{}, [](const auto& entry) { return entry.first; });
+  std::map<std::string, std::string> taken;
+  for (const auto& [points, c] : best) {
+    ColumnGuess& guess = guesses[c];
+    const std::string& port = guess.candidates.front();
+    if (const auto [other, is_free] = taken.emplace(port, guess.column); !is_free) {
+      guess.why = fmt::format("{} fits {} better", other->second, port);
+      continue;
     }
-    const auto free = std::ranges::find_if(guess.candidates, [&](const std::string& port) { return !taken.contains(port); });
-    if (free == guess.candidates.end()) continue;
-    guess.use = drives ? Use::drive : Use::compare, guess.port = *free;
+    guess.use = drives(guess) ? Use::drive : Use::compare, guess.port = port;
     guess.why = guess.unit.empty() ? "name" : "name and unit";
-    taken.insert(guess.port);
-    if (const double step = resolution_of(record.columns[c].values); !drives && step > 0 && own[0])
+    const double step = resolution_of(record.columns[c].values);
+    if (guess.use == Use::compare && step > 0 && meanings_of(words_of(guess.name))[0])
       guess.resolution = guess.unit.empty() ? fmt::format("{:.3g}", step) : fmt::format("{:.3g} {}", step, guess.unit);
   }
   return guesses;

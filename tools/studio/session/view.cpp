@@ -223,11 +223,6 @@ class View {
     const Value::Member* unit = value.kind == Kind::object ? value.find("unit") : nullptr;
     return unit && unit->value.kind == Kind::text ? unit->value.text : "";
   }
-  static bool is_literal(const Value& value) {
-    const Value::Member* inner = value.kind == Kind::object ? value.find("value") : nullptr;
-    return (inner ? inner->value.kind : value.kind) == Kind::number;
-  }
-
   Json setting(const std::string& name, const Value* written, const Value* evaluated, const ParameterInfo* info,
                const std::string& set) const {
     const std::string unit = info && info->unit.find('$') == std::string_view::npos ? std::string(info->unit) : "";
@@ -235,10 +230,12 @@ class View {
               {"text", written ? typed_text(*written) : ""},
               {"value", evaluated ? shown_value(*evaluated, unit) : ""},
               {"slider", nullptr}};
-    if (!written || !evaluated || evaluated->kind != Kind::number || !is_literal(*written)) return json;
-    const std::string own = unit_written(*written);
-    if (info && info->kind == ParameterKind::whole) return json;
-    json["slider"] = slider_json(slider_around(evaluated->number, own, info), set);
+    if (!evaluated || evaluated->kind != Kind::number || (info && info->kind == ParameterKind::whole)) return json;
+    // A number that an expression computes has no unit of its own: its slider is in SI.
+    const std::string own = written ? unit_written(*written) : "";
+    const std::string si = evaluated->unit ? to_string(*evaluated->unit) : unit;
+    const bool is_bare = written && written->kind == Kind::number;
+    json["slider"] = slider_json(slider_around(evaluated->number, is_bare ? "" : own.empty() ? si : own, info), set);
     return json;
   }
 

@@ -46,12 +46,13 @@ class Page {
   void hear(std::string text) {
     const Json message = Json::parse(text);
     const std::lock_guard lock(mutex_);
-    if (message.contains("event"))
+    if (message.contains("event")) {
       events_.push_back(message);
-    else if (message.contains("partial"))
+    } else if (message.contains("partial")) {
       partials_.push_back(message["partial"]);
-    else if (!message.contains("progress"))
+    } else if (!message.contains("progress")) {
       EXPECT_TRUE(answers_.emplace(message["id"].get<int64_t>(), message).second) << "answered twice";
+    }
     heard_.notify_all();
   }
 

@@ -58,7 +58,7 @@ export async function confirm_columns(replace: boolean): Promise<void> {
     path: document.path, experiment: columns.experiment, title: "", data: columns.data,
     time: columns.columns.find((column) => column.use === "time")?.column ?? columns.time,
     columns: columns.columns.filter((column) => column.use === "drive" || column.use === "compare")
-      .map(({ column, use, port, resolution, interpolation }) => ({ column, use, port, unit: "", resolution, interpolation })),
+      .map(({ column, use, port, unit, resolution, interpolation }) => ({ column, use, port, unit, resolution, interpolation })),
     roles: Object.fromEntries(columns.roles.filter((role) => role.port).map((role) => [role.role, role.port])),
     hold_out: columns.hold_out, replace,
   }));
