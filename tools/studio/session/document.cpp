@@ -192,7 +192,7 @@ Edited Document::edit(const std::vector<Value>& intents, const IntentContext& co
     OtherFile layout = with_positions(effects);
     if (layout.before != layout.after) others.push_back(std::move(layout));
   }
-  if (draft.changes().empty() && others.empty()) return {{}, text_, effects.blocks, {}};
+  if (draft.text() == text_ && others.empty()) return {{}, text_, effects.blocks, {}};
   Edited edited = step(effects.what, draft.changes(), std::move(others), undo_);
   redo_.clear();
   edited.blocks = effects.blocks;
