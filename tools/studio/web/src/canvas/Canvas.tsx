@@ -11,6 +11,7 @@ import { edit, enter } from "../state/document";
 import { toggle_signal } from "../state/run";
 import { get, patch, useStudio } from "../state/store";
 import { signal_colours, signal_name } from "../state/signals";
+import { DRAGGED_TYPE } from "./Palette";
 import { BlockNode, type BlockFlowNode } from "./BlockNode";
 import { graph_of, layout_key, layout_request, type Graph, type GraphEdge } from "./graph";
 import { WireEdge, type WireFlowEdge } from "./WireEdge";
@@ -174,6 +175,14 @@ function Diagram() {
       onNodesChange={on_nodes} onConnect={connect} onConnectEnd={connect_end}
       onEdgeClick={(_event, edge) => show_wire(edge.data!.edge)}
       onNodeDoubleClick={(_event, node) => { if (node.data.node.block?.subdiagram) enter(node.data.node.name); }}
+      onDragOver={(event) => { if (editable && event.dataTransfer.types.includes(DRAGGED_TYPE)) event.preventDefault(); }}
+      onDrop={(event) => {
+        const type = event.dataTransfer.getData(DRAGGED_TYPE);
+        if (!type || !editable) return;
+        event.preventDefault();
+        const { x, y } = flow.screenToFlowPosition({ x: event.clientX, y: event.clientY });
+        void edit({ intent: "add_block", type, position: [Math.round(x), Math.round(y)] }).then((answer) => { if (answer) patch({ selected: answer.blocks.slice(0, 1), panel: "inspect" }); });
+      }}
       onPaneClick={() => patch({ selected: [], selected_wire: "" })}
       onNodeDragStart={() => { dragged.current = true; }}
       onNodeDragStop={(_event, _node, moved) => {

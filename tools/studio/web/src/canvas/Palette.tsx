@@ -6,6 +6,9 @@ import { get, patch, useStudio } from "../state/store";
 import type { BlockType, EditAnswer, Intent } from "../protocol/types";
 import { spaced } from "./symbols";
 
+/** What a block type that is dragged onto the canvas is called there. */
+export const DRAGGED_TYPE = "text/x-loopwright-type";
+
 interface Fit { fits: string; from_source: boolean; at: { x: number; y: number } }
 const PAUSE = 80;  // ms after the last key
 
@@ -63,7 +66,7 @@ export function Palette() {
             <li key={entry.type} role="presentation">
               {heading && <h3>{heading}</h3>}
               <div id={`palette-${entry.type}`} role="option" aria-selected={i === active} className={`entry room-${entry.room}`} draggable data-type={entry.type}
-                onDragStart={(event) => event.dataTransfer.setData("text/x-loopwright-type", entry.type)} onClick={() => add_type(entry.type)} onMouseMove={() => setActive(i)}>
+                onDragStart={(event) => event.dataTransfer.setData(DRAGGED_TYPE, entry.type)} onClick={() => add_type(entry.type)} onMouseMove={() => setActive(i)}>
                 <b>{spaced(entry.type)}</b><span>{entry.why || entry.sentence}</span>
               </div>
             </li>

@@ -1,4 +1,4 @@
-// The scene of the studio with the real program in real chromium:  LOOPWRIGHT=… HIDDEN_EFFECTS=… node --test test/scene_test.mjs
+// The scene of the studio with the real program in real chromium:  LOOPWRIGHT=… HIDDEN_EFFECTS=… node --test scene_test.mjs
 // SCENE_PICTURES names a folder for pictures of it.
 import assert from "node:assert/strict";
 import { copyFileSync, existsSync, mkdirSync, readFileSync, unlinkSync, writeFileSync } from "node:fs";

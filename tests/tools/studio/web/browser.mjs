@@ -1,5 +1,7 @@
 // Debian's chromium, driven by playwright-core, with a profile of its own and without any background network.
-import { chromium } from "playwright-core";
+import { packages } from "./packages.mjs";
+
+const { chromium } = packages("playwright-core");
 
 const FLAGS = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"];
 

@@ -1,5 +1,5 @@
 // A page of another origin in the same browser tries to read and to change what the studio serves: everything fails.
-//   LOOPWRIGHT=… HIDDEN_EFFECTS=… node --test test/attack_test.mjs
+//   LOOPWRIGHT=… HIDDEN_EFFECTS=… node --test attack_test.mjs
 import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import { createServer } from "node:http";

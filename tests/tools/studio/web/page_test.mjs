@@ -1,5 +1,5 @@
-// The page against the stand-in for the program, in real chromium:  node --test test/page_test.mjs
-// The folder of the bundled page is that of LOOPWRIGHT_PAGE, or build/ beside this folder.
+// The page against the stand-in for the program, in real chromium:  node --test page_test.mjs
+// The folder of the bundled page is that of LOOPWRIGHT_PAGE, or tools/studio/web/build/.
 import assert from "node:assert/strict";
 import { after, afterEach, before, beforeEach, test } from "node:test";
 import { dirname, join } from "node:path";
@@ -8,7 +8,7 @@ import { contrast_faults, unnamed } from "./accessibility.mjs";
 import { launch, open_page } from "./browser.mjs";
 import { serve } from "./mock.mjs";
 
-const FOLDER = process.env.LOOPWRIGHT_PAGE ?? join(dirname(fileURLToPath(import.meta.url)), "../build");
+const FOLDER = process.env.LOOPWRIGHT_PAGE ?? join(dirname(fileURLToPath(import.meta.url)), "../../../../tools/studio/web/build");
 let browser, program, opened;
 before(async () => { browser = await launch(); });
 after(async () => { await browser.close(); });

@@ -1,10 +1,12 @@
-// A stand-in for the program, for work on the page alone:  node test/mock.mjs [FOLDER_OF_THE_PAGE] [PORT]
+// A stand-in for the program, for work on the page alone:  node mock.mjs [FOLDER_OF_THE_PAGE] [PORT]
 // It speaks tools/studio/protocol.md with a fixed diagram and invented numbers. No logic of the program is repeated here.
 import { createServer } from "node:http";
 import { readFileSync } from "node:fs";
 import { join, dirname } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
-import { WebSocketServer } from "ws";
+import { packages } from "./packages.mjs";
+
+const { WebSocketServer } = packages("ws");
 
 const POLICY = "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' data:; worker-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
 const TYPES = { html: "text/html", js: "text/javascript", css: "text/css", txt: "text/plain" };
@@ -206,7 +208,7 @@ export function serve(folder, port) {
 }
 
 if (import.meta.url === pathToFileURL(process.argv[1]).href) {
-  const folder = process.argv[2] ?? join(dirname(fileURLToPath(import.meta.url)), "../build");
+  const folder = process.argv[2] ?? join(dirname(fileURLToPath(import.meta.url)), "../../../../tools/studio/web/build");
   const { port } = await serve(folder, Number(process.argv[3] ?? 8095));
   console.log(`http://127.0.0.1:${port}/`);
 }
