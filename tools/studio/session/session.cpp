@@ -250,6 +250,15 @@ void Session::tell_others(const Document& document, int64_t except) {
 
 namespace {
 
+/// The blocks of a level that were changed, or that contain a change.
+std::set<std::string> names_in_level(const std::vector<std::string>& paths, const std::string& inside) {
+  std::set<std::string> names;
+  const std::string prefix = inside.empty() ? "" : inside + ".";
+  for (const std::string& path : paths)
+    if (path.starts_with(prefix)) names.insert(path.substr(prefix.size(), path.find('.', prefix.size()) - prefix.size()));
+  return names;
+}
+
 Json edits_json(const Edited& edited) {
   const Utf16 places(edited.before);
   Json list = Json::array();
@@ -274,7 +283,7 @@ Json Session::changed(const Request& request, const std::function<Edited(Documen
           others.push_back({{"path", other.path}, {"text", other.after.value_or("")}});
       Json answer{{"edits", edits_json(edited)},
                   {"document", document_json(changed, seen, false)},
-                  {"blocks", edited.blocks},
+                  {"blocks", names_in_level(edited.blocks, seen.inside)},
                   {"experiments", std::move(others)}};
       tell_others(changed, request.client);
       return answer;
