@@ -52,6 +52,10 @@ std::string experiment_text(const Value& request, const std::string& data) {
   if (const Value::Member* list = request.find("roles"))
     for (const Value::Member& role : list->value.members)
       if (role.value.kind == Kind::text && !role.value.text.empty()) roles.emplace_back(role.name, in_quotes(role.value.text));
+  // The position of the machine first: its error is what a person looks at.
+  const auto position = std::ranges::find(roles, "position", &std::pair<std::string, std::string>::first);
+  if (position != roles.end())
+    std::ranges::stable_partition(compared, [&](const auto& entry) { return in_quotes(entry.first) == position->second; });
   std::string text = "{\n  \"loopwright\": 1,\n";
   if (const std::string_view title = text_in(request, "title"); !title.empty())
     text += fmt::format("  \"title\": {},\n", in_quotes(title));
