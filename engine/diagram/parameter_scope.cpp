@@ -295,13 +295,18 @@ Value ParameterScope::evaluate_text(const Value& text, const std::string& block)
     problem.found = shown(entry->parameter.value);
     return nullptr;
   };
-  const auto quantity = loopwright::evaluate(expression, {text.place, block, lookup}, reader_.problems);
-  if (!quantity) return broken(text);
+  auto known = computed_.find(text.text);
+  if (known == computed_.end()) {
+    const auto found = loopwright::evaluate(expression, {text.place, block, lookup}, reader_.problems);
+    if (!found) return broken(text);
+    known = computed_.emplace(text.text, *found).first;
+  }
+  const Quantity& quantity = known->second;
   Value value = text;  // keeps its text: the expression
   value.kind = Value::Kind::number;
-  value.number = quantity->number;
-  value.unit = quantity->unit;
-  value.is_computed = quantity->unit.has_value();
+  value.number = quantity.number;
+  value.unit = quantity.unit;
+  value.is_computed = quantity.unit.has_value();
   return value;
 }
 

@@ -64,6 +64,9 @@ class ParameterScope {
   Reader reader_;
   std::vector<Entry> entries_;
   std::unordered_map<std::string, size_t> index_;
+  /// Results of expressions by their text: large diagrams repeat the same axis many times. A result does not
+  /// change, because an expression is evaluated after the parameters in it.
+  std::unordered_map<std::string, Quantity> computed_;
   std::vector<std::string> names_;
   KnownNames known_;
 };

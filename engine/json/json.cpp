@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include "engine/file/regular_file.h"
+#include "engine/json/nearest_file.h"
 #include "engine/json/tokens.h"
 
 namespace loopwright {
@@ -77,7 +78,8 @@ std::shared_ptr<const SourceFile> read_source(const std::string& path, const Pla
     // own name.
     const Place place =
         reference.file ? reference : Place{std::make_shared<SourceFile>(SourceFile{path, {}}), 0};
-    problems.error(place, {}, {}, fmt::format("the file \"{}\" cannot be read: {}", path, reason));
+    problems.error(place, {}, {}, fmt::format("the file \"{}\" cannot be read: {}", path, reason)).hint =
+        nearest_file_hint(path);
     return nullptr;
   };
   auto file = std::make_shared<SourceFile>(SourceFile{path, {}});

@@ -62,7 +62,7 @@ class PointerTable {
     constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
     size_t at = text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0;
     uint32_t name = nothing;
-    while ((at = text_.find_first_not_of(" \t\r\n,:", at)) != text_.npos) {
+    while ((at = first(at, [](char c) { return !is_between(c); })) < text_.size()) {
       const char c = text_[at];
       if (c == '}' || c == ']') {
         if (open_.empty()) return;
@@ -113,6 +113,14 @@ class PointerTable {
       open_.push_back(static_cast<uint32_t>(values_.size() - 1));
   }
 
+  /// What stands between values: find_first_of() would search this set for every character.
+  static bool is_between(char c) {
+    return c == ' ' || c == ',' || c == ':' || c == '\n' || c == '\r' || c == '\t';
+  }
+  template <class Wanted> size_t first(size_t at, Wanted wanted) const {
+    while (at < text_.size() && !wanted(text_[at])) ++at;
+    return at;
+  }
   size_t end_of(size_t at) const {
     switch (text_[at]) {
       case '{':
@@ -121,7 +129,7 @@ class PointerTable {
       case '"':
         return end_of_quoted(text_, at);
       default:
-        return std::min(text_.find_first_of(" \t\r\n,:]}", at), text_.size());
+        return first(at, [](char c) { return is_between(c) || c == ']' || c == '}'; });
     }
   }
 

@@ -89,8 +89,12 @@ class Flattener {
     return value;
   }
 
-  size_t errors() const {
-    return size_t(std::ranges::count(problems_.list(), Problem::Severity::error, &Problem::severity));
+  /// The number of errors so far. Each problem is looked at once: a large diagram can have many warnings.
+  size_t errors() {
+    const auto& list = problems_.list();
+    for (; looked_at_ < list.size(); ++looked_at_)
+      errors_ += list[looked_at_].severity == Problem::Severity::error;
+    return errors_;
   }
 
   void unknown_type(const std::string& path, const BlockEntry& entry) {
@@ -355,6 +359,7 @@ class Flattener {
   }
 
   Problems& problems_;
+  size_t looked_at_ = 0, errors_ = 0;  // of the problems
   const bool open_;
   FlatDiagram flat_;
   std::shared_ptr<BlockValues> values_ = std::make_shared<BlockValues>();

@@ -20,8 +20,22 @@ namespace {
 
 constexpr std::string_view file_fact = "file ";
 
-/// Copies the build identifier from the notes of the first loaded object, the program itself.
+int take_build_id(dl_phdr_info* object, size_t, void* to);
+
+/// Whether this function is part of a loaded object: of the program itself, or of a module in another program.
+bool is_this_object(const dl_phdr_info& object) {
+  const auto here = reinterpret_cast<ElfW(Addr)>(&take_build_id);
+  for (int i = 0; i < object.dlpi_phnum; ++i) {
+    const ElfW(Phdr)& part = object.dlpi_phdr[i];
+    const ElfW(Addr) begin = object.dlpi_addr + part.p_vaddr;
+    if (part.p_type == PT_LOAD && here >= begin && here < begin + part.p_memsz) return true;
+  }
+  return false;
+}
+
+/// Copies the build identifier from the notes of the object that contains this function.
 int take_build_id(dl_phdr_info* object, size_t, void* to) {
+  if (!is_this_object(*object)) return 0;
   for (int i = 0; i < object->dlpi_phnum; ++i) {
     const ElfW(Phdr)& part = object->dlpi_phdr[i];
     if (part.p_type != PT_NOTE) continue;
@@ -40,7 +54,7 @@ int take_build_id(dl_phdr_info* object, size_t, void* to) {
       at = bytes + padded(note->n_descsz);
     }
   }
-  return 1;  // stop after the first object
+  return 1;  // the other objects are not of interest
 }
 
 std::string find_build() {

@@ -135,14 +135,18 @@ class Solver {
     if (phase == Phase::forward && (equation.is_wire() || equation.rule) && !right_value(equation)) return;
     const auto unknown = only_unknown(equation);
     if (!unknown) return;
-    Unit rest;
+    assign(*unknown, power(known_part(equation), -1 / unknown->exponent));
+  }
+  /// The product of everything in an equation that is known.
+  Unit known_part(const Equation& equation) const {
+    Unit product;
     each_end(equation, [&](const End& end, double end_power) {
-      rest = rest * power(end.expression->constant, end_power);
+      product = product * power(end.expression->constant, end_power);
       for (const UnitFactor& factor : end.expression->factors)
         if (const auto& known = variables_[said_.variable_of(end.block, factor)])
-          rest = rest * power(*known, end_power * factor.exponent);
+          product = product * power(*known, end_power * factor.exponent);
     });
-    assign(*unknown, power(rest, -1 / unknown->exponent));
+    return product;
   }
   void solve_formula(const Equation& equation) {
     find_formula_unit(equation);
@@ -204,18 +208,12 @@ class Solver {
       const bool is_one_way = equation.is_bare || (equation.rule && equation.rule->is_formula);
       if (is_one_way) continue;  // x' = -2 x with a bare gain is a diagram without units, not a mistake
       std::vector<UnitSystem::Term> terms;
-      Unit known;
       each_end(equation, [&](const End& end, double end_power) {
-        known = known * power(end.expression->constant, end_power);
-        for (const UnitFactor& factor : end.expression->factors) {
-          const size_t variable = said_.variable_of(end.block, factor);
-          if (const auto& unit = variables_[variable])
-            known = known * power(*unit, end_power * factor.exponent);
-          else
+        for (const UnitFactor& factor : end.expression->factors)
+          if (const size_t variable = said_.variable_of(end.block, factor); !variables_[variable])
             terms.push_back({variable, end_power * factor.exponent});
-        }
       });
-      if (!terms.empty()) system.add(std::move(terms), known, int(i));
+      if (!terms.empty()) system.add(std::move(terms), known_part(equation), int(i));
     }
   }
   void tell_contradictions(const UnitSystem& system) {

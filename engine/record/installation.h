@@ -5,6 +5,10 @@
 
 namespace loopwright {
 
+/// Where PREFIX is for code that another program has loaded, such as an interpreter. To be called before the functions
+/// below; otherwise PREFIX is the parent of the folder of the running program.
+void set_prefix(std::string prefix);
+
 /// `PREFIX/lib/<name>` for a program PREFIX/bin/loopwright.
 std::string library_file(std::string_view name);
 

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "engine/file/regular_file.h"
+#include "engine/json/nearest_file.h"
 
 namespace loopwright {
 
@@ -14,7 +15,7 @@ std::shared_ptr<const SourceFile> read_recorded_bytes(const std::string& path, P
     return file;
   }
   file->text.clear();
-  problems.error({file, 0}, {}, {}, "the file cannot be read: " + reason);
+  problems.error({file, 0}, {}, {}, "the file cannot be read: " + reason).hint = nearest_file_hint(path);
   return nullptr;
 }
 

@@ -11,8 +11,9 @@ static const double two_pi = 6.28318530717958647692, longest_reduced = 1e6;
 #define COUNT(list) ((int)(sizeof(list) / sizeof *(list)))
 
 /* c[0] + c[1] z + … */
-static double polynomial(const double* c, int count, double z) {
+static inline double polynomial(const double* c, int count, double z) {
   double sum = c[count - 1];
+#pragma GCC unroll 16
   for (int i = count - 2; i >= 0; --i) sum = c[i] + z * sum;
   return sum;
 }
@@ -24,23 +25,42 @@ static const double of_sine[] = {
 static const double of_cosine[] = {
     1 / 24.0,        -1 / 720.0,         1 / 40320.0,          -1 / 3628800.0,
     1 / 479001600.0, -1 / 87178291200.0, 1 / 20922789888000.0, -1 / 6402373705728000.0};
-static double sine_series(double x) { return x + x * x * x * polynomial(of_sine, COUNT(of_sine), x * x); }
-static double cosine_series(double x) {
+static inline double sine_series(double x) { return x + x * x * x * polynomial(of_sine, COUNT(of_sine), x * x); }
+static inline double cosine_series(double x) {
   return 1 - (0.5 * x * x - x * x * x * x * polynomial(of_cosine, COUNT(of_cosine), x * x));
 }
 
-/* sin(x + quarters pi/2). */
-static double sine_after(double x, int quarters) {
+/* x = n pi/2 + r with |r| <= pi/4: r, and n modulo 4 as quarters. */
+static inline double reduced(double x, int* quarters) {
   if (!(fabs(x) <= longest_reduced)) x = fmod(x, two_pi);
-  const double n = floor(x / (quarter_1 + quarter_2) + 0.5);
-  const double r = ((x - n * quarter_1) - n * quarter_2) - n * quarter_3;
-  const int turn = ((int)fmod(n, 4) + quarters) & 3;
-  const double y = turn & 1 ? cosine_series(r) : sine_series(r);
-  return turn & 2 ? -y : y;
+  const double nearest = x / (quarter_1 + quarter_2) + 0.5;
+  long n = (long)nearest;
+  n -= n > nearest; /* its floor */
+  *quarters = (int)(n & 3);
+  return ((x - n * quarter_1) - n * quarter_2) - n * quarter_3;
 }
 
-double sine_of(double x) { return isfinite(x) ? sine_after(x, 0) : NAN; }
-double cosine_of(double x) { return isfinite(x) ? sine_after(x, 1) : NAN; }
+double sine_of(double x) {
+  if (!isfinite(x)) return NAN;
+  int quarters;
+  const double r = reduced(x, &quarters), y = quarters & 1 ? cosine_series(r) : sine_series(r);
+  return quarters & 2 ? -y : y;
+}
+double cosine_of(double x) {
+  if (!isfinite(x)) return NAN;
+  int quarters;
+  const double r = reduced(x, &quarters), y = quarters & 1 ? sine_series(r) : cosine_series(r);
+  return (quarters + 1) & 2 ? -y : y;
+}
+void sine_and_cosine_of(double x, double* sine, double* cosine) {
+  *sine = *cosine = NAN;
+  if (!isfinite(x)) return;
+  int quarters;
+  const double r = reduced(x, &quarters), s = sine_series(r), c = cosine_series(r);
+  *sine = quarters & 1 ? c : s, *cosine = quarters & 1 ? s : c;
+  if (quarters & 2) *sine = -*sine;
+  if ((quarters + 1) & 2) *cosine = -*cosine;
+}
 
 /* e^x - 1 for |x| <= ln 2 / 2: Taylor series after the term x. */
 static const double of_growth[] = {1 / 2.0,          1 / 6.0,        1 / 24.0,        1 / 120.0,

@@ -30,11 +30,13 @@ static double clamp(double x, double limit) { return x > limit ? limit : x < -li
 struct series {
   double sine[PLANT_HARMONICS], cosine[PLANT_HARMONICS];
   int harmonics;
+  double sine_of_tilt;
   double current_share; /* fraction of the way to its command that the current covers in a step */
 };
 
 static struct series series_of(const struct plant* p, double h) {
-  struct series s = {.current_share = p->current_lag > 0 ? 1 - exponential_of(-h / p->current_lag) : 1};
+  struct series s = {.current_share = p->current_lag > 0 ? 1 - exponential_of(-h / p->current_lag) : 1,
+                     .sine_of_tilt = sine_of(p->tilt)};
   for (int n = 0; n < PLANT_HARMONICS; ++n) {
     s.sine[n] = p->cogging[n] * cosine_of(p->cogging_phase[n]), s.cosine[n] = p->cogging[n] * sine_of(p->cogging_phase[n]);
     if (p->cogging[n] != 0) s.harmonics = n + 1;
@@ -45,7 +47,11 @@ static struct series series_of(const struct plant* p, double h) {
 static double cogging(const struct plant* p, const struct series* s) {
   if (s->harmonics == 0) return 0;
   const double angle = 2 * pi * p->position / p->pole_pitch;
-  const double sine = sine_of(angle), cosine = cosine_of(angle);
+  double sine, cosine;
+  sine_and_cosine_of(angle, &sine, &cosine);
+  double along = 1; /* its sine is computed while the processor waits for the others */
+  if (p->cogging_modulation != 0)
+    along += p->cogging_modulation * sine_of(2 * pi * p->position / p->modulation_period);
   double sum = 0, sine_n = sine, cosine_n = cosine;
   for (int n = 0; n < s->harmonics; ++n) {
     sum += s->sine[n] * sine_n + s->cosine[n] * cosine_n;
@@ -53,9 +59,6 @@ static double cogging(const struct plant* p, const struct series* s) {
     cosine_n = cosine_n * cosine - sine_n * sine, sine_n = next;
   }
   const double by_speed = 1 - p->cogging_slope * fabs(p->velocity);
-  double along = 1;
-  if (p->cogging_modulation != 0)
-    along += p->cogging_modulation * sine_of(2 * pi * p->position / p->modulation_period);
   return (by_speed > 0 ? by_speed : 0) * along * sum;
 }
 
@@ -72,7 +75,7 @@ static void step(struct plant* p, const struct series* s, double command, double
   p->current += (command - p->current) * s->current_share;
   const double mass = p->mass + p->payload + (now >= p->load_at ? p->load_change : 0);
   const double force = p->force_constant * p->current - friction(p) - cogging(p, s) - p->offset -
-                       p->cable * (p->position - p->cable_center) - (p->tilt != 0 ? mass * gravity * sine_of(p->tilt) : 0);
+                       p->cable * (p->position - p->cable_center) - (p->tilt != 0 ? mass * gravity * s->sine_of_tilt : 0);
   p->velocity += h * force / mass;
   p->position += h * p->velocity;
   if (p->position > p->stop_high && p->velocity > 0) p->position = p->stop_high, p->velocity *= -p->restitution;

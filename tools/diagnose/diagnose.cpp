@@ -1,6 +1,8 @@
 #include "tools/diagnose/diagnose.h"
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include "tools/diagnose/any_diagram.h"
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/catalogue.h"
 #include "tools/diagnose/search/conclude.h"
@@ -316,10 +318,28 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   return result;
 }
 
+/// Whether the experiments name roles; it is a problem if only some do.
+bool have_roles(const std::vector<std::string>& experiments) {
+  size_t with_roles = 0;
+  for (const std::string& path : experiments) {
+    Problems problems;  // reported by the path that is taken
+    const auto experiment = read_experiment(path, problems);
+    with_roles += !experiment || problems.has_errors() || !experiment->roles.ports.empty();
+  }
+  if (with_roles == experiments.size()) return true;
+  if (with_roles == 0 && experiments.size() == 1) return false;
+  Problems problems;
+  auto& p = problems.error({}, "/roles", "", "several experiments can be used together only with roles");
+  p.expected = "\"roles\" in every experiment, or a single experiment without";
+  p.found = fmt::format("{} of {} experiments name roles", with_roles, experiments.size());
+  throw InputError(std::move(problems));
+}
+
 }  // namespace
 
 Diagnosis diagnose(const std::string& diagram, const std::vector<std::string>& experiments,
                    const DiagnoseOptions& options) {
+  if (!have_roles(experiments)) return diagnose_any_diagram(diagram, experiments.front(), options);
   try {
     return diagnose_to_the_end(diagram, experiments, options);
   } catch (const Interrupted&) {

@@ -21,6 +21,15 @@ struct DiagnosedEffect {
   std::vector<std::string> alternatives;  ///< indistinguishable from it by this record
   double force_rms = 0;                   ///< SI
   double evidence = 0;                    ///< loss of the criterion without it
+  // Without roles: where it acts, and on what it depends.
+  std::string site, site_unit;
+  std::vector<std::string> variables;
+};
+
+/// A parameter of the diagram that is not as the diagram states.
+struct MovedParameter {
+  std::string name, unit;
+  double stated = 0, value = 0, low = 0, high = 0;  ///< SI; 95 % interval
 };
 
 /// Effects that explain the records equally well in place of some of the named ones.
@@ -88,6 +97,10 @@ struct Diagnosis {
   std::vector<SuggestedExperiment> suggested;
   std::vector<RecordFinding> findings;
   std::vector<NotLookedFor> not_looked_for;
+  std::string measured_port;  ///< without roles: that of the errors
+  bool has_roles = true;      ///< an axis; without roles any diagram, and no force is singled out
+  std::vector<MovedParameter> moved_parameters;  ///< without roles
+  std::vector<std::string> not_observable;       ///< without roles: sentences
   std::vector<std::string> remainder_variables;  ///< on which the remainder depends
   std::vector<RemainderShare> dependence;
   bool was_interrupted = false;  ///< no other member has a meaning, nothing was written
@@ -107,6 +120,10 @@ struct Diagnosis {
 /// Stable keys, docs/diagnose.md.
 std::string to_json(const Diagnosis& diagnosis);
 std::string to_text(const Diagnosis& diagnosis);
+/// to_text() without roles.
+std::string any_diagram_text(const Diagnosis& diagnosis);
 report::Page diagnosis_page(const Diagnosis& diagnosis);
+/// diagnosis_page() without roles.
+report::Page any_diagram_page(const Diagnosis& diagnosis);
 
 }  // namespace loopwright

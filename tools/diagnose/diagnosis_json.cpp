@@ -10,6 +10,7 @@ std::string to_json(const Diagnosis& d) {
   for (const DiagnosedEffect& effect : d.effects) {
     nlohmann::ordered_json entry{{"effect", effect.name}};
     if (!effect.form.empty()) entry["form"] = effect.form;
+    if (!d.has_roles) entry["site"] = effect.site, entry["variables"] = effect.variables;
     for (const DiagnosedParameter& p : effect.parameters) {
       entry["parameters"][p.name] = {{"value", p.value}, {"unit", p.unit}, {"low", p.low}, {"high", p.high}};
       if (p.at_limit) entry["parameters"][p.name]["at_limit"] = true;
@@ -18,6 +19,13 @@ std::string to_json(const Diagnosis& d) {
     entry["alternatives"] = effect.alternatives;
     entry["force_rms"] = effect.force_rms;
     json["effects"].push_back(std::move(entry));
+  }
+  if (!d.has_roles) {
+    json["moved_parameters"] = nlohmann::ordered_json::object();
+    for (const MovedParameter& p : d.moved_parameters)
+      json["moved_parameters"][p.name] = {
+          {"stated", p.stated}, {"value", p.value}, {"unit", p.unit}, {"low", p.low}, {"high", p.high}};
+    json["not_observable"] = d.not_observable;
   }
   json["other_explanations"] = nlohmann::ordered_json::array();
   for (const OtherExplanation& other : d.other_explanations)

@@ -201,6 +201,7 @@ report::Section what_next(const Diagnosis& d) {
 }  // namespace
 
 report::Page diagnosis_page(const Diagnosis& d) {
+  if (!d.has_roles) return any_diagram_page(d);
   report::Page page;
   page.title = d.title, page.subtitle = "Which physical effect is missing?";
   page.facts = {{"Diagram", d.diagram}, {"Records", joined(d.experiments, ", ")}};

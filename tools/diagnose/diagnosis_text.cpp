@@ -17,6 +17,7 @@ bool can_be_learned(const Diagnosis& d) {
 }  // namespace
 
 std::string to_text(const Diagnosis& d) {
+  if (!d.has_roles) return any_diagram_text(d);
   std::string text;
   const auto line = [&](const std::string& words) { text += words + "\n"; };
   switch (d.verdict) {

@@ -5,6 +5,7 @@
 #include <numeric>
 #include "engine/json/file_kind.h"
 #include "engine/json/json.h"
+#include "engine/json/nearest_file.h"
 #include "engine/json/reader.h"
 #include "engine/json/stated_number.h"
 #include "engine/record/column_units.h"
@@ -32,13 +33,14 @@ class Loader {
       return nullptr;
     reader_.reject_unknown(file,
                            {"$schema", "loopwright", "title", "description", "data", "time", "drive",
-                            "compare", "roles", "hold_out", "rows"},
+                            "compare", "roles", "sites", "hold_out", "rows"},
                            "an experiment");
     reader_.check_version(file);
     result_->title = reader_.text(file, "title"), result_->place = file.place;
     read_signals(file, "drive", result_->drives);
     read_signals(file, "compare", result_->compared);
     read_roles(file);
+    read_sites(file);
     read_hold_out(file);
     read_kind_of_rows(file);
     read_data(file);
@@ -109,6 +111,16 @@ class Loader {
       result_->roles.places.push_back(role.place);
     }
   }
+  void read_sites(const Value& file) {
+    const Value::Member* sites = file.find("sites");
+    if (!sites || !reader_.expect(sites->value, Value::Kind::list, "\"sites\"", "a list of ports")) return;
+    for (const Value& site : sites->value.items)
+      if (reader_.expect(site, Value::Kind::text, "a site", "a port, \"axis.net_force.sum\""))
+        result_->sites.push_back({site.text, site.place});
+    if (result_->roles.ports.empty()) return;
+    auto& p = reader_.error(*sites, "the sites of an axis follow from its roles");
+    p.expected = "\"roles\" or \"sites\"";
+  }
   void read_hold_out(const Value& file) {
     const Value::Member* hold_out = file.find("hold_out");
     if (!hold_out ||
@@ -140,9 +152,9 @@ class Loader {
     if (result_->data_path.empty()) {
       auto& p = reader_.error(*member, fmt::format("the data file \"{}\" is not there", name));
       p.expected = tried.front() + (tried.size() > 1 ? ", or below $LOOPWRIGHT_DATA" : "");
-      p.hint = tried.size() > 1
-                   ? ""
-                   : "the environment variable LOOPWRIGHT_DATA may name a folder of measurements";
+      p.hint = nearest_file_hint(tried.front());
+      if (p.hint.empty() && tried.size() == 1)
+        p.hint = "the environment variable LOOPWRIGHT_DATA may name a folder of measurements";
       return;
     }
     const size_t before = problems_.list().size();

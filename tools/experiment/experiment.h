@@ -35,6 +35,7 @@ struct Experiment {
   std::vector<RecordedSignal> drives, compared;
   std::vector<bool> drive_is_linear;  ///< linear interpolation; otherwise held
   Roles roles;
+  std::vector<Wire> sites;       ///< ports to which a diagnosis without roles is limited; empty: all
   double hold_out_fraction = 0;  ///< fraction of the rows, at the end, held out of any fit
   /// Every row is a position at which the axis stood in balance, a map of holding forces: see
   /// gather_balances.

@@ -45,6 +45,14 @@ TEST(DiagramErrors, TopOfTheFile) {
             "quotes\n  found: the number 3\n1 error");
 }
 
+TEST(DiagramErrors, AMisspeltFileIsRecognizedAmongThoseOfItsFolder) {
+  DiagramFolder folder;
+  folder.with("sub/stage.json", "{}").with("sub/stage.csv", "").with("sub/stag_e.experiment.json", "{}");
+  folder.with("top.json", "{\"loopwright\": 1, \"blocks\": {\n\"a\": {\"diagram\": \"sub/stge.json\"}}}");
+  EXPECT_THAT(folder.problems(), testing::HasSubstr("hint: did you mean \"sub/stage.json\"?"));
+  EXPECT_THAT(folder.problems("sub/loop.json"), testing::Not(testing::HasSubstr("hint")));
+}
+
 TEST(DiagramErrors, Files) {
   DiagramFolder folder;
   EXPECT_EQ(folder.problems("none.json"),

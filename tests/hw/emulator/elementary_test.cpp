@@ -1,6 +1,7 @@
 // The functions that the emulated motor and the hidden-effect generator use instead of those of the C
 // library.
 #include <gtest/gtest.h>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -35,6 +36,17 @@ TEST(Elementary, IsWithinThreeUlp) {
   for (const double limit : {1e-6, 0.3, 30.0})
     EXPECT_LE(worst(hyperbolic_tangent_of, tanhl, -limit, limit), 3);
   for (const double limit : {1.0, 2.0, 1e6}) EXPECT_LE(worst(logarithm_of, logl, 0.5 / limit, limit), 3);
+}
+
+TEST(Elementary, SineAndCosineTogetherHaveTheBitsOfEach) {
+  std::mt19937_64 generator(2);
+  for (int i = 0; i < 200000; ++i) {
+    const double x = std::ldexp(double(int64_t(generator())), int(generator() % 90) - 110);
+    double sine, cosine;
+    sine_and_cosine_of(x, &sine, &cosine);
+    ASSERT_EQ(std::bit_cast<uint64_t>(sine), std::bit_cast<uint64_t>(sine_of(x))) << x;
+    ASSERT_EQ(std::bit_cast<uint64_t>(cosine), std::bit_cast<uint64_t>(cosine_of(x))) << x;
+  }
 }
 
 TEST(Elementary, TakesTheEndsOfItsDomains) {

@@ -15,7 +15,7 @@ class Installed : public ::testing::Test {
  protected:
   void SetUp() override {
     for (const char* needed : {"/bin/loopwright", "/bin/hidden_effects", "/lib/loopwright_lanes_avx2.so",
-                               "/lib/libhil_emulator.so"})
+                               "/lib/libhil_emulator.so", "/lib/python/loopwright/__init__.py"})
       if (!fs::exists(LOOPWRIGHT_BINARY + std::string(needed))) GTEST_SKIP() << needed << " is not built";
     ASSERT_EQ(shell("cmake --install " LOOPWRIGHT_BINARY " --prefix " + folder.path("first")), 0);
     fs::rename(folder.path("first"), folder.path("moved"));
@@ -40,6 +40,10 @@ TEST_F(Installed, EveryCommandWorksFromWhereItWasMovedTo) {
   EXPECT_EQ(text_of(folder.path("moved/share/loopwright/schema/diagram.schema.json")), run({"schema"}).out);
   EXPECT_TRUE(fs::exists(folder.path("moved/share/loopwright/docs/blocks.md")));
   EXPECT_TRUE(fs::exists(folder.path("moved/include/loopwright/engine/block.h")));
+  const std::string job = folder.path("moved/") + diagrams + "linear_motor/common_job.json";
+  EXPECT_EQ(shell("PYTHONPATH=$(echo " + folder.path("moved/lib/python3*/site-packages") +
+                  ") /usr/bin/python3 -B -c \"import loopwright; loopwright.load('" + job + "').run()\""),
+            0);
   folder.with("moved/loop.json", R"({"loopwright": 1, "solver": {"stop": 1, "step": 0.1}, "blocks": {
   "c": {"type": "Constant", "value": 1}, "x": {"type": "Integrator", "in": {"u": "c.y"}}}})");
   folder.with(

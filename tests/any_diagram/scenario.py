@@ -1,0 +1,136 @@
+"""Draws a plant with what it hides, and writes its record, diagram, experiment and truth."""
+
+import csv
+import json
+import math
+import pathlib
+import random
+import sys
+
+import mechanical
+import process
+import simulate
+from laws import LAWS, rms
+
+PLANTS = (*mechanical.PLANTS, *process.PLANTS)
+CLASSES = ("clean", "one", "parameter", "two", "one", "clean", "outside", "one", "three", "one_and_parameter")
+HELD_OUT = 0.25
+LEAST_GAIN = 50  # in -2 ln L, of a draw that counts
+LEAST_SHARE, MOST_SHARE = 0.05, 0.5  # [rms of the site]
+
+
+def chosen_places(plant, kind, draw):
+    outside = [p for p in plant.places if not LAWS[p.law].shapes]
+    inside = [p for p in plant.places if LAWS[p.law].shapes]
+    count = {"clean": 0, "parameter": 0, "outside": 0, "one": 1, "one_and_parameter": 1, "two": 2, "three": 3}[kind]
+    if kind == "outside":
+        if not outside:
+            count = 1
+        else:
+            return [draw.choice(outside)] + ([draw.choice(inside)] if draw.random() < 0.3 else [])
+    places, draw_from = [], list(inside)
+    while len(places) < count and draw_from:
+        place = draw.choice(draw_from)
+        places.append(place)
+        # Not twice the same variable at a port, nor two distortions: their sum may have another name.
+        draw_from = [p for p in draw_from if not (p.site == place.site and (p.names == place.names or LAWS[p.law].is_distortion))]
+    return places
+
+
+def sized(place, nominal, memory, draw):
+    """The hidden law, so large that it has a share of the site's rms along the run without it."""
+    law = LAWS[place.law]
+    values = nominal.sites[place.site] if law.is_distortion else [place.signal(x, u) for x, u in zip(nominal.x, nominal.u)]
+    q = law.draw(values, draw)
+    if law.is_distortion:
+        return simulate.Hidden(place, q, 1.0)
+    share = LEAST_SHARE * (MOST_SHARE / LEAST_SHARE) ** draw.random()
+    sign = place.sign or draw.choice((-1, 1))
+    size = sign * share * rms(nominal.sites[place.site])
+    if law.rate:  # q is a share of the displacement, z is near ±1
+        return simulate.Hidden(place, q * displacement(values), size, memory)
+    return simulate.Hidden(place, q, size / rms([law.phi(v, q) for v in values]))
+
+
+def displacement(speeds):
+    total, path = 0.0, []
+    for v in speeds:
+        total += v
+        path.append(total)
+    mean = sum(path) / len(path)
+    return rms([s - mean for s in path])
+
+
+def attempt(seed, retry):
+    draw = random.Random(f"any diagram {seed} {retry}")
+    plant = PLANTS[seed % len(PLANTS)]()
+    kind = CLASSES[seed // len(PLANTS) % len(CLASSES)]
+    p = {name: value * math.exp(draw.gauss(0, 0.15) if name not in plant.fixed else 0) for name, (value, _) in plant.parameters.items()}
+    stated = dict(p)
+    if "parameter" in kind:
+        name = draw.choice([n for n in p if n not in plant.fixed])
+        stated[name] = p[name] / (1 + draw.choice((-1, 1)) * draw.uniform(0.05, 0.35))
+    inputs = draw.getrandbits(32)
+    nominal = simulate.run(plant, p, [], plant.drive(random.Random(inputs)), None)
+    if nominal is None:
+        return None
+    hidden = []
+    for place in chosen_places(plant, kind, draw):
+        memory = len(plant.initial) + sum(e.memory >= 0 for e in hidden)
+        hidden.append(sized(place, nominal, memory, draw))
+    noise = {site: size * rms(nominal.sites[site]) for site, size in plant.noise.items()}
+    sensor = [size * rms([x[i] - plant.initial[i] for x in nominal.x]) for size, (_, _, i) in zip(plant.sensor, plant.outputs)]
+    record = simulate.run(plant, p, hidden, plant.drive(random.Random(inputs)), draw, noise, sensor)
+    return record and (plant, kind, p, stated, hidden, noise, sensor, record)
+
+
+def diagram(plant, stated):
+    return {"loopwright": 1, "title": plant.kind.replace("_", " ").capitalize(),
+            "parameters": {n: {"value": stated[n], "unit": unit} for n, (_, unit) in plant.parameters.items()},
+            "solver": {"method": "rk4", "step": plant.sample_time / 4, "stop": plant.sample_time * plant.rows}, "blocks": plant.blocks}
+
+
+def experiment(plant):
+    return {"loopwright": 1, "data": "record.csv", "time": "t",
+            "drive": {port: {"column": f"u{i}", "unit": unit} for i, (port, unit) in enumerate(plant.drives)},
+            "compare": {port: {"column": f"y{j}", "unit": unit} for j, (port, unit, _) in enumerate(plant.outputs)},
+            "hold_out": {"fraction": HELD_OUT}}
+
+
+def truth_of(seed, plant, kind, p, stated, hidden, noise, sensor, record):
+    fitted = int(round(plant.rows * (1 - HELD_OUT)))
+    moved = {name: stated[name] / p[name] - 1 for name in p if stated[name] != p[name]}
+    filter_ = simulate.Filter(plant, p, hidden, record, noise, sensor)
+    gained = simulate.gains(filter_, p, hidden, moved, [n for n in p if n not in plant.fixed + plant.anchor], fitted) if hidden or moved else []
+    site_rms = {e.place.site: rms(record.sites[e.place.site]) for e in hidden}
+    return {"seed": seed, "plant": plant.kind, "class": kind,
+            "effects": [{"law": e.place.law, "shapes": e.law.shapes, "sites": e.place.sites, "variables": e.place.names, "also": e.place.also,
+                         "q": e.q, "size": e.size, "site_rms": site_rms[e.place.site], "gain": g, "counts": g >= LEAST_GAIN}
+                        for e, g in zip(hidden, gained)],
+            "parameters": [{"name": n, "stated": stated[n], "true": p[n], "gain": g, "counts": g >= LEAST_GAIN}
+                           for n, g in zip(moved, gained[len(hidden):])],
+            "simulation": filter_.simulation_error(fitted), "outputs": [port for port, _, _ in plant.outputs]}
+
+
+def write_record(path, plant, record):
+    with open(path, "w", newline="") as file:
+        rows = csv.writer(file)
+        rows.writerow(["t", *(f"u{i}" for i in range(len(plant.drives))), *(f"y{j}" for j in range(len(plant.outputs)))])
+        for k, (u, y) in enumerate(zip(record.u, record.y)):
+            rows.writerow([f"{v:.12g}" for v in (k * plant.sample_time, *u, *y)])
+
+
+def generate(seed, folder):
+    folder = pathlib.Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    drawn = next(d for d in (attempt(seed, retry) for retry in range(20)) if d)
+    plant, _, _, stated, *_, record = drawn
+    truth = truth_of(seed, *drawn)
+    write_record(folder / "record.csv", plant, record)
+    for name, content in {"diagram": diagram(plant, stated), "record.experiment": experiment(plant), "truth": truth}.items():
+        (folder / f"{name}.json").write_text(json.dumps(content, indent=1) + "\n")
+    return truth
+
+
+if __name__ == "__main__":
+    generate(int(sys.argv[1]), sys.argv[2])

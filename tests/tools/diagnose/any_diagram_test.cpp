@@ -1,0 +1,169 @@
+// What a diagram of any kind lacks, found without roles.
+#include "tests/tools/diagnose/diagnosed.h"
+#include "tests/tools/diagnose/plants.h"
+
+namespace loopwright {
+namespace {
+
+/// "site: effect(variable)" of everything found; parameters that moved by name.
+std::vector<std::string> answer(const Diagnosis& d) {
+  std::vector<std::string> list;
+  for (const DiagnosedEffect& effect : d.effects)
+    list.push_back(effect.site + ": " + effect.name +
+                   (effect.variables.empty() ? "" : "(" + effect.variables.front() + ")"));
+  for (const MovedParameter& p : d.moved_parameters) list.push_back(p.name);
+  return list;
+}
+
+Diagnosis diagnosed(const Plant& plant) {
+  const RecordedPlant files(plant);
+  const Diagnosis d = diagnose(files.diagram(), {files.experiment()});
+  if (getenv("SHOW_DIAGNOSES")) {
+    for (const std::string& line : d.trail) puts(line.c_str());
+    puts(to_text(d).c_str());
+  }
+  return d;
+}
+
+/// The held-out errors are those of the noise, and so is what remains.
+void expect_explained(const Diagnosis& d) {
+  EXPECT_EQ(d.verdict, Verdict::explained) << to_text(d);
+  EXPECT_LT(d.held_out_mean_square, 1.2);
+  EXPECT_LT(d.portmanteau, 120);
+}
+
+void expect_moved(const Diagnosis& d, const std::string& name, double truth) {
+  ASSERT_EQ(answer(d), std::vector{name}) << to_text(d);
+  const MovedParameter& p = d.moved_parameters.front();
+  EXPECT_LT(std::abs(p.value - truth), 4 / 1.96 * (p.high - p.value));
+  EXPECT_LT(std::abs(p.value - truth), 0.02 * truth);
+}
+
+TEST(AnyDiagram, ACleanMotorLacksNothing) {
+  const Diagnosis d = diagnosed(motor({}, 1));
+  EXPECT_EQ(d.verdict, Verdict::nothing_missing) << to_text(d);
+  EXPECT_TRUE(answer(d).empty());
+}
+TEST(AnyDiagram, AResistanceThatIsNotAsStatedIsAParameterAndNoEffect) {
+  Motor m;
+  m.resistance = 1.5;
+  const Diagnosis d = diagnosed(motor(m, 2));
+  expect_moved(d, "resistance", 1.5);
+  expect_explained(d);
+}
+TEST(AnyDiagram, DryFrictionOfAMotorIsFoundAtItsTorques) {
+  Motor m;
+  m.torque = [](double speed, double) { return 0.01 * std::tanh(speed / 0.5); };
+  const Diagnosis d = diagnosed(motor(m, 3));
+  ASSERT_EQ(answer(d), std::vector<std::string>{"torques.sum: sign(rotor.velocity)"}) << to_text(d);
+  expect_parameter(d.effects[0], "level", -0.01, 0.001, "N*m");
+  expect_explained(d);
+}
+TEST(AnyDiagram, TheDropOfBrushesIsFoundAtItsVoltages) {
+  Motor m;
+  m.voltage_drop = [](double current, double) { return 0.6 * std::tanh(current / 0.3); };
+  const Diagnosis d = diagnosed(motor(m, 4));
+  ASSERT_EQ(answer(d), std::vector<std::string>{"voltages.sum: soft_sign(current.y)"}) << to_text(d);
+  expect_parameter(d.effects[0], "level", -0.6, 0.1, "V");
+  expect_explained(d);
+}
+
+TEST(AnyDiagram, CleanBodiesLackNothing) {
+  const Diagnosis d = diagnosed(thermal({}, 1));
+  EXPECT_EQ(d.verdict, Verdict::nothing_missing) << to_text(d);
+  EXPECT_TRUE(answer(d).empty());
+}
+TEST(AnyDiagram, ACouplingThatIsNotAsStatedIsAParameter) {
+  Thermal m;
+  m.coupling = 0.65;
+  const Diagnosis d = diagnosed(thermal(m, 2));
+  expect_moved(d, "coupling", 0.65);
+  expect_explained(d);
+}
+TEST(AnyDiagram, RadiationIsFoundAtTheBodyThatRadiates) {
+  Thermal m;
+  m.second_heat = [](double, double t) { return 4e-9 * (std::pow(t, 4) - std::pow(293, 4)); };
+  const Diagnosis d = diagnosed(thermal(m, 3));
+  ASSERT_EQ(answer(d), std::vector<std::string>{"heat2.sum: radiation(body2.y)"}) << to_text(d);
+  expect_explained(d);
+}
+
+TEST(AnyDiagram, CleanTanksLackNothing) {
+  const Diagnosis d = diagnosed(tanks({}, 1));
+  EXPECT_EQ(d.verdict, Verdict::nothing_missing) << to_text(d);
+  EXPECT_TRUE(answer(d).empty());
+}
+TEST(AnyDiagram, AnOutletThatIsNotAsStatedIsAParameter) {
+  Tanks m;
+  m.second_outlet = 0.0056;
+  const Diagnosis d = diagnosed(tanks(m, 2));
+  expect_moved(d, "second_outlet", 0.0056);
+  expect_explained(d);
+}
+TEST(AnyDiagram, AnOverflowIsFoundAtItsTank) {
+  Tanks m;
+  m.lost = [](double level, double) { return 0.02 * std::max(0.0, level - 0.5); };
+  const Diagnosis d = diagnosed(tanks(m, 3));
+  ASSERT_EQ(answer(d), std::vector<std::string>{"balance1.sum: overflow(level1.y)"}) << to_text(d);
+  expect_parameter(d.effects[0], "slope", -0.02, 0.004, "m^2/s");
+  expect_parameter(d.effects[0], "level", 0.5, 0.05, "m");
+  expect_explained(d);
+}
+TEST(AnyDiagram, AnOverflowIntoTheNextTankIsOneTermWithBothSigns) {
+  Tanks m;
+  m.spilled = [](double level, double) { return 0.02 * std::max(0.0, level - 0.5); };
+  const Diagnosis d = diagnosed(tanks(m, 4));
+  ASSERT_EQ(answer(d), std::vector<std::string>{"outlet1.y: overflow(level1.y)"}) << to_text(d);
+  expect_explained(d);
+}
+
+TEST(AnyDiagram, ACleanOscillatorLacksNothing) {
+  const Diagnosis d = diagnosed(oscillator({}, 1));
+  EXPECT_EQ(d.verdict, Verdict::nothing_missing) << to_text(d);
+  EXPECT_TRUE(answer(d).empty());
+}
+TEST(AnyDiagram, AStiffnessThatIsNotAsStatedIsAParameter) {
+  Oscillator m;
+  m.stiffness = 215;
+  const Diagnosis d = diagnosed(oscillator(m, 2));
+  expect_moved(d, "stiffness", 215);
+  expect_explained(d);
+}
+TEST(AnyDiagram, AHardeningSpringIsACube) {
+  Oscillator m;
+  m.force = [](double x, double) { return 6000 * x * x * x; };
+  const Diagnosis d = diagnosed(oscillator(m, 3));
+  ASSERT_EQ(answer(d), std::vector<std::string>{"net.sum: cube(mass.position)"}) << to_text(d);
+  expect_parameter(d.effects[0], "coefficient", -6000, 600, "Pa/m");
+  expect_explained(d);
+}
+
+TEST(AnyDiagram, ACleanDriveTrainLacksNothing) {
+  const Diagnosis d = diagnosed(drive_train({}, 1));
+  EXPECT_EQ(d.verdict, Verdict::nothing_missing) << to_text(d);
+  EXPECT_TRUE(answer(d).empty());
+}
+TEST(AnyDiagram, TheInertiaOfALoadThatIsNotMeasuredIsAParameter) {
+  DriveTrain m;
+  m.load = 2.3e-3;
+  const Diagnosis d = diagnosed(drive_train(m, 2));
+  expect_moved(d, "load_inertia", 2.3e-3);
+  expect_explained(d);
+}
+TEST(AnyDiagram, DragOfALoadThatIsNotMeasuredIsFoundAtTheLoad) {
+  DriveTrain m;
+  m.on_load = [](double speed, double) { return 2e-4 * speed * std::abs(speed); };
+  const Diagnosis d = diagnosed(drive_train(m, 3));
+  ASSERT_EQ(answer(d), std::vector<std::string>{"on_load.sum: signed_square(load.velocity)"}) << to_text(d);
+  expect_explained(d);
+}
+TEST(AnyDiagram, DragOfTheMotorIsFoundAtTheMotor) {
+  DriveTrain m;
+  m.on_motor = [](double speed, double) { return 2e-4 * speed * std::abs(speed); };
+  const Diagnosis d = diagnosed(drive_train(m, 4));
+  ASSERT_EQ(answer(d), std::vector<std::string>{"on_motor.sum: signed_square(motor.velocity)"}) << to_text(d);
+  expect_explained(d);
+}
+
+}  // namespace
+}  // namespace loopwright

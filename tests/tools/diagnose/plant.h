@@ -1,0 +1,107 @@
+/// Records of simulated plants beside a diagram of them that may lack something. The simulation has its own
+/// equations and integration, and shares nothing with the blocks.
+#pragma once
+#include <unistd.h>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace loopwright {
+
+using Numbers = std::vector<double>;
+
+struct Plant {
+  std::string diagram;         ///< JSON
+  std::string drive, compare;  ///< members of the experiment; columns u, y0, y1 …
+  std::string more;            ///< further members: R"("sites": …)"
+  std::function<Numbers(const Numbers& x, double u, const Numbers& w)> rate;  ///< w: process noise
+  std::function<Numbers(const Numbers& x)> outputs;
+  std::function<double(double time)> input;
+  Numbers initial, process_noise, measurement_noise;
+  double sample_time = 0.01;
+  double jitter = 0;  ///< [samples] of the time stamps, at which everything truly happens
+  size_t rows = 2500;
+  uint64_t seed = 1;
+};
+
+/// Files of a plant in a folder of their own, removed with the object.
+class RecordedPlant {
+ public:
+  explicit RecordedPlant(const Plant& plant) {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::path(testing::TempDir()) /
+              fmt::format("plant_{}_{}_{}_{}", getpid(), test->test_suite_name(), test->name(), plant.seed);
+    std::filesystem::create_directories(folder_);
+    write("nominal.json", plant.diagram);
+    write("experiment.json",
+          fmt::format(R"({{"loopwright": 1, "data": "record.csv", "time": "t_s",
+  "drive": {{{}}}, "compare": {{{}}}, "hold_out": {{"fraction": 0.25}}{}{}}})",
+                      plant.drive, plant.compare, plant.more.empty() ? "" : ", ", plant.more));
+    write("record.csv", record(plant));
+  }
+  ~RecordedPlant() {
+    std::error_code code;
+    std::filesystem::remove_all(folder_, code);
+  }
+  std::string diagram() const { return (folder_ / "nominal.json").string(); }
+  std::string experiment() const { return (folder_ / "experiment.json").string(); }
+
+ private:
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+  }
+  static std::string record(const Plant& plant) {
+    constexpr int substeps = 40;
+    std::mt19937_64 random(plant.seed);
+    std::normal_distribution<double> normal;
+    Numbers x = plant.initial;
+    const auto moved = [](Numbers from, const Numbers& slope, double by) {
+      for (size_t i = 0; i < from.size(); ++i) from[i] += by * slope[i];
+      return from;
+    };
+    std::string text = "t_s,u";
+    for (size_t j = 0; j < plant.measurement_noise.size(); ++j) text += fmt::format(",y{}", j);
+    std::uniform_real_distribution<double> uniform(-0.5, 0.5);
+    double t = 0;
+    for (size_t k = 0; k < plant.rows; ++k) {
+      const double u = plant.input(t);
+      text += fmt::format("\n{:.12g},{:.12g}", t, u);
+      const Numbers y = plant.outputs(x);
+      for (size_t j = 0; j < y.size(); ++j)
+        text += fmt::format(",{:.12g}", y[j] + plant.measurement_noise[j] * normal(random));
+      Numbers w;
+      for (double size : plant.process_noise) w.push_back(size * normal(random));
+      const double next = (double(k + 1) + plant.jitter * uniform(random)) * plant.sample_time;
+      const double h = (next - t) / substeps;
+      for (int i = 0; i < substeps; ++i) {
+        const Numbers a = plant.rate(x, u, w), b = plant.rate(moved(x, a, h / 2), u, w),
+                      c = plant.rate(moved(x, b, h / 2), u, w), d = plant.rate(moved(x, c, h), u, w);
+        for (size_t s = 0; s < x.size(); ++s) x[s] += h / 6 * (a[s] + 2 * b[s] + 2 * c[s] + d[s]);
+      }
+      t = next;
+    }
+    return text + "\n";
+  }
+
+  std::filesystem::path folder_;
+};
+
+/// Steps of random height, each held for `hold` seconds, from -1 to 1.
+inline std::function<double(double)> random_steps(double hold, uint64_t seed) {
+  return [hold, seed](double t) {
+    std::mt19937_64 random(seed * 7919 + uint64_t(t / hold + 1e-9));
+    random.discard(3);
+    return std::uniform_real_distribution<double>(-1, 1)(random);
+  };
+}
+
+inline double sign(double x) { return std::tanh(x / 1e-3); }
+
+}  // namespace loopwright

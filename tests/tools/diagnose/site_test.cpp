@@ -1,0 +1,142 @@
+// Where terms can act in a diagram, and how the predictor responds to them.
+#include "tests/tools/diagnose/plants.h"
+#include "tools/diagnose/predict/site_filter.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+std::vector<std::string> names(const std::vector<Site>& sites) {
+  std::vector<std::string> list;
+  for (const Site& site : sites) list.push_back(site.name);
+  return list;
+}
+
+TEST(Sites, OfAMotorAreItsTwoSumsAndItsInput) {
+  const RecordedPlant files(motor({}, 1));
+  const SiteModel model(files.diagram(), files.experiment(), {});
+  EXPECT_THAT(names(model.sites()),
+              testing::UnorderedElementsAre("voltages.sum", "torques.sum", "amplifier.u"));
+}
+TEST(Sites, ASignalThatTwoSumsReadIsACoupling) {
+  const RecordedPlant files(tanks({}, 1));
+  const SiteModel model(files.diagram(), files.experiment(), {});
+  EXPECT_THAT(names(model.sites()),
+              testing::UnorderedElementsAre("balance1.sum", "balance2.sum", "outlet1.y", "pump.u"));
+  const auto coupling = std::ranges::find(model.sites(), "outlet1.y", &Site::name);
+  EXPECT_EQ(coupling->kind, Site::Kind::shared);
+  EXPECT_EQ(coupling->quantity, Quantity::flow);
+}
+TEST(Sites, ADifferenceThatOnlyAGainReadsIsNoSiteOfItsOwn) {
+  const RecordedPlant files(thermal({}, 1));
+  const SiteModel model(files.diagram(), files.experiment(), {});
+  EXPECT_THAT(names(model.sites()),
+              testing::UnorderedElementsAre("heat1.sum", "heat2.sum", "flow.y", "heater.u"));
+}
+
+struct Passed {
+  RecordedPlant files;
+  SiteModel model;
+  SiteFilter filter;
+  SiteNoise noise;
+  SitePass pass;
+  std::vector<double> factors;
+
+  explicit Passed(const Plant& plant)
+      : files(plant),
+        model(files.diagram(), files.experiment(), {}),
+        filter(model),
+        factors(model.parameters().size(), 1.0) {
+    model.use(factors, {});
+    for (int round = 0; round < 3; ++round) {
+      noise = filter.guess_noise();
+      EXPECT_TRUE(filter.run(model.record().rows(), noise, true, pass));
+      filter.learn_scales(pass);
+      filter.choose_substeps(pass);
+    }
+  }
+  int site(const std::string& name) const {
+    return int(std::ranges::find(model.sites(), name, &Site::name) - model.sites().begin());
+  }
+  int variable(const std::string& name) const {
+    return int(std::ranges::find(model.variables(), name, &SiteVariable::name) - model.variables().begin());
+  }
+};
+
+/// The errors of the model with a small term, against the linear response to the term along the path.
+void expect_response(Passed& p, const std::string& site, const std::string& variable,
+                     const std::string& shape_name) {
+  SiteTerm term;
+  term.shape = &*std::ranges::find(named_shapes(), shape_name, &TermShape::name);
+  term.site = p.site(site), term.variable = p.variable(variable);
+  const SiteVariable& v = p.model.variables().at(size_t(term.variable));
+  std::array<std::vector<double>, 3> phi;
+  double largest = 0;
+  for (size_t part = 0; part < 3; ++part)
+    for (size_t k = 0; k < p.pass.rows; ++k) {
+      double column[most_columns];
+      term.columns(v.at(&p.pass.path[part][k * p.pass.numbers]), column);
+      phi[part].push_back(column[0]), largest = std::max(largest, std::abs(column[0]));
+    }
+  std::vector<double> expected(p.pass.error.size()), errors(p.pass.error.size());
+  p.filter.respond(p.pass, term.site, phi[0], phi[1], phi[2], expected);
+  term.coefficient[0] = 1e-3 * p.filter.site_scale(term.site) / largest;
+  p.model.use(p.factors, std::span(&term, 1));
+  ASSERT_TRUE(p.filter.run_frozen(p.pass, errors));
+  double off = 0, size = 0;
+  for (size_t i = 0; i < errors.size(); ++i) {
+    const double response = (p.pass.error[i] - errors[i]) / std::sqrt(p.pass.variance[i]);
+    const double by_recursion = term.coefficient[0] * expected[i];
+    off += std::pow(response - by_recursion, 2), size += by_recursion * by_recursion;
+  }
+  EXPECT_GT(size, 0);
+  EXPECT_LT(off, 1e-4 * size) << site << " " << variable;
+}
+
+TEST(SiteFilter, ATermChangesTheErrorsAsTheRecursionSays) {
+  Passed of_motor(motor({}, 2));
+  expect_response(of_motor, "torques.sum", "rotor.velocity", "linear");
+  expect_response(of_motor, "voltages.sum", "current.y", "signed_square");
+  Passed of_tanks(tanks({}, 2));
+  expect_response(of_tanks, "outlet1.y", "level1.y", "square");
+  Passed of_train(drive_train({}, 2));
+  expect_response(of_train, "on_load.sum", "load.velocity", "linear");
+}
+TEST(SiteFilter, FrozenGainsGiveTheErrorsOfTheWholePass) {
+  Passed p(oscillator({}, 3));
+  std::vector<double> errors(p.pass.error.size());
+  ASSERT_TRUE(p.filter.run_frozen(p.pass, errors));
+  for (size_t k = 0; k < errors.size(); ++k) ASSERT_NEAR(errors[k], p.pass.error[k], 1e-12);
+}
+TEST(SiteFilter, TheObjectiveOfAnotherNoiseIsThatOfAPassWithIt) {
+  Passed p(oscillator({}, 4));
+  EXPECT_NEAR(p.filter.objective_with(p.pass, p.noise), p.pass.objective(),
+              1e-6 * std::abs(p.pass.objective()));
+  SiteNoise other = p.noise;
+  other.process[0] *= 0.5, other.measurement[0] *= 2;
+  const double expected = p.filter.objective_with(p.pass, other);
+  ASSERT_TRUE(p.filter.run(p.model.record().rows(), other, false, p.pass));
+  EXPECT_NEAR(expected, p.pass.objective(), 1e-3 * std::abs(p.pass.objective()));
+}
+TEST(SiteFilter, ErrorsOfARightDiagramAreWhiteAtTheTrueNoise) {
+  Passed p(oscillator({}, 5));
+  p.noise.process = {0.05}, p.noise.measurement = {2e-5};
+  ASSERT_TRUE(p.filter.run(p.model.record().rows(), p.noise, false, p.pass));
+  double square = 0, next = 0;
+  std::vector<double> e;
+  for (size_t k = 100; k < p.pass.rows; ++k) e.push_back(p.pass.error[k] / std::sqrt(p.pass.variance[k]));
+  for (size_t k = 1; k < e.size(); ++k) square += e[k] * e[k], next += e[k] * e[k - 1];
+  EXPECT_NEAR(square / double(e.size()), 1, 0.08);
+  EXPECT_NEAR(next / square, 0, 0.06);
+}
+TEST(SiteModel, ASettingOfTheDiagramChangesAllBlocksThatReadIt) {
+  const RecordedPlant files(motor({}, 6));
+  const SiteModel model(files.diagram(), files.experiment(), {});
+  const auto inductance = std::ranges::find(model.parameters(), "inductance", &ModelParameter::name);
+  ASSERT_NE(inductance, model.parameters().end());
+  ASSERT_EQ(inductance->numbers.size(), 1u);
+  EXPECT_NEAR(inductance->numbers[0].nominal, 500, 1e-9);
+  EXPECT_NEAR(inductance->numbers[0].power, -1, 1e-9) << "the block holds its inverse";
+}
+
+}  // namespace
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,301 @@
+#include "tools/diagnose/predict/site_filter.h"
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace loopwright::diagnosis {
+namespace {
+
+using Map = Eigen::Map<Eigen::VectorXd>;
+using ConstMap = Eigen::Map<const Eigen::VectorXd>;
+
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+/// [of the size of a state] Steps of differences: rounding and curvature then matter alike.
+constexpr double difference_step = 1e-6;
+/// [of the size of a state] What is known about it before the first row.
+constexpr double initial_deviation = 10;
+
+double squared(double x) { return x * x; }
+
+}  // namespace
+
+double SitePass::scaled_objective() const {
+  const double count = double(readings);
+  return log_variances + count * std::log(squares / count) + count;
+}
+
+SiteFilter::SiteFilter(SiteModel& model) : model_(model), record_(model.record()) {
+  const Eigen::Index n = model.states();
+  P_.resize(n, n), product_.resize(n, n);
+  for (Eigen::VectorXd* v : {&x_, &next_, &moved_, &moved_next_, &middle_, &gain_, &delta_, &difference_})
+    v->setZero(n);
+  y_.resize(record_.outputs.size()), y_moved_.resize(record_.outputs.size());
+  site_scale_.assign(model.sites().size(), 1.0);
+  state_scale_.assign(size_t(n), 1.0);
+  const std::vector<double> initial = initial_states();
+  for (size_t i = 0; i < initial.size(); ++i)
+    if (initial[i] != 0) state_scale_[i] = std::abs(initial[i]);
+  for (size_t j = 0; j < record_.outputs.size(); ++j) {
+    double largest = 0;
+    for (double y : record_.outputs[j].value)
+      if (std::isfinite(y)) largest = std::max(largest, std::abs(y));
+    if (const int state = model.measured_state(j); state >= 0 && largest > 0)
+      state_scale_[size_t(state)] = largest;
+  }
+}
+
+SiteNoise SiteFilter::guess_noise() const {
+  SiteNoise noise;
+  for (size_t s = 0; s < model_.sites().size(); ++s)
+    if (model_.drives_state(int(s))) noise.sites.push_back(int(s));
+  for (int site : noise.sites) noise.process.push_back(site_scale_[size_t(site)]);
+  for (const RecordedOutput& output : record_.outputs) {
+    // The third difference of white noise has twenty times its variance; that of a smooth signal vanishes.
+    std::vector<double> squares;
+    const std::vector<double>& y = output.value;
+    for (size_t k = 3; k < y.size(); ++k)
+      if (const double d = y[k] - 3 * y[k - 1] + 3 * y[k - 2] - y[k - 3]; std::isfinite(d))
+        squares.push_back(d * d / 20);
+    double mean = 0;
+    for (double s : squares) mean += s / double(squares.size());
+    const double counts = output.resolution / std::sqrt(12);
+    double largest = 0;
+    for (double v : y)
+      if (std::isfinite(v)) largest = std::max(largest, std::abs(v));
+    noise.measurement.push_back(std::max({std::sqrt(mean), counts, 1e-9 * largest}));
+  }
+  return noise;
+}
+
+void SiteFilter::learn_scales(const SitePass& pass) {
+  const size_t n = pass.states;
+  for (size_t i = 0; i < n; ++i) {
+    std::vector<double> sizes;
+    for (size_t k = pass.rows / 10; k < pass.rows; ++k) sizes.push_back(std::abs(pass.filtered[k * n + i]));
+    const auto high = sizes.begin() + std::ptrdiff_t(9 * sizes.size() / 10);
+    std::ranges::nth_element(sizes, high);
+    if (*high > 0 && std::isfinite(*high)) state_scale_[i] = *high;
+  }
+  for (size_t s = 0; s < pass.sites; ++s) {  // what moves a state by a hundredth of its size in a sample
+    double scale = std::numeric_limits<double>::infinity();
+    for (size_t i = 0; i < n; ++i)
+      if (const double g = std::abs(pass.G[s * n + i]); g > 0)
+        scale = std::min(scale, 0.01 * state_scale_[i] / g);
+    if (std::isfinite(scale)) site_scale_[s] = scale;
+  }
+}
+
+void SiteFilter::allocate(size_t rows, bool with_columns, SitePass& pass) const {
+  const size_t n = size_t(model_.states()), outputs = record_.outputs.size(), sites = model_.sites().size();
+  pass.rows = rows, pass.states = n, pass.outputs = outputs, pass.sites = sites;
+  pass.numbers = size_t(model_.numbers()), pass.has_columns = with_columns;
+  for (auto* list : {&pass.error, &pass.variance, &pass.innovation}) list->resize(rows * outputs);
+  for (auto* list : {&pass.C, &pass.gain}) list->resize(rows * outputs * n);
+  for (auto* list : {&pass.correction, &pass.filtered}) list->resize(rows * n);
+  pass.A.resize(rows * n * n), pass.G.resize(rows * sites * n);
+  if (!with_columns) return;
+  pass.ramp.resize(rows * sites * n);
+  for (auto& path : pass.path) path.resize(rows * pass.numbers);
+}
+
+std::vector<double> SiteFilter::initial_states() {
+  std::vector<double> states = model_.initial_states();
+  for (size_t j = 0; j < record_.outputs.size(); ++j)
+    if (const int state = model_.measured_state(j); state >= 0)
+      for (double y : record_.outputs[j].value)
+        if (std::isfinite(y)) {
+          states[size_t(state)] = y;
+          break;
+        }
+  return states;
+}
+
+double SiteFilter::initial_variance(size_t state) const {
+  return squared(initial_deviation * state_scale_[state]);
+}
+
+void SiteFilter::choose_substeps(const SitePass& pass) {
+  constexpr size_t places = 40, most = 64;
+  constexpr double difference = 1e-6;  // [of the size of a state]
+  const auto differs = [&](size_t row) {
+    const double* from = &pass.filtered[row * pass.states];
+    const int count = model_.substeps();
+    const bool good = model_.flow(row, from, next_.data());
+    model_.set_substeps(2 * count);
+    const bool finer_good = model_.flow(row, from, moved_next_.data());
+    model_.set_substeps(count);
+    if (!good || !finer_good) return finer_good;
+    for (size_t i = 0; i < pass.states; ++i)
+      if (std::abs(next_[Eigen::Index(i)] - moved_next_[Eigen::Index(i)]) > difference * state_scale_[i])
+        return true;
+    return false;
+  };
+  const size_t apart = std::max<size_t>(1, pass.rows / places);
+  for (size_t row = 0; row + 1 < pass.rows; row += apart)
+    while (size_t(model_.substeps()) < most && differs(row)) model_.set_substeps(2 * model_.substeps());
+}
+
+bool SiteFilter::slopes_of_outputs(size_t row, SitePass& pass) {
+  const size_t n = pass.states;
+  double* const C = &pass.C[row * pass.outputs * n];
+  bool are_all_known = true;
+  for (size_t j = 0; j < pass.outputs; ++j) {
+    std::fill_n(C + j * n, n, 0.0);
+    if (const int state = model_.measured_state(j); state >= 0)
+      C[j * n + size_t(state)] = 1;
+    else
+      are_all_known = false;
+  }
+  if (are_all_known) return true;
+  moved_ = x_;
+  for (size_t i = 0; i < n; ++i) {
+    const double change = difference_step * state_scale_[i];
+    moved_[Eigen::Index(i)] += change;
+    if (!model_.outputs(row, moved_.data(), y_moved_.data())) return false;
+    moved_[Eigen::Index(i)] = x_[Eigen::Index(i)];
+    for (size_t j = 0; j < pass.outputs; ++j)
+      if (model_.measured_state(j) < 0) C[j * n + i] = (y_moved_[j] - y_[j]) / change;
+  }
+  return true;
+}
+
+bool SiteFilter::correct(size_t row, const SiteNoise& noise, SitePass& pass) {
+  const Eigen::Index n = Eigen::Index(pass.states);
+  if (!model_.outputs(row, x_.data(), y_.data()) || !slopes_of_outputs(row, pass)) return false;
+  delta_.setZero();
+  for (size_t j = 0; j < pass.outputs; ++j) {
+    const size_t at = row * pass.outputs + j;
+    const ConstMap C(&pass.C[at * pass.states], n);
+    Map K(&pass.gain[at * pass.states], n);
+    const double innovation = record_.outputs[j].value[row] - y_[j];
+    pass.innovation[at] = innovation;
+    if (!std::isfinite(innovation)) {
+      pass.error[at] = missing, pass.variance[at] = 1;
+      K.setZero();
+      continue;
+    }
+    gain_.noalias() = P_ * C;
+    const double S = C.dot(gain_) + squared(noise.measurement[j]);
+    const double e = innovation - C.dot(delta_);
+    K = gain_ / S;
+    P_.noalias() -= gain_ * K.transpose();
+    delta_ += e * K;
+    pass.error[at] = e, pass.variance[at] = S;
+    pass.log_variances += std::log(S), pass.squares += e * e / S;
+    ++pass.readings;
+  }
+  x_ += delta_;
+  Map(&pass.correction[row * pass.states], n) = delta_;
+  Map(&pass.filtered[row * pass.states], n) = x_;
+  return true;
+}
+
+bool SiteFilter::respond_to(int site, bool ramp, size_t row, std::span<double> to) {
+  SiteSignal& signal = model_.at_site(site);
+  const double size = site_scale_[size_t(site)];
+  if (ramp)
+    signal.ramp = size, signal.begin = record_.time[row], signal.length = record_.step(row);
+  else
+    signal.held = size;
+  const bool good = model_.flow(row, x_.data(), moved_next_.data());
+  signal.held = signal.ramp = 0;
+  for (size_t i = 0; i < to.size(); ++i)
+    to[i] = (moved_next_[Eigen::Index(i)] - next_[Eigen::Index(i)]) / size;
+  return good;
+}
+
+bool SiteFilter::linearize(size_t row, const SiteNoise& noise, SitePass& pass) {
+  const size_t n = pass.states;
+  moved_ = x_;
+  for (size_t i = 0; i < n; ++i) {
+    const double change = difference_step * state_scale_[i];
+    moved_[Eigen::Index(i)] += change;
+    if (!model_.flow(row, moved_.data(), moved_next_.data())) return false;
+    moved_[Eigen::Index(i)] = x_[Eigen::Index(i)];
+    Map(&pass.A[(row * n + i) * n], Eigen::Index(n)) = (moved_next_ - next_) / change;
+  }
+  const auto G = [&](int site) { return std::span(&pass.G[(row * pass.sites + size_t(site)) * n], n); };
+  if (!pass.has_columns) {
+    for (int site : noise.sites)
+      if (!respond_to(site, false, row, G(site))) return false;
+    return true;
+  }
+  for (int site = 0; site < int(pass.sites); ++site) {
+    const std::span ramp(&pass.ramp[(row * pass.sites + size_t(site)) * n], n);
+    if (!respond_to(site, false, row, G(site)) || !respond_to(site, true, row, ramp)) return false;
+  }
+  const double begin = record_.time[row], step = record_.step(row);
+  const auto numbers = [&](size_t k) { return &pass.path[k][row * pass.numbers]; };
+  return model_.look(row, begin, x_.data(), numbers(0)) &&
+         model_.look(row, begin + step / 2, middle_.data(), numbers(1)) &&
+         model_.look(row, begin + step, next_.data(), numbers(2));
+}
+
+void SiteFilter::predict_covariance(const SitePass& pass, size_t row, const SiteNoise& noise) {
+  const size_t n = pass.states;
+  const Eigen::Map<const Eigen::MatrixXd> A(&pass.A[row * n * n], Eigen::Index(n), Eigen::Index(n));
+  product_.noalias() = A * P_;
+  P_.noalias() = product_ * A.transpose();
+  const double shorter = record_.sample_time / record_.step(row);
+  for (size_t s = 0; s < noise.sites.size(); ++s) {
+    const ConstMap G(&pass.G[(row * pass.sites + size_t(noise.sites[s])) * n], Eigen::Index(n));
+    P_.noalias() += (shorter * squared(noise.process[s])) * G * G.transpose();
+  }
+  product_ = P_.transpose();
+  P_ = 0.5 * (P_ + product_);
+}
+
+bool SiteFilter::run(size_t rows, const SiteNoise& noise, bool with_columns, SitePass& pass) {
+  allocate(rows, with_columns, pass);
+  pass.log_variances = pass.squares = 0, pass.readings = 0;
+  const std::vector<double> initial = initial_states();
+  x_ = ConstMap(initial.data(), Eigen::Index(initial.size()));
+  P_.setZero();
+  for (size_t i = 0; i < pass.states; ++i) P_(Eigen::Index(i), Eigen::Index(i)) = initial_variance(i);
+  for (size_t row = 0; row < rows; ++row) {
+    if (!correct(row, noise, pass)) return false;
+    if (!model_.flow(row, x_.data(), next_.data(), with_columns ? middle_.data() : nullptr)) return false;
+    if (!linearize(row, noise, pass)) return false;
+    predict_covariance(pass, row, noise);
+    x_ = next_;
+  }
+  return std::isfinite(pass.objective());
+}
+
+bool SiteFilter::run_frozen(const SitePass& gains, std::span<double> error) {
+  const size_t n = gains.states;
+  const std::vector<double> initial = initial_states();
+  x_ = ConstMap(initial.data(), Eigen::Index(initial.size()));
+  for (size_t row = 0; row < gains.rows; ++row) {
+    if (!model_.outputs(row, x_.data(), y_.data())) return false;
+    delta_.setZero();
+    for (size_t j = 0; j < gains.outputs; ++j) {
+      const size_t at = row * gains.outputs + j;
+      if (std::isnan(gains.error[at])) {
+        error[at] = missing;
+        continue;
+      }
+      error[at] =
+          record_.outputs[j].value[row] - y_[j] - ConstMap(&gains.C[at * n], Eigen::Index(n)).dot(delta_);
+      delta_ += error[at] * ConstMap(&gains.gain[at * n], Eigen::Index(n));
+    }
+    x_ += delta_;
+    if (!model_.flow(row, x_.data(), next_.data())) return false;
+    x_ = next_;
+  }
+  return true;
+}
+
+bool SiteFilter::simulate(const SitePass& pass, size_t from, size_t to, std::span<double> error) {
+  x_ = ConstMap(&pass.filtered[from * pass.states], Eigen::Index(pass.states));
+  for (size_t row = from; row < to; ++row) {
+    if (!model_.outputs(row, x_.data(), y_.data())) return false;
+    for (size_t j = 0; j < pass.outputs; ++j)
+      error[(row - from) * pass.outputs + j] = record_.outputs[j].value[row] - y_[j];
+    if (!model_.flow(row, x_.data(), next_.data())) return false;
+    x_ = next_;
+  }
+  return true;
+}
+
+}  // namespace loopwright::diagnosis

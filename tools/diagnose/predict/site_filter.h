@@ -1,0 +1,93 @@
+/// The general predictor: an extended Kalman filter along the filtered path of any diagram, from one time
+/// stamp to the next.
+///
+/// Outputs are processed one after the other, so that a missing reading is left out and no matrix is
+/// inverted:
+///   e = y - h(x̂) - C δ,   S = C P Cᵀ + R,   K = P Cᵀ / S,   δ += K e,   P -= K S Kᵀ
+///   x̂ ← flow(x̂ + δ),   P ← A P Aᵀ + Σ σ² G Gᵀ
+/// with A, C and G (the effect of a unit at a site, held over the sample) by differences of the model.
+#pragma once
+#include <Eigen/Dense>
+#include <array>
+#include <span>
+#include <vector>
+#include "tools/diagnose/predict/site_model.h"
+
+namespace loopwright::diagnosis {
+
+/// White noise, as standard deviations.
+struct SiteNoise {
+  std::vector<int> sites;           ///< where noise acts
+  std::vector<double> process;      ///< [unit of the site] held over a typical sample; shorter ones have more
+  std::vector<double> measurement;  ///< [unit of the output]
+};
+
+/// Everything along one pass, row after row.
+struct SitePass {
+  size_t rows = 0, states = 0, outputs = 0, sites = 0, numbers = 0;
+  bool has_columns = false;                 ///< G of all sites, ramps and the path
+  std::vector<double> error, variance;      ///< rows × outputs; NaN: no reading
+  std::vector<double> innovation;           ///< rows × outputs: y - h(x̂)
+  std::vector<double> C, gain;              ///< rows × outputs × states
+  std::vector<double> A;                    ///< rows × states × states, column by column
+  std::vector<double> G, ramp;              ///< rows × sites × states
+  std::vector<double> correction;           ///< rows × states: δ
+  std::vector<double> filtered;             ///< rows × states
+  std::array<std::vector<double>, 3> path;  ///< rows × numbers: at the start, middle and end of each sample
+  size_t readings = 0;
+  double log_variances = 0, squares = 0;  ///< Σ ln S, Σ e²/S
+
+  /// -2 ln L but for a constant.
+  double objective() const { return log_variances + squares; }
+  /// The same for the best common scale of all variances.
+  double scaled_objective() const;
+};
+
+class SiteFilter {
+ public:
+  explicit SiteFilter(SiteModel& model);
+
+  SiteModel& model() { return model_; }
+  /// A first guess of the noise, before anything is known but the record.
+  SiteNoise guess_noise() const;
+  /// Sizes of states and sites from a pass; differences are taken in proportion to them.
+  void learn_scales(const SitePass& pass);
+
+  /// A size at the site of notable effect on a state within a sample.
+  double site_scale(int site) const { return site_scale_[size_t(site)]; }
+
+  /// With the model's present parameters and terms, over the first `rows` rows. False if the model diverges.
+  bool run(size_t rows, const SiteNoise& noise, bool with_columns, SitePass& pass);
+  /// The errors of the model's present parameters and terms with gains and variances of another pass.
+  bool run_frozen(const SitePass& gains, std::span<double> error);
+  /// Without any correction from row `from` on, starting from the filtered state there: y - h, NaN where
+  /// there is no reading.
+  bool simulate(const SitePass& pass, size_t from, size_t to, std::span<double> error);
+  /// -2 ln L of another noise, linearized about the pass.
+  double objective_with(const SitePass& pass, const SiteNoise& noise) const;
+  /// Response of the whitened errors to a term at a site that takes these values at the start, middle and end
+  /// of each sample.
+  void respond(const SitePass& pass, int site, std::span<const double> start, std::span<const double> middle,
+               std::span<const double> end, std::span<double> column) const;
+  /// As many steps of the integration in a sample as make no difference, at rows along the pass.
+  void choose_substeps(const SitePass& pass);
+
+ private:
+  void allocate(size_t rows, bool with_columns, SitePass& pass) const;
+  std::vector<double> initial_states();
+  double initial_variance(size_t state) const;
+  bool correct(size_t row, const SiteNoise& noise, SitePass& pass);
+  bool slopes_of_outputs(size_t row, SitePass& pass);
+  bool linearize(size_t row, const SiteNoise& noise, SitePass& pass);
+  bool respond_to(int site, bool ramp, size_t row, std::span<double> to);
+  void predict_covariance(const SitePass& pass, size_t row, const SiteNoise& noise);
+
+  SiteModel& model_;
+  const SignalRecord& record_;
+  std::vector<double> state_scale_, site_scale_;
+  Eigen::MatrixXd P_, product_;
+  Eigen::VectorXd x_, next_, moved_, moved_next_, middle_, gain_, delta_, difference_;
+  std::vector<double> y_, y_moved_;
+};
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,106 @@
+/// What follows from a pass without the model: linear recursions along it, for a number of states that is
+/// known to the compiler.
+#include <cmath>
+#include <limits>
+#include "tools/diagnose/predict/site_filter.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+double squared(double x) { return x * x; }
+
+/// f.operator()<N>() with N states, or Eigen::Dynamic if there are many.
+template <class F> auto with_size(size_t states, F&& f) {
+  switch (states) {
+    case 1:
+      return f.template operator()<1>();
+    case 2:
+      return f.template operator()<2>();
+    case 3:
+      return f.template operator()<3>();
+    case 4:
+      return f.template operator()<4>();
+    case 5:
+      return f.template operator()<5>();
+    case 6:
+      return f.template operator()<6>();
+    default:
+      return f.template operator()<Eigen::Dynamic>();
+  }
+}
+
+/// Mean of a term over a sample, by Simpson's rule.
+double mean_of(double start, double middle, double end) { return (start + 4 * middle + end) / 6; }
+
+}  // namespace
+
+double SiteFilter::objective_with(const SitePass& pass, const SiteNoise& noise) const {
+  const auto n = Eigen::Index(pass.states);
+  return with_size(pass.states, [&]<int N>() {
+    using Vector = Eigen::Matrix<double, N, 1>;
+    using Matrix = Eigen::Matrix<double, N, N>;
+    using MapOf = Eigen::Map<const Vector>;
+    Matrix P = Matrix::Zero(n, n), product(n, n);
+    for (size_t i = 0; i < pass.states; ++i) P(Eigen::Index(i), Eigen::Index(i)) = initial_variance(i);
+    Vector difference = Vector::Zero(n), delta(n), gain(n), change(n);  // from the states of the pass
+    double objective = 0;
+    for (size_t row = 0; row < pass.rows; ++row) {
+      delta.setZero();
+      for (size_t j = 0; j < pass.outputs; ++j) {
+        const size_t at = row * pass.outputs + j;
+        if (std::isnan(pass.error[at])) continue;
+        const MapOf C(&pass.C[at * pass.states], n);
+        gain.noalias() = P * C;
+        const double S = C.dot(gain) + squared(noise.measurement[j]);
+        const double e = pass.innovation[at] - C.dot(difference) - C.dot(delta);
+        P.noalias() -= (gain / S) * gain.transpose();
+        delta += (e / S) * gain;
+        objective += std::log(S) + e * e / S;
+      }
+      const Eigen::Map<const Matrix> A(&pass.A[row * pass.states * pass.states], n, n);
+      change = difference + delta - MapOf(&pass.correction[row * pass.states], n);
+      difference.noalias() = A * change;
+      product.noalias() = A * P;
+      P.noalias() = product * A.transpose();
+      const double shorter = record_.sample_time / record_.step(row);
+      for (size_t s = 0; s < noise.sites.size(); ++s) {
+        const MapOf G(&pass.G[(row * pass.sites + size_t(noise.sites[s])) * pass.states], n);
+        P.noalias() += ((shorter * squared(noise.process[s])) * G) * G.transpose();
+      }
+      product = P.transpose();
+      P = 0.5 * (P + product);
+    }
+    return std::isfinite(objective) ? objective : std::numeric_limits<double>::infinity();
+  });
+}
+
+void SiteFilter::respond(const SitePass& pass, int site, std::span<const double> start,
+                         std::span<const double> middle, std::span<const double> end,
+                         std::span<double> column) const {
+  const auto n = Eigen::Index(pass.states);
+  with_size(pass.states, [&]<int N>() {
+    using Vector = Eigen::Matrix<double, N, 1>;
+    using MapOf = Eigen::Map<const Vector>;
+    Vector difference = Vector::Zero(n), next(n);
+    for (size_t row = 0; row < pass.rows; ++row) {
+      for (size_t j = 0; j < pass.outputs; ++j) {
+        const size_t at = row * pass.outputs + j;
+        if (std::isnan(pass.error[at])) {
+          column[at] = 0;
+          continue;
+        }
+        const double e = MapOf(&pass.C[at * pass.states], n).dot(difference);
+        column[at] = e / std::sqrt(pass.variance[at]);
+        difference -= e * MapOf(&pass.gain[at * pass.states], n);
+      }
+      const size_t g = (row * pass.sites + size_t(site)) * pass.states;
+      const Eigen::Map<const Eigen::Matrix<double, N, N>> A(&pass.A[row * pass.states * pass.states], n, n);
+      next.noalias() = A * difference;
+      next += mean_of(start[row], middle[row], end[row]) * MapOf(&pass.G[g], n);
+      next += (end[row] - start[row]) / 2 * MapOf(&pass.ramp[g], n);
+      difference = next;
+    }
+  });
+}
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,295 @@
+#include "tools/diagnose/predict/site_model.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include "engine/block.h"
+#include "engine/json/reader.h"
+#include "engine/run/run.h"
+#include "tools/compare/machine.h"
+#include "tools/diagnose/predict/axis_model.h"
+#include "tools/experiment/experiment_ports.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+/// Takes the place of the ExternalSignal at a site. It has no inputs: it reads the numbers of the run, in the
+/// order of evaluation behind those on which its terms may depend.
+struct SiteBlock {
+  const SiteSignal* signal = nullptr;
+  struct Out {
+    double y;
+  };
+  static constexpr auto describe() {
+    return block("The terms at a site.", output(&Out::y, "y", "$y", "Their sum"));
+  }
+  void outputs(const Instant& now, Out& out) const { out.y = signal ? signal->value(now.time) : 0; }
+};
+
+const BlockType& site_block_type() {
+  static const BlockType type{info_of<SiteBlock>("SiteBlock"), kernels_of<SiteBlock, double>(), nullptr};
+  return type;
+}
+
+/// The recorded inputs as signals that this program sets, and a solver that plays no part.
+LoadOptions driven_by(const Experiment& experiment, LoadOptions options) {
+  for (const RecordedSignal& signal : experiment.drives) {
+    Drive drive;
+    drive.port = signal.port, drive.type = "ExternalSignal", drive.output = "y";
+    drive.settings.kind = Value::Kind::object, drive.settings.place = signal.place;
+    options.drives.push_back(std::move(drive));
+  }
+  const std::pair<const char*, const char*> solver[] = {
+      {"solver.method", "rk4"}, {"solver.step", "1 ms"}, {"solver.start", "0 s"}, {"solver.stop", "1 s"}};
+  for (const auto& [key, value] : solver) options.set.emplace_back(key, value);
+  return options;
+}
+
+/// Name of the block that load_diagram adds for a drive.
+std::string driver_of(std::string port) {
+  std::ranges::replace_if(
+      port, [](char c) { return c == '.' || c == '[' || c == ']'; }, '_');
+  return "recorded_" + port;
+}
+
+int block_at(const Plan& plan, const std::string& path) {
+  const auto found = std::ranges::find(plan.blocks, path, &Plan::Block::path);
+  return found == plan.blocks.end() ? -1 : int(found - plan.blocks.begin());
+}
+
+bool reads(const Plan::Block& block, Number number) {
+  return std::ranges::any_of(block.inputs,
+                             [&](const auto& port) { return std::ranges::find(port, number) != port.end(); });
+}
+
+/// A term is computed as late as its reader allows, so that it may depend on everything computed before.
+void evaluate_late(Plan& plan, int block) {
+  const auto entry = std::ranges::find_if(plan.order, [&](const Plan::Entry& e) {
+    return e.kind == Plan::Entry::Kind::outputs && e.block == block;
+  });
+  const Number output = plan.blocks[size_t(block)].outputs[0];
+  const auto reader = std::find_if(entry, plan.order.end(), [&](const Plan::Entry& e) {
+    return e.kind == Plan::Entry::Kind::algebraic_loop || reads(plan.blocks[size_t(e.block)], output);
+  });
+  if (entry != plan.order.end() && reader != entry) std::rotate(entry, entry + 1, reader);
+}
+
+/// Sites by the names that the experiment gives.
+void limit_search(std::vector<Site>& sites, const Experiment& experiment, Problems& problems) {
+  if (experiment.sites.empty()) return;
+  KnownNames names;
+  for (Site& site : sites) site.is_searched = false, names.add(site.name);
+  for (const Wire& wanted : experiment.sites) {
+    const auto found = std::ranges::find(sites, wanted.source, &Site::name);
+    if (found != sites.end())
+      found->is_searched = true;
+    else
+      names.explain(problems.error(wanted.place, "/sites", "", "nothing can be missing there"),
+                    wanted.source);
+  }
+}
+
+void reject_what_remembers(const Plan& plan, const std::vector<bool>& needed, Problems& problems) {
+  for (size_t b = 0; b < plan.blocks.size(); ++b) {
+    const Plan::Block& block = plan.blocks[b];
+    if (!needed[b]) continue;
+    const Kernels<double>& kernels = block.type->kernels;
+    if (!block.period && !kernels.accept && !kernels.update) continue;
+    auto& p = problems.error(block.place, "", block.path,
+                             fmt::format("{} remembers more than states: a diagnosis without roles cannot "
+                                         "estimate it",
+                                         block.type->info.type));
+    p.expected = "between the driven ports and the compared ones, blocks without samples and memory";
+    p.hint = "drive the port behind it by a recorded column, or name the roles of an axis";
+  }
+  if (plan.algebraic_loops.empty()) return;
+  problems.error({}, "", "", "a diagnosis without roles cannot use a diagram with algebraic loops").found =
+      plan.algebraic_loops.front().text;
+}
+
+}  // namespace
+
+SiteModel::~SiteModel() = default;
+
+SiteModel::SiteModel(const std::string& diagram, const std::string& experiment_path,
+                     const LoadOptions& options) {
+  Problems problems;
+  const auto experiment = load_experiment(experiment_path, problems);
+  if (!experiment) throw InputError(std::move(problems));
+  reject_map(*experiment, problems);
+  record_ = read_signal_record(*experiment, problems);
+  if (!problems.has_errors()) build(diagram, driven_by(*experiment, options), *experiment, problems);
+  if (problems.has_errors()) explain_failure(diagram, {experiment_path}, options, std::move(problems));
+  find_variables();
+  for (const RecordedInput& input : record_.inputs)  // the user's name for it
+    for (SiteVariable& variable : variables_)
+      if (variable.name == driver_of(input.port) + ".y") variable.name = input.port;
+  Problems ignored;  // a diagram whose inputs only the record provides
+  const auto stated = load_diagram(diagram, options, ignored);
+  if (const auto plan = stated ? compile(*stated, ignored) : nullptr) complete_units(*plan);
+  find_nearness();
+}
+
+/// The sources that the record replaces may be those that state a unit.
+void SiteModel::complete_units(const Plan& stated) {
+  const auto complete = [&](const std::string& port, std::optional<Unit>& unit, Quantity& quantity) {
+    const std::vector<Number> numbers = stated.find(port);
+    if (unit || numbers.size() != 1) return;
+    unit = stated.unit_of(numbers[0]);
+    if (quantity == Quantity::other) quantity = quantity_of(unit);
+  };
+  for (Site& site : sites_) complete(site.name, site.unit, site.quantity);
+  for (SiteVariable& variable : variables_)
+    if (variable.minus < 0) complete(variable.name, variable.unit, variable.quantity);
+}
+
+void SiteModel::build(const std::string& path, const LoadOptions& options, const Experiment& experiment,
+                      Problems& problems) {
+  const auto diagram = load_diagram(path, options, problems);
+  const auto plain = diagram ? compile(*diagram, problems) : nullptr;
+  if (!plain || problems.has_errors()) return;
+  logging(*plain, experiment, problems);
+  record_ = read_signal_record(in_units_of_ports(*plain, experiment), problems);
+  const auto rewritten = with_sites(*diagram, *plain, sites_);
+  const auto compiled = compile(*rewritten, problems);
+  if (!compiled || problems.has_errors()) return;
+  auto plan = std::make_shared<Plan>(*compiled);
+  signals_.resize(sites_.size());
+  for (size_t s = 0; s < sites_.size(); ++s) {
+    const int block = block_at(*plan, sites_[s].placeholder);
+    plan->blocks[size_t(block)].type = &site_block_type();
+    plan->blocks[size_t(block)].value = std::make_shared<SiteBlock>(SiteBlock{&signals_[s]});
+    evaluate_late(*plan, block);
+  }
+  for (const RecordedInput& input : record_.inputs)
+    for (Site& site : sites_)
+      if (site.own_signal == driver_of(input.port) + ".y") site.name = site.own_signal = input.port;
+  limit_search(sites_, experiment, problems);
+  plan_ = std::move(plan);
+  find_inputs_and_outputs(problems);
+  if (problems.has_errors()) return;
+  run_ = std::make_unique<Run<double>>(*plan_);
+  numbers_ = reinterpret_cast<double*>(run_->arena().data());
+  for (SiteSignal& signal : signals_) signal.numbers = numbers_;
+  switch_off_noise(*run_, *plan_);
+  for (const RecordedInput& input : record_.inputs) {
+    const std::string block = driver_of(input.port);
+    inputs_.push_back({run_->parameter(block + ".value"), run_->parameter(block + ".slope"),
+                       run_->parameter(block + ".since")});
+  }
+  parameters_ = find_parameters(path, options, *diagram, *plan_, *run_);
+  for (auto& slope : slope_) slope.resize(size_t(plan_->states));
+  stage_.resize(size_t(plan_->states));
+}
+
+/// Sensors that count or sample are left out: their resolution is noise of the measurement.
+void SiteModel::find_inputs_and_outputs(Problems& problems) {
+  if (plan_->states == 0)
+    problems.error({}, "", "", "a diagnosis without roles needs a diagram with continuous states");
+  for (const RecordedOutput& output : record_.outputs) {
+    Number number = plan_->find(output.port).front();
+    const Number state = state_behind(*plan_, number);
+    if (state >= 0 && (number == state || is_sampled_between(*plan_, state, number))) number = state;
+    outputs_.push_back(number);
+    measured_state_.push_back(number >= plan_->signals ? number - plan_->signals : -1);
+    all_are_states_ &= number >= plan_->signals;
+  }
+  const std::vector<bool> needed = blocks_behind(*plan_, outputs_, {});
+  reject_what_remembers(*plan_, needed, problems);
+  auto pruned = std::make_shared<Plan>(*plan_);
+  std::erase_if(pruned->order, [&](const Plan::Entry& entry) {
+    return entry.kind != Plan::Entry::Kind::algebraic_loop && !needed[size_t(entry.block)];
+  });
+  has_decisions_ = std::ranges::any_of(
+      pruned->order, [](const Plan::Entry& e) { return e.kind == Plan::Entry::Kind::decide; });
+  plan_ = std::move(pruned);
+}
+
+int SiteModel::states() const { return plan_->states; }
+int SiteModel::numbers() const { return plan_->signals + plan_->states; }
+
+std::string SiteModel::state_name(int state) const {
+  const Plan::Block& block = plan_->blocks[size_t(plan_->block_of_state[size_t(state)])];
+  for (size_t o = 0; o < block.outputs.size(); ++o)
+    if (block.outputs[o] == plan_->signals + state)
+      return fmt::format("{}.{}", block.path, block.type->info.outputs[o].name);
+  return block.path;
+}
+
+void SiteModel::use(std::span<const double> factors, std::span<const SiteTerm> terms) {
+  for (size_t i = 0; i < parameters_.size(); ++i) parameters_[i].set(factors[i]);
+  for (SiteSignal& signal : signals_) signal.terms.clear(), signal.held = signal.ramp = 0;
+  for (const SiteTerm& term : terms)
+    signals_[size_t(term.site)].terms.emplace_back(
+        term, term.variable < 0 ? SiteVariable{} : variables_[size_t(term.variable)]);
+  run_->reset({plan_->seed, 0});
+}
+
+std::vector<double> SiteModel::initial_states() const {
+  run_->reset({plan_->seed, 0});
+  return {run_->states().begin(), run_->states().end()};
+}
+
+void SiteModel::set_inputs(size_t row) {
+  for (size_t i = 0; i < inputs_.size(); ++i) {
+    const RecordedInput& input = record_.inputs[i];
+    const size_t next = std::min(row + 1, record_.rows() - 1);
+    *inputs_[i].value = input.value[row], *inputs_[i].since = record_.time[row];
+    *inputs_[i].slope = input.is_linear ? (input.value[next] - input.value[row]) / record_.step(row) : 0;
+  }
+}
+
+bool SiteModel::flow(size_t row, const double* from, double* to, double* middle) {
+  set_inputs(row);
+  const size_t n = size_t(plan_->states);
+  const double begin = record_.time[row], h = record_.step(row) / substeps_;
+  std::copy_n(from, n, to);
+  for (int step = 0; step < substeps_; ++step) {
+    const double t = begin + step * h;
+    if (has_decisions_) {
+      run_->look_at(t, to);
+      run_->evaluate(0, false);
+      std::ranges::copy(run_->states(), to);  // it may have jumped
+      run_->reuse_signals();
+    }
+    bool good = run_->derivatives_at(t, to, slope_[0].data());
+    for (int k = 1; k < 4; ++k) {
+      const double part = k == 3 ? h : 0.5 * h;
+      for (size_t i = 0; i < n; ++i) stage_[i] = to[i] + part * slope_[k - 1][i];
+      good &= run_->derivatives_at(t + part, stage_.data(), slope_[k].data());
+    }
+    for (size_t i = 0; i < n; ++i)
+      to[i] += h / 6 * (slope_[0][i] + 2 * (slope_[1][i] + slope_[2][i]) + slope_[3][i]);
+    if (!good || run_->failed()) {
+      run_->restored(run_->now());
+      return false;
+    }
+    if (middle && 2 * (step + 1) == substeps_) std::copy_n(to, n, middle);
+  }
+  return std::ranges::all_of(std::span(to, n), [](double x) { return std::isfinite(x); });
+}
+
+bool SiteModel::look(size_t row, double time, const double* states, double* numbers) {
+  set_inputs(row);
+  run_->look_at(time, states);
+  run_->evaluate(0, true);
+  const bool good = !run_->failed();
+  if (!good) run_->restored(run_->now());
+  std::copy_n(numbers_, this->numbers(), numbers);
+  return good;
+}
+
+bool SiteModel::outputs(size_t row, const double* states, double* to) {
+  if (all_are_states_) {
+    for (size_t j = 0; j < outputs_.size(); ++j) to[j] = states[outputs_[j] - plan_->signals];
+    return true;
+  }
+  set_inputs(row);
+  run_->look_at(record_.time[row], states);
+  run_->evaluate(0, true);
+  const bool good = !run_->failed();
+  if (!good) run_->restored(run_->now());
+  for (size_t j = 0; j < outputs_.size(); ++j) to[j] = numbers_[outputs_[j]];
+  return good;
+}
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,144 @@
+/// The user's diagram as the general predictor steps it: states from one time stamp to the next, recorded
+/// inputs in between, and terms that are added at its sites inside the right-hand side.
+#pragma once
+#include <array>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+#include "tools/diagnose/predict/model_parameter.h"
+#include "tools/diagnose/predict/site.h"
+#include "tools/diagnose/record/signal_record.h"
+#include "tools/diagnose/search/shape.h"
+
+namespace loopwright {
+template <class Real> class Run;
+}
+
+namespace loopwright::diagnosis {
+
+/// A signal of the diagram on which a term may depend, or the difference of two states of one unit.
+struct SiteVariable {
+  std::string name;
+  Number number = -1, minus = -1;  ///< minus: the state that is subtracted; -1: none
+  std::optional<Unit> unit;
+  Quantity quantity = Quantity::other;
+  bool is_state = false;
+
+  double at(const double* numbers) const {
+    return minus < 0 ? numbers[number] : numbers[number] - numbers[minus];
+  }
+};
+
+/// How a variable relates to a site.
+enum class Nearness { unusable, far, near };
+
+/// An effect at a site: Σ coefficient · column(variable; nonlinear).
+struct SiteTerm {
+  const TermShape* shape = nullptr;
+  int site = -1;
+  int variable = -1;  ///< -1: a constant
+  std::array<double, most_columns> coefficient{};
+  std::array<double, most_nonlinear> nonlinear{};
+  std::array<double, most_nonlinear> low{}, high{};  ///< limits of the shape's own parameters
+  std::array<double, most_columns> unit{};           ///< a coefficient of notable effect, for differences
+
+  void columns(double signal, double* to) const { shape->evaluate(signal, nonlinear.data(), to); }
+  double value(double signal) const {
+    double column[most_columns], sum = 0;
+    columns(signal, column);
+    for (int i = 0; i < shape->columns; ++i) sum += coefficient[size_t(i)] * column[i];
+    return sum;
+  }
+};
+
+/// What the placeholder of a site adds: read by its block inside every evaluation.
+struct SiteSignal {
+  double held = 0;                         ///< over a sample
+  double ramp = 0, begin = 0, length = 1;  ///< from -ramp to ramp within [begin, begin + length] s
+  std::vector<std::pair<SiteTerm, SiteVariable>> terms;
+  const double* numbers = nullptr;  ///< of the run
+
+  double value(double time) const {
+    double sum = held;
+    if (ramp != 0) sum += ramp * (2 * (time - begin) / length - 1);
+    for (const auto& [term, variable] : terms)
+      sum += term.value(term.variable < 0 ? 0 : variable.at(numbers));
+    return sum;
+  }
+};
+
+class SiteModel {
+ public:
+  /// Throws InputError with every problem of diagram and experiment.
+  SiteModel(const std::string& diagram, const std::string& experiment, const LoadOptions& options);
+  ~SiteModel();
+
+  const SignalRecord& record() const { return record_; }
+  const Plan& plan() const { return *plan_; }
+  const std::vector<Site>& sites() const { return sites_; }
+  const std::vector<SiteVariable>& variables() const { return variables_; }
+  const std::vector<ModelParameter>& parameters() const { return parameters_; }
+  Nearness nearness(int site, int variable) const {
+    return nearness_[size_t(site) * variables_.size() + size_t(variable)];
+  }
+  /// The variable that is the site's own signal; -1 at a Sum.
+  int own_variable(int site) const { return own_[size_t(site)]; }
+  /// Whether a term at the site accelerates a state directly: noise acts there.
+  bool drives_state(int site) const { return drives_state_[size_t(site)]; }
+  int states() const;
+  int numbers() const;  ///< signals and states
+  std::string state_name(int state) const;
+  /// The state that is measured by the output; -1: a function of states.
+  int measured_state(size_t output) const { return measured_state_[output]; }
+  /// Steps of the integration in a sample.
+  int substeps() const { return substeps_; }
+  void set_substeps(int count) { substeps_ = count; }
+
+  /// Values as factors of the diagram's own, and terms. Takes effect at once; the initial states are those of
+  /// the diagram.
+  void use(std::span<const double> factors, std::span<const SiteTerm> terms);
+  std::vector<double> initial_states() const;
+
+  /// The states at the next time stamp; false if they become non-finite or a block stops. `middle`: also
+  /// those in the middle of the sample.
+  bool flow(size_t row, const double* from, double* to, double* middle = nullptr);
+  /// What is added at a site, over every flow until it is set again.
+  SiteSignal& at_site(int site) { return signals_[size_t(site)]; }
+  /// All numbers at given states, with the inputs of this row.
+  bool look(size_t row, double time, const double* states, double* numbers);
+  /// The outputs at these states, with the inputs of this row.
+  bool outputs(size_t row, const double* states, double* to);
+
+ private:
+  void build(const std::string& diagram, const LoadOptions& options, const Experiment& experiment,
+             Problems& problems);
+  void complete_units(const Plan& stated);
+  void find_inputs_and_outputs(Problems& problems);
+  void find_variables();
+  void find_nearness();
+  void set_inputs(size_t row);
+
+  SignalRecord record_;
+  std::shared_ptr<const Plan> plan_;
+  std::unique_ptr<Run<double>> run_;
+  double* numbers_ = nullptr;  // the arena's
+  std::vector<Site> sites_;
+  std::vector<SiteSignal> signals_;  // one for each site; its block points to it
+  std::vector<SiteVariable> variables_;
+  std::vector<ModelParameter> parameters_;
+  std::vector<Nearness> nearness_;
+  std::vector<int> own_;
+  std::vector<bool> drives_state_;
+  struct Input {
+    double *value, *slope, *since;
+  };
+  std::vector<Input> inputs_;
+  std::vector<Number> outputs_;
+  std::vector<int> measured_state_;
+  bool has_decisions_ = false, all_are_states_ = true;
+  int substeps_ = 2;
+  std::vector<double> slope_[4], stage_;
+};
+
+}  // namespace loopwright::diagnosis

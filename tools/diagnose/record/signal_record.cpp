@@ -1,0 +1,69 @@
+#include "tools/diagnose/record/signal_record.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include "models/real/whole.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+/// Fewer rows support no verdict: intervals and criteria rest on large numbers.
+constexpr size_t fewest_rows = 200;
+/// More take minutes, because the search passes over the record thousands of times.
+constexpr size_t most_rows = 50'000;
+
+double median_step(const std::vector<double>& time) {
+  std::vector<double> steps;
+  for (size_t k = 1; k < time.size(); ++k) steps.push_back(time[k] - time[k - 1]);
+  const auto middle = steps.begin() + std::ptrdiff_t(steps.size() / 2);
+  std::ranges::nth_element(steps, middle);
+  return *middle;
+}
+
+bool changes(const std::vector<double>& values) {
+  return std::ranges::any_of(values, [&](double v) { return std::isfinite(v) && v != values.front(); });
+}
+
+}  // namespace
+
+SignalRecord read_signal_record(const Experiment& experiment, Problems& problems) {
+  SignalRecord record;
+  record.title = experiment.title, record.path = experiment.path;
+  record.time = experiment.data.columns.front().values;
+  if (record.time.size() < fewest_rows) {
+    auto& p = problems.error(experiment.place, "/data", "", "too few rows for a diagnosis");
+    p.expected = fmt::format("at least {} rows", fewest_rows);
+    p.found = fmt::format("{}", record.time.size());
+    return record;
+  }
+  if (record.time.size() > most_rows) {
+    auto& p = problems.error(experiment.place, "/data", "", "too many rows for a diagnosis without roles");
+    p.expected = fmt::format("at most {} rows", most_rows);
+    p.found = fmt::format("{}", record.time.size());
+    p.hint = "cut out a part that shows everything, or leave out samples";
+    return record;
+  }
+  record.sample_time = median_step(record.time);
+  for (size_t i = 0; i < experiment.drives.size(); ++i) {
+    const RecordedSignal& drive = experiment.drives[i];
+    if (const Column* column = experiment.data.find(drive.port))
+      record.inputs.push_back(
+          {drive.port, column->unit, bool(experiment.drive_is_linear[i]), column->values});
+  }
+  for (const RecordedSignal& compared : experiment.compared) {
+    const Column* column = experiment.data.find(compared.port);
+    if (!column) continue;
+    if (!changes(column->values)) {
+      auto& p = problems.error(compared.place, compared.pointer, "",
+                               fmt::format("the measured \"{}\" never changes", compared.column));
+      p.expected = "a signal that shows how the diagram answers its inputs";
+      continue;
+    }
+    record.outputs.push_back({compared.port, column->unit, compared.resolution, column->values});
+  }
+  record.held_out_from = whole_between<size_t>(
+      std::round(double(record.rows()) * (1 - experiment.hold_out_fraction)), 0, record.rows());
+  return record;
+}
+
+}  // namespace loopwright::diagnosis

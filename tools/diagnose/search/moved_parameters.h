@@ -1,0 +1,25 @@
+/// Which parameters of a diagram are not as it states.
+#pragma once
+#include <vector>
+#include "tools/diagnose/search/site_fit.h"
+
+namespace loopwright::diagnosis {
+
+struct MovedParameters {
+  SiteHypothesis hypothesis;  ///< the others exactly as the diagram states
+  double criterion = 0;
+
+  std::vector<int> moved() const {
+    std::vector<int> list;
+    for (size_t i = 0; i < hypothesis.is_free.size(); ++i)
+      if (hypothesis.is_free[i]) list.push_back(int(i));
+    return list;
+  }
+};
+
+/// Sets of moved parameters by their criterion, best first, each fitted with its own noise. Sets are chosen
+/// by the quadratic form of the likelihood: fixing parameters with deviations Δ costs Δᵀ Cov⁻¹ Δ.
+std::vector<MovedParameters> moved_parameters(SiteFitter& fitter, const SiteHypothesis& all_free,
+                                              double readings);
+
+}  // namespace loopwright::diagnosis

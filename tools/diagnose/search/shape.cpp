@@ -1,0 +1,298 @@
+#include "tools/diagnose/search/shape.h"
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace loopwright::diagnosis {
+namespace {
+
+using enum Quantity;
+using Starts = std::vector<std::array<double, most_nonlinear>>;
+
+double largest(std::span<const double> signal) {
+  double size = 0;
+  for (double s : signal) size = std::max(size, std::abs(s));
+  return size;
+}
+double root_mean_square(std::span<const double> signal) {
+  double square = 0;
+  for (double s : signal) square += s * s;
+  return std::sqrt(square / double(std::max<size_t>(1, signal.size())));
+}
+
+// The places where a shape makes sense. Flows and heat follow few laws; a signal without a unit may be
+// anything.
+bool everywhere(Quantity, Quantity) { return true; }
+bool smooth(Quantity site, Quantity) { return site != flow && site != heat; }
+bool moving(Quantity site, Quantity s) {
+  return site != flow && site != heat && (s == velocity || s == other);
+}
+bool placed(Quantity site, Quantity s) {
+  return site != flow && site != heat && (s == position || s == other);
+}
+bool turning(Quantity site, Quantity s) { return site != flow && site != heat && s == position; }
+bool electric(Quantity, Quantity s) { return s == current || s == voltage || s == other; }
+bool over_level(Quantity site, Quantity s) {
+  return s == position || s == other || (site == heat && s == temperature);
+}
+bool outflow(Quantity site, Quantity s) {
+  return (site == flow && s == position) || (site == other && (s == position || s == other));
+}
+bool warm(Quantity site, Quantity s) { return site == heat && s == temperature; }
+
+Starts widths(std::span<const double> signal) {
+  const double size = root_mean_square(signal);
+  return {{0.003 * size, 0}, {0.03 * size, 0}};
+}
+Starts knees(std::span<const double> signal) {
+  Starts list;
+  const double size = largest(signal);
+  for (double part : {0.02, 0.05, 0.1, 0.2, 0.4, 0.8}) list.push_back({part * size, 0});
+  return list;
+}
+Starts stribeck_speeds(std::span<const double> signal) {
+  Starts list;
+  const double size = root_mean_square(signal);
+  for (double part : {0.05, 0.15, 0.5}) list.push_back({0.003 * size, part * size});
+  return list;
+}
+/// Levels that the signal exceeds for a part of the record.
+Starts levels(std::span<const double> signal) {
+  std::vector<double> sorted(signal.begin(), signal.end());
+  std::ranges::sort(sorted);
+  Starts list;
+  for (double part : {0.1, 0.25, 0.4, 0.55, 0.7, 0.8, 0.88, 0.94, 0.97})
+    list.push_back({sorted[size_t(part * double(sorted.size() - 1))], 0});
+  return list;
+}
+/// From two periods in the range of the signal up; neighbours differ by a quarter of a period at the end of
+/// the range.
+Starts pitches(std::span<const double> signal) {
+  constexpr double fewest = 1.5, most = 80, step = 0.25;  // periods in the range
+  const auto [low, high] = std::ranges::minmax(signal);
+  Starts list;
+  for (double periods = fewest; periods <= most; periods += step) list.push_back({(high - low) / periods, 0});
+  return list;
+}
+
+double sign_of(double s) { return s < 0 ? -1 : 1; }
+double clipped(double s, double limit) { return std::clamp(s, -std::abs(limit), std::abs(limit)); }
+
+const TermShape shapes[] = {
+    {"constant",
+     "A constant",
+     TermShape::Of::nothing,
+     1,
+     0,
+     {"value"},
+     0,
+     [](double, const double*, double* c) { c[0] = 1; },
+     {},
+     everywhere},
+    {"linear",
+     "In proportion",
+     TermShape::Of::signal,
+     1,
+     1,
+     {"slope"},
+     1,
+     [](double s, const double*, double* c) { c[0] = s; },
+     {},
+     everywhere},
+    {"sign",
+     "Dry friction: a constant size, the sign of the signal",
+     TermShape::Of::signal,
+     1,
+     0,
+     {"level"},
+     0,
+     [](double s, const double* p, double* c) { c[0] = std::tanh(s / p[0]); },
+     {"width"},
+     moving,
+     widths},
+    {"stribeck",
+     "Dry friction that falls with speed",
+     TermShape::Of::signal,
+     2,
+     2,
+     {"sliding_level", "breakaway_excess"},
+     0,
+     [](double s, const double* p, double* c) {
+       const double x = s / p[1];
+       c[0] = std::tanh(s / p[0]), c[1] = c[0] * std::exp(-x * x);
+     },
+     {"width", "fall_speed"},
+     moving,
+     stribeck_speeds},
+    {"signed_square",
+     "The square with the sign of the signal, as drag",
+     TermShape::Of::signal,
+     1,
+     0,
+     {"coefficient"},
+     2,
+     [](double s, const double*, double* c) { c[0] = s * std::abs(s); },
+     {},
+     smooth},
+    {"square",
+     "The square",
+     TermShape::Of::signal,
+     1,
+     1,
+     {"coefficient"},
+     2,
+     [](double s, const double*, double* c) { c[0] = s * s; },
+     {},
+     smooth},
+    {"cube",
+     "The cube, as of a hardening spring",
+     TermShape::Of::signal,
+     1,
+     1,
+     {"coefficient"},
+     3,
+     [](double s, const double*, double* c) { c[0] = s * s * s; },
+     {},
+     smooth},
+    {"absolute",
+     "The absolute value",
+     TermShape::Of::signal,
+     1,
+     1,
+     {"coefficient"},
+     1,
+     [](double s, const double*, double* c) { c[0] = std::abs(s); },
+     {},
+     moving},
+    {"periodic",
+     "Periodic, as cogging",
+     TermShape::Of::signal,
+     2,
+     4,
+     {"sine", "cosine"},
+     0,
+     [](double s, const double* p, double* c) {
+       const double phase = 2 * std::numbers::pi * s / p[0];
+       c[0] = std::sin(phase), c[1] = std::cos(phase);
+     },
+     {"pitch"},
+     turning,
+     pitches},
+    {"overflow",
+     "What exceeds a level",
+     TermShape::Of::signal,
+     1,
+     2,
+     {"slope"},
+     1,
+     [](double s, const double* p, double* c) { c[0] = std::max(0.0, s - p[0]); },
+     {"level"},
+     over_level,
+     levels},
+    {"underflow",
+     "What falls short of a level",
+     TermShape::Of::signal,
+     1,
+     2,
+     {"slope"},
+     1,
+     [](double s, const double* p, double* c) { c[0] = std::min(0.0, s - p[0]); },
+     {"level"},
+     placed,
+     levels},
+    {"square_root",
+     "The square root, as an outflow",
+     TermShape::Of::signal,
+     1,
+     1,
+     {"coefficient"},
+     0.5,
+     [](double s, const double*, double* c) { c[0] = sign_of(s) * std::sqrt(std::abs(s)); },
+     {},
+     outflow},
+    {"soft_sign",
+     "A drop that saturates, as of brushes",
+     TermShape::Of::signal,
+     1,
+     2,
+     {"level"},
+     0,
+     [](double s, const double* p, double* c) { c[0] = std::tanh(s / p[0]); },
+     {"knee"},
+     electric,
+     knees},
+    {"radiation",
+     "Radiation: the fourth power of a temperature, and a constant",
+     TermShape::Of::signal,
+     2,
+     1,
+     {"at_300_kelvin", "constant"},
+     0,
+     [](double s, const double*, double* c) {
+       const double x = s / 300;  // so that both columns are of similar size
+       c[0] = x * x * x * x, c[1] = 1;
+     },
+     {},
+     warm},
+    {"convection",
+     "Free convection: the power 1.25 of a temperature difference",
+     TermShape::Of::signal,
+     1,
+     1,
+     {"coefficient"},
+     1.25,
+     [](double s, const double*, double* c) { c[0] = sign_of(s) * std::pow(std::abs(s), 1.25); },
+     {},
+     warm},
+    {"saturation",
+     "A limit of the signal",
+     TermShape::Of::own,
+     1,
+     0,
+     {},
+     0,
+     [](double s, const double* p, double* c) { c[0] = clipped(s, p[0]) - s; },
+     {"limit"},
+     everywhere,
+     knees},
+    {"dead_zone",
+     "A dead zone of the signal",
+     TermShape::Of::own,
+     1,
+     0,
+     {},
+     0,
+     [](double s, const double* p, double* c) { c[0] = -clipped(s, p[0]); },
+     {"half_width"},
+     everywhere,
+     knees},
+};
+
+/// Hats over the range [p0, p1]: one column for each of nine nodes.
+void hats(double s, const double* p, double* c) {
+  const double x = std::clamp((s - p[0]) / (p[1] - p[0]), 0.0, 1.0) * (most_columns - 1);
+  for (int i = 0; i < most_columns; ++i) c[i] = std::max(0.0, 1 - std::abs(x - i));
+}
+Starts range(std::span<const double> signal) {
+  const auto [low, high] = std::ranges::minmax(signal);
+  return {{low, high}};
+}
+
+const TermShape unknown{"unknown",
+                        "A function without a name",
+                        TermShape::Of::signal,
+                        most_columns,
+                        6,
+                        {},
+                        0,
+                        hats,
+                        {},
+                        everywhere,
+                        range};
+
+}  // namespace
+
+std::span<const TermShape> named_shapes() { return shapes; }
+const TermShape& unknown_function() { return unknown; }
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,42 @@
+/// The shapes that a missing term may have, as functions of one signal.
+#pragma once
+#include <array>
+#include <span>
+#include <string_view>
+#include <vector>
+#include "tools/diagnose/predict/quantity.h"
+
+namespace loopwright::diagnosis {
+
+inline constexpr int most_columns = 9, most_nonlinear = 2;
+
+/// term = Σ coefficient · column(signal; p), p being the shape's own parameters.
+struct TermShape {
+  enum class Of {
+    nothing,  ///< a constant
+    signal,   ///< any signal that fits
+    own,      ///< the signal at the site itself: a distortion, whose coefficient is one
+  };
+  std::string_view name, title;
+  Of of = Of::signal;
+  int columns = 1;
+  double cost = 0;  ///< nats, of its prior
+  /// [unit of the site / unit of the signal^power] Its coefficients; those of a function without a name have
+  /// the unit of the site.
+  std::array<std::string_view, 2> coefficients;
+  double power = 0;
+  void (*evaluate)(double signal, const double* p, double* column);
+  /// Names of its own parameters, in the unit of the signal; empty: none.
+  std::array<std::string_view, most_nonlinear> nonlinear{};
+  bool (*fits)(Quantity site, Quantity signal) = nullptr;
+  /// Values of its own parameters to begin with, from the largest size and the range of the signal.
+  std::vector<std::array<double, most_nonlinear>> (*starts)(std::span<const double> signal) = nullptr;
+
+  int nonlinear_count() const { return int(nonlinear[0] != "") + int(nonlinear[1] != ""); }
+};
+
+std::span<const TermShape> named_shapes();
+/// A function without a name: straight lines between nine nodes over the range of the signal.
+const TermShape& unknown_function();
+
+}  // namespace loopwright::diagnosis

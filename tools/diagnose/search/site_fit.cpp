@@ -1,0 +1,269 @@
+#include "tools/diagnose/search/site_fit.h"
+#include <nlopt.hpp>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace loopwright::diagnosis {
+namespace {
+
+/// A parameter keeps its sign and its order of magnitude: beyond, the diagram is another one.
+constexpr double widest_factor = 50;
+/// [of the parameter] Standard deviation of the prior while all parameters are free, so that those which the
+/// record does not determine stay where they are.
+constexpr double prior_deviation = 1;
+/// Directions of the fit that are weaker than this are left out.
+constexpr double weakest_direction = 1e-7;
+/// Lengths of a Gauss-Newton step that are tried.
+constexpr double step_lengths[] = {1, 0.4, 0.1, 0.02};
+/// [in -2 ln L] Smaller improvements end a refinement.
+constexpr double enough = 0.05;
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+std::vector<FittedNumber> fitted_numbers(const SiteHypothesis& h) {
+  using enum FittedNumber::Kind;
+  std::vector<FittedNumber> list;
+  for (size_t i = 0; i < h.is_free.size(); ++i)
+    if (h.is_free[i]) list.push_back({factor, int(i)});
+  for (size_t t = 0; t < h.terms.size(); ++t) {
+    const TermShape& shape = *h.terms[t].shape;
+    if (shape.of != TermShape::Of::own)
+      for (int c = 0; c < shape.columns; ++c) list.push_back({coefficient, int(t), c});
+    for (int p = 0; p < shape.nonlinear_count(); ++p) list.push_back({nonlinear, int(t), p});
+  }
+  return list;
+}
+
+double& value_of(SiteHypothesis& h, const FittedNumber& number) {
+  switch (number.kind) {
+    case FittedNumber::Kind::factor:
+      return h.factors[size_t(number.owner)];
+    case FittedNumber::Kind::coefficient:
+      return h.terms[size_t(number.owner)].coefficient[size_t(number.index)];
+    default:
+      return h.terms[size_t(number.owner)].nonlinear[size_t(number.index)];
+  }
+}
+
+size_t size_of(const SiteHypothesis& h) { return fitted_numbers(h).size(); }
+
+SiteFitter::SiteFitter(SiteFilter& filter, size_t rows, std::function<bool()> is_interrupted)
+    : filter_(filter),
+      rows_(rows),
+      is_interrupted_(std::move(is_interrupted)),
+      errors_(rows * filter.model().record().outputs.size()) {}
+
+void SiteFitter::use(const SiteHypothesis& h) { model().use(h.factors, h.terms); }
+
+bool SiteFitter::pass(SiteHypothesis& h, bool with_columns, SitePass& to) {
+  use(h);
+  const bool good = filter_.run(rows_, h.noise, with_columns, to);
+  h.objective = good ? to.objective() : infinite;
+  h.scaled_objective = good ? to.scaled_objective() : infinite;
+  return good;
+}
+
+Eigen::VectorXd SiteFitter::whitened(const SitePass& pass) const {
+  Eigen::VectorXd e(Eigen::Index(pass.error.size()));
+  for (size_t i = 0; i < pass.error.size(); ++i)
+    e[Eigen::Index(i)] = std::isnan(pass.error[i]) ? 0 : pass.error[i] / std::sqrt(pass.variance[i]);
+  return e;
+}
+
+double SiteFitter::step_of(const SiteHypothesis& h, const FittedNumber& number) const {
+  if (number.kind == FittedNumber::Kind::factor) return 1e-5 * h.factors[size_t(number.owner)];
+  const SiteTerm& term = h.terms[size_t(number.owner)];
+  if (number.kind == FittedNumber::Kind::coefficient) return 1e-3 * term.unit[size_t(number.index)];
+  return 1e-4 * (term.high[size_t(number.index)] - term.low[size_t(number.index)]);
+}
+
+Eigen::MatrixXd SiteFitter::jacobian(const SiteHypothesis& h, const SitePass& about) {
+  const std::vector<FittedNumber> numbers = fitted_numbers(h);
+  Eigen::MatrixXd J(Eigen::Index(about.error.size()), Eigen::Index(numbers.size()));
+  SiteHypothesis moved = h;
+  for (size_t i = 0; i < numbers.size(); ++i) {
+    double& value = value_of(moved, numbers[i]);
+    const double before = value, step = step_of(h, numbers[i]);
+    value += step;
+    use(moved);
+    value = before;
+    if (!filter_.run_frozen(about, errors_)) return {};
+    for (size_t k = 0; k < errors_.size(); ++k)
+      J(Eigen::Index(k), Eigen::Index(i)) =
+          std::isnan(about.error[k]) ? 0
+                                     : (errors_[k] - about.error[k]) / (step * std::sqrt(about.variance[k]));
+  }
+  return J;
+}
+
+void SiteFitter::keep_within_limits(SiteHypothesis& h, const FittedNumber& number, double before) const {
+  double& value = value_of(h, number);
+  if (number.kind == FittedNumber::Kind::factor)
+    value = std::clamp(std::clamp(value, before / 3, before * 3), 1 / widest_factor, widest_factor);
+  if (number.kind != FittedNumber::Kind::nonlinear) return;
+  const SiteTerm& term = h.terms[size_t(number.owner)];
+  const double low = term.low[size_t(number.index)], high = term.high[size_t(number.index)];
+  const double most = low > 0 ? std::max(before / 2, 0.01 * (high - low)) : 0.2 * (high - low);
+  value = std::clamp(std::clamp(value, before - most, before + most), low, high);
+}
+
+void SiteFitter::refine(SiteHypothesis& h, int steps, bool with_prior) {
+  const std::vector<FittedNumber> numbers = fitted_numbers(h);
+  if (!pass(h, false, pass_) || numbers.empty()) return;
+  const auto prior = [&](const SiteHypothesis& at) {
+    double sum = 0;
+    for (size_t i = 0; with_prior && i < at.factors.size(); ++i)
+      if (at.is_free[i]) sum += std::pow((at.factors[i] - 1) / prior_deviation, 2);
+    return sum;
+  };
+  double best = pass_.scaled_objective() + prior(h);
+  for (int step = 0; step < steps && !is_interrupted_(); ++step) {
+    const Eigen::MatrixXd J = jacobian(h, pass_);
+    if (J.size() == 0) return;
+    const double scale = std::sqrt(pass_.squares / double(pass_.readings));
+    const Eigen::Index rows = J.rows(), count = J.cols();
+    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(rows + count, count);
+    Eigen::VectorXd rest = Eigen::VectorXd::Zero(rows + count);
+    all.topRows(rows) = J / scale, rest.head(rows) = -whitened(pass_) / scale;
+    for (Eigen::Index i = 0; i < count; ++i)
+      if (with_prior && numbers[size_t(i)].kind == FittedNumber::Kind::factor) {
+        all(rows + i, i) = 1 / prior_deviation;
+        rest[rows + i] = (1 - value_of(h, numbers[size_t(i)])) / prior_deviation;
+      }
+    Eigen::VectorXd norm = all.colwise().norm().transpose();
+    for (double& size : norm)
+      if (!(size > 0)) size = 1;
+    const Eigen::MatrixXd normal =
+        norm.cwiseInverse().asDiagonal() * (all.transpose() * all) * norm.cwiseInverse().asDiagonal();
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(normal);
+    const Eigen::VectorXd right = norm.cwiseInverse().asDiagonal() * (all.transpose() * rest);
+    Eigen::VectorXd move = Eigen::VectorXd::Zero(count);
+    for (Eigen::Index i = 0; i < count; ++i)
+      if (eigen.eigenvalues()[i] > weakest_direction)
+        move +=
+            eigen.eigenvectors().col(i) * (eigen.eigenvectors().col(i).dot(right) / eigen.eigenvalues()[i]);
+    move = norm.cwiseInverse().asDiagonal() * move;
+    bool is_better = false;
+    for (double length : step_lengths) {
+      SiteHypothesis trial = h;
+      for (size_t i = 0; i < numbers.size(); ++i) {
+        double& value = value_of(trial, numbers[i]);
+        const double before = value;
+        value += length * move[Eigen::Index(i)];
+        keep_within_limits(trial, numbers[i], before);
+      }
+      SitePass there;
+      if (!pass(trial, false, there)) continue;
+      const double objective = there.scaled_objective() + prior(trial);
+      if (!(objective < best)) continue;
+      is_better = best - objective > enough;
+      best = objective, h = trial, pass_ = std::move(there);
+      break;
+    }
+    if (!is_better) return;
+  }
+}
+
+/// The best noise about a pass, from a first one.
+SiteNoise SiteFitter::best_noise(const SitePass& pass, const SiteNoise& from) const {
+  constexpr double widest = 12;  // e-fold changes within one search
+  const SiteNoise guess = filter_.guess_noise();
+  const size_t sites = from.sites.size(), count = sites + from.measurement.size();
+  const auto noise_at = [&](const std::vector<double>& at) {
+    SiteNoise noise = from;
+    for (size_t i = 0; i < count; ++i)
+      (i < sites ? noise.process[i] : noise.measurement[i - sites]) *= std::exp(at[i]);
+    for (size_t j = 0; j < noise.measurement.size(); ++j)
+      noise.measurement[j] = std::max(noise.measurement[j], 1e-4 * guess.measurement[j]);
+    return noise;
+  };
+  using Objective = std::function<double(const std::vector<double>&)>;
+  Objective objective = [&](const std::vector<double>& at) {
+    return std::min(filter_.objective_with(pass, noise_at(at)), 1e100);
+  };
+  nlopt::opt search(nlopt::LN_SBPLX, unsigned(count));
+  search.set_min_objective([](const std::vector<double>& at, std::vector<double>&,
+                              void* f) { return (*static_cast<Objective*>(f))(at); },
+                           &objective);
+  search.set_lower_bounds(-widest), search.set_upper_bounds(widest);
+  search.set_initial_step(1.0), search.set_ftol_abs(0.05), search.set_maxeval(int(40 * count));
+  std::vector<double> x(count, 0.0);
+  double reached = 0;
+  try {
+    search.optimize(x, reached);
+  } catch (const std::exception&) {  // rounding: x is the best point so far
+  }
+  return noise_at(x);
+}
+
+/// With every component as large as the largest, in proportion to what it does. Nothing if none had vanished.
+std::optional<SiteNoise> SiteFitter::evened(const SiteNoise& noise) const {
+  constexpr double vanished = 0.02;  // [of the largest]
+  SiteNoise even = noise;
+  bool has_vanished = false;
+  double largest = 0;
+  for (size_t s = 0; s < noise.sites.size(); ++s)
+    largest = std::max(largest, noise.process[s] / filter_.site_scale(noise.sites[s]));
+  for (size_t s = 0; s < noise.sites.size(); ++s) {
+    const double size = largest * filter_.site_scale(noise.sites[s]);
+    has_vanished |= noise.process[s] < vanished * size;
+    even.process[s] = std::max(noise.process[s], size);
+  }
+  const SiteNoise guess = filter_.guess_noise();
+  for (size_t j = 0; j < noise.measurement.size(); ++j) {
+    has_vanished |= noise.measurement[j] < vanished * guess.measurement[j];
+    even.measurement[j] = std::max(noise.measurement[j], 0.3 * guess.measurement[j]);
+  }
+  return has_vanished ? std::optional(even) : std::nullopt;
+}
+
+void SiteFitter::fit_noise(SiteHypothesis& h) {
+  constexpr int rounds = 2;  // the linearization moves with the filtered path
+  for (int round = 0; round < rounds && !is_interrupted_(); ++round) {
+    if (!pass(h, false, pass_)) return;
+    const double before = h.objective;
+    SiteHypothesis trial = h;
+    trial.noise = best_noise(pass_, h.noise);
+    if (const auto even =
+            evened(trial.noise)) {  // a component that has vanished does not come back by itself
+      const SiteNoise other = best_noise(pass_, *even);
+      if (filter_.objective_with(pass_, other) < filter_.objective_with(pass_, trial.noise))
+        trial.noise = other;
+    }
+    SitePass there;
+    if (!pass(trial, false, there) || !(trial.objective < before)) return;
+    h = trial;
+    if (before - trial.objective < 1) return;
+  }
+}
+
+void SiteFitter::anneal(SiteHypothesis& h, bool with_prior) {
+  constexpr double colder = 5, most_colder = 1e4;
+  constexpr double better = 2;  // in -2 ln L
+  fit_noise(h);
+  if (!std::isfinite(h.objective)) return;
+  const SiteNoise guess = filter_.guess_noise();
+  int failures = 0;
+  double factor = colder;
+  while (failures < 2 && factor < most_colder && !is_interrupted_()) {
+    SiteHypothesis trial = h;
+    for (double& sigma : trial.noise.process) sigma /= factor;
+    for (size_t j = 0; j < trial.noise.measurement.size(); ++j)
+      trial.noise.measurement[j] = std::max(trial.noise.measurement[j], 0.3 * guess.measurement[j]);
+    SitePass there;
+    if (!pass(trial, false, there)) break;
+    const double scale = std::sqrt(there.squares / double(there.readings));
+    for (double& r : trial.noise.measurement) r *= std::max(1.0, scale);
+    refine(trial, 3, with_prior);
+    fit_noise(trial);
+    refine(trial, 3, with_prior);
+    if (trial.objective < h.objective - better)
+      h = trial, failures = 0, factor = colder;
+    else
+      ++failures, factor *= colder;
+  }
+}
+
+}  // namespace loopwright::diagnosis

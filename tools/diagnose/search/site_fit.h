@@ -1,0 +1,76 @@
+/// Parameters of the diagram, coefficients of terms and noise, fitted to a record through the predictor.
+#pragma once
+#include <Eigen/Dense>
+#include <functional>
+#include <optional>
+#include <vector>
+#include "tools/diagnose/predict/site_filter.h"
+
+namespace loopwright::diagnosis {
+
+/// What is supposed about the diagram.
+struct SiteHypothesis {
+  std::vector<double> factors;  ///< of its parameters; 1: as the diagram states
+  std::vector<bool> is_free;    ///< which parameters are fitted
+  std::vector<SiteTerm> terms;
+  SiteNoise noise;
+  double objective = 0;         ///< -2 ln L with this noise
+  double scaled_objective = 0;  ///< the same with the best common scale of the noise
+
+  size_t free_parameters() const { return size_t(std::count(is_free.begin(), is_free.end(), true)); }
+};
+
+/// One number of a hypothesis that is fitted.
+struct FittedNumber {
+  enum class Kind { factor, coefficient, nonlinear };
+  Kind kind;
+  int owner;      ///< the parameter or the term
+  int index = 0;  ///< of the coefficient or of the shape's own parameter
+};
+std::vector<FittedNumber> fitted_numbers(const SiteHypothesis& hypothesis);
+double& value_of(SiteHypothesis& hypothesis, const FittedNumber& number);
+
+/// Number of parameters for an information criterion.
+size_t size_of(const SiteHypothesis& hypothesis);
+
+class SiteFitter {
+ public:
+  /// Over the first `rows` rows of the record.
+  SiteFitter(SiteFilter& filter, size_t rows, std::function<bool()> is_interrupted);
+
+  SiteFilter& filter() { return filter_; }
+  SiteModel& model() { return filter_.model(); }
+  size_t rows() const { return rows_; }
+
+  /// A whole pass; false if the model diverges. Sets the hypothesis' objectives.
+  bool pass(SiteHypothesis& hypothesis, bool with_columns, SitePass& to);
+  /// Gauss-Newton steps on all fitted numbers, judged by whole passes; with a weak prior on the factors of
+  /// parameters if `with_prior`.
+  void refine(SiteHypothesis& hypothesis, int steps, bool with_prior);
+  /// Maximum likelihood of the noise, linearized about a pass.
+  void fit_noise(SiteHypothesis& hypothesis);
+  /// The likelihood has two optima: much noise in the states and little in the sensors, and the reverse.
+  /// Parameters are biased in the wrong one. Noise in the states is therefore made small, parameters and
+  /// noise are fitted, as long as the likelihood improves.
+  void anneal(SiteHypothesis& hypothesis, bool with_prior);
+  /// Derivatives of the whitened errors with respect to all fitted numbers, as columns; a missing reading is
+  /// zero. Empty if the model diverges.
+  Eigen::MatrixXd jacobian(const SiteHypothesis& hypothesis, const SitePass& about);
+  Eigen::VectorXd whitened(const SitePass& pass) const;
+  /// Bounds and step of a number for differences.
+  double step_of(const SiteHypothesis& hypothesis, const FittedNumber& number) const;
+
+ private:
+  void use(const SiteHypothesis& hypothesis);
+  SiteNoise best_noise(const SitePass& pass, const SiteNoise& from) const;
+  std::optional<SiteNoise> evened(const SiteNoise& noise) const;
+  void keep_within_limits(SiteHypothesis& hypothesis, const FittedNumber& number, double before) const;
+
+  SiteFilter& filter_;
+  const size_t rows_;
+  std::function<bool()> is_interrupted_;
+  SitePass pass_;
+  std::vector<double> errors_;
+};
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,247 @@
+#include "tools/diagnose/search/site_ranking.h"
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace loopwright::diagnosis {
+namespace {
+
+/// [of its energy] What must be left of a column after projection.
+constexpr double least_energy = 2e-3;
+constexpr double weakest_direction = 1e-7;
+/// Nats, beside those of the shape.
+constexpr double of_far = 6, of_derived = 3, of_difference = 2, of_indirect_sum = 3;
+
+/// Far from its site a variable enters by plain laws only.
+bool is_plain(const TermShape& shape) {
+  return shape.name == "linear" || shape.name == "signed_square" || shape.name == "square" ||
+         shape.name == "cube";
+}
+
+/// An orthonormal basis of the columns.
+Eigen::MatrixXd basis_of(const Eigen::MatrixXd& J) {
+  if (J.cols() == 0) return J;
+  Eigen::VectorXd norm = J.colwise().norm().transpose();
+  for (double& size : norm)
+    if (!(size > 0)) size = 1;
+  const Eigen::MatrixXd unit = J * norm.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(unit.transpose() * unit);
+  Eigen::MatrixXd basis(J.rows(), J.cols());
+  Eigen::Index count = 0;
+  for (Eigen::Index i = 0; i < J.cols(); ++i)
+    if (eigen.eigenvalues()[i] > weakest_direction)
+      basis.col(count++) = unit * eigen.eigenvectors().col(i) / std::sqrt(eigen.eigenvalues()[i]);
+  return basis.leftCols(count);
+}
+
+class Ranking {
+ public:
+  Ranking(SiteFitter& fitter, SiteHypothesis hypothesis) : fitter_(fitter), at_(std::move(hypothesis)) {
+    is_good_ = fitter_.pass(at_, true, pass_);
+    if (!is_good_) return;
+    const Eigen::MatrixXd J = fitter_.jacobian(at_, pass_);
+    basis_ = basis_of(J.size() ? J : Eigen::MatrixXd(Eigen::Index(pass_.error.size()), 0));
+    rest_ = fitter_.whitened(pass_);
+    rest_ -= basis_ * (basis_.transpose() * rest_);
+    for (auto& list : phi_) list.resize(pass_.rows);
+    find_multiples();
+  }
+
+  std::vector<SiteCandidate> run(std::span<const TermShape> shapes) {
+    std::vector<SiteCandidate> list;
+    if (!is_good_) return list;
+    const SiteModel& model = fitter_.model();
+    for (int site = 0; site < int(model.sites().size()); ++site) {
+      if (!model.sites()[size_t(site)].is_searched || !acts(site)) continue;
+      for (const TermShape& shape : shapes) {
+        if (shape.of == TermShape::Of::nothing && !is_distorted(site))
+          rank(shape, site, -1, list);
+        else if (shape.of == TermShape::Of::own)
+          try_distortion(shape, site, list);
+        else if (shape.of == TermShape::Of::signal)
+          for (int v = 0; v < int(model.variables().size()); ++v)
+            if (is_admissible(shape, site, v)) rank(shape, site, v, list);
+      }
+    }
+    std::ranges::sort(list, std::greater{}, [](const SiteCandidate& c) { return c.gain - 2 * c.cost; });
+    return list;
+  }
+
+ private:
+  /// An output that is only a multiple of a state, as of a Gain, is no variable of its own.
+  void find_multiples() {
+    const std::vector<SiteVariable>& variables = fitter_.model().variables();
+    is_multiple_.assign(variables.size(), false);
+    std::vector<Eigen::VectorXd> directions;
+    for (const bool states : {true, false})
+      for (size_t v = 0; v < variables.size(); ++v) {
+        if (variables[v].is_state != states) continue;
+        const std::vector<double> values = signal(int(v));
+        const Eigen::Map<const Eigen::VectorXd> along(values.data(), Eigen::Index(values.size()));
+        const double size = along.norm();
+        is_multiple_[v] = !(size > 0) || std::ranges::any_of(directions, [&](const auto& known) {
+          return (along / size - known * known.dot(along / size)).norm() < 1e-6;
+        });
+        if (!is_multiple_[v]) directions.push_back(along / size);
+      }
+  }
+  bool acts(int site) const {
+    for (size_t k = 0; k < pass_.rows; ++k)
+      for (size_t i = 0; i < pass_.states; ++i)
+        if (pass_.G[(k * pass_.sites + size_t(site)) * pass_.states + i] != 0) return true;
+    return false;
+  }
+  /// A recorded input or the output of a filter: a term there depends on the signal itself. Others act at a
+  /// Sum behind it.
+  bool is_distorted(int site) const {
+    const Site::Kind kind = fitter_.model().sites()[size_t(site)].kind;
+    return kind == Site::Kind::input || kind == Site::Kind::block;
+  }
+  bool is_there(const TermShape& shape, int site, int variable) const {
+    return std::ranges::any_of(at_.terms, [&](const SiteTerm& t) {
+      return t.shape == &shape && t.site == site && t.variable == variable && shape.name != "periodic";
+    });
+  }
+  bool is_admissible(const TermShape& shape, int site, int variable) const {
+    const SiteModel& model = fitter_.model();
+    const Nearness nearness = model.nearness(site, variable);
+    if (nearness == Nearness::unusable) return false;
+    if (is_distorted(site) ? variable != model.own_variable(site) : is_multiple_[size_t(variable)])
+      return false;
+    if (nearness == Nearness::far && !is_plain(shape)) return false;
+    return shape.fits(model.sites()[size_t(site)].quantity, model.variables()[size_t(variable)].quantity);
+  }
+  /// Along the path, at the start of each sample.
+  std::vector<double> signal(int variable) const {
+    std::vector<double> values(pass_.rows);
+    for (size_t k = 0; variable >= 0 && k < pass_.rows; ++k)
+      values[k] = fitter_.model().variables()[size_t(variable)].at(&pass_.path[0][k * pass_.numbers]);
+    return values;
+  }
+  SiteTerm term_of(const TermShape& shape, int site, int variable, const std::vector<double>& values,
+               const std::array<double, most_nonlinear>& start) const {
+    SiteTerm term;
+    term.shape = &shape, term.site = site, term.variable = variable, term.nonlinear = start;
+    const auto [low, high] = std::ranges::minmax(values);
+    const double largest = std::max(std::abs(low), std::abs(high));
+    const bool is_level = shape.nonlinear[0] == "level" || &shape == &unknown_function();
+    for (size_t p = 0; p < most_nonlinear; ++p) {
+      term.low[p] = is_level ? low : 1e-4 * std::min(largest, high - low);
+      term.high[p] = is_level ? high : 3 * std::max(largest, high - low);
+    }
+    return term;
+  }
+  /// The responses of the errors to the term's columns, at coefficients of one.
+  Eigen::MatrixXd responses(SiteTerm& term) {
+    const SiteVariable none;
+    const SiteVariable& variable = term.variable < 0 ? none : fitter_.model().variables()[size_t(term.variable)];
+    Eigen::MatrixXd columns(Eigen::Index(pass_.error.size()), term.shape->columns);
+    for (int c = 0; c < term.shape->columns; ++c) {
+      double square = 0;
+      for (size_t part = 0; part < 3; ++part)
+        for (size_t k = 0; k < pass_.rows; ++k) {
+          double all[most_columns];
+          term.columns(term.variable < 0 ? 0 : variable.at(&pass_.path[part][k * pass_.numbers]), all);
+          phi_[part][k] = all[c];
+          square += all[c] * all[c];
+        }
+      const double size = std::sqrt(square / (3 * double(pass_.rows)));
+      term.unit[size_t(c)] = size > 0 ? fitter_.filter().site_scale(term.site) / size : 1;
+      fitter_.filter().respond(pass_, term.site, phi_[0], phi_[1], phi_[2],
+                               {columns.col(c).data(), pass_.error.size()});
+    }
+    return columns;
+  }
+  void rank(const TermShape& shape, int site, int variable, std::vector<SiteCandidate>& list) {
+    if (is_there(shape, site, variable)) return;
+    const std::vector<double> values = signal(variable);
+    std::vector<std::array<double, most_nonlinear>> starts{{}};
+    if (shape.starts) starts = shape.starts(values);
+    SiteCandidate best;
+    for (const auto& start : starts) {
+      if (shape.starts && !(start[0] != 0 || start[1] != 0)) continue;
+      SiteTerm term = term_of(shape, site, variable, values, start);
+      Eigen::MatrixXd columns = responses(term);
+      if (!columns.allFinite()) continue;
+      const Eigen::VectorXd energy = columns.colwise().squaredNorm().transpose();
+      columns -= basis_ * (basis_.transpose() * columns);
+      for (Eigen::Index c = 0; c < columns.cols(); ++c)
+        if (!(columns.col(c).squaredNorm() > least_energy * energy[c])) columns.col(c).setZero();
+      const double gain = explain(columns, term);
+      if (gain > best.gain) best.gain = gain, best.term = term;
+    }
+    if (best.gain <= 0) return;
+    best.cost = cost_of(fitter_.model(), best.term);
+    list.push_back(best);
+  }
+  /// Least squares of the remaining errors; the gain in -2 ln L.
+  double explain(const Eigen::MatrixXd& columns, SiteTerm& term) const {
+    const Eigen::VectorXd norm = columns.colwise().norm().transpose();
+    if (!(norm.maxCoeff() > 0)) return 0;
+    Eigen::VectorXd weight(norm.size());
+    for (Eigen::Index i = 0; i < norm.size(); ++i) weight[i] = norm[i] > 0 ? 1 / norm[i] : 0;
+    const Eigen::MatrixXd unit = columns * weight.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(unit.transpose() * unit);
+    const Eigen::VectorXd right = unit.transpose() * rest_;
+    Eigen::VectorXd coefficient = Eigen::VectorXd::Zero(norm.size());
+    for (Eigen::Index i = 0; i < norm.size(); ++i)
+      if (eigen.eigenvalues()[i] > 1e-6)
+        coefficient +=
+            eigen.eigenvectors().col(i) * (eigen.eigenvectors().col(i).dot(right) / eigen.eigenvalues()[i]);
+    const double before = rest_.squaredNorm(), after = (rest_ - unit * coefficient).squaredNorm();
+    coefficient = weight.asDiagonal() * coefficient;
+    for (Eigen::Index c = 0; c < norm.size(); ++c) term.coefficient[size_t(c)] = coefficient[c];
+    return double(pass_.readings) * std::log(before / std::max(after, 1e-12 * before));
+  }
+  /// A strong distortion is far from linear: every first value is judged by a pass of the model.
+  void try_distortion(const TermShape& shape, int site, std::vector<SiteCandidate>& list) {
+    const int own = fitter_.model().own_variable(site);
+    if (own < 0 || is_there(shape, site, own)) return;
+    if (fitter_.model().nearness(site, own) == Nearness::unusable) return;
+    const std::vector<double> values = signal(own);
+    SiteCandidate best;
+    for (const auto& start : shape.starts(values)) {
+      if (start[0] == 0) continue;
+      SiteHypothesis trial = at_;
+      trial.terms.push_back(term_of(shape, site, own, values, start));
+      trial.terms.back().coefficient[0] = 1;
+      SitePass there;
+      if (!fitter_.pass(trial, false, there)) continue;
+      const double gain = pass_.scaled_objective() - there.scaled_objective();
+      if (gain > best.gain) best.gain = gain, best.term = trial.terms.back();
+    }
+    if (best.gain <= 0) return;
+    best.cost = cost_of(fitter_.model(), best.term);
+    list.push_back(best);
+  }
+
+  SiteFitter& fitter_;
+  SiteHypothesis at_;
+  SitePass pass_;
+  bool is_good_ = false;
+  std::vector<bool> is_multiple_;
+  Eigen::MatrixXd basis_;
+  Eigen::VectorXd rest_;
+  std::array<std::vector<double>, 3> phi_;
+};
+
+}  // namespace
+
+double cost_of(const SiteModel& model, const SiteTerm& term) {
+  double cost = term.shape->cost;
+  const Site& site = model.sites()[size_t(term.site)];
+  if (site.kind == Site::Kind::sum && !model.drives_state(term.site)) cost += of_indirect_sum;
+  if (term.variable < 0 || term.variable == model.own_variable(term.site)) return cost;
+  const SiteVariable& variable = model.variables()[size_t(term.variable)];
+  if (model.nearness(term.site, term.variable) == Nearness::far) cost += of_far;
+  if (!variable.is_state) cost += of_derived;
+  if (variable.minus >= 0) cost += of_difference;
+  return cost;
+}
+
+std::vector<SiteCandidate> rank_terms(SiteFitter& fitter, SiteHypothesis hypothesis,
+                                      std::span<const TermShape> shapes) {
+  return Ranking(fitter, std::move(hypothesis)).run(shapes);
+}
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,27 @@
+/// Which single terms would explain most of the prediction errors, by linear responses.
+#pragma once
+#include <vector>
+#include "tools/diagnose/search/site_fit.h"
+
+namespace loopwright::diagnosis {
+
+/// A shape of a variable at a site; `term` has its best first values.
+struct SiteCandidate {
+  SiteTerm term;
+  double cost = 0;  ///< nats: shape, distance between variable and site
+  double gain = 0;  ///< in -2 ln L, linearized; of distortions by a pass of the model
+
+  bool is_same_key(const SiteTerm& other) const {
+    return term.shape == other.shape && term.site == other.site && term.variable == other.variable;
+  }
+};
+
+/// What a term costs in an information criterion, in nats.
+double cost_of(const SiteModel& model, const SiteTerm& term);
+
+/// Sorted, best first, one for each key. Parameters and terms of the hypothesis are projected out. A column
+/// of which nearly nothing is left then is not ranked: differences of the linearization would decide.
+std::vector<SiteCandidate> rank_terms(SiteFitter& fitter, SiteHypothesis hypothesis,
+                                      std::span<const TermShape> shapes);
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,263 @@
+#include "tools/diagnose/search/site_search.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include "tools/diagnose/search/moved_parameters.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+constexpr size_t fitted_keys = 5;  // candidates that are confirmed by real fits
+constexpr size_t most_terms = 5;
+constexpr int most_first_substeps = 64;
+/// In -2 ln L: what a term must gain, also per reading.
+constexpr double least_gain = 25, least_gain_per_reading = 0.002;
+/// In the criterion: what an added term and an exchange must gain, and within what a rival is declared.
+constexpr double least_improvement = 10, least_exchange = 3, rival_within = 10;
+/// [of the gain needed, and of the best candidate's] A smaller linearized gain is not worth a real fit.
+constexpr double promising = 0.4, promising_beside_best = 0.2;
+/// In -2 ln L, a function without a name against a named term.
+constexpr double least_gain_of_unknown = 60, least_gain_of_unknown_per_reading = 0.005;
+
+class SiteSearch {
+ public:
+  SiteSearch(SiteFitter& fitter, const std::function<void(const char*, double)>& progress)
+      : fitter_(fitter), progress_(progress) {}
+
+  std::optional<SiteSearchResult> run() {
+    SiteHypothesis& nominal = result_.nominal;
+    nominal.factors.assign(model().parameters().size(), 1.0);
+    nominal.is_free.assign(model().parameters().size(), false);
+    if (!start(nominal)) return {};
+    progress_("fitting parameters", 0.1);
+    SiteHypothesis at = result_.parameters = with_free_parameters(nominal);
+    tell("parameters free", at);
+    add_terms(at);
+    exchange(at);
+    add_unknown(at);
+    remove_idle(at);
+    progress_("deciding which parameters moved", 0.8);
+    decide_parameters(at);
+    if (remove_idle(at)) decide_parameters(at);
+    compare_with_single_terms(at);
+    result_.found = std::move(at);
+    return std::move(result_);
+  }
+
+ private:
+  SiteModel& model() { return fitter_.model(); }
+  double gain_needed() const { return std::max(least_gain, least_gain_per_reading * readings_); }
+  void tell(const std::string& what, const SiteHypothesis& at) {
+    std::string noise;
+    for (double s : at.noise.process) noise += fmt::format(" {:.3g}", s);
+    noise += " |";
+    for (double r : at.noise.measurement) noise += fmt::format(" {:.3g}", r);
+    result_.trail.push_back(fmt::format("{}: -2 ln L {:.1f}, criterion {:.1f}, noise{}", what, at.objective,
+                                        criterion(at), noise));
+  }
+
+  /// -2 ln L + p ln n + twice the cost of the prior.
+  double criterion(const SiteHypothesis& h) {
+    double sum = h.objective + double(size_of(h)) * std::log(readings_);
+    for (const SiteTerm& term : h.terms) sum += 2 * cost_of(model(), term) + 2 * std::log(double(keys_));
+    return sum;
+  }
+
+  /// Sizes of states and sites, and the best noise of the diagram as it is.
+  bool start(SiteHypothesis& h) {
+    constexpr int rounds = 3;  // the sizes of the first pass are guesses
+    for (int round = 0; round < rounds; ++round) {
+      h.noise = fitter_.filter().guess_noise();
+      while (!fitter_.pass(h, true, pass_)) {  // a fast state needs shorter steps
+        if (model().substeps() >= most_first_substeps) return false;
+        model().set_substeps(2 * model().substeps());
+      }
+      fitter_.filter().learn_scales(pass_);
+      fitter_.filter().choose_substeps(pass_);
+    }
+    h.noise = fitter_.filter().guess_noise();
+    readings_ = double(pass_.readings);
+    fitter_.fit_noise(h);
+    tell("the diagram as it is", h);
+    return fitter_.pass(h, false, pass_);
+  }
+
+  /// Those parameters free that the record sees at all.
+  SiteHypothesis with_free_parameters(SiteHypothesis h) {
+    std::fill(h.is_free.begin(), h.is_free.end(), true);
+    if (!fitter_.pass(h, false, pass_)) return h;
+    const Eigen::MatrixXd J = fitter_.jacobian(h, pass_);
+    constexpr double least_response = 1e-3;  // in whitened errors, for a change by all of the parameter
+    for (size_t i = 0; i < h.is_free.size(); ++i)
+      h.is_free[i] = J.size() && J.col(Eigen::Index(i)).norm() > least_response;
+    fitter_.refine(h, 8, true);
+    fitter_.anneal(h, true);
+    return h;
+  }
+
+  /// Real fits of the best candidates; the best of them with its own noise.
+  std::vector<SiteHypothesis> fits(const SiteHypothesis& at, std::span<const SiteCandidate> candidates) {
+    std::vector<SiteHypothesis> list;
+    double most = 0;
+    for (const SiteCandidate& candidate : candidates) most = std::max(most, candidate.gain);
+    for (const SiteCandidate& candidate : candidates) {
+      if (candidate.gain < std::max(promising * gain_needed(), promising_beside_best * most)) continue;
+      SiteHypothesis trial = at;
+      trial.terms.push_back(candidate.term);
+      if (candidate.term.shape->of == TermShape::Of::own) trial.terms.back().coefficient[0] = 1;
+      fitter_.refine(trial, 5, true);
+      if (std::isfinite(trial.objective)) list.push_back(std::move(trial));
+    }
+    std::ranges::sort(list, {}, &SiteHypothesis::scaled_objective);
+    if (list.empty()) return list;
+    const double best = list.front().scaled_objective;
+    const double margin = std::max(30.0, 0.15 * (at.scaled_objective - best));
+    std::erase_if(list, [&](const SiteHypothesis& h) { return h.scaled_objective > best + margin; });
+    for (SiteHypothesis& h : list) {
+      fitter_.fit_noise(h);
+      fitter_.refine(h, 3, true);
+    }
+    std::ranges::sort(list, {}, [&](const SiteHypothesis& h) { return criterion(h); });
+    return list;
+  }
+  /// The best candidates after parameters and terms, at first also those about the nominal parameters: a
+  /// strong term bends the parameters that are fitted without it.
+  std::vector<SiteCandidate> candidates(const SiteHypothesis& at) {
+    std::vector<SiteCandidate> ranked = rank_terms(fitter_, at, named_shapes());
+    keys_ = std::max<size_t>(keys_, ranked.size());
+    std::vector<SiteCandidate> list(ranked.begin(),
+                                    ranked.begin() + std::ptrdiff_t(std::min(fitted_keys, ranked.size())));
+    for (const SiteCandidate& c : list)
+      result_.trail.push_back(
+          fmt::format("  ranked {}: {:.1f}, cost {:.1f}", describe(model(), c.term), c.gain, c.cost));
+    for (const SiteCandidate& c : ranked)  // the best distortion is judged with the others
+      if (c.term.shape->of == TermShape::Of::own) {
+        if (std::ranges::none_of(list, [&](const auto& known) { return known.is_same_key(c.term); }))
+          list.push_back(c);
+        break;
+      }
+    return list;
+  }
+
+  void add_terms(SiteHypothesis& at) {
+    while (at.terms.size() < most_terms) {
+      progress_("searching", 0.2 + 0.1 * double(at.terms.size()));
+      std::vector<SiteHypothesis> tried = fits(at, candidates(at));
+      if (tried.empty()) return;
+      SiteHypothesis best = std::move(tried.front());
+      const bool gains = at.objective - best.objective >= gain_needed() &&
+                         criterion(at) - criterion(best) >= least_improvement;
+      tell(fmt::format("{} {}", gains ? "+" : "not enough:", describe(model(), best.terms.back())), best);
+      if (!gains) return;
+      fitter_.anneal(best, true);
+      tell("  annealed", best);
+      at = std::move(best);
+      remove_idle(at);
+      result_.steps.push_back(at);
+    }
+  }
+
+  /// Each term is replaced by the best other one in its place.
+  void exchange(SiteHypothesis& at) {
+    for (size_t t = 0; t < at.terms.size(); ++t) {
+      SiteHypothesis without = at;
+      const SiteTerm term = at.terms[t];
+      without.terms.erase(without.terms.begin() + std::ptrdiff_t(t));
+      std::vector<SiteCandidate> others = rank_terms(fitter_, without, named_shapes());
+      std::erase_if(others, [&](const SiteCandidate& c) { return c.is_same_key(term); });
+      others.resize(std::min<size_t>(3, others.size()));
+      for (SiteHypothesis& other : fits(without, others)) {
+        const double needed = size_of(other) > size_of(at) ? 20 : least_exchange;
+        const double worse = criterion(other) - criterion(at);
+        if (worse < -needed) {
+          tell("exchanged for " + describe(model(), other.terms.back()), other);
+          at = other;
+          std::rotate(at.terms.begin() + std::ptrdiff_t(t), at.terms.end() - 1, at.terms.end());
+        } else if (worse < std::max(rival_within, least_gain_per_reading * readings_)) {
+          result_.rivals.push_back({t, other.terms.back(), worse});
+        }
+      }
+    }
+  }
+
+  void add_unknown(SiteHypothesis& at) {
+    std::vector<SiteCandidate> ranked = rank_terms(fitter_, at, {&unknown_function(), 1});
+    ranked.resize(std::min<size_t>(2, ranked.size()));
+    std::vector<SiteHypothesis> tried = fits(at, ranked);
+    if (tried.empty()) return;
+    const double needed =
+        std::max(least_gain + least_gain_of_unknown, least_gain_of_unknown_per_reading * readings_);
+    tell("best unknown: " + describe(model(), tried.front().terms.back()), tried.front());
+    if (at.objective - tried.front().objective < needed ||
+        criterion(at) - criterion(tried.front()) < least_improvement)
+      return;
+    at = tried.front();
+    result_.steps.push_back(at);
+  }
+
+  /// Terms without which the likelihood hardly falls.
+  bool remove_idle(SiteHypothesis& at) {
+    bool is_any_removed = false;
+    for (size_t t = at.terms.size(); t-- > 0;) {
+      SiteHypothesis without = at;
+      without.terms.erase(without.terms.begin() + std::ptrdiff_t(t));
+      fitter_.refine(without, 6, false);
+      fitter_.fit_noise(without);
+      if (without.objective - at.objective >= gain_needed()) continue;
+      tell("- " + describe(model(), at.terms[t]), without);
+      std::erase_if(result_.rivals, [&](const SiteRival& r) { return r.of == t; });
+      for (SiteRival& r : result_.rivals) r.of -= r.of > t;
+      at = std::move(without), is_any_removed = true;
+    }
+    return is_any_removed;
+  }
+
+  void decide_parameters(SiteHypothesis& at) {
+    std::vector<MovedParameters> choices = moved_parameters(fitter_, at, readings_);
+    if (choices.empty()) return;
+    at = choices.front().hypothesis;
+    tell("parameters decided", at);
+    result_.parameter_rivals.clear();
+    for (size_t i = 1; i < choices.size(); ++i)
+      if (choices[i].criterion - choices.front().criterion < rival_within)
+        result_.parameter_rivals.push_back(
+            {choices[i].moved(), {}, choices[i].criterion - choices.front().criterion});
+  }
+
+  /// A single term with the diagram's own parameters against moved parameters without a term.
+  void compare_with_single_terms(SiteHypothesis& at) {
+    if (!at.terms.empty() || at.free_parameters() == 0) return;
+    std::vector<SiteCandidate> ranked = rank_terms(fitter_, result_.nominal, named_shapes());
+    std::erase_if(ranked,
+                  [](const SiteCandidate& c) { return c.term.shape->name == "linear"; });  // a parameter
+    ranked.resize(std::min<size_t>(3, ranked.size()));
+    const double parameters = at.objective + double(at.free_parameters()) * (std::log(readings_) + 4);
+    for (const SiteHypothesis& other : fits(result_.nominal, ranked)) {
+      const double worse = criterion(other) - parameters;
+      tell("in the place of parameters: " + describe(model(), other.terms.back()), other);
+      if (worse < rival_within) result_.parameter_rivals.push_back({{}, other.terms, worse});
+    }
+  }
+
+  SiteFitter& fitter_;
+  const std::function<void(const char*, double)>& progress_;
+  SiteSearchResult result_;
+  SitePass pass_;
+  double readings_ = 0;
+  size_t keys_ = 10;
+};
+
+}  // namespace
+
+std::string describe(const SiteModel& model, const SiteTerm& term) {
+  std::string text = fmt::format("{}: {}", model.sites()[size_t(term.site)].name, term.shape->name);
+  if (term.variable >= 0) text += fmt::format("({})", model.variables()[size_t(term.variable)].name);
+  return text;
+}
+
+std::optional<SiteSearchResult> search_sites(SiteFitter& fitter,
+                                             const std::function<void(const char*, double)>& progress) {
+  return SiteSearch(fitter, progress).run();
+}
+
+}  // namespace loopwright::diagnosis

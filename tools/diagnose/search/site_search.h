@@ -1,0 +1,41 @@
+/// The search for what a diagram lacks, at any of its sites: docs/diagnose.md, "Any diagram".
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+#include "tools/diagnose/search/site_ranking.h"
+
+namespace loopwright::diagnosis {
+
+/// A term that explains the record as well as one of the found ones.
+struct SiteRival {
+  size_t of = 0;  ///< the found term
+  SiteTerm term;
+  double worse = 0;  ///< by how much its criterion is higher
+};
+
+/// Other parameters that explain the record as well.
+struct ParameterRival {
+  std::vector<int> moved;   ///< instead of those that moved
+  std::vector<SiteTerm> terms;  ///< a term in place of all moved parameters, if not empty
+  double worse = 0;
+};
+
+struct SiteSearchResult {
+  SiteHypothesis nominal;     ///< the diagram as it is, with its best noise
+  SiteHypothesis parameters;  ///< all parameters free
+  SiteHypothesis found;
+  std::vector<SiteRival> rivals;
+  std::vector<ParameterRival> parameter_rivals;
+  std::vector<SiteHypothesis> steps;  ///< as terms were accepted
+  std::vector<std::string> trail;
+};
+
+/// Null when the model diverges along the record, whatever its noise.
+std::optional<SiteSearchResult> search_sites(SiteFitter& fitter,
+                                             const std::function<void(const char*, double)>& progress);
+
+std::string describe(const SiteModel& model, const SiteTerm& term);
+
+}  // namespace loopwright::diagnosis

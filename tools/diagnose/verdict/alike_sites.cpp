@@ -1,0 +1,41 @@
+#include "tools/diagnose/verdict/alike_sites.h"
+#include <fmt/format.h>
+#include <cmath>
+#include "models/random/philox.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+/// Cosine between responses beyond which no shape of the catalogue tells two sites apart.
+constexpr double alike = 0.98;
+/// [rows] A trial term keeps its value as long; about as effects change along a motion.
+constexpr size_t hold = 20;
+
+}  // namespace
+
+std::vector<std::string> alike_sites(SiteFitter& fitter, SiteHypothesis h) {
+  std::vector<std::string> sentences;
+  SitePass pass;
+  if (!fitter.pass(h, true, pass)) return sentences;
+  std::vector<double> trial(pass.rows);
+  for (size_t k = 0; k < pass.rows; ++k) trial[k] = uniform_pair(1, 0, k / hold).first - 0.5;
+  const std::vector<Site>& sites = fitter.model().sites();
+  std::vector<std::pair<size_t, Eigen::VectorXd>> columns;
+  for (size_t s = 0; s < sites.size(); ++s) {
+    Eigen::VectorXd column(Eigen::Index(pass.error.size()));
+    fitter.filter().respond(pass, int(s), trial, trial, trial, {column.data(), pass.error.size()});
+    if (!(column.norm() > 0)) {
+      sentences.push_back(fmt::format("nothing at {} shows in what is measured", sites[s].name));
+      continue;
+    }
+    columns.emplace_back(s, column.normalized());
+  }
+  for (size_t a = 0; a < columns.size(); ++a)
+    for (size_t b = a + 1; b < columns.size(); ++b)
+      if (std::abs(columns[a].second.dot(columns[b].second)) > alike)
+        sentences.push_back(fmt::format("what acts at {} and what acts at {} look alike in what is measured",
+                                        sites[columns[a].first].name, sites[columns[b].first].name));
+  return sentences;
+}
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,75 @@
+#include "tools/diagnose/verdict/site_errors.h"
+#include <cmath>
+
+namespace loopwright::diagnosis {
+namespace {
+
+constexpr size_t simulations = 10, lags = 40;
+
+class MeanSquare {
+ public:
+  void add(double square) {
+    if (std::isfinite(square)) sum_ += square, ++count_;
+  }
+  double mean() const { return count_ ? sum_ / double(count_) : 0; }
+  double root() const { return std::sqrt(mean()); }
+
+ private:
+  double sum_ = 0;
+  size_t count_ = 0;
+};
+
+double portmanteau_of(const SitePass& pass, size_t output, size_t rows) {
+  std::vector<double> e;
+  for (size_t k = 0; k < rows; ++k) {
+    const size_t at = k * pass.outputs + output;
+    if (!std::isnan(pass.error[at])) e.push_back(pass.error[at] / std::sqrt(pass.variance[at]));
+  }
+  double square = 0, sum = 0;
+  for (double x : e) square += x * x;
+  for (size_t lag = 1; lag <= lags && lag < e.size(); ++lag) {
+    double product = 0;
+    for (size_t k = lag; k < e.size(); ++k) product += e[k] * e[k - lag];
+    sum += product / square * product / square;
+  }
+  return double(e.size()) * sum;
+}
+
+}  // namespace
+
+SiteErrors errors_of(SiteFitter& fitter, SiteHypothesis h) {
+  SiteErrors errors;
+  SitePass pass;
+  errors.diverges = !fitter.pass(h, false, pass);
+  if (errors.diverges) return errors;
+  const SignalRecord& record = fitter.model().record();
+  const size_t fitted = record.held_out_from, rows = record.rows();
+  MeanSquare all, all_held_out;
+  for (size_t j = 0; j < pass.outputs; ++j) {
+    MeanSquare predicted, held_out, noise;
+    for (size_t k = 0; k < rows; ++k) {
+      const size_t at = k * pass.outputs + j;
+      const double square = pass.error[at] * pass.error[at];
+      (k < fitted ? predicted : held_out).add(square);
+      (k < fitted ? all : all_held_out).add(square / pass.variance[at]);
+      if (!std::isnan(square) && k > rows / 20) noise.add(pass.variance[at]);  // settled
+    }
+    errors.predicted.push_back(predicted.root()), errors.held_out.push_back(held_out.root());
+    errors.noise.push_back(noise.root());
+    errors.portmanteau = std::max(errors.portmanteau, portmanteau_of(pass, j, fitted));
+  }
+  errors.mean_square = all.mean(), errors.held_out_mean_square = all_held_out.mean();
+  const size_t first = fitted < rows ? fitted : rows / 20, length = (rows - first) / simulations + 1;
+  std::vector<MeanSquare> simulated(pass.outputs);
+  std::vector<double> e;
+  for (size_t from = first; from < rows; from += length) {
+    const size_t to = std::min(rows, from + length);
+    e.resize((to - from) * pass.outputs);
+    if (!fitter.filter().simulate(pass, from, to, e)) errors.diverges = true;
+    for (size_t i = 0; i < e.size(); ++i) simulated[i % pass.outputs].add(e[i] * e[i]);
+  }
+  for (const MeanSquare& s : simulated) errors.simulated.push_back(s.root());
+  return errors;
+}
+
+}  // namespace loopwright::diagnosis

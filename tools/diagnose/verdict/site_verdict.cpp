@@ -1,0 +1,201 @@
+#include "tools/diagnose/verdict/site_verdict.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include "tools/diagnose/verdict/alike_sites.h"
+#include "tools/diagnose/verdict/site_errors.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+/// n Σ ρ² over 40 lags is near 40 when nothing is left; the largest of a thousand records is below this.
+constexpr double most_portmanteau = 120;
+/// A simulation that is worse than the nominal diagram's by more than this contradicts the answer.
+constexpr double worse_simulation = 1.05;
+
+std::string unit_text(const std::optional<Unit>& unit) { return unit ? to_string(unit->in_si()) : ""; }
+
+std::string unit_of_coefficient(const SiteModel& model, const SiteTerm& term) {
+  const Site& site = model.sites()[size_t(term.site)];
+  if (term.variable < 0 || term.shape->power == 0) return unit_text(site.unit);
+  const std::optional<Unit>& of_signal = model.variables()[size_t(term.variable)].unit;
+  if (!site.unit || !of_signal) return "";
+  return to_string(site.unit->in_si() * power(of_signal->in_si(), -term.shape->power));
+}
+
+/// Of all fitted numbers, in the order of fitted_numbers().
+Eigen::MatrixXd covariance_of(SiteFitter& fitter, SiteHypothesis h) {
+  SitePass pass;
+  const Eigen::Index count = Eigen::Index(size_of(h));
+  if (count == 0 || !fitter.pass(h, false, pass)) return Eigen::MatrixXd::Zero(count, count);
+  const Eigen::MatrixXd J = fitter.jacobian(h, pass);
+  if (J.size() == 0) return Eigen::MatrixXd::Zero(count, count);
+  Eigen::VectorXd norm = J.colwise().norm().transpose();
+  for (double& size : norm)
+    if (!(size > 0)) size = 1;
+  const Eigen::MatrixXd unit = J * norm.cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd inverse = (unit.transpose() * unit).completeOrthogonalDecomposition().pseudoInverse();
+  return norm.cwiseInverse().asDiagonal() * inverse * norm.cwiseInverse().asDiagonal() *
+         (pass.squares / double(pass.readings));
+}
+
+class Telling {
+ public:
+  Telling(SiteFilter& filter, const SiteSearchResult& search, Diagnosis& result)
+      : model_(filter.model()),
+        search_(search),
+        result_(result),
+        fitted_(filter, model_.record().held_out_from, [] { return false; }),
+        whole_(filter, model_.record().rows(), [] { return false; }) {}
+
+  void run() {
+    covariance_ = covariance_of(fitted_, search_.found);
+    tell_terms(), tell_parameters(), tell_steps();
+    result_.not_observable = alike_sites(fitted_, search_.found);
+    judge();
+  }
+
+ private:
+  DiagnosedParameter number(const std::vector<FittedNumber>& numbers, size_t i, std::string name,
+                            std::string unit) const {
+    SiteHypothesis h = search_.found;
+    const double value = value_of(h, numbers[i]);
+    const double half = 1.96 * std::sqrt(std::max(0.0, covariance_(Eigen::Index(i), Eigen::Index(i))));
+    return {std::move(name), std::move(unit), value, value - half, value + half, false};
+  }
+
+  void tell_terms() {
+    const std::vector<FittedNumber> numbers = fitted_numbers(search_.found);
+    SiteHypothesis h = search_.found;
+    SitePass pass;
+    const bool has_path = fitted_.pass(h, true, pass);
+    for (size_t t = 0; t < search_.found.terms.size(); ++t) {
+      const SiteTerm& term = search_.found.terms[t];
+      const Site& site = model_.sites()[size_t(term.site)];
+      DiagnosedEffect effect;
+      effect.name = term.shape->name, effect.title = term.shape->title;
+      effect.site = site.name, effect.site_unit = unit_text(site.unit), effect.inclusion = 1;
+      const std::string signal_unit =
+          term.variable < 0 ? "" : unit_text(model_.variables()[size_t(term.variable)].unit);
+      if (term.variable >= 0) effect.variables.push_back(model_.variables()[size_t(term.variable)].name);
+      for (size_t i = 0; i < numbers.size(); ++i) {
+        if (numbers[i].kind == FittedNumber::Kind::factor || numbers[i].owner != int(t)) continue;
+        const size_t index = size_t(numbers[i].index);
+        if (numbers[i].kind == FittedNumber::Kind::nonlinear)
+          effect.parameters.push_back(
+              number(numbers, i, std::string(term.shape->nonlinear[index]), signal_unit));
+        else if (term.shape != &unknown_function())
+          effect.parameters.push_back(number(numbers, i, std::string(term.shape->coefficients[index]),
+                                             unit_of_coefficient(model_, term)));
+      }
+      for (const SiteRival& rival : search_.rivals)
+        if (rival.of == t) effect.alternatives.push_back(describe(model_, rival.term));
+      if (has_path) effect.force_rms = size_of_term(pass, term);
+      if (term.shape == &unknown_function())
+        for (const std::string& v : effect.variables) result_.remainder_variables.push_back(v);
+      result_.effects.push_back(std::move(effect));
+    }
+  }
+  double size_of_term(const SitePass& pass, const SiteTerm& term) const {
+    double square = 0;
+    for (size_t k = 0; k < pass.rows; ++k) {
+      const double* numbers = &pass.path[0][k * pass.numbers];
+      const double value =
+          term.value(term.variable < 0 ? 0 : model_.variables()[size_t(term.variable)].at(numbers));
+      square += value * value;
+    }
+    return std::sqrt(square / double(pass.rows));
+  }
+
+  void tell_parameters() {
+    const std::vector<FittedNumber> numbers = fitted_numbers(search_.found);
+    for (size_t i = 0; i < numbers.size(); ++i) {
+      if (numbers[i].kind != FittedNumber::Kind::factor) continue;
+      const ModelParameter& parameter = model_.parameters()[size_t(numbers[i].owner)];
+      const DiagnosedParameter factor = number(numbers, i, "", "");
+      const double a = parameter.nominal * factor.low, b = parameter.nominal * factor.high;
+      result_.moved_parameters.push_back({parameter.name, parameter.unit, parameter.nominal,
+                                          parameter.nominal * factor.value, std::min(a, b), std::max(a, b)});
+    }
+    std::vector<std::string> moved;
+    for (const MovedParameter& p : result_.moved_parameters) moved.push_back(p.name);
+    for (const ParameterRival& rival : search_.parameter_rivals) {
+      OtherExplanation other{moved, {}};
+      for (int i : rival.moved) other.effects.push_back(model_.parameters()[size_t(i)].name);
+      for (const SiteTerm& term : rival.terms) other.effects.push_back(describe(model_, term));
+      result_.other_explanations.push_back(std::move(other));
+    }
+  }
+
+  void tell_steps() {
+    const auto add = [&](const SiteHypothesis& h, std::vector<std::string> added) {
+      const SiteErrors errors = errors_of(whole_, h);
+      DiagnosisStep step;
+      step.added = std::move(added);
+      if (!errors.diverges)
+        step.force_rmse = errors.predicted[0], step.held_out_force_rmse = errors.held_out[0],
+        step.simulation_rmse = errors.simulated[0];
+      result_.steps.push_back(std::move(step));
+      return errors;
+    };
+    nominal_ = add(search_.nominal, {});
+    std::vector<std::string> named;
+    for (const SiteHypothesis& h : search_.steps) {
+      std::vector<std::string> added;
+      for (const SiteTerm& term : h.terms)
+        if (const std::string name = describe(model_, term); std::ranges::find(named, name) == named.end())
+          added.push_back(name), named.push_back(name);
+      add(h, added);
+    }
+    errors_ = add(search_.found, {"as answered"});
+    result_.holds_out = model_.record().held_out_from < model_.record().rows();
+    const bool held = result_.holds_out;
+    result_.error_before = held ? nominal_.held_out[0] : nominal_.predicted[0];
+    if (errors_.diverges) return;
+    result_.error_after = held ? errors_.held_out[0] : errors_.predicted[0];
+    result_.noise_floor = errors_.noise[0];
+    result_.mean_square = errors_.mean_square, result_.held_out_mean_square = errors_.held_out_mean_square;
+    result_.portmanteau = errors_.portmanteau;
+    result_.measurement_noise = search_.found.noise.measurement;
+  }
+
+  /// The simulation must not contradict what one-step predictions say.
+  bool simulates_worse() const {
+    if (errors_.diverges) return true;
+    for (size_t j = 0; j < errors_.simulated.size(); ++j)
+      if (!nominal_.diverges && errors_.simulated[j] > worse_simulation * nominal_.simulated[j]) return true;
+    return false;
+  }
+
+  void judge() {
+    const bool has_unknown = !result_.remainder_variables.empty();
+    const bool is_white = !errors_.diverges && errors_.portmanteau < most_portmanteau;
+    const bool names = !result_.effects.empty() || !result_.moved_parameters.empty();
+    const bool worse = names && simulates_worse();
+    if (worse)
+      result_.findings.push_back(
+          {"with what was found, a simulation is worse than that of the diagram as it is",
+           "names and parameters stand for something else", true, false});
+    if (worse || (!names && !is_white))
+      result_.verdict = Verdict::unexplained;
+    else if (!is_white || has_unknown)
+      result_.verdict = Verdict::partly_explained;
+    else
+      result_.verdict = names ? Verdict::explained : Verdict::nothing_missing;
+  }
+
+  SiteModel& model_;
+  const SiteSearchResult& search_;
+  Diagnosis& result_;
+  SiteFitter fitted_, whole_;
+  Eigen::MatrixXd covariance_;
+  SiteErrors nominal_, errors_;
+};
+
+}  // namespace
+
+void tell_sites(SiteFilter& filter, const SiteSearchResult& search, Diagnosis& result) {
+  Telling(filter, search, result).run();
+}
+
+}  // namespace loopwright::diagnosis
