@@ -40,7 +40,8 @@ int run(const Arguments& a) {
   for (const std::string& library : a.libraries) load_block_library(library, problems);
   const bool is_folder = fs::is_directory(a.path);
   if (!is_folder && !fs::exists(a.path))
-    problems.error({}, "", "", fmt::format("\"{}\" is not there", a.path)).expected = "a folder, or a diagram in it";
+    problems.error({}, "", "", fmt::format("\"{}\" is not there", a.path)).expected =
+        "a folder, or a diagram in it";
   if (problems.has_errors()) throw InputError(std::move(problems));
   const fs::path parent = fs::path(a.path).parent_path();
   const std::string folder = is_folder ? a.path : parent.empty() ? "." : parent.string();
@@ -67,9 +68,13 @@ void add_studio(CLI::App& app, std::function<void(std::function<int()>)> choose)
   CLI::App* command =
       app.add_subcommand("studio", "See, edit and run diagrams in the browser, beside measurements");
   auto a = std::make_shared<Arguments>();
-  command->add_option("path", a->path, "A folder, or a diagram in it; the present folder if left out")->type_name("DIR|FILE");
-  command->add_option("--port", a->port, "Port on this machine; any free one if left out")->check(CLI::Range(0, 65535));
-  command->add_option("--blocks", a->libraries, "Shared library with more blocks")->type_name("FILE.so")->allow_extra_args(false);
+  command->add_option("path", a->path, "A folder, or a diagram in it; the present folder if left out")
+      ->type_name("DIR|FILE");
+  command->add_option("--port", a->port, "Port on this machine; any free one if left out")
+      ->check(CLI::Range(0, 65535));
+  command->add_option("--blocks", a->libraries, "Shared library with more blocks")
+      ->type_name("FILE.so")
+      ->allow_extra_args(false);
   command->add_flag("--no-open", a->no_open, "Do not open the browser");
   command->callback([=] { choose([=] { return run(*a); }); });
 }

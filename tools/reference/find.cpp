@@ -54,8 +54,8 @@ std::vector<FoundBlock> find_blocks(std::string_view words) {
     if (!contains && &entry != exact) continue;
     const BlockType* block = find_block(entry.block);
     const bool is_new = block && shown.insert(block->info.type).second;
-    found.push_back({Where::elsewhere, fmt::format("\"{}\"", entry.name), advice(entry),
-                     is_new ? block->info.type : ""});
+    found.push_back(
+        {Where::elsewhere, fmt::format("\"{}\"", entry.name), advice(entry), is_new ? block->info.type : ""});
   }
   for (const auto& [type, block] : all_blocks())
     if (!name.empty() && !shown.contains(type) && says(block.info, lower, name))

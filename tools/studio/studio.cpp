@@ -18,8 +18,9 @@ ServerOptions options_for(int port) {
 }  // namespace
 
 Studio::Studio(const std::string& folder, const std::string& opened, int port)
-    : server_(options_for(port), *this),
-      session_(folder, opened, [this](int64_t client, std::string text) { server_.send(client, std::move(text)); }) {}
+    : server_(options_for(port), *this), session_(folder, opened, [this](int64_t client, std::string text) {
+        server_.send(client, std::move(text));
+      }) {}
 
 void Studio::connected(int64_t) {}
 void Studio::received(int64_t client, std::string_view text) { session_.receive(client, text); }

@@ -11,7 +11,8 @@ namespace loopwright::studio {
 namespace {
 
 bool is_same_name(std::string_view a, std::string_view b) {
-  return std::ranges::equal(a, b, [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
+  return std::ranges::equal(
+      a, b, [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
 }
 
 int digit(char c) {
@@ -21,7 +22,8 @@ int digit(char c) {
 }
 
 bool is_plain(std::string_view text) {
-  return std::ranges::all_of(text, [](unsigned char c) { return c > 0x20 && c < 0x7f && c != '\\' && c != '#'; });
+  return std::ranges::all_of(text,
+                             [](unsigned char c) { return c > 0x20 && c < 0x7f && c != '\\' && c != '#'; });
 }
 
 std::optional<std::string> decoded(std::string_view text) {
@@ -103,7 +105,8 @@ std::string random_token() {
 bool are_equal(std::string_view a, std::string_view b) {
   unsigned difference = a.size() == b.size() ? 0 : 1;
   for (size_t i = 0; i < a.size(); ++i)
-    difference |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b.empty() ? 0 : b[i % b.size()]);
+    difference |=
+        static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b.empty() ? 0 : b[i % b.size()]);
   return difference == 0;
 }
 
@@ -112,14 +115,17 @@ Gate::Gate(int port, std::vector<std::string> hosts)
       token_(random_token()),
       secret_(random_token()),
       hosts_(std::move(hosts)) {
-  for (const char* name : {"127.0.0.1", "localhost", "[::1]"}) hosts_.push_back(fmt::format("{}:{}", name, port));
+  for (const char* name : {"127.0.0.1", "localhost", "[::1]"})
+    hosts_.push_back(fmt::format("{}:{}", name, port));
 }
 
 std::string Gate::cookie() const {
   return fmt::format("{}={}; Path=/; HttpOnly; SameSite=Strict", cookie_name_, secret_);
 }
 
-bool Gate::is_known_host(std::string_view host) const { return std::ranges::find(hosts_, host) != hosts_.end(); }
+bool Gate::is_known_host(std::string_view host) const {
+  return std::ranges::find(hosts_, host) != hosts_.end();
+}
 
 bool Gate::has_cookie(const RequestHead& head) const {
   const auto cookies = head.field("Cookie");

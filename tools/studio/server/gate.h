@@ -25,8 +25,8 @@ struct Target {
   std::vector<std::pair<std::string, std::string>> query;
   const std::string* find(std::string_view name) const;
 };
-/// Nothing for a target that is not plain: no leading slash, control or non-ASCII characters, bad escapes, escaped
-/// slashes or dots, backslashes, "." or ".." as a part.
+/// Nothing for a target that is not plain: no leading slash, control or non-ASCII characters, bad escapes,
+/// escaped slashes or dots, backslashes, "." or ".." as a part.
 std::optional<Target> read_target(std::string_view target);
 
 /// 256 random bits as hexadecimal digits. Throws std::runtime_error without a source of randomness.

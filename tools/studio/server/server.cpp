@@ -20,7 +20,8 @@ using Request = http::request<http::string_body>;
 using Response = http::response<http::string_body>;
 
 constexpr std::string_view policy =
-    "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' data:; font-src 'self'; "
+    "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' data:; "
+    "font-src 'self'; "
     "worker-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
 constexpr std::string_view data_path = "/data/";
 
@@ -129,7 +130,8 @@ struct Server::Inside : std::enable_shared_from_this<Inside> {
     if (!code) acceptor.set_option(asio::socket_base::reuse_address(true), code);
     if (!code) acceptor.bind(endpoint, code);
     if (!code) acceptor.listen(asio::socket_base::max_listen_connections, code);
-    if (code) throw std::runtime_error(fmt::format("port {} cannot be used: {}", options.port, code.message()));
+    if (code)
+      throw std::runtime_error(fmt::format("port {} cannot be used: {}", options.port, code.message()));
     gate.emplace(acceptor.local_endpoint().port(), std::vector<std::string>());
   }
 
@@ -183,7 +185,8 @@ class Server::Inside::Page : public std::enable_shared_from_this<Page> {
     socket_.async_read(buffer_, [self = shared_from_this()](beast::error_code code, size_t) {
       if (code) return self->fail();
       if (self->is_too_fast()) {
-        self->socket_.async_close(websocket::close_code::policy_error, [self](beast::error_code) { self->fail(); });
+        self->socket_.async_close(websocket::close_code::policy_error,
+                                  [self](beast::error_code) { self->fail(); });
         return;
       }
       const std::string text = beast::buffers_to_string(self->buffer_.data());
@@ -194,12 +197,13 @@ class Server::Inside::Page : public std::enable_shared_from_this<Page> {
   }
   void write() {
     socket_.text(true);
-    socket_.async_write(asio::buffer(queue_.front()), [self = shared_from_this()](beast::error_code code, size_t) {
-      if (code) return self->fail();
-      self->waiting_ -= self->queue_.front().size();
-      self->queue_.pop_front();
-      if (!self->queue_.empty()) self->write();
-    });
+    socket_.async_write(asio::buffer(queue_.front()),
+                        [self = shared_from_this()](beast::error_code code, size_t) {
+                          if (code) return self->fail();
+                          self->waiting_ -= self->queue_.front().size();
+                          self->queue_.pop_front();
+                          if (!self->queue_.empty()) self->write();
+                        });
   }
   /// A bucket that fills with every message and empties at the permitted rate.
   bool is_too_fast() {
@@ -242,15 +246,15 @@ class Server::Inside::Connection : public std::enable_shared_from_this<Connectio
   void read() {
     parser_ = make_parser();
     stream_.expires_after(server_->options.patience);
-    http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](beast::error_code code, size_t) {
-      self->got(code);
-    });
+    http::async_read(stream_, buffer_, *parser_,
+                     [self = shared_from_this()](beast::error_code code, size_t) { self->got(code); });
   }
 
  private:
   void got(beast::error_code code) {
     if (code == http::error::end_of_stream || code == beast::error::timeout) return;
-    if (code == http::error::header_limit) return write(refuse(parser_->get(), {431, "the header is too long"}));
+    if (code == http::error::header_limit)
+      return write(refuse(parser_->get(), {431, "the header is too long"}));
     if (code == http::error::body_limit) return write(refuse(parser_->get(), {413, "the body is too long"}));
     if (code.category() == http::make_error_code(http::error::bad_target).category())
       return write(refuse(parser_->get(), {400, "this is no request"}));

@@ -17,12 +17,12 @@ struct PageFile {
 };
 
 struct ServerOptions {
-  int port = 0;                          ///< 0: any free one
+  int port = 0;  ///< 0: any free one
   std::vector<PageFile> files;
-  std::chrono::milliseconds tick{300};   ///< between calls of Handler::tick while a page is open
-  std::chrono::seconds patience{15};     ///< for a whole request
+  std::chrono::milliseconds tick{300};  ///< between calls of Handler::tick while a page is open
+  std::chrono::seconds patience{15};    ///< for a whole request
   int most_connections = 16;
-  double most_messages = 500;            ///< a second, of one page
+  double most_messages = 500;  ///< a second, of one page
 };
 
 constexpr uint32_t largest_header = 16 << 10;  ///< bytes

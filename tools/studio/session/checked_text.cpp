@@ -21,7 +21,8 @@ std::string without_folder(const std::string& path, const std::string& folder) {
 CheckedText check_text(const std::string& path, const std::string& text, const LoadOptions& options) {
   CheckedText result;
   result.parsed = std::make_shared<ParsedText>(path, text);
-  result.checked = check_diagram(load_diagram_text(result.parsed->file, options, result.problems), result.problems);
+  result.checked =
+      check_diagram(load_diagram_text(result.parsed->file, options, result.problems), result.problems);
   if (result.checked.plan)
     for (const Problem& warning : result.checked.plan->warnings) {
       const bool is_told = std::ranges::any_of(result.problems.list(), [&](const Problem& p) {
@@ -32,7 +33,8 @@ CheckedText check_text(const std::string& path, const std::string& text, const L
   return result;
 }
 
-Json problem_json(const Problem& problem, const ParsedText& parsed, const Utf16& places, const std::string& folder) {
+Json problem_json(const Problem& problem, const ParsedText& parsed, const Utf16& places,
+                  const std::string& folder) {
   const bool is_here = problem.place.file && problem.place.file->name == parsed.file->name;
   Json json{{"severity", problem.severity == Problem::Severity::error ? "error" : "warning"},
             {"text", to_string(problem)},

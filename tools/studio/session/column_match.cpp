@@ -28,7 +28,8 @@ Words words_of(std::string_view text) {
 
 /// Words that mean the same quantity in logs and diagrams.
 const std::vector<std::set<std::string, std::less<>>> meanings = {
-    {"position", "pos", "q", "x", "y", "angle", "theta", "phi", "measured", "meas", "encoder", "actual", "act"},
+    {"position", "pos", "q", "x", "y", "angle", "theta", "phi", "measured", "meas", "encoder", "actual",
+     "act"},
     {"velocity", "vel", "v", "speed", "omega", "qd", "dq"},
     {"acceleration", "acc", "a", "qdd", "ddq"},
     {"force", "f", "torque", "tau", "effort", "current", "i", "u", "command", "drive"},
@@ -120,8 +121,8 @@ double resolution_of(const std::vector<double>& values) {
   return steps > 50 && multiples > 0.99 * double(steps) && range < most_counts * least ? least : 0;
 }
 
-const PortOfDiagram* find_port(const std::vector<PortOfDiagram>& ports, Number number, const std::string& within,
-                               bool inputs) {
+const PortOfDiagram* find_port(const std::vector<PortOfDiagram>& ports, Number number,
+                               const std::string& within, bool inputs) {
   for (const PortOfDiagram& port : ports)
     if (port.number == number && port.is_input == inputs && first_name(port.path) == within) return &port;
   return nullptr;
@@ -140,17 +141,18 @@ Number output_number(const Plan::Block& block, std::string_view name) {
 }
 
 /// The input of the diagram around the machine that carries the force; or the first term of the sum.
-const PortOfDiagram* input_of(const Plan& plan, const Plan::Block& sum, const std::vector<PortOfDiagram>& ports,
-                              const std::string& within, const std::optional<Unit>& force_unit) {
+const PortOfDiagram* input_of(const Plan& plan, const Plan::Block& sum,
+                              const std::vector<PortOfDiagram>& ports, const std::string& within,
+                              const std::optional<Unit>& force_unit) {
   const std::span<const Number> terms = sum.inputs.empty() ? std::span<const Number>() : sum.inputs[0];
   for (Number term : terms)
     for (const PortOfDiagram& port : ports)
-      if (port.is_input && depth_of(port.path) == 1 && port.number == term && first_name(port.path) == within &&
-          port.path != sum.path + ".terms")
+      if (port.is_input && depth_of(port.path) == 1 && port.number == term &&
+          first_name(port.path) == within && port.path != sum.path + ".terms")
         return &port;
   for (const PortOfDiagram& port : ports)
-    if (port.is_input && depth_of(port.path) == 1 && first_name(port.path) == within &&
-        within != sum.path && meanings_of(words_of(last_name(port.path)))[force] &&
+    if (port.is_input && depth_of(port.path) == 1 && first_name(port.path) == within && within != sum.path &&
+        meanings_of(words_of(last_name(port.path)))[force] &&
         (!port.unit || !force_unit || port.unit->fits(*force_unit)))
       return &port;
   for (Number term : terms) {
@@ -194,7 +196,8 @@ std::vector<PortOfDiagram> ports_of(const Plan& plan, const Diagram& diagram) {
     const std::string path(port.name);
     ports.push_back({path, plan.unit_of(port.numbers[0]), inputs.contains(path), port.numbers[0]});
   }
-  std::ranges::stable_sort(ports, {}, [](const PortOfDiagram& p) { return std::pair(depth_of(p.path), p.path.size()); });
+  std::ranges::stable_sort(ports, {},
+                           [](const PortOfDiagram& p) { return std::pair(depth_of(p.path), p.path.size()); });
   return ports;
 }
 
@@ -207,13 +210,15 @@ std::vector<RoleGuess> guess_roles(const Plan& plan, const std::vector<PortOfDia
     if (port) roles.push_back({role, port->path, std::move(why)});
   };
   for (const char* role : {"position", "velocity"})
-    add(role, find_port(ports, output_number(*mass, role), within, false), fmt::format("of the mass {}", mass->path));
+    add(role, find_port(ports, output_number(*mass, role), within, false),
+        fmt::format("of the mass {}", mass->path));
   if (mass->inputs.empty() || mass->inputs[0].empty()) return roles;
   const Number net_force = mass->inputs[0].front();
   const auto [block, output] = plan.source_of(net_force);
   if (block < 0 || plan.blocks[size_t(block)].type->info.type != "Sum") return roles;
   const Plan::Block& sum = plan.blocks[size_t(block)];
-  add("force", find_port(ports, net_force, first_name(sum.path), false), fmt::format("the sum of forces on {}", mass->path));
+  add("force", find_port(ports, net_force, first_name(sum.path), false),
+      fmt::format("the sum of forces on {}", mass->path));
   add("input", input_of(plan, sum, ports, within, plan.unit_of(net_force)), "what pushes the machine");
   return roles;
 }
@@ -282,7 +287,8 @@ std::vector<ColumnGuess> guess_columns(const Recording& record, const std::vecto
     guess.why = guess.unit.empty() ? "name" : "name and unit";
     const double step = resolution_of(record.columns[c].values);
     if (guess.use == Use::compare && step > 0 && meanings_of(words_of(guess.name))[0])
-      guess.resolution = guess.unit.empty() ? fmt::format("{:.3g}", step) : fmt::format("{:.3g} {}", step, guess.unit);
+      guess.resolution =
+          guess.unit.empty() ? fmt::format("{:.3g}", step) : fmt::format("{:.3g} {}", step, guess.unit);
   }
   return guesses;
 }

@@ -17,7 +17,8 @@ std::string first_of(const std::string& wire) { return wire.substr(0, wire.find(
 /// The text of a block in which wires among the copies have their new names.
 class Rewiring {
  public:
-  Rewiring(const Level& level, const std::map<std::string, std::string>& names) : level_(level), names_(names) {}
+  Rewiring(const Level& level, const std::map<std::string, std::string>& names)
+      : level_(level), names_(names) {}
 
   std::string text(const Value& block) const {
     TextChanges changes;
@@ -45,7 +46,8 @@ class Rewiring {
       return true;
     }
     // A list is kept as long as one wire leads somewhere: the others show as problems, with their signs.
-    const bool some = std::ranges::any_of(wires.items, [&](const Value& w) { return leads_somewhere(w.text); });
+    const bool some =
+        std::ranges::any_of(wires.items, [&](const Value& w) { return leads_somewhere(w.text); });
     if (some)
       for (const Value& wire : wires.items) rename(wire, changes);
     return some;
@@ -53,7 +55,8 @@ class Rewiring {
   bool leads_somewhere(const std::string& wire) const {
     if (names_.contains(first_of(wire)) && wire.find('.') != wire.npos) return true;
     const Value::Member* inputs = level_.diagram->find("inputs");
-    return wire.find('.') == wire.npos ? inputs && inputs->value.find(wire) : level_.block(first_of(wire)) != nullptr;
+    return wire.find('.') == wire.npos ? inputs && inputs->value.find(wire)
+                                       : level_.block(first_of(wire)) != nullptr;
   }
   void rename(const Value& wire, TextChanges& changes) const {
     const auto name = names_.find(first_of(wire.text));
@@ -70,7 +73,8 @@ class Rewiring {
 std::string copied_blocks(const Level& level, const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names)
-    text += fmt::format("{}\n  {}: {}", text.empty() ? "" : ",", in_quotes(name), source_of(required_block(level, name).value));
+    text += fmt::format("{}\n  {}: {}", text.empty() ? "" : ",", in_quotes(name),
+                        source_of(required_block(level, name).value));
   return fmt::format("{{{}: {{{}\n}}}}", in_quotes(key), text);
 }
 

@@ -78,7 +78,8 @@ void Document::write_others(const std::vector<OtherFile>& others) const {
     std::string text = other.after.value_or("");
     if (now && other.before && *now != *other.before) {
       const auto changes = rebased(difference(*other.before, text), difference(*other.before, *now));
-      if (!changes) throw Refused(fmt::format("\"{}\" was changed in the same place by another program", other.path));
+      if (!changes)
+        throw Refused(fmt::format("\"{}\" was changed in the same place by another program", other.path));
       text = applied(*now, *changes);
     } else if (now != other.before) {
       throw Refused(fmt::format("\"{}\" was created or removed by another program", other.path));
@@ -129,7 +130,8 @@ TextChanges Document::typed_in(const std::vector<Value>& intents, int64_t seen) 
   Draft draft(path_, then, {});
   IntentEffects effects;
   for (const Value& intent : intents)
-    if (!apply_text_intent(intent, draft, effects)) throw Refused("text and canvas cannot be changed in one step");
+    if (!apply_text_intent(intent, draft, effects))
+      throw Refused("text and canvas cannot be changed in one step");
   const auto changes = rebased(draft.changes(), since);
   if (!changes) throw Refused("the text was changed in the same place at the same moment: type it again");
   return *changes;
@@ -142,7 +144,9 @@ OtherFile Document::with_positions(const IntentEffects& effects) const {
     if (position)
       layout[block] = *position;
     else
-      std::erase_if(layout, [&](const auto& entry) { return entry.first == block || entry.first.starts_with(block + "."); });
+      std::erase_if(layout, [&](const auto& entry) {
+        return entry.first == block || entry.first.starts_with(block + ".");
+      });
   }
   for (const auto& [from, to] : effects.renamed) {
     Layout renamed;
@@ -179,8 +183,8 @@ void Document::apply(const std::vector<Value>& intents, const IntentContext& con
   }
 }
 
-Edited Document::edit(const std::vector<Value>& intents, const IntentContext& context, const Variants& variants,
-                      int64_t seen) {
+Edited Document::edit(const std::vector<Value>& intents, const IntentContext& context,
+                      const Variants& variants, int64_t seen) {
   Draft draft(path_, text_, variants);
   IntentEffects effects;
   if (seen != revision_ && std::ranges::any_of(intents, is_typed))
@@ -192,6 +196,9 @@ Edited Document::edit(const std::vector<Value>& intents, const IntentContext& co
     OtherFile layout = with_positions(effects);
     if (layout.before != layout.after) others.push_back(std::move(layout));
   }
+  if (!effects.renamed.empty() && context.followers)
+    std::ranges::move(context.followers({effects.renamed.begin(), effects.renamed.end()}),
+                      std::back_inserter(others));
   if (draft.text() == text_ && others.empty()) return {{}, text_, effects.blocks, {}};
   Edited edited = step(effects.what, draft.changes(), std::move(others), undo_);
   redo_.clear();

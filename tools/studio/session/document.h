@@ -8,12 +8,6 @@
 
 namespace loopwright::studio {
 
-/// A file that changes together with the diagram: its layout, an experiment whose ports are renamed.
-struct OtherFile {
-  std::string path;
-  std::optional<std::string> before, after;  ///< nothing: there is no file
-};
-
 /// Another program changed the file at the same moment: read it again, and try again.
 struct ChangedMeanwhile : Refused {
   using Refused::Refused;
@@ -70,7 +64,8 @@ class Document {
     TextChanges changes, reverse;
   };
 
-  Edited step(const std::string& what, TextChanges changes, std::vector<OtherFile> others, std::vector<Step>& to);
+  Edited step(const std::string& what, TextChanges changes, std::vector<OtherFile> others,
+              std::vector<Step>& to);
   Edited back(std::vector<Step>& from, std::vector<Step>& to);
   void apply(const std::vector<Value>& intents, const IntentContext& context, Draft& draft,
              IntentEffects& effects) const;

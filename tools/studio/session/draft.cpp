@@ -60,9 +60,8 @@ Level find_level(const Value& root, const std::string& inside, const Variants& v
     const Value::Member* block = level.block(name);
     if (!block) throw Refused(fmt::format("there is no block \"{}\"", joined(level.inside, name)));
     const std::string path = joined(level.inside, name);
-    const Value* diagram = block->value.kind == Kind::object
-                               ? subdiagram_of(body_of(block->value, path, variants))
-                               : nullptr;
+    const Value* diagram =
+        block->value.kind == Kind::object ? subdiagram_of(body_of(block->value, path, variants)) : nullptr;
     if (!diagram) throw Refused(fmt::format("\"{}\" is not a subdiagram", path));
     if (diagram->kind != Kind::object)
       throw Refused(fmt::format("\"{}\" is defined in {}: open that file to change it", path,

@@ -32,8 +32,8 @@ using Variants = std::map<std::string, std::string>;
 /// A diagram in a file: the outermost one, or a subdiagram that is written inside it.
 struct Level {
   const Value* diagram = nullptr;
-  std::string inside;                              ///< "stage.motor"; empty: the outermost
-  std::vector<const Value*> outer = {};            ///< the diagrams around it, outermost first
+  std::string inside;                    ///< "stage.motor"; empty: the outermost
+  std::vector<const Value*> outer = {};  ///< the diagrams around it, outermost first
   const Value::Member* block(std::string_view name) const;
   const Value& blocks() const;  ///< an empty object if there are none
 };

@@ -51,11 +51,13 @@ std::string experiment_text(const Value& request, const std::string& data) {
   }
   if (const Value::Member* list = request.find("roles"))
     for (const Value::Member& role : list->value.members)
-      if (role.value.kind == Kind::text && !role.value.text.empty()) roles.emplace_back(role.name, in_quotes(role.value.text));
+      if (role.value.kind == Kind::text && !role.value.text.empty())
+        roles.emplace_back(role.name, in_quotes(role.value.text));
   // The position of the machine first: its error is what a person looks at.
   const auto position = std::ranges::find(roles, "position", &std::pair<std::string, std::string>::first);
   if (position != roles.end())
-    std::ranges::stable_partition(compared, [&](const auto& entry) { return in_quotes(entry.first) == position->second; });
+    std::ranges::stable_partition(
+        compared, [&](const auto& entry) { return in_quotes(entry.first) == position->second; });
   std::string text = "{\n  \"loopwright\": 1,\n";
   if (const std::string_view title = text_in(request, "title"); !title.empty())
     text += fmt::format("  \"title\": {},\n", in_quotes(title));
@@ -71,6 +73,17 @@ std::string experiment_text(const Value& request, const std::string& data) {
   return text + "\n}\n";
 }
 
+std::vector<std::string> ports_of_experiment(const std::string& path, const std::string& text) {
+  const ParsedText parsed(path, text);
+  std::vector<std::string> ports;
+  for (const char* key : {"drive", "compare"})
+    if (const Value::Member* list = parsed.root.find(key))
+      for (const Value::Member& member : list->value.members) ports.push_back(member.name);
+  if (const Value::Member* roles = parsed.root.find("roles"))
+    for (const Value::Member& role : roles->value.members) ports.push_back(role.value.text);
+  return ports;
+}
+
 std::string with_ports_renamed(const std::string& path, const std::string& text,
                                const std::map<std::string, std::string>& renamed) {
   const ParsedText parsed(path, text);
@@ -84,7 +97,8 @@ std::string with_ports_renamed(const std::string& path, const std::string& text,
   for (const char* key : {"drive", "compare"})
     if (const Value::Member* list = parsed.root.find(key))
       for (const Value::Member& member : list->value.members)
-        if (const std::string to = new_name(member.name); to != member.name) changes.push_back(renamed_name(member, to));
+        if (const std::string to = new_name(member.name); to != member.name)
+          changes.push_back(renamed_name(member, to));
   if (const Value::Member* roles = parsed.root.find("roles"))
     for (const Value::Member& role : roles->value.members)
       if (const std::string to = new_name(role.value.text); to != role.value.text)

@@ -76,7 +76,8 @@ Handle open_in(int folder, const std::string& name) {
 /// Whether no other program has the file open for writing: only then are its contents final.
 bool is_final(const Handle& file) {
   for (int attempt = 0; attempt < 20; ++attempt) {
-    if (::fcntl(file.number(), F_SETLEASE, F_RDLCK) == 0) return ::fcntl(file.number(), F_SETLEASE, F_UNLCK) == 0;
+    if (::fcntl(file.number(), F_SETLEASE, F_RDLCK) == 0)
+      return ::fcntl(file.number(), F_SETLEASE, F_UNLCK) == 0;
     if (errno != EAGAIN) return true;  // a file system without leases
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
@@ -152,7 +153,9 @@ Handle::~Handle() {
 
 Folder::Folder(std::string path)
     : path_(std::move(path)), handle_(::open(path_.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC)) {
-  if (!handle_) throw std::runtime_error(fmt::format("the folder \"{}\" cannot be opened: {}", path_, std::strerror(errno)));
+  if (!handle_)
+    throw std::runtime_error(
+        fmt::format("the folder \"{}\" cannot be opened: {}", path_, std::strerror(errno)));
 }
 
 Handle Folder::folder_of(const std::string& relative, std::string& name) const {
@@ -160,7 +163,8 @@ Handle Folder::folder_of(const std::string& relative, std::string& name) const {
   name = parts.back();
   Handle folder(::openat(handle_.number(), ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   for (size_t i = 0; i + 1 < parts.size() && folder; ++i)
-    folder = Handle(::openat(folder.number(), parts[i].c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NOFOLLOW));
+    folder =
+        Handle(::openat(folder.number(), parts[i].c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NOFOLLOW));
   return folder;
 }
 
@@ -191,21 +195,25 @@ std::optional<std::string> Folder::read(const std::string& relative) const {
     refuse(relative, std::strerror(errno));
   }
   struct stat status {};
-  if (::fstat(file.number(), &status) != 0 || !S_ISREG(status.st_mode)) refuse(relative, "it is not a regular file");
+  if (::fstat(file.number(), &status) != 0 || !S_ISREG(status.st_mode))
+    refuse(relative, "it is not a regular file");
   auto text = contents_of(file.number());
   if (!text) refuse(relative, "it cannot be read, or has more than 64 MB");
   return text;
 }
 
-std::optional<Folder::Found> Folder::replace(const std::string& relative, const std::optional<std::string>& expected,
+std::optional<Folder::Found> Folder::replace(const std::string& relative,
+                                             const std::optional<std::string>& expected,
                                              std::string_view text) const {
   std::string name;
   const Handle folder = folder_of(relative, name);
   if (!folder || !is_writable(relative))
-    refuse(relative, "it cannot be written: it is a link, read-only, or its folder is not below that of the studio");
+    refuse(relative,
+           "it cannot be written: it is a link, read-only, or its folder is not below that of the studio");
   if (!expected) {
     NewFile fresh(folder.number(), name, text, usual_mode());
-    if (::renameat2(folder.number(), fresh.name().c_str(), folder.number(), name.c_str(), RENAME_NOREPLACE) == 0) {
+    if (::renameat2(folder.number(), fresh.name().c_str(), folder.number(), name.c_str(), RENAME_NOREPLACE) ==
+        0) {
       fresh.keep();
       return {};
     }
@@ -258,7 +266,8 @@ bool have_same_contents(int folder, const std::string& a, int other_folder, cons
     if (count < 0) return false;
     ssize_t read = 0;
     while (read < std::max<ssize_t>(count, 1)) {
-      const ssize_t more = ::read(second.number(), y.data() + read, size_t(std::max<ssize_t>(count, 1) - read));
+      const ssize_t more =
+          ::read(second.number(), y.data() + read, size_t(std::max<ssize_t>(count, 1) - read));
       if (more <= 0) break;
       read += more;
     }
@@ -280,9 +289,11 @@ void Folder::store_part(const std::string& name, int64_t offset, bool is_last, s
                             O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NOFOLLOW));
   const std::string part = target + ".part";
   const int begin = offset == 0 ? O_CREAT | O_TRUNC : 0;
-  const Handle file(::openat(own.number(), part.c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK | begin, 0600));
+  const Handle file(
+      ::openat(own.number(), part.c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK | begin, 0600));
   struct stat status {};
-  if (!file || ::fstat(file.number(), &status) != 0 || !S_ISREG(status.st_mode)) refuse(name, "no part of it came before");
+  if (!file || ::fstat(file.number(), &status) != 0 || !S_ISREG(status.st_mode))
+    refuse(name, "no part of it came before");
   if (status.st_size != offset) refuse(name, "a part of it is missing");
   for (size_t at = 0; at < bytes.size();) {
     const ssize_t count = ::write(file.number(), bytes.data() + at, bytes.size() - at);

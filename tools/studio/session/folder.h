@@ -40,8 +40,8 @@ class Folder {
 
   /// Replaces `expected` (nothing: there is no file) by `text`, completely or not at all. If the file has
   /// other contents it stays as it is, and these are returned; an empty result: it is written. Whatever
-  /// another program writes meanwhile is either found here or written over `text` by that program, never lost.
-  /// Throws Refused if the file cannot be written.
+  /// another program writes meanwhile is either found here or written over `text` by that program, never
+  /// lost. Throws Refused if the file cannot be written.
   struct Found {
     std::optional<std::string> text;  ///< nothing: the file is gone
   };

@@ -69,9 +69,9 @@ std::string free_name(const Level& level, const std::string& wanted) {
 }
 
 TextChange with_top_member(const Value& diagram, const std::string& name, const std::string& value) {
-  static const std::vector<std::string_view> order = {"$schema", "loopwright", "title",  "description",
-                                                      "parameters", "solver",  "inputs", "blocks",
-                                                      "outputs", "log"};
+  static const std::vector<std::string_view> order = {"$schema",    "loopwright", "title",  "description",
+                                                      "parameters", "solver",     "inputs", "blocks",
+                                                      "outputs",    "log"};
   const auto rank = [](std::string_view key) { return std::ranges::find(order, key) - order.begin(); };
   for (size_t i = 0; i < diagram.members.size(); ++i)
     if (rank(diagram.members[i].name) > rank(name)) return with_member_before(diagram, i, name, value);
@@ -80,7 +80,8 @@ TextChange with_top_member(const Value& diagram, const std::string& name, const 
 
 TextChanges without_entries(const Value& value, const std::vector<bool>& leave_out) {
   std::vector<std::pair<size_t, size_t>> spans;
-  for (const Value::Member& member : value.members) spans.emplace_back(member.place.offset, end_of(member.value));
+  for (const Value::Member& member : value.members)
+    spans.emplace_back(member.place.offset, end_of(member.value));
   for (const Value& item : value.items) spans.emplace_back(item.place.offset, end_of(item));
   const size_t count = spans.size();
   if (std::ranges::all_of(leave_out, [](bool out) { return out; }))

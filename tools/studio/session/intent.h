@@ -1,9 +1,17 @@
 /// What a user wants changed in a diagram, as changes of its text.
 #pragma once
 #include <functional>
+#include <map>
+#include <optional>
 #include "tools/studio/session/draft.h"
 
 namespace loopwright::studio {
+
+/// A file that changes together with the diagram: its layout, an experiment whose ports are renamed.
+struct OtherFile {
+  std::string path;
+  std::optional<std::string> before, after;  ///< nothing: there is no file
+};
 
 /// What intents do besides changing the text.
 struct IntentEffects {
@@ -11,7 +19,7 @@ struct IntentEffects {
   std::string what;                 ///< for the list of undo: "set mass"
   /// Positions of the layout file: block path → position, or nothing to forget it.
   std::vector<std::pair<std::string, std::optional<std::pair<double, double>>>> positions;
-  /// A name that others files use, and its new one: "axis" → "stage".
+  /// Blocks by path, and their new paths: "axis" → "stage". Other files may name them.
   std::vector<std::pair<std::string, std::string>> renamed;
 };
 
@@ -19,18 +27,24 @@ struct IntentContext {
   std::string inside;
   /// The names of the signals that are recorded now; for a diagram without "log".
   std::function<std::vector<std::string>()> recorded;
+  /// The files beside the diagram that name renamed blocks, with the new names.
+  std::function<std::vector<OtherFile>(const std::map<std::string, std::string>& renamed)> followers = {};
 };
 
 /// Carries out an intent (tools/studio/protocol.md). Throws Refused if it cannot be, with nothing changed.
 void apply_intent(const Value& intent, const IntentContext& context, Draft& draft, IntentEffects& effects);
 
 // By subject; each returns false for an intent that is not its own.
-bool apply_setting_intent(const Value& intent, const IntentContext& context, Draft& draft, IntentEffects& effects);
+bool apply_setting_intent(const Value& intent, const IntentContext& context, Draft& draft,
+                          IntentEffects& effects);
 bool apply_parameter_intent(const Value& intent, const IntentContext& context, Draft& draft,
                             IntentEffects& effects);
-bool apply_wire_intent(const Value& intent, const IntentContext& context, Draft& draft, IntentEffects& effects);
-bool apply_block_intent(const Value& intent, const IntentContext& context, Draft& draft, IntentEffects& effects);
-bool apply_name_intent(const Value& intent, const IntentContext& context, Draft& draft, IntentEffects& effects);
+bool apply_wire_intent(const Value& intent, const IntentContext& context, Draft& draft,
+                       IntentEffects& effects);
+bool apply_block_intent(const Value& intent, const IntentContext& context, Draft& draft,
+                        IntentEffects& effects);
+bool apply_name_intent(const Value& intent, const IntentContext& context, Draft& draft,
+                       IntentEffects& effects);
 bool apply_text_intent(const Value& intent, Draft& draft, IntentEffects& effects);
 
 // ---- Shared ----

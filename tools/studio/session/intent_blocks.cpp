@@ -22,7 +22,8 @@ std::string name_of_type(const std::string& type) {
   std::string name;
   for (size_t i = 0; i < type.size(); ++i) {
     const auto c = static_cast<unsigned char>(type[i]);
-    const bool begins_word = i > 0 && std::isupper(c) && !std::isupper(static_cast<unsigned char>(type[i - 1]));
+    const bool begins_word =
+        i > 0 && std::isupper(c) && !std::isupper(static_cast<unsigned char>(type[i - 1]));
     if (begins_word) name += '_';
     name += char(std::tolower(c));
   }
@@ -75,7 +76,8 @@ std::string value_that_fits(const ParameterInfo& parameter, const Value* example
 /// The shortest sample time of a level as it is written; a millisecond if there is none.
 std::string usual_sample_time(const Level& level) {
   for (const Value::Member& block : level.blocks().members)
-    if (const Value::Member* time = block.value.find("sample_time")) return std::string(source_of(time->value));
+    if (const Value::Member* time = block.value.find("sample_time"))
+      return std::string(source_of(time->value));
   return "0.001";
 }
 
@@ -84,9 +86,11 @@ std::string new_block(const BlockType& type, const Value& intent, const Level& l
   const Value::Member* given = intent.find("settings");
   std::string text = fmt::format("{{\"type\": {}", in_quotes(info.type));
   const auto typed = [&](std::string_view name, const ParameterInfo* parameter) -> std::string {
-    const Value::Member* member = given && given->value.kind == Kind::object ? given->value.find(name) : nullptr;
+    const Value::Member* member =
+        given && given->value.kind == Kind::object ? given->value.find(name) : nullptr;
     if (!member) return "";
-    return member->value.kind == Kind::text ? json_of_typed(member->value.text, parameter) : to_json(member->value);
+    return member->value.kind == Kind::text ? json_of_typed(member->value.text, parameter)
+                                            : to_json(member->value);
   };
   std::string sample_time = typed("sample_time", nullptr);
   if (sample_time.empty() && info.is_sampled) sample_time = usual_sample_time(level);
@@ -98,7 +102,8 @@ std::string new_block(const BlockType& type, const Value& intent, const Level& l
     if (value.empty() && !parameter.has_default) value = value_that_fits(parameter, shown);
     if (!value.empty()) text += fmt::format(", {}: {}", in_quotes(parameter.name), value);
   }
-  if (const Value::Member* in = intent.find("in"); in && in->value.kind == Kind::object && in->value.members.size())
+  if (const Value::Member* in = intent.find("in");
+      in && in->value.kind == Kind::object && in->value.members.size())
     text += ", \"in\": " + to_json(in->value);
   return text + "}";
 }
@@ -111,7 +116,8 @@ void place(const Value& value, const std::string& path, IntentEffects& effects) 
 /// The change that adds a block to a level, which may have none yet.
 TextChange with_block(const Level& level, const std::string& name, const std::string& block) {
   const Value::Member* blocks = level.diagram->find("blocks");
-  if (!blocks) return with_top_member(*level.diagram, "blocks", fmt::format("{{{}: {}}}", in_quotes(name), block));
+  if (!blocks)
+    return with_top_member(*level.diagram, "blocks", fmt::format("{{{}: {}}}", in_quotes(name), block));
   return with_member(blocks->value, name, block, "    ");
 }
 
@@ -119,7 +125,8 @@ void add_block(const Value& intent, const IntentContext& context, Draft& draft, 
   const Level level = draft.level(context.inside);
   const std::string type_name = required_text(intent, "type");
   const BlockType* type = find_block(type_name);
-  if (!type) throw Refused(fmt::format("there is no block type \"{}\"; {}", type_name, block_type_hint(type_name)));
+  if (!type)
+    throw Refused(fmt::format("there is no block type \"{}\"; {}", type_name, block_type_hint(type_name)));
   std::string name(text_in(intent, "name"));
   if (name.empty())
     name = free_name(level, name_of_type(type_name));
@@ -157,7 +164,8 @@ bool reads(const Value& wire, const std::set<std::string>& blocks) {
 void add(TextChanges& to, TextChanges changes) { std::ranges::move(changes, std::back_inserter(to)); }
 
 /// Leaves out the wires of one input that read the removed blocks, with their signs.
-TextChanges without_wires(const Value& body, const Value::Member& port, const std::set<std::string>& removed) {
+TextChanges without_wires(const Value& body, const Value::Member& port,
+                          const std::set<std::string>& removed) {
   std::vector<bool> out;
   for (const Value& wire : port.value.items) out.push_back(reads(wire, removed));
   TextChanges changes = without_entries(port.value, out);
@@ -189,7 +197,8 @@ TextChanges without_wires(const Value& block, const Value& body, const std::set<
   if (std::ranges::find(gone, true) != gone.end()) changes = without_entries(in->value, gone);
   for (size_t i = 0; i < gone.size(); ++i) {
     const Value::Member& port = in->value.members[i];
-    const bool has_some = std::ranges::any_of(port.value.items, [&](const Value& w) { return reads(w, removed); });
+    const bool has_some =
+        std::ranges::any_of(port.value.items, [&](const Value& w) { return reads(w, removed); });
     if (!gone[i] && has_some) add(changes, without_wires(body, port, removed));
   }
   return changes;
@@ -204,20 +213,23 @@ void remove_blocks(const Value& intent, const IntentContext& context, Draft& dra
     removed.insert(required_block(level, name).name);
     effects.positions.push_back({joined(level.inside, name), std::nullopt});
   }
-  effects.what = names.size() == 1 ? "remove " + names.front() : fmt::format("remove {} blocks", names.size());
+  effects.what =
+      names.size() == 1 ? "remove " + names.front() : fmt::format("remove {} blocks", names.size());
   TextChanges changes;
   std::vector<bool> gone;
   for (const Value::Member& block : level.blocks().members) gone.push_back(removed.contains(block.name));
   add(changes, without_entries(level.blocks(), gone));
   for (const Value::Member& block : level.blocks().members)
     if (!removed.contains(block.name) && block.value.kind == Kind::object)
-      add(changes, without_wires(block.value, body_of(block.value, joined(level.inside, block.name), draft.variants()),
-                                 removed));
+      add(changes,
+          without_wires(block.value, body_of(block.value, joined(level.inside, block.name), draft.variants()),
+                        removed));
   if (const Value::Member* log = level.diagram->find("log"); log && log->value.kind == Kind::list) {
     std::vector<bool> out;
     for (const Value& item : log->value.items) out.push_back(reads(item, removed));
     if (std::ranges::find(out, true) != out.end()) {
-      const bool is_all = std::ranges::find(out, false) == out.end();  // without "log", everything is recorded
+      const bool is_all =
+          std::ranges::find(out, false) == out.end();  // without "log", everything is recorded
       if (is_all && level.diagram->members.size() > 1)
         changes.push_back(without_member(*level.diagram, size_t(log - level.diagram->members.data())));
       else
@@ -232,7 +244,8 @@ void paste(const std::string& text, const Value& intent, const IntentContext& co
   const Level level = draft.level(context.inside);
   const std::vector<CopiedBlock> copies = renamed_copies(text, level);
   if (copies.empty()) throw Refused("the clipboard has no blocks");
-  effects.what = copies.size() == 1 ? "paste " + copies.front().name : fmt::format("paste {} blocks", copies.size());
+  effects.what =
+      copies.size() == 1 ? "paste " + copies.front().name : fmt::format("paste {} blocks", copies.size());
   const Value::Member* position = intent.find("position");
   for (const CopiedBlock& copy : copies) {
     const std::string path = joined(level.inside, copy.name);
@@ -249,7 +262,8 @@ void paste(const std::string& text, const Value& intent, const IntentContext& co
 
 }  // namespace
 
-bool apply_block_intent(const Value& intent, const IntentContext& context, Draft& draft, IntentEffects& effects) {
+bool apply_block_intent(const Value& intent, const IntentContext& context, Draft& draft,
+                        IntentEffects& effects) {
   const std::string kind = required_text(intent, "intent");
   if (kind == "add_block") return add_block(intent, context, draft, effects), true;
   if (kind == "add_subdiagram") return add_subdiagram(intent, context, draft, effects), true;
@@ -258,7 +272,8 @@ bool apply_block_intent(const Value& intent, const IntentContext& context, Draft
   if (kind == "duplicate") {
     const std::vector<std::string> names = required_texts(intent, "blocks");
     paste(copied_blocks(draft.level(context.inside), names), intent, context, draft, effects);
-    effects.what = names.size() == 1 ? "duplicate " + names.front() : fmt::format("duplicate {} blocks", names.size());
+    effects.what =
+        names.size() == 1 ? "duplicate " + names.front() : fmt::format("duplicate {} blocks", names.size());
     return true;
   }
   return false;

@@ -65,7 +65,8 @@ void rename_block(const Value& intent, const IntentContext& context, Draft& draf
   TextChanges changes{renamed_member(block, to)};
   std::ranges::move(renamed_sources(*level.diagram, name, to), std::back_inserter(changes));
   // The diagrams around may read signals inside this one.
-  const std::vector<std::string> steps = level.inside.empty() ? std::vector<std::string>() : split_path(level.inside);
+  const std::vector<std::string> steps =
+      level.inside.empty() ? std::vector<std::string>() : split_path(level.inside);
   std::string prefix;
   for (size_t i = level.outer.size(); i-- > 0;) {
     prefix = joined(steps[i], prefix);
@@ -136,17 +137,18 @@ TextChanges uses_of_parameter(const Value& diagram, const std::string& name, con
   return uses.take();
 }
 
-void rename_parameter(const Value& intent, const IntentContext& context, Draft& draft, IntentEffects& effects) {
+void rename_parameter(const Value& intent, const IntentContext& context, Draft& draft,
+                      IntentEffects& effects) {
   const Level level = draft.level(context.inside);
   const std::string name = required_text(intent, "name"), to = required_text(intent, "to");
   const Value::Member* parameters = level.diagram->find("parameters");
   const Value::Member* parameter = parameters ? parameters->value.find(name) : nullptr;
   if (!parameter) throw Refused(fmt::format("there is no parameter \"{}\"", name));
   if (name == to) return;
-  if (!is_name(to) || is_constant_name(to)) throw Refused(fmt::format("\"{}\" is no name of a parameter", to));
+  if (!is_name(to) || is_constant_name(to))
+    throw Refused(fmt::format("\"{}\" is no name of a parameter", to));
   if (parameters->value.find(to)) throw Refused(fmt::format("there is a parameter \"{}\" already", to));
   effects.what = fmt::format("rename {} to {}", name, to);
-  effects.renamed.emplace_back(joined(level.inside, name), joined(level.inside, to));
   TextChanges changes = uses_of_parameter(*level.diagram, name, to);
   changes.push_back(renamed_member(*parameter, to));
   // The block that contains this diagram passes a value on by name.
@@ -162,7 +164,8 @@ void rename_parameter(const Value& intent, const IntentContext& context, Draft& 
 
 }  // namespace
 
-bool apply_name_intent(const Value& intent, const IntentContext& context, Draft& draft, IntentEffects& effects) {
+bool apply_name_intent(const Value& intent, const IntentContext& context, Draft& draft,
+                       IntentEffects& effects) {
   const std::string kind = required_text(intent, "intent");
   if (kind == "rename_block") return rename_block(intent, context, draft, effects), true;
   if (kind == "rename_parameter") return rename_parameter(intent, context, draft, effects), true;

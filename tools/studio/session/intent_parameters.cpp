@@ -20,27 +20,32 @@ const Value::Member& required_parameter(const Level& level, const std::string& n
 }
 
 void add(const Level& level, const Value& intent, const std::string& name, Draft& draft) {
-  if (!is_name(name) || is_constant_name(name)) throw Refused(fmt::format("\"{}\" is no name of a parameter", name));
+  if (!is_name(name) || is_constant_name(name))
+    throw Refused(fmt::format("\"{}\" is no name of a parameter", name));
   const Value::Member* parameters = level.diagram->find("parameters");
-  if (parameters && parameters->value.find(name)) throw Refused(fmt::format("there is a parameter \"{}\" already", name));
+  if (parameters && parameters->value.find(name))
+    throw Refused(fmt::format("there is a parameter \"{}\" already", name));
   std::string json = json_of_typed(required_text(intent, "text"), nullptr);
   const std::string description(text_in(intent, "description"));
   if (!description.empty()) {
     const bool has_unit = json.starts_with("{\"value\": ");
     if (has_unit) json.pop_back();
-    json = fmt::format("{}, \"description\": {}}}", has_unit ? json : "{\"value\": " + json, in_quotes(description));
+    json = fmt::format("{}, \"description\": {}}}", has_unit ? json : "{\"value\": " + json,
+                       in_quotes(description));
   }
   if (parameters)
     draft.change({with_member(parameters->value, name, json, "    ")});
   else
-    draft.change({with_top_member(*level.diagram, "parameters", fmt::format("{{{}: {}}}", in_quotes(name), json))});
+    draft.change(
+        {with_top_member(*level.diagram, "parameters", fmt::format("{{{}: {}}}", in_quotes(name), json))});
 }
 
 void describe(const Level& level, const std::string& name, const std::string& text, Draft& draft) {
   const Value& value = required_parameter(level, name).value;
   if (value.kind != Kind::object || !value.find("value")) {
     if (!text.empty())
-      draft.change({replaced(value, fmt::format("{{\"value\": {}, \"description\": {}}}", source_of(value), in_quotes(text)))});
+      draft.change({replaced(
+          value, fmt::format("{{\"value\": {}, \"description\": {}}}", source_of(value), in_quotes(text)))});
     return;
   }
   const auto member = std::ranges::find(value.members, "description", &Value::Member::name);
@@ -66,7 +71,8 @@ TextChange typed_change(const Value& change, const Utf16& places, size_t size) {
 bool apply_parameter_intent(const Value& intent, const IntentContext& context, Draft& draft,
                             IntentEffects& effects) {
   const std::string kind = required_text(intent, "intent");
-  if (kind != "set_parameter" && kind != "add_parameter" && kind != "remove_parameter" && kind != "describe_parameter")
+  if (kind != "set_parameter" && kind != "add_parameter" && kind != "remove_parameter" &&
+      kind != "describe_parameter")
     return false;
   const Level level = draft.level(context.inside);
   const std::string name = required_text(intent, "name");
@@ -100,7 +106,8 @@ bool apply_text_intent(const Value& intent, Draft& draft, IntentEffects& effects
   const Utf16 places(draft.text());
   TextChanges changes;
   if (const Value::Member* edits = intent.find("edits")) {
-    for (const Value& edit : edits->value.items) changes.push_back(typed_change(edit, places, draft.text().size()));
+    for (const Value& edit : edits->value.items)
+      changes.push_back(typed_change(edit, places, draft.text().size()));
   } else {
     changes.push_back(typed_change(intent, places, draft.text().size()));
   }

@@ -56,11 +56,13 @@ TextChanges written(const SettingPlace& place, const std::string& typed, const P
     return without_entries(*place.container, leave_out);
   }
   if (place.value) return retyped(*place.value, typed, info);
-  if (!is_name(place.name) && place.name != "$schema") throw Refused(fmt::format("\"{}\" is no name", place.name));
+  if (!is_name(place.name) && place.name != "$schema")
+    throw Refused(fmt::format("\"{}\" is no name", place.name));
   const std::string json = json_of_typed(typed, info);
   const auto in = std::ranges::find(place.container->members, "in", &Value::Member::name);
   if (in != place.container->members.end())  // settings come before the wires
-    return {with_member_before(*place.container, size_t(in - place.container->members.begin()), place.name, json)};
+    return {with_member_before(*place.container, size_t(in - place.container->members.begin()), place.name,
+                               json)};
   return {with_member(*place.container, place.name, json)};
 }
 
@@ -117,7 +119,8 @@ void choose_variant(const Value& intent, const IntentContext& context, Draft& dr
   if (const Value::Member* chosen = block.find("variant"))
     draft.change({replaced(chosen->value, in_quotes(variant))});
   else if (variants + 1 != block.members.end())
-    draft.change({with_member_before(block, size_t(variants + 1 - block.members.begin()), "variant", in_quotes(variant))});
+    draft.change({with_member_before(block, size_t(variants + 1 - block.members.begin()), "variant",
+                                     in_quotes(variant))});
   else
     draft.change({with_member(block, "variant", in_quotes(variant))});
 }
@@ -133,8 +136,9 @@ void set_solver(const Value& intent, const IntentContext& context, Draft& draft,
   if (const Value::Member* solver = level.diagram->find("solver"))
     draft.change(written(find_setting(solver->value, path), typed, is_text ? &text : nullptr));
   else if (!typed.empty())
-    draft.change({with_top_member(*level.diagram, "solver",
-                                  fmt::format("{{{}: {}}}", in_quotes(name), json_of_typed(typed, is_text ? &text : nullptr)))});
+    draft.change({with_top_member(
+        *level.diagram, "solver",
+        fmt::format("{{{}: {}}}", in_quotes(name), json_of_typed(typed, is_text ? &text : nullptr)))});
 }
 
 void set_top_text(const std::string& name, const Value& intent, const IntentContext& context, Draft& draft) {
@@ -152,7 +156,8 @@ void set_top_text(const std::string& name, const Value& intent, const IntentCont
 
 }  // namespace
 
-bool apply_setting_intent(const Value& intent, const IntentContext& context, Draft& draft, IntentEffects& effects) {
+bool apply_setting_intent(const Value& intent, const IntentContext& context, Draft& draft,
+                          IntentEffects& effects) {
   const std::string kind = required_text(intent, "intent");
   if (kind == "set") return set(intent, context, draft, effects), true;
   if (kind == "choose_variant") return choose_variant(intent, context, draft, effects), true;

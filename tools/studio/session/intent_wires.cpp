@@ -17,7 +17,8 @@ struct SignPerWire {
   std::string_view type, port, setting;
   char added;
 };
-constexpr SignPerWire signs_per_wire[] = {{"Sum", "terms", "signs", '+'}, {"Product", "factors", "operations", '*'}};
+constexpr SignPerWire signs_per_wire[] = {{"Sum", "terms", "signs", '+'},
+                                          {"Product", "factors", "operations", '*'}};
 
 const Value::Member* signs_of(const Value& body, const std::string& port, char& added) {
   for (const SignPerWire& sign : signs_per_wire)
@@ -93,14 +94,16 @@ void connect(const Value& intent, const IntentContext& context, Draft& draft, In
   effects.blocks.push_back(target.path);
   const Value::Member* in = target.block->value.find("in");
   if (!in) {
-    draft.change({with_member(target.block->value, "in", fmt::format("{{{}: {}}}", in_quotes(target.port), in_quotes(from)))});
+    draft.change({with_member(target.block->value, "in",
+                              fmt::format("{{{}: {}}}", in_quotes(target.port), in_quotes(from)))});
     return;
   }
   if (in->value.kind != Kind::object) throw Refused("\"in\" is no object");
   const Value::Member* port = in->value.find(target.port);
   if (!port) {
     const bool is_list = takes_many(*target.body, target.port);
-    draft.change({with_member(in->value, target.port, is_list ? fmt::format("[{}]", in_quotes(from)) : in_quotes(from))});
+    draft.change({with_member(in->value, target.port,
+                              is_list ? fmt::format("[{}]", in_quotes(from)) : in_quotes(from))});
     return;
   }
   const Value& wires = port->value;
@@ -153,7 +156,8 @@ void log(const Value& intent, const IntentContext& context, Draft& draft, Intent
     const auto found = std::ranges::find(log->value.items, port, &Value::text);
     const bool is_there = found != log->value.items.end();
     if (is_wanted && !is_there) draft.change({with_item(log->value, in_quotes(port))});
-    if (!is_wanted && is_there) draft.change({without_item(log->value, size_t(found - log->value.items.begin()))});
+    if (!is_wanted && is_there)
+      draft.change({without_item(log->value, size_t(found - log->value.items.begin()))});
     return;
   }
   std::vector<std::string> names = context.recorded ? context.recorded() : std::vector<std::string>();
@@ -170,7 +174,8 @@ void log(const Value& intent, const IntentContext& context, Draft& draft, Intent
 
 }  // namespace
 
-bool apply_wire_intent(const Value& intent, const IntentContext& context, Draft& draft, IntentEffects& effects) {
+bool apply_wire_intent(const Value& intent, const IntentContext& context, Draft& draft,
+                       IntentEffects& effects) {
   const std::string kind = required_text(intent, "intent");
   if (kind == "connect") return connect(intent, context, draft, effects), true;
   if (kind == "disconnect") return disconnect(intent, context, draft, effects), true;

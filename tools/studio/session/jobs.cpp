@@ -26,8 +26,9 @@ void Jobs::start(int64_t client, int64_t id, const std::string& lane, std::funct
   {
     const std::lock_guard lock(mutex_);
     if (!lane.empty())
-      std::ranges::copy_if(jobs_, std::back_inserter(overtaken),
-                           [&](const auto& other) { return other->client_ == client && other->lane_ == lane; });
+      std::ranges::copy_if(jobs_, std::back_inserter(overtaken), [&](const auto& other) {
+        return other->client_ == client && other->lane_ == lane;
+      });
     jobs_.push_back(job);
     waiting_.push_back({job, std::move(work)});
   }

@@ -71,7 +71,8 @@ Json limits(double low, double high, bool is_dead_zone) {
 }
 
 Json transfer(const Value& settings, bool is_discrete) {
-  const std::vector<double> numerator = numbers_of(settings, "numerator"), denominator = numbers_of(settings, "denominator");
+  const std::vector<double> numerator = numbers_of(settings, "numerator"),
+                            denominator = numbers_of(settings, "denominator");
   if (denominator.empty()) return {{"kind", "none"}};
   return fraction(polynomial(numerator, is_discrete), polynomial(denominator, is_discrete));
 }
@@ -81,10 +82,22 @@ struct Telling {
   std::string_view type, setting;
 };
 constexpr Telling telling[] = {
-    {"Gain", "gain"},           {"Constant", "value"},       {"Step", "after"},         {"Mass", "mass"},
-    {"ViscousFriction", "damping"}, {"Spring", "stiffness"}, {"CoulombFriction", "level"}, {"LowPass", "cutoff"},
-    {"Expression", "formula"},  {"Comparison", "operator"},  {"Logic", "operation"},    {"Encoder", "resolution"},
-    {"Ramp", "slope"},          {"Sine", "frequency"},       {"Quantizer", "interval"}, {"TransportDelay", "delay"},
+    {"Gain", "gain"},
+    {"Constant", "value"},
+    {"Step", "after"},
+    {"Mass", "mass"},
+    {"ViscousFriction", "damping"},
+    {"Spring", "stiffness"},
+    {"CoulombFriction", "level"},
+    {"LowPass", "cutoff"},
+    {"Expression", "formula"},
+    {"Comparison", "operator"},
+    {"Logic", "operation"},
+    {"Encoder", "resolution"},
+    {"Ramp", "slope"},
+    {"Sine", "frequency"},
+    {"Quantizer", "interval"},
+    {"TransportDelay", "delay"},
 };
 
 }  // namespace

@@ -62,9 +62,11 @@ Recording cut(const Recording& recording, const Window& window) {
   for (size_t c = 0; c < recording.columns.size(); ++c) {
     const Column& column = recording.columns[c];
     if (c > 0 && !is_named(window, column.name)) continue;
-    part.columns.push_back({column.name, column.unit,
-                            {column.values.begin() + ptrdiff_t(first), column.values.begin() + ptrdiff_t(last)},
-                            ""});
+    part.columns.push_back(
+        {column.name,
+         column.unit,
+         {column.values.begin() + ptrdiff_t(first), column.values.begin() + ptrdiff_t(last)},
+         ""});
   }
   return part;
 }

@@ -14,8 +14,8 @@
 namespace loopwright::studio {
 
 struct StoredRun {
-  std::string path;       ///< of the diagram
-  Json facts;             ///< as the answer of "run", without signals
+  std::string path;  ///< of the diagram
+  Json facts;        ///< as the answer of "run", without signals
   Recording recording;
   std::set<std::string> held;  ///< signals that hold between samples
 };

@@ -6,6 +6,7 @@
 #include "engine/json/file_kind.h"
 #include "engine/json/json.h"
 #include "tools/studio/session/copied_blocks.h"
+#include "tools/studio/session/experiment_text.h"
 
 namespace loopwright::studio {
 
@@ -18,7 +19,9 @@ const Value* Session::Request::find(std::string_view name) const {
   return member && member->value.kind != Kind::null ? &member->value : nullptr;
 }
 
-std::string Session::Request::text(std::string_view name) const { return std::string(text_in(message, name)); }
+std::string Session::Request::text(std::string_view name) const {
+  return std::string(text_in(message, name));
+}
 
 double Session::Request::number(std::string_view name, double otherwise) const {
   const Value* value = find(name);
@@ -54,7 +57,10 @@ LoadOptions Session::Request::options() const {
 // ---- Answers ----
 
 Session::Session(std::string folder, std::string opened, Send send)
-    : folder_(std::move(folder)), opened_(std::move(opened)), send_(std::move(send)), files_(folder_.files()) {}
+    : folder_(std::move(folder)),
+      opened_(std::move(opened)),
+      send_(std::move(send)),
+      files_(folder_.files()) {}
 
 void Session::send(int64_t client, const Json& message) const {
   send_(client, message.dump(-1, ' ', false, Json::error_handler_t::replace));
@@ -71,31 +77,19 @@ void Session::fail(int64_t client, int64_t id, const std::exception& error) cons
 
 const std::map<std::string_view, Session::Handler>& Session::handlers() {
   static const std::map<std::string_view, Handler> map = {
-      {"hello", &Session::hello},
-      {"files", &Session::files},
-      {"open", &Session::open},
-      {"edit", &Session::edit},
-      {"undo", &Session::undo},
-      {"redo", &Session::redo},
-      {"resolve", &Session::resolve},
-      {"copy", &Session::copy},
-      {"cancel", &Session::cancel},
-      {"find_blocks", &Session::find_blocks},
-      {"type", &Session::type},
-      {"complete", &Session::complete},
-      {"hover", &Session::hover},
-      {"run", &Session::run},
-      {"signals", &Session::signals},
-      {"export", &Session::export_view},
-      {"runs", &Session::runs},
-      {"name_run", &Session::name_run},
-      {"linearize", &Session::linearize},
-      {"columns", &Session::columns},
-      {"write_experiment", &Session::write_experiment},
-      {"compare", &Session::compare},
-      {"diagnose", &Session::diagnose},
-      {"preview", &Session::preview},
-      {"add_effects", &Session::add_effects},
+      {"hello", &Session::hello},         {"files", &Session::files},
+      {"open", &Session::open},           {"edit", &Session::edit},
+      {"undo", &Session::undo},           {"redo", &Session::redo},
+      {"resolve", &Session::resolve},     {"copy", &Session::copy},
+      {"cancel", &Session::cancel},       {"find_blocks", &Session::find_blocks},
+      {"type", &Session::type},           {"complete", &Session::complete},
+      {"hover", &Session::hover},         {"run", &Session::run},
+      {"signals", &Session::signals},     {"export", &Session::export_view},
+      {"runs", &Session::runs},           {"name_run", &Session::name_run},
+      {"linearize", &Session::linearize}, {"sweep", &Session::sweep},
+      {"columns", &Session::columns},     {"write_experiment", &Session::write_experiment},
+      {"compare", &Session::compare},     {"diagnose", &Session::diagnose},
+      {"preview", &Session::preview},     {"add_effects", &Session::add_effects},
   };
   return map;
 }
@@ -108,7 +102,8 @@ void Session::receive(int64_t client, std::string_view text) {
     request.message = parsed.root;
     request.id = request.whole("id", 0);
     const auto handler = handlers().find(request.required("do"));
-    if (handler == handlers().end()) throw Refused(fmt::format("there is no request \"{}\"", request.required("do")));
+    if (handler == handlers().end())
+      throw Refused(fmt::format("there is no request \"{}\"", request.required("do")));
     answer(request, handler->second);
   } catch (const std::exception& error) {
     fail(client, request.id, error);
@@ -123,7 +118,8 @@ void Session::answer(const Request& request, Handler handler) {
 }
 
 void Session::Work::progress(std::string_view stage, double done) const {
-  if (!job.is_cancelled()) session.send(client, {{"id", id}, {"progress", {{"stage", stage}, {"done", done}}}});
+  if (!job.is_cancelled())
+    session.send(client, {{"id", id}, {"progress", {{"stage", stage}, {"done", done}}}});
 }
 
 void Session::Work::partial(Json part) const {
@@ -143,7 +139,9 @@ Json Session::start(const Request& request, std::function<Json(Work&)> work) {
           if (jobs_.finish(job)) fail(client, id, error);
         }
       },
-      [this, client, id] { send(client, {{"id", id}, {"dropped", true}}); });
+      [this, client, id] {
+        send(client, {{"id", id}, {"dropped", true}});
+      });
   return Json(Json::value_t::discarded);
 }
 
@@ -164,9 +162,10 @@ Json Session::file_list() const {
   Json list = Json::array();
   for (const Folder::File& file : files_) {
     static const std::map<FileKind, std::string_view> names = {
-        {FileKind::unknown, "unknown"}, {FileKind::diagram, "diagram"},   {FileKind::experiment, "experiment"},
-        {FileKind::sweep, "sweep"},     {FileKind::training, "training"}, {FileKind::effect, "effect"},
-        {FileKind::device, "device"},   {FileKind::model, "model"}};
+        {FileKind::unknown, "unknown"},       {FileKind::diagram, "diagram"},
+        {FileKind::experiment, "experiment"}, {FileKind::sweep, "sweep"},
+        {FileKind::training, "training"},     {FileKind::effect, "effect"},
+        {FileKind::device, "device"},         {FileKind::model, "model"}};
     std::string kind = "record", title;
     if (file.path.ends_with(".json")) {
       Problems problems;
@@ -190,7 +189,8 @@ Json Session::files(const Request&) {
 }
 
 Json Session::store(const std::string& name, int64_t offset, bool is_last, std::string_view bytes) {
-  if (name.find('/') != name.npos || name.ends_with(".json")) throw Refused("a record is a .csv or .mat file");
+  if (name.find('/') != name.npos || name.ends_with(".json"))
+    throw Refused("a record is a .csv or .mat file");
   folder_.store_part(name, offset, is_last, bytes);
   return {{"path", name}};
 }
@@ -255,7 +255,8 @@ std::set<std::string> names_in_level(const std::vector<std::string>& paths, cons
   std::set<std::string> names;
   const std::string prefix = inside.empty() ? "" : inside + ".";
   for (const std::string& path : paths)
-    if (path.starts_with(prefix)) names.insert(path.substr(prefix.size(), path.find('.', prefix.size()) - prefix.size()));
+    if (path.starts_with(prefix))
+      names.insert(path.substr(prefix.size(), path.find('.', prefix.size()) - prefix.size()));
   return names;
 }
 
@@ -263,7 +264,8 @@ Json edits_json(const Edited& edited) {
   const Utf16 places(edited.before);
   Json list = Json::array();
   for (const TextChange& change : edited.changes)
-    list.push_back({{"from", places.units(change.from)}, {"to", places.units(change.to)}, {"text", change.text}});
+    list.push_back(
+        {{"from", places.units(change.from)}, {"to", places.units(change.to)}, {"text", change.text}});
   return list;
 }
 
@@ -301,9 +303,28 @@ std::vector<std::string> Session::recorded(const Document& document, const LoadO
   return names;
 }
 
+/// Experiments in the folder of a diagram all of whose ports lead to its blocks.
+std::vector<OtherFile> Session::followers(const Document& document,
+                                          const std::map<std::string, std::string>& renamed) const {
+  const ParsedText diagram(document.path(), document.text());
+  const Level level = find_level(diagram.root, "", {});
+  const auto is_of_diagram = [&](const std::string& port) { return level.block(port.substr(0, port.find('.'))); };
+  const auto folder_of = [](const std::string& path) { return std::filesystem::path(path).parent_path(); };
+  std::vector<OtherFile> others;
+  for (const Folder::File& file : folder_.files()) {
+    if (!file.path.ends_with(".experiment.json") || folder_of(file.path) != folder_of(document.path())) continue;
+    const std::optional<std::string> text = folder_.read(file.path);
+    if (!text || !std::ranges::all_of(ports_of_experiment(file.path, *text), is_of_diagram)) continue;
+    const std::string after = with_ports_renamed(file.path, *text, renamed);
+    if (after != *text) others.push_back({file.path, text, after});
+  }
+  return others;
+}
+
 Json Session::edit(const Request& request) {
   const Value* intents = request.find("intents");
-  if (!intents || intents->kind != Kind::list || intents->items.empty()) throw Refused("there are no intents");
+  if (!intents || intents->kind != Kind::list || intents->items.empty())
+    throw Refused("there are no intents");
   const std::string path = request.required("path");
   Seen& seen = seen_[request.client][path];
   if (request.find("variants")) seen.variants = request.text_map("variants");
@@ -312,8 +333,10 @@ Json Session::edit(const Request& request) {
   return changed(request, [&](Document& document) {
     LoadOptions options;
     options.variants = seen.variants;
-    const IntentContext context{seen.inside, [&] { return recorded(document, options); }};
-    return document.edit(intents->items, context, seen.variants, revision < 0 ? document.revision() : revision);
+    const IntentContext context{seen.inside, [&] { return recorded(document, options); },
+                                [&](const auto& renamed) { return followers(document, renamed); }};
+    return document.edit(intents->items, context, seen.variants,
+                         revision < 0 ? document.revision() : revision);
   });
 }
 

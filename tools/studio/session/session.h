@@ -36,7 +36,9 @@ class Session {
     const Value* find(std::string_view name) const;
     std::string text(std::string_view name) const;  ///< empty if there is none
     std::string required(std::string_view name) const { return required_text(message, name); }
-    int64_t whole(std::string_view name, int64_t otherwise) const { return optional_whole(message, name, otherwise); }
+    int64_t whole(std::string_view name, int64_t otherwise) const {
+      return optional_whole(message, name, otherwise);
+    }
     double number(std::string_view name, double otherwise) const;
     bool flag(std::string_view name) const;
     std::vector<std::string> texts(std::string_view name) const;  ///< empty if there is none
@@ -80,6 +82,8 @@ class Session {
   Json document_json(const Document& document, const Seen& seen, bool with_text);
   /// Changes a document as `change` says; again if another program changed the file at the same moment.
   Json changed(const Request& request, const std::function<Edited(Document&)>& change);
+  std::vector<OtherFile> followers(const Document& document,
+                                   const std::map<std::string, std::string>& renamed) const;
   void tell_others(const Document& document, int64_t except);
   std::vector<std::string> recorded(const Document& document, const LoadOptions& options) const;
   std::string file_of(const Request& request) const { return folder_.path_of(request.required("path")); }
@@ -97,6 +101,7 @@ class Session {
   Json runs(const Request&);
   Json name_run(const Request&);
   Json linearize(const Request&);
+  Json sweep(const Request&);  // session_sweep.cpp
   /// The text of a diagram, as it is open or on the disk.
   std::shared_ptr<const SourceFile> source(const std::string& path);
   std::shared_ptr<const Recording> source_of_signals(const std::string& name) const;

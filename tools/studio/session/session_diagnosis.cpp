@@ -42,13 +42,18 @@ const DiagnosisStep* step_of(const Diagnosis& diagnosis, const std::string& effe
 Json card_json(const Diagnosis& diagnosis, const DiagnosedEffect& effect, size_t count) {
   Json parameters = Json::array();
   for (const DiagnosedParameter& p : effect.parameters)
-    parameters.push_back({{"name", p.name}, {"value", p.value}, {"low", p.low}, {"high", p.high}, {"unit", p.unit},
+    parameters.push_back({{"name", p.name},
+                          {"value", p.value},
+                          {"low", p.low},
+                          {"high", p.high},
+                          {"unit", p.unit},
                           {"text", quantity(p.value, p.unit)},
                           {"interval", quantity(p.low, p.unit) + " … " + quantity(p.high, p.unit)},
                           {"at_limit", p.at_limit}});
   const DiagnosisStep* step = step_of(diagnosis, effect.name, count);
-  const bool is_addable = std::ranges::any_of(diagnosis.additions.effects,
-                                              [&](const AddedEffect& added) { return added.effect.name == effect.name; });
+  const bool is_addable = std::ranges::any_of(diagnosis.additions.effects, [&](const AddedEffect& added) {
+    return added.effect.name == effect.name;
+  });
   return {{"effect", effect.name},
           {"form", effect.form},
           {"title", effect.title},
@@ -74,7 +79,8 @@ Json cards_json(const Diagnosis& diagnosis) {
 
 /// What remains without a name; null if nothing does.
 Json unknown_json(const Diagnosis& diagnosis) {
-  const bool is_left = diagnosis.verdict == Verdict::unexplained || diagnosis.verdict == Verdict::partly_explained;
+  const bool is_left =
+      diagnosis.verdict == Verdict::unexplained || diagnosis.verdict == Verdict::partly_explained;
   if (!is_left) return nullptr;
   Json dependence = Json::array();
   for (const RemainderShare& share : diagnosis.dependence)
@@ -91,7 +97,7 @@ Json curves_json(const Diagnosis& diagnosis, size_t points) {
     for (size_t i = 0; i < values.size(); i += step) some.push_back(values[i]);
     return some;
   };
-  return {{"unit", diagnosis.force_unit},       {"time", taken(c.time)},     {"position", taken(c.position)},
+  return {{"unit", diagnosis.force_unit},  {"time", taken(c.time)},     {"position", taken(c.position)},
           {"velocity", taken(c.velocity)}, {"before", taken(c.before)}, {"after", taken(c.after)}};
 }
 
@@ -115,7 +121,8 @@ Json diagnosis_json(const Diagnosis& diagnosis, size_t points) {
   for (const OtherExplanation& other : diagnosis.other_explanations)
     json["other_explanations"].push_back({{"in_place_of", other.in_place_of}, {"effects", other.effects}});
   for (const SuggestedExperiment& suggested : diagnosis.suggested)
-    json["suggested"].push_back({{"text", suggested.text}, {"between", suggested.between}, {"and", suggested.and_effect}});
+    json["suggested"].push_back(
+        {{"text", suggested.text}, {"between", suggested.between}, {"and", suggested.and_effect}});
   for (const RecordFinding& finding : diagnosis.findings)
     json["findings"].push_back({{"what", finding.what}, {"cost", finding.cost}, {"fatal", finding.is_fatal}});
   for (const NotLookedFor& left_out : diagnosis.not_looked_for)
@@ -132,7 +139,8 @@ Additions chosen(const Diagnosis& diagnosis, const std::vector<std::string>& nam
     const std::string& name = added.effect.name;
     const DiagnosisStep* step = step_of(diagnosis, name, counts[name]++);
     const bool is_necessary = step && !step->is_optional;
-    if (names.empty() ? is_necessary : std::ranges::find(names, name) != names.end()) result.effects.push_back(added);
+    if (names.empty() ? is_necessary : std::ranges::find(names, name) != names.end())
+      result.effects.push_back(added);
   }
   if (result.effects.empty()) throw Refused("the diagnosis has no such effect to add");
   return result;
@@ -222,7 +230,8 @@ Json Session::add_effects(const Request& request) {
   if (!stored) throw Refused("this diagnosis is not kept any more");
   const Additions additions = chosen(*stored->diagnosis, request.texts("effects"));
   std::string names;
-  for (const AddedEffect& added : additions.effects) names += (names.empty() ? "" : ", ") + added.effect.title;
+  for (const AddedEffect& added : additions.effects)
+    names += (names.empty() ? "" : ", ") + added.effect.title;
   const std::string path = request.required("path");
   return changed(request, [&](Document& document) {
     std::vector<std::string> paths;

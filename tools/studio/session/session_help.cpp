@@ -18,7 +18,8 @@ using Kind = Value::Kind;
 Json finite(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
 
 std::string_view name_of(ParameterKind kind) {
-  static constexpr std::string_view names[] = {"number", "whole", "flag", "text", "file", "choice", "list", "object"};
+  static constexpr std::string_view names[] = {"number", "whole",  "flag", "text",
+                                               "file",   "choice", "list", "object"};
   return names[size_t(kind)];
 }
 
@@ -105,11 +106,13 @@ std::string explained(const At& at, const BlockType* type, size_t depth, const V
   if (setting.name == "type") return block_text(type->info);
   if (setting.name == "in" && at.members.size() > depth + 2)
     for (const PortInfo& port : type->info.inputs)
-      if (port.name == at.members[depth + 2]->name) return fmt::format("{} [{}]: {}", port.name, port.unit, port.sentence);
+      if (port.name == at.members[depth + 2]->name)
+        return fmt::format("{} [{}]: {}", port.name, port.unit, port.sentence);
   const std::vector<std::string> path{setting.name};
   const ParameterInfo* info = find_parameter(type->info.parameters, path);
   if (!info) return "";
-  return fmt::format("{}{}: {}", info->name, info->unit.empty() ? "" : fmt::format(" [{}]", info->unit), info->sentence);
+  return fmt::format("{}{}: {}", info->name, info->unit.empty() ? "" : fmt::format(" [{}]", info->unit),
+                     info->sentence);
 }
 
 void option(Json& list, const std::string& label, std::string_view detail) {
@@ -125,7 +128,8 @@ void add_sources(const Value& root, Json& options) {
       for (const PortInfo& port : type->info.outputs)
         option(options, fmt::format("{}.{}", block.name, port.name), port.sentence);
   if (const Value::Member* inputs = root.find("inputs"))
-    for (const Value::Member& input : inputs->value.members) option(options, input.name, "input of the diagram");
+    for (const Value::Member& input : inputs->value.members)
+      option(options, input.name, "input of the diagram");
 }
 
 void add_settings(const Value& block, const BlockType& type, Json& options) {
@@ -155,9 +159,12 @@ Json Session::find_blocks(const Request& request) {
     const BlockType* type = loopwright::find_block(name);
     if (!type) return;
     const bool suits = fits.empty() && !unit ? true
-                       : fits.empty() ? has_port(type->info.inputs, unit) || has_port(type->info.outputs, unit)
-                                      : has_port(is_input ? type->info.outputs : type->info.inputs, unit);
-    if (suits) list.push_back({{"type", name}, {"room", type->info.room}, {"sentence", type->info.sentence}, {"why", why}});
+                       : fits.empty()
+                           ? has_port(type->info.inputs, unit) || has_port(type->info.outputs, unit)
+                           : has_port(is_input ? type->info.outputs : type->info.inputs, unit);
+    if (suits)
+      list.push_back(
+          {{"type", name}, {"room", type->info.room}, {"sentence", type->info.sentence}, {"why", why}});
   };
   if (words.empty())
     for (const auto& [name, type] : all_blocks()) add(name, "");
@@ -172,11 +179,16 @@ Json Session::type(const Request& request) {
   const BlockType* type = loopwright::find_block(name);
   if (!type) throw Refused(fmt::format("there is no block type \"{}\"; {}", name, block_type_hint(name)));
   const BlockInfo& info = type->info;
-  Json json{{"type", name}, {"room", info.room}, {"sentence", info.sentence}, {"inputs", Json::array()},
-            {"outputs", Json::array()}, {"settings", Json::array()}};
+  Json json{{"type", name},
+            {"room", info.room},
+            {"sentence", info.sentence},
+            {"inputs", Json::array()},
+            {"outputs", Json::array()},
+            {"settings", Json::array()}};
   for (const PortInfo& port : info.inputs) json["inputs"].push_back(port_json(port));
   for (const PortInfo& port : info.outputs) json["outputs"].push_back(port_json(port));
-  for (const ParameterInfo& parameter : info.parameters) json["settings"].push_back(parameter_json(parameter));
+  for (const ParameterInfo& parameter : info.parameters)
+    json["settings"].push_back(parameter_json(parameter));
   json["sampled"] = info.is_sampled, json["continuous"] = info.is_continuous;
   json["help"] = block_text(info);
   return json;
@@ -218,7 +230,8 @@ Json Session::complete(const Request& request) {
   }
   if (block) {
     const BlockType* type = loopwright::find_block(text_in(body_of(block->value, block->name, {}), "type"));
-    const std::string_view key = at.members.size() > depth + 1 ? std::string_view(at.members[depth + 1]->name) : "";
+    const std::string_view key =
+        at.members.size() > depth + 1 ? std::string_view(at.members[depth + 1]->name) : "";
     if (key == "type" && !at.is_name) {
       for (const auto& [name, entry] : all_blocks()) option(options, name, entry.info.sentence);
     } else if (key == "in" && !at.is_name) {

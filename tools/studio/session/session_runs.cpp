@@ -18,7 +18,8 @@ namespace {
 
 /// An argument for a shell.
 std::string shell_word(const std::string& text) {
-  if (text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./=-+") == text.npos &&
+  if (text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./=-+") ==
+          text.npos &&
       !text.empty())
     return text;
   std::string word = "'";
@@ -29,7 +30,8 @@ std::string shell_word(const std::string& text) {
 std::string command_of(const std::string& path, const LoadOptions& options) {
   std::string command = "loopwright run " + shell_word(path);
   for (const auto& [name, value] : options.set) command += " --set " + shell_word(name + "=" + value);
-  for (const auto& [block, variant] : options.variants) command += " --variant " + shell_word(block + "=" + variant);
+  for (const auto& [block, variant] : options.variants)
+    command += " --variant " + shell_word(block + "=" + variant);
   return command;
 }
 
@@ -69,7 +71,8 @@ Plan recording(const Plan& plan, const std::vector<std::string>& signals) {
       const auto unit = plan.unit_of(numbers[i]);
       logged.unit = unit.value_or(Unit{}), logged.unit_is_known = unit.has_value();
       logged.number = numbers[i], logged.rate = {Rate::Kind::continuous, 0, 0};
-      if (const auto [block, output] = plan.source_of(numbers[i]); block >= 0 && plan.blocks[size_t(block)].period > 0)
+      if (const auto [block, output] = plan.source_of(numbers[i]);
+          block >= 0 && plan.blocks[size_t(block)].period > 0)
         logged.rate.kind = Rate::Kind::sampled;
       more.log.push_back(std::move(logged));
     }
@@ -141,8 +144,11 @@ Json Session::run(const Request& request) {
     answer["signals"] = signals_json(stored->recording, window_of(points, {}), stored->held);
     Json merit = Json::array();
     for (const Json& signal : answer["signals"])
-      merit.push_back({{"name", signal["name"]}, {"unit", signal["unit"]}, {"rms", signal["rms"]},
-                       {"max", std::max(std::abs(signal["min"].get<double>()), std::abs(signal["max"].get<double>()))}});
+      merit.push_back(
+          {{"name", signal["name"]},
+           {"unit", signal["unit"]},
+           {"rms", signal["rms"]},
+           {"max", std::max(std::abs(signal["min"].get<double>()), std::abs(signal["max"].get<double>()))}});
     stored->facts["merit"] = std::move(merit);
     const int64_t number = results_.runs.add(stored);
     answer["run"] = number;
@@ -153,10 +159,10 @@ Json Session::run(const Request& request) {
 std::shared_ptr<const Recording> Session::source_of_signals(const std::string& name) const {
   const size_t colon = name.find(':');
   const std::string kind = name.substr(0, colon), rest = colon == name.npos ? "" : name.substr(colon + 1);
-  const bool is_number = !rest.empty() && rest.size() < 10 && rest.find_first_not_of("0123456789") == rest.npos;
+  const bool is_number =
+      !rest.empty() && rest.size() < 10 && rest.find_first_not_of("0123456789") == rest.npos;
   if (kind == "run" && is_number) {
-    if (const auto run = results_.runs.find(std::stoll(rest)))
-      return {run, &run->recording};
+    if (const auto run = results_.runs.find(std::stoll(rest))) return {run, &run->recording};
   } else if (kind == "comparison" && is_number) {
     if (const auto comparison = results_.comparisons.find(std::stoll(rest))) return comparison->signals;
   } else if (kind == "record") {
@@ -180,8 +186,8 @@ std::shared_ptr<const Recording> Session::source_of_signals(const std::string& n
 
 Json Session::signals(const Request& request) {
   const std::string name = request.required("source");
-  const Window window{request.texts("names"), request.number("from", -INFINITY), request.number("to", INFINITY),
-                      pixels(request.whole("points", 1200))};
+  const Window window{request.texts("names"), request.number("from", -INFINITY),
+                      request.number("to", INFINITY), pixels(request.whole("points", 1200))};
   return start(request, [=, this](Work&) -> Json {
     std::set<std::string> held;
     if (name.starts_with("run:"))
@@ -195,7 +201,8 @@ Json Session::export_view(const Request& request) {
   if (target.ends_with(".json")) throw Refused("signals are written as .csv or .mat");
   if (!folder_.is_writable(target) || folder_.read(target))
     throw Refused(fmt::format("\"{}\" cannot be written, or is there already", target));
-  const Window window{request.texts("names"), request.number("from", -INFINITY), request.number("to", INFINITY)};
+  const Window window{request.texts("names"), request.number("from", -INFINITY),
+                      request.number("to", INFINITY)};
   const std::string path = folder_.path_of(target);
   return start(request, [=, this](Work&) -> Json {
     write_recording(path, cut(*source_of_signals(name), window));
@@ -224,7 +231,8 @@ Json Session::name_run(const Request& request) {
   results_.runs.replace(number, named);
   if (request.flag("keep")) {
     folder_.make_own_folder("runs");
-    const std::string stem = fmt::format(".loopwright/runs/{}-{}", named->facts["hash"].get<std::string>(), number);
+    const std::string stem =
+        fmt::format(".loopwright/runs/{}-{}", named->facts["hash"].get<std::string>(), number);
     const std::string facts = stem + ".json", text = named->facts.dump(2) + "\n";
     folder_.replace(facts, folder_.read(facts), text);
     write_recording(folder_.path_of(stem + ".csv"), named->recording);
@@ -247,16 +255,22 @@ Json Session::linearize(const Request& request) {
     run_options.interrupt = &work.job.interrupt();
     const LinearAnalysis analysis = analyse(*plan, wanted, run_options);
     const std::vector<std::complex<double>> response = channel_response(analysis, 0, 0);
-    Json json{{"frequency", analysis.frequency}, {"magnitude_db", Json::array()},
-              {"phase_deg", unwrapped_degrees(response)}, {"nyquist", {{"re", Json::array()}, {"im", Json::array()}}},
-              {"poles", Json::array()}, {"zeros", Json::array()}, {"margins", nullptr}, {"text", to_text(analysis)}};
+    Json json{{"frequency", analysis.frequency},
+              {"magnitude_db", Json::array()},
+              {"phase_deg", unwrapped_degrees(response)},
+              {"nyquist", {{"re", Json::array()}, {"im", Json::array()}}},
+              {"poles", Json::array()},
+              {"zeros", Json::array()},
+              {"margins", nullptr},
+              {"text", to_text(analysis)}};
     for (const std::complex<double>& value : response) {
       json["magnitude_db"].push_back(20 * std::log10(std::abs(value)));
       json["nyquist"]["re"].push_back(value.real()), json["nyquist"]["im"].push_back(value.imag());
     }
     for (const Pole& pole : analysis.poles) json["poles"].push_back({pole.value.real(), pole.value.imag()});
     if (analysis.zeros)
-      for (const std::complex<double>& zero : *analysis.zeros) json["zeros"].push_back({zero.real(), zero.imag()});
+      for (const std::complex<double>& zero : *analysis.zeros)
+        json["zeros"].push_back({zero.real(), zero.imag()});
     if (analysis.loop) {
       const Margins& m = analysis.loop->margins;
       json["margins"] = {{"gain_db", 20 * std::log10(m.gain)},

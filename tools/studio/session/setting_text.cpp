@@ -55,9 +55,10 @@ Typed read_typed(const std::string& typed, const ParameterInfo* info) {
             number->unit_text, false};
   }
   if (is_number_kind(info))
-    throw Refused(fmt::format("\"{}\" is no number; expected a number, a number with a unit (25 mm), or an "
-                              "expression (=2*pi*f)",
-                              text));
+    throw Refused(
+        fmt::format("\"{}\" is no number; expected a number, a number with a unit (25 mm), or an "
+                    "expression (=2*pi*f)",
+                    text));
   if (text.find_first_of("{}[]\"") != text.npos) throw Refused(fmt::format("{} is not JSON", text));
   return {in_quotes(text), "", "", false};
 }
@@ -120,7 +121,8 @@ std::string shown_value(const Value& value, const std::string& unit) {
   return "{…}";
 }
 
-const ParameterInfo* find_parameter(const std::vector<ParameterInfo>& list, std::span<const std::string> path) {
+const ParameterInfo* find_parameter(const std::vector<ParameterInfo>& list,
+                                    std::span<const std::string> path) {
   if (path.empty()) return nullptr;
   const auto found = std::ranges::find(list, path.front(), &ParameterInfo::name);
   if (found == list.end()) return nullptr;

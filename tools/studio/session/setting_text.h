@@ -22,14 +22,16 @@ TextChanges retyped(const Value& old, const std::string& typed, const ParameterI
 std::string shown_value(const Value& value, const std::string& unit);
 
 /// The parameter that a path leads to, "harmonics.0.amplitude"; null if there is none.
-const ParameterInfo* find_parameter(const std::vector<ParameterInfo>& list, std::span<const std::string> path);
+const ParameterInfo* find_parameter(const std::vector<ParameterInfo>& list,
+                                    std::span<const std::string> path);
 
 /// Where a slider may move, in the unit of the number.
 struct Slider {
   double low = 0, high = 0, value = 0;
   std::string unit;  ///< for the number with which a run is set
 };
-/// Around a number in SI, which is shown in `unit`, within the limits of its parameter. Nothing if it cannot move.
+/// Around a number in SI, which is shown in `unit`, within the limits of its parameter. Nothing if it cannot
+/// move.
 std::optional<Slider> slider_around(double si, const std::string& unit, const ParameterInfo* info);
 
 }  // namespace loopwright::studio

@@ -66,27 +66,26 @@ Shown find_shown(const CheckedText& text, const std::string& inside, const Varia
 class View {
  public:
   View(const CheckedText& text, Shown shown, const Variants& variants, const Layout& layout)
-      : text_(text), shown_(std::move(shown)), variants_(variants), layout_(layout), places_(shown_.owner->file->text) {
+      : text_(text),
+        shown_(std::move(shown)),
+        variants_(variants),
+        layout_(layout),
+        places_(shown_.owner->file->text) {
     if (plan())
-      for (const Plan::Logged& logged : plan()->log) logged_.insert(logged.name.substr(0, logged.name.find('[')));
+      for (const Plan::Logged& logged : plan()->log)
+        logged_.insert(logged.name.substr(0, logged.name.find('[')));
     find_rates();
     find_problems();
   }
 
   Json json() {
     const Value& d = *shown_.diagram;
-    Json view{{"inside", shown_.inside},
-              {"editable", shown_.is_editable},
-              {"title", text_in(d, "title")},
-              {"description", text_in(d, "description")},
-              {"levels", shown_.levels},
-              {"blocks", Json::array()},
-              {"wires", Json::array()},
-              {"inputs", Json::array()},
-              {"outputs", Json::array()},
-              {"parameters", Json::array()},
-              {"solver", Json::array()},
-              {"log", Json::array()}};
+    Json view{{"inside", shown_.inside},      {"editable", shown_.is_editable},
+              {"title", text_in(d, "title")}, {"description", text_in(d, "description")},
+              {"levels", shown_.levels},      {"blocks", Json::array()},
+              {"wires", Json::array()},       {"inputs", Json::array()},
+              {"outputs", Json::array()},     {"parameters", Json::array()},
+              {"solver", Json::array()},      {"log", Json::array()}};
     const Level level{&d, shown_.inside};
     sources_ = sources_by_block(level);
     for (const Value::Member& block : level.blocks().members) {
@@ -95,7 +94,8 @@ class View {
     }
     add_ports(d, view);
     if (const Value::Member* list = d.find("parameters"))
-      for (const Value::Member& parameter : list->value.members) view["parameters"].push_back(this->parameter(parameter));
+      for (const Value::Member& parameter : list->value.members)
+        view["parameters"].push_back(this->parameter(parameter));
     if (const Value::Member* solver = d.find("solver"))
       for (const Value::Member& member : solver->value.members)
         view["solver"].push_back({{"name", member.name}, {"text", typed_text(member.value)}});
@@ -177,8 +177,8 @@ class View {
     const Value* sub = subdiagram_of(body);
     Json json{{"name", member.name}, {"type", type}, {"room", known ? known->info.room : ""}};
     json["title"] = entry && entry->subdiagram && !entry->subdiagram->title.empty() ? entry->subdiagram->title
-                    : sub && sub->kind == Kind::text                               ? sub->text
-                                                                                   : type;
+                    : sub && sub->kind == Kind::text                                ? sub->text
+                                                                                    : type;
     json["description"] = text_in(member.value, "description");
     json["subdiagram"] = sub != nullptr;
     json["file"] = sub && sub->kind == Kind::text ? resolve_relative(sub->place, sub->text) : "";
@@ -210,12 +210,8 @@ class View {
 
   Json slider_json(const std::optional<Slider>& slider, const std::string& set) const {
     if (!slider) return nullptr;
-    return {{"low", slider->low},
-            {"high", slider->high},
-            {"step", (slider->high - slider->low) / 200},
-            {"unit", slider->unit},
-            {"value", slider->value},
-            {"set", set},
+    return {{"low", slider->low},   {"high", slider->high},   {"step", (slider->high - slider->low) / 200},
+            {"unit", slider->unit}, {"value", slider->value}, {"set", set},
             {"logarithmic", false}};
   }
 
@@ -223,26 +219,34 @@ class View {
     const Value::Member* unit = value.kind == Kind::object ? value.find("unit") : nullptr;
     return unit && unit->value.kind == Kind::text ? unit->value.text : "";
   }
-  Json setting(const std::string& name, const Value* written, const Value* evaluated, const ParameterInfo* info,
-               const std::string& set) const {
-    const std::string unit = info && info->unit.find('$') == std::string_view::npos ? std::string(info->unit) : "";
+  Json setting(const std::string& name, const Value* written, const Value* evaluated,
+               const ParameterInfo* info, const std::string& set) const {
+    const std::string unit =
+        info && info->unit.find('$') == std::string_view::npos ? std::string(info->unit) : "";
     Json json{{"name", name},
               {"text", written ? typed_text(*written) : ""},
               {"value", evaluated ? shown_value(*evaluated, unit) : ""},
               {"slider", nullptr}};
-    if (!evaluated || evaluated->kind != Kind::number || (info && info->kind == ParameterKind::whole)) return json;
+    if (!evaluated || evaluated->kind != Kind::number || (info && info->kind == ParameterKind::whole))
+      return json;
     // A number that an expression computes has no unit of its own: its slider is in SI.
     const std::string own = written ? unit_written(*written) : "";
     const std::string si = evaluated->unit ? to_string(*evaluated->unit) : unit;
     const bool is_bare = written && written->kind == Kind::number;
-    json["slider"] = slider_json(slider_around(evaluated->number, is_bare ? "" : own.empty() ? si : own, info), set);
+    json["slider"] = slider_json(slider_around(evaluated->number,
+                                               is_bare       ? ""
+                                               : own.empty() ? si
+                                                             : own,
+                                               info),
+                                 set);
     return json;
   }
 
-  Json settings(const Value& body, const BlockEntry* entry, const BlockType* known, const std::string& path) const {
+  Json settings(const Value& body, const BlockEntry* entry, const BlockType* known,
+                const std::string& path) const {
     Json list = Json::array();
-    static const std::set<std::string_view> not_settings = {"type", "in", "description", "diagram", "parameters",
-                                                            "variants", "variant"};
+    static const std::set<std::string_view> not_settings = {
+        "type", "in", "description", "diagram", "parameters", "variants", "variant"};
     for (const Value::Member& member : body.members) {
       if (not_settings.contains(member.name)) continue;
       const Value::Member* evaluated = entry ? entry->settings.find(member.name) : nullptr;
@@ -274,19 +278,19 @@ class View {
     if (!wires) return 0;
     return wires->value.kind == Kind::list ? wires->value.items.size() : 1;
   }
-  Json input(const Value::Member& member, std::string_view name, std::string_view unit, std::string_view sentence,
-             bool many, bool optional) const {
-    return {{"name", name},
-            {"unit", unit_at(path_of(member.name) + "." + std::string(name), unit)},
-            {"many", many},
-            {"wires", wires_into(member.value, name)},
-            {"sentence", sentence},
-            {"optional", optional}};
+  Json input(const Value::Member& member, std::string_view name, std::string_view unit,
+             std::string_view sentence, bool many, bool optional) const {
+    return {{"name", name},         {"unit", unit_at(path_of(member.name) + "." + std::string(name), unit)},
+            {"many", many},         {"wires", wires_into(member.value, name)},
+            {"sentence", sentence}, {"optional", optional}};
   }
   Json output(const Value::Member& member, std::string_view name, std::string_view unit,
               std::string_view sentence) const {
     const std::string port = path_of(member.name) + "." + std::string(name);
-    return {{"name", name}, {"unit", unit_at(port, unit)}, {"sentence", sentence}, {"logged", logged_.contains(port)}};
+    return {{"name", name},
+            {"unit", unit_at(port, unit)},
+            {"sentence", sentence},
+            {"logged", logged_.contains(port)}};
   }
   void ports(const Value::Member& member, const BlockEntry* entry, const BlockType* known, Json& json) const {
     Json inputs = Json::array(), outputs = Json::array();
@@ -297,8 +301,8 @@ class View {
         outputs.push_back(output(member, port.name, port.unit, port.description));
     } else if (known) {
       for (const PortInfo& port : known->info.inputs)
-        inputs.push_back(input(member, port.name, port.unit, port.sentence, port.shape == PortInfo::Shape::many,
-                               port.is_optional));
+        inputs.push_back(input(member, port.name, port.unit, port.sentence,
+                               port.shape == PortInfo::Shape::many, port.is_optional));
       for (const PortInfo& port : known->info.outputs)
         outputs.push_back(output(member, port.name, port.unit, port.sentence));
     }
@@ -349,16 +353,19 @@ class View {
     };
     const auto described = [&](const Value::Member& member) -> Json {
       const bool is_text = member.value.kind == Kind::text;
-      const std::string_view unit = is_text ? std::string_view(member.value.text) : text_in(member.value, "unit");
+      const std::string_view unit =
+          is_text ? std::string_view(member.value.text) : text_in(member.value, "unit");
       return {{"name", member.name},
               {"unit", unit_at(path_of(member.name), unit)},
               {"description", is_text ? "" : text_in(member.value, "description")}};
     };
     if (const Value::Member* list = diagram.find("inputs"))
-      for (const Value::Member& member : list->value.members) view["inputs"].push_back(place(member, described(member)));
+      for (const Value::Member& member : list->value.members)
+        view["inputs"].push_back(place(member, described(member)));
     if (const Value::Member* list = diagram.find("outputs"))
       for (const Value::Member& member : list->value.members) {
-        const Value::Member* inner = member.value.kind == Kind::object ? member.value.find("source") : nullptr;
+        const Value::Member* inner =
+            member.value.kind == Kind::object ? member.value.find("source") : nullptr;
         const Value& source = inner ? inner->value : member.value;
         Json json = described(member);
         if (!inner) json["unit"] = unit_at(path_of(member.name), "");
@@ -371,17 +378,21 @@ class View {
   // ---- Parameters ----
 
   Json parameter(const Value::Member& member) const {
-    Json json{{"name", member.name}, {"text", typed_text(member.value)}, {"value", nullptr},
+    Json json{{"name", member.name},
+              {"text", typed_text(member.value)},
+              {"value", nullptr},
               {"unit", unit_written(member.value)},
               {"description", member.value.kind == Kind::object ? text_in(member.value, "description") : ""},
               {"slider", nullptr},
-              {"offset", places_.units(member.place.offset)}, {"end", places_.units(end_of(member.value))}};
+              {"offset", places_.units(member.place.offset)},
+              {"end", places_.units(end_of(member.value))}};
     if (!shown_.loaded) return json;
     const auto found = std::ranges::find(shown_.loaded->parameters, member.name, &Parameter::name);
     if (found == shown_.loaded->parameters.end() || found->value.kind != Kind::number) return json;
     const double number = found->value.number;
     json["value"] = found->unit ? found->unit->from_si(number) : number;
-    json["slider"] = slider_json(slider_around(number, unit_written(member.value), nullptr), path_of(member.name));
+    json["slider"] =
+        slider_json(slider_around(number, unit_written(member.value), nullptr), path_of(member.name));
     return json;
   }
 
@@ -399,7 +410,8 @@ class View {
 
 }  // namespace
 
-Json view_json(const CheckedText& text, const std::string& inside, const Variants& variants, const Layout& layout) {
+Json view_json(const CheckedText& text, const std::string& inside, const Variants& variants,
+               const Layout& layout) {
   if (!text.parsed->is_object()) return nullptr;
   return View(text, find_shown(text, inside, variants), variants, layout).json();
 }

@@ -16,19 +16,35 @@ std::string seed(const Gate& gate, int which) {
       return "GET /?token=" + gate.token() + " HTTP/1.1\r\n" + own + "\r\n";
     case 1:
       return "GET /socket HTTP/1.1\r\n" + own +
-             "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: abc\r\n\r\n";
+             "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: "
+             "abc\r\n\r\n";
     case 2:
       return "PUT /data/a.csv?offset=0&last=1 HTTP/1.1\r\n" + own + "Content-Length: 5\r\n\r\nt,x\n1";
     case 3:
-      return "PUT /data/a.csv?offset=0&last=0 HTTP/1.1\r\n" + own + "Transfer-Encoding: chunked\r\n\r\n3\r\nabc\r\n0\r\n\r\n";
+      return "PUT /data/a.csv?offset=0&last=0 HTTP/1.1\r\n" + own +
+             "Transfer-Encoding: chunked\r\n\r\n3\r\nabc\r\n0\r\n\r\n";
     default:
       return "GET /studio.js HTTP/1.1\r\n" + own + "Sec-Fetch-Site: same-origin\r\n\r\n";
   }
 }
 
 std::string mutant(std::string bytes, std::mt19937& random) {
-  static const std::string pieces[] = {"\r\n", "\r\n\r\n", ": ", "%2e", "%00", "..", "/", "\\", "Host: x\r\n", ";",
-                                       "Content-Length: 18446744073709551616\r\n", "chunked", "\x80", "?", "&", "="};
+  static const std::string pieces[] = {"\r\n",
+                                       "\r\n\r\n",
+                                       ": ",
+                                       "%2e",
+                                       "%00",
+                                       "..",
+                                       "/",
+                                       "\\",
+                                       "Host: x\r\n",
+                                       ";",
+                                       "Content-Length: 18446744073709551616\r\n",
+                                       "chunked",
+                                       "\x80",
+                                       "?",
+                                       "&",
+                                       "="};
   for (int changes = 1 + int(random() % 4); changes > 0; --changes) {
     const size_t at = bytes.empty() ? 0 : random() % bytes.size();
     switch (random() % 5) {
@@ -68,8 +84,8 @@ TEST(RequestParser, MutantsOfRequestsAreAnsweredOrRefused) {
 }
 
 TEST(RequestParser, TargetsThatLeadElsewhereAreNotUnderstood) {
-  for (const char* target : {"", "x", "//x/..", "/..", "/a/../b", "/./a", "/a//b", "/%2e%2e/a", "/a%2fb", "/a%5cb", "/a\\b",
-                             "/%", "/%zz", "/%00", "/a b", "/\x80", "/a#b", "/a?x=1&x=2"})
+  for (const char* target : {"", "x", "//x/..", "/..", "/a/../b", "/./a", "/a//b", "/%2e%2e/a", "/a%2fb",
+                             "/a%5cb", "/a\\b", "/%", "/%zz", "/%00", "/a b", "/\x80", "/a#b", "/a?x=1&x=2"})
     EXPECT_FALSE(read_target(target)) << target;
   const auto target = read_target("/data/a%20b.csv?offset=12&last=1");
   ASSERT_TRUE(target);

@@ -102,9 +102,10 @@ TEST_F(HostileRequests, TheTokenOpensThePageOnce) {
 TEST_F(HostileRequests, ThePageItselfIsServedUnderStrictRules) {
   const std::string answer = ask(own("GET /", exchange()));
   EXPECT_NE(answer.find("200 OK"), answer.npos) << answer;
-  for (const char* rule : {"default-src 'none'", "script-src 'self'", "frame-ancestors 'none'", "base-uri 'none'",
-                           "form-action 'none'", "Cross-Origin-Resource-Policy: same-origin",
-                           "Cross-Origin-Opener-Policy: same-origin", "nosniff", "no-store"})
+  for (const char* rule :
+       {"default-src 'none'", "script-src 'self'", "frame-ancestors 'none'", "base-uri 'none'",
+        "form-action 'none'", "Cross-Origin-Resource-Policy: same-origin",
+        "Cross-Origin-Opener-Policy: same-origin", "nosniff", "no-store"})
     EXPECT_NE(answer.find(rule), answer.npos) << rule;
   EXPECT_EQ(answer.find("Access-Control"), answer.npos);
   EXPECT_EQ(answer.find("unsafe"), answer.npos);
@@ -132,12 +133,15 @@ TEST_F(HostileRequests, EachIsRefused) {
       {"another loopback address", with_host("127.0.0.2:" + port), 403},
       {"no host", "GET / HTTP/1.1\r\n" + cookie + "\r\n", 403},
       {"an empty host", with_host(""), 403},
-      {"two hosts", "GET / HTTP/1.1\r\nHost: " + host() + "\r\nHost: evil.example\r\n" + cookie + "\r\n", 403},
-      {"a host in the target", "GET http://evil.example/ HTTP/1.1\r\nHost: " + host() + "\r\n" + cookie + "\r\n", 400},
+      {"two hosts", "GET / HTTP/1.1\r\nHost: " + host() + "\r\nHost: evil.example\r\n" + cookie + "\r\n",
+       403},
+      {"a host in the target",
+       "GET http://evil.example/ HTTP/1.1\r\nHost: " + host() + "\r\n" + cookie + "\r\n", 400},
       {"no cookie", own("GET /", ""), 403},
       {"another cookie", own("GET /", "Cookie: a=b\r\n"), 403},
       {"a wrong secret", own("GET /", wrong_cookie), 403},
-      {"a cookie that was added by somebody else", own("GET /", cookie.substr(0, cookie.size() - 2) + "; " + wrong_cookie.substr(8)), 403},
+      {"a cookie that was added by somebody else",
+       own("GET /", cookie.substr(0, cookie.size() - 2) + "; " + wrong_cookie.substr(8)), 403},
       {"two fields of cookies", own("GET /", cookie + wrong_cookie), 403},
       {"an empty cookie", own("GET /", "Cookie: loopwright_studio_" + port + "=\r\n"), 403},
       {"a fetch from another site", own("GET /", cookie + "Sec-Fetch-Site: cross-site\r\n"), 403},
@@ -150,7 +154,8 @@ TEST_F(HostileRequests, EachIsRefused) {
       {"a socket of another port", socket(cookie + "Origin: http://127.0.0.1:1\r\n"), 403},
       {"a socket over https", socket(cookie + "Origin: https://" + host() + "\r\n"), 403},
       {"a socket of a longer origin", socket(cookie + "Origin: http://" + host() + ".evil.example\r\n"), 403},
-      {"a socket under the other name of this machine", socket(cookie + "Origin: http://localhost:" + port + "\r\n"), 403},
+      {"a socket under the other name of this machine",
+       socket(cookie + "Origin: http://localhost:" + port + "\r\n"), 403},
       {"a socket with two origins", socket(cookie + origin() + "Origin: http://evil.example\r\n"), 403},
       {"a socket without cookie", socket(origin()), 403},
       {"a socket with a wrong secret", socket(origin() + wrong_cookie), 403},
@@ -159,18 +164,26 @@ TEST_F(HostileRequests, EachIsRefused) {
       {"a write with the origin null", own(put, cookie + body + "Origin: null\r\n") + "x", 403},
       {"a write of another page", own(put, cookie + body + "Origin: http://evil.example\r\n") + "x", 403},
       {"a write without cookie", own(put, origin() + body) + "x", 403},
-      {"a form", own("POST /", cookie + origin() + body + "Content-Type: application/x-www-form-urlencoded\r\n") + "x", 405},
+      {"a form",
+       own("POST /", cookie + origin() + body + "Content-Type: application/x-www-form-urlencoded\r\n") + "x",
+       405},
       {"a question about permissions", own("OPTIONS /", cookie + origin()), 405},
       {"removal", own("DELETE /", cookie + origin()), 405},
       {"an escaped way out", own("GET /..%2f..%2fetc/passwd", cookie), 400},
       {"a way out", own("GET /../etc/passwd", cookie), 400},
       {"a way out in the middle", own("GET /a/../../etc/passwd", cookie), 400},
-      {"a write with an escaped way out", own("PUT /data/..%2fx.csv?offset=0&last=1", cookie + origin() + body) + "x", 400},
-      {"a write with escaped dots", own("PUT /data/%2e%2e/x.csv?offset=0&last=1", cookie + origin() + body) + "x", 400},
-      {"a write with a backslash", own("PUT /data/..\\x.csv?offset=0&last=1", cookie + origin() + body) + "x", 400},
-      {"a write with a zero byte", own("PUT /data/x%00.csv?offset=0&last=1", cookie + origin() + body) + "x", 400},
-      {"a write at a negative place", own("PUT /data/x.csv?offset=-1&last=1", cookie + origin() + body) + "x", 400},
-      {"a write at a place that is no number", own("PUT /data/x.csv?offset=1e9&last=1", cookie + origin() + body) + "x", 400},
+      {"a write with an escaped way out",
+       own("PUT /data/..%2fx.csv?offset=0&last=1", cookie + origin() + body) + "x", 400},
+      {"a write with escaped dots",
+       own("PUT /data/%2e%2e/x.csv?offset=0&last=1", cookie + origin() + body) + "x", 400},
+      {"a write with a backslash", own("PUT /data/..\\x.csv?offset=0&last=1", cookie + origin() + body) + "x",
+       400},
+      {"a write with a zero byte", own("PUT /data/x%00.csv?offset=0&last=1", cookie + origin() + body) + "x",
+       400},
+      {"a write at a negative place", own("PUT /data/x.csv?offset=-1&last=1", cookie + origin() + body) + "x",
+       400},
+      {"a write at a place that is no number",
+       own("PUT /data/x.csv?offset=1e9&last=1", cookie + origin() + body) + "x", 400},
       {"a name twice", own("PUT /data/x.csv?offset=0&offset=1&last=1", cookie + origin() + body) + "x", 400},
       {"a huge header", own("GET /", cookie + "X: " + std::string(20'000, 'x') + "\r\n"), 431},
       {"a huge body", own(put, cookie + origin() + "Content-Length: 99999999999\r\n") + "x", 413},
@@ -189,7 +202,8 @@ TEST_F(HostileRequests, EachIsRefused) {
 TEST_F(HostileRequests, TheOwnPageMayDoAllOfIt) {
   const std::string cookie = exchange();
   EXPECT_EQ(status(own("GET /socket", upgrade() + cookie + origin())), 101);
-  EXPECT_EQ(status(own("PUT /data/x.csv?offset=0&last=1", cookie + origin() + "Content-Length: 1\r\n") + "x"), 200);
+  EXPECT_EQ(status(own("PUT /data/x.csv?offset=0&last=1", cookie + origin() + "Content-Length: 1\r\n") + "x"),
+            200);
   EXPECT_EQ(handler_.stored, 1);
   EXPECT_EQ(status(own("GET /", cookie + "Sec-Fetch-Site: same-origin\r\n")), 200);
 }

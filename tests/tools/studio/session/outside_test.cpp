@@ -43,7 +43,8 @@ TEST(Outside, AChangeIsTakenOverAndEditsApplyToIt) {
   const Folder served(folder.path());
   Document document(served, "axis.json");
   folder.write("axis.json", replaced_in(axis, "\"value\": 3", "\"value\": 7"));
-  EXPECT_THROW(edit(document, R"({"intent": "set_parameter", "name": "mass", "text": "2"})"), ChangedMeanwhile);
+  EXPECT_THROW(edit(document, R"({"intent": "set_parameter", "name": "mass", "text": "2"})"),
+               ChangedMeanwhile);
   EXPECT_NE(folder.read("axis.json").find("\"value\": 7"), std::string::npos) << "never written over";
   EXPECT_TRUE(document.look());
   edit(document, R"({"intent": "set_parameter", "name": "mass", "text": "2"})");
@@ -64,10 +65,11 @@ TEST(Outside, UnsavedTextIsMergedOrAPersonDecides) {
   Document document(served, "axis.json");
   const std::string half = replaced_in(axis, "\"stop\": 1", "\"stop\": ");
   edit(document, R"({"intent": "replace_text", "text": )" + to_json([&] {
-         Value text;
-         text.kind = Value::Kind::text, text.text = half;
-         return text;
-       }()) + "}");
+                   Value text;
+                   text.kind = Value::Kind::text, text.text = half;
+                   return text;
+                 }()) +
+                     "}");
   EXPECT_FALSE(document.is_saved());
   EXPECT_EQ(folder.read("axis.json"), axis) << "what is no JSON is not written";
   folder.write("axis.json", replaced_in(axis, "\"value\": 3", "\"value\": 7"));
@@ -102,8 +104,9 @@ TEST(Outside, ReadOnlyFilesAndLinksAreNotWritten) {
 TEST(Outside, PathsNeverLeadOut) {
   const StudioFolder folder;
   const Folder served(folder.path());
-  for (const char* path : {"", "/etc/passwd", "../x.json", "a/../../x.json", "./x.json", "a//x.json", ".hidden.json", ".git/x.json",
-                           "x", "x.txt", "x.json/", "a/.ssh/x.json", "x\n.json", ".loopwright"})
+  for (const char* path :
+       {"", "/etc/passwd", "../x.json", "a/../../x.json", "./x.json", "a//x.json", ".hidden.json",
+        ".git/x.json", "x", "x.txt", "x.json/", "a/.ssh/x.json", "x\n.json", ".loopwright"})
     EXPECT_THROW(served.path_of(path), Refused) << path;
   EXPECT_THROW(served.path_of(std::string("a\0.json", 7)), Refused);
   EXPECT_EQ(served.path_of("a/x.json"), folder.path("a/x.json"));
@@ -140,7 +143,8 @@ TEST(Outside, NothingIsLostWhileOthersWrite) {
   while (!is_over || edits == 0) {
     try {
       document.look();
-      edit(document, R"({"intent": "set_parameter", "name": "mass", "text": ")" + std::to_string(edits + 1) + "\"}");
+      edit(document,
+           R"({"intent": "set_parameter", "name": "mass", "text": ")" + std::to_string(edits + 1) + "\"}");
       ++edits;
     } catch (const Refused&) {
     }

@@ -42,11 +42,14 @@ class RandomIntents {
     const std::string block = name(blocks), other = name(blocks);
     switch (random_() % 16) {
       case 0:
-        return fmt::format(R"({{"intent": "set", "block": "{}", "setting": "{}", "text": "{}"}})", block, setting(blocks, block), value());
+        return fmt::format(R"({{"intent": "set", "block": "{}", "setting": "{}", "text": "{}"}})", block,
+                           setting(blocks, block), value());
       case 1:
-        return fmt::format(R"({{"intent": "connect", "from": "{}.{}", "to": "{}.{}"}})", block, port(), other, port());
+        return fmt::format(R"({{"intent": "connect", "from": "{}.{}", "to": "{}.{}"}})", block, port(), other,
+                           port());
       case 2:
-        return fmt::format(R"({{"intent": "disconnect", "to": "{}.{}", "index": {}}})", block, input(blocks, block), random_() % 3);
+        return fmt::format(R"({{"intent": "disconnect", "to": "{}.{}", "index": {}}})", block,
+                           input(blocks, block), random_() % 3);
       case 3:
         return fmt::format(R"({{"intent": "remove_blocks", "blocks": ["{}"]}})", block);
       case 4:
@@ -58,19 +61,25 @@ class RandomIntents {
       case 7:
         return fmt::format(R"({{"intent": "add_block", "type": "{}"}})", type());
       case 8:
-        return fmt::format(R"({{"intent": "log", "port": "{}.{}", "on": {}}})", block, port(), random_() % 2 ? "true" : "false");
+        return fmt::format(R"({{"intent": "log", "port": "{}.{}", "on": {}}})", block, port(),
+                           random_() % 2 ? "true" : "false");
       case 9:
         return fmt::format(R"({{"intent": "set_solver", "name": "stop", "text": "{}"}})", value());
       case 10:
-        return fmt::format(R"({{"intent": "add_parameter", "name": "{}", "text": "{}", "description": "a \"new\" one"}})", word(), value());
+        return fmt::format(
+            R"({{"intent": "add_parameter", "name": "{}", "text": "{}", "description": "a \"new\" one"}})",
+            word(), value());
       case 11:
-        return fmt::format(R"({{"intent": "rename_parameter", "name": "{}", "to": "{}"}})", parameter(root), word());
+        return fmt::format(R"({{"intent": "rename_parameter", "name": "{}", "to": "{}"}})", parameter(root),
+                           word());
       case 12:
-        return fmt::format(R"({{"intent": "set_parameter", "name": "{}", "text": "{}"}})", parameter(root), value());
+        return fmt::format(R"({{"intent": "set_parameter", "name": "{}", "text": "{}"}})", parameter(root),
+                           value());
       case 13:
         return fmt::format(R"({{"intent": "remove_parameter", "name": "{}"}})", parameter(root));
       case 14:
-        return fmt::format(R"({{"intent": "describe_parameter", "name": "{}", "text": "{}"}})", parameter(root), word());
+        return fmt::format(R"({{"intent": "describe_parameter", "name": "{}", "text": "{}"}})",
+                           parameter(root), word());
       default:
         return fmt::format(R"({{"intent": "set_title", "text": "{}"}})", random_() % 3 ? word() : "");
     }
@@ -93,15 +102,21 @@ class RandomIntents {
   }
   template <size_t n> std::string one_of(const char* const (&list)[n]) { return list[random_() % n]; }
   std::string port() { return one_of({"y", "u", "force", "position", "sum", "terms", "value", "velocity"}); }
-  std::string value() { return one_of({"1", "25 mm", "=2*pi", "0.3 kg", "true", "", "[1, 2]", "nonsense", "{\\\"a\\\": 1}"}); }
+  std::string value() {
+    return one_of({"1", "25 mm", "=2*pi", "0.3 kg", "true", "", "[1, 2]", "nonsense", "{\\\"a\\\": 1}"});
+  }
   std::string word() { return one_of({"alpha", "beta", "gain_7", "new_name", "2wrong", "µ"}); }
-  std::string type() { return one_of({"Gain", "Sum", "Mass", "TransferFunction", "Lookup1D", "UnitDelay", "Encoder", "NoSuchType"}); }
+  std::string type() {
+    return one_of(
+        {"Gain", "Sum", "Mass", "TransferFunction", "Lookup1D", "UnitDelay", "Encoder", "NoSuchType"});
+  }
 
   std::mt19937 random_;
 };
 
 /// Everything but the touched members is as it was: every block that was not named keeps its bytes.
-void expect_others_untouched(const ParsedText& before, const ParsedText& after, const std::vector<std::string>& touched) {
+void expect_others_untouched(const ParsedText& before, const ParsedText& after,
+                             const std::vector<std::string>& touched) {
   const Value::Member *old_blocks = before.root.find("blocks"), *blocks = after.root.find("blocks");
   if (!old_blocks || !blocks) return;
   for (const Value::Member& block : old_blocks->value.members) {
@@ -161,7 +176,8 @@ TEST(Intents, ChangeOnlyWhatTheyNameAndAreUndoneToTheByte) {
     // The diagram loads if and only if `check` says so.
     const CheckedText checked = check_text(folder.path(paths[p]), document.text(), {});
     Problems problems;
-    const CheckedDiagram from_disk = check_diagram(load_diagram(folder.path(paths[p]), {}, problems), problems);
+    const CheckedDiagram from_disk =
+        check_diagram(load_diagram(folder.path(paths[p]), {}, problems), problems);
     EXPECT_EQ(checked.loads(), !from_disk.summary().empty() && !problems.has_errors()) << paths[p];
     EXPECT_NO_THROW(view_json(checked, "", {}, {})) << paths[p];
     while (steps-- > 0) document.undo();

@@ -15,7 +15,9 @@ class StudioFolder {
     // Thousands of edits are written to the disk at once, each; in memory that takes no time.
     const std::filesystem::path memory = "/dev/shm";
     const bool has_memory = ::access(memory.c_str(), W_OK) == 0;
-    std::string name = ((has_memory ? memory : std::filesystem::temp_directory_path()) / "loopwright_studio_XXXXXX").string();
+    std::string name =
+        ((has_memory ? memory : std::filesystem::temp_directory_path()) / "loopwright_studio_XXXXXX")
+            .string();
     path_ = ::mkdtemp(name.data());
   }
   ~StudioFolder() {
