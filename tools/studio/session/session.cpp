@@ -158,6 +158,15 @@ void Session::disconnect(int64_t client) {
 
 // ---- Files ----
 
+namespace {
+
+std::string title_of(const std::string& text) {
+  const ParsedText parsed("", text);
+  return parsed.is_object() ? std::string(text_in(parsed.root, "title")) : "";
+}
+
+}  // namespace
+
 Json Session::file_list() const {
   Json list = Json::array();
   for (const Folder::File& file : files_) {
@@ -166,12 +175,14 @@ Json Session::file_list() const {
         {FileKind::experiment, "experiment"}, {FileKind::sweep, "sweep"},
         {FileKind::training, "training"},     {FileKind::effect, "effect"},
         {FileKind::device, "device"},         {FileKind::model, "model"}};
+    constexpr int64_t largest_with_title = 1 << 18;  // bytes: learned models and their like have none
     std::string kind = "record", title;
     if (file.path.ends_with(".json")) {
       Problems problems;
       kind = names.at(kind_of_file(folder_.path_of(file.path), problems));
+      if (file.size < largest_with_title) title = title_of(folder_.read(file.path).value_or(""));
     }
-    list.push_back({{"path", file.path}, {"kind", kind}, {"size", file.size}});
+    list.push_back({{"path", file.path}, {"kind", kind}, {"title", title}, {"size", file.size}});
   }
   return list;
 }
@@ -308,11 +319,14 @@ std::vector<OtherFile> Session::followers(const Document& document,
                                           const std::map<std::string, std::string>& renamed) const {
   const ParsedText diagram(document.path(), document.text());
   const Level level = find_level(diagram.root, "", {});
-  const auto is_of_diagram = [&](const std::string& port) { return level.block(port.substr(0, port.find('.'))); };
+  const auto is_of_diagram = [&](const std::string& port) {
+    return level.block(port.substr(0, port.find('.')));
+  };
   const auto folder_of = [](const std::string& path) { return std::filesystem::path(path).parent_path(); };
   std::vector<OtherFile> others;
   for (const Folder::File& file : folder_.files()) {
-    if (!file.path.ends_with(".experiment.json") || folder_of(file.path) != folder_of(document.path())) continue;
+    if (!file.path.ends_with(".experiment.json") || folder_of(file.path) != folder_of(document.path()))
+      continue;
     const std::optional<std::string> text = folder_.read(file.path);
     if (!text || !std::ranges::all_of(ports_of_experiment(file.path, *text), is_of_diagram)) continue;
     const std::string after = with_ports_renamed(file.path, *text, renamed);
