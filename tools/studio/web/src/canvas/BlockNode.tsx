@@ -3,7 +3,7 @@ import { memo } from "react";
 import { Handle, Position, type NodeProps, type Node } from "@xyflow/react";
 import { prettyUnit } from "../numbers";
 import { spaced } from "./symbols";
-import type { GraphNode, Place } from "./graph";
+import { label_above, type GraphNode, type Place } from "./graph";
 
 export interface BlockData extends Record<string, unknown> {
   node: GraphNode;
@@ -72,7 +72,7 @@ export const BlockNode = memo(function BlockNode({ data, selected }: NodeProps<B
       {tint && <svg className="outline tint" width={width} height={height} aria-hidden="true" style={{ opacity: 0.08 + 0.4 * Math.min(1, tint.share) }}><Outline node={node} /></svg>}
       <div className="content">{shape === "terminal" ? <span className="symbol">{node.name}</span> : node.look.content}</div>
       <Ports node={node} />
-      {block && <div className="block-name">{block.name}{block.variant && <span className="variant"> {block.variant}</span>}</div>}
+      {block && <div className={label_above(node) ? "block-name above" : "block-name"}>{block.name}{block.variant && <span className="variant"> {block.variant}</span>}</div>}
       {tint && <div className="badge share" title={tint.text}>{Math.round(100 * tint.share)} %</div>}
       {severity && <div className={`badge ${severity}`} title="See the list of problems">!</div>}
       {rate && <div className="rate-mark" title={`sampled every ${block!.sample_time} s`} />}

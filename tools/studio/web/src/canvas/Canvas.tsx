@@ -26,6 +26,9 @@ function target_of(node: string, handle: string | null): { to: string; index: nu
   return node.startsWith("output:") ? { to: node.slice(7), index: 0 } : { to: `${node.slice(6)}.${port}`, index: Number(index) };
 }
 
+/** Whether a block is one of these, or holds one of them. */
+const is_within = (paths: string[], path: string): boolean => paths.some((entry) => entry === path || entry.startsWith(path + "."));
+
 function useLayout(graph: Graph | null): Layout | null {
   const [layout, setLayout] = useState<Layout | null>(null);
   const key = graph ? layout_key(graph) : "";
@@ -68,7 +71,7 @@ function Diagram() {
         id: node.id, type: "block", position: old?.dragging ? old.position : layout.positions[node.id]!, width: node.look.width, height: node.look.height,
         draggable: node.kind === "block" && editable, deletable: node.kind === "block" && editable,
         selected: node.kind === "block" && selected.includes(node.name), ariaLabel: node.name,
-        data: { node, highlighted: highlighted.includes(node.name), tint: node.kind === "block" ? tint : null, severity: own.includes("error") ? "error" : own.length ? "warning" : "" },
+        data: { node, highlighted: is_within(highlighted, prefix + node.name), tint: node.kind === "block" ? tint : null, severity: own.includes("error") ? "error" : own.length ? "warning" : "" },
       };
     }));
   }, [graph, layout, tints, problems, highlighted, selected, editable, view]);
@@ -108,8 +111,7 @@ function Diagram() {
 
   // What was just added is brought into sight.
   useEffect(() => {
-    const ids = new Set(highlighted.map((name) => `block:${name}`));
-    if (ids.size && nodes.some((node) => ids.has(node.id))) void flow.fitView({ padding: 0.08, maxZoom: 1.15, duration: 300 });
+    if (highlighted.length && nodes.some((node) => node.data.highlighted)) void flow.fitView({ padding: 0.08, maxZoom: 1.15, duration: 300 });
   // eslint-disable-next-line
   }, [highlighted, layout]);
 

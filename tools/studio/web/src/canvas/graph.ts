@@ -103,7 +103,7 @@ function place_ports(node: GraphNode, edges: GraphEdge[]): void {
   const below = shape === "circle" ? inputs.find((place) => back.has(place.id)) : undefined;
   const left = inputs.filter((place) => place !== below);
   if (below) Object.assign(below, { side: "SOUTH", x: width / 2, y: height });
-  left.forEach((place, i) => { place.y = spread(i, left.length, height, shape); place.x = shape === "circle" ? circle_edge(place.y, height) : 0; });
+  left.forEach((place, i) => { place.y = spread(i, left.length, below ? 0.8 * height : height, shape); place.x = shape === "circle" ? circle_edge(place.y, height) : 0; });
   const names = block.outputs.map((port) => ({ ...port }));
   // A wire may start inside a subdiagram or at one element of a vector: it gets a place of its own.
   for (const edge of edges)
@@ -127,13 +127,16 @@ export function layout_request(graph: Graph): { nodes: LayoutNode[]; edges: Layo
   return {
     nodes: graph.nodes.map((node) => ({
       id: node.id, width: node.look.width, height: node.look.height, label_width: node.block ? node.name.length * LABEL_CHARACTER : 0,
-      ports: node.places.map(({ id, side, x, y }): LayoutPort => ({ id, side, x, y })),
+      label_above: label_above(node), ports: node.places.map(({ id, side, x, y }): LayoutPort => ({ id, side, x, y })),
       end: node.kind === "input" ? "first" : node.kind === "output" ? "last" : "",
       fixed: node.block?.position ? { x: node.block.position[0], y: node.block.position[1] } : null,
     })),
     edges: graph.edges.map(({ id, from, from_port, to, to_port, back }) => ({ id, from, from_port, to, to_port, back })),
   };
 }
+
+/** The name stands above where a wire comes from below. */
+export const label_above = (node: GraphNode): boolean => node.places.some((place) => place.side === "SOUTH");
 
 /** What must be the same for the same layout: a change of numbers must not move anything. */
 export const layout_key = (graph: Graph): string => JSON.stringify(layout_request(graph));

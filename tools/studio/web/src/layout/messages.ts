@@ -4,7 +4,7 @@ export interface Point { x: number; y: number }
 export type Side = "WEST" | "EAST" | "SOUTH";
 export interface LayoutPort { id: string; side: Side; x: number; y: number }
 export interface LayoutNode {
-  id: string; width: number; height: number; label_width: number; ports: LayoutPort[];
+  id: string; width: number; height: number; label_width: number; label_above: boolean; ports: LayoutPort[];
   end: "first" | "last" | "";     // inputs and outputs of the diagram are at its ends
   fixed: Point | null;            // where a person put it
 }

@@ -32,14 +32,14 @@ async function arrange({ nodes, edges }: LayoutRequest): Promise<Layout> {
     id: "diagram", layoutOptions: OPTIONS,
     children: nodes.map((node) => ({
       id: node.id, width: node.width, height: node.height,
-      layoutOptions: { "elk.portConstraints": "FIXED_POS", "elk.nodeLabels.placement": "OUTSIDE V_BOTTOM H_CENTER",
+      layoutOptions: { "elk.portConstraints": "FIXED_POS", "elk.nodeLabels.placement": `OUTSIDE ${node.label_above ? "V_TOP" : "V_BOTTOM"} H_CENTER`,
                        ...(node.end ? { "elk.layered.layering.layerConstraint": node.end === "first" ? "FIRST" : "LAST" } : {}) },
       labels: [{ text: node.id, width: node.label_width, height: LABEL_HEIGHT }],
       ports: node.ports.map((port) => ({ id: `${node.id}/${port.id}`, width: 0, height: 0, x: port.x, y: port.y, layoutOptions: { "elk.port.side": port.side } })),
     })),
     edges: edges.map((edge): ElkExtendedEdge => ({
       id: edge.id, sources: [`${edge.from}/${edge.from_port}`], targets: [`${edge.to}/${edge.to_port}`],
-      layoutOptions: { "elk.layered.priority.straightness": edge.back ? "0" : "5" },
+      layoutOptions: { "elk.layered.priority.straightness": edge.back ? "0" : edge.to.startsWith("output:") ? "1" : "10" },
     })),
   };
   const result = await elk.layout(graph);

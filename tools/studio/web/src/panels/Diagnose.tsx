@@ -10,7 +10,8 @@ import { Staircase } from "./Staircase";
 export function Diagnose() {
   const experiment = useStudio((state) => state.experiment), diagnosis = useStudio((state) => state.diagnosis), busy = useStudio((state) => state.busy["diagnose"]);
   const staircase = useStudio((state) => state.staircase), added = useStudio((state) => state.added);
-  if (!experiment) return <p className="empty">A diagnosis needs a record. Drop one on the page, or choose one under Measurements.</p>;
+  const usable = useStudio((state) => Boolean(state.comparison) && !state.comparison?.why_no_force), diagnosed_with = useStudio((state) => state.diagnosed_with);
+  if (!experiment) return <p className="empty">A diagnosis needs a record. Drop one on the page, or choose one under Measure.</p>;
   const necessary = diagnosis?.cards.filter((card) => card.addable && !card.optional && !added.includes(card.effect)) ?? [];
   return (
     <>
@@ -23,14 +24,14 @@ export function Diagnose() {
             <button type="button" onClick={busy.cancel}>Stop</button>
           </div>
         )}
-        {!busy && !diagnosis && <button type="button" className="primary" onClick={() => void diagnose()}>Search</button>}
+        {!busy && !diagnosis && (usable ? <button type="button" className="primary" onClick={() => void diagnose([experiment])}>Search</button> : <OtherRecords />)}
         {staircase.length > 0 && <Staircase steps={staircase} floor={diagnosis?.noise_floor ?? null} unit={diagnosis?.unit ?? "N"} running={Boolean(busy)} />}
         {diagnosis && (
           <p className="buttons">
             {necessary.length > 0 && <button type="button" className="primary" onMouseEnter={() => void preview(necessary.map((card) => card.effect))} onMouseLeave={() => void preview([])}
               onClick={() => void add(added.length ? necessary.map((card) => card.effect) : [])}>{necessary.length > 1 ? `Add all ${necessary.length} that are necessary` : `Add ${necessary[0]!.title}`}</button>}
             {added.length > 0 && <button type="button" onClick={() => void undo()}>Undo</button>}
-            {!busy && <button type="button" onClick={() => void diagnose()}>Search again</button>}
+            {!busy && <button type="button" onClick={() => void diagnose(diagnosed_with)}>Search again</button>}
           </p>
         )}
       </div>
@@ -40,10 +41,25 @@ export function Diagnose() {
   );
 }
 
+/** The record that is compared lacks what a diagnosis needs: the force and the position of the axis. Another one may have both. */
+function OtherRecords() {
+  const files = useStudio((state) => state.files), experiment = useStudio((state) => state.experiment), why = useStudio((state) => state.comparison?.why_no_force ?? "");
+  const folder = experiment.includes("/") ? experiment.slice(0, experiment.lastIndexOf("/") + 1) : "";
+  const others = files.filter((file) => file.kind === "experiment" && file.path !== experiment && file.path.startsWith(folder));
+  return (
+    <>
+      {why && <p className="hint">{experiment.slice(folder.length)} does not say enough about the forces: {why}.</p>}
+      {others.length > 0 && <h3>Search with the record of</h3>}
+      <ul className="plain files">{others.map((file) => (
+        <li key={file.path}><button type="button" className="entry" onClick={() => void diagnose([file.path])}><b>{file.path.slice(folder.length)}</b><span>{file.title}</span></button></li>))}</ul>
+    </>
+  );
+}
+
 function headline(diagnosis: Diagnosis): string {
-  if (diagnosis.title) return diagnosis.title;
   const count = diagnosis.cards.filter((card) => !card.optional).length;
-  return count === 0 ? "Nothing of the catalogue is missing" : count === 1 ? "One effect is missing" : `${count} effects are missing`;
+  const missing = count === 0 ? "No effect of the catalogue is missing" : count === 1 ? "One effect is missing" : `${count} effects are missing`;
+  return diagnosis.verdict === "explained" && count ? `${missing}; with ${count === 1 ? "it" : "them"} the record is explained down to its noise` : missing;
 }
 
 function EffectCard({ card, added }: { card: Card; added: boolean }) {
@@ -53,11 +69,11 @@ function EffectCard({ card, added }: { card: Card; added: boolean }) {
       onFocus={() => { if (!added) void preview([card.effect]); }} onBlur={() => void preview([])}>
       <header><h3>{card.title}{card.form && <span className="soft"> · {card.form}</span>}</h3>
         {card.inclusion !== null && <span className="chip" title="Probability that the effect is present">{card.inclusion >= 0.995 ? "99.5 %" : `${Math.round(100 * card.inclusion)} %`}</span>}</header>
-      {card.physics && <p className="soft">{card.physics}</p>}
+      {card.physics && <p className="soft physics">{card.physics}</p>}
       <table className="merit"><tbody>
         {card.parameters.map((parameter) => (
           <tr key={parameter.name}><th scope="row">{parameter.name.replace(/_/g, " ")}</th><td>{parameter.text ? prettyUnit(parameter.text) : quantity(parameter.value, parameter.unit)}</td>
-            <td className="soft" title="95 % interval">{parameter.low !== null && `${quantity(parameter.low, parameter.unit)} … ${quantity(parameter.high, parameter.unit)}`}{parameter.at_limit && " at its limit"}</td></tr>))}
+            <td className="soft" title="95 % interval">{parameter.interval ?? (parameter.low !== null && `${quantity(parameter.low, parameter.unit)} … ${quantity(parameter.high, parameter.unit)}`)}{parameter.at_limit && " at its limit"}</td></tr>))}
         {card.force !== null && <tr><th scope="row">force, rms</th><td>{quantity(card.force, card.unit, 3)}</td><td /></tr>}
       </tbody></table>
       {card.rivals.length > 0 && <p className="doubt">Could also be: {card.rivals.map((rival) => rival.replace(/_/g, " ")).join(", ")}</p>}

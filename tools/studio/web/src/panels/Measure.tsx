@@ -29,7 +29,7 @@ function Choose() {
       {experiments.length > 0 && <div className="section"><h3>Experiments of this folder</h3><ul className="plain files">{experiments.map((file) => (
         <li key={file.path}><button type="button" className="entry" onClick={() => void compare(file.path)}><b>{file.path.slice(folder.length)}</b><span>{file.title}</span></button></li>))}</ul></div>}
       {records.length > 0 && <div className="section"><h3>Records of this folder</h3><ul className="plain files">{records.map((file) => (
-        <li key={file.path}><button type="button" className="entry" onClick={() => void match_columns(file.path)}><b>{file.path.slice(folder.length)}</b><span>{file.title}</span></button></li>))}</ul></div>}
+        <li key={file.path}><button type="button" className="entry" onClick={() => void match_columns(file.path)}><b>{file.path.slice(folder.length)}</b><span>{file.title || (file.size ? `${Math.ceil(file.size / 1024).toLocaleString("en")} KB` : "")}</span></button></li>))}</ul></div>}
     </>
   );
 }
@@ -58,7 +58,7 @@ function Confirm({ columns }: { columns: Columns }) {
               {(column.use === "compare" || column.use === "drive") && (
                 <select aria-label={`Port of ${column.name}`} value={column.port} required onChange={(event) => change_column(index, { port: event.target.value })}>
                   <option value="">choose a port</option>
-                  {ordered.map((port) => <option key={port} value={port}>{port}{unit_of(columns, port)}</option>)}
+                  {ordered.map((port, i) => <option key={i} value={port}>{port}{unit_of(columns, port)}</option>)}
                 </select>
               )}
             </div>
@@ -102,7 +102,7 @@ function Compared() {
         <h2>{comparison?.title || experiment}</h2>
         <p className="soft">{experiment}{busy && " · comparing …"}</p>
         <p className="buttons">
-          <button type="button" className="primary" onClick={() => void diagnose()} disabled={!comparison || Boolean(comparison.why_no_force)}>What is missing?</button>
+          <button type="button" className="primary" disabled={!comparison} onClick={() => (comparison?.why_no_force ? patch({ panel: "diagnose" }) : void diagnose([experiment]))}>What is missing?</button>
           <button type="button" onClick={() => void compare()}>Again</button>
           <button type="button" onClick={close_experiment}>Close</button>
         </p>

@@ -16,7 +16,7 @@ export function Staircase({ steps, floor, unit, running }: { steps: Step[]; floo
     <svg className={running ? "staircase running" : "staircase"} viewBox={`0 0 ${WIDTH} ${HEIGHT}`} role="img" aria-label={`Error ${words}${floor !== null ? `, noise ${quantity(floor, unit, 3)}` : ""}`} data-steps={shown.length}>
       {floor !== null && <><rect className="floor"  x={0} width={WIDTH} y={y(floor)} height={HEIGHT - BOTTOM - y(floor)} /><text className="floor-label" x={WIDTH - 4} y={11} textAnchor="end">noise {quantity(floor, unit, 2)}</text></>}
       {shown.map((step, i) => {
-        const left = LEFT + i * width, top = y(step.error!), name = i ? "+ " + step.added.map((entry) => entry.replace(/_/g, " ")).join(", ") : "as it is";
+        const left = LEFT + i * width, top = y(step.error!), name = step.added.length ? "+ " + step.added.map((entry) => entry.replace(/_/g, " ")).join(", ") : i ? "refined" : "as it is";
         return (
           <g key={i} className={step.optional ? "step optional" : "step"}>
             <rect x={left} y={top} width={width - 4} height={HEIGHT - BOTTOM - top} rx={2} />

@@ -1,6 +1,6 @@
 // The messages of tools/studio/protocol.md, as types.
 
-export interface FileEntry { path: string; kind: string; title: string }
+export interface FileEntry { path: string; kind: string; title?: string; size?: number }
 export interface Hello { version: string; folder: string; open: string; files: FileEntry[] }
 
 export interface Problem {
@@ -75,7 +75,7 @@ export interface SweepAnswer { x: number[]; y: number[]; values: (number | null)
 
 export type ColumnUse = "time" | "drive" | "compare" | "ignore";
 export interface Column {
-  column: string; name: string; unit: string; min: number | null; max: number | null; use: ColumnUse; port: string; why: string;
+  column: string; name: string; unit: string; unit_is_stated?: boolean; min: number | null; max: number | null; use: ColumnUse; port: string; why: string;
   resolution: string; interpolation: string; candidates: string[];
 }
 export interface Columns {
@@ -104,7 +104,7 @@ export interface Comparison {
 }
 
 export interface Step { added: string[]; error: number | null; simulation?: number | null; optional?: boolean }
-export interface EffectParameter { name: string; value: number | null; low: number | null; high: number | null; unit: string; text: string; at_limit: boolean }
+export interface EffectParameter { name: string; value: number | null; low: number | null; high: number | null; unit: string; text: string; interval?: string; at_limit: boolean }
 export interface Card {
   effect: string; form: string; title: string; physics: string; inclusion: number | null; force: number | null; unit: string; optional: boolean;
   parameters: EffectParameter[]; rivals: string[]; error_with: number | null; addable: boolean; why_not: string;

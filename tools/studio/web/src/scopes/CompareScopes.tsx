@@ -72,6 +72,8 @@ export function CompareScopes() {
     ];
     return { entry, curves };
   }), [comparison, before]);
+  const elsewhere = useMemo((): Curve[] => (preview && !comparison?.signals.some((signal) => signal.name === preview.signal)
+    ? [{ name: "preview", label: `error of ${preview.signal} in the diagnosed record, with ${preview.effects.join(", ")}: ${quantity(preview.rmse, preview.unit, 3)} rms`, unit: preview.unit, x: preview.x, y: preview.y, colour: 2, style: "preview" }] : []), [preview, comparison]);
   if (!comparison) return <p className="empty">Drop a recording (CSV, MAT) on the page, or choose an experiment under Measurements.</p>;
   const floor = comparison.force?.noise_floor;
   // Both plots of a signal fit into the room; the error, which is what matters, gets the larger part.
@@ -79,6 +81,7 @@ export function CompareScopes() {
   const measured_height = bounded(0.38 * space, 80, 170), error_height = bounded(0.62 * space, 110, 260) + NUMBERS_HEIGHT;
   return (
     <div className="comparison" ref={ref}>
+      {elsewhere.length > 0 && <Plot title="Preview" curves={elsewhere} group="" x_label="time" x_unit="s" y_unit={preview!.unit} height={RESIDUAL_HEIGHT} show_x />}
       {plots.map(({ signal, old, both, error }) => (
         <div key={signal.name} className="pair">
           <Verdict signal={signal} before={old} />

@@ -72,7 +72,7 @@ function axis(key: "x" | "y", label: string, unit: string, options: PlotOptions)
     grid: { stroke: () => variable("--grid"), width: 1 }, ticks: { stroke: () => variable("--grid"), width: 1, size: 4 },
     values: (is_log ? logarithmic : linear) as uPlot.Axis.Values, size: is_x ? (options.show_x ? 30 : 8) : AXIS_WIDTH - 18, gap: 4,
     label: is_x && !options.show_x ? undefined : (title as unknown as string),
-    space: is_x ? 70 : 30,
+    space: is_x ? 70 : 24,
     ...(is_x && !options.show_x ? { values: (_u: uPlot, splits: number[]) => splits.map(() => "") } : {}),
   };
 }

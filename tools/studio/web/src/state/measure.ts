@@ -58,7 +58,7 @@ export async function confirm_columns(replace: boolean): Promise<void> {
     path: document.path, experiment: columns.experiment, title: "", data: columns.data,
     time: columns.columns.find((column) => column.use === "time")?.column ?? columns.time,
     columns: columns.columns.filter((column) => column.use === "drive" || column.use === "compare")
-      .map(({ column, use, port, unit, resolution, interpolation }) => ({ column, use, port, unit, resolution, interpolation })),
+      .map(({ column, use, port, unit, unit_is_stated, resolution, interpolation }) => ({ column, use, port, unit: unit_is_stated === false ? unit : "", resolution, interpolation })),
     roles: Object.fromEntries(columns.roles.filter((role) => role.port).map((role) => [role.role, role.port])),
     hold_out: columns.hold_out, replace,
   }));
@@ -93,12 +93,13 @@ export function close_experiment(): void {
 
 // ---------- diagnosis ----------
 
-export async function diagnose(): Promise<void> {
-  const { document, experiment } = get();
-  if (!document || !experiment) return;
-  patch({ panel: "diagnose", diagnosis: null, staircase: [], preview: null, added: [] });
+/** With the records of these experiments. The comparison stays with its own. */
+export async function diagnose(experiments: string[]): Promise<void> {
+  const { document } = get();
+  if (!document || !experiments.length) return;
+  patch({ panel: "diagnose", diagnosed_with: experiments, diagnosis: null, staircase: [], preview: null, added: [] });
   const job = start<Diagnosis, { steps: Step[]; stage?: string }>("diagnose", "diagnose", "Searching for the missing effect",
-    { path: document.path, experiments: [experiment], lane: "diagnose" }, (partial) => patch({ staircase: partial.steps }));
+    { path: document.path, experiments, lane: "diagnose" }, (partial) => patch({ staircase: partial.steps }));
   const diagnosis = await attempt(job.answer);
   if (diagnosis) patch({ diagnosis, staircase: diagnosis.steps });
 }

@@ -47,6 +47,7 @@ export interface State {
   comparison: Comparison | null;
   comparison_before: Comparison | null;
   diagnosis: Diagnosis | null;
+  diagnosed_with: string[];              // experiments
   staircase: Step[];                     // while the search runs
   preview: (Preview & { effects: string[] }) | null;
   added: string[];                       // effects of the diagnosis that are in the diagram now
@@ -67,7 +68,7 @@ const initial: State = {
   selected: [], selected_wire: "", highlighted: [], jump: null,
   overrides: {}, run: null, ghost: null, pinned: [], runs: [], plots: [], plots_chosen: false, range: null, cursors: null,
   scope_tab: "run", linear: null, sweep: null,
-  columns: null, experiment: "", comparison: null, comparison_before: null, diagnosis: null, staircase: [], preview: null, added: [],
+  columns: null, experiment: "", comparison: null, comparison_before: null, diagnosis: null, diagnosed_with: [], staircase: [], preview: null, added: [],
   busy: {}, panel: "inspect", place: "diagram", show_palette: false, show_text: false, show_commands: false,
   theme: "system", dark: false, notes: [],
 };
