@@ -27,6 +27,7 @@ struct DiagramArguments {
 void add_check(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_run(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_plan(CLI::App& app, std::function<void(std::function<int()>)> choose);
+void add_new(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_blocks(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_schema(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_sweep(CLI::App& app, std::function<void(std::function<int()>)> choose);

@@ -23,6 +23,7 @@ int run_program(int count, char** arguments) {
   add_check(app, choose);
   add_run(app, choose);
   add_plan(app, choose);
+  add_new(app, choose);
   add_blocks(app, choose);
   add_schema(app, choose);
   add_compare(app, choose);

@@ -1,0 +1,73 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <filesystem>
+#include <set>
+#include "engine/json/problem.h"
+#include "engine/record/installation.h"
+#include "tools/command/command.h"
+
+namespace loopwright {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::string folder, kind = "linear_motor";
+};
+
+std::set<std::string> kinds() {
+  std::set<std::string> names;
+  std::error_code code;
+  for (const auto& entry : fs::directory_iterator(shared_file("diagrams/projects"), code))
+    if (entry.is_directory()) names.insert(entry.path().filename());
+  return names;
+}
+
+[[noreturn]] void refuse(std::string message, std::string expected, std::string hint = "") {
+  Problems problems;
+  auto& problem = problems.error({}, "", "", std::move(message));
+  problem.expected = std::move(expected), problem.hint = std::move(hint);
+  throw InputError(std::move(problems));
+}
+
+/// The folder appears as a whole or not at all.
+int create(const Arguments& a) {
+  const auto known = kinds();
+  if (!known.contains(a.kind)) {
+    const std::string near = nearest_name(a.kind, {known.begin(), known.end()});
+    refuse(fmt::format("there is no project \"{}\" to begin with", a.kind),
+           fmt::format("one of {}", fmt::join(known, ", ")),
+           near.empty() ? "" : fmt::format("did you mean \"{}\"?", near));
+  }
+  fs::path folder = fs::path(a.folder).lexically_normal();
+  if (!folder.has_filename()) folder = folder.parent_path();  // "name/"
+  if (fs::symlink_status(folder).type() != fs::file_type::not_found)
+    refuse(fmt::format("\"{}\" exists already", a.folder), "the name of a new folder");
+  const fs::path part = fs::path(folder.string() + ".part");
+  try {
+    fs::copy(shared_file("diagrams/projects/" + a.kind), part, fs::copy_options::recursive);
+    fs::rename(part, folder);
+  } catch (const fs::filesystem_error& error) {
+    std::error_code ignored;
+    fs::remove_all(part, ignored);
+    refuse(fmt::format("\"{}\" cannot be created: {}", a.folder, error.code().message()),
+           "a folder that can be written");
+  }
+  answer(
+      "{0}: a project with a model, an experiment and a README\n  cd {0} && loopwright run nominal.json "
+      "--report run.html\n",
+      folder.string());
+  return done;
+}
+
+}  // namespace
+
+void add_new(CLI::App& app, std::function<void(std::function<int()>)> choose) {
+  CLI::App* command = app.add_subcommand("new", "Begin a project: a model, an experiment and a README");
+  auto a = std::make_shared<Arguments>();
+  command->add_option("folder", a->folder, "Folder to create")->required();
+  command->add_option("--from", a->kind, "linear_motor, servo, pendulum or thermal")->capture_default_str();
+  command->callback([=] { choose([=] { return create(*a); }); });
+}
+
+}  // namespace loopwright
