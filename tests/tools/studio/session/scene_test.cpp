@@ -174,11 +174,39 @@ TEST_F(Scene, ARenamedBlockIsRenamedInItsExperiments) {
             {"intents", {{{"intent", "rename_block"}, {"name", "axis"}, {"to", "stage"}}}}});
   EXPECT_NE(folder_.read("a.experiment.json").find("{\"stage.position\""), std::string::npos);
   EXPECT_NE(folder_.read("a.experiment.json").find("\"stage.net_force\""), std::string::npos);
-  EXPECT_EQ(page.ask({{"do", "compare"}, {"path", "nominal.json"}, {"experiment", "a.experiment.json"}})["status"],
-            "finished");
+  EXPECT_EQ(
+      page.ask({{"do", "compare"}, {"path", "nominal.json"}, {"experiment", "a.experiment.json"}})["status"],
+      "finished");
   page.ask({{"do", "undo"}, {"path", "nominal.json"}});
   EXPECT_EQ(folder_.read("a.experiment.json"), experiment);
   EXPECT_EQ(folder_.read("nominal.json"), diagram);
+}
+
+TEST_F(Scene, TwoSlidersAndLinearAnalysisAreThoseOfSingleRuns) {
+  Page page(folder_.path());
+  page.ask({{"do", "open"}, {"path", "nominal.json"}});
+  const Json axis{{"set", "axis.mass"}, {"unit", "kg"}, {"low", 0.2}, {"high", 0.3}, {"points", 2}};
+  Json damping = axis;
+  damping["set"] = "axis.damping", damping["unit"] = "N*s/m", damping["low"] = 2, damping["high"] = 4;
+  const Json sweep = page.ask({{"do", "sweep"},
+                               {"path", "nominal.json"},
+                               {"x", axis},
+                               {"y", damping},
+                               {"set", {{"solver.stop", 2}}},
+                               {"metric", "rms(axis.position)"}});
+  const Json run =
+      page.ask({{"do", "run"},
+                {"path", "nominal.json"},
+                {"set", {{"solver.stop", 2}, {"axis.mass", "0.3 kg"}, {"axis.damping", "2 N*s/m"}}}});
+  for (const Json& signal : run["signals"])
+    if (signal["name"] == "axis.position") {
+      EXPECT_EQ(sweep["values"][0][1], signal["rms"]);
+    }
+  EXPECT_NE(sweep["values"][0][0], sweep["values"][1][1]);
+  const Json linear = page.ask(
+      {{"do", "linearize"}, {"path", "nominal.json"}, {"from", "axis.force"}, {"to", "axis.position"}});
+  EXPECT_EQ(linear["frequency"].size(), linear["magnitude_db"].size());
+  EXPECT_GT(linear["poles"].size(), 1u);
 }
 
 TEST_F(Scene, OvertakenAndCancelledJobsAreDroppedAtOnce) {
