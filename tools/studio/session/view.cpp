@@ -2,70 +2,20 @@
 #include <algorithm>
 #include <map>
 #include <set>
-#include "engine/json/json.h"
 #include "engine/json/reader.h"
 #include "tools/studio/session/checked_text.h"
 #include "tools/studio/session/member_change.h"
 #include "tools/studio/session/setting_text.h"
+#include "tools/studio/session/shown_level.h"
 
 namespace loopwright::studio {
 namespace {
 
 using Kind = Value::Kind;
 
-/// The level that is shown: its text, which may be that of another file, and what was loaded of it.
-struct Shown {
-  std::shared_ptr<const ParsedText> owner;
-  const Value* diagram = nullptr;
-  const Diagram* loaded = nullptr;  // null: not as far
-  std::string inside;
-  bool is_editable = true;
-  Json levels = Json::array();
-};
-
-const BlockEntry* entry_of(const Diagram* diagram, const std::string& name) {
-  if (!diagram) return nullptr;
-  const auto found = std::ranges::find(diagram->blocks, name, &BlockEntry::name);
-  return found == diagram->blocks.end() ? nullptr : &*found;
-}
-
-std::string title_of(const Value& diagram, const std::string& otherwise) {
-  const std::string_view title = text_in(diagram, "title");
-  return title.empty() ? otherwise : std::string(title);
-}
-
-Shown find_shown(const CheckedText& text, const std::string& inside, const Variants& variants) {
-  Shown shown{text.parsed, &text.parsed->root, text.checked.diagram.get(), ""};
-  shown.levels.push_back({{"inside", ""}, {"title", title_of(*shown.diagram, text.parsed->file->name)}});
-  if (inside.empty()) return shown;
-  for (const std::string& name : split_path(inside)) {
-    const std::string path = joined(shown.inside, name);
-    const Value::Member* block = Level{shown.diagram, ""}.block(name);
-    const Value* sub = block && block->value.kind == Kind::object
-                           ? subdiagram_of(body_of(block->value, path, variants))
-                           : nullptr;
-    if (!sub) throw Refused(fmt::format("\"{}\" is not a subdiagram", path));
-    if (sub->kind == Kind::text) {
-      Problems problems;
-      const auto file = read_source(resolve_relative(sub->place, sub->text), sub->place, problems);
-      if (!file) throw Refused(problems.text());
-      shown.owner = std::make_shared<ParsedText>(file->name, file->text);
-      shown.diagram = &shown.owner->root, shown.is_editable = false;
-    } else {
-      shown.diagram = sub;
-    }
-    if (shown.diagram->kind != Kind::object) throw Refused(fmt::format("\"{}\" cannot be read", path));
-    const BlockEntry* entry = entry_of(shown.loaded, name);
-    shown.loaded = entry ? entry->subdiagram.get() : nullptr;
-    shown.inside = path;
-    shown.levels.push_back({{"inside", path}, {"title", title_of(*shown.diagram, name)}});
-  }
-  return shown;
-}
-
 class View {
  public:
-  View(const CheckedText& text, Shown shown, const Variants& variants, const Layout& layout)
+  View(const CheckedText& text, ShownLevel shown, const Variants& variants, const Layout& layout)
       : text_(text),
         shown_(std::move(shown)),
         variants_(variants),
@@ -397,7 +347,7 @@ class View {
   }
 
   const CheckedText& text_;
-  const Shown shown_;
+  const ShownLevel shown_;
   const Variants& variants_;
   const Layout& layout_;
   const Utf16 places_;
@@ -413,7 +363,7 @@ class View {
 Json view_json(const CheckedText& text, const std::string& inside, const Variants& variants,
                const Layout& layout) {
   if (!text.parsed->is_object()) return nullptr;
-  return View(text, find_shown(text, inside, variants), variants, layout).json();
+  return View(text, find_shown_level(text, inside, variants), variants, layout).json();
 }
 
 }  // namespace loopwright::studio
