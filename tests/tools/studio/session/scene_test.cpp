@@ -50,6 +50,8 @@ class Page {
       events_.push_back(message);
     } else if (message.contains("partial")) {
       partials_.push_back(message["partial"]);
+    } else if (message["id"] == 0) {
+      EXPECT_TRUE(message.contains("error")) << "what has no number is no request";
     } else if (!message.contains("progress")) {
       EXPECT_TRUE(answers_.emplace(message["id"].get<int64_t>(), message).second) << "answered twice";
     }
