@@ -153,7 +153,7 @@ export function look(block: Block): Look {
   const tall = rows * PORT_PITCH + 10;
   if (block.type === "Sum") {
     if (rows <= MOST_WIRES_OF_CIRCLE) return { shape: "circle", width: SUM_SIZE, height: SUM_SIZE, content: null, named_ports: false };
-    return { shape: "box", width: 40, height: twenties(tall), content: <span className="symbol large">Σ</span>, named_ports: false };
+    return { shape: "box", width: 40, height: twenties(tall), content: <span className="symbol large beside-signs">Σ</span>, named_ports: false };
   }
   if (block.type === "Gain") {
     const text = cut(typeset(block.picture.kind === "text" ? block.picture.text : setting(block, "gain") || "K"), 16);

@@ -12,6 +12,8 @@ const OPTIONS = {
   "elk.layered.cycleBreaking.strategy": "MODEL_ORDER", "elk.layered.feedbackEdges": "true", "elk.separateConnectedComponents": "false",
   "elk.padding": "[top=20,left=20,bottom=20,right=20]",
 };
+/** Should the layout by signal flow fail. */
+const PLAIN_OPTIONS = { "elk.algorithm": "layered", "elk.direction": "RIGHT", "elk.edgeRouting": "ORTHOGONAL", "elk.spacing.nodeNode": "30" };
 const LABEL_HEIGHT = 16;    // px, of the name below a block
 const VECTORS: Record<Side, Point> = { WEST: { x: -1, y: 0 }, EAST: { x: 1, y: 0 }, SOUTH: { x: 0, y: 1 } };
 
@@ -22,18 +24,25 @@ self.onmessage = async (event: MessageEvent<LayoutRequest>) => {
   newest = event.data.count;
   await Promise.resolve();                       // requests that wait behind this one come first
   if (event.data.count !== newest) return;
-  const layout = await arrange(event.data);
+  const layout = await arrange(event.data, OPTIONS).catch(() => arrange(event.data, PLAIN_OPTIONS)).catch(() => in_rows(event.data));
   const answer: LayoutAnswer = { count: event.data.count, layout };
   self.postMessage(answer);
 };
 
-async function arrange({ nodes, edges }: LayoutRequest): Promise<Layout> {
+/** Whatever happens, every block is shown: in rows, with wires routed around them. */
+function in_rows({ nodes, edges }: LayoutRequest): Layout {
+  const columns = Math.ceil(Math.sqrt(nodes.length)), pitch = { x: Math.max(...nodes.map((node) => node.width)) + 70, y: Math.max(...nodes.map((node) => node.height)) + 50 };
+  const placed = nodes.map((node, i) => ({ ...node, fixed: node.fixed ?? { x: (i % columns) * pitch.x, y: Math.floor(i / columns) * pitch.y } }));
+  return reroute(placed, edges, { positions: {}, routes: {}, junctions: [] });
+}
+
+async function arrange({ nodes, edges }: LayoutRequest, options: Record<string, string>): Promise<Layout> {
   const graph: ElkNode = {
-    id: "diagram", layoutOptions: OPTIONS,
+    id: "diagram", layoutOptions: options,
     children: nodes.map((node) => ({
       id: node.id, width: node.width, height: node.height,
       layoutOptions: { "elk.portConstraints": "FIXED_POS", "elk.nodeLabels.placement": `OUTSIDE ${node.label_above ? "V_TOP" : "V_BOTTOM"} H_CENTER`,
-                       ...(node.end ? { "elk.layered.layering.layerConstraint": node.end === "first" ? "FIRST" : "LAST" } : {}) },
+                       ...(node.end && options === OPTIONS ? { "elk.layered.layering.layerConstraint": node.end === "first" ? "FIRST" : "LAST" } : {}) },
       labels: [{ text: node.id, width: node.label_width, height: LABEL_HEIGHT }],
       ports: node.ports.map((port) => ({ id: `${node.id}/${port.id}`, width: 0, height: 0, x: port.x, y: port.y, layoutOptions: { "elk.port.side": port.side } })),
     })),

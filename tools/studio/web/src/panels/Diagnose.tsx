@@ -56,9 +56,10 @@ function OtherRecords() {
   );
 }
 
+const NUMBERS: Record<number, string> = { 2: "Two", 3: "Three", 4: "Four", 5: "Five", 6: "Six" };
 function headline(diagnosis: Diagnosis): string {
   const count = diagnosis.cards.filter((card) => !card.optional).length;
-  const missing = count === 0 ? "No effect of the catalogue is missing" : count === 1 ? "One effect is missing" : `${count} effects are missing`;
+  const missing = count === 0 ? "No effect of the catalogue is missing" : count === 1 ? "One effect is missing" : `${NUMBERS[count] ?? count} effects are missing`;
   return diagnosis.verdict === "explained" && count ? `${missing}; with ${count === 1 ? "it" : "them"} the record is explained down to its noise` : missing;
 }
 
