@@ -61,6 +61,14 @@ function description(node: GraphNode): string {
   return [block.name, block.subdiagram ? "subdiagram" : spaced(block.type), block.description || block.title].filter(Boolean).join(", ");
 }
 
+const PORT_CHARACTER = 5.8;  // px
+/** The symbol stands in the middle of what the names of the ports leave free. */
+function between_names(node: GraphNode): { paddingLeft?: number; paddingRight?: number } {
+  if (!node.look.named_ports) return {};
+  const longest = (side: string) => PORT_CHARACTER * Math.max(0, ...node.places.filter((place) => place.side === side).map((place) => place.port.length));
+  return { paddingLeft: longest("WEST"), paddingRight: longest("EAST") };
+}
+
 export const BlockNode = memo(function BlockNode({ data, selected }: NodeProps<BlockFlowNode>) {
   const { node, highlighted, tint, severity } = data, block = node.block;
   const { width, height, shape } = node.look;
@@ -70,7 +78,7 @@ export const BlockNode = memo(function BlockNode({ data, selected }: NodeProps<B
     <div className={classes.filter(Boolean).join(" ") + rate} style={{ width, height }} title={description(node)} data-block={node.name} data-type={block?.type ?? node.kind}>
       <svg className="outline" width={width} height={height} aria-hidden="true"><Outline node={node} /></svg>
       {tint && <svg className="outline tint" width={width} height={height} aria-hidden="true" style={{ opacity: 0.08 + 0.4 * Math.min(1, tint.share) }}><Outline node={node} /></svg>}
-      <div className="content">{shape === "terminal" ? <span className="symbol">{node.name}</span> : node.look.content}</div>
+      <div className="content" style={between_names(node)}>{shape === "terminal" ? <span className="symbol">{node.name}</span> : node.look.content}</div>
       <Ports node={node} />
       {block && <div className={label_above(node) ? "block-name above" : "block-name"}>{block.name}{block.variant && <span className="variant"> {block.variant}</span>}</div>}
       {tint && <div className="badge share" title={tint.text}>{Math.round(100 * tint.share)} %</div>}
