@@ -60,5 +60,7 @@ $loopwright sweep diagrams/linear_motor/controllers.sweep.json -o build/demo/con
 $loopwright sweep report build/demo/controllers -o build/demo/controllers.html
 pages+=(build/demo/controllers.html)
 
+chapter 'The axis that hides something, in the studio: run it, compare it with a record, find what is missing, add it:'
+printf '  %s\n' "$loopwright studio $hidden/nominal.json"
 chapter 'Open these pages in a browser:'
 printf '  %s\n' "${pages[@]}"

@@ -1,6 +1,6 @@
 #!/bin/bash
-# Prepares this machine to build Loopwright: installs the missing packages of tools/dependencies.txt, and the
-# JavaScript packages of report pages and their tests. It may be run repeatedly: installed packages are left unchanged.
+# Prepares this machine to build Loopwright: installs the missing packages of tools/dependencies.txt, and the JavaScript
+# packages of report pages, of the studio and of their tests. It may be run repeatedly: installed packages are left unchanged.
 set -euo pipefail
 export DEBIAN_FRONTEND=noninteractive
 
@@ -47,5 +47,6 @@ install_scripts() {
 }
 
 install_packages
-install_scripts "$tools/report"       # plots and layout of report pages
+install_scripts "$tools/report"          # plots and layout of report pages
+install_scripts "$tools/studio/web"      # the page of the studio
 install_scripts "$tools/../tests/pages"  # drives chromium in tests

@@ -9,4 +9,8 @@ namespace loopwright {
 std::shared_ptr<const Diagram> read_diagram(const Value& root, const std::string& path,
                                             const LoadOptions& options, Problems& problems);
 
+/// Reads a diagram file whose text is in memory, as `load_diagram` reads it once it is written.
+std::shared_ptr<const Diagram> load_diagram_text(const std::shared_ptr<const SourceFile>& file,
+                                                 const LoadOptions& options, Problems& problems);
+
 }  // namespace loopwright

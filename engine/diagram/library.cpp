@@ -32,6 +32,14 @@ const DiagramFile& DiagramLibrary::open(const std::string& path, const Place& re
   return file;
 }
 
+void DiagramLibrary::hold(std::shared_ptr<const SourceFile> source) {
+  problems_.note_file(source->name, source->text);
+  names_.push_back(source->name);
+  DiagramFile& file = files_[identity(source->name)];
+  file.source = std::move(source);
+  read(file);
+}
+
 void DiagramLibrary::read(DiagramFile& file) {
   auto tokens = read_tokens(file.source, problems_);
   if (!tokens) return;

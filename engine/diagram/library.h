@@ -26,6 +26,8 @@ class DiagramLibrary {
 
   /// The file at a path that is named at `reference`, in the current version of the format.
   const DiagramFile& open(const std::string& path, const Place& reference);
+  /// A file whose text is in memory: it is not read from the disk.
+  void hold(std::shared_ptr<const SourceFile> source);
   /// The identifier of a file: the same text for every spelling of its path.
   const std::string& identity(const std::string& path);
   /// The names of the files read, in order.

@@ -84,6 +84,14 @@ std::shared_ptr<const Diagram> load_diagram(const std::string& path, const LoadO
                       [&](DiagramLoad& load, Instance top) { return load.load(path, {}, std::move(top)); });
 }
 
+std::shared_ptr<const Diagram> load_diagram_text(const std::shared_ptr<const SourceFile>& file,
+                                                 const LoadOptions& options, Problems& problems) {
+  return with_options(options, problems, [&](DiagramLoad& load, Instance top) {
+    load.library.hold(file);
+    return load.load(file->name, {}, std::move(top));
+  });
+}
+
 std::shared_ptr<const Diagram> read_diagram(const Value& root, const std::string& path,
                                             const LoadOptions& options, Problems& problems) {
   return with_options(options, problems, [&](DiagramLoad& load, Instance top) {

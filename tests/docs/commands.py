@@ -29,6 +29,7 @@ FIRST = ["README.md", "docs/diagram_format.md", "docs/hardware.md", "docs/paper.
 # Commands with these beginnings are skipped on all pages.
 LEFT_OUT = [
     ("tools/test.sh", "it runs this script"),
+    ("loopwright studio", "it serves until it is ended; tests/tools/studio/web runs it"),
     ("srun ", "needs a cluster with Slurm"),
     ("mpirun ", "needs Open MPI; tests/tools/sweep runs it"),
 ]

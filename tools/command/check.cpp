@@ -3,13 +3,13 @@
 #include "blocks/learning/model_file.h"
 #include "engine/json/file_kind.h"
 #include "engine/json/json.h"
-#include "engine/plan/plan.h"
 #include "hw/drivers.h"
 #include "hw/realtime/axes.h"
 #include "tools/command/command.h"
 #include "tools/experiment/experiment.h"
 #include "tools/effects/effect.h"
 #include "tools/gp/train.h"
+#include "tools/run/checked_diagram.h"
 #include "tools/sweep/sweep_plan.h"
 
 namespace loopwright {
@@ -36,18 +36,12 @@ std::string look_at_units(const WiresWithoutUnit& wires, const CheckOptions& opt
 }
 
 Verdict check_diagram(const std::string& path, const CheckOptions& options, Problems& problems) {
-  const auto diagram = load_diagram(path, options.load, problems);
-  if (!diagram) return {};
-  if (!diagram->inputs.empty()) {
-    const std::string units = look_at_units(check_part(*diagram, problems), options, problems);
-    return fmt::format("a subdiagram of {} blocks{}", diagram->blocks.size(), units);
-  }
-  const auto plan = compile(*diagram, problems);
-  if (!plan) return {};
-  const std::string units = look_at_units(plan->without_unit, options, problems);
+  const CheckedDiagram checked = check_diagram(load_diagram(path, options.load, problems), problems);
+  if (checked.summary().empty()) return {};
+  std::string verdict = checked.summary() + look_at_units(checked.without_unit, options, problems);
+  if (!checked.plan) return verdict;
   Problems of_deploy;  // reported by deploy
-  return fmt::format("{} blocks, {} states{}{}", plan->blocks.size(), plan->states, units,
-                     foreign_code(hw::find_hardware(*plan, of_deploy).device.get()));
+  return verdict + foreign_code(hw::find_hardware(*checked.plan, of_deploy).device.get());
 }
 
 Verdict check_experiment(const std::string& path, Problems& problems) {

@@ -40,6 +40,7 @@ void add_deploy(CLI::App& app, std::function<void(std::function<int()>)> choose)
 void add_recover(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_probe(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_linearize(CLI::App& app, std::function<void(std::function<int()>)> choose);
+void add_studio(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_stability(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_completion(CLI::App& app, std::function<void(std::function<int()>)> choose);
 

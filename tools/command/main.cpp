@@ -37,6 +37,7 @@ int run_program(int count, char** arguments) {
   add_probe(app, choose);
   add_linearize(app, choose);
   add_stability(app, choose);
+  add_studio(app, choose);
   add_completion(app, choose);
   try {
     app.parse(count, arguments);

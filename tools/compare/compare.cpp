@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include "engine/diagram/in_memory.h"
 #include "models/real/whole.h"
 #include "tools/experiment/experiment_ports.h"
 
@@ -137,12 +138,12 @@ void analyse_force(Comparison& comparison, const std::string& diagram, const Exp
   comparison.force = std::move(analysis);
 }
 
-}  // namespace
-
-Comparison compare_signals(const std::string& diagram_path, const Experiment& recorded,
-                           const LoadOptions& options, const RunOptions& run_options) {
+/// `load` reads the diagram with the options that make it follow the experiment.
+template <class Load>
+Comparison compare_signals_of(const std::string& diagram_path, const Experiment& recorded,
+                              const LoadOptions& options, const RunOptions& run_options, Load&& load) {
   Problems problems;
-  const auto diagram = load_diagram(diagram_path, follow(recorded, options), problems);
+  const auto diagram = load(follow(recorded, options), problems);
   const auto plan = diagram ? compile(*diagram, problems) : nullptr;
   if (!plan) explain_failure(diagram_path, {recorded.path}, options, std::move(problems));
   const Experiment experiment = in_units_of_ports(*plan, recorded);
@@ -168,6 +169,24 @@ Comparison compare_signals(const std::string& diagram_path, const Experiment& re
   comparison.time.resize(comparison.signals.front().simulated.size());
   add_axes(comparison, experiment);
   return comparison;
+}
+
+}  // namespace
+
+Comparison compare_signals(const std::string& diagram_path, const Experiment& experiment,
+                           const LoadOptions& options, const RunOptions& run_options) {
+  return compare_signals_of(diagram_path, experiment, options, run_options,
+                            [&](const LoadOptions& following, Problems& problems) {
+                              return load_diagram(diagram_path, following, problems);
+                            });
+}
+
+Comparison compare_signals(const std::shared_ptr<const SourceFile>& diagram, const Experiment& experiment,
+                           const LoadOptions& options, const RunOptions& run_options) {
+  return compare_signals_of(diagram->name, experiment, options, run_options,
+                            [&](const LoadOptions& following, Problems& problems) {
+                              return load_diagram_text(diagram, following, problems);
+                            });
 }
 
 Comparison compare(const std::string& diagram_path, const std::string& experiment_path,

@@ -61,6 +61,10 @@ Comparison compare(const std::string& diagram, const std::string& experiment, co
 Comparison compare_signals(const std::string& diagram, const Experiment& experiment,
                            const LoadOptions& options = {}, const RunOptions& run_options = {});
 
+/// The same for a diagram file whose text is in memory.
+Comparison compare_signals(const std::shared_ptr<const SourceFile>& diagram, const Experiment& experiment,
+                           const LoadOptions& options = {}, const RunOptions& run_options = {});
+
 /// Stable keys: signals.<name>.{rmse,max_abs,mean,relative_percent,fit_percent,unit},
 /// force_residual.{rmse,relative_percent,noise_floor,unit}, where[].{axis,from,to,share},
 /// dependence.<variable>, simulation, excitation and faults.

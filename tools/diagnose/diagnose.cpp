@@ -280,6 +280,14 @@ Diagnosis::Curves residual_curves(const Trials& trials, const InverseDynamics& i
   return curves;
 }
 
+/// How functions without a name are written.
+std::vector<std::string> notes_of(const Additions& additions) {
+  std::vector<std::string> notes = additions.not_stated;
+  for (const AddedEffect& added : additions.effects)
+    if (!added.note.empty()) notes.push_back(added.note);
+  return notes;
+}
+
 Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std::string>& experiments,
                               const DiagnoseOptions& options) {
   const std::function<void(const char*, double)> progress = [&](const char* stage, double done) {
@@ -304,6 +312,12 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   std::vector<InverseDynamics> inverse;
   for (Trial& trial : trials.list) inverse.push_back(inverse_dynamics(trial));
   trials.inverse = &inverse;
+  if (options.found)
+    trials.found = [&](const std::vector<Member>& members) {
+      std::vector<std::string> names;
+      for (const Member& member : members) names.push_back(shown_name(*member.candidate));
+      options.found(names, residual_size(trials, inverse, members).fitted);
+    };
   Diagnosis result;
   result.findings = look_at_records(trials, inverse);
   if (auto finding = too_few_rows(trials)) result.findings.push_back(std::move(*finding));
@@ -334,14 +348,16 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   tell_errors(trials, conclusion, inquiry, result);
   trials.run_along(Trials::Rows::all);
   judge(trials, conclusion, inquiry.motion_of_all_rows(), search_noise(trials), inverse, result);
+  const auto members_of = [&](size_t steps) { return staircase.members[steps - 1]; };
+  result.additions = improver.additions(members_of(staircase.necessary()));
+  result.all_additions = improver.additions(members_of(staircase.steps.size()));
   if (!options.improved_diagram.empty()) {
     const size_t last = options.writes_all ? staircase.steps.size() : staircase.necessary();
-    ImprovedDiagram improved = improver.with(staircase.members[last - 1]);
+    const Improvement improved = improver.with(members_of(last));
     result.improved = options.improved_diagram;
     result.improved_experiments = write(improved, experiments, result.improved);
-    result.experiment_ports = std::move(improved.moved);
-    result.taken_out_by = std::move(improved.taken_out_by);
-    result.improved_notes = std::move(improved.notes);
+    result.experiment_ports = improved.moved, result.taken_out_by = improved.taken_out_by;
+    result.improved_notes = notes_of(options.writes_all ? result.all_additions : result.additions);
   }
   result.curves = residual_curves(trials, inverse.front(), conclusion);
   return result;

@@ -16,6 +16,8 @@ struct DiagnoseOptions {
   std::string improved_diagram;  ///< path of the diagram with the effects; empty: not written
   bool writes_all = false;       ///< also the optional effects
   std::function<void(const char* stage, double done)> progress;
+  /// Told of every set of effects that the search accepts, with the force that it leaves in the fitted rows.
+  std::function<void(const std::vector<std::string>& effects, double force)> found;
   const std::atomic<bool>* interrupt = nullptr;  ///< once true, the diagnosis ends soon, without a verdict
 };
 

@@ -75,6 +75,21 @@ struct RemainderShare {
   double share = 0;
 };
 
+/// An effect with its fitted parameters, as it can be added to the diagram.
+struct AddedEffect {
+  std::string name;  ///< as in the steps of the diagnosis
+  Effect effect;
+  std::vector<double> fitted;  ///< SI, in the order of the effect's file
+  std::string note;            ///< the range of a function without a name
+};
+/// Effects that were found, fitted together, in the order in which they are added.
+struct Additions {
+  std::vector<AddedEffect> effects;
+  std::vector<std::string> not_stated;  ///< functions without a name that no block can state: sentences
+  MachineUnits units;
+  RecordSizes sizes;
+};
+
 enum class Verdict { nothing_missing, explained, partly_explained, unexplained };
 std::string_view name_of(Verdict verdict);
 
@@ -108,6 +123,8 @@ struct Diagnosis {
   bool is_simulated() const { return simulation_horizon_s > 0; }  ///< otherwise a map, or too short
   bool simulation_diverged = false;                               ///< of the diagram with all effects
   bool simulation_is_worse = false;                               ///< the same, than of the nominal diagram
+  Additions additions;                                            ///< the effects that are not optional
+  Additions all_additions;                                        ///< optional ones too, all fitted together
   std::string improved;                                           ///< the diagram that was written
   std::vector<std::string> improved_experiments;  ///< written for it, with the ports that it moved
   std::vector<std::string> taken_out_by;          ///< its parameters that take out one effect each when 0

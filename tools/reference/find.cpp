@@ -37,31 +37,44 @@ std::string line(std::string_view name, std::string_view text) {
 
 }  // namespace
 
-std::string found_blocks(std::string_view words) {
+std::vector<FoundBlock> find_blocks(std::string_view words) {
+  using Where = FoundBlock::Where;
   const std::string name = plain_name(words), lower = in_lower_case(words);
-  std::string by_name, elsewhere, by_text;
+  std::vector<FoundBlock> found;
   std::set<std::string, std::less<>> shown;
   for (const auto& [type, block] : all_blocks()) {
     const std::string plain = plain_name(type);
     if (name.empty() || (plain.find(name) == plain.npos && plain != without_number(name))) continue;
-    by_name += line(type, block.info.sentence);
+    found.push_back({Where::name, type, block.info.sentence, type});
     shown.insert(type);
   }
   const NameElsewhere* const exact = find_name_elsewhere(words);
   for (const NameElsewhere& entry : names_elsewhere()) {
     const bool contains = name.size() > 1 && plain_name(entry.name).find(name) != std::string::npos;
     if (!contains && &entry != exact) continue;
-    elsewhere += line(fmt::format("\"{}\"", entry.name), advice(entry));
-    if (const BlockType* block = find_block(entry.block); block && shown.insert(block->info.type).second)
-      elsewhere += line("  " + block->info.type, block->info.sentence);
+    const BlockType* block = find_block(entry.block);
+    const bool is_new = block && shown.insert(block->info.type).second;
+    found.push_back(
+        {Where::elsewhere, fmt::format("\"{}\"", entry.name), advice(entry), is_new ? block->info.type : ""});
   }
   for (const auto& [type, block] : all_blocks())
     if (!name.empty() && !shown.contains(type) && says(block.info, lower, name))
-      by_text += line(type, block.info.sentence);
+      found.push_back({Where::description, type, block.info.sentence, type});
+  return found;
+}
+
+std::string found_blocks(std::string_view words) {
+  constexpr std::string_view titles[] = {"blocks\n", "names in other programs\n", "in descriptions\n"};
   std::string text;
-  if (!by_name.empty()) text += "blocks\n" + by_name;
-  if (!elsewhere.empty()) text += "names in other programs\n" + elsewhere;
-  if (!by_text.empty()) text += "in descriptions\n" + by_text;
+  const FoundBlock* before = nullptr;
+  const std::vector<FoundBlock> list = find_blocks(words);
+  for (const FoundBlock& found : list) {
+    if (!before || before->where != found.where) text += titles[size_t(found.where)];
+    text += line(found.name, found.text);
+    if (found.where == FoundBlock::Where::elsewhere && !found.type.empty())
+      text += line("  " + found.type, find_block(found.type)->info.sentence);
+    before = &found;
+  }
   return text;
 }
 

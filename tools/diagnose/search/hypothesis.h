@@ -1,6 +1,7 @@
 /// A model to be tested: the nominal diagram and some effects, run along every record.
 #pragma once
 #include <atomic>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -37,6 +38,7 @@ struct Trials {
   double turn = 0;  ///< [position] after which everything on a rotary axis repeats; 0: not rotary
   const std::atomic<bool>* interrupt =
       nullptr;  ///< once true, the next run along the records throws Interrupted
+  std::function<void(const std::vector<Member>&)> found;  ///< told of every set that the search accepts
   size_t ports() const { return list.front().model->record().measured.size(); }
   /// All records are maps of balances, or none.
   bool has_map() const { return list.front().model->record().is_map; }

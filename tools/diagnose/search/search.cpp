@@ -62,6 +62,7 @@ class Search {
       line += ",";
     }
     trail_.push_back(std::move(line));
+    if (trials_.found) trials_.found(best_.members);
   }
 
   /// Predictions of the linearization, best first.

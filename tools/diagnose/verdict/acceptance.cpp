@@ -12,10 +12,6 @@ struct Refusal {
   std::string why;
 };
 
-std::string shown_name(const Member& member) {
-  return member.candidate->is_unknown ? "a function of " + member.candidate->form : member.candidate->name;
-}
-
 /// Whether a part of the mass moves by itself. Its motion is not measured, and swings on from window to
 /// window; where it is at the beginning of one decides more than whether it exists.
 bool has_own_load(const std::vector<Member>& members) {
@@ -83,7 +79,7 @@ Acceptance accept(Conclusion conclusion, Trials& trials, const std::vector<Inver
     judge.run(state);
     const std::optional<Refusal> refusal = judge.refused(state);
     if (!refusal) break;
-    const std::string name = shown_name(state.conclusion.estimate.members[refusal->member]);
+    const std::string name = shown_name(*state.conclusion.estimate.members[refusal->member].candidate);
     state.refused.push_back({name, refusal->why});
     std::vector<std::string> trail = state.conclusion.trail;
     trail.push_back(name + ": " + refusal->why);

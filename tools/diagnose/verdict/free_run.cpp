@@ -19,7 +19,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// The diagram cut open at its input, without controller and noise.
 class FreeAxis {
  public:
-  FreeAxis(const ImprovedDiagram& diagram, const Experiment& recorded, const AxisRecord& record,
+  FreeAxis(const Improvement& diagram, const Experiment& recorded, const AxisRecord& record,
            const LoadOptions& options)
       : record_(record) {
     Problems problems;
@@ -182,7 +182,7 @@ double FreeRun::rmse() const {
   return squares.empty() ? std::nan("") : std::sqrt(sum / double(squares.size()));
 }
 
-FreeRun run_freely(const ImprovedDiagram& diagram, const Improver& improver, const LoadOptions& load,
+FreeRun run_freely(const Improvement& diagram, const Improver& improver, const LoadOptions& load,
                    const Trials& trials, const std::vector<InverseDynamics>& inverse, const Noise& noise) {
   FreeRun result;
   if (trials.has_map()) return result;

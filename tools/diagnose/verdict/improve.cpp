@@ -3,9 +3,9 @@
 #include <filesystem>
 #include "engine/json/json.h"
 #include "engine/record/atomic_file.h"
+#include "tools/diagnose/verdict/staircase.h"
 #include "tools/diagnose/verdict/unknown_effect.h"
 #include "tools/effects/nest.h"
-#include "tools/experiment/sensor_gains.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -17,40 +17,6 @@ std::vector<double> fitted_values(const Effect& effect, const Member& member) {
   for (const EffectParameter& p : effect.parameters)
     if (p.is_fitted) values.push_back(p.is_linear ? member.linear[linear++] : member.nonlinear[nonlinear++]);
   return values;
-}
-
-bool names(const Experiment& experiment, const std::string& port) {
-  const auto is_port = [&](const RecordedSignal& signal) { return signal.port == port; };
-  return std::ranges::any_of(experiment.drives, is_port) ||
-         std::ranges::any_of(experiment.compared, is_port) ||
-         std::ranges::any_of(experiment.roles.ports, [&](const auto& role) { return role.second == port; });
-}
-
-/// Where several insertions moved ports to.
-void note_moves(const Insertion& insertion, std::vector<MovedPort>& list) {
-  for (const MovedPort& moved : insertion.measured_at) {  // the last error of a sensor is the outermost
-    const auto earlier = std::ranges::find(list, std::vector{moved.from}, &MovedPort::to);
-    if (earlier != list.end())
-      earlier->to = moved.to;
-    else
-      list.push_back(moved);
-  }
-  for (const MovedPort& moved : insertion.input_at)  // the first effect of the input reads it
-    if (std::ranges::find(list, moved.from, &MovedPort::from) == list.end()) list.push_back(moved);
-}
-
-/// Roles with which a further effect is inserted behind this one.
-void move_roles(const Insertion& insertion, RolePorts& roles) {
-  for (auto& [role, port] : roles) {
-    for (const auto& [from, to] : insertion.measured_at)
-      if (port == from) port = to.front();
-    if (role == "input" && !insertion.input_behind.empty()) port = insertion.input_behind;
-  }
-}
-
-const std::string& moved_port(const std::string& port, const std::vector<MovedPort>& moved) {
-  const auto found = std::ranges::find(moved, port, &MovedPort::from);
-  return found == moved.end() ? port : found->to.front();
 }
 
 /// The text of an experiment for another folder.
@@ -83,15 +49,6 @@ std::string moved_text(const std::string& path, const std::vector<MovedPort>& mo
   return edits.apply(file->text);
 }
 
-/// Of the quantities themselves, where the experiment names sensors.
-RolePorts roles_of(const std::string& diagram, const Experiment& experiment, const LoadOptions& load) {
-  Problems problems;
-  const auto loaded = load_diagram(diagram, load, problems);
-  const auto plan = loaded ? compile(*loaded, problems) : nullptr;
-  if (!plan) throw InputError(std::move(problems));
-  return without_sensor_gains(*plan, experiment).roles.ports;
-}
-
 }  // namespace
 
 WhyNot attachable(const std::string& diagram, const std::string& experiment_path, const LoadOptions& load,
@@ -100,7 +57,7 @@ WhyNot attachable(const std::string& diagram, const std::string& experiment_path
   const auto experiment = load_experiment(experiment_path, problems);
   const std::shared_ptr<const SourceFile> file = read_source(diagram, {}, problems);
   if (!file || !experiment) throw InputError(std::move(problems));
-  const InsertionSite site{roles_of(diagram, *experiment, load), load.variants, units};
+  const InsertionSite site{roles_of(file, *experiment, load), load.variants, units};
   return [=](const Effect& effect) -> std::string {
     std::vector<double> starts;
     for (const EffectParameter& p : effect.parameters)
@@ -114,61 +71,44 @@ WhyNot attachable(const std::string& diagram, const std::string& experiment_path
 Improver::Improver(const std::string& diagram, const std::vector<std::string>& experiments,
                    const LoadOptions& load, const Catalogue& catalogue, const MachineUnits& units,
                    const RecordSizes& sizes)
-    : catalogue_(catalogue), sizes_(sizes) {
+    : load_(load), catalogue_(catalogue), units_(units), sizes_(sizes) {
   Problems problems;
   for (const std::string& path : experiments) experiments_.push_back(load_experiment(path, problems));
   file_ = read_source(diagram, {}, problems);
   if (!file_ || std::ranges::find(experiments_, nullptr) != experiments_.end())
     throw InputError(std::move(problems));
-  site_ = {roles_of(diagram, *experiments_.front(), load), load.variants, units, true};
 }
 
-ImprovedDiagram Improver::with(const std::vector<Member>& list) const {
-  ImprovedDiagram improved{file_, {}, {}, {}};
-  InsertionSite site = site_;
-  std::vector<Member> members = list;  // in the direction of the signal
+Additions Improver::additions(std::vector<Member> members) const {
   std::ranges::stable_sort(members, {}, [](const Member& m) { return m.candidate->stage; });
-  Problems problems;
-  std::vector<MovedPort> moved;
+  Additions result{{}, {}, units_, sizes_};
   for (const Member& member : members) {
-    std::optional<Effect> unknown;
-    if (member.candidate->is_unknown) {
-      unknown = effect_of_unknown(member, sizes_);
-      const std::string range = range_of_unknown(member, sizes_, site.units);
-      if (!unknown) {
-        improved.notes.push_back("The unknown function of " + member.candidate->form +
-                                 " is not in the diagram: no block can state it.");
+    const Candidate& candidate = *member.candidate;
+    AddedEffect added{shown_name(candidate), {}, {}, {}};
+    if (candidate.is_unknown) {
+      const std::optional<Effect> effect = effect_of_unknown(member, sizes_);
+      const std::string range = range_of_unknown(member, sizes_, units_);
+      if (!effect) {
+        result.not_stated.push_back("The unknown function of " + candidate.form +
+                                    " is not in the diagram: no block can state it.");
         continue;
       }
-      if (!range.empty())
-        improved.notes.push_back("The unknown function of " + member.candidate->form + " is " + range + ".");
+      added.effect = *effect;
+      if (!range.empty()) added.note = "The unknown function of " + candidate.form + " is " + range + ".";
+    } else {
+      added.effect = catalogue_.effects[size_t(&candidate - catalogue_.candidates.data())];
     }
-    const Effect& effect =
-        unknown ? *unknown : catalogue_.effects[size_t(member.candidate - catalogue_.candidates.data())];
-    const auto inserted =
-        insert_effect(improved.file, site, effect, fitted_values(effect, member), sizes_, problems);
-    if (!inserted) throw InputError(std::move(problems));
-    note_moves(*inserted, moved);
-    move_roles(*inserted, site.roles);
-    if (!inserted->taken_out_by.empty()) improved.taken_out_by.push_back(inserted->taken_out_by);
-    improved.file = std::make_shared<SourceFile>(SourceFile{file_->name, inserted->text});
+    added.fitted = fitted_values(added.effect, member);
+    result.effects.push_back(std::move(added));
   }
-  for (const MovedPort& port : moved)
-    if (std::ranges::any_of(experiments_, [&](const auto& e) { return names(*e, port.from); }))
-      improved.moved.push_back(port);
-  return improved;
-}
-
-Experiment with_moved_ports(const Experiment& experiment, const std::vector<MovedPort>& moved) {
-  Experiment result = experiment;
-  for (auto* list : {&result.drives, &result.compared})
-    for (RecordedSignal& signal : *list) signal.port = moved_port(signal.port, moved);
-  for (auto& [role, port] : result.roles.ports) port = moved_port(port, moved);
-  for (loopwright::Column& column : result.data.columns) column.name = moved_port(column.name, moved);
   return result;
 }
 
-std::vector<std::string> write(const ImprovedDiagram& improved, const std::vector<std::string>& experiments,
+Improvement Improver::with(const std::vector<Member>& members) const {
+  return improve(file_, experiments_, load_, additions(members));
+}
+
+std::vector<std::string> write(const Improvement& improved, const std::vector<std::string>& experiments,
                                const std::string& target) {
   namespace fs = std::filesystem;
   const fs::path path(target);

@@ -13,10 +13,6 @@ bool corrects_nominal(const Member& member) {
 /// are still to come, as damping does with eddy-current drag.
 constexpr double least_benefit_of_a_correction = 0.99;
 
-std::string shown_name(const Candidate& candidate) {
-  return candidate.is_unknown ? "an unknown force of " + candidate.form : candidate.name;
-}
-
 struct Stage {
   std::vector<size_t> members;  ///< for the conclusion
   Estimate estimate;
@@ -109,6 +105,10 @@ size_t Staircase::necessary() const {
   size_t count = steps.size();
   while (count > 1 && steps[count - 1].is_optional) --count;
   return count;
+}
+
+std::string shown_name(const Candidate& candidate) {
+  return candidate.is_unknown ? "an unknown force of " + candidate.form : candidate.name;
 }
 
 Staircase climb(Trials& trials, const Conclusion& conclusion, const std::vector<InverseDynamics>& inverse,

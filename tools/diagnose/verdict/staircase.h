@@ -17,6 +17,9 @@ struct Staircase {
   size_t necessary() const;
 };
 
+/// "cogging", "an unknown force of position".
+std::string shown_name(const Candidate& candidate);
+
 /// Removes the members again, each time the least important one; the remaining ones are fitted again.
 /// Corrections of the nominal diagram's own mass and damping are removed with the effect without which they
 /// have no benefit.

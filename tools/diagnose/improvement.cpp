@@ -1,0 +1,85 @@
+#include "tools/diagnose/improvement.h"
+#include <algorithm>
+#include "engine/diagram/in_memory.h"
+#include "tools/experiment/sensor_gains.h"
+
+namespace loopwright {
+namespace {
+
+bool names(const Experiment& experiment, const std::string& port) {
+  const auto is_port = [&](const RecordedSignal& signal) { return signal.port == port; };
+  return std::ranges::any_of(experiment.drives, is_port) ||
+         std::ranges::any_of(experiment.compared, is_port) ||
+         std::ranges::any_of(experiment.roles.ports, [&](const auto& role) { return role.second == port; });
+}
+
+/// Where several insertions moved ports to.
+void note_moves(const Insertion& insertion, std::vector<MovedPort>& list) {
+  for (const MovedPort& moved : insertion.measured_at) {  // the last error of a sensor is the outermost
+    const auto earlier = std::ranges::find(list, std::vector{moved.from}, &MovedPort::to);
+    if (earlier != list.end())
+      earlier->to = moved.to;
+    else
+      list.push_back(moved);
+  }
+  for (const MovedPort& moved : insertion.input_at)  // the first effect of the input reads it
+    if (std::ranges::find(list, moved.from, &MovedPort::from) == list.end()) list.push_back(moved);
+}
+
+/// Roles with which a further effect is inserted behind this one.
+void move_roles(const Insertion& insertion, RolePorts& roles) {
+  for (auto& [role, port] : roles) {
+    for (const auto& [from, to] : insertion.measured_at)
+      if (port == from) port = to.front();
+    if (role == "input" && !insertion.input_behind.empty()) port = insertion.input_behind;
+  }
+}
+
+}  // namespace
+
+RolePorts roles_of(const std::shared_ptr<const SourceFile>& diagram, const Experiment& experiment,
+                   const LoadOptions& load) {
+  Problems problems;
+  const auto loaded = load_diagram_text(diagram, load, problems);
+  const auto plan = loaded ? compile(*loaded, problems) : nullptr;
+  if (!plan) throw InputError(std::move(problems));
+  return without_sensor_gains(*plan, experiment).roles.ports;
+}
+
+Improvement improve(const std::shared_ptr<const SourceFile>& diagram,
+                    const std::vector<std::shared_ptr<const Experiment>>& experiments,
+                    const LoadOptions& load, const Additions& additions) {
+  Improvement improved{diagram, {}, {}, {}};
+  InsertionSite site{roles_of(diagram, *experiments.front(), load), load.variants, additions.units, true};
+  Problems problems;
+  std::vector<MovedPort> moved;
+  for (const AddedEffect& added : additions.effects) {
+    auto inserted = insert_effect(improved.file, site, added.effect, added.fitted, additions.sizes, problems);
+    if (!inserted) throw InputError(std::move(problems));
+    note_moves(*inserted, moved);
+    move_roles(*inserted, site.roles);
+    if (!inserted->taken_out_by.empty()) improved.taken_out_by.push_back(inserted->taken_out_by);
+    std::ranges::move(inserted->blocks, std::back_inserter(improved.blocks));
+    improved.file = std::make_shared<SourceFile>(SourceFile{diagram->name, std::move(inserted->text)});
+  }
+  for (const MovedPort& port : moved)
+    if (std::ranges::any_of(experiments, [&](const auto& e) { return names(*e, port.from); }))
+      improved.moved.push_back(port);
+  return improved;
+}
+
+Experiment with_moved_ports(const Experiment& experiment, const std::vector<MovedPort>& moved) {
+  Experiment result = experiment;
+  for (auto* list : {&result.drives, &result.compared})
+    for (RecordedSignal& signal : *list) signal.port = moved_port(signal.port, moved);
+  for (auto& [role, port] : result.roles.ports) port = moved_port(port, moved);
+  for (Column& column : result.data.columns) column.name = moved_port(column.name, moved);
+  return result;
+}
+
+const std::string& moved_port(const std::string& port, const std::vector<MovedPort>& moved) {
+  const auto found = std::ranges::find(moved, port, &MovedPort::from);
+  return found == moved.end() ? port : found->to.front();
+}
+
+}  // namespace loopwright

@@ -1,0 +1,110 @@
+#include "tools/studio/session/experiment_text.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include "tools/studio/session/draft.h"
+#include "tools/studio/session/intent.h"
+#include "tools/studio/session/member_change.h"
+
+namespace loopwright::studio {
+namespace {
+
+using Kind = Value::Kind;
+
+/// Lines of an object, values in one column.
+std::string lines_of(const std::vector<std::pair<std::string, std::string>>& entries) {
+  size_t width = 0;
+  for (const auto& [name, value] : entries) width = std::max(width, in_quotes(name).size());
+  std::string text;
+  for (const auto& [name, value] : entries)
+    text += fmt::format("{}\n    {}:{} {}", text.empty() ? "" : ",", in_quotes(name),
+                        std::string(width - in_quotes(name).size(), ' '), value);
+  return "{" + text + "\n  }";
+}
+
+std::string signal_text(const Value& column, bool drives) {
+  std::string text = fmt::format("{{\"column\": {}", in_quotes(required_text(column, "column")));
+  const auto add = [&](const char* key) {
+    if (const std::string_view value = text_in(column, key); !value.empty())
+      text += fmt::format(", \"{}\": {}", key, in_quotes(value));
+  };
+  add("unit");
+  add(drives ? "interpolation" : "resolution");
+  return text + "}";
+}
+
+TextChange renamed_name(const Value::Member& member, const std::string& to) {
+  return {member.place.offset, member.place.offset + in_quotes(member.name).size(), in_quotes(to)};
+}
+
+}  // namespace
+
+std::string experiment_text(const Value& request, const std::string& data) {
+  std::vector<std::pair<std::string, std::string>> drives, compared, roles;
+  const Value::Member* columns = request.find("columns");
+  if (!columns || columns->value.kind != Kind::list) throw Refused("the request lacks the list \"columns\"");
+  for (const Value& column : columns->value.items) {
+    const std::string_view use = text_in(column, "use");
+    if (use != "drive" && use != "compare") continue;
+    const std::string port = required_text(column, "port");
+    if (port.empty()) throw Refused(fmt::format("the column \"{}\" has no port", text_in(column, "column")));
+    (use == "drive" ? drives : compared).emplace_back(port, signal_text(column, use == "drive"));
+  }
+  if (const Value::Member* list = request.find("roles"))
+    for (const Value::Member& role : list->value.members)
+      if (role.value.kind == Kind::text && !role.value.text.empty())
+        roles.emplace_back(role.name, in_quotes(role.value.text));
+  // The position of the machine first: its error is what a person looks at.
+  const auto position = std::ranges::find(roles, "position", &std::pair<std::string, std::string>::first);
+  if (position != roles.end())
+    std::ranges::stable_partition(
+        compared, [&](const auto& entry) { return in_quotes(entry.first) == position->second; });
+  std::string text = "{\n  \"loopwright\": 1,\n";
+  if (const std::string_view title = text_in(request, "title"); !title.empty())
+    text += fmt::format("  \"title\": {},\n", in_quotes(title));
+  text += fmt::format("  \"data\": {},\n", in_quotes(data));
+  if (const std::string_view time = text_in(request, "time"); !time.empty())
+    text += fmt::format("  \"time\": {},\n", in_quotes(time));
+  if (!drives.empty()) text += fmt::format("  \"drive\": {},\n", lines_of(drives));
+  text += fmt::format("  \"compare\": {}", lines_of(compared));
+  if (!roles.empty()) text += fmt::format(",\n  \"roles\": {}", lines_of(roles));
+  const Value::Member* hold_out = request.find("hold_out");
+  if (hold_out && hold_out->value.kind == Kind::number && hold_out->value.number > 0)
+    text += fmt::format(",\n  \"hold_out\": {{\"fraction\": {}}}", hold_out->value.number);
+  return text + "\n}\n";
+}
+
+std::vector<std::string> ports_of_experiment(const std::string& path, const std::string& text) {
+  const ParsedText parsed(path, text);
+  std::vector<std::string> ports;
+  for (const char* key : {"drive", "compare"})
+    if (const Value::Member* list = parsed.root.find(key))
+      for (const Value::Member& member : list->value.members) ports.push_back(member.name);
+  if (const Value::Member* roles = parsed.root.find("roles"))
+    for (const Value::Member& role : roles->value.members) ports.push_back(role.value.text);
+  return ports;
+}
+
+std::string with_ports_renamed(const std::string& path, const std::string& text,
+                               const std::map<std::string, std::string>& renamed) {
+  const ParsedText parsed(path, text);
+  if (!parsed.is_object()) return text;
+  const auto new_name = [&](const std::string& port) -> std::string {
+    for (const auto& [from, to] : renamed)
+      if (port == from || port.starts_with(from + ".")) return to + port.substr(from.size());
+    return port;
+  };
+  TextChanges changes;
+  for (const char* key : {"drive", "compare"})
+    if (const Value::Member* list = parsed.root.find(key))
+      for (const Value::Member& member : list->value.members)
+        if (const std::string to = new_name(member.name); to != member.name)
+          changes.push_back(renamed_name(member, to));
+  if (const Value::Member* roles = parsed.root.find("roles"))
+    for (const Value::Member& role : roles->value.members)
+      if (const std::string to = new_name(role.value.text); to != role.value.text)
+        changes.push_back(replaced(role.value, in_quotes(to)));
+  std::ranges::sort(changes, {}, &TextChange::from);
+  return applied(text, changes);
+}
+
+}  // namespace loopwright::studio

@@ -1,0 +1,21 @@
+/// The text of an experiment file.
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+#include "engine/json/value.h"
+
+namespace loopwright::studio {
+
+/// From a request "write_experiment" (tools/studio/protocol.md); `data`: the record, relative to the
+/// experiment. Throws Refused for a request that is incomplete.
+std::string experiment_text(const Value& request, const std::string& data);
+
+/// Every port that an experiment drives, compares, or names in its roles.
+std::vector<std::string> ports_of_experiment(const std::string& path, const std::string& text);
+
+/// The experiment with its ports renamed: "axis" → "stage" renames "axis.position" too.
+std::string with_ports_renamed(const std::string& path, const std::string& text,
+                               const std::map<std::string, std::string>& renamed);
+
+}  // namespace loopwright::studio

@@ -1,0 +1,284 @@
+/// Runs, their signals, and linear analysis.
+#include <fmt/format.h>
+#include <algorithm>
+#include <chrono>
+#include <numbers>
+#include "engine/diagram/in_memory.h"
+#include "engine/json/reader.h"
+#include "engine/record/recording_file.h"
+#include "engine/record/column_units.h"
+#include "tools/experiment/experiment.h"
+#include "tools/linearize/analysis.h"
+#include "tools/run/run_page.h"
+#include "tools/studio/session/member_change.h"
+#include "tools/studio/session/session.h"
+
+namespace loopwright::studio {
+namespace {
+
+/// An argument for a shell.
+std::string shell_word(const std::string& text) {
+  if (text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./=-+") ==
+          text.npos &&
+      !text.empty())
+    return text;
+  std::string word = "'";
+  for (char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return word + "'";
+}
+
+std::string command_of(const std::string& path, const LoadOptions& options) {
+  std::string command = "loopwright run " + shell_word(path);
+  for (const auto& [name, value] : options.set) command += " --set " + shell_word(name + "=" + value);
+  for (const auto& [block, variant] : options.variants)
+    command += " --variant " + shell_word(block + "=" + variant);
+  return command;
+}
+
+std::string now_text() {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday,
+                     utc.tm_hour, utc.tm_min, utc.tm_sec);
+}
+
+std::string_view name_of(RunStatus status) {
+  static constexpr std::string_view names[] = {"finished", "failed", "interrupted"};
+  return names[size_t(status)];
+}
+
+std::set<std::string> held_signals(const Plan& plan) {
+  std::set<std::string> held;
+  for (const Plan::Logged& logged : plan.log)
+    if (logged.rate.kind == Rate::Kind::sampled) held.insert(logged.name);
+  return held;
+}
+
+/// The plan with ports that are recorded in addition to the log; an unknown one throws Refused.
+Plan recording(const Plan& plan, const std::vector<std::string>& signals) {
+  Plan more = plan;
+  for (const std::string& name : signals) {
+    const bool is_there = std::ranges::any_of(more.log, [&](const Plan::Logged& logged) {
+      return logged.name == name || logged.name.starts_with(name + "[");
+    });
+    if (is_there) continue;
+    const std::vector<Number> numbers = plan.find(name);
+    if (numbers.empty()) throw Refused(fmt::format("there is no port \"{}\"", name));
+    for (size_t i = 0; i < numbers.size(); ++i) {
+      Plan::Logged logged;
+      logged.name = numbers.size() == 1 ? name : fmt::format("{}[{}]", name, i);
+      const auto unit = plan.unit_of(numbers[i]);
+      logged.unit = unit.value_or(Unit{}), logged.unit_is_known = unit.has_value();
+      logged.number = numbers[i], logged.rate = {Rate::Kind::continuous, 0, 0};
+      if (const auto [block, output] = plan.source_of(numbers[i]);
+          block >= 0 && plan.blocks[size_t(block)].period > 0)
+        logged.rate.kind = Rate::Kind::sampled;
+      more.log.push_back(std::move(logged));
+    }
+  }
+  return more;
+}
+
+Window window_of(size_t points, std::vector<std::string> names) {
+  return {std::move(names), -INFINITY, INFINITY, points};
+}
+
+size_t pixels(int64_t asked) { return size_t(std::clamp<int64_t>(asked, 10, 20'000)); }
+
+}  // namespace
+
+std::shared_ptr<const SourceFile> Session::source(const std::string& path) {
+  return std::make_shared<SourceFile>(SourceFile{folder_.path_of(path), document(path).text()});
+}
+
+Json Session::run(const Request& request) {
+  const std::string path = request.required("path");
+  const auto file = source(path);
+  const LoadOptions options = request.options();
+  const std::vector<std::string> signals = request.texts("signals");
+  const size_t points = pixels(request.whole("points", 1200));
+  const std::string experiment_path = request.text("experiment");
+  const std::string experiment = experiment_path.empty() ? "" : folder_.path_of(experiment_path);
+  const std::map<std::string, std::string> set = request.text_map("set");
+  return start(request, [=, this](Work& work) {
+    Problems problems;
+    LoadOptions load = options;
+    if (!experiment.empty()) {
+      const auto recorded = load_experiment(experiment, problems);
+      if (!recorded) throw InputError(std::move(problems));
+      load = follow(*recorded, load);
+    }
+    const auto diagram = load_diagram_text(file, load, problems);
+    const auto compiled = diagram ? compile(*diagram, problems) : nullptr;
+    if (!compiled || problems.has_errors()) throw InputError(std::move(problems));
+    const Plan plan = recording(*compiled, signals);
+    RunOptions run_options;
+    run_options.interrupt = &work.job.interrupt();
+    double told = 0;
+    run_options.progress = [&](double time, double stop) {
+      if (time - told < 0.05 * stop) return;
+      told = time;
+      work.progress("run", stop > 0 ? time / stop : 0);
+    };
+    RunResult result = simulate(plan, run_options);
+    if (work.job.is_cancelled()) return Json::object();
+    auto stored = std::make_shared<StoredRun>();
+    stored->path = path, stored->held = held_signals(plan);
+    stored->facts = {{"run", 0},
+                     {"path", path},
+                     {"name", ""},
+                     {"note", ""},
+                     {"when", now_text()},
+                     {"status", name_of(result.status)},
+                     {"message", printable(result.message)},
+                     {"time", result.time},
+                     {"wall", result.statistics.wall_seconds},
+                     {"hash", plan.hash},
+                     {"command", command_of(path, options)},
+                     {"warnings", result.warnings},
+                     {"summary", run_summary(plan, result)},
+                     {"set", set}};
+    stored->recording = std::move(result.recording);
+    Json answer = stored->facts;
+    answer["signals"] = signals_json(stored->recording, window_of(points, {}), stored->held);
+    Json merit = Json::array();
+    for (const Json& signal : answer["signals"])
+      merit.push_back(
+          {{"name", signal["name"]},
+           {"unit", signal["unit"]},
+           {"rms", signal["rms"]},
+           {"max", std::max(std::abs(signal["min"].get<double>()), std::abs(signal["max"].get<double>()))}});
+    stored->facts["merit"] = std::move(merit);
+    const int64_t number = results_.runs.add(stored);
+    answer["run"] = number;
+    return answer;
+  });
+}
+
+std::shared_ptr<const Recording> Session::source_of_signals(const std::string& name) const {
+  const size_t colon = name.find(':');
+  const std::string kind = name.substr(0, colon), rest = colon == name.npos ? "" : name.substr(colon + 1);
+  const bool is_number =
+      !rest.empty() && rest.size() < 10 && rest.find_first_not_of("0123456789") == rest.npos;
+  if (kind == "run" && is_number) {
+    if (const auto run = results_.runs.find(std::stoll(rest))) return {run, &run->recording};
+  } else if (kind == "comparison" && is_number) {
+    if (const auto comparison = results_.comparisons.find(std::stoll(rest))) return comparison->signals;
+  } else if (kind == "record") {
+    const std::string path = folder_.path_of(rest);
+    const std::lock_guard lock(results_.record_mutex);
+    if (results_.record_path == path) return results_.record;
+    Problems problems;
+    const ColumnError error = [&](std::string message) -> Problem& {
+      return problems.error({}, "", "", std::move(message));
+    };
+    auto record = std::make_shared<Recording>(read_recording(path, problems, {.allow_not_finite = true}));
+    const auto time = time_in_seconds(*record, "", error);
+    if (!time || problems.has_errors()) throw InputError(std::move(problems));
+    std::erase_if(record->columns, [&](const Column& column) { return column.name == time->name; });
+    record->columns.insert(record->columns.begin(), *time);
+    results_.record_path = path, results_.record = record;
+    return record;
+  }
+  throw Refused(fmt::format("\"{}\" is not kept any more", name));
+}
+
+Json Session::signals(const Request& request) {
+  const std::string name = request.required("source");
+  const Window window{request.texts("names"), request.number("from", -INFINITY),
+                      request.number("to", INFINITY), pixels(request.whole("points", 1200))};
+  return start(request, [=, this](Work&) -> Json {
+    std::set<std::string> held;
+    if (name.starts_with("run:"))
+      if (const auto run = results_.runs.find(std::atoll(name.c_str() + 4))) held = run->held;
+    return {{"signals", signals_json(*source_of_signals(name), window, held)}};
+  });
+}
+
+Json Session::export_view(const Request& request) {
+  const std::string name = request.required("source"), target = request.required("to_file");
+  if (target.ends_with(".json")) throw Refused("signals are written as .csv or .mat");
+  if (!folder_.is_writable(target) || folder_.read(target))
+    throw Refused(fmt::format("\"{}\" cannot be written, or is there already", target));
+  const Window window{request.texts("names"), request.number("from", -INFINITY),
+                      request.number("to", INFINITY)};
+  const std::string path = folder_.path_of(target);
+  return start(request, [=, this](Work&) -> Json {
+    write_recording(path, cut(*source_of_signals(name), window));
+    return {{"path", target}};
+  });
+}
+
+Json Session::runs(const Request& request) {
+  const std::string path = request.text("path");
+  Json list = Json::array();
+  for (const auto& [number, run] : results_.runs.all()) {
+    if (!path.empty() && run->path != path) continue;
+    Json facts = run->facts;
+    facts["run"] = number;
+    list.push_back(std::move(facts));
+  }
+  return {{"runs", std::move(list)}};
+}
+
+Json Session::name_run(const Request& request) {
+  const int64_t number = request.whole("run", 0);
+  const auto run = results_.runs.find(number);
+  if (!run) throw Refused(fmt::format("run {} is not kept any more", number));
+  auto named = std::make_shared<StoredRun>(*run);
+  named->facts["name"] = request.text("name"), named->facts["note"] = request.text("note");
+  results_.runs.replace(number, named);
+  if (request.flag("keep")) {
+    folder_.make_own_folder("runs");
+    const std::string stem =
+        fmt::format(".loopwright/runs/{}-{}", named->facts["hash"].get<std::string>(), number);
+    const std::string facts = stem + ".json", text = named->facts.dump(2) + "\n";
+    folder_.replace(facts, folder_.read(facts), text);
+    write_recording(folder_.path_of(stem + ".csv"), named->recording);
+  }
+  return named->facts;
+}
+
+Json Session::linearize(const Request& request) {
+  const auto file = source(request.required("path"));
+  const LoadOptions options = request.options();
+  LinearizeRequest wanted;
+  wanted.access.from = {request.required("from")}, wanted.access.to = {request.required("to")};
+  wanted.break_point = request.text("break");
+  return start(request, [=](Work& work) -> Json {
+    Problems problems;
+    const auto diagram = load_diagram_text(file, options, problems);
+    const auto plan = diagram ? compile(*diagram, problems) : nullptr;
+    if (!plan) throw InputError(std::move(problems));
+    RunOptions run_options;
+    run_options.interrupt = &work.job.interrupt();
+    const LinearAnalysis analysis = analyse(*plan, wanted, run_options);
+    const std::vector<std::complex<double>> response = channel_response(analysis, 0, 0);
+    Json json{{"frequency", analysis.frequency},
+              {"magnitude_db", Json::array()},
+              {"phase_deg", unwrapped_degrees(response)},
+              {"nyquist", {{"re", Json::array()}, {"im", Json::array()}}},
+              {"poles", Json::array()},
+              {"zeros", Json::array()},
+              {"margins", nullptr},
+              {"text", to_text(analysis)}};
+    for (const std::complex<double>& value : response) {
+      json["magnitude_db"].push_back(20 * std::log10(std::abs(value)));
+      json["nyquist"]["re"].push_back(value.real()), json["nyquist"]["im"].push_back(value.imag());
+    }
+    for (const Pole& pole : analysis.poles) json["poles"].push_back({pole.value.real(), pole.value.imag()});
+    if (analysis.zeros)
+      for (const std::complex<double>& zero : *analysis.zeros)
+        json["zeros"].push_back({zero.real(), zero.imag()});
+    if (analysis.loop) {
+      const Margins& m = analysis.loop->margins;
+      json["margins"] = {{"gain_db", 20 * std::log10(m.gain)},
+                         {"phase_deg", m.phase * 180 / std::numbers::pi},
+                         {"crossover", m.phase_frequency}};
+    }
+    return json;
+  });
+}
+
+}  // namespace loopwright::studio

@@ -1,0 +1,94 @@
+/// Two sliders at once: the size of a signal over their ranges.
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include "engine/diagram/in_memory.h"
+#include "engine/json/reader.h"
+#include "tools/studio/session/session.h"
+
+namespace loopwright::studio {
+namespace {
+
+struct SweptAxis {
+  std::string set, unit;
+  std::vector<double> values;
+
+  std::pair<std::string, std::string> option(double value) const {
+    return {set, unit.empty() ? fmt::format("{}", value) : fmt::format("{} {}", value, unit)};
+  }
+};
+
+SweptAxis axis_of(const Value& request, std::string_view name) {
+  const Value::Member* member = request.find(name);
+  if (!member || member->value.kind != Value::Kind::object)
+    throw Refused(fmt::format("the request lacks the axis \"{}\"", name));
+  const Value& axis = member->value;
+  const auto number = [&](std::string_view key) {
+    const Value::Member* found = axis.find(key);
+    if (!found || found->value.kind != Value::Kind::number)
+      throw Refused(fmt::format("\"{}.{}\" is no number", name, key));
+    return found->value.number;
+  };
+  constexpr int64_t most_points = 101;
+  const int64_t points = std::clamp<int64_t>(optional_whole(axis, "points", 21), 2, most_points);
+  SweptAxis result{required_text(axis, "set"), std::string(text_in(axis, "unit")), {}};
+  const double low = number("low"), high = number("high");
+  for (int64_t i = 0; i < points; ++i)
+    result.values.push_back(low + (high - low) * double(i) / double(points - 1));
+  return result;
+}
+
+/// The port of "rms(axis.position)". Throws Refused.
+std::string measured_port(const std::string& metric) {
+  if (!metric.starts_with("rms(") || !metric.ends_with(')'))
+    throw Refused("the metric of two sliders is rms(PORT); `loopwright sweep` has others");
+  return metric.substr(4, metric.size() - 5);
+}
+
+double rms(const std::vector<double>& values) {
+  double sum = 0;
+  for (double v : values) sum += v * v;
+  return values.empty() ? NAN : std::sqrt(sum / double(values.size()));
+}
+
+}  // namespace
+
+Json Session::sweep(const Request& request) {
+  const auto file = source(request.required("path"));
+  const LoadOptions options = request.options();
+  const SweptAxis x = axis_of(request.message, "x"), y = axis_of(request.message, "y");
+  const std::string metric = request.required("metric"), port = measured_port(metric);
+  return start(request, [=](Work& work) -> Json {
+    Json rows = Json::array();
+    std::string unit;
+    for (size_t j = 0; j < y.values.size(); ++j) {
+      Json row = Json::array();
+      for (size_t i = 0; i < x.values.size() && !work.job.is_cancelled(); ++i) {
+        LoadOptions here = options;
+        here.set.push_back(x.option(x.values[i])), here.set.push_back(y.option(y.values[j]));
+        Problems problems;
+        const auto diagram = load_diagram_text(file, here, problems);
+        const auto plan = diagram ? compile(*diagram, problems) : nullptr;
+        // Values that the diagram refuses are gaps; a mistake in the diagram itself is told.
+        if (!plan && i == 0 && j == 0) throw InputError(std::move(problems));
+        if (!plan) {
+          row.push_back(nullptr);
+          continue;
+        }
+        RunOptions run_options;
+        run_options.interrupt = &work.job.interrupt();
+        const RunResult result = simulate(*plan, run_options);
+        const Column* column = result.recording.find(port);
+        if (!column) throw Refused(fmt::format("\"{}\" is not recorded", port));
+        unit = column->unit == "1" ? "" : column->unit;
+        row.push_back(result.status == RunStatus::finished ? Json(rms(column->values)) : Json(nullptr));
+      }
+      rows.push_back(std::move(row));
+      work.progress("sweep", double(j + 1) / double(y.values.size()));
+    }
+    return {
+        {"x", x.values}, {"y", y.values}, {"values", std::move(rows)}, {"metric", metric}, {"unit", unit}};
+  });
+}
+
+}  // namespace loopwright::studio

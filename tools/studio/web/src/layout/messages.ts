@@ -1,0 +1,22 @@
+// What the canvas asks of the layout worker.
+
+export interface Point { x: number; y: number }
+export type Side = "WEST" | "EAST" | "SOUTH";
+export interface LayoutPort { id: string; side: Side; x: number; y: number }
+export interface LayoutNode {
+  id: string; width: number; height: number; label_width: number; label_above: boolean; ports: LayoutPort[];
+  end: "first" | "last" | "";     // inputs and outputs of the diagram are at its ends
+  fixed: Point | null;            // where a person put it
+}
+export interface LayoutEdge {
+  id: string; from: string; from_port: string; to: string; to_port: string;
+  back: boolean;                  // closes a loop: is drawn from right to left
+}
+/** Nodes in the order of the signal flow: wires that go back in it close loops. */
+export interface LayoutRequest { count: number; nodes: LayoutNode[]; edges: LayoutEdge[] }
+export interface Layout {
+  positions: Record<string, Point>;
+  routes: Record<string, Point[]>;          // with both ends
+  junctions: Point[];
+}
+export interface LayoutAnswer { count: number; layout: Layout }

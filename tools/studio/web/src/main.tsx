@@ -1,0 +1,33 @@
+// Starts the page.
+import { createRoot } from "react-dom/client";
+import "@xyflow/react/dist/base.css";
+import "uplot/dist/uPlot.min.css";
+import "./style/theme.css";
+import "./style/page.css";
+import "./style/canvas.css";
+import "./style/scopes.css";
+import "./style/panels.css";
+import { App } from "./App";
+import { follow_address, read_address, recall_theme } from "./state/address";
+import { changed_outside, greet, on_change } from "./state/document";
+import { compare, compare_after_change, note_added } from "./state/measure";
+import { run_after_change } from "./state/run";
+import { connect } from "./state/session";
+
+recall_theme();
+const { experiment } = read_address();
+let first = true;
+on_change(run_after_change);
+on_change(compare_after_change);
+on_change(note_added);
+connect({
+  open: () => void greet().then(() => {
+    if (first) {
+      if (experiment) void compare(experiment);
+      follow_address();
+    }
+    first = false;
+  }),
+  document: changed_outside,
+});
+createRoot(document.getElementById("root")!).render(<App />);

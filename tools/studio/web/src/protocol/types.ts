@@ -1,0 +1,132 @@
+// The messages of tools/studio/protocol.md, as types.
+
+export interface FileEntry { path: string; kind: string; title?: string; size?: number }
+export interface Hello { version: string; folder: string; open: string; files: FileEntry[] }
+
+export interface Problem {
+  severity: "error" | "warning"; text: string; message: string; hint: string;
+  file: string; line: number; column: number; offset: number; end: number; pointer: string;
+  block: string; port: string; here: boolean;
+}
+
+export interface Slider { low: number; high: number; step: number; unit: string; value: number; set: string; logarithmic: boolean }
+export interface Setting { name: string; text: string; value: string; slider: Slider | null }
+export interface InputPort { name: string; unit: string; many: boolean; wires: number; sentence: string; optional: boolean }
+export interface OutputPort { name: string; unit: string; sentence: string; logged: boolean }
+export type Picture =
+  | { kind: "none" }
+  | { kind: "text"; text: string }
+  | { kind: "fraction"; numerator: string; denominator: string }
+  | { kind: "signs"; signs: string }
+  | { kind: "curve"; x: (number | null)[]; y: (number | null)[] };
+
+export interface Block {
+  name: string; type: string; room: string; title: string; description: string;
+  subdiagram: boolean; file: string; variants: string[]; variant: string;
+  settings: Setting[]; inputs: InputPort[]; outputs: OutputPort[]; picture: Picture;
+  sample_time: number | null; rate: number; position: [number, number] | null; problems: number[];
+  offset: number; end: number;
+}
+export interface WireEntry { from: string; to: string; index: number; unit: string; clash: string }
+export interface DiagramInput { name: string; unit: string; description: string; offset: number; end: number }
+export interface DiagramOutput extends DiagramInput { source: string }
+export interface Parameter {
+  name: string; text: string; value: number | string | boolean | null | unknown[]; unit: string; description: string;
+  slider: Slider | null; offset: number; end: number;
+}
+export interface View {
+  inside: string; editable: boolean; title: string; description: string;
+  levels: { inside: string; title: string }[];
+  blocks: Block[]; wires: WireEntry[]; inputs: DiagramInput[]; outputs: DiagramOutput[];
+  parameters: Parameter[]; solver: { name: string; text: string }[]; log: string[];
+}
+
+export interface Document {
+  path: string; revision: number; text?: string; saved: boolean; writable: boolean;
+  conflict: { theirs: string; mine: string } | null;
+  undo: string; redo: string; loads: boolean; summary: string; problems: Problem[]; view: View | null;
+}
+export interface TextEdit { from: number; to: number; text: string }
+export interface EditAnswer { edits: TextEdit[]; document: Document; blocks: string[]; experiments?: { path: string; text: string }[] }
+
+export type Intent = { intent: string } & Record<string, unknown>;
+
+export interface Signal {
+  name: string; unit: string; steps: boolean;
+  rms: number | null; min: number | null; max: number | null; last: number | null;
+  x: (number | null)[]; y: (number | null)[];
+}
+export interface RunAnswer {
+  run: number; path: string; name: string; status: "finished" | "failed"; message: string; time: number; wall: number;
+  hash: string; command: string; warnings: string[]; summary: string; set: Record<string, string>; signals: Signal[];
+}
+export interface RunEntry {
+  run: number; name: string; note: string; when: string; hash: string; command: string; set: Record<string, string>;
+  merit: { name: string; unit: string; rms: number | null; max: number | null }[];
+}
+
+export interface Linear {
+  frequency: number[]; magnitude_db: (number | null)[]; phase_deg: (number | null)[];
+  nyquist: { re: (number | null)[]; im: (number | null)[] };
+  poles: [number, number][]; zeros: [number, number][];
+  margins: { gain_db: number | null; phase_deg: number | null; crossover: number | null }; text: string;
+}
+export interface SweepAnswer { x: number[]; y: number[]; values: (number | null)[][]; metric: string; unit: string }
+
+export type ColumnUse = "time" | "drive" | "compare" | "ignore";
+export interface Column {
+  column: string; name: string; unit: string; unit_is_stated?: boolean; min: number | null; max: number | null; use: ColumnUse; port: string; why: string;
+  resolution: string; interpolation: string; candidates: string[];
+}
+export interface Columns {
+  data: string; rows: number; time: string; sample_time: number | null; start: number | null; stop: number | null;
+  columns: Column[]; ports: { port: string; unit: string; input: boolean }[];
+  roles: { role: string; port: string; why: string }[]; hold_out: number; experiment: string; exists: boolean;
+}
+
+export interface Compared {
+  name: string; unit: string; rmse: number | null; max: number | null; fit: number | null; relative: number | null; resolution: number | null;
+  x: (number | null)[]; measured: (number | null)[]; simulated: (number | null)[]; error: (number | null)[];
+}
+export interface Residual {
+  against: string; unit: string; of: string; residual_unit: string; x: (number | null)[]; y: (number | null)[]; points: boolean;
+}
+export interface Force {
+  rmse: number | null; relative: number | null; noise_floor: number | null; unit: string;
+  where: { axis: string; label?: string; from: number | null; to: number | null; share: number; of_rows: number }[];
+  dependence: { variable: string; share: number }[];
+  faults: { name: string; text: string; cost: string }[];
+}
+export interface Comparison {
+  comparison: number; title: string; status: string; message: string; warnings: string[]; text: string;
+  signals: Compared[]; residual: Residual[]; force: Force | null; why_no_force: string;
+  tint: { block: string; share: number; text: string }[];
+}
+
+export interface Step { added: string[]; error: number | null; simulation?: number | null; optional?: boolean }
+export interface EffectParameter { name: string; value: number | null; low: number | null; high: number | null; unit: string; text: string; interval?: string; at_limit: boolean }
+export interface Card {
+  effect: string; form: string; title: string; physics: string; inclusion: number | null; force: number | null; unit: string; optional: boolean;
+  parameters: EffectParameter[]; rivals: string[]; error_with: number | null; addable: boolean; why_not: string;
+}
+export interface Diagnosis {
+  diagnosis: number; verdict: string; title: string; text: string;
+  error_before: number | null; error_after: number | null; noise_floor: number | null; unit: string; holds_out: boolean;
+  steps: Step[]; cards: Card[]; other_explanations: { in_place_of: string[]; effects: string[] }[];
+  suggested: { text: string; between: string; and: string }[];
+  findings: { what: string; cost: string; fatal: boolean }[];
+  not_looked_for: { effects: string[]; why: string }[];
+  unknown: { variables: string[]; dependence: { variable: string; share: number }[] } | null;
+  curves: { unit: string; time: (number | null)[]; position: (number | null)[]; velocity: (number | null)[]; before: (number | null)[]; after: (number | null)[] } | null;
+}
+export interface Preview { x: (number | null)[]; y: (number | null)[]; unit: string; rmse: number | null; signal: string }
+
+export interface BlockType { type: string; room: string; sentence: string; why: string }
+export interface TypeHelp {
+  type: string; room: string; sentence: string; help: string;
+  inputs: { name: string; unit: string; sentence: string; many: boolean; optional: boolean }[];
+  outputs: { name: string; unit: string; sentence: string }[];
+  settings: { name: string; unit: string; sentence: string; kind: string; low: number | null; high: number | null; required: boolean; default: string; choices: string[] }[];
+}
+export interface Completion { from: number; to: number; options: { label: string; detail: string; apply: string }[] }
+export interface Hover { from: number; to: number; text: string; block: string }

@@ -1,0 +1,158 @@
+// Actions on the open file: open, edit by intents, undo, conflicts, moving between levels.
+import type { Document, EditAnswer, Hello, Intent, Problem, TextEdit } from "../protocol/types";
+import { ask, attempt } from "./session";
+import { get, patch, tell } from "./store";
+
+type Listener = () => void;
+const after_change: Listener[] = [];
+/** Called after the file has changed, by whomever. */
+export const on_change = (listener: Listener): void => { after_change.push(listener); };
+
+const HIGHLIGHT_TIME = 4000;  // ms that changed blocks stay highlighted
+
+export async function greet(): Promise<void> {
+  const hello = await attempt(ask<Hello>("hello"));
+  if (!hello) return;
+  patch({ folder: hello.folder, files: hello.files });
+  const wanted = get().document?.path || new URLSearchParams(location.hash.slice(1)).get("file") || hello.open ||
+    hello.files.find((file) => file.kind === "diagram")?.path;
+  if (wanted) await open(wanted, get().inside);
+}
+
+export async function open(path: string, inside = ""): Promise<void> {
+  const before = get();
+  const document = await attempt(ask<Document>("open", { path, inside, variants: before.variants }));
+  if (!document) return;
+  const same = before.document?.path === path;
+  patch(same || !before.document ? {} : {
+    run: null, ghost: null, pinned: [], runs: [], plots: [], plots_chosen: false, range: null, cursors: null, overrides: {}, linear: null,
+    sweep: null, columns: null, experiment: "", comparison: null, comparison_before: null, diagnosis: null, staircase: [],
+    preview: null, added: [], scope_tab: "run",
+  });
+  patch({ selected: [], selected_wire: "", highlighted: [] });
+  show(document, inside);
+  if (!same || before.document?.revision !== document.revision) for (const listener of after_change) listener();
+}
+
+/** Shows what the program says about the file. */
+export function show(document: Document, inside = get().inside): void {
+  const state = get();
+  const names = new Set(document.view?.blocks.map((block) => block.name));
+  patch({
+    document, inside: document.view?.inside ?? inside,
+    ...(document.text === undefined ? {} : { text: document.text, text_from_program: state.text_from_program + 1 }),
+    selected: state.selected.filter((name) => names.has(name)),
+  });
+}
+
+/** The file changed from outside, or through another page. */
+export function changed_outside(document: Document): void {
+  if (get().document?.path !== document.path) return;
+  if (document.revision === get().document?.revision && document.text === get().text && !document.conflict) return;
+  const view_of_other_level = (document.view?.inside ?? "") !== get().inside;
+  if (view_of_other_level) void open(document.path, get().inside);
+  else {
+    show(document);
+    for (const listener of after_change) listener();
+  }
+  if (!document.conflict) tell("note", `${document.path} was changed by another program. The change can be undone here.`);
+}
+
+export function apply_edits(text: string, edits: TextEdit[]): string {
+  let result = "", at = 0;
+  for (const edit of edits) {
+    result += text.slice(at, edit.from) + edit.text;
+    at = edit.to;
+  }
+  return result + text.slice(at);
+}
+
+function take(answer: EditAnswer, from_text_view = false): void {
+  const state = get();
+  patch({ text: apply_edits(state.text, answer.edits), highlighted: answer.blocks });
+  if (!from_text_view) patch({ text_from_program: get().text_from_program + 1 });
+  const { text: _unused, ...document } = answer.document;
+  show(document);
+  if (answer.blocks.length)
+    setTimeout(() => { if (get().highlighted === answer.blocks) patch({ highlighted: [] }); }, HIGHLIGHT_TIME);
+  for (const listener of after_change) listener();
+}
+
+let queue: Promise<unknown> = Promise.resolve();
+/** Edits are sent one after the other: each states the revision that the one before has made. */
+function in_order<T>(action: () => Promise<T>): Promise<T> {
+  const result = queue.then(action, action);
+  queue = result.catch(() => undefined);
+  return result;
+}
+
+export function edit(...intents: Intent[]): Promise<EditAnswer | null> {
+  return in_order(async () => {
+    const { document, inside } = get();
+    if (!document) return null;
+    const answer = await attempt(ask<EditAnswer>("edit", { path: document.path, revision: document.revision, inside, intents }));
+    if (answer) take(answer);
+    return answer;
+  });
+}
+
+/** What was typed into the text view; the text view already shows it. */
+export function edit_text(edits: TextEdit[]): Promise<boolean> {
+  return in_order(async () => {
+    const { document, inside } = get();
+    if (!document) return false;
+    const answer = await attempt(ask<EditAnswer>("edit", { path: document.path, revision: document.revision, inside, intents: [{ intent: "text", edits }] }));
+    if (answer) take(answer, true);
+    return answer !== null;
+  });
+}
+
+export const undo = (): Promise<void> => in_order(() => step("undo"));
+export const redo = (): Promise<void> => in_order(() => step("redo"));
+async function step(what: "undo" | "redo"): Promise<void> {
+  const document = get().document;
+  if (!document || !document[what]) return;
+  const answer = await attempt(ask<EditAnswer>(what, { path: document.path, inside: get().inside }));
+  if (answer) take(answer);
+}
+
+/** Effects of a diagnosis become part of the diagram. */
+export function add_effects(diagnosis: number, effects: string[]): Promise<EditAnswer | null> {
+  return in_order(async () => {
+    const { document, inside } = get();
+    if (!document) return null;
+    const answer = await attempt(ask<EditAnswer>("add_effects", { path: document.path, inside, diagnosis, effects, revision: document.revision }));
+    if (answer) take(answer);
+    return answer;
+  });
+}
+
+export async function resolve(keep: "mine" | "theirs"): Promise<void> {
+  const document = get().document;
+  if (!document) return;
+  const answer = await attempt(ask<EditAnswer>("resolve", { path: document.path, keep }));
+  if (answer) { take(answer); await open(document.path, get().inside); }
+}
+
+/** Enters a subdiagram; one that another file defines is opened as that file. */
+export function enter(name: string): void {
+  const { document, inside } = get(), block = document?.view?.blocks.find((entry) => entry.name === name && entry.subdiagram);
+  if (!document || !block) return;
+  if (block.file) patch({ file_inside: block.file });
+  void open(document.path, inside ? `${inside}.${name}` : name);
+}
+export function leave(): void {
+  const { document, inside } = get();
+  if (document && inside) void open(document.path, inside.includes(".") ? inside.slice(0, inside.lastIndexOf(".")) : "");
+}
+
+/** Shows the place of a problem in the diagram and in the text. */
+export async function jump_to(problem: Problem): Promise<void> {
+  const path = problem.block.split(".").filter(Boolean);
+  const block = path.pop() ?? "";
+  const inside = path.join(".");
+  if (block && inside !== get().inside && get().document) await open(get().document!.path, inside);
+  const known = get().document?.view?.blocks.some((entry) => entry.name === block);
+  patch({ selected: known ? [block] : [], selected_wire: "", place: "diagram" });
+  if (problem.here) patch({ jump: { offset: problem.offset, end: problem.end, count: (get().jump?.count ?? 0) + 1 }, show_text: get().show_text || !known });
+}
