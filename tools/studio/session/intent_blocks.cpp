@@ -65,6 +65,7 @@ std::string value_that_fits(const ParameterInfo& parameter, const Value* example
     case ParameterKind::list:
       return "[1]";
     case ParameterKind::object:
+    case ParameterKind::by_name:
       return "{}";
     case ParameterKind::text:
     case ParameterKind::file:

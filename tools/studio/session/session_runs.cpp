@@ -10,6 +10,7 @@
 #include "tools/experiment/experiment.h"
 #include "tools/linearize/analysis.h"
 #include "tools/run/run_page.h"
+#include "tools/run/verdict.h"
 #include "tools/studio/session/member_change.h"
 #include "tools/studio/session/session.h"
 
@@ -80,6 +81,15 @@ Plan recording(const Plan& plan, const std::vector<std::string>& signals) {
   return more;
 }
 
+/// The most important sentence first.
+Json verdict_json(const std::vector<report::Notice>& notices) {
+  static constexpr std::string_view names[] = {"note", "good", "warning", "error"};
+  Json list = Json::array();
+  for (const report::Notice& notice : notices)
+    list.push_back({{"severity", names[size_t(notice.severity)]}, {"text", notice.text}});
+  return list;
+}
+
 Window window_of(size_t points, std::vector<std::string> names) {
   return {std::move(names), -INFINITY, INFINITY, points};
 }
@@ -121,8 +131,13 @@ Json Session::run(const Request& request) {
       told = time;
       work.progress("run", stop > 0 ? time / stop : 0);
     };
-    RunResult result = simulate(plan, run_options);
+    const std::vector<FollowedSignal> followed = followed_signals(*diagram, plan, problems);
+    if (problems.has_errors()) throw InputError(std::move(problems));
+    const WatchedLimits watched(plan);
+    RunResult result = simulate(watched.plan(), run_options);
     if (work.job.is_cancelled()) return Json::object();
+    std::vector<TimeAtLimit> limits = watched.take(result.recording);
+    const RunFigures figures = run_figures(followed, result.recording, std::move(limits));
     auto stored = std::make_shared<StoredRun>();
     stored->path = path, stored->held = held_signals(plan);
     stored->facts = {{"run", 0},
@@ -137,7 +152,8 @@ Json Session::run(const Request& request) {
                      {"hash", plan.hash},
                      {"command", command_of(path, options)},
                      {"warnings", result.warnings},
-                     {"summary", run_summary(plan, result)},
+                     {"summary", run_summary(plan, result, figures)},
+                     {"verdict", verdict_json(verdict(plan, result, figures))},
                      {"set", set}};
     stored->recording = std::move(result.recording);
     Json answer = stored->facts;

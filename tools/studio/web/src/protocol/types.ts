@@ -56,9 +56,10 @@ export interface Signal {
   rms: number | null; min: number | null; max: number | null; last: number | null;
   x: (number | null)[]; y: (number | null)[];
 }
+export interface Notice { severity: "note" | "good" | "warning" | "error"; text: string }
 export interface RunAnswer {
   run: number; path: string; name: string; status: "finished" | "failed"; message: string; time: number; wall: number;
-  hash: string; command: string; warnings: string[]; summary: string; set: Record<string, string>; signals: Signal[];
+  hash: string; command: string; warnings: string[]; summary: string; verdict: Notice[]; set: Record<string, string>; signals: Signal[];
 }
 export interface RunEntry {
   run: number; name: string; note: string; when: string; hash: string; command: string; set: Record<string, string>;

@@ -6,7 +6,7 @@ import { get, patch, useStudio } from "../state/store";
 import type { RunAnswer } from "../protocol/types";
 import { Plot } from "./Plot";
 import type { Curve, Style } from "./drawing";
-import { usePlotHeight } from "./size";
+import { usePlotHeight, VERDICT_HEIGHT } from "./size";
 
 function curve_of(run: RunAnswer | null, name: string, colour: number, style: Style, label: string): Curve[] {
   const signal = run?.signals.find((entry) => entry.name === name);
@@ -20,7 +20,7 @@ export function RunScopes() {
   const run = useStudio((state) => state.run), ghost = useStudio((state) => state.ghost), pinned = useStudio((state) => state.pinned);
   const plots = useStudio((state) => state.plots), range = useStudio((state) => state.range), cursors = useStudio((state) => state.cursors);
   const loads = useStudio((state) => state.document?.loads);
-  const { ref, height } = usePlotHeight(plots.length);
+  const { ref, height } = usePlotHeight(plots.length, run?.verdict.length ? VERDICT_HEIGHT : 0);
   const curves = useMemo(() => {
     const colours = signal_colours(plots);
     return plots.map((names) => names.flatMap((name) => {
@@ -36,6 +36,7 @@ export function RunScopes() {
   if (!plots.length) return <p className="empty">Click a wire of the diagram to see its signal here.</p>;
   return (
     <div ref={ref}>
+      {run.verdict.slice(0, 1).map((notice) => <p key={notice.text} className={`verdict ${notice.severity}`} title={run.verdict.map((other) => other.text).join("\n")}>{notice.text}</p>)}
       {plots.map((names, k) => {
         const last = k === plots.length - 1, unit = run.signals.find((signal) => signal.name === names[0])?.unit ?? "";
         return (

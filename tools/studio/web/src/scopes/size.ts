@@ -1,7 +1,7 @@
 // How high a plot is: all of them share the room, none becomes too flat to read.
 import { useEffect, useState } from "react";
 
-export const LEGEND_HEIGHT = 24, NUMBERS_HEIGHT = 22;  // px
+export const LEGEND_HEIGHT = 24, NUMBERS_HEIGHT = 22, VERDICT_HEIGHT = 24;  // px
 const LEAST = 70, MOST = 300;  // px
 
 type Ref = (element: HTMLElement | null) => void;
@@ -19,8 +19,8 @@ export function useRoom(): { ref: Ref; room: number } {
   return { ref: setElement, room };
 }
 
-export function usePlotHeight(count: number): { ref: Ref; height: (is_last: boolean) => number } {
+export function usePlotHeight(count: number, above = 0): { ref: Ref; height: (is_last: boolean) => number } {
   const { ref, room } = useRoom();
-  const each = Math.max(LEAST, Math.min(MOST, Math.floor((room - 10 - NUMBERS_HEIGHT) / Math.max(1, count)) - LEGEND_HEIGHT));
+  const each = Math.max(LEAST, Math.min(MOST, Math.floor((room - 10 - above - NUMBERS_HEIGHT) / Math.max(1, count)) - LEGEND_HEIGHT));
   return { ref, height: (is_last) => each + (is_last ? NUMBERS_HEIGHT : 0) };
 }

@@ -159,7 +159,7 @@ export async function overlay(entry: RunEntry): Promise<void> {
   const answer = await attempt(ask<{ signals: Signal[] }>("signals", { source: `run:${entry.run}`, names: [], points: SCOPE_POINTS }));
   const { run, pinned } = get();
   if (!answer || pinned.some((other) => other.run === entry.run)) return;
-  const base = { path: "", status: "finished" as const, message: "", time: 0, wall: 0, warnings: [], summary: "" };
+  const base = { path: "", status: "finished" as const, message: "", time: 0, wall: 0, warnings: [], summary: "", verdict: [] };
   patch({ pinned: [...pinned, { ...(run ?? base), ...base, run: entry.run, name: entry.name, hash: entry.hash, command: entry.command, set: entry.set, signals: answer.signals }], scope_tab: "run" });
 }
 
