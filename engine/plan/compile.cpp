@@ -12,6 +12,7 @@
 #include "engine/plan/load.h"
 #include "engine/plan/order.h"
 #include "engine/plan/shapes.h"
+#include "engine/plan/signal_rates.h"
 #include "engine/plan/times.h"
 #include "engine/plan/units.h"
 #include "engine/file/hash.h"
@@ -60,10 +61,6 @@ class LogOfEverything {
   size_t next_ = 0;  // flat blocks are in the order of the diagrams
 };
 
-Rate rate_of_number(const Plan& plan, Number number, const std::vector<Rate>& rate_of_signal) {
-  return number < plan.signals ? rate_of_signal[size_t(number)] : Rate{Rate::Kind::continuous, 0, 0};
-}
-
 void add_log(const FlatDiagram& flat, const Layout& layout, const PortUnits& units, Plan& plan,
              Problems& problems) {
   std::vector<std::string> names;
@@ -91,23 +88,8 @@ void add_log(const FlatDiagram& flat, const Layout& layout, const PortUnits& uni
 }
 
 void add_rates_to_log(Plan& plan) {
-  std::vector<Rate> rate_of_signal(size_t(plan.signals));
-  const auto mark = [&](const Plan::Entry& entry, const Rate& rate) {
-    if (entry.kind != Plan::Entry::Kind::outputs) return;
-    const Plan::Block& block = plan.blocks[size_t(entry.block)];
-    for (size_t o = 0; o < block.outputs.size(); ++o)
-      if (block.type->info.outputs[o].group == entry.group)
-        for (int i = 0; i < block.output_lengths[o] && block.outputs[o] + i < plan.signals; ++i)
-          rate_of_signal[size_t(block.outputs[o] + i)] = rate;
-  };
-  for (const Plan::Entry& entry : plan.order) {
-    if (entry.kind == Plan::Entry::Kind::algebraic_loop)
-      for (const Plan::Entry& inner : plan.algebraic_loops[size_t(entry.block)].entries)
-        mark(inner, entry.rate);
-    else
-      mark(entry, entry.rate);
-  }
-  for (Plan::Logged& logged : plan.log) logged.rate = rate_of_number(plan, logged.number, rate_of_signal);
+  const std::vector<Rate> rates = rates_of_signals(plan);
+  for (Plan::Logged& logged : plan.log) logged.rate = rates[size_t(logged.number)];
 }
 
 /// The source of each number, and its unit.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <tuple>
+#include "engine/plan/signal_rates.h"
 #include "tools/report/typography.h"
 
 namespace loopwright {
@@ -26,23 +27,8 @@ std::string to_name(const Rate& rate, const Plan& plan) {
 
 }  // namespace
 
-SignalRates::SignalRates(const Plan& plan) : plan_(plan) {
-  const Rate continuous{Rate::Kind::continuous, 0, 0};
-  std::vector<Rate> rates(size_t(plan.signals + plan.states), continuous);
-  const auto mark = [&](const Plan::Entry& entry, const Rate& rate) {
-    if (entry.kind != Plan::Entry::Kind::outputs) return;
-    const Plan::Block& block = plan.blocks[size_t(entry.block)];
-    for (size_t o = 0; o < block.outputs.size(); ++o)
-      if (block.type->info.outputs[o].group == entry.group)
-        for (int i = 0; i < block.output_lengths[o]; ++i) rates[size_t(block.outputs[o] + i)] = rate;
-  };
-  for (const Plan::Entry& entry : plan.order) {
-    if (entry.kind == Plan::Entry::Kind::algebraic_loop)
-      for (const Plan::Entry& inner : plan.algebraic_loops[size_t(entry.block)].entries)
-        mark(inner, entry.rate);
-    else
-      mark(entry, entry.rate);
-  }
+SignalRates::SignalRates(const Plan& plan) {
+  const std::vector<Rate> rates = rates_of_signals(plan);
   std::vector<Rate> distinct = rates;
   std::ranges::sort(distinct, {}, rank);
   distinct.erase(std::ranges::unique(distinct, {}, rank).begin(), distinct.end());

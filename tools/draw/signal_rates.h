@@ -15,7 +15,6 @@ class SignalRates {
   int index_of(Number number) const;
 
  private:
-  const Plan& plan_;
   std::vector<std::string> names_;
   std::vector<int> of_number_;
 };

@@ -16,19 +16,6 @@ size_t line_begin(const std::string& text, size_t at) {
   return newline == text.npos ? 0 : newline + 1;
 }
 
-/// Distance from the start of the names to the start of the values, if the values are aligned; otherwise 0.
-size_t width_of_names(const Value& object) {
-  size_t width = 0;
-  bool is_aligned = false;
-  for (const Value::Member& member : object.members) {
-    const size_t own = member.value.place.offset - member.place.offset;
-    if (width != 0 && own != width) return 0;
-    is_aligned |= own > member.name.size() + 4;  // quotes, colon and one space
-    width = own;
-  }
-  return is_aligned ? width : 0;
-}
-
 }  // namespace
 
 size_t end_of_value(const std::string& text, size_t begin) {
@@ -79,6 +66,18 @@ std::string indented(const std::string& text, const std::string& by) {
     if (text[i] == '\n' && i + 1 < text.size() && !is_blank) result += by;
   }
   return result;
+}
+
+size_t width_of_names(const Value& object) {
+  size_t width = 0;
+  bool is_aligned = false;
+  for (const Value::Member& member : object.members) {
+    const size_t own = member.value.place.offset - member.place.offset;
+    if (width != 0 && own != width) return 0;
+    is_aligned |= own > member.name.size() + 4;  // quotes, colon and one space
+    width = own;
+  }
+  return is_aligned ? width : 0;
 }
 
 std::string member_before(const Value& object, const Value::Member& next, const std::string& name,

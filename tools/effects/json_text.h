@@ -34,6 +34,9 @@ bool begins_line(const std::string& text, size_t at);
 /// Every line but the first indented further.
 std::string indented(const std::string& text, const std::string& by);
 
+/// Distance from the start of the names to the start of the values, if the values are aligned; otherwise 0.
+size_t width_of_names(const Value& object);
+
 /// A new member of an object before an existing one: on a line of its own if the existing one has its own
 /// line, and with its value in the same column if those of the object are aligned.
 std::string member_before(const Value& object, const Value::Member& next, const std::string& name,

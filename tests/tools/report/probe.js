@@ -1,6 +1,7 @@
 // Added to a page by browser_test.cpp. It operates the scopes like a reader and stores the results in the title.
 addEventListener("load", async () => {
-  const settled = () => new Promise((done) => setTimeout(done, 50));
+  const frame = () => new Promise((done) => requestAnimationFrame(done));
+  const settled = async () => { await new Promise((done) => setTimeout(done, 50)); await frame(); await frame(); };  // scopes draw in frames
   const figures = [...document.querySelectorAll("figure.plot")];
   const mouse = (target, type, x, y) => {
     const box = target.getBoundingClientRect();

@@ -22,19 +22,6 @@ std::vector<Span> entries_of(const Value& value) {
   return spans;
 }
 
-/// Distance from the start of the names to the start of the values, if they are aligned; otherwise 0.
-size_t width_of_names(const Value& object) {
-  size_t width = 0;
-  bool is_aligned = false;
-  for (const Value::Member& member : object.members) {
-    const size_t own = member.value.place.offset - member.place.offset;
-    if (width != 0 && own != width) return 0;
-    is_aligned |= own > member.name.size() + 4;  // quotes, colon and one space
-    width = own;
-  }
-  return is_aligned ? width : 0;
-}
-
 std::string member_text(const Value& object, const std::string& name, const std::string& value) {
   std::string member = fmt::format("{}:", in_quotes(name));
   const size_t width = width_of_names(object);

@@ -97,7 +97,7 @@ function run({ set = {} }) {
   const mass = parseFloat(set.mass ?? state.mass);
   const w = 2 / mass, step = (t) => 0.1 * (1 - Math.exp(-w * t) * (Math.cos(3 * w * t) + Math.sin(3 * w * t) / 3));
   const signals = [signal("reference.value", "m", times.map((t) => (t > 0 ? 0.1 : 0))), signal("axis.position", "m", times.map(step)), signal("axis.velocity", "m/s", times.map((t) => (step(t + 0.01) - step(t)) / 0.01)), signal("controller.force", "N", times.map((t) => 3 * (0.1 - step(t))))];
-  const answer = { run: runs.length + 1, path: "nominal.json", name: "", status: "finished", message: "", time: 12, wall: 0.0123, hash: "9ad0", command: "loopwright run nominal.json", warnings: [], summary: "", set, signals };
+  const answer = { run: runs.length + 1, path: "nominal.json", name: "", status: "finished", message: "", time: 12, wall: 0.0123, hash: "9ad0", command: "loopwright run nominal.json", warnings: [], summary: "", verdict: [{ severity: "good", text: "axis.position follows reference.position" }], set, signals };
   runs.push(answer);
   return answer;
 }
