@@ -24,7 +24,7 @@ std::string content(const std::filesystem::path& path) {
 ChildResult browse(const std::filesystem::path& page, const std::filesystem::path& profile) {
   return run_program(
       {"chromium", "--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking",
-       "--window-size=1200,900", "--user-data-dir=" + profile.string(), "--virtual-time-budget=2000",
+       "--window-size=1200,900", "--user-data-dir=" + profile.string(), "--virtual-time-budget=20000",
        "--dump-dom", "file://" + page.string()},
       "", 60s);
 }
