@@ -4,7 +4,8 @@
 ///   tustin     I[k] = I[k-1] + Ki T/2 (e[k] + e[k-1]),  D[k] = ((2 - ωT) D[k-1] + 2 ω (d[k] - d[k-1])) / (2
 ///   + ωT) forward    I[k] = I[k-1] + Ki T e[k-1],             D[k] = (1 - ωT) D[k-1] + ω (d[k] - d[k-1]), ωT
 ///   < 2 backward   I[k] = I[k-1] + Ki T e[k],               D[k] = (D[k-1] + ω (d[k] - d[k-1])) / (1 + ωT)
-/// and u[k] = Kp (b r[k] - y[k]) + I[k] + Kd D[k]. Before the first sample e, d and D are 0.
+/// and u[k] = Kp (b r[k] - y[k]) + I[k] + Kd D[k]. Before the first sample r and y are
+/// `initial_measured`, at rest: e and D are 0.
 ///
 /// Anti-windup, while v is outside the limits: "back_calculation" changes the integral at the rate
 /// tracking_gain · (u - v), with tracking_gain in 1/s; "clamping" stops the integral where the error would
@@ -22,7 +23,7 @@ constexpr auto names_of(Discretisation) {
 
 template <class Real> struct PidController {
   Real Kp, Ki, Kd, derivative_pole, b = 1.0, c = 1.0, low = -infinity, high = infinity, tracking_gain = 0.0,
-                                    initial = 0.0;
+                                    initial = 0.0, initial_measured = 0.0;
   AntiWindup anti_windup = AntiWindup::clamping;
   Discretisation method = Discretisation::tustin;
   TustinDerivative<Real> filter;
@@ -55,6 +56,11 @@ template <class Real> struct PidController {
             .not_negative()
             .optional(),
         parameter(&PidController::initial, "initial", "$command", "Integral part at the start").optional(),
+        parameter(
+            &PidController::initial_measured, "initial_measured", "$signal",
+            "Reference and measured signal before the start, at rest: the derivative acts on the change from "
+            "there")
+            .optional(),
         parameter(&PidController::method, "method", "", "How the integral and the derivative are discretised")
             .optional(),
         input(&In::reference, "reference", "$signal", "What is wanted"),
@@ -76,7 +82,10 @@ template <class Real> struct PidController {
     return fault_if((turn >= 2.0) & MaskOf<Real>(method == Discretisation::forward),
                     "the forward rule is unstable: derivative_pole times sample_time must be below 2");
   }
-  void start(Memory& memory) const { memory.integral = initial; }
+  void start(Memory& memory) const {
+    memory.integral = initial;
+    memory.signal = (c - 1.0) * initial_measured;
+  }
   Memory next(const In& in, const Memory& memory) const {
     const Real error = in.reference - in.measured, signal = c * in.reference - in.measured;
     const Real added = method == Discretisation::tustin    ? error + memory.error

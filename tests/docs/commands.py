@@ -48,7 +48,7 @@ SHORTENED = [
 ]
 # Skipped by --quick: seconds to minutes each.
 SLOW = ["tools/", "bin/hidden_effects ", "bin/conditions ", "loopwright sweep ", "loopwright gp ", "identification", "loopwright diagnose", "loopwright fit",
-        "diagrams/linear_motor/ps.json", "diagrams/linear_motor/beyond.json", "loopwright deploy", "--replay", "g++", "magnetic_pull"]
+        "diagrams/linear_motor/ps.json", "diagrams/linear_motor/beyond.json", "loopwright deploy", "--replay", "g++", "magnetic_pull", "first/log", "first/improved"]
 # Preconditions of a page that this machine may lack.
 BEFORE = {
     "docs/hardware.md": "# the emulated card in the place of the real one, in virtual time: this machine may be busy\n"

@@ -103,6 +103,24 @@ TEST(PidController, IntegratesByTheRuleOfItsMethod) {
   }
 }
 
+TEST(PidController, ADerivativeBeginsWithTheChangeFromTheInitialMeasurement) {
+  for (const double c : {0.0, 1.0}) {
+    const auto first_command = [&](double initial_measured) {
+      BlockUnderTest block(
+          "PidController",
+          fmt::format(
+              R"({{"Kp": 0, "Ki": 0, "Kd": 1, "derivative_pole": 60, "c": {}, "initial_measured": {}}})", c,
+              initial_measured),
+          T);
+      block.input("reference") = 293;
+      return block.sample("measured", 293, "command");
+    };
+    // At rest at 293 nothing changes. From 0 the slope of c r - y acts: 2 ω/(2 + ωT) times its change.
+    EXPECT_EQ(first_command(293), 0);
+    EXPECT_NEAR(first_command(0), (c - 1) * 293 * 2 * 60 / (2 + 60 * T), 1e-9);
+  }
+}
+
 TEST(PidController, AnUnstableForwardRuleIsRefusedAtTheStart) {
   const std::string text = R"("c": {"type": "Constant", "value": 1},
       "pid": {"type": "PidController", "Kp": 1, "Ki": 1, "Kd": 1, "derivative_pole": 250, "method": "forward", "sample_time": 0.01,

@@ -1,21 +1,24 @@
-"""Every example of docs/python.md runs, in order, in one folder."""
+"""Every example of the pages about Python runs, in order, in one folder for each page."""
 import pathlib
 import re
 import shutil
+
+import pytest
 
 
 def examples(text):
     return re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
 
 
-def test_the_examples_of_the_guide_run(root, tmp_path, monkeypatch):
+@pytest.mark.parametrize("page, least", [("python.md", 6), ("coming_from_python.md", 4)])
+def test_the_examples_run(page, least, root, tmp_path, monkeypatch):
     shutil.copytree(root / "diagrams", tmp_path / "diagrams")
     monkeypatch.chdir(tmp_path)
-    blocks = examples((root / "docs" / "python.md").read_text(encoding="utf-8"))
-    assert len(blocks) >= 6
+    blocks = examples((root / "docs" / page).read_text(encoding="utf-8"))
+    assert len(blocks) >= least
     names = {}
     for number, block in enumerate(blocks):
-        exec(compile(block, f"docs/python.md, example {number + 1}", "exec"), names)
+        exec(compile(block, f"docs/{page}, example {number + 1}", "exec"), names)
 
 
 def test_the_type_declarations_name_what_the_package_has(root):
