@@ -1,13 +1,14 @@
 /// Y/U = (s² + 2 ζ₀ ω s + ω²) / (s² + 2 ζ₁ ω s + ω²), by Tustin's rule with ω mapped exactly
 ///
 /// At ω the gain is ζ₀/ζ₁: with `depth_damping` 0 it is zero. `width_damping` sets the width of the notch.
-/// The DC gain is 1. ω must be less than half the sampling frequency, π/T.
+/// The DC gain is 1. ω must be less than half the sampling frequency, π/T. It starts at rest with the input
+/// `initial`.
 #include "engine/block.h"
 
 namespace loopwright::blocks {
 
 template <class Real> struct Notch {
-  Real frequency, depth_damping = 0.0, width_damping;
+  Real frequency, depth_damping = 0.0, width_damping, initial = 0.0;
   Real b0, b1, b2, a2, half_turn;  // a1 = b1
   struct In {
     Real u;
@@ -26,6 +27,7 @@ template <class Real> struct Notch {
             .not_negative()
             .optional(),
         parameter(&Notch::width_damping, "width_damping", "", "Damping of the denominator").positive(),
+        parameter(&Notch::initial, "initial", "$u", "Input before the start").optional(),
         input(&In::u, "u", "$u", "Signal"), output(&Out::y, "y", "$u", "The signal without the band"));
   }
   void prepare(double sample_time) {
@@ -37,6 +39,7 @@ template <class Real> struct Notch {
     b2 = (1.0 - depth_damping * turn) * scale;
     a2 = (1.0 - width_damping * turn) * scale;
   }
+  void start(Memory& memory) const { memory.s1 = memory.s2 = (b2 - a2) * initial; }  // such that y = u
   Fault outputs(const In& in, const Memory& memory, Out& out) const {
     out.y = b0 * in.u + memory.s1;
     return fault_if(half_turn >= 0.5 * pi, "the notch does not lie below half the sampling frequency");

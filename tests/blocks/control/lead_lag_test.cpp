@@ -22,6 +22,11 @@ TEST(LeadLag, ItsGainAtRestIsTheGain) {
   EXPECT_NEAR(block.output("y"), 6, 1e-13);
 }
 
+TEST(LeadLag, StartsAtRestWithItsInput) {
+  BlockUnderTest block("LeadLag", R"({"gain": 3, "pole": 200, "zero": 20, "initial": 2})", 0.001);
+  for (int k = 0; k < 10; ++k) EXPECT_NEAR(block.sample("u", 2, "y"), 6, 1e-13) << k;
+}
+
 TEST(ContinuousLeadLag, HasItsTransferFunction) {
   BlockUnderTest block("ContinuousLeadLag", R"({"gain": 2, "zero": 20, "pole": 80})");
   for (double w : {0.0, 5.0, 40.0, 300.0}) {

@@ -31,6 +31,12 @@ TEST(Notch, FaultsFromHalfTheSamplingFrequencyOn) {
   EXPECT_THAT(std::string(block.fault()), testing::HasSubstr("half the sampling frequency"));
 }
 
+TEST(Notch, StartsAtRestWithItsInput) {
+  BlockUnderTest block("Notch",
+                       R"({"frequency": 600, "depth_damping": 0.05, "width_damping": 0.4, "initial": 3})", T);
+  for (int k = 0; k < 10; ++k) EXPECT_NEAR(block.sample("u", 3, "y"), 3, 1e-14) << k;
+}
+
 TEST(ContinuousNotch, HasItsTransferFunction) {
   BlockUnderTest block("ContinuousNotch",
                        R"({"frequency": 600, "depth_damping": 0.05, "width_damping": 0.4})");
