@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <map>
 #include <set>
+#include "engine/plan/gates.h"
 #include "engine/plan/unit_expressions.h"
 #include "tools/draw/block_face.h"
 #include "tools/draw/signal_rates.h"
@@ -45,7 +46,9 @@ std::string substituted(std::string_view text, const UnitExpression& expression,
 class GraphBuilder {
  public:
   explicit GraphBuilder(const Plan& plan)
-      : plan_(plan), rates_(plan), settings_(plan.parameters.begin(), plan.parameters.end()) {}
+      : plan_(plan), rates_(plan), settings_(plan.parameters.begin(), plan.parameters.end()) {
+    for (const Plan::Block& block : plan.blocks) types_.emplace(block.path, block.type);
+  }
 
   report::Graph build(const Diagram& diagram) {
     Level top;
@@ -86,10 +89,16 @@ class GraphBuilder {
         auto& inner = level.inner[block.name] = std::make_unique<Level>();
         inner->container = index;
         add_nodes(*block.subdiagram, path, *inner);
-      } else if (const BlockType* type = find_block(block.type)) {
+      } else if (const BlockType* type = type_of(block, path)) {
         graph_.nodes.push_back(block_node(block, *type, path));
       }
     }
+  }
+
+  /// With the ports that the instance declares.
+  const BlockType* type_of(const BlockEntry& block, const std::string& path) const {
+    const auto found = types_.find(path);  // of several scalar instances of a block, "gain[2]", there is none
+    return found == types_.end() ? find_block(block.type) : found->second;
   }
 
   report::GraphNode subdiagram_node(const BlockEntry& block, const std::string& path) {
@@ -98,6 +107,10 @@ class GraphBuilder {
         path, std::filesystem::path(inside.path).filename().string(), "subdiagram", {}, {}, {}, inside.title};
     for (const DiagramInput& input : inside.inputs) node.inputs.push_back(port(path, input.name));
     for (const DiagramOutput& output : inside.outputs) node.outputs.push_back(port(path, output.name));
+    if (block.condition) {
+      node.inputs.push_back({block.condition->key, "", "", -1});
+      node.outputs.push_back(port(path, gate_name));
+    }
     return node;
   }
 
@@ -159,6 +172,8 @@ class GraphBuilder {
         for (size_t i = 0; i < wires.wires.size(); ++i)
           connect(level, prefix, wires.wires[i].source,
                   input_end(node->second, wires.is_list ? fmt::format("{}[{}]", wires.port, i) : wires.port));
+      if (block.condition)
+        connect(level, prefix, block.condition->wire.source, input_end(node->second, block.condition->key));
       if (block.subdiagram) {
         Level& inner = *level.inner[block.name];
         const std::string path = joined(prefix, block.name);
@@ -213,6 +228,7 @@ class GraphBuilder {
   const Plan& plan_;
   SignalRates rates_;
   EffectiveSettings settings_;
+  std::map<std::string_view, const BlockType*> types_;  ///< of the blocks of the plan, by path
   report::Graph graph_;
 };
 

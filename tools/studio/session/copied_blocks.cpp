@@ -5,6 +5,7 @@
 #include "engine/json/reader.h"
 #include "tools/studio/session/intent.h"
 #include "tools/studio/session/member_change.h"
+#include "tools/studio/session/written_wires.h"
 
 namespace loopwright::studio {
 namespace {
@@ -31,6 +32,10 @@ class Rewiring {
       else if (std::ranges::find(gone, true) != gone.end())
         std::ranges::move(without_entries(in->value, gone), std::back_inserter(changes));
     }
+    for (const std::string_view condition_key : condition_keys)  // one that leads nowhere shows as a problem
+      if (const auto condition = std::ranges::find(block.members, condition_key, &Value::Member::name);
+          condition != block.members.end())
+        rename(condition->value, changes);
     std::ranges::sort(changes, {}, &TextChange::from);
     const size_t begin = block.place.offset;
     for (TextChange& change : changes) change.from -= begin, change.to -= begin;

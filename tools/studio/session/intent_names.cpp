@@ -5,6 +5,7 @@
 #include "engine/json/reader.h"
 #include "tools/studio/session/intent.h"
 #include "tools/studio/session/member_change.h"
+#include "tools/studio/session/written_wires.h"
 
 namespace loopwright::studio {
 namespace {
@@ -25,15 +26,14 @@ template <class F> void each_source(const Value& diagram, F&& f) {
     for (const Value& item : value.items)
       if (item.kind == Kind::text) f(item);
   };
-  const auto each_wire = [&](const Value& body) {
-    if (const Value::Member* in = body.find("in"))
-      for (const Value::Member& port : in->value.members) each_text(port.value);
+  const auto each_source_of = [&](const Value& body) {
+    each_wire(body, [&](const std::string&, const Value& wire, size_t) { f(wire); });
   };
   if (const Value::Member* blocks = diagram.find("blocks"))
     for (const Value::Member& block : blocks->value.members) {
-      each_wire(block.value);
+      each_source_of(block.value);
       if (const Value::Member* variants = block.value.find("variants"))
-        for (const Value::Member& variant : variants->value.members) each_wire(variant.value);
+        for (const Value::Member& variant : variants->value.members) each_source_of(variant.value);
     }
   if (const Value::Member* outputs = diagram.find("outputs"))
     for (const Value::Member& output : outputs->value.members) {

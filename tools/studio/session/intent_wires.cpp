@@ -6,6 +6,7 @@
 #include "engine/json/reader.h"
 #include "tools/studio/session/intent.h"
 #include "tools/studio/session/member_change.h"
+#include "tools/studio/session/written_wires.h"
 
 namespace loopwright::studio {
 namespace {
@@ -92,6 +93,12 @@ void connect(const Value& intent, const IntentContext& context, Draft& draft, In
   if (to.find('.') == to.npos) return connect_output(level, from, to, draft);
   const Target target = target_of(level, to, draft);
   effects.blocks.push_back(target.path);
+  if (is_condition(target.port)) {
+    const Value* condition = wires_into(target.block->value, target.port);
+    draft.change({condition ? replaced(*condition, in_quotes(from))
+                            : with_member(target.block->value, target.port, in_quotes(from))});
+    return;
+  }
   const Value::Member* in = target.block->value.find("in");
   if (!in) {
     draft.change({with_member(target.block->value, "in",
@@ -122,6 +129,11 @@ void disconnect(const Value& intent, const IntentContext& context, Draft& draft,
   const Target target = target_of(level, to, draft);
   effects.what = fmt::format("disconnect {}", to);
   effects.blocks.push_back(target.path);
+  const Value& block = target.block->value;
+  if (is_condition(target.port) && wires_into(block, target.port)) {
+    draft.change({without_member(block, size_t(block.find(target.port) - block.members.data()))});
+    return;
+  }
   const Value::Member* in = target.block->value.find("in");
   const Value::Member* port = in ? in->value.find(target.port) : nullptr;
   if (!port) throw Refused(fmt::format("\"{}\" has no wire", to));

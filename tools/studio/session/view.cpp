@@ -7,6 +7,8 @@
 #include "tools/studio/session/member_change.h"
 #include "tools/studio/session/setting_text.h"
 #include "tools/studio/session/shown_level.h"
+#include "engine/plan/gates.h"
+#include "tools/studio/session/written_wires.h"
 
 namespace loopwright::studio {
 namespace {
@@ -62,8 +64,10 @@ class View {
   void find_rates() {
     if (!plan()) return;
     std::set<int64_t> periods;
-    for (const Plan::Block& block : plan()->blocks)
+    for (const Plan::Block& block : plan()->blocks) {
+      types_.emplace(block.path, block.type);
       if (block.period > 0) periods.insert(block.period);
+    }
     for (const Plan::Block& block : plan()->blocks) {
       if (block.period <= 0) continue;
       const int rate = int(std::distance(periods.begin(), periods.find(block.period))) + 1;
@@ -94,17 +98,11 @@ class View {
   /// The ports of a block that other blocks read, for one whose type is not known.
   std::map<std::string, std::set<std::string>> sources_by_block(const Level& level) const {
     std::map<std::string, std::set<std::string>> sources;
-    const auto add = [&](const Value& wire) {
-      if (wire.kind != Kind::text) return;
+    const auto add = [&](const std::string&, const Value& wire, size_t) {
       const size_t dot = wire.text.find('.');
       if (dot != wire.text.npos) sources[wire.text.substr(0, dot)].insert(wire.text.substr(dot + 1));
     };
-    for (const Value::Member& block : level.blocks().members)
-      if (const Value::Member* in = block.value.find("in"))
-        for (const Value::Member& port : in->value.members) {
-          add(port.value);
-          for (const Value& item : port.value.items) add(item);
-        }
+    for (const Value::Member& block : level.blocks().members) each_wire(block.value, add);
     return sources;
   }
   std::string unit_at(const std::string& port, std::string_view declared) const {
@@ -137,7 +135,7 @@ class View {
       for (const Value::Member& variant : list->value.members) json["variants"].push_back(variant.name);
     json["variant"] = variant_of(member.value, path, variants_);
     json["settings"] = settings(body, entry, known, path);
-    ports(member, entry, known, json);
+    ports(member, entry, type_at(path, known), json);
     json["picture"] = sub ? Json{{"kind", "none"}} : picture_json(type, entry ? entry->settings : body);
     const auto rate = rates_.find(path);
     json["rate"] = rate == rates_.end() ? 0 : rate->second.first;
@@ -195,8 +193,9 @@ class View {
   Json settings(const Value& body, const BlockEntry* entry, const BlockType* known,
                 const std::string& path) const {
     Json list = Json::array();
-    static const std::set<std::string_view> not_settings = {
-        "type", "in", "description", "diagram", "parameters", "variants", "variant"};
+    static const std::set<std::string_view> not_settings = {"type",    "in",         "description",
+                                                            "diagram", "parameters", "variants",
+                                                            "variant", "enabled_by", "triggered_by"};
     for (const Value::Member& member : body.members) {
       if (not_settings.contains(member.name)) continue;
       const Value::Member* evaluated = entry ? entry->settings.find(member.name) : nullptr;
@@ -222,16 +221,15 @@ class View {
 
   // ---- Ports ----
 
-  static size_t wires_into(const Value& block, std::string_view port) {
-    const Value::Member* in = block.find("in");
-    const Value::Member* wires = in ? in->value.find(port) : nullptr;
+  static size_t wire_count(const Value& block, std::string_view port) {
+    const Value* wires = wires_into(block, port);
     if (!wires) return 0;
-    return wires->value.kind == Kind::list ? wires->value.items.size() : 1;
+    return wires->kind == Kind::list ? wires->items.size() : 1;
   }
   Json input(const Value::Member& member, std::string_view name, std::string_view unit,
              std::string_view sentence, bool many, bool optional) const {
     return {{"name", name},         {"unit", unit_at(path_of(member.name) + "." + std::string(name), unit)},
-            {"many", many},         {"wires", wires_into(member.value, name)},
+            {"many", many},         {"wires", wire_count(member.value, name)},
             {"sentence", sentence}, {"optional", optional}};
   }
   Json output(const Value::Member& member, std::string_view name, std::string_view unit,
@@ -242,6 +240,11 @@ class View {
             {"sentence", sentence},
             {"logged", logged_.contains(port)}};
   }
+  /// With the ports that the instance declares, once the diagram can be compiled.
+  const BlockType* type_at(const std::string& path, const BlockType* known) const {
+    const auto found = types_.find(path);
+    return found == types_.end() ? known : found->second;
+  }
   void ports(const Value::Member& member, const BlockEntry* entry, const BlockType* known, Json& json) const {
     Json inputs = Json::array(), outputs = Json::array();
     if (entry && entry->subdiagram) {
@@ -249,12 +252,19 @@ class View {
         inputs.push_back(input(member, port.name, port.unit, port.description, false, false));
       for (const DiagramOutput& port : entry->subdiagram->outputs)
         outputs.push_back(output(member, port.name, port.unit, port.description));
+      if (const RunCondition* condition = entry->condition.get()) {
+        inputs.push_back(
+            input(member, condition->key, "", "Decides when the subdiagram runs.", false, false));
+        outputs.push_back(output(member, gate_name, "", "1 while the subdiagram runs."));
+      }
     } else if (known) {
       for (const PortInfo& port : known->info.inputs)
-        inputs.push_back(input(member, port.name, port.unit, port.sentence,
-                               port.shape == PortInfo::Shape::many, port.is_optional));
+        if (port.shape != PortInfo::Shape::named)
+          inputs.push_back(input(member, port.name, port.unit, port.sentence,
+                                 port.shape == PortInfo::Shape::many, port.is_optional));
       for (const PortInfo& port : known->info.outputs)
-        outputs.push_back(output(member, port.name, port.unit, port.sentence));
+        if (port.shape != PortInfo::Shape::named)
+          outputs.push_back(output(member, port.name, port.unit, port.sentence));
     }
     // What wires name but the block does not have, or is not known to have, is shown with its problem.
     const auto has = [](const Json& list, const std::string& name) {
@@ -288,13 +298,9 @@ class View {
                      {"clash", printable(clash)}});
   }
   void add_wires(const Value::Member& block, Json& wires) const {
-    const Value::Member* in = block.value.find("in");
-    if (!in) return;
-    for (const Value::Member& port : in->value.members) {
-      const std::string to = block.name + "." + port.name;
-      if (port.value.kind != Kind::list) add_wire(port.value, to, 0, wires);
-      for (size_t i = 0; i < port.value.items.size(); ++i) add_wire(port.value.items[i], to, i, wires);
-    }
+    each_wire(block.value, [&](const std::string& port, const Value& wire, size_t index) {
+      add_wire(wire, block.name + "." + port, index, wires);
+    });
   }
   void add_ports(const Value& diagram, Json& view) const {
     const auto place = [&](const Value::Member& member, Json json) {
@@ -353,6 +359,7 @@ class View {
   const Utf16 places_;
   std::set<std::string> logged_;
   std::map<std::string, std::pair<int, double>> rates_;
+  std::map<std::string_view, const BlockType*> types_;  ///< of the blocks of the plan, by path
   std::map<std::string, std::set<size_t>> by_block_;
   std::multimap<size_t, size_t> by_place_;
   std::map<std::string, std::set<std::string>> sources_;

@@ -2,34 +2,15 @@
 #include <gtest/gtest.h>
 #include <cstdlib>
 #include <random>
-#include "engine/json/file_kind.h"
-#include "tests/tools/studio/session/studio_folder.h"
+#include "tests/tools/studio/session/shipped_diagrams.h"
 #include "tools/studio/session/checked_text.h"
 #include "tools/studio/session/document.h"
 #include "tools/studio/session/member_change.h"
-#include "where.h"
 
 using namespace loopwright;
 using namespace loopwright::studio;
 
 namespace {
-
-namespace fs = std::filesystem;
-
-/// The shipped diagrams in a folder of their own.
-std::vector<std::string> shipped_diagrams(const StudioFolder& folder) {
-  fs::copy(LOOPWRIGHT_SOURCE "/diagrams", folder.path("diagrams"), fs::copy_options::recursive);
-  fs::create_directories(folder.path("hw"));
-  fs::copy(LOOPWRIGHT_SOURCE "/hw/devices", folder.path("hw/devices"), fs::copy_options::recursive);
-  std::vector<std::string> paths;
-  for (const Folder::File& file : Folder(folder.path()).files()) {
-    Problems problems;
-    if (file.path.starts_with("diagrams/") && file.path.ends_with(".json") &&
-        kind_of_file(folder.path(file.path), problems) == FileKind::diagram)
-      paths.push_back(file.path);
-  }
-  return paths;
-}
 
 class RandomIntents {
  public:
