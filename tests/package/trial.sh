@@ -31,4 +31,8 @@ inside 'cd /tmp && rm -rf axis && loopwright new axis --from linear_motor && cd 
   grep -q coulomb_friction found.json && grep -q cogging found.json
   python3 -c "import loopwright; print(loopwright.load(\"improved.json\").run().status)"
   test -s run.html && test -s /usr/share/man/man1/loopwright.1 && bash -n /usr/share/bash-completion/completions/loopwright'
+# The commands of the tutorial's page, on the installed diagrams.
+inside 'rm -rf /tmp/tutorial && mkdir /tmp/tutorial && cd /tmp/tutorial && ln -s /usr/share/loopwright/diagrams
+  sed -n "/^\`\`\`sh/,/^\`\`\`\$/{/^\`\`\`/d;p}" /usr/share/loopwright/docs/tutorial.md >commands.sh
+  test "$(grep -c "^loopwright run" commands.sh)" -ge 9 && bash -eu commands.sh >commands.log 2>&1 || { tail -n 20 commands.log; exit 1; }'
 echo "the package works in a bare Debian 12"
