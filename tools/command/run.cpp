@@ -1,4 +1,7 @@
 #include <fmt/format.h>
+#include <filesystem>
+#include <optional>
+#include <set>
 #include "engine/plan/load.h"
 #include "engine/record/csv.h"
 #include "engine/record/recording_file.h"
@@ -6,6 +9,7 @@
 #include "tools/deploy/replay.h"
 #include "tools/run/run_page.h"
 #include "tools/command/named_recordings.h"
+#include "tools/command/watched_files.h"
 
 namespace loopwright {
 namespace {
@@ -16,7 +20,7 @@ struct Arguments {
   std::vector<std::string> beside;
   double checkpoint_every = 0;
   int64_t run = 0;
-  bool quiet = false, strict_units = false;
+  bool quiet = false, strict_units = false, watch = false;
 };
 
 void require_paths(const Arguments& a) {
@@ -81,9 +85,26 @@ std::vector<Recording> read_beside(const Arguments& a) {
   return recordings;
 }
 
-int run(const Arguments& a) {
+/// What --watch keeps from run to run.
+struct Watch {
+  WatchedFiles files;
+  std::optional<report::Page> page;  ///< the last one
+};
+constexpr int reload_s = 2;  // a page that is read is not torn away too often
+
+/// The diagram and everything that it names.
+std::set<std::string> files_of(const Diagram& diagram, const Plan& plan) {
+  std::set<std::string> files(diagram.files.begin(), diagram.files.end());
+  files.insert(diagram.path);
+  for (const FileRead& file : plan.identity.files)
+    files.insert((std::filesystem::path(diagram.path).parent_path() / file.path).string());
+  return files;
+}
+
+int run_once(const Arguments& a, Watch* watch = nullptr) {
   require_paths(a);
   const auto [diagram, plan] = load_diagram_and_plan(a.diagram.path, a.diagram.options());
+  if (watch) watch->files.watch(files_of(*diagram, *plan));
   if (a.strict_units) require_units(*plan);
   tell_text(to_text(plan->warnings));
   if (!a.replay.empty()) return replay_log(a, *plan);
@@ -110,13 +131,38 @@ int run(const Arguments& a) {
     print_csv(stdout, result.recording);
   else if (!a.output.empty())
     write_recording(a.output, result.recording);
-  if (!a.report.empty())
-    report::write_html(a.report, run_page(diagram.get(), *plan, result, figures, named(a.beside, others)));
+  if (!a.report.empty()) {
+    report::Page page = run_page(diagram.get(), *plan, result, figures, named(a.beside, others));
+    if (watch) page.reload_s = reload_s;
+    report::write_html(a.report, page);
+    if (watch) watch->page = std::move(page);
+  }
   if (!a.quiet) give_summary(run_summary(*plan, result, figures), {a.output, a.report});
   if (result.status == RunStatus::finished) return done;
   tell("{}: {}\n", a.diagram.path, result.message);
   return result.status == RunStatus::interrupted ? interrupted : run_failed;
 }
+
+/// Runs again whenever a file that the run reads is saved, until it is interrupted.
+int run_and_watch(const Arguments& a) {
+  Watch watch;
+  watch.files.watch({a.diagram.path});
+  do {
+    try {
+      run_once(a, &watch);
+    } catch (const InputError& error) {
+      tell("{}\n", error.problems.text());
+    }
+    tell("{}: waiting for a change; Ctrl-C ends\n", a.diagram.path);
+  } while (watch.files.wait_for_change(interruption()));
+  if (watch.page) {
+    watch.page->reload_s = 0;
+    report::write_html(a.report, *watch.page);
+  }
+  return done;
+}
+
+int run(const Arguments& a) { return a.watch ? run_and_watch(a) : run_once(a); }
 
 }  // namespace
 
@@ -141,6 +187,11 @@ void add_run(CLI::App& app, std::function<void(std::function<int()>)> choose) {
                    "bit for bit")
       ->excludes("--output", "--report", "--run", "--checkpoint", "--resume");
   command->add_flag("--strict-units", a->strict_units, "Refuse wires whose unit nothing decides");
+  command
+      ->add_flag(
+          "--watch", a->watch,
+          "Run again whenever a file that it reads is saved, and keep the page up to date; Ctrl-C ends")
+      ->excludes("--checkpoint", "--resume", "--replay");
   command->add_flag("-q,--quiet", a->quiet, "No progress and no summary");
   command->callback([=] { choose([=] { return run(*a); }); });
 }

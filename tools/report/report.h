@@ -104,6 +104,7 @@ struct Page {
   std::vector<std::pair<std::string, std::string>>
       facts;  ///< origin of the results: ("Diagram", "stage.json")
   std::vector<Section> sections;
+  int reload_s = 0;  ///< the page loads itself again after so many seconds; 0: never
 };
 
 /// The page as HTML. Long series are thinned so that the whole page has at most 200 000 points; extreme

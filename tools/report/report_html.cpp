@@ -242,7 +242,7 @@ void HtmlWriter::put_head() {
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <meta name="color-scheme" content="light dark">
 <meta name="generator" content="Loopwright">
-<title>{}</title>
+{}<title>{}</title>
 <style>
 {}
 {}</style>
@@ -251,6 +251,7 @@ void HtmlWriter::put_head() {
 </head>
 <body>
 )",
+      page_.reload_s > 0 ? fmt::format("<meta http-equiv=\"refresh\" content=\"{}\">\n", page_.reload_s) : "",
       escape_html(page_.title), assets::uplot_css, assets::page_css, assets::diagram_css);
 }
 
