@@ -22,6 +22,9 @@ class EveryDiagram(unittest.TestCase):
             with self.subTest(name):
                 self.assertTrue(3 <= len(diagrams[name]["log"]) <= 10)
                 self.assertIn("stop", diagrams[name]["solver"])
+                # What follows which reference is stated, not guessed.
+                self.assertIn("follows", call("run", f"{name}.json"))
+                self.assertNotIn("guess", call("run", f"{name}.json"))
 
     def test_is_in_the_tutorial(self):
         page = (TUTORIAL / "../../docs/tutorial.md").read_text()
