@@ -115,7 +115,8 @@ struct Server::Inside : std::enable_shared_from_this<Inside> {
 
   ServerOptions options;
   Handler& handler;
-  asio::io_context context{1};
+  std::unique_ptr<asio::io_context> own_context = std::make_unique<asio::io_context>(1);
+  asio::io_context& context = *own_context;
   Tcp::acceptor acceptor{context};
   asio::steady_timer timer{context};
   std::optional<Gate> gate;
@@ -305,7 +306,12 @@ Server::Server(ServerOptions options, Handler& handler)
   inside_->accept();
 }
 
-Server::~Server() { stop(); }
+Server::~Server() {
+  stop();
+  // What waits in the context holds on to the inside, which holds the context: it is taken out of this circle.
+  const std::unique_ptr<asio::io_context> context = std::move(inside_->own_context);
+  inside_.reset();
+}
 
 int Server::port() const { return inside_->acceptor.local_endpoint().port(); }
 

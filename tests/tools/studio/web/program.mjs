@@ -28,5 +28,5 @@ export function start_studio(target, port = 0) {
     child.on("exit", (code) => reject(new Error(`the program ended with ${code}:\n${printed}`)));
   });
   const ended = new Promise((resolve) => child.on("exit", (code, signal) => resolve({ code, signal })));
-  return { address, stop: async (signal = "SIGTERM") => { child.kill(signal); return ended; }, printed: () => printed };
+  return { address, pid: child.pid, stop: async (signal = "SIGTERM") => { child.kill(signal); return ended; }, printed: () => printed };
 }
