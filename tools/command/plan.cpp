@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <optional>
 #include "engine/plan/load.h"
 #include "engine/record/atomic_file.h"
 #include "tools/command/command.h"
@@ -11,8 +12,17 @@ namespace {
 struct Arguments {
   DiagramArguments diagram;
   std::string svg, png;
-  size_t depth = report::GraphOptions{}.depth;
+  std::optional<size_t> depth;
 };
+
+void require_sense(const Arguments& a) {
+  Problems problems;
+  if (!a.svg.empty() && a.svg == a.png)
+    problems.error({}, "", "", fmt::format("--svg and --png both name {}", a.svg)).expected = "two files";
+  if (a.depth && a.svg.empty() && a.png.empty())
+    problems.error({}, "", "", "--depth is that of a picture").expected = "--svg FILE or --png FILE";
+  if (problems.has_errors()) throw InputError(std::move(problems));
+}
 
 /// Draws before it writes: a picture that cannot be made leaves no file. Returns whether it was written.
 bool write_picture(const std::string& path, const report::GraphPicture& picture) {
@@ -26,12 +36,14 @@ bool write_picture(const std::string& path, const report::GraphPicture& picture)
 int plan(const Arguments& a) {
   require_writable_file(a.svg, "--svg");
   require_writable_file(a.png, "--png");
+  require_sense(a);
   const auto [diagram, plan] = load_diagram_and_plan(a.diagram.path, a.diagram.options());
   tell_text(to_text(plan->warnings));
   answer("{}", describe(*plan));
   if (a.svg.empty() && a.png.empty()) return done;
   const report::Graph graph = diagram_graph(*diagram, *plan);
-  const report::GraphOptions options{.depth = a.depth};
+  report::GraphOptions options;
+  if (a.depth) options.depth = *a.depth;
   bool written = true;
   if (!a.svg.empty()) written &= write_picture(a.svg, report::draw_svg(graph, options));
   if (!a.png.empty()) written &= write_picture(a.png, report::draw_png(graph, options));

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include "engine/diagram/in_memory.h"
 #include "models/real/whole.h"
 #include "tools/experiment/experiment_ports.h"
@@ -9,18 +10,28 @@
 namespace loopwright {
 namespace {
 
+/// What two times may differ by and still be the same instant: a small part of a row, and what their numbers
+/// can tell. A time of day is far from zero, so a share of the time itself would be many rows.
+double same_instant(double time, double row_s) {
+  constexpr double share_of_row = 1e-6, roundings = 8;
+  return share_of_row * row_s + roundings * std::numeric_limits<double>::epsilon() * std::abs(time);
+}
+
 /// Values of a simulated column at the recorded times: the row's value where the times coincide, otherwise
 /// linear interpolation.
 std::vector<double> at_times(const Recording& simulated, const Column& column,
                              const std::vector<double>& times) {
   const std::vector<double>& t = simulated.columns[0].values;
   std::vector<double> values;
+  if (t.empty()) return values;
   values.reserve(times.size());
+  const double last_row_s = t.size() > 1 ? t.back() - t[t.size() - 2] : 0;
   size_t i = 0;
   for (double time : times) {
-    while (i + 1 < t.size() && t[i + 1] <= time + 1e-9 * std::max(1.0, std::abs(time))) ++i;
-    if (t.empty() || t.back() < time - 1e-6 * std::max(1.0, std::abs(time))) break;  // the run ended earlier
-    const bool coincides = i + 1 == t.size() || std::abs(t[i] - time) <= 1e-6 * (t[i + 1] - t[i]);
+    while (i + 1 < t.size() && t[i + 1] <= time + same_instant(time, t[i + 1] - t[i])) ++i;
+    // The run ended earlier; but stamps are rounded, and the last row is not lost for that.
+    if (t.back() < time - 0.01 * last_row_s - same_instant(time, last_row_s)) break;
+    const bool coincides = i + 1 == t.size() || std::abs(t[i] - time) <= same_instant(time, t[i + 1] - t[i]);
     const double s = coincides ? 0 : (time - t[i]) / (t[i + 1] - t[i]);
     values.push_back(coincides ? column.values[i] : (1 - s) * column.values[i] + s * column.values[i + 1]);
   }

@@ -168,8 +168,8 @@ constexpr double most_over_floor = 1.25;
 constexpr double levels_of_smooth_functions = 134;
 /// [independent values] A larger share of them leaves no floor to compare with.
 constexpr double most_levels = 0.5;
-/// [periods of the residual's cut-off frequency] Around a reversal or a rest, where the filter smears the leap
-/// of dry friction: a tenth of it is left after one.
+/// [periods of the residual's cut-off frequency] Around a reversal or a rest, where the filter smears the
+/// leap of dry friction: a tenth of it is left after one.
 constexpr double blur = 1;
 /// [force of the input, rms] Excess over it that is material, as an effect of this size is.
 constexpr double least_excess = least_force;

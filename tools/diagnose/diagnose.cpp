@@ -12,6 +12,7 @@
 #include "tools/diagnose/verdict/improve.h"
 #include "tools/diagnose/search/prepare.h"
 #include "tools/diagnose/search/search.h"
+#include "tools/experiment/repeated_records.h"
 #include "tools/diagnose/search/unknown.h"
 #include "tools/diagnose/verdict/verdict.h"
 
@@ -280,14 +281,6 @@ Diagnosis::Curves residual_curves(const Trials& trials, const InverseDynamics& i
   return curves;
 }
 
-/// How functions without a name are written.
-std::vector<std::string> notes_of(const Additions& additions) {
-  std::vector<std::string> notes = additions.not_stated;
-  for (const AddedEffect& added : additions.effects)
-    if (!added.note.empty()) notes.push_back(added.note);
-  return notes;
-}
-
 Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std::string>& experiments,
                               const DiagnoseOptions& options) {
   const std::function<void(const char*, double)> progress = [&](const char* stage, double done) {
@@ -342,8 +335,7 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   result.steps = staircase.steps;
   if (!accepted.runs.empty())
     result.simulation_horizon_s = accepted.runs.back().horizon_s,
-    result.simulation_diverged = accepted.diverges,
-    result.simulation_is_worse = accepted.is_worse;
+    result.simulation_diverged = accepted.diverges, result.simulation_is_worse = accepted.is_worse;
   tell_effects(conclusion, staircase, catalogue, units, result);
   tell_errors(trials, conclusion, inquiry, result);
   trials.run_along(Trials::Rows::all);
@@ -366,11 +358,16 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
 /// Whether the experiments name roles; it is a problem if only some do.
 bool have_roles(const std::vector<std::string>& experiments) {
   size_t with_roles = 0;
+  std::vector<std::shared_ptr<const Experiment>> all;
   for (const std::string& path : experiments) {
     Problems problems;  // reported by the path that is taken
     const auto experiment = read_experiment(path, problems);
+    all.push_back(experiment);
     with_roles += !experiment || problems.has_errors() || !experiment->roles.ports.empty();
   }
+  Problems repeated;
+  refuse_repeated_records(all, repeated);
+  if (repeated.has_errors()) throw InputError(std::move(repeated));
   if (with_roles == experiments.size()) return true;
   if (with_roles == 0 && experiments.size() == 1) return false;
   Problems problems;

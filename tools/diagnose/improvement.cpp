@@ -68,6 +68,13 @@ Improvement improve(const std::shared_ptr<const SourceFile>& diagram,
   return improved;
 }
 
+std::vector<std::string> notes_of(const Additions& additions) {
+  std::vector<std::string> notes = additions.not_stated;
+  for (const AddedEffect& added : additions.effects)
+    if (!added.note.empty()) notes.push_back(added.note);
+  return notes;
+}
+
 Experiment with_moved_ports(const Experiment& experiment, const std::vector<MovedPort>& moved) {
   Experiment result = experiment;
   for (auto* list : {&result.drives, &result.compared})

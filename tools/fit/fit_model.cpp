@@ -2,9 +2,11 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include "engine/json/reader.h"
 #include "models/real/whole.h"
 #include "tools/experiment/experiment_ports.h"
+#include "tools/experiment/repeated_records.h"
 
 namespace loopwright {
 namespace {
@@ -38,12 +40,15 @@ FitModel::FitModel(const std::string& diagram, const std::vector<std::string>& e
     : diagram_(diagram), options_(options), fit_options_(fit_options) {
   Problems problems;
   run_options_.interrupt = fit_options.interrupt;
+  std::vector<std::shared_ptr<const Experiment>> loaded;
   for (const auto* list : {&experiments, &fit_options.held_out})
     for (const std::string& path : *list) {
       const auto experiment = load_experiment(path, problems);
       if (experiment) reject_map(*experiment, problems);
       records_.push_back({experiment, list == &fit_options.held_out});
+      loaded.push_back(experiment);
     }
+  refuse_repeated_records(loaded, problems);
   if (parameters.empty() && fit_options.of_each.empty())
     problems.error({}, "", "", "no parameters are named").expected = "--parameters mass,damping";
   find_unknowns(parameters, problems);
@@ -62,9 +67,13 @@ void FitModel::find_unknowns(const std::vector<std::string>& parameters, Problem
   Problems of_diagram;  // reported with those of the experiments
   const auto loaded = load_diagram(diagram_, options_, of_diagram);
   if (!loaded) return;
+  std::set<std::string> named;
   for (const std::vector<std::string>* list : {&parameters, &std::as_const(fit_options_.of_each)})
     for (const std::string& path : *list)
-      if (const auto number = find_number(*loaded, path, problems)) {
+      if (!named.insert(path).second)
+        problems.error({}, "", "", fmt::format("\"{}\" is to be fitted twice", path)).expected =
+            "each parameter once, in --parameters or in --of-each";
+      else if (const auto number = find_number(*loaded, path, problems)) {
         Unknown unknown{path, *number};
         bound(unknown, problems);
         if (list == &parameters) {

@@ -69,8 +69,10 @@ std::string lines_of(const std::vector<FittedSignal>& signals, size_t width) {
   };
   std::string text;
   for (const FittedSignal& s : signals) {
-    text += fmt::format("  {:<{}} {:>12} {:>12}", s.name, width, shown_error(s.before, s.unit),
-                        shown_error(s.after, s.unit));
+    const bool has_fitted_rows = s.before > 0 || s.after > 0 || s.held_out_before == 0;
+    text += fmt::format("  {:<{}} {:>12} {:>12}", s.name, width,
+                        has_fitted_rows ? shown_error(s.before, s.unit) : "–",
+                        has_fitted_rows ? shown_error(s.after, s.unit) : "–");
     if (s.held_out_before > 0)
       text += fmt::format("   held out: {} → {}", shown_error(s.held_out_before, s.unit),
                           shown_error(s.held_out_after, s.unit));

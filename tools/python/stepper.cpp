@@ -1,5 +1,6 @@
 /// A diagram advanced from Python, for tests, hardware in the loop and learning.
 #include <fmt/format.h>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <optional>
@@ -7,6 +8,7 @@
 #include "engine/run/run.h"
 #include "models/real/whole.h"
 #include "tools/python/diagram.h"
+#include "tools/python/interruptible.h"
 #include "tools/python/module.h"
 
 namespace loopwright::python {
@@ -19,6 +21,25 @@ struct Snapshot {
   std::shared_ptr<const Plan> plan;
   Instant now;
   std::vector<char> arena;
+};
+
+/// Lets Ctrl-C end a long loop in the thread that runs it: steps are too short for a thread of their own.
+class SignalWatch {
+ public:
+  /// Throws what the signal's handler raised. Called without the interpreter's lock.
+  void look() {
+    if (++calls_ % calls_between_clocks != 0) return;
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last_ < signal_period) return;
+    last_ = now;
+    const py::gil_scoped_acquire acquire;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  }
+
+ private:
+  static constexpr unsigned calls_between_clocks = 256;  // reading the clock costs as much as a small step
+  unsigned calls_ = 0;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
 /// Parts of the step as in engine/run/run.h. A stepper stands at a tick after part 3 (signals computed,
@@ -50,7 +71,9 @@ class DiagramStepper {
   void advance_to(double time) {
     const int64_t target = tick_at(time);
     const py::gil_scoped_release release;
+    SignalWatch signals;
     while (run_->now().tick < target) {
+      signals.look();
       const int64_t next = next_tick(target);
       if (next > target)
         throw std::invalid_argument(
@@ -127,6 +150,9 @@ class DiagramStepper {
     if (nearest < double(run_->now().tick))
       throw std::invalid_argument(
           fmt::format("t = {:g} s is in the past: the stepper is at {:g} s", time, run_->now().time));
+    if (nearest > double(most_ticks))
+      throw std::invalid_argument(fmt::format("t = {:g} s is further than ticks of {:g} s can be counted",
+                                              time, diagram_.plan->clock.time(1)));
     return whole_between<int64_t>(nearest, run_->now().tick, most_ticks);
   }
   std::string no_port(const std::string& port) const {

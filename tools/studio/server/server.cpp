@@ -246,13 +246,14 @@ class Server::Inside::Connection : public std::enable_shared_from_this<Connectio
 
   void read() {
     parser_ = make_parser();
-    stream_.expires_after(server_->options.patience);
+    stream_.expires_after(is_known_ ? server_->options.patience : server_->options.first_patience);
     http::async_read(stream_, buffer_, *parser_,
                      [self = shared_from_this()](beast::error_code code, size_t) { self->got(code); });
   }
 
  private:
   void got(beast::error_code code) {
+    is_known_ = true;
     if (code == http::error::end_of_stream || code == beast::error::timeout) return;
     if (code == http::error::header_limit)
       return write(refuse(parser_->get(), {431, "the header is too long"}));
@@ -288,6 +289,7 @@ class Server::Inside::Connection : public std::enable_shared_from_this<Connectio
   std::unique_ptr<Parser> parser_;
   Response response_;
   bool is_handed_over_ = false;
+  bool is_known_ = false;  ///< has sent a request
 };
 
 void Server::Inside::accept() {
@@ -308,7 +310,8 @@ Server::Server(ServerOptions options, Handler& handler)
 
 Server::~Server() {
   stop();
-  // What waits in the context holds on to the inside, which holds the context: it is taken out of this circle.
+  // What waits in the context holds on to the inside, which holds the context: it is taken out of this
+  // circle.
   const std::unique_ptr<asio::io_context> context = std::move(inside_->own_context);
   inside_.reset();
 }

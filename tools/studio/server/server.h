@@ -19,8 +19,9 @@ struct PageFile {
 struct ServerOptions {
   int port = 0;  ///< 0: any free one
   std::vector<PageFile> files;
-  std::chrono::milliseconds tick{300};  ///< between calls of Handler::tick while a page is open
-  std::chrono::seconds patience{15};    ///< for a whole request
+  std::chrono::milliseconds tick{300};     ///< between calls of Handler::tick while a page is open
+  std::chrono::seconds patience{15};       ///< for a whole request
+  std::chrono::seconds first_patience{3};  ///< for the first one: idle connections would keep pages out
   int most_connections = 16;
   double most_messages = 500;  ///< a second, of one page
 };

@@ -1,6 +1,7 @@
 #include "tools/studio/session/document.h"
 #include <fmt/format.h>
 #include <algorithm>
+#include <ranges>
 #include <utility>
 #include "engine/json/reader.h"
 
@@ -70,23 +71,41 @@ void Document::write(const std::string& text) {
   throw Refused(fmt::format("\"{}\" is being written by another program", path_));
 }
 
+/// All of them or none.
 void Document::write_others(const std::vector<OtherFile>& others) const {
-  for (const OtherFile& other : others) {
-    const std::optional<std::string> now = folder_.read(other.path);
-    if (now == other.after) continue;
-    // Another program changed it in other places: these stay.
-    std::string text = other.after.value_or("");
-    if (now && other.before && *now != *other.before) {
-      const auto changes = rebased(difference(*other.before, text), difference(*other.before, *now));
-      if (!changes)
-        throw Refused(fmt::format("\"{}\" was changed in the same place by another program", other.path));
-      text = applied(*now, *changes);
-    } else if (now != other.before) {
-      throw Refused(fmt::format("\"{}\" was created or removed by another program", other.path));
+  std::vector<OtherFile> written;
+  try {
+    for (const OtherFile& other : others) {
+      write_other(other);
+      written.push_back({other.path, other.after, other.before});
     }
-    if (folder_.replace(other.path, now, text))
-      throw Refused(fmt::format("\"{}\" was changed by another program at the same moment", other.path));
+  } catch (...) {
+    for (const OtherFile& other : written | std::views::reverse) {
+      try {
+        write_other(other);
+      } catch (const Refused&) {  // changed by another program since: its text stays
+      }
+    }
+    throw;
   }
+}
+
+void Document::write_other(const OtherFile& other) const {
+  const std::optional<std::string> now = folder_.read(other.path);
+  if (now == other.after) return;
+  if (now == other.before && !other.after) return folder_.remove(other.path, *now);
+  // Another program changed it in other places: these stay.
+  std::string text = other.after.value_or("");
+  if (now && other.before && *now != *other.before) {
+    const auto changes = rebased(difference(*other.before, text), difference(*other.before, *now));
+    if (!changes)
+      throw Refused(fmt::format("\"{}\" was changed in the same place by another program", other.path));
+    text = applied(*now, *changes);
+  } else if (now != other.before) {
+    throw Refused(fmt::format("\"{}\" was created or removed by another program", other.path));
+  }
+  if (folder_.replace(other.path, now, text))
+    throw Refused(fmt::format("\"{}\" was changed by another program at the same moment", other.path));
 }
 
 void Document::accept(const std::string& text, const TextChanges& changes) {

@@ -72,6 +72,7 @@ class Document {
   void take_from_outside(const std::string& theirs);
   void write(const std::string& text);
   void write_others(const std::vector<OtherFile>& others) const;
+  void write_other(const OtherFile& other) const;
   void accept(const std::string& text, const TextChanges& changes);
   TextChanges typed_in(const std::vector<Value>& intents, int64_t seen) const;
   OtherFile with_positions(const IntentEffects& effects) const;

@@ -34,10 +34,20 @@ std::vector<std::string> parts_of(const std::string& path) {
   throw Refused(fmt::format("\"{}\": {}", path, why));
 }
 
+/// Answers are JSON, which has no other texts.
+bool is_utf8(const std::string& text) {
+  try {
+    nlohmann::json(text).dump();
+    return true;
+  } catch (const nlohmann::json::type_error&) {
+    return false;
+  }
+}
+
 /// The parts of a path that may be served. Throws Refused.
 std::vector<std::string> served_parts(const std::string& path) {
   const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
-  if (path.empty() || path.size() > longest_path || std::ranges::any_of(path, is_control))
+  if (path.empty() || path.size() > longest_path || std::ranges::any_of(path, is_control) || !is_utf8(path))
     refuse("path", "this is no path of a file");
   std::vector<std::string> parts = parts_of(path);
   for (size_t i = 0; i < parts.size(); ++i) {
@@ -327,7 +337,8 @@ std::vector<Folder::File> Folder::files() const {
     const bool is_known =
         std::ranges::any_of(known_suffixes, [&](std::string_view suffix) { return name.ends_with(suffix); });
     if (!i->is_regular_file(own) || !is_known || name.ends_with(".layout.json")) continue;
-    list.push_back({fs::relative(i->path(), path_, own).generic_string(), int64_t(i->file_size(own))});
+    // A link keeps its own name; what it leads to may be outside.
+    list.push_back({i->path().lexically_relative(path_).generic_string(), int64_t(i->file_size(own))});
   }
   std::ranges::sort(list, {}, &File::path);
   return list;

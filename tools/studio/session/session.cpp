@@ -177,10 +177,14 @@ Json Session::file_list() const {
         {FileKind::device, "device"},         {FileKind::model, "model"}};
     constexpr int64_t largest_with_title = 1 << 18;  // bytes: learned models and their like have none
     std::string kind = "record", title;
-    if (file.path.ends_with(".json")) {
+    try {
+      const std::string path = folder_.path_of(file.path);
       Problems problems;
-      kind = names.at(kind_of_file(folder_.path_of(file.path), problems));
-      if (file.size < largest_with_title) title = title_of(folder_.read(file.path).value_or(""));
+      if (file.path.ends_with(".json")) kind = names.at(kind_of_file(path, problems));
+      if (kind != "record" && file.size < largest_with_title)
+        title = title_of(folder_.read(file.path).value_or(""));
+    } catch (const Refused&) {  // a name or a link that is not served, or a file that cannot be read
+      continue;
     }
     list.push_back({{"path", file.path}, {"kind", kind}, {"title", title}, {"size", file.size}});
   }
