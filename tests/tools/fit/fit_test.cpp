@@ -59,7 +59,7 @@ class Fitted : public testing::Test {
       const UniformPair u = uniform_pair(seed, 1, uint64_t(k));
       const double noise = 1e-3 * std::sqrt(-2 * std::log(u.first)) * std::cos(2 * M_PI * u.second);
       if (loses_every > 0 && k % loses_every == loses_every - 1) continue;
-      text += fmt::format("{:.12g},{:.12g},{:.9g}\n", t / time_unit, std::sin(w * t), x + noise);
+      text += fmt::format("{:.15g},{:.12g},{:.9g}\n", first_time + t / time_unit, std::sin(w * t), x + noise);
     }
     return text;
   }
@@ -69,7 +69,8 @@ class Fitted : public testing::Test {
   DiagramFolder folder;
   std::string heading = "t,u,x\n";
   double time_unit = 1;  ///< s
-  int loses_every = 0;   ///< rows; 0: none
+  double first_time = 0;
+  int loses_every = 0;  ///< rows; 0: none
 };
 
 TEST_F(Fitted, LostRowsChangeNoParameterAndAreCounted) {
@@ -91,6 +92,43 @@ TEST_F(Fitted, TimeInMillisecondsIsTheSameRecord) {
   const Fit milliseconds = fitted({"mass", "damping"});
   for (size_t i = 0; i < 2; ++i)
     EXPECT_NEAR(milliseconds.parameters[i].value, seconds.parameters[i].value, 1e-6);
+}
+
+TEST_F(Fitted, TimesOfDayAreTheSameRecord) {
+  const Fit from_zero = fitted({"mass", "damping"});
+  for (double shift : {1e6, 1.7e9}) {
+    first_time = shift;
+    record(1);
+    const Fit shifted = fitted({"mass", "damping"});
+    EXPECT_NEAR(shifted.signals[0].before, from_zero.signals[0].before, 1e-4 * from_zero.signals[0].before);
+    for (size_t i = 0; i < 2; ++i)
+      EXPECT_NEAR(shifted.parameters[i].value, from_zero.parameters[i].value, 1e-4) << shift;
+  }
+}
+
+TEST_F(Fitted, AParameterOrARecordCountsOnce) {
+  const std::string diagram = folder.path("axis.json"), record = folder.path("e.json");
+  FitOptions held_out;
+  held_out.held_out = {record};
+  const auto refusal = [&](const std::vector<std::string>& records,
+                           const std::vector<std::string>& parameters,
+                           const FitOptions& options) -> std::string {
+    try {
+      fit(diagram, records, parameters, {}, options);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_TRUE(has(refusal({record}, {"mass", "mass"}, {}), "\"mass\" is to be fitted twice"));
+  EXPECT_TRUE(has(refusal({record, record}, {"mass"}, {}), "this record is used already"));
+  EXPECT_TRUE(has(refusal({record}, {"mass"}, held_out), "this record is used already"));
+  folder.with("copy.csv", data(1));
+  folder.with("copy.json", R"({"loopwright": 1, "data": "copy.csv", "time": "t",
+      "drive": {"motor.u": {"column": "u", "unit": "N", "interpolation": "linear"}},
+      "compare": {"mass.position": {"column": "x", "unit": "m"}}})");
+  EXPECT_TRUE(has(refusal({record, folder.path("copy.json")}, {"mass"}, {}), "this record is used already"));
+  EXPECT_EQ(refusal({record, further("other", 2, 0, 0)}, {"mass"}, {}), "");
 }
 
 TEST_F(Fitted, ParametersComeBackWithinTheirIntervals) {

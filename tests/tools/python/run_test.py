@@ -86,6 +86,17 @@ def test_control_c_ends_a_long_run(common_job):
     assert time.monotonic() - begin < 30
 
 
+def test_control_c_ends_a_stepper(common_job):
+    stepper = lw.load(common_job).stepper()
+    threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+    begin = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        stepper.advance(1e6)
+    assert time.monotonic() - begin < 30
+    with pytest.raises(ValueError, match="further than ticks"):
+        stepper.advance(1e300)
+
+
 def test_other_threads_go_on_during_a_run(common_job):
     diagram = lw.load(common_job, set={"solver.stop": 60, "solver.record_step": 0.1})
     count = 0

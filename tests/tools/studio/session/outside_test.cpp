@@ -37,6 +37,36 @@ std::string replaced_in(std::string text, const std::string& from, const std::st
 
 }  // namespace
 
+TEST(OtherFiles, AreAllChangedOrNone) {
+  const StudioFolder folder;
+  folder.write("axis.json", axis);
+  folder.write("a.json", "{\"a\": 1}");
+  const Folder served(folder.path());
+  Document document(served, "axis.json");
+  const std::string changed = replaced_in(axis, "0.5", "2");
+  // The second one is another than the step believes.
+  const std::vector<OtherFile> others{{"a.json", "{\"a\": 1}", "{\"a\": 2}"},
+                                      {"b.json", std::nullopt, "{}"},
+                                      {"c.json", "{\"c\": 1}", "{\"c\": 2}"}};
+  EXPECT_THROW(document.take("a step", changed, others, {}), Refused);
+  EXPECT_EQ(folder.read("axis.json"), axis);
+  EXPECT_EQ(folder.read("a.json"), "{\"a\": 1}");
+  EXPECT_FALSE(std::filesystem::exists(folder.path("b.json")));
+}
+
+TEST(OtherFiles, ThatAStepMadeAreGoneAfterUndo) {
+  const StudioFolder folder;
+  folder.write("axis.json", axis);
+  const Folder served(folder.path());
+  Document document(served, "axis.json");
+  document.take("a step", replaced_in(axis, "0.5", "2"), {{"b.json", std::nullopt, "{}"}}, {});
+  EXPECT_EQ(folder.read("b.json"), "{}");
+  document.undo();
+  EXPECT_FALSE(std::filesystem::exists(folder.path("b.json")));
+  document.redo();
+  EXPECT_EQ(folder.read("b.json"), "{}");
+}
+
 TEST(Outside, AChangeIsTakenOverAndEditsApplyToIt) {
   const StudioFolder folder;
   folder.write("axis.json", axis);
