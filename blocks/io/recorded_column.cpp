@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <memory>
 #include "engine/block.h"
+#include "engine/json/json.h"
 #include "engine/record/column_units.h"
+#include "engine/record/excerpt.h"
 #include "engine/unit/scaled_rate.h"
 #include "engine/record/recording_file.h"
 
@@ -21,7 +23,7 @@ struct RecordedColumn {
   struct Table {
     std::vector<double> time, begin, value;  // s, s, SI; begin: time from which the sample is valid
   };
-  std::string file, column, time_column, unit;
+  std::string file, column, time_column, unit, experiment;
   Joined interpolation = Joined::hold;
   Beyond beyond = Beyond::hold;
   std::shared_ptr<const Table> table;
@@ -44,6 +46,10 @@ struct RecordedColumn {
         parameter(&RecordedColumn::unit, "unit", "",
                   "Unit of the numbers in the file, where their heading has none")
             .optional(),
+        parameter(&RecordedColumn::experiment, "experiment", "",
+                  "Experiment file whose \"columns\" and \"excerpt\" apply to the file")
+            .file()
+            .optional(),
         parameter(&RecordedColumn::interpolation, "interpolation", "", "What holds between samples")
             .optional(),
         parameter(&RecordedColumn::beyond, "beyond", "",
@@ -52,6 +58,7 @@ struct RecordedColumn {
         output(&Out::value, "value", "$value", "The column in SI units"));
   }
   void check(const Checker& checker);
+  void take_excerpt(const Checker& checker, Recording& recording) const;
   std::vector<UnitClaim> unit_claims() const {
     return known_unit ? std::vector<UnitClaim>{{"$value", *known_unit, "unit"}} : std::vector<UnitClaim>();
   }
@@ -78,6 +85,16 @@ struct RecordedColumn {
   }
 };
 
+/// The same columns and rows as for the readers of the experiment.
+void RecordedColumn::take_excerpt(const Checker& checker, Recording& recording) const {
+  const Reader reader{checker.problems(), checker.block()};
+  const auto source = read_source(checker.resolve_file("experiment", experiment), checker.place("experiment"),
+                                  reader.problems);
+  if (!source) return;
+  const Value settings = parse_json(source, reader.problems);
+  Excerpt::read(settings, reader).apply(recording, time_column, reader);
+}
+
 void RecordedColumn::check(const Checker& checker) {
   Problems& problems = checker.problems();
   const size_t before = problems.list().size();
@@ -86,7 +103,8 @@ void RecordedColumn::check(const Checker& checker) {
       if (problems.list()[i].severity == Problem::Severity::error) return true;
     return false;
   };
-  const Recording recording = read_recording(checker.resolve_file("file", file), problems);
+  Recording recording = read_recording(checker.resolve_file("file", file), problems);
+  if (!experiment.empty() && !failed()) take_excerpt(checker, recording);
   if (failed()) {
     checker.error("file", "the recording cannot be used").found = file;
     return;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include "engine/json/reader.h"
 #include "engine/json/unit_hint.h"
+#include "engine/record/time_names.h"
 
 namespace loopwright {
 namespace {
@@ -17,17 +18,6 @@ std::string heading(const Column& column) {
 bool is_same_unit(const Unit& a, const Unit& b) {
   constexpr double rounding = 1e-12;
   return a.fits(b) && a.offset == b.offset && std::abs(a.scale - b.scale) <= rounding * std::abs(b.scale);
-}
-
-/// The name without its structure: "log.time" → "time".
-std::string_view last_part(std::string_view name) {
-  const size_t dot = name.rfind('.');
-  return dot == name.npos ? name : name.substr(dot + 1);
-}
-
-bool is_called_time(std::string_view name) {
-  constexpr std::array<std::string_view, 4> names = {"time", "Time", "TIME", "t"};
-  return std::ranges::find(names, name) != names.end();
 }
 
 void list_names(const Recording& recording, Problem& p) {

@@ -11,6 +11,7 @@
 #include "engine/record/recorded_bytes.h"
 #include "engine/record/mat.h"
 #include "engine/record/mat_layout.h"
+#include "engine/record/mat_logs.h"
 #include "engine/record/mat_names.h"
 #include "engine/record/mat_variables.h"
 #include "engine/json/problem_limit.h"
@@ -37,6 +38,7 @@ class Assembly {
   void restore_our_lists(const std::vector<Variable>& variables);
   void add(Variable& variable);
   void add_numbers(Variable& variable);
+  void add_log_of_matrices(Variable& variable);
   void add_matrix(const Variable& variable, bool upright);
   void misfit(const Variable& variable, const std::string& what);
   void check(const Column& column);
@@ -53,8 +55,8 @@ class Assembly {
 
 Recording Assembly::assemble(std::vector<Variable>& variables) {
   restore_our_lists(variables);
-  for (const Variable& variable : variables)
-    if (variable.kind == Variable::Kind::numbers) rows_ = std::max({rows_, variable.rows, variable.columns});
+  for (const std::string& error : mat::unfold_logs(variables)) problems_.error(place_, error);
+  rows_ = mat::length_of_columns(variables);
   for (Variable& variable : variables) add(variable);
 
   Recording recording;
@@ -113,10 +115,11 @@ void Assembly::add(Variable& variable) {
 }
 
 void Assembly::add_numbers(Variable& variable) {
+  if (variable.is_log_of_matrices) return add_log_of_matrices(variable);
   const bool is_vector = variable.rows == 1 || variable.columns == 1;
   const auto ours = our_places_.find(variable.name);
   if (is_vector && variable.numbers.size() == rows_) {
-    Column column{variable.name, {}, std::move(variable.numbers)};
+    Column column{variable.name, variable.unit, std::move(variable.numbers)};
     if (ours == our_places_.end() || ours->second >= our_names_.size()) {
       others_.push_back(std::move(column));
     } else {
@@ -129,12 +132,25 @@ void Assembly::add_numbers(Variable& variable) {
     facts_.emplace_back(variable.name, number);
   } else if (variable.numbers.empty()) {
     misfit(variable, "an empty matrix");
+  } else if (variable.rows == rows_ && variable.columns == rows_) {
+    misfit(variable, fmt::format("a matrix of {0} rows and {0} columns: either may be the signals", rows_));
   } else if (variable.rows == rows_ || variable.columns == rows_) {
     add_matrix(variable, variable.rows == rows_);
   } else {
     misfit(variable, fmt::format("a {}×{} matrix beside columns of {}", variable.rows, variable.columns,
                                  count_of(rows_, "row")));
   }
+}
+
+/// Of one number at each instant: one column.
+void Assembly::add_log_of_matrices(Variable& variable) {
+  if (variable.columns != rows_)
+    return misfit(variable, fmt::format("an array of 3 dimensions, and the last of them are not the {}",
+                                        count_of(rows_, "row")));
+  if (variable.rows == 1)
+    others_.push_back({variable.name, variable.unit, std::move(variable.numbers)});
+  else
+    add_matrix(variable, false);
 }
 
 /// `upright`: a row of the matrix is a row of the recording. Transposed matrices come from Simulink's "To
@@ -144,6 +160,7 @@ void Assembly::add_matrix(const Variable& variable, bool upright) {
   for (size_t i = 0; i < count; ++i) {
     Column& column = others_.emplace_back();
     column.name = fmt::format("{}[{}]", variable.name, i);
+    column.unit = variable.unit;
     column.values.reserve(rows_);
     for (size_t row = 0; row < rows_; ++row)
       column.values.push_back(variable.numbers[upright ? i * rows_ + row : row * count + i]);
@@ -156,7 +173,9 @@ void Assembly::misfit(const Variable& variable, const std::string& what) {
     problems_.warning(place_, message, "it is left out");
   } else {
     problems_.error(place_, message, "vectors or matrices of real numbers with the same number of rows", {},
-                    "save the file without it");
+                    what == mat::object
+                        ? "in MATLAB: s = struct('Time', ts.Time, 'Data', ts.Data), and save s"
+                        : "save the file without it");
   }
 }
 

@@ -18,156 +18,12 @@
 #include <optional>
 #include <string_view>
 
-#include "engine/record/text.h"
+#include "engine/record/mat_values.h"
 
 namespace loopwright::mat {
 namespace {
 
-// ---- In the child: from matio to plain values
-// ---------------------------------------------------------------------
-
 using Matvar = std::unique_ptr<matvar_t, decltype(&Mat_VarFree)>;
-
-Variable unusable(std::string name, std::string reason) {
-  Variable variable;
-  variable.name = std::move(name);
-  variable.texts = {std::move(reason)};
-  return variable;
-}
-
-/// The number of elements, if the dimensions are those of a matrix and the data is complete.
-std::optional<size_t> count_elements(const matvar_t& source) {
-  if (source.rank != 2 || !source.dims) return std::nullopt;
-  size_t count = 0, bytes = 0;
-  if (__builtin_mul_overflow(source.dims[0], source.dims[1], &count)) return std::nullopt;
-  if (source.data_size < 0 || __builtin_mul_overflow(count, size_t(source.data_size), &bytes))
-    return std::nullopt;
-  if (count > 0 && (!source.data || source.nbytes < bytes)) return std::nullopt;
-  return count;
-}
-
-template <class Number>
-bool copy_numbers(const matvar_t& source, size_t count, std::vector<double>& numbers) {
-  if (source.data_size != sizeof(Number)) return false;
-  numbers.resize(count);
-  for (size_t i = 0; i < count; ++i) {
-    Number number;
-    std::memcpy(&number, static_cast<const char*>(source.data) + i * sizeof number, sizeof number);
-    numbers[i] = static_cast<double>(number);
-  }
-  return true;
-}
-
-bool copy_numbers_of_any_class(const matvar_t& source, size_t count, std::vector<double>& numbers) {
-  switch (source.class_type) {
-    case MAT_C_DOUBLE:
-      return copy_numbers<double>(source, count, numbers);
-    case MAT_C_SINGLE:
-      return copy_numbers<float>(source, count, numbers);
-    case MAT_C_INT8:
-      return copy_numbers<int8_t>(source, count, numbers);
-    case MAT_C_UINT8:
-      return copy_numbers<uint8_t>(source, count, numbers);
-    case MAT_C_INT16:
-      return copy_numbers<int16_t>(source, count, numbers);
-    case MAT_C_UINT16:
-      return copy_numbers<uint16_t>(source, count, numbers);
-    case MAT_C_INT32:
-      return copy_numbers<int32_t>(source, count, numbers);
-    case MAT_C_UINT32:
-      return copy_numbers<uint32_t>(source, count, numbers);
-    case MAT_C_INT64:
-      return copy_numbers<int64_t>(source, count, numbers);
-    case MAT_C_UINT64:
-      return copy_numbers<uint64_t>(source, count, numbers);
-    default:
-      return false;
-  }
-}
-
-/// Eight-bit text is UTF-8, otherwise Latin-1.
-std::string as_utf8(std::string_view text) {
-  if (find_not_text(text) == std::string_view::npos) return std::string(text);
-  std::u16string units;
-  for (const char c : text) units += static_cast<unsigned char>(c);
-  return from_utf16(units);
-}
-
-/// The text of a row of characters; nothing for other shapes.
-std::optional<std::string> text_of(const matvar_t& source) {
-  if (source.class_type == MAT_C_EMPTY) return "";
-  const std::optional<size_t> count = count_elements(source);
-  if (source.class_type != MAT_C_CHAR || !count || (*count > 0 && source.dims[0] != 1)) return std::nullopt;
-  if (*count == 0) return "";
-  const char* const data = static_cast<const char*>(source.data);
-  if (source.data_size == 2) {
-    std::u16string units(*count, u' ');
-    std::memcpy(units.data(), data, 2 * *count);
-    return from_utf16(units);
-  }
-  return source.data_size == 1 ? std::optional(as_utf8({data, *count})) : std::nullopt;
-}
-
-Variable cell_of_texts(std::string name, const matvar_t& source) {
-  const std::optional<size_t> count = count_elements(source);
-  Variable variable;
-  for (size_t i = 0; count && i < *count; ++i) {
-    const matvar_t* const cell = static_cast<matvar_t* const*>(source.data)[i];
-    const std::optional<std::string> text = cell ? text_of(*cell) : "";
-    if (!text) break;
-    variable.texts.push_back(*text);
-  }
-  if (!count || variable.texts.size() != *count) return unusable(std::move(name), "a cell array");
-  variable.name = std::move(name);
-  variable.kind = Variable::Kind::texts;
-  variable.rows = source.dims[0];
-  variable.columns = source.dims[1];
-  return variable;
-}
-
-Variable convert(std::string name, const matvar_t& source) {
-  if (source.rank != 2)
-    return unusable(std::move(name), fmt::format("an array of {} dimensions", source.rank));
-  if (source.class_type == MAT_C_CELL) return cell_of_texts(std::move(name), source);
-  if (source.class_type == MAT_C_STRUCT) return unusable(std::move(name), "a structure within a structure");
-  if (source.class_type == MAT_C_SPARSE) return unusable(std::move(name), "a sparse matrix");
-  if (source.isComplex) return unusable(std::move(name), "complex numbers");
-  Variable variable;
-  if (source.class_type == MAT_C_CHAR) {
-    const std::optional<std::string> text = text_of(source);
-    if (!text) return unusable(std::move(name), "text of several rows");
-    variable.kind = Variable::Kind::text;
-    variable.texts = {*text};
-  } else {
-    const std::optional<size_t> count = count_elements(source);
-    if (!count || !copy_numbers_of_any_class(source, *count, variable.numbers))
-      return unusable(std::move(name), "no numbers, or damaged ones");
-    variable.kind = Variable::Kind::numbers;
-    variable.rows = source.dims[0];
-    variable.columns = source.dims[1];
-  }
-  variable.name = std::move(name);
-  return variable;
-}
-
-void append(std::vector<Variable>& list, matvar_t& source) {
-  const std::string name = as_utf8(source.name ? source.name : "");
-  if (source.class_type != MAT_C_STRUCT) {
-    list.push_back(convert(name, source));
-    return;
-  }
-  if (source.rank != 2 || !source.dims || source.dims[0] != 1 || source.dims[1] != 1) {
-    list.push_back(unusable(name, "an array of structures"));
-    return;
-  }
-  const unsigned fields = Mat_VarGetNumberOfFields(&source);
-  char* const* const names = Mat_VarGetStructFieldnames(&source);
-  for (unsigned i = 0; names && i < fields; ++i) {
-    const std::string field_name = name + "." + as_utf8(names[i] ? names[i] : "");
-    const matvar_t* const field = Mat_VarGetStructFieldByIndex(&source, i, 0);
-    list.push_back(field ? convert(field_name, *field) : unusable(field_name, "an empty field"));
-  }
-}
 
 // ---- Between child and parent: the values as bytes
 // ------------------------------------------------------------------
@@ -187,10 +43,10 @@ class Packer {
   bool put(size_t number) { return put(&number, sizeof number); }
   bool put(const std::string& text) { return put(text.size()) && put(text.data(), text.size()); }
   bool put(const Variable& variable) {
-    bool all = put(variable.name) && put(size_t(variable.kind)) && put(variable.rows) &&
-               put(variable.columns) && put(variable.numbers.size()) &&
-               put(variable.numbers.data(), variable.numbers.size() * sizeof(double)) &&
-               put(variable.texts.size());
+    bool all =
+        put(variable.name) && put(size_t(variable.kind)) && put(variable.rows) && put(variable.columns) &&
+        put(size_t(variable.is_log_of_matrices)) && put(variable.numbers.size()) &&
+        put(variable.numbers.data(), variable.numbers.size() * sizeof(double)) && put(variable.texts.size());
     for (const std::string& text : variable.texts) all = all && put(text);
     return all;
   }
@@ -217,9 +73,11 @@ class Unpacker {
     return get(text.data(), size);
   }
   bool get(Variable& variable) {
-    size_t kind = 0, numbers = 0, texts = 0;
-    if (!get(variable.name) || !get(kind) || !get(variable.rows) || !get(variable.columns) || !get(numbers))
+    size_t kind = 0, is_log = 0, numbers = 0, texts = 0;
+    if (!get(variable.name) || !get(kind) || !get(variable.rows) || !get(variable.columns) || !get(is_log) ||
+        !get(numbers))
       return false;
+    variable.is_log_of_matrices = is_log != 0;
     if (kind > size_t(Variable::Kind::other) || numbers > bytes_.size() / sizeof(double)) return false;
     variable.kind = static_cast<Variable::Kind>(kind);
     variable.numbers.resize(numbers);

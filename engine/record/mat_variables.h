@@ -11,12 +11,17 @@ namespace loopwright::mat {
 struct Variable {
   enum class Kind { numbers, text, texts, other };
   std::string name;  ///< fields of a structure: "structure.field"
+  std::string unit;  ///< where a log states it
   Kind kind = Kind::other;
-  size_t rows = 0, columns = 0;  ///< of the numbers or texts
-  std::vector<double> numbers;   ///< column by column
+  size_t rows = 0, columns = 0;     ///< of the numbers or texts
+  bool is_log_of_matrices = false;  ///< of three dimensions, the last of them time: a column is an instant
+  std::vector<double> numbers;      ///< column by column
   std::vector<std::string>
       texts;  ///< a text: one; a cell of texts: column by column; other: the reason why it cannot be used
 };
+
+/// Why a variable cannot be used that is an instance of a class.
+inline constexpr const char* object = "an object, such as a timeseries or a Dataset";
 
 struct Variables {
   std::vector<Variable> list;

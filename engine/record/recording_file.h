@@ -11,12 +11,15 @@ namespace loopwright {
 /// other is an error.
 Recording read_recording(const std::string& path, Problems& problems, const ReadOptions& options = {});
 
-/// By the extension: .csv → write_csv, .mat → write_mat. Throws std::runtime_error for any other, before
-/// anything is written.
+/// By the extension: .csv → write_csv, .mat → write_mat, .h5 or .hdf5 → write_hdf5. Throws std::runtime_error
+/// for any other, before anything is written.
 void write_recording(const std::string& path, const Recording& recording);
 
-/// Whether write_recording() supports the path, so that a program can reject it before a long computation.
+/// Whether a recording can be written to the path and read again, so that a program can reject it before a
+/// long computation.
 bool is_recording_path(const std::string& path);
+/// The same for results that need not be read again: also HDF5.
+bool is_result_path(const std::string& path);
 /// The same for CSV only, which can be written row by row.
 bool is_csv_path(const std::string& path);
 

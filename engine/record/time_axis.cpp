@@ -11,6 +11,7 @@
 #include "engine/record/csv_syntax.h"
 #include "engine/json/problem_limit.h"
 #include "engine/record/text.h"
+#include "engine/record/time_stamps.h"
 #include "models/real/fraction.h"
 
 namespace loopwright {
@@ -79,20 +80,6 @@ double plain_step(double mean, double median, double steps) {
   return std::abs(decimal - mean) * steps <= least_told * mean ? decimal : mean;
 }
 
-/// [s] The last digit with which the times are written; 0: they have more than nine.
-double last_digit(std::span<const double> times) {
-  constexpr double rounding = 1e-6;  // of the digit
-  for (double digit = 1; digit > 0.5e-9; digit /= 10) {
-    bool all = true;
-    for (size_t i = 0; i < times.size() && all; ++i) {
-      const double count = times[i] / digit;
-      all = std::abs(count - std::round(count)) <= std::max(rounding, 1e-15 * std::abs(count));
-    }
-    if (all) return digit;
-  }
-  return 0;
-}
-
 /// The shortest decimal, or else the simplest fraction of a second, that the digits of the times cannot
 /// distinguish from the mean step: 1/750 for stamps that were rounded to microseconds.
 double simplest_step(double mean, double digit, double steps) {
@@ -142,6 +129,19 @@ TimeAxis even_but_for_gaps(std::span<const double> times, double median, double 
 }
 
 }  // namespace
+
+double last_digit(std::span<const double> times) {
+  constexpr double rounding = 1e-6;  // of the digit
+  for (double digit = 1; digit > 0.5e-9; digit /= 10) {
+    bool all = true;
+    for (size_t i = 0; i < times.size() && all; ++i) {
+      const double count = times[i] / digit;
+      all = std::abs(count - std::round(count)) <= std::max(rounding, 1e-15 * std::abs(count));
+    }
+    if (all) return digit;
+  }
+  return 0;
+}
 
 TimeAxis check_time(const Column& time, Problems& problems, const TimeOptions& options, const Place& place) {
   ProblemLimit limit(problems, options.most_problems);

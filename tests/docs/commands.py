@@ -71,7 +71,8 @@ class Block:
     def __init__(self, page, line, kind, text, before):
         self.page, self.line, self.kind, self.text = page, line, kind, text
         named = re.search(r"`([\w./]+\.\w+)`:\s*$", before)
-        self.name = named.group(1) if named and kind in ("json", "cpp") else None
+        is_file = named and (kind in ("json", "cpp") or (kind == "text" and named.group(1).endswith(".csv")))
+        self.name = named.group(1) if is_file else None
         if kind == "json" and not self.name:
             whole = self.whole_file()
             self.name = NAMES.get((page, whole.get("title"))) if whole else None

@@ -61,6 +61,7 @@ def make_few(pages):
     pages.command('run', motor / 'conventional.json', '-q', '-o', second, '--set', 'payload=0.2621 kg')
     make_run(pages, motor / 'conventional.json', '--beside', second)
     pages.page('report', 'report', first, second, option='-o')
+    pages.page('look', 'look', first)
     pages.page('linearize', 'linearize', motor / 'conventional.json', '--from', 'stage.command', '--to', 'stage.position',
                '--break', 'stage.command')
     if os.environ.get('LOOPWRIGHT_DATA'):

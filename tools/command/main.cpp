@@ -5,6 +5,7 @@
 #include <thread>
 #include "tools/command/command.h"
 #include "tools/command/command_line.h"
+#include "tools/command/look.h"
 
 namespace loopwright {
 namespace {
@@ -27,6 +28,7 @@ int run_program(int count, char** arguments) {
   add_new(app, choose);
   add_blocks(app, choose);
   add_schema(app, choose);
+  add_look(app, choose);
   add_compare(app, choose);
   add_fit(app, choose);
   add_gp(app, choose);

@@ -4,6 +4,7 @@
 #include <set>
 #include "engine/plan/load.h"
 #include "engine/record/csv.h"
+#include "engine/record/csv_excel.h"
 #include "engine/record/recording_file.h"
 #include "tools/command/command.h"
 #include "tools/deploy/replay.h"
@@ -20,7 +21,7 @@ struct Arguments {
   std::vector<std::string> beside;
   double checkpoint_every = 0;
   int64_t run = 0;
-  bool quiet = false, strict_units = false, watch = false;
+  bool quiet = false, strict_units = false, watch = false, excel = false;
 };
 
 void require_paths(const Arguments& a) {
@@ -28,8 +29,11 @@ void require_paths(const Arguments& a) {
   require_writable_file(a.report, "--report");
   require_writable_file(a.checkpoint, "--checkpoint");
   Problems problems;
-  if (!a.output.empty() && a.output != "-" && !is_recording_path(a.output))
-    problems.error({}, "", "", fmt::format("-o {}: recordings are written as .csv or .mat", a.output));
+  if (!a.output.empty() && a.output != "-" && !is_result_path(a.output))
+    problems.error({}, "", "", fmt::format("-o {}: recordings are written as .csv, .mat or .h5", a.output));
+  if (a.excel && a.output != "-" && !is_csv_path(a.output))
+    problems.error({}, "", "", "--excel: a table for Excel is a .csv file").hint =
+        "run … -o result.csv --excel";
   if (a.checkpoint.empty() != (a.checkpoint_every == 0))
     problems.error({}, "", "", "--checkpoint FILE and --checkpoint-every SECONDS go together");
   if (problems.has_errors()) throw InputError(std::move(problems));
@@ -128,7 +132,9 @@ int run_once(const Arguments& a, Watch* watch = nullptr) {
       followed, result.recording, is_watched ? watched.take(result.recording) : std::vector<TimeAtLimit>());
   for (const std::string& warning : result.warnings) tell("{}: warning: {}\n", a.diagram.path, warning);
   if (a.output == "-")
-    print_csv(stdout, result.recording);
+    (a.excel ? print_excel_csv : print_csv)(stdout, result.recording);
+  else if (a.excel)
+    write_excel_csv(a.output, result.recording);
   else if (!a.output.empty())
     write_recording(a.output, result.recording);
   if (!a.report.empty()) {
@@ -170,7 +176,11 @@ void add_run(CLI::App& app, std::function<void(std::function<int()>)> choose) {
   CLI::App* command = app.add_subcommand("run", "Simulate a diagram");
   auto a = std::make_shared<Arguments>();
   a->diagram.add_to(*command);
-  command->add_option("-o,--output", a->output, "Write the recording: .csv, .mat, or - for CSV on stdout");
+  command->add_option("-o,--output", a->output,
+                      "Write the recording: .csv, .mat, .h5, or - for CSV on stdout");
+  command
+      ->add_flag("--excel", a->excel, "CSV for a spreadsheet: semicolons, decimal commas, no comment lines")
+      ->needs("--output");
   command->add_option("--report", a->report, "Write an HTML page with scopes and statistics");
   command->add_option("--beside", a->beside, "Lay this recording over the run on the page; may be repeated")
       ->allow_extra_args(false);

@@ -1,5 +1,6 @@
 #include "tools/compare/excitation.h"
 #include "models/real/whole.h"
+#include "tools/experiment/signal_figures.h"
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -70,21 +71,6 @@ bool has_varied_force(const MeasuredMotion& m) {
   for (size_t b = 0; b < sum.size(); ++b)
     if (count[b] > 1) within += squares[b] - sum[b] * sum[b] / count[b], all += squares[b];
   return within > 0.05 * all;
-}
-
-/// Rows where the second difference has a peak and an opposite one: single wrong samples of the position.
-size_t outliers_in(const MeasuredMotion& m) {
-  std::vector<double> leap;
-  for (size_t k = 1; k + 1 < m.rows(); ++k)
-    leap.push_back(std::abs(m.raw_position[k + 1] - 2 * m.raw_position[k] + m.raw_position[k - 1]));
-  std::vector<double> sorted = leap;
-  const size_t near_top = sorted.size() * 95 / 100;
-  std::ranges::nth_element(sorted, sorted.begin() + ptrdiff_t(near_top));
-  const double usual = sorted[near_top];
-  size_t count = 0;
-  for (size_t i = 1; i + 1 < leap.size(); ++i)
-    count += leap[i] > 20 * usual + 1e-300 && leap[i] > 1.5 * leap[i - 1] && leap[i] > 1.5 * leap[i + 1];
-  return count;
 }
 
 /// Fraction of the rows on which the input stays at its highest or lowest value.
@@ -247,7 +233,7 @@ std::vector<RecordFault> own_faults(const MeasuredMotion& m, const ForceResidual
                       fmt::format("{} sample{} {} missing at {} place{}", lost, lost == 1 ? "" : "s",
                                   lost == 1 ? "is" : "are", gaps, gaps == 1 ? "" : "s"),
                       "the input is taken as held there, and the rows beside the gaps do not count"});
-  if (const size_t count = outliers_in(m); count > 0)
+  if (const size_t count = outliers(m.raw_position).size(); count > 0)
     faults.push_back(
         {"outliers",
          fmt::format("{} sample{} of the position leap out of line", count, count == 1 ? "" : "s"),

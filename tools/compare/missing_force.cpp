@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include "tools/compare/smoother.h"
 #include "tools/compare/zero_phase.h"
+#include "tools/experiment/signal_figures.h"
 #include "models/real/whole.h"
 
 namespace loopwright {
@@ -16,36 +17,6 @@ double rms_where(const std::vector<double>& values, const std::vector<char>& cou
   for (size_t k = 0; k < values.size(); ++k)
     if (counts[k]) sum += values[k] * values[k], ++n;
   return n ? std::sqrt(sum / double(n)) : 0;
-}
-
-/// rms(x[k + lag] - x[k]) over all k.
-double difference_after(const std::vector<double>& x, size_t lag, size_t step) {
-  double sum = 0;
-  size_t n = 0;
-  for (size_t k = 0; k + lag < x.size(); k += step, ++n) sum += (x[k + lag] - x[k]) * (x[k + lag] - x[k]);
-  return n ? std::sqrt(sum / double(n)) : 1e300;
-}
-
-/// Number of rows after which the motion repeats, over at least a third of the record; 0: it does not repeat.
-size_t find_repeat(const MeasuredMotion& m) {
-  const size_t n = m.rows(), coarse = std::max<size_t>(1, whole_count(0.02 / m.sample_time));
-  const double allowed = 0.003 * m.stroke();
-  bool has_left = false;  // the motion is also similar to itself after a short time
-  size_t best = 0;
-  double least = 1e300;
-  for (size_t lag = coarse; lag < 2 * n / 3; lag += coarse) {
-    const double d = difference_after(m.position, lag, coarse);
-    has_left |= d > 0.1 * m.stroke();
-    if (!has_left) continue;
-    if (d < least) least = d, best = lag;
-    if (least < 4 * allowed && d > 2 * least) break;  // the first of several repeats
-  }
-  if (best == 0) return 0;
-  size_t fine = best;
-  least = 1e300;
-  for (size_t lag = best - coarse; lag <= best + coarse && lag < n; ++lag)
-    if (const double d = difference_after(m.position, lag, 7); d < least) least = d, fine = lag;
-  return least < allowed ? fine : 0;
 }
 
 /// Half of the spread between repetitions; needs no model.
@@ -69,7 +40,7 @@ constexpr std::array<const char*, 6> variable_names = {"position",  "velocity", 
 
 NoiseFloor noise_floor(const MeasuredMotion& m, const std::vector<double>& residual) {
   NoiseFloor floor;
-  if (const size_t lag = find_repeat(m); lag > 0) {
+  if (const size_t lag = rows_until_repeat(m.position, m.sample_time); lag > 0) {
     floor.repeat_s = double(lag) * m.sample_time;
     floor.value = floor_of_repeats(m, residual, lag);
     floor.source = fmt::format("the spread between repeats of the motion, {:.4g} s apart", floor.repeat_s);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include "tools/experiment/signal_figures.h"
 
 namespace loopwright {
 namespace {
@@ -13,32 +14,6 @@ constexpr double most_late = 5, most_held_up = 0.01;
 constexpr double gap = 2.5;
 /// The times along which the measured signals are rougher by this factor are wrong.
 constexpr double clearly_rougher = 1.2;
-
-/// The median deviation of a signal from the cubic through the two rows before and the two behind each row,
-/// over the faster half of the rows; per unit of independent noise.
-double roughness(const std::vector<double>& at, const std::vector<double>& value) {
-  constexpr size_t reach = 2, most = 20000;
-  const size_t n = value.size(), step = std::max<size_t>(1, n / most);
-  std::vector<std::pair<double, double>> rows;  // speed, deviation
-  for (size_t i = reach; i + reach < n; i += step) {
-    const size_t around[] = {i - 2, i - 1, i + 1, i + 2};
-    double deviation = value[i], squares = 1;
-    for (size_t j : around) {
-      double weight = 1;
-      for (size_t other : around)
-        if (other != j) weight *= (at[i] - at[other]) / (at[j] - at[other]);
-      deviation -= weight * value[j], squares += weight * weight;
-    }
-    rows.emplace_back(std::abs(value[i + reach] - value[i - reach]),
-                      std::abs(deviation) / std::sqrt(squares));
-  }
-  if (rows.size() < 20) return 0;
-  const auto half = rows.begin() + std::ptrdiff_t(rows.size() / 2);
-  std::ranges::nth_element(rows, half);
-  const auto middle = half + (rows.end() - half) / 2;
-  std::ranges::nth_element(half, middle, rows.end(), {}, &std::pair<double, double>::second);
-  return middle->second;
-}
 
 /// Whether the measured signals are smoother along their own times than along even samples.
 bool times_are_own(const Experiment& experiment, const std::vector<double>& own,

@@ -9,6 +9,7 @@
 #include "engine/json/reader.h"
 #include "engine/json/stated_number.h"
 #include "engine/record/column_units.h"
+#include "engine/record/excerpt.h"
 #include "engine/record/recording_file.h"
 #include "hw/realtime/deploy.h"
 #include "tools/experiment/balances.h"
@@ -33,7 +34,7 @@ class Loader {
       return nullptr;
     reader_.reject_unknown(file,
                            {"$schema", "loopwright", "title", "description", "data", "time", "drive",
-                            "compare", "roles", "sites", "hold_out", "rows"},
+                            "compare", "roles", "sites", "hold_out", "rows", "columns", "excerpt"},
                            "an experiment");
     reader_.check_version(file);
     result_->title = reader_.text(file, "title"), result_->place = file.place;
@@ -43,6 +44,7 @@ class Loader {
     read_sites(file);
     read_hold_out(file);
     read_kind_of_rows(file);
+    excerpt_ = Excerpt::read(file, reader_);
     read_data(file);
     if (!problems_.has_errors() && result_->is_map) gather_balances(*result_, problems_);
     return result_;
@@ -160,6 +162,8 @@ class Loader {
     const size_t before = problems_.list().size();
     Recording data = read_recording(result_->data_path, problems_);
     if (data.columns.empty() || has_errors_from(before)) return;
+    excerpt_.apply(data, reader_.text(file, "time"), reader_);
+    if (has_errors_from(before)) return;
     leave_out_repeats(file, data, *member);
     read_time(file, data, *member);
     for (auto* list : {&result_->drives, &result_->compared})
@@ -264,6 +268,7 @@ class Loader {
   }
 
   std::map<std::string, StatedNumber> resolutions_;  // by port
+  Excerpt excerpt_;
   std::shared_ptr<Experiment> result_ = std::make_shared<Experiment>();
   Reader reader_;
   Problems& problems_;
@@ -274,6 +279,14 @@ Value text_value(std::string text) {
   value.kind = Value::Kind::text;
   value.text = std::move(text);
   return value;
+}
+
+/// Whether the played columns, too, are computed, or are a part of the record.
+bool has_excerpt(const Experiment& experiment) {
+  if (!experiment.place.file) return false;  // not from a file
+  Problems reported_before;
+  const Reader reader{reported_before, ""};
+  return !Excerpt::read(parse_json(experiment.place.file, reported_before), reader).empty();
 }
 
 }  // namespace
@@ -301,6 +314,7 @@ void reject_map(const Experiment& experiment, Problems& problems) {
 }
 
 LoadOptions follow(const Experiment& experiment, LoadOptions options) {
+  const bool is_excerpt = has_excerpt(experiment);
   for (size_t i = 0; i < experiment.drives.size(); ++i) {
     const RecordedSignal& signal = experiment.drives[i];
     Drive drive;
@@ -319,6 +333,7 @@ LoadOptions follow(const Experiment& experiment, LoadOptions options) {
     add("column", signal.column);
     add("time", experiment.time_column);
     add("unit", signal.unit);
+    if (is_excerpt) add("experiment", experiment.path);
     add("interpolation", experiment.drive_is_linear[i] ? "linear" : "hold");
     drive.settings.place = signal.place;
     options.drives.push_back(std::move(drive));

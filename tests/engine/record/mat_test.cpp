@@ -163,6 +163,39 @@ TEST(MatRead, TurnsVectorsMatricesStructuresAndTextsIntoColumnsAndFacts) {
   }
 }
 
+/// As Simulink stores "structure with time": two signals, of which the second is a vector.
+TEST(MatRead, UnfoldsALogOfSimulinkInBothVersions) {
+  const TemporaryFolder folder;
+  for (const mat_ft version : {MAT_FT_MAT5, MAT_FT_MAT73}) {
+    {
+      ForeignFile file(folder / "a.mat", version);
+      std::array<const char*, 3> fields = {"values", "label", "dimensions"};
+      std::array<size_t, 2> one = {1, 1}, two = {1, 2}, five = {1, 5};
+      matvar_t* const signals = Mat_VarCreateStruct("signals", 2, two.data(), fields.data(), 3);
+      std::string label = "speed";
+      Mat_VarSetStructFieldByName(signals, "values", 0, ForeignFile::matrix(nullptr, 3, 1, {7, 8, 9}));
+      Mat_VarSetStructFieldByName(
+          signals, "label", 0,
+          Mat_VarCreate(nullptr, MAT_C_CHAR, MAT_T_UINT8, 2, five.data(), label.data(), 0));
+      Mat_VarSetStructFieldByName(signals, "dimensions", 0, ForeignFile::matrix(nullptr, 1, 1, {1}));
+      Mat_VarSetStructFieldByName(signals, "values", 1,
+                                  ForeignFile::matrix(nullptr, 3, 2, {1, 2, 3, 4, 5, 6}));
+      std::array<const char*, 2> members = {"time", "signals"};
+      matvar_t* const log = Mat_VarCreateStruct("log", 2, one.data(), members.data(), 2);
+      Mat_VarSetStructFieldByName(log, "time", 0, ForeignFile::matrix(nullptr, 3, 1, {0, 1, 2}));
+      Mat_VarSetStructFieldByName(log, "signals", 0, signals);
+      file.add(log);
+    }
+    const Recording recording = read_right(folder / "a.mat");
+    std::vector<std::string> sorted = names(recording);
+    std::ranges::sort(sorted);
+    EXPECT_THAT(sorted, ElementsAre("log.signals[1][0]", "log.signals[1][1]", "log.speed", "log.time"));
+    EXPECT_THAT(recording.find("log.speed")->values, ElementsAre(7, 8, 9));
+    EXPECT_THAT(recording.find("log.signals[1][1]")->values, ElementsAre(4, 5, 6));
+    EXPECT_TRUE(recording.facts.empty());
+  }
+}
+
 TEST(MatRead, ReadsVersion4) {
   const TemporaryFolder folder;
   {

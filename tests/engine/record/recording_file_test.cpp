@@ -30,7 +30,7 @@ TEST(RecordingFile, RefusesUnknownExtensionsBeforeWriting) {
   for (const std::string name : {"a.xlsx", "a", "folder.csv/a"}) {
     EXPECT_FALSE(is_recording_path(name));
     EXPECT_THAT([&] { write_recording(folder / name, recording); },
-                ThrowsMessage<std::runtime_error>(HasSubstr("expected .csv or .mat")));
+                ThrowsMessage<std::runtime_error>(HasSubstr("expected .csv, .mat or .h5")));
     Problems problems;
     EXPECT_TRUE(read_recording(folder / name, problems).columns.empty());
     EXPECT_THAT(problems.text(), HasSubstr(".mat"));

@@ -69,7 +69,7 @@ class Recording:
         return self._columns.facts()
 
     def save(self, path):
-        """Writes .csv or .mat, with units and facts."""
+        """Writes .csv, .mat or .h5, with units and facts."""
         self._columns.save(_os.fspath(path))
 
     def to_pandas(self):
