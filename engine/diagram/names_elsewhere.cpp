@@ -130,7 +130,6 @@ constexpr NameElsewhere table[] = {
     {"Lead Compensator", "LeadLag", "sampled, or ContinuousLeadLag"},
     {"Lead Screw", "BallScrew", ""},
     {"Lead-Lag Compensator", "LeadLag", "sampled, or ContinuousLeadLag"},
-    {"Leadscrew", "BallScrew", ""},
     {"Limiter", "Saturation", ""},
     {"Ln", "Logarithm", ""},
     {"Log", "Logarithm", ""},

@@ -194,7 +194,7 @@ void ParameterScope::work_out(Entry& entry) {
   Parameter& parameter = entry.parameter;
   parameter.value = evaluate(entry.written, reader_.block);
   if (!parameter.value.is_broken && fits(parameter.value, entry)) {
-    if (!parameter.unit && is_expression(entry.written))
+    if (!parameter.unit && (is_expression(entry.written) || refers_to_file(entry.written)))
       parameter.unit = parameter.value.unit;
     else
       convert(parameter.value, parameter.unit, parameter.name);

@@ -28,9 +28,11 @@ std::vector<int> wires_of(const BlockEntry& entry, const Diagram& diagram, const
   std::vector<int> wires;
   for (const PortInfo& input : info.inputs) {
     if (input.shape == PortInfo::Shape::named) {
-      const auto named = std::ranges::count_if(entry.in, [&](const PortWires& port) {
-        return std::ranges::none_of(info.inputs, [&](const PortInfo& other) { return other.name == port.port; });
-      });
+      const auto is_named = [&](const PortWires& port) {
+        return std::ranges::none_of(
+            info.inputs, [&](const PortInfo& other) { return &other != &input && other.name == port.port; });
+      };
+      const auto named = std::ranges::count_if(entry.in, is_named);
       wires.insert(wires.end(), size_t(named), 1);
       continue;
     }

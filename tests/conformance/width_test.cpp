@@ -14,8 +14,6 @@ class Width : public EveryBlock {
     const auto is_vector = [](const PortInfo& p) {
       return p.shape == PortInfo::Shape::vector || p.joins_vectors;
     };
-    const auto is_named = [](const PortInfo& p) { return p.shape == PortInfo::Shape::named; };
-    if (info().inputs.size() > 1 && std::ranges::any_of(info().inputs, is_named)) return false;
     return !info().inputs.empty() && std::ranges::none_of(info().inputs, is_vector) &&
            std::ranges::none_of(info().outputs, is_vector);
   }
@@ -78,7 +76,7 @@ std::string Width::diagram(const Specimen& specimen, int width, const Waves& wav
 }
 
 TEST_P(Width, OfAVectorIsSoManyScalarBlocks) {
-  if (!is_element_wise()) GTEST_SKIP() << "has vector ports, named ports beside others, or no inputs";
+  if (!is_element_wise()) GTEST_SKIP() << "has vector ports, or no inputs";
   for (const Specimen& specimen : specimens())
     for (int width : {1, 7}) {
       SCOPED_TRACE(specimen.where + ", " + std::to_string(width) + " wide");

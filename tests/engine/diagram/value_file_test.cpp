@@ -9,7 +9,7 @@ using testing::HasSubstr;
 
 class ValueFile : public ::testing::Test {
  protected:
-  std::optional<Diagram> load(const std::string& block, const std::string& parameters = "{}") {
+  auto load(const std::string& block, const std::string& parameters = "{}") {
     folder.with("main.json", R"({"loopwright": 1, "parameters": )" + parameters +
                                  R"(, "solver": {"stop": 1}, "blocks": {"b": )" + block + "}}");
     problems = {};
@@ -42,9 +42,9 @@ TEST_F(ValueFile, IsAParameterWithTheUnitOfTheDiagramOrItsOwn) {
 }
 
 TEST_F(ValueFile, IsOneOfTheFilesThatDetermineTheResult) {
-  ASSERT_TRUE(load(R"({"type": "Constant", "value": {"file": "gains.json", "name": "K.0.0"}})"))
-      << problems.text();
-  EXPECT_THAT(problems.files(), testing::Contains(testing::Field(&FileRead::path, HasSubstr("gains.json"))));
+  const auto diagram = load(R"({"type": "Constant", "value": {"file": "gains.json", "name": "K.0.0"}})");
+  ASSERT_TRUE(diagram) << problems.text();
+  EXPECT_THAT(diagram->files_read, testing::Contains(testing::Field(&FileRead::path, HasSubstr("gains.json"))));
 }
 
 TEST_F(ValueFile, SaysWhatIsMissing) {
