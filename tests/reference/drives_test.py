@@ -87,7 +87,8 @@ class Motors(unittest.TestCase):
         switched = out["switched_winding.current"][last][:-1]
         self.assertAlmostEqual(switched.mean(), mean / R, delta=2e-3)
         duty = 0.5 + mean / bus
-        self.assertAlmostEqual(switched.max() - switched.min(), bus * duty * (1 - duty) / (L * f), delta=5e-3)
+        # Rows every microsecond miss the corners, by up to 15 mA at a slope of 48 V / 2 mH · duty.
+        self.assertAlmostEqual(switched.max() - switched.min(), bus * duty * (1 - duty) / (L * f), delta=15e-3)
 
 
 class Transmissions(unittest.TestCase):
