@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include "engine/diagram/value_file.h"
 #include "engine/json/take_unit.h"
 #include "engine/unit/scaled_rate.h"
 
@@ -82,7 +83,7 @@ void ParameterScope::declare_one(const Value::Member& member) {
   names_.push_back(member.name);
   known_.add(member.name);
 
-  if (member.value.kind != Value::Kind::object) {
+  if (member.value.kind != Value::Kind::object || refers_to_file(member.value)) {
     entry.written = member.value;
     return;
   }
@@ -193,7 +194,7 @@ void ParameterScope::work_out(Entry& entry) {
   Parameter& parameter = entry.parameter;
   parameter.value = evaluate(entry.written, reader_.block);
   if (!parameter.value.is_broken && fits(parameter.value, entry)) {
-    if (!parameter.unit && is_expression(entry.written))
+    if (!parameter.unit && (is_expression(entry.written) || refers_to_file(entry.written)))
       parameter.unit = parameter.value.unit;
     else
       convert(parameter.value, parameter.unit, parameter.name);
@@ -256,6 +257,7 @@ void ParameterScope::convert(Value& value, const std::optional<Unit>& unit, cons
 Value ParameterScope::evaluate(const Value& value, const std::string& block) {
   if (is_expression(value)) return evaluate_text(value, block);
   if (is_number_with_unit(value)) return number_with_unit(value, block);
+  if (refers_to_file(value)) return evaluate(value_from_file(value, {reader_.problems, block}), block);
   if (value.items.empty() && value.members.empty()) return value;
   Value result;
   result.kind = value.kind;

@@ -19,6 +19,12 @@ Triangularised triangularised(const Eigen::MatrixXd& A) {
   return {schur.matrixT(), schur.matrixU()};
 }
 
+LeftSingular left_singular(const Eigen::MatrixXcd& A) {
+  const Eigen::JacobiSVD<Eigen::MatrixXcd, Eigen::FullPivHouseholderQRPreconditioner> svd(
+      A, Eigen::ComputeFullU);
+  return {svd.singularValues(), svd.matrixU()};
+}
+
 double largest_singular_value(const Eigen::MatrixXcd& G) {
   return G.size() == 0 ? 0.0 : Eigen::JacobiSVD<Eigen::MatrixXcd>(G).singularValues()[0];
 }

@@ -21,6 +21,13 @@ struct Triangularised {
 };
 Triangularised triangularised(const Eigen::MatrixXd& A);
 
+/// A = U Σ V*, largest values first.
+struct LeftSingular {
+  Eigen::VectorXd values;
+  Eigen::MatrixXcd U;
+};
+LeftSingular left_singular(const Eigen::MatrixXcd& A);
+
 /// Zero for an empty matrix.
 double largest_singular_value(const Eigen::MatrixXcd& G);
 

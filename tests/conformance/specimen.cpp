@@ -28,7 +28,12 @@ std::vector<int> wires_of(const BlockEntry& entry, const Diagram& diagram, const
   std::vector<int> wires;
   for (const PortInfo& input : info.inputs) {
     if (input.shape == PortInfo::Shape::named) {
-      wires.insert(wires.end(), entry.in.size(), 1);
+      const auto is_named = [&](const PortWires& port) {
+        return std::ranges::none_of(
+            info.inputs, [&](const PortInfo& other) { return &other != &input && other.name == port.port; });
+      };
+      const auto named = std::ranges::count_if(entry.in, is_named);
+      wires.insert(wires.end(), size_t(named), 1);
       continue;
     }
     int count = input.shape == PortInfo::Shape::scalar ? 1 : 0;
@@ -68,6 +73,8 @@ const Specimen further[] = {
      R"({"method": "backward", "low": -3, "high": 5})",
      0.001,
      {1, 1, 1}},
+    {"ElectronicGear", "without a ramp", R"({"numerator": 2})", 0.001, {1, 1, 1, 1}},
+    {"RepetitiveController", "of a short period", R"({"period": 3, "gain": 1})", 0.001, {1, 1}},
     {"FractionalDelay", "of less than a sample", R"({"delay": 0.0004})", 0.001, {1}},
     {"Chirp",
      "of short sweeps",

@@ -41,6 +41,7 @@ void add_recover(CLI::App& app, std::function<void(std::function<int()>)> choose
 void add_probe(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_linearize(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_studio(CLI::App& app, std::function<void(std::function<int()>)> choose);
+void add_design(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_stability(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_completion(CLI::App& app, std::function<void(std::function<int()>)> choose);
 

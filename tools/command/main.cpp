@@ -38,6 +38,7 @@ int run_program(int count, char** arguments) {
   add_recover(app, choose);
   add_probe(app, choose);
   add_linearize(app, choose);
+  add_design(app, choose);
   add_stability(app, choose);
   add_studio(app, choose);
   add_completion(app, choose);

@@ -4,6 +4,7 @@
 #include <set>
 #include "engine/block/registry.h"
 #include "engine/diagram/diagram.h"
+#include "engine/diagram/value_file.h"
 #include "engine/json/json.h"
 
 namespace loopwright {
@@ -39,12 +40,21 @@ void each_file(const Value& settings, const std::vector<ParameterInfo>& paramete
   }
 }
 
+/// Calls `on_path` for the file of every value that stands in another file.
+void each_file_of_values(const Value& value, const OnPath& on_path) {
+  if (refers_to_file(value)) on_path(value.find("file")->value);
+  for (const Value& item : value.items) each_file_of_values(item, on_path);
+  for (const Value::Member& member : value.members)
+    if (member.name != "diagram") each_file_of_values(member.value, on_path);
+}
+
 /// One diagram and those inside it: which of its texts are paths, and which of its parameters.
 class PathFinder {
  public:
   PathFinder(const Value& diagram, OnPath on_path, int depth = 0)
       : on_path_(std::move(on_path)), depth_(depth) {
     if (depth == deepest_nesting) return;
+    each_file_of_values(diagram, [this](const Value& text) { found(text); });
     if (const auto* blocks = diagram.find("blocks"))
       for (const Value::Member& block : blocks->value.members) look_into(block.value);
     if (const auto* parameters = diagram.find("parameters")) follow_parameters(parameters->value);

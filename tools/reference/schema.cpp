@@ -32,7 +32,10 @@ Json number_schema(const ParameterInfo& p, const char* type) {
   Json number = {{"type", type}};
   if (std::isfinite(p.low)) number[p.low_is_open ? "exclusiveMinimum" : "minimum"] = p.low;
   if (std::isfinite(p.high)) number["maximum"] = p.high;
-  return {{"anyOf", Json::array({number, {{"$ref", "#/$defs/expression"}}, {{"$ref", "#/$defs/quantity"}}})}};
+  return {{"anyOf", Json::array({number,
+                                 {{"$ref", "#/$defs/expression"}},
+                                 {{"$ref", "#/$defs/quantity"}},
+                                 {{"$ref", "#/$defs/in_file"}}})}};
 }
 
 Json type_schema(const ParameterInfo& p) {
@@ -55,7 +58,9 @@ Json type_schema(const ParameterInfo& p) {
       schema = {{"enum", p.choices}};
       break;
     case ParameterKind::list:
-      schema = {{"type", "array"}, {"items", type_schema(p.element.front())}};
+      schema = {{"anyOf", Json::array({{{"type", "array"}, {"items", type_schema(p.element.front())}},
+                                       {{"$ref", "#/$defs/expression"}},
+                                       {{"$ref", "#/$defs/in_file"}}})}};
       break;
     case ParameterKind::by_name:
       schema = {{"type", "object"}, {"additionalProperties", type_schema(p.element.front())}};
@@ -168,6 +173,14 @@ std::string diagram_schema() {
        {{"type", "string"},
         {"pattern", "^="},
         {"description", "An expression over parameters, \"=2*pi*40\""}}},
+      {"in_file",
+       {{"type", "object"},
+        {"required", {"file", "name"}},
+        {"additionalProperties", false},
+        {"description", "A value of a JSON file"},
+        {"properties",
+         {{"file", {{"type", "string"}, {"description", "Its path, relative to this file"}}},
+          {"name", {{"type", "string"}, {"description", "Name of the value: \"K\", \"poles.0.re\""}}}}}}},
       {"quantity",
        {{"type", "object"},
         {"required", {"value", "unit"}},
@@ -205,6 +218,7 @@ std::string diagram_schema() {
        Json::array({{{"required", {"type"}}}, {{"required", {"diagram"}}}, {{"required", {"variants"}}}})},
       {"allOf", choices}};
   const Json parameter = {{"anyOf", Json::array({{{"type", {"number", "string", "boolean", "array"}}},
+                                                 {{"$ref", "#/$defs/in_file"}},
                                                  {{"type", "object"},
                                                   {"required", {"value"}},
                                                   {"additionalProperties", false},

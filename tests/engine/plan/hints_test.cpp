@@ -21,7 +21,7 @@ TEST(Hints, NamesOfOtherProgramsLeadToBlocksThatExist) {
                                                         {"TransferFcn", "TransferFunction"},
                                                         {"Mux", "Pack"},
                                                         {"Demux", "Unpack"},
-                                                        {"Inertia", "Mass"},
+                                                        {"Rotor", "Inertia"},
                                                         {"Abs", "Absolute"},
                                                         {"Trig", "Trigonometry"},
                                                         {"Sin", "Trigonometry"},

@@ -41,9 +41,11 @@ Json signals_json(const Recording& recording, const Window& window, const std::s
     double square = 0, low = INFINITY, high = -INFINITY;
     for (double v : values) square += v * v, low = std::min(low, v), high = std::max(high, v);
     Json curve = thinned_curve(std::span(time).subspan(first, last - first), values, window.points);
+    // A thinned curve has its extremes only: drawn as steps, each would look held over many samples.
+    const bool is_whole = curve["x"].size() == values.size();
     list.push_back({{"name", column.name},
                     {"unit", column.unit == "1" ? "" : column.unit},
-                    {"steps", held.contains(column.name)},
+                    {"steps", is_whole && held.contains(column.name)},
                     {"rms", values.empty() ? 0 : std::sqrt(square / double(values.size()))},
                     {"min", low},
                     {"max", high},

@@ -16,6 +16,7 @@ namespace loopwright::studio {
 struct StoredRun {
   std::string path;  ///< of the diagram
   Json facts;        ///< as the answer of "run", without signals
+  LoadOptions load;  ///< with which it was read
   Recording recording;
   std::set<std::string> held;  ///< signals that hold between samples
 };

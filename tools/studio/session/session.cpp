@@ -160,6 +160,9 @@ void Session::disconnect(int64_t client) {
 
 namespace {
 
+/// Whether a run needs nothing but the file: it loads, and has no inputs that something else must drive.
+bool runs_alone(const CheckedText& text) { return text.loads() && !text.checked.is_part(); }
+
 std::string title_of(const std::string& text) {
   const ParsedText parsed("", text);
   return parsed.is_object() ? std::string(text_in(parsed.root, "title")) : "";
@@ -191,7 +194,26 @@ Json Session::file_list() const {
   return list;
 }
 
+/// The file to begin with: the first diagram that runs as it is. One with inputs waits for what drives them.
+std::string Session::first_that_runs() const {
+  constexpr int most_tried = 40;  // a folder of hundreds of diagrams opens without a wait
+  std::string first;
+  int tried = 0;
+  for (const Folder::File& file : folder_.files()) {
+    Problems problems;
+    if (!file.path.ends_with(".json") ||
+        kind_of_file(folder_.path_of(file.path), problems) != FileKind::diagram)
+      continue;
+    if (first.empty()) first = file.path;
+    if (++tried > most_tried) break;
+    const auto text = folder_.read(file.path);
+    if (text && runs_alone(check_text(folder_.path_of(file.path), *text, {}))) return file.path;
+  }
+  return first;
+}
+
 Json Session::hello(const Request&) {
+  if (opened_.empty()) opened_ = first_that_runs();
   return {{"version", LOOPWRIGHT_VERSION},
           {"folder", std::filesystem::absolute(folder_.path()).lexically_normal().filename().string()},
           {"open", opened_},
@@ -236,7 +258,8 @@ Json Session::document_json(const Document& document, const Seen& seen, bool wit
   json["conflict"] = nullptr;
   if (document.conflict()) json["conflict"] = {{"theirs", *document.conflict()}, {"mine", document.text()}};
   json["undo"] = document.undo_text(), json["redo"] = document.redo_text();
-  json["loads"] = text.loads(), json["summary"] = text.checked.summary();
+  json["loads"] = text.loads(), json["runs_alone"] = runs_alone(text);
+  json["summary"] = text.checked.summary();
   json["problems"] = problems_json(text.problems.list(), *text.parsed, folder_.path());
   try {
     json["view"] = view_json(text, seen.inside, seen.variants, document.layout());

@@ -78,6 +78,7 @@ class Session {
   Json copy(const Request&);
   Json cancel(const Request&);
   Json file_list() const;
+  std::string first_that_runs() const;
   Document& document(const std::string& path);
   Json document_json(const Document& document, const Seen& seen, bool with_text);
   /// Changes a document as `change` says; again if another program changed the file at the same moment.
@@ -100,7 +101,7 @@ class Session {
   Json export_view(const Request&);
   Json runs(const Request&);
   Json name_run(const Request&);
-  Json linearize(const Request&);
+  Json linearize(const Request&);  // session_linear.cpp
   Json sweep(const Request&);  // session_sweep.cpp
   /// The text of a diagram, as it is open or on the disk.
   std::shared_ptr<const SourceFile> source(const std::string& path);
@@ -115,7 +116,7 @@ class Session {
   Json add_effects(const Request&);
 
   const Folder folder_;
-  const std::string opened_;
+  std::string opened_;  ///< shown first
   const Send send_;
   std::mutex mutex_;  ///< of the documents and of what the clients see
   std::map<std::string, std::unique_ptr<Document>> documents_;

@@ -1,14 +1,12 @@
-/// Runs, their signals, and linear analysis.
+/// Runs and their signals.
 #include <fmt/format.h>
 #include <algorithm>
 #include <chrono>
-#include <numbers>
 #include "engine/diagram/in_memory.h"
 #include "engine/json/reader.h"
 #include "engine/record/recording_file.h"
 #include "engine/record/column_units.h"
 #include "tools/experiment/experiment.h"
-#include "tools/linearize/analysis.h"
 #include "tools/run/run_page.h"
 #include "tools/run/verdict.h"
 #include "tools/studio/session/member_change.h"
@@ -81,6 +79,15 @@ Plan recording(const Plan& plan, const std::vector<std::string>& signals) {
   return more;
 }
 
+/// Of the plan that this text gives now; empty if it gives none.
+std::string present_hash(const std::shared_ptr<const SourceFile>& file, const LoadOptions& options) {
+  if (!file) return "";
+  Problems problems;
+  const auto diagram = load_diagram_text(file, options, problems);
+  const auto plan = diagram ? compile(*diagram, problems) : nullptr;
+  return plan && !problems.has_errors() ? plan->hash : "";
+}
+
 /// The most important sentence first.
 Json verdict_json(const std::vector<report::Notice>& notices) {
   static constexpr std::string_view names[] = {"note", "good", "warning", "error"};
@@ -139,7 +146,7 @@ Json Session::run(const Request& request) {
     std::vector<TimeAtLimit> limits = watched.take(result.recording);
     const RunFigures figures = run_figures(followed, result.recording, std::move(limits));
     auto stored = std::make_shared<StoredRun>();
-    stored->path = path, stored->held = held_signals(plan);
+    stored->path = path, stored->load = load, stored->held = held_signals(plan);
     stored->facts = {{"run", 0},
                      {"path", path},
                      {"name", ""},
@@ -228,14 +235,34 @@ Json Session::export_view(const Request& request) {
 
 Json Session::runs(const Request& request) {
   const std::string path = request.text("path");
-  Json list = Json::array();
+  std::map<int64_t, std::shared_ptr<const StoredRun>> listed;
+  std::map<std::string, std::shared_ptr<const SourceFile>> files;
   for (const auto& [number, run] : results_.runs.all()) {
     if (!path.empty() && run->path != path) continue;
-    Json facts = run->facts;
-    facts["run"] = number;
-    list.push_back(std::move(facts));
+    listed[number] = run;
+    try {
+      if (!files.contains(run->path)) files[run->path] = source(run->path);
+    } catch (const std::exception&) {  // the file is gone: nothing repeats its runs
+      files[run->path] = nullptr;
+    }
   }
-  return {{"runs", std::move(list)}};
+  return start(request, [=](Work& work) -> Json {
+    // A command repeats its run as long as the diagram that it loads is the same, files of subdiagrams
+    // included.
+    std::map<std::pair<std::string, std::string>, std::string> hashes;  // by file and by options as a command
+    Json list = Json::array();
+    for (const auto& [number, run] : listed) {
+      if (work.job.is_cancelled()) break;
+      const auto [hash, is_new] =
+          hashes.try_emplace({run->path, run->facts["command"].get<std::string>()}, "");
+      if (is_new) hash->second = present_hash(files.at(run->path), run->load);
+      Json facts = run->facts;
+      facts["run"] = number;
+      facts["file_changed"] = hash->second != run->facts["hash"].get<std::string>();
+      list.push_back(std::move(facts));
+    }
+    return {{"runs", std::move(list)}};
+  });
 }
 
 Json Session::name_run(const Request& request) {
@@ -254,47 +281,6 @@ Json Session::name_run(const Request& request) {
     write_recording(folder_.path_of(stem + ".csv"), named->recording);
   }
   return named->facts;
-}
-
-Json Session::linearize(const Request& request) {
-  const auto file = source(request.required("path"));
-  const LoadOptions options = request.options();
-  LinearizeRequest wanted;
-  wanted.access.from = {request.required("from")}, wanted.access.to = {request.required("to")};
-  wanted.break_point = request.text("break");
-  return start(request, [=](Work& work) -> Json {
-    Problems problems;
-    const auto diagram = load_diagram_text(file, options, problems);
-    const auto plan = diagram ? compile(*diagram, problems) : nullptr;
-    if (!plan) throw InputError(std::move(problems));
-    RunOptions run_options;
-    run_options.interrupt = &work.job.interrupt();
-    const LinearAnalysis analysis = analyse(*plan, wanted, run_options);
-    const std::vector<std::complex<double>> response = channel_response(analysis, 0, 0);
-    Json json{{"frequency", analysis.frequency},
-              {"magnitude_db", Json::array()},
-              {"phase_deg", unwrapped_degrees(response)},
-              {"nyquist", {{"re", Json::array()}, {"im", Json::array()}}},
-              {"poles", Json::array()},
-              {"zeros", Json::array()},
-              {"margins", nullptr},
-              {"text", to_text(analysis)}};
-    for (const std::complex<double>& value : response) {
-      json["magnitude_db"].push_back(20 * std::log10(std::abs(value)));
-      json["nyquist"]["re"].push_back(value.real()), json["nyquist"]["im"].push_back(value.imag());
-    }
-    for (const Pole& pole : analysis.poles) json["poles"].push_back({pole.value.real(), pole.value.imag()});
-    if (analysis.zeros)
-      for (const std::complex<double>& zero : *analysis.zeros)
-        json["zeros"].push_back({zero.real(), zero.imag()});
-    if (analysis.loop) {
-      const Margins& m = analysis.loop->margins;
-      json["margins"] = {{"gain_db", 20 * std::log10(m.gain)},
-                         {"phase_deg", m.phase * 180 / std::numbers::pi},
-                         {"crossover", m.phase_frequency}};
-    }
-    return json;
-  });
 }
 
 }  // namespace loopwright::studio

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include "engine/diagram/in_memory.h"
 #include "engine/json/reader.h"
 #include "tools/studio/session/session.h"
@@ -55,12 +56,17 @@ double rms(const std::vector<double>& values) {
 
 Json Session::sweep(const Request& request) {
   const auto file = source(request.required("path"));
-  const LoadOptions options = request.options();
+  LoadOptions options = request.options();
   const SweptAxis x = axis_of(request.message, "x"), y = axis_of(request.message, "y");
   const std::string metric = request.required("metric"), port = measured_port(metric);
+  if (x.set == y.set) throw Refused(fmt::format("\"{}\" cannot be on both axes", x.set));
+  // What an axis sweeps is not set besides.
+  std::erase_if(options.set, [&](const auto& set) { return set.first == x.set || set.first == y.set; });
   return start(request, [=](Work& work) -> Json {
     Json rows = Json::array();
     std::string unit;
+    size_t refused = 0;
+    std::optional<Problems> first_problems;
     for (size_t j = 0; j < y.values.size(); ++j) {
       Json row = Json::array();
       for (size_t i = 0; i < x.values.size() && !work.job.is_cancelled(); ++i) {
@@ -69,9 +75,10 @@ Json Session::sweep(const Request& request) {
         Problems problems;
         const auto diagram = load_diagram_text(file, here, problems);
         const auto plan = diagram ? compile(*diagram, problems) : nullptr;
-        // Values that the diagram refuses are gaps; a mistake in the diagram itself is told.
-        if (!plan && i == 0 && j == 0) throw InputError(std::move(problems));
+        // Values that the diagram refuses are gaps; a mistake in the diagram itself refuses all of them.
         if (!plan) {
+          ++refused;
+          if (!first_problems) first_problems = std::move(problems);
           row.push_back(nullptr);
           continue;
         }
@@ -86,6 +93,8 @@ Json Session::sweep(const Request& request) {
       rows.push_back(std::move(row));
       work.progress("sweep", double(j + 1) / double(y.values.size()));
     }
+    if (first_problems && refused == x.values.size() * y.values.size())
+      throw InputError(std::move(*first_problems));
     return {
         {"x", x.values}, {"y", y.values}, {"values", std::move(rows)}, {"metric", metric}, {"unit", unit}};
   });

@@ -68,7 +68,7 @@ function document(inside, with_text = true) {
   const problems = state.mass < 0 ? [{ severity: "error", text: "mass is negative", message: "mass is negative", hint: "a mass is positive", file: "nominal.json", line: 5, column: 7, offset: 70, end: 75, pointer: "/parameters/mass", block: "axis", port: "", here: true }] : [];
   if (problems.length) view.blocks.forEach((entry) => { if (entry.name === "axis") entry.problems = [0]; });
   return { path: "nominal.json", revision: state.revision, ...(with_text ? { text: text() } : {}), saved: true, writable: true, conflict: null, undo: state.undo.at(-1)?.what ?? "", redo: state.redo.at(-1)?.what ?? "",
-    loads: !problems.length, summary: "5 blocks, 2 states", problems, view };
+    loads: !problems.length, runs_alone: !problems.length, summary: "5 blocks, 2 states", problems, view };
 }
 const content = () => ({ mass: state.mass, added: [...state.added], positions: { ...state.positions } });
 function change(what, action) {
@@ -147,7 +147,7 @@ const answers = {
   find_blocks: ({ text: words = "" }) => ({ types: PALETTE.filter((entry) => entry.type.toLowerCase().includes(words.toLowerCase())) }),
   type: ({ type }) => ({ type, room: "math", sentence: "A block.", inputs: [{ name: "u", unit: "", sentence: "", many: false, optional: false }], outputs: [port("y", "")], settings: [], help: `${type}\n  as loopwright blocks ${type}` }),
   complete: ({ offset }) => ({ from: offset, to: offset, options: [] }), hover: ({ offset }) => ({ from: offset, to: offset, text: "", block: "" }),
-  run, runs: () => ({ runs: runs.map(({ run: number, name, hash, command, set, signals }) => ({ run: number, name, note: "", when: "", hash, command, set, merit: signals.map((entry) => ({ name: entry.name, unit: entry.unit, rms: entry.rms, max: entry.max })) })) }),
+  run, runs: () => ({ runs: runs.map(({ run: number, name, hash, command, set, signals }) => ({ run: number, name, note: "", when: "", hash, command, set, file_changed: false, merit: signals.map((entry) => ({ name: entry.name, unit: entry.unit, rms: entry.rms, max: entry.max })) })) }),
   name_run: ({ run: number, name }) => { runs[number - 1].name = name; return {}; },
   signals: ({ source, names, from = -Infinity, to = Infinity }) => {
     const all = source.startsWith("run:") ? runs[Number(source.slice(4)) - 1].signals : comparison().signals.flatMap((entry) => ["measured", "simulated", "error"].map((what) => signal(`${what} ${entry.name}`, entry.unit, entry[what])));
@@ -156,7 +156,12 @@ const answers = {
   columns: () => columns, write_experiment: ({ experiment }) => ({ experiment, text: "{}", problems: [] }), compare: comparison,
   preview: ({ effects }) => { const left = Math.max(2e-6, hidden() - (effects.includes("cogging") ? 60e-6 : 0) - (effects.includes("coulomb_friction") ? 38e-6 : 0)); const y = error(left); return { x: times, y, unit: "m", rmse: rms(y), signal: "axis.position" }; },
   add_effects: ({ effects, inside }) => { const names = effects.length ? effects : ["cogging", "coulomb_friction"]; const made = change(`add ${names.join(" and ")}`, () => { state.added = [...new Set([...state.added, ...names])]; }); return { edits: made, document: document(inside, false), blocks: inside ? names : ["axis"], experiments: [] }; },
-  linearize: () => { const frequency = Array.from({ length: 200 }, (_, i) => 10 ** (i / 50)); return { frequency, magnitude_db: frequency.map((w) => -20 * Math.log10(w)), phase_deg: frequency.map((w) => -90 - Math.atan(w / 100) * 57.3), nyquist: { re: [0], im: [0] }, poles: [[-1, 2]], zeros: [], margins: { gain_db: 12, phase_deg: 60, crossover: 10 }, text: "" }; },
+  linearize: ({ from, to, break: cut }) => {
+    const frequency = Array.from({ length: 200 }, (_, i) => 10 ** (i / 50));
+    return { is_loop_gain: Boolean(cut) && to === from, sampled: true, sample_time: 0.001, frequency, magnitude_db: frequency.map((w) => -20 * Math.log10(w)), phase_deg: frequency.map((w) => -90 - Math.atan(w / 100) * 57.3), nyquist: { re: [0], im: [0] },
+      poles: [{ re: 0.9, im: 0.1, frequency: 23, damping: 0.7, stability: "stable" }, { re: 1.2, im: 0, frequency: 29, damping: -1, stability: "unstable" }], zeros: [],
+      margins: cut ? { port: cut, stable: true, gain_db: 12, lower_gain_db: null, phase_deg: 60, crossover: 10, delay: null, Ms: 1.4 } : null, text: "" };
+  },
 };
 function step(from, to, inside) {
   const last = state[from].pop();

@@ -91,6 +91,40 @@ test("a slider runs the diagram while it moves, keeps the run before as a ghost,
   await page.waitForFunction(() => document.querySelector("[data-parameter=mass] .field").value === "0.6 kg");
 });
 
+test("a fault of one part takes that part away, not the page", async () => {
+  const page = await open();
+  await page.evaluate(() => { const parse = JSON.parse; JSON.parse = (text) => { const value = parse(text); if (value?.ok?.poles) delete value.ok.poles; return value; }; });
+  await page.evaluate(() => document.querySelector("[data-id='axis.force#0'] .react-flow__edge-path").dispatchEvent(new MouseEvent("click", { bubbles: true })));
+  await page.click("button:has-text('Open loop')");
+  await page.waitForSelector(".broken-part[role=alert] button:has-text('Reload the page')");
+  assert.equal(await page.locator(".block[data-block=axis]").count(), 1, "the diagram stays");
+  await page.click("[role=tab]:has-text('Run')");
+  await page.waitForSelector(".plot canvas");
+  assert(opened.faults.length > 0, "and the console has the fault");
+  opened.faults.length = 0;
+});
+
+test("what was told about a file goes away when the file changes", async () => {
+  const page = await open();
+  await page.click("[data-parameter=mass]", { position: { x: 1, y: 1 } });
+  await page.fill("input[name=name]", "added");
+  await page.fill("input[name=text]", "1 m");
+  await page.click(".row.add button[type=submit]");       // the stand-in refuses it
+  await page.waitForSelector(".note.error");
+  await page.fill("[data-parameter=mass] .field", "0.7 kg");
+  await page.keyboard.press("Enter");
+  await page.waitForSelector(".note.error", { state: "detached" });
+});
+
+test("an earlier run is named once in the legend of a plot", async () => {
+  const page = await open();
+  await page.locator("input[data-set=mass]").focus();
+  await page.keyboard.press("ArrowRight");
+  await page.waitForSelector(".legend li.ghost");
+  for (const plot of await page.locator(".plot").all())
+    assert((await plot.locator(".legend li.ghost:visible").count()) <= 1);
+});
+
 test("problems are shown while they exist and lead to their place", async () => {
   const page = await open();
   await page.fill("[data-parameter=mass] .field", "-1 kg");

@@ -97,6 +97,86 @@ test("see the diagram, run it while dragging, compare, diagnose, add both effect
   } finally { await studio.stop(); }
 });
 
+test("every analysis is with the numbers of the sliders; a loop is cut or closed as chosen; a sweep has the range that was typed", async () => {
+  const studio = start_studio(axis.path("nominal.json"));
+  try {
+    const address = await studio.address;
+    const { page, faults, context } = await open_page(browser, "about:blank", { width: 1280, height: 800 });
+    const sent = [];
+    page.on("websocket", (socket) => socket.on("framesent", ({ payload }) => sent.push(JSON.parse(String(payload)))));
+    await page.goto(address);
+    await page.waitForSelector(".plot canvas");
+    await page.waitForSelector("[data-id='axis.force#0'] .react-flow__edge-path", { state: "attached" });
+    const outcome = page.locator(".outcome").first();
+    if (await outcome.count()) assert.equal(await outcome.evaluate((line) => getComputedStyle(line).textOverflow), "ellipsis");
+
+    const select_wire = () => page.evaluate(() => document.querySelector("[data-id='axis.force#0'] .react-flow__edge-path").dispatchEvent(new MouseEvent("click", { bubbles: true })));
+    await select_wire();
+    assert.match(await page.locator("select[name=to] option").first().textContent(), /controller\.force/, "the wire's own source: once around the loop");
+    await page.click("button:has-text('Open loop')");
+    await page.waitForSelector(".margins:has-text('Phase margin')");
+    assert.match(await page.locator(".outcome").textContent(), /Open loop, cut at axis\.force/);
+    assert.match(await page.locator(".lists h3").first().textContent(), /in z, sampled every/);
+    await take(page, "11_open_loop");
+    const open_loop = sent.filter((message) => message.do === "linearize").at(-1);
+    assert.equal(open_loop.break, "axis.force");
+    await page.click("button:has-text('Closed loop')");
+    await page.waitForSelector(".outcome:has-text('all loops closed')");
+    assert.equal(await page.locator(".margins").count(), 0);
+    assert.equal(await page.locator(".poles .unstable").count(), 0, "poles in the unit circle are not unstable");
+    assert.equal(await page.locator(".plot canvas").count(), 3);
+    await take(page, "12_closed_loop");
+
+    // A slider of a part that another file defines: nothing to write here, but the way to that file.
+    await page.dblclick("[data-block=axis]");
+    await page.waitForSelector("[data-parameter=mass]");
+    const analyses = sent.filter((message) => message.do === "linearize").length;
+    await page.locator("[data-parameter=mass] input[type=range]").focus();
+    for (let i = 0; i < 10; ++i) await page.keyboard.press("ArrowRight");
+    await page.waitForSelector(".override button:has-text('Open axis.json')");
+    assert.equal(await page.locator(".override button:has-text('Write')").count(), 0);
+    await page.waitForFunction(() => document.querySelector(".outcome")?.textContent.includes("with axis.mass"));
+    assert(sent.filter((message) => message.do === "linearize").length > analyses, "the analysis follows the slider");
+    await page.click(".levels button:has-text('top')");
+    await page.waitForSelector("[data-block=controller]");
+    await page.evaluate(() => document.querySelector(".react-flow__pane").click());
+
+    await page.waitForFunction(() => location.hash.includes("set."));
+    const set = Object.fromEntries([...new URLSearchParams(new URL(page.url()).hash.slice(1))].filter(([key]) => key.startsWith("set.")).map(([key, value]) => [key.slice(4), value]));
+    assert.deepEqual(Object.keys(set), ["axis.mass"]);
+    const first = sent.length, value = parseFloat(set["axis.mass"]);
+    await page.waitForSelector("select[name=x]");
+    await page.selectOption("select[name=x]", "axis.mass");
+    assert(Math.abs(Number(await page.inputValue("input[name=x_low]")) / value - 0.5) < 1e-3, "from half of the value");
+    assert(Math.abs(Number(await page.inputValue("input[name=x_high]")) / value - 2) < 1e-3);
+    await page.fill("input[name=x_low]", "-0.1");
+    await page.click("button:has-text('Sweep')");
+    await page.waitForSelector(".sweep td button.failed", { timeout: 60000 });
+    assert(await page.locator(".sweep td button:not(.failed)").count() > 100, "a mass below zero is a gap, the others have values");
+    assert(await page.locator(".bar .chip").isVisible());
+    await take(page, "13_sweep");
+    assert.deepEqual(await page.evaluate(contrast_faults), []);
+    assert.deepEqual(await page.evaluate(unnamed), []);
+
+    await page.click("#tab-measure");
+    await page.click("button.entry:has-text('train')");
+    await page.waitForSelector("[data-rmse]", { timeout: 30000 });
+    assert(await page.locator(".bar .chip").isVisible());
+    await page.click("button:has-text('What is missing?')");
+    await page.click(".panel button:has-text('Search')");
+    await page.waitForFunction(() => document.querySelector(".progress"));
+    await page.click(".progress button:has-text('Stop')");
+    const about = sent.slice(first).filter((message) => ["run", "compare", "diagnose", "linearize", "sweep", "columns", "write_experiment"].includes(message.do));
+    for (const kind of ["sweep", "compare", "diagnose"]) assert(about.some((message) => message.do === kind), `${kind} was sent`);
+    for (const message of about) assert.deepEqual(message.set, set, `${message.do} is with the sliders`);
+    await page.click("#tab-runs");
+    await page.waitForSelector(".merit thead");
+    await take(page, "14_runs");
+    assert.deepEqual(faults, []);
+    await context.close();
+  } finally { await studio.stop(); }
+});
+
 test("a dropped record becomes an experiment after it was confirmed", async () => {
   const dropped = join(axis.folder, "dropped.csv");
   copyFileSync(axis.path("held_out.csv"), dropped);

@@ -1,5 +1,6 @@
 // The page: diagram above, scopes below, panel on the right; on narrow screens one of them at a time.
 import { useEffect, useRef, useState, type PointerEvent } from "react";
+import { Boundary } from "./Boundary";
 import { Canvas } from "./canvas/Canvas";
 import { Palette } from "./canvas/Palette";
 import { Commands } from "./panels/Commands";
@@ -32,11 +33,13 @@ function SidePanel() {
         ))}
       </div>
       <div className="panel" id="panel" role="tabpanel" aria-labelledby={`tab-${panel}`} tabIndex={0}>
-        {panel === "inspect" && <Inspect />}
-        {panel === "runs" && <Runs />}
-        {panel === "measure" && <Measure />}
-        {panel === "diagnose" && <Diagnose />}
-        {panel === "problems" && <Problems />}
+        <Boundary key={panel} part="This panel">
+          {panel === "inspect" && <Inspect />}
+          {panel === "runs" && <Runs />}
+          {panel === "measure" && <Measure />}
+          {panel === "diagnose" && <Diagnose />}
+          {panel === "problems" && <Problems />}
+        </Boundary>
       </div>
     </aside>
   );
@@ -110,19 +113,21 @@ export function App() {
   }, []);
   return (
     <div className={`app at-${place}`}>
-      <TopBar />
+      <Boundary part="The bar at the top"><TopBar /></Boundary>
       <Banners />
       <div className="body">
         <main className="work" style={{ gridTemplateRows: `minmax(0, ${above}fr) auto minmax(0, ${1 - above}fr)` }}>
           <div className="diagram" style={show_text ? { gridTemplateColumns: `minmax(0, ${left}fr) auto minmax(0, ${1 - left}fr)` } : {}}>
             <div className="canvas-area">
-              {document_open ? <Canvas /> : <p className="empty">Opening …</p>}
-              <Palette />
+              <Boundary part="The diagram">
+                {document_open ? <Canvas /> : <p className="empty">Opening …</p>}
+                <Palette />
+              </Boundary>
             </div>
-            {show_text && <><Divider direction="row" label="Between diagram and text" share={left} change={(share) => setLeft(bounded(share))} /><TextView /></>}
+            {show_text && <><Divider direction="row" label="Between diagram and text" share={left} change={(share) => setLeft(bounded(share))} /><Boundary part="The text"><TextView /></Boundary></>}
           </div>
           <Divider direction="column" label="Between diagram and scopes" share={above} change={(share) => setAbove(bounded(share))} />
-          <Scopes />
+          <Boundary part="The scopes"><Scopes /></Boundary>
         </main>
         <SidePanel />
       </div>

@@ -10,8 +10,8 @@ import "./style/panels.css";
 import { App } from "./App";
 import { follow_address, read_address, recall_theme } from "./state/address";
 import { changed_outside, greet, on_change } from "./state/document";
-import { compare, compare_after_change, note_added } from "./state/measure";
-import { run_after_change } from "./state/run";
+import { compare, compare_after_change, compare_after_slider, note_added } from "./state/measure";
+import { linearize_again, on_slider, run_after_change } from "./state/run";
 import { connect } from "./state/session";
 
 recall_theme();
@@ -20,6 +20,9 @@ let first = true;
 on_change(run_after_change);
 on_change(compare_after_change);
 on_change(note_added);
+on_change(() => void linearize_again());
+on_slider(compare_after_slider);
+on_slider(() => void linearize_again());
 connect({
   open: () => void greet().then(() => {
     if (first) {

@@ -3,6 +3,7 @@ import { prettyUnit, quantity } from "../numbers";
 import { add, diagnose, preview } from "../state/measure";
 import { useStudio } from "../state/store";
 import { undo } from "../state/document";
+import { settings_text } from "../state/request";
 import type { Card, Diagnosis } from "../protocol/types";
 import { Bars } from "./Measure";
 import { Staircase } from "./Staircase";
@@ -11,6 +12,7 @@ export function Diagnose() {
   const experiment = useStudio((state) => state.experiment), diagnosis = useStudio((state) => state.diagnosis), busy = useStudio((state) => state.busy["diagnose"]);
   const staircase = useStudio((state) => state.staircase), added = useStudio((state) => state.added);
   const usable = useStudio((state) => Boolean(state.comparison) && !state.comparison?.why_no_force), diagnosed_with = useStudio((state) => state.diagnosed_with);
+  const overrides = useStudio((state) => state.overrides), set_then = useStudio((state) => state.diagnosed_set);
   if (!experiment) return <p className="empty">A diagnosis needs a record. Drop one on the page, or choose one under Measure.</p>;
   const necessary = diagnosis?.cards.filter((card) => card.addable && !card.optional && !added.includes(card.effect)) ?? [];
   return (
@@ -26,6 +28,7 @@ export function Diagnose() {
         )}
         {!busy && !diagnosis && (usable ? <button type="button" className="primary" onClick={() => void diagnose([experiment])}>Search</button> : <OtherRecords />)}
         {staircase.length > 0 && <Staircase steps={staircase} floor={diagnosis?.noise_floor ?? null} unit={diagnosis?.unit ?? "N"} running={Boolean(busy)} />}
+        {diagnosis && settings_text(set_then) !== settings_text(overrides) && <p className="hint">The sliders have moved since: this was found with {settings_text(set_then) || "the numbers of the file"}. Search again.</p>}
         {diagnosis && (
           <p className="buttons">
             {necessary.length > 0 && <button type="button" className="primary" onMouseEnter={() => void preview(necessary.map((card) => card.effect))} onMouseLeave={() => void preview([])}

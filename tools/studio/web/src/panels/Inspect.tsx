@@ -1,11 +1,11 @@
 // The selected block, or, with nothing selected, the diagram itself: its parameters with their sliders, its solver.
 import { prettyUnit } from "../numbers";
 import { edit, open } from "../state/document";
-import { sweep } from "../state/run";
 import { useStudio } from "../state/store";
 import type { Parameter, View } from "../protocol/types";
 import { BlockPanel } from "./BlockPanel";
 import { Field, SliderField } from "./fields";
+import { SweepForm } from "./SweepForm";
 import { WirePanel } from "./WirePanel";
 
 export function Inspect() {
@@ -55,12 +55,6 @@ function DiagramPanel({ view }: { view: View }) {
   const run = useStudio((state) => state.run);
   const writable = useStudio((state) => state.document?.writable ?? false) && view.editable;
   const file_inside = useStudio((state) => state.file_inside);
-  const sliders = view.parameters.flatMap((parameter) => (parameter.slider ? [parameter.slider] : []));
-  const start_sweep = (form: HTMLFormElement) => {
-    const data = new FormData(form), of = (key: string) => sliders.find((slider) => slider.set === data.get(key));
-    const x = of("x"), y = of("y");
-    if (x && y) void sweep(x, y, `rms(${String(data.get("signal"))})`);
-  };
   return (
     <>
       <div className="section">
@@ -84,15 +78,7 @@ function DiagramPanel({ view }: { view: View }) {
           ))}</ul>
         </div>
       )}
-      {!view.inside && sliders.length >= 2 && run && (
-        <form className="section" onSubmit={(event) => { event.preventDefault(); start_sweep(event.currentTarget); }}>
-          <h3>Sweep of two parameters</h3>
-          <label className="row"><span className="name">across</span><select name="x" defaultValue={sliders[0]!.set}>{sliders.map((slider) => <option key={slider.set}>{slider.set}</option>)}</select></label>
-          <label className="row"><span className="name">up</span><select name="y" defaultValue={sliders[1]!.set}>{sliders.map((slider) => <option key={slider.set}>{slider.set}</option>)}</select></label>
-          <label className="row"><span className="name">rms of</span><select name="signal">{run.signals.map((signal) => <option key={signal.name}>{signal.name}</option>)}</select></label>
-          <button type="submit">Sweep</button>
-        </form>
-      )}
+      {run && <SweepForm view={view} signals={run.signals.map((signal) => signal.name)} />}
     </>
   );
 }

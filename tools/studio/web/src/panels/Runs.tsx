@@ -8,7 +8,8 @@ import { Field } from "./fields";
 export function Runs() {
   const runs = useStudio((state) => state.runs), run = useStudio((state) => state.run), pinned = useStudio((state) => state.pinned);
   const latest = run?.run;
-  useEffect(() => { void list_runs(); }, [latest]);
+  const revision = useStudio((state) => state.document?.revision);
+  useEffect(() => { void list_runs(); }, [latest, revision]);
   if (!runs.length) return <p className="empty">No runs yet. Press Run, or move a slider.</p>;
   return (
     <ul className="plain runs">
@@ -23,8 +24,9 @@ export function Runs() {
               {present && <span className="soft">in the scopes</span>}
             </div>
             {changes && <p className="soft small-text">{changes}</p>}
-            {entry.merit.length > 0 && <table className="merit"><tbody>{entry.merit.slice(0, 6).map((merit) => (
-              <tr key={merit.name}><th scope="row">{merit.name}</th><td title="root mean square">{quantity(merit.rms, merit.unit, 3)}</td><td className="soft" title="largest">{quantity(merit.max, merit.unit, 3)}</td></tr>))}</tbody></table>}
+            {entry.merit.length > 0 && <table className="merit"><thead><tr><th scope="col">signal</th><th scope="col">rms</th><th scope="col">largest</th></tr></thead><tbody>{entry.merit.slice(0, 6).map((merit) => (
+              <tr key={merit.name}><th scope="row">{merit.name}</th><td>{quantity(merit.rms, merit.unit, 3)}</td><td className="soft">{quantity(merit.max, merit.unit, 3)}</td></tr>))}</tbody></table>}
+            {entry.file_changed && <p className="doubt small-text">The file has changed since: the command gives another run now.</p>}
             <p className="command"><code>{entry.command}</code>
               <button type="button" className="small quiet" title="Copy the command" aria-label={`Copy the command of run ${entry.run}`} onClick={() => void navigator.clipboard.writeText(entry.command).then(() => tell("good", "Copied."))}>copy</button></p>
           </li>

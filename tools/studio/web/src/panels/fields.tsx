@@ -1,6 +1,7 @@
 // Input fields that send what was typed when it is complete, and sliders that run the diagram while they move.
 import { useEffect, useId, useState } from "react";
 import type { Slider } from "../protocol/types";
+import { open } from "../state/document";
 import { begin_sliding, end_sliding, forget_override, keep_override, slide } from "../state/run";
 import { useStudio } from "../state/store";
 import { prettyUnit, quantity } from "../numbers";
@@ -24,6 +25,7 @@ const STEPS = 400;  // of a slider from end to end
 
 export function SliderField({ slider, label }: { slider: Slider; label: string }) {
   const override = useStudio((state) => state.overrides[slider.set]);
+  const editable = useStudio((state) => state.document?.view?.editable ?? false), file_inside = useStudio((state) => state.file_inside);
   const id = useId();
   const logarithmic = slider.logarithmic && slider.low > 0;
   const to_place = (value: number) => logarithmic ? Math.log(value / slider.low) / Math.log(slider.high / slider.low) : (value - slider.low) / (slider.high - slider.low);
@@ -42,7 +44,8 @@ export function SliderField({ slider, label }: { slider: Slider; label: string }
       {override !== undefined && (
         <div className="override">
           <output htmlFor={id}>{+value.toPrecision(4)} {prettyUnit(slider.unit)}</output><span className="soft">not in the file</span>
-          <button type="button" className="small" title="Write this number into the file" onClick={() => void keep_override(slider.set)}>Write</button>
+          {editable && <button type="button" className="small" title="Write this number into the file" onClick={() => void keep_override(slider.set)}>Write</button>}
+          {!editable && file_inside && <button type="button" className="small" title={`${file_inside} defines this number: open it to change it there`} onClick={() => void open(file_inside)}>Open {file_inside.split("/").pop()}</button>}
           <button type="button" className="small" title={`Back to the file's ${quantity(slider.value, slider.unit)}`} aria-label={`Reset ${label}`} onClick={() => forget_override(slider.set)}>Reset</button>
         </div>
       )}

@@ -44,7 +44,7 @@ export interface View {
 export interface Document {
   path: string; revision: number; text?: string; saved: boolean; writable: boolean;
   conflict: { theirs: string; mine: string } | null;
-  undo: string; redo: string; loads: boolean; summary: string; problems: Problem[]; view: View | null;
+  undo: string; redo: string; loads: boolean; runs_alone: boolean; summary: string; problems: Problem[]; view: View | null;
 }
 export interface TextEdit { from: number; to: number; text: string }
 export interface EditAnswer { edits: TextEdit[]; document: Document; blocks: string[]; experiments?: { path: string; text: string }[] }
@@ -62,15 +62,20 @@ export interface RunAnswer {
   hash: string; command: string; warnings: string[]; summary: string; verdict: Notice[]; set: Record<string, string>; signals: Signal[];
 }
 export interface RunEntry {
-  run: number; name: string; note: string; when: string; hash: string; command: string; set: Record<string, string>;
+  run: number; name: string; note: string; when: string; hash: string; command: string; set: Record<string, string>; file_changed: boolean;
   merit: { name: string; unit: string; rms: number | null; max: number | null }[];
 }
 
+export interface PoleEntry { re: number; im: number; frequency: number | null; damping: number | null; stability: "stable" | "boundary" | "unstable" }
+export interface Margins {
+  port: string; stable: boolean; gain_db: number | null; lower_gain_db: number | null; phase_deg: number | null; crossover: number | null; delay: number | null; Ms: number | null;
+}
 export interface Linear {
+  is_loop_gain: boolean; sampled: boolean; sample_time: number;
   frequency: number[]; magnitude_db: (number | null)[]; phase_deg: (number | null)[];
   nyquist: { re: (number | null)[]; im: (number | null)[] };
-  poles: [number, number][]; zeros: [number, number][];
-  margins: { gain_db: number | null; phase_deg: number | null; crossover: number | null }; text: string;
+  poles: PoleEntry[]; zeros: [number, number][];
+  margins: Margins | null; text: string;                 // margins: of the loop that was cut; null: none was
 }
 export interface SweepAnswer { x: number[]; y: number[]; values: (number | null)[][]; metric: string; unit: string }
 

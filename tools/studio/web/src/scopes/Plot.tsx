@@ -60,7 +60,7 @@ export function Plot(props: PlotProps) {
       onDrop={(event) => { const name = event.dataTransfer.getData(DRAGGED); if (name && props.on_drop) { event.preventDefault(); props.on_drop(name); } }}>
       <ul className="legend" ref={legend}>
         {curves.map((curve, k) => (
-          <li key={k} draggable={Boolean(props.on_drop)} onDragStart={(event) => event.dataTransfer.setData(DRAGGED, curve.name)} className={curve.style}>
+          <li key={k} hidden={!curve.label} draggable={Boolean(props.on_drop)} onDragStart={(event) => event.dataTransfer.setData(DRAGGED, curve.name)} className={curve.style}>
             <i className={curve.style === "measured" ? "measured" : `series-${curve.colour % 8} ${curve.style}`} aria-hidden="true" />
             <span>{curve.label}</span><output />
             {props.on_remove && curve.style !== "ghost" && curve.style !== "pinned" && (

@@ -3,6 +3,8 @@ import { useRef } from "react";
 import { forget_overrides, pin_run, save_data, zoom } from "../state/run";
 import { get, patch, useStudio, type ScopeTab } from "../state/store";
 import { save_picture } from "./picture";
+import { Boundary } from "../Boundary";
+import { settings_text } from "../state/request";
 import { CompareScopes } from "./CompareScopes";
 import { LinearScopes } from "./LinearScopes";
 import { RunScopes } from "./RunScopes";
@@ -41,7 +43,7 @@ export function Scopes() {
           ))}
         </div>
         {tab === "run" && run && <span className="facts">{run.status === "finished" ? `${(1000 * run.wall).toFixed(run.wall < 0.01 ? 1 : 0)} ms of computing` : "failed"}</span>}
-        {changed > 0 && tab === "run" && <button type="button" className="chip" title="Back to the numbers of the file" onClick={forget_overrides}>{changed} changed by slider · reset</button>}
+        {changed > 0 && <button type="button" className="chip" title={`${settings_text(overrides)}: back to the numbers of the file`} onClick={forget_overrides}>{changed} changed by slider · reset</button>}
         <span className="gap" />
         {range && <button type="button" onClick={() => void zoom(null)} title="Show everything (0)">Whole range</button>}
         {(tab === "run" || tab === "compare") && <button type="button" aria-pressed={Boolean(cursors)} onClick={toggle_cursors} title="Cursors A and B">A B</button>}
@@ -54,10 +56,12 @@ export function Scopes() {
         )}
       </header>
       <div className="plots" ref={area}>
-        {tab === "run" && <RunScopes />}
-        {tab === "compare" && <CompareScopes />}
-        {tab === "linear" && <LinearScopes />}
-        {tab === "sweep" && <SweepScopes />}
+        <Boundary key={tab} part="This scope">
+          {tab === "run" && <RunScopes />}
+          {tab === "compare" && <CompareScopes />}
+          {tab === "linear" && <LinearScopes />}
+          {tab === "sweep" && <SweepScopes />}
+        </Boundary>
       </div>
       {cursors && source && <CursorTable source={source} tab={tab} />}
     </section>

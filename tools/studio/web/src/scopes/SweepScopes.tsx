@@ -1,21 +1,39 @@
-// The picture of a sweep over two sliders: a click on a place runs the diagram there.
-import { quantity } from "../numbers";
-import { run_live } from "../state/run";
-import { get, patch, useStudio } from "../state/store";
+// The picture of a sweep over two numbers: a click on a place runs the diagram there.
+import { prettyUnit, quantity } from "../numbers";
+import { settings_text, with_unit } from "../state/request";
+import { follow_overrides } from "../state/run";
+import { get, patch, useStudio, type State } from "../state/store";
+
+/** Values further apart than this factor are told apart by their logarithms: one that nearly diverges leaves colours for the others. */
+const WIDE = 30;
+
+function colours_of(values: number[]): { share: (value: number) => number; low: number; high: number; is_logarithmic: boolean } {
+  const low = values.reduce((least, value) => Math.min(least, value), Infinity), high = values.reduce((most, value) => Math.max(most, value), -Infinity);
+  const is_logarithmic = low > 0 && high / low > WIDE;
+  const scale = is_logarithmic ? Math.log : (value: number) => value;
+  return { low, high, is_logarithmic, share: (value) => (high > low ? (scale(value) - scale(low)) / (scale(high) - scale(low)) : 0.5) };
+}
+const heat = (share: number): string => `color-mix(in oklab, var(--heat-high) ${Math.round(100 * share)}%, var(--heat-low))`;
+
+function choose(sweep: NonNullable<State["sweep"]>, i: number, j: number): void {
+  const here = { [sweep.x_set]: with_unit(sweep.x[i]!, sweep.x_unit), [sweep.y_set]: with_unit(sweep.y[j]!, sweep.y_unit) };
+  patch({ overrides: { ...get().overrides, ...sweep.set, ...here }, scope_tab: "run" });
+  follow_overrides();
+}
 
 export function SweepScopes() {
   const sweep = useStudio((state) => state.sweep);
-  if (!sweep) return null;
-  const all = sweep.values.flat().filter((value): value is number => value !== null);
-  const low = Math.min(...all), high = Math.max(...all);
-  const choose = (i: number, j: number) => {
-    const text = (value: number, unit: string) => (unit && unit !== "1" ? `${value} ${unit}` : String(value));
-    patch({ overrides: { ...get().overrides, [sweep.x_set]: text(sweep.x[i]!, sweep.x_unit), [sweep.y_set]: text(sweep.y[j]!, sweep.y_unit) }, scope_tab: "run" });
-    void run_live();
-  };
+  if (!sweep) return <p className="empty">Choose two numbers under Inspect, with nothing selected.</p>;
+  const cells = sweep.values.flat(), found = cells.filter((value): value is number => value !== null);
+  const gaps = cells.length - found.length, { share, low, high, is_logarithmic } = colours_of(found), changes = settings_text(sweep.set);
   return (
     <div className="sweep">
-      <p>{sweep.metric} over {sweep.x_set} (→) and {sweep.y_set} (↑), from <b>{quantity(low, sweep.unit, 3)}</b> (light) to <b>{quantity(high, sweep.unit, 3)}</b> (dark). A click runs the diagram there.</p>
+      <p>{sweep.metric} over {sweep.x_set} (→) and {sweep.y_set} (↑){changes && `, with ${prettyUnit(changes)}`}. A click runs the diagram there.</p>
+      <p className="scale">
+        {found.length > 0 && <><b>{quantity(low, sweep.unit, 3)}</b><span className="heat" aria-hidden="true" style={{ backgroundImage: `linear-gradient(to right in oklab, ${heat(0)}, ${heat(1)})` }} /><b>{quantity(high, sweep.unit, 3)}</b></>}
+        {is_logarithmic && <span className="soft">logarithmic</span>}
+        {gaps > 0 && <span className="soft"><span className="gap-sample" aria-hidden="true" /> {gaps} of {cells.length}: refused, or the run failed</span>}
+      </p>
       <table>
         <tbody>
           {sweep.y.map((_, row) => {
@@ -25,9 +43,8 @@ export function SweepScopes() {
                 <th scope="row">{j === 0 || row === 0 ? quantity(sweep.y[j]!, sweep.y_unit, 3) : ""}</th>
                 {sweep.x.map((x, i) => {
                   const value = sweep.values[j]?.[i] ?? null;
-                  const share = value === null ? 0 : high > low ? (value - low) / (high - low) : 0.5;
-                  const title = `${sweep.x_set} ${quantity(x, sweep.x_unit)}, ${sweep.y_set} ${quantity(sweep.y[j]!, sweep.y_unit)}: ${value === null ? "failed" : quantity(value, sweep.unit)}`;
-                  return <td key={i}><button type="button" className={value === null ? "failed" : ""} title={title} aria-label={title} style={value === null ? {} : { backgroundColor: `color-mix(in oklab, var(--heat-high) ${Math.round(100 * share)}%, var(--heat-low))` }} onClick={() => choose(i, j)} /></td>;
+                  const title = `${sweep.x_set} ${quantity(x, sweep.x_unit)}, ${sweep.y_set} ${quantity(sweep.y[j]!, sweep.y_unit)}: ${value === null ? "refused, or the run failed" : quantity(value, sweep.unit)}`;
+                  return <td key={i}><button type="button" className={value === null ? "failed" : ""} title={title} aria-label={title} style={value === null ? {} : { backgroundColor: heat(share(value)) }} onClick={() => choose(sweep, i, j)} /></td>;
                 })}
               </tr>
             );

@@ -37,7 +37,7 @@ const ALPHA: Partial<Record<Style, number>> = { ghost: 0.42, pinned: 0.8, points
 
 function series(curve: Curve): uPlot.Series {
   const base: uPlot.Series = {
-    label: curve.label, scale: "y", stroke: () => translucent(stroke(curve), ALPHA[curve.style] ?? 1), points: { show: false },
+    label: curve.label, scale: "y", pxAlign: 0, stroke: () => translucent(stroke(curve), ALPHA[curve.style] ?? 1), points: { show: false },
     width: curve.style === "measured" ? 2.4 : curve.style === "ghost" ? 1.3 : 1.6,
   };
   if (curve.style === "ghost") base.dash = [5, 4];

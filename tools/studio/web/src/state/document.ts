@@ -1,7 +1,8 @@
 // Actions on the open file: open, edit by intents, undo, conflicts, moving between levels.
 import type { Document, EditAnswer, Hello, Intent, Problem, TextEdit } from "../protocol/types";
 import { ask, attempt } from "./session";
-import { get, patch, tell } from "./store";
+import { about_document } from "./request";
+import { close_errors, get, patch, tell } from "./store";
 
 type Listener = () => void;
 const after_change: Listener[] = [];
@@ -37,6 +38,7 @@ export async function open(path: string, inside = ""): Promise<void> {
 /** Shows what the program says about the file. */
 export function show(document: Document, inside = get().inside): void {
   const state = get();
+  if (state.document && (state.document.path !== document.path || state.document.revision !== document.revision)) close_errors();
   const names = new Set(document.view?.blocks.map((block) => block.name));
   patch({
     document, inside: document.view?.inside ?? inside,
@@ -121,7 +123,7 @@ export function add_effects(diagnosis: number, effects: string[]): Promise<EditA
   return in_order(async () => {
     const { document, inside } = get();
     if (!document) return null;
-    const answer = await attempt(ask<EditAnswer>("add_effects", { path: document.path, inside, diagnosis, effects, revision: document.revision }));
+    const answer = await attempt(ask<EditAnswer>("add_effects", about_document({ inside, diagnosis, effects, revision: document.revision })));
     if (answer) take(answer);
     return answer;
   });

@@ -1,6 +1,7 @@
 // Actions of measurements and of the diagnosis.
 import type { Columns, ColumnUse, Comparison, Diagnosis, Preview, Problem, Step } from "../protocol/types";
 import { add_effects } from "./document";
+import { about_document } from "./request";
 import { SCOPE_POINTS } from "./run";
 import { ask, attempt, start } from "./session";
 import { get, patch, tell } from "./store";
@@ -37,7 +38,7 @@ export async function drop_record(file: File): Promise<void> {
 export async function match_columns(data: string): Promise<void> {
   const { document } = get();
   if (!document) return;
-  const columns = await attempt(start<Columns>("columns", "columns", "Reading the record", { path: document.path, data }).answer);
+  const columns = await attempt(start<Columns>("columns", "columns", "Reading the record", about_document({ data })).answer);
   if (columns) patch({ columns, panel: "measure" });
 }
 
@@ -54,14 +55,14 @@ export function change_role(role: string, port: string): void {
 export async function confirm_columns(replace: boolean): Promise<void> {
   const { columns, document } = get();
   if (!columns || !document) return;
-  const answer = await attempt(ask<{ experiment: string; text: string; problems: Problem[] }>("write_experiment", {
-    path: document.path, experiment: columns.experiment, title: "", data: columns.data,
+  const answer = await attempt(ask<{ experiment: string; text: string; problems: Problem[] }>("write_experiment", about_document({
+    experiment: columns.experiment, title: "", data: columns.data,
     time: columns.columns.find((column) => column.use === "time")?.column ?? columns.time,
     columns: columns.columns.filter((column) => column.use === "drive" || column.use === "compare")
       .map(({ column, use, port, unit, unit_is_stated, resolution, interpolation }) => ({ column, use, port, unit: unit_is_stated === false ? unit : "", resolution, interpolation })),
     roles: Object.fromEntries(columns.roles.filter((role) => role.port).map((role) => [role.role, role.port])),
     hold_out: columns.hold_out, replace,
-  }));
+  })));
   if (!answer) return;
   const errors = answer.problems.filter((problem) => problem.severity === "error");
   if (errors.length) { tell("error", errors.map((problem) => problem.text).join("\n")); return; }
@@ -70,11 +71,11 @@ export async function confirm_columns(replace: boolean): Promise<void> {
 }
 
 export async function compare(experiment = get().experiment): Promise<void> {
-  const { document, overrides } = get();
+  const { document } = get();
   if (!document || !experiment) return;
   const changed = experiment !== get().experiment;
   patch({ experiment, ...(changed ? { comparison: null, comparison_before: null, diagnosis: null, staircase: [], preview: null, added: [] } : {}) });
-  const members = { path: document.path, experiment, points: SCOPE_POINTS, lane: "compare", set: overrides };
+  const members = about_document({ experiment, points: SCOPE_POINTS, lane: "compare" });
   const comparison = await attempt(start<Comparison>("compare", "compare", "Comparing", members).answer);
   if (!comparison || get().document?.path !== document.path || get().experiment !== experiment) return;
   patch({ comparison, comparison_before: get().comparison, scope_tab: "compare" });
@@ -87,6 +88,14 @@ export function compare_after_change(): void {
   if (experiment && document?.loads) void compare();
 }
 
+const PAUSE = 150;  // ms after the last movement of a slider: the comparison before stays behind whole movements, not steps
+let moved = 0;
+/** The comparison is with the numbers of the sliders. */
+export function compare_after_slider(): void {
+  clearTimeout(moved);
+  moved = window.setTimeout(compare_after_change, PAUSE);
+}
+
 export function close_experiment(): void {
   patch({ experiment: "", comparison: null, comparison_before: null, diagnosis: null, staircase: [], preview: null, added: [], scope_tab: "run" });
 }
@@ -97,9 +106,9 @@ export function close_experiment(): void {
 export async function diagnose(experiments: string[]): Promise<void> {
   const { document } = get();
   if (!document || !experiments.length) return;
-  patch({ panel: "diagnose", diagnosed_with: experiments, diagnosis: null, staircase: [], preview: null, added: [] });
+  patch({ panel: "diagnose", diagnosed_with: experiments, diagnosed_set: get().overrides, diagnosis: null, staircase: [], preview: null, added: [] });
   const job = start<Diagnosis, { steps: Step[]; stage?: string }>("diagnose", "diagnose", "Searching for the missing effect",
-    { path: document.path, experiments, lane: "diagnose" }, (partial) => patch({ staircase: partial.steps }));
+    about_document({ experiments, lane: "diagnose" }), (partial) => patch({ staircase: partial.steps }));
   const diagnosis = await attempt(job.answer);
   if (diagnosis) patch({ diagnosis, staircase: diagnosis.steps });
 }
@@ -110,7 +119,7 @@ export async function preview(effects: string[]): Promise<void> {
   const { diagnosis } = get();
   previewed = effects.join();
   if (!effects.length || !diagnosis) { patch({ preview: null }); return; }
-  const answer = await attempt(ask<Preview>("preview", { diagnosis: diagnosis.diagnosis, effects, points: SCOPE_POINTS, lane: "preview" }));
+  const answer = await attempt(ask<Preview>("preview", about_document({ diagnosis: diagnosis.diagnosis, effects, points: SCOPE_POINTS, lane: "preview" })));
   if (answer && previewed === effects.join()) patch({ preview: { ...answer, effects } });
 }
 

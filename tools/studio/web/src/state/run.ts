@@ -1,8 +1,9 @@
 // Actions of running: live runs, scopes, the list of runs, linear analysis, sweeps.
-import { Dropped, Refused } from "../protocol/connection";
-import type { Linear, RunAnswer, RunEntry, Signal, Slider, SweepAnswer } from "../protocol/types";
+import { Disconnected, Dropped, Refused } from "../protocol/connection";
+import type { Linear, RunAnswer, RunEntry, Signal, Slider, SweepAnswer, View } from "../protocol/types";
+import { about_document, with_unit } from "./request";
 import { ask, attempt, start } from "./session";
-import { get, patch, tell, type Range } from "./store";
+import { get, patch, tell, type LinearRequest, type Range } from "./store";
 import { edit } from "./document";
 
 export const SCOPE_POINTS = 1200;     // px: the width for which the program thins the curves
@@ -19,7 +20,7 @@ export async function run_live(): Promise<void> {
   flight = mine;
   const state = get();
   if (!state.document) return;
-  const members = { path: state.document.path, set: state.overrides, variants: state.variants, lane: "live", points: SCOPE_POINTS, signals: wanted_signals() };
+  const members = about_document({ lane: "live", points: SCOPE_POINTS, signals: wanted_signals() });
   try {
     const answer = await start<RunAnswer>("run", "run", "Running", members).answer;
     if (get().document?.path === state.document.path) take_run(answer);
@@ -57,10 +58,10 @@ function plots_by_unit(signals: Signal[]): string[][] {
   return [...plots.values()].slice(0, MOST_PLOTS);
 }
 
-/** After an edit: the run follows by itself where it is quick. */
+/** After an edit: the run follows by itself where it is quick. A part with inputs waits for what drives them. */
 export function run_after_change(): void {
   const { document, run } = get();
-  if (document?.loads && (!run || run.wall < LONGEST_AUTOMATIC_RUN)) void run_live();
+  if (document?.runs_alone && (!run || run.wall < LONGEST_AUTOMATIC_RUN)) void run_live();
 }
 
 // ---------- sliders ----------
@@ -69,18 +70,27 @@ export function run_after_change(): void {
 export function begin_sliding(): void { keep_ghost = get().run; }
 export function end_sliding(): void { keep_ghost = null; }
 
-export function slide(slider: Slider, value: number): void {
-  patch({ overrides: { ...get().overrides, [slider.set]: slider.unit && slider.unit !== "1" ? `${value} ${slider.unit}` : String(value) } });
+const after_slider: (() => void)[] = [];
+/** Called after a number was changed by a slider. */
+export const on_slider = (listener: () => void): void => { after_slider.push(listener); };
+/** All that is shown follows the sliders. */
+export function follow_overrides(): void {
   void run_live();
+  for (const listener of after_slider) listener();
+}
+
+export function slide(slider: Slider, value: number): void {
+  patch({ overrides: { ...get().overrides, [slider.set]: with_unit(value, slider.unit) } });
+  follow_overrides();
 }
 export function forget_override(set: string): void {
   const { [set]: _forgotten, ...others } = get().overrides;
   patch({ overrides: others });
-  void run_live();
+  follow_overrides();
 }
 export function forget_overrides(): void {
   patch({ overrides: {} });
-  void run_live();
+  follow_overrides();
 }
 
 /** Writes one override into the file. */
@@ -147,7 +157,7 @@ export const unpin = (run: number): void => patch({ pinned: get().pinned.filter(
 export async function list_runs(): Promise<void> {
   const document = get().document;
   if (!document) return;
-  const answer = await attempt(ask<{ runs: RunEntry[] }>("runs", { path: document.path }));
+  const answer = await attempt(ask<{ runs: RunEntry[] }>("runs", { path: document.path, lane: "runs" }));
   if (answer) patch({ runs: answer.runs });
 }
 export async function name_run(run: number, name: string, note: string, keep = true): Promise<void> {
@@ -171,18 +181,59 @@ export async function save_data(source: string, names: string[], to_file: string
 
 // ---------- linear analysis, sweeps ----------
 
-export async function linearize(from: string, to: string): Promise<void> {
-  const { document, overrides } = get();
-  if (!document) return;
-  const linear = await attempt(start<Linear>("linear", "linearize", "Linearizing", { path: document.path, from, to, set: overrides }).answer);
-  if (linear) patch({ linear: { ...linear, from, to }, scope_tab: "linear", place: "scopes" });
+export async function linearize(request: LinearRequest): Promise<void> {
+  if (!get().document) return;
+  const { from, to, cut } = request, members = about_document({ from, to, ...(cut ? { break: from } : {}), lane: "linear" });
+  const linear = await attempt(start<Linear>("linear", "linearize", "Linearizing", members).answer);
+  if (linear) patch({ linear: { ...linear, ...request, set: members.set }, scope_tab: "linear", place: "scopes" });
+}
+
+/** After an edit or a slider: the same analysis with the present numbers. What cannot be repeated is taken away. */
+export async function linearize_again(): Promise<void> {
+  const { linear, document } = get();
+  if (!linear || !document?.loads) return;
+  const { from, to, to_name, cut } = linear, members = about_document({ from, to, ...(cut ? { break: from } : {}), lane: "linear" });
+  try {
+    const answer = await start<Linear>("linear", "linearize", "Linearizing", members).answer;
+    if (get().linear) patch({ linear: { ...answer, from, to, to_name, cut, set: members.set } });
+  } catch (error) {
+    if (error instanceof Refused) {
+      patch({ linear: null });
+      tell("error", `The linear analysis is taken away: ${error.message}`);
+    } else if (!(error instanceof Dropped) && !(error instanceof Disconnected)) throw error;
+  }
+}
+
+/** A number that a sweep can vary: where it is set, and its present value. */
+export interface Swept { set: string; unit: string; value: number; low: number; high: number }
+
+/** All numbers with a slider at this level, and those that were moved elsewhere. */
+export function sweepable(view: View, overrides: Record<string, string>): Swept[] {
+  const sliders = [...view.parameters.map((entry) => entry.slider), ...view.blocks.flatMap((block) => block.settings.map((entry) => entry.slider))];
+  const found = new Map<string, Swept>();
+  for (const slider of sliders) if (slider) found.set(slider.set, swept(slider.set, slider.unit, slider.value, slider));
+  const moved = new Map<string, Swept>();
+  for (const [set, text] of Object.entries(overrides)) {
+    const parts = /^\s*([-+]?[0-9.]+(?:e[-+]?\d+)?)\s*(.*)$/i.exec(text);
+    const value = parts ? Number(parts[1]) : NaN;
+    if (Number.isFinite(value)) moved.set(set, swept(set, parts![2]!, value, null));
+    found.delete(set);
+  }
+  return [...moved.values(), ...found.values()];
+}
+/** From half of the value to twice of it: a range around what is there. */
+function swept(set: string, unit: string, value: number, slider: Slider | null): Swept {
+  const round = (number: number) => +number.toPrecision(4);
+  if (value === 0) return { set, unit, value, low: slider?.low ?? -1, high: slider && slider.high > slider.low ? slider.high : 1 };
+  return { set, unit, value, low: round(Math.min(value / 2, 2 * value)), high: round(Math.max(value / 2, 2 * value)) };
 }
 
 const SWEEP_POINTS = 15;  // per axis: a picture in a second or two
-export async function sweep(x: Slider, y: Slider, metric: string): Promise<void> {
-  const { document } = get();
-  if (!document) return;
-  const axis = (slider: Slider) => ({ set: slider.set, low: slider.low, high: slider.high, points: SWEEP_POINTS, unit: slider.unit });
-  const answer = await attempt(start<SweepAnswer>("sweep", "sweep", "Sweeping", { path: document.path, x: axis(x), y: axis(y), metric, lane: "sweep" }).answer);
-  if (answer) patch({ sweep: { ...answer, x_set: x.set, y_set: y.set, x_unit: x.unit, y_unit: y.unit }, scope_tab: "sweep", place: "scopes" });
+export async function sweep(x: Swept, y: Swept, metric: string): Promise<void> {
+  if (!get().document) return;
+  const axis = ({ set, low, high, unit }: Swept) => ({ set, low, high, points: SWEEP_POINTS, unit });
+  const members = about_document({ x: axis(x), y: axis(y), metric, lane: "sweep" });
+  const answer = await attempt(start<SweepAnswer>("sweep", "sweep", "Sweeping", members).answer);
+  const { [x.set]: _x, [y.set]: _y, ...set } = members.set;
+  if (answer) patch({ sweep: { ...answer, x_set: x.set, y_set: y.set, x_unit: x.unit, y_unit: y.unit, set }, scope_tab: "sweep", place: "scopes" });
 }

@@ -11,6 +11,9 @@ export type Theme = "system" | "light" | "dark";
 export interface Note { id: number; tone: "note" | "good" | "error"; text: string }
 export interface Range { from: number; to: number }
 
+/** Between two ports. `to` is shown as `to_name`; `cut`: the loop is cut at `from`. */
+export interface LinearRequest { from: string; to: string; to_name: string; cut: boolean }
+
 /** A long job that is under way. */
 export interface Busy { what: string; stage: string; done: number | null; cancel: () => void }
 
@@ -39,8 +42,8 @@ export interface State {
   range: Range | null;                   // of time, of all plots; null: everything
   cursors: { a: number; b: number } | null;
   scope_tab: ScopeTab;
-  linear: (Linear & { from: string; to: string }) | null;
-  sweep: (SweepAnswer & { x_set: string; y_set: string; x_unit: string; y_unit: string }) | null;
+  linear: (Linear & LinearRequest & { set: Record<string, string> }) | null;
+  sweep: (SweepAnswer & { x_set: string; y_set: string; x_unit: string; y_unit: string; set: Record<string, string> }) | null;
 
   columns: Columns | null;               // to be confirmed
   experiment: string;                    // path; empty: none
@@ -48,6 +51,7 @@ export interface State {
   comparison_before: Comparison | null;
   diagnosis: Diagnosis | null;
   diagnosed_with: string[];              // experiments
+  diagnosed_set: Record<string, string>; // overrides
   staircase: Step[];                     // while the search runs
   preview: (Preview & { effects: string[] }) | null;
   added: string[];                       // effects of the diagnosis that are in the diagram now
@@ -68,7 +72,7 @@ const initial: State = {
   selected: [], selected_wire: "", highlighted: [], jump: null,
   overrides: {}, run: null, ghost: null, pinned: [], runs: [], plots: [], plots_chosen: false, range: null, cursors: null,
   scope_tab: "run", linear: null, sweep: null,
-  columns: null, experiment: "", comparison: null, comparison_before: null, diagnosis: null, diagnosed_with: [], staircase: [], preview: null, added: [],
+  columns: null, experiment: "", comparison: null, comparison_before: null, diagnosis: null, diagnosed_with: [], diagnosed_set: {}, staircase: [], preview: null, added: [],
   busy: {}, panel: "inspect", place: "diagram", show_palette: false, show_text: false, show_commands: false,
   theme: "system", dark: false, notes: [],
 };
@@ -100,4 +104,6 @@ export function tell(tone: Note["tone"], text: string): void {
   patch({ notes: [...state.notes.filter((other) => other.text !== text).slice(-3), note] });
   if (tone !== "error") setTimeout(() => close_note(note.id), NOTE_TIME);
 }
+/** Errors that were about a file as it is no more. */
+export const close_errors = (): void => { if (state.notes.some((note) => note.tone === "error")) patch({ notes: state.notes.filter((note) => note.tone !== "error") }); };
 export const close_note = (id: number): void => patch({ notes: state.notes.filter((note) => note.id !== id) });

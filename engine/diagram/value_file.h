@@ -1,0 +1,16 @@
+/// Values of another JSON file in the place of values in a diagram: {"file": "gains.json", "name": "K"}.
+#pragma once
+#include "engine/json/reader.h"
+
+namespace loopwright {
+
+/// Whether the value is an object of just "file" and "name".
+bool refers_to_file(const Value& value);
+
+/// The number, flag, text or list with this name. The path of the file is relative to the file that contains
+/// it; the parts of the name are joined by dots, elements of lists are counted from 0: "poles.0.re". The file
+/// contains plain JSON: numbers with units, {"value": 5, "unit": "mm"}, but neither expressions nor further
+/// files. Reports whatever is missing; the result is then broken.
+Value value_from_file(const Value& reference, const Reader& reader);
+
+}  // namespace loopwright
