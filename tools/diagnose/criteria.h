@@ -51,6 +51,8 @@ constexpr double most_slow_noise = 0.8;
 constexpr double next_to_no_slow_noise = 0.01;
 /// [factor] The likelihood looks for each noise within this of its start.
 constexpr double noise_reach = 30;
+/// [cosine] Input and force push the states in the same direction: noise of one is noise of the other.
+constexpr double same_push = 0.99;
 /// [greatest position] Numbers of a record have some nine digits.
 constexpr double least_sensor_noise = 1e-9;
 
@@ -173,6 +175,46 @@ constexpr double most_levels = 0.5;
 constexpr double blur = 1;
 /// [force of the input, rms] Excess over it that is material, as an effect of this size is.
 constexpr double least_excess = least_force;
+
+// The staircase of effects.
+
+/// [residual force] A correction of the nominal mass or damping that leaves more than this share only trades
+/// with effects that are still to come, as damping does with eddy-current drag.
+constexpr double least_benefit_of_a_correction = 0.99;
+/// [criterion for each row] And one that saves less.
+constexpr double least_gain_of_a_correction_per_row = 0.02;
+/// [decrease of the error by all effects] Effects at the end that decrease it by less are optional: beyond
+/// the knee of the curve.
+constexpr double knee = 0.05;
+
+// The variables on which the remainder depends.
+
+/// [mean square of the remainder] What a function of a variable explains, on blocks to which it was not
+/// fitted; and what the direction must explain beyond the position alone.
+constexpr double least_dependence = 0.05;
+/// [means] Of the remainder; fewer support no function with 40 levels.
+constexpr size_t least_remainder = 200;
+/// [levels] Of a function of position or time, of velocity, and of acceleration or input, which vary less.
+constexpr size_t levels_along = 40, levels_of_velocity = 20, levels_of_acceleration = 12;
+/// [parts] Of the blocks, each tested with a function that the others determine.
+constexpr size_t folds = 5;
+/// [means] That say zero about each level: one that no row reaches stays near it.
+constexpr double ridge = 1e-3;
+
+// Any diagram.
+
+/// n Σ ρ² over 40 lags is near 40 when nothing is left; the largest of a thousand records is below this.
+constexpr double most_portmanteau_of_any_diagram = 120;
+/// [simulated rms error of the nominal diagram] A simulation with the terms that is worse contradicts them.
+constexpr double worse_simulation_of_any_diagram = 1.05;
+/// [simulations] Begun anew from the filtered states, over the rows that are judged.
+constexpr size_t simulations_of_any_diagram = 10;
+/// [of the record] The start, in which the filter settles: 1/20 of it.
+constexpr size_t settling_part = 20;
+/// [cosine between responses] Beyond it no shape of the catalogue tells two sites apart.
+constexpr double alike_responses = 0.98;
+/// [rows] A trial term keeps its value as long; about as effects change along a motion.
+constexpr size_t trial_hold = 20;
 
 // Sizes of the motion.
 

@@ -5,6 +5,7 @@
 #include "engine/diagram/in_memory.h"
 #include "engine/json/reader.h"
 #include "engine/run/run.h"
+#include "tools/effects/linear_effect.h"
 
 namespace loopwright {
 namespace {
@@ -218,9 +219,10 @@ std::shared_ptr<const EffectPlan> compile_effect(const Effect& effect, const Mac
         effect.attachments, [](const Attachment& a) { return a.to == Attachment::To::sensor; });
     result->remembers = result->integral >= 0 || remembers(*plan);
     result->flies = plan->states > 1 && std::ranges::any_of(plan->blocks, [](const Plan::Block& block) {
-                      return !block.type->info.crossings.empty();
+                      return !block.type->info.crossings.empty() && block.path != "integral";
                     });
     check_bindings(*result, own);
+    if (!own.has_errors()) result->is_linear = is_linear(result);
   }
   for (Problem problem : own.list()) {  // what lies between the blocks and their bench has no file of its own
     if (!problem.place.file) problem.place = effect.blocks.place;

@@ -24,6 +24,9 @@ struct EffectPlan {
   bool acts_on_sensor = false;
   bool flies = false;     ///< has states of its own, and contact that closes and opens
   bool remembers = true;  ///< otherwise a sample depends only on itself, not even on time
+  /// Has states, which and whose force are linear in the signals and in themselves, and nothing else that
+  /// remembers: see EffectRun.
+  bool is_linear = false;
 };
 
 /// Null after a problem: blocks that do not exist, units incompatible with the machine's.

@@ -23,16 +23,20 @@ RoleSample RoleSignals::at(size_t row) const {
 }
 
 EffectRun::EffectRun(std::shared_ptr<const EffectPlan> plan, int lanes) : plan_(std::move(plan)) {
+  for (const EffectParameter& p : plan_->effect.parameters)
+    if (p.is_fitted) starts_.push_back(range_of(p, plan_->sizes).start);
+  if (plan_->is_linear) {
+    fitted_.assign(size_t(std::max(1, lanes)), starts_);
+    linear_ = std::make_unique<EffectSample>(plan_);
+    return;
+  }
   // A complete arena of lanes costs about as much as four scalar runs.
   const bool is_wide = lanes > 4 || !plan_->remembers;
   const InstructionSet set = is_wide ? widest_instruction_set() : InstructionSet::scalar;
   const int width = lanes_in_arena(set);
   const int sets = set == InstructionSet::scalar || !plan_->remembers ? 1 : std::min(lanes, most_lanes);
   run_ = make_lane_run(plan_->plan, set, (sets + width - 1) / width);
-  std::vector<double> starts;
-  for (const EffectParameter& p : plan_->effect.parameters)
-    if (p.is_fitted) starts.push_back(range_of(p, plan_->sizes).start);
-  fitted_.assign(plan_->remembers ? size_t(run_->lanes()) : 1, starts);
+  fitted_.assign(plan_->remembers ? size_t(run_->lanes()) : 1, starts_);
   for (int lane = 0; lane < run_->lanes(); ++lane)
     for (std::vector<double*>& bound = bound_.emplace_back();
          const EffectPlan::Binding& binding : plan_->bindings)
@@ -62,10 +66,15 @@ void EffectRun::Setting::set(double to, size_t from, size_t end) const {
   for (size_t lane = from; lane < end; ++lane) *lanes[lane] = to;
 }
 
-void EffectRun::give(const RoleSample& s, double now, size_t from, size_t to) {
+GivenSignals EffectRun::given_at(const RoleSample& s) const {
   const double period = plan_->sizes.sample_time;
   const double gain = std::isnan(s.next_velocity) ? s.acceleration : (s.next_velocity - s.velocity) / period;
   const double jerk = std::isnan(s.next_acceleration) ? 0.0 : (s.next_acceleration - s.acceleration) / period;
+  return {{s.position, s.velocity, gain, s.acceleration, jerk, s.input, s.force}};
+}
+
+void EffectRun::give(const GivenSignals& given, double now, size_t from, size_t to) {
+  using enum GivenSignals::Index;
   const auto give_line = [&](const Wire& wire, double value, double slope) {
     if (wire.value.lanes.empty()) return;
     wire.value.set(value, from, to), wire.slope.set(slope, from, to), wire.since.set(now, from, to);
@@ -74,22 +83,21 @@ void EffectRun::give(const RoleSample& s, double now, size_t from, size_t to) {
     if (!wire.value.lanes.empty()) wire.value.set(value, from, to);
   };
   // Anything not set here stays zero.
-  give_line(position_, s.position, s.velocity);
-  if (!position_.bend.lanes.empty()) position_.bend.set(0.5 * gain, from, to);
-  give_line(velocity_, s.velocity, gain), give_line(acceleration_, s.acceleration, jerk);
-  give_held(input_, s.input), give_held(force_, s.force);
+  give_line(position_, given[position], given[velocity]);
+  if (!position_.bend.lanes.empty()) position_.bend.set(0.5 * given[velocity_slope], from, to);
+  give_line(velocity_, given[velocity], given[velocity_slope]);
+  give_line(acceleration_, given[acceleration], given[acceleration_slope]);
+  give_held(input_, given[input]), give_held(force_, given[force]);
 }
 
 double EffectRun::isolate(size_t parameter, int lane) {
-  double size = 1;
   size_t i = 0;
   for (const EffectParameter& p : plan_->effect.parameters) {
     if (!p.is_fitted) continue;
-    if (const double start = range_of(p, plan_->sizes).start; i == parameter && start != 0) size = start;
-    if (p.is_linear) set(i, i == parameter ? size : 0.0, lane);
+    if (p.is_linear) set(i, i != parameter ? 0.0 : starts_[i] != 0 ? starts_[i] : 1.0, lane);
     ++i;
   }
-  return size;
+  return starts_[parameter] != 0 ? starts_[parameter] : 1;
 }
 
 void EffectRun::start(const RoleSample& first) {
@@ -154,7 +162,7 @@ void EffectRun::integrate_sample() {
 
 void EffectRun::step(const RoleSample& s) {
   const double now = run_->time();
-  give(s, now, 0, bound_.size());
+  give(given_at(s), now, 0, bound_.size());
   if (plan_->integral >= 0) return integrate_sample();
   mean_from(now);
   run_->integrate(sample_ticks_);
@@ -172,9 +180,24 @@ template <class Take> void EffectRun::run_side_by_side(const RoleSignals& signal
   const double now = run_->time();
   for (size_t first = 0; first < rows; first += bound_.size()) {
     const size_t count = std::min(bound_.size(), rows - first);
-    for (size_t i = 0; i < count; ++i) give(signals.at(first + i), now, i, i + 1);
+    for (size_t i = 0; i < count; ++i) give(given_at(signals.at(first + i)), now, i, i + 1);
     mean_from(now);
     for (size_t i = 0; i < count; ++i) take(size_t(0), first + i, value_[i], slope_[i]);
+  }
+}
+
+template <class Take>
+void EffectRun::superpose(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take) {
+  const RoleSample first = signals.at(0);
+  for (size_t lane = 0; lane < lanes; ++lane) {
+    linear_->start(fitted_[lane], first.position, first.velocity);
+    std::vector<double> states = linear_->states(), next;
+    const SampleMap map = linear_->map();
+    for (size_t row = 0; row < rows; ++row) {
+      map.apply(states, given_at(signals.at(row)), next);
+      take(lane, row, next[map.states], next[map.states + 1]);
+      states.swap(next);
+    }
   }
 }
 
@@ -191,6 +214,7 @@ void EffectRun::run_lanes(const RoleSignals& signals, size_t rows, size_t lanes,
           fmt::format("the effect \"{}\" reads the {}, which is not given", plan_->effect.name, role));
   }
   if (rows == 0) return;
+  if (linear_) return superpose(signals, rows, std::min(lanes, fitted_.size()), take);
   start(signals.at(0));
   if (plan_->remembers)
     run_in_turn(signals, rows, std::min(lanes, value_.size()), take);

@@ -4,6 +4,7 @@
 #include <span>
 #include "engine/lanes/lane_run.h"
 #include "tools/effects/effect_plan.h"
+#include "tools/effects/linear_effect.h"
 
 namespace loopwright {
 
@@ -37,6 +38,8 @@ struct RoleSignals {
 /// mean is computed by two-point Gauss quadrature if the effect has no states, else by an additional
 /// integrator. In addition to the mean there is a slope: the change over the sample of the straight line with
 /// the same first moment. A rapidly oscillating force moves the axis by its slope as well as by its mean.
+/// Of a linear effect with states only one sample is integrated for each state and signal; the others follow
+/// by superposition.
 class EffectRun {
  public:
   /// `lanes`: requested number of sets; see lanes().
@@ -77,6 +80,7 @@ class EffectRun {
   Wire wire(const char* role);
   /// Back to rest at the first sample.
   void start(const RoleSample& first);
+  GivenSignals given_at(const RoleSample& sample) const;
   /// Sets `value_` and `slope_` to those of the next sample, one per lane.
   void step(const RoleSample& sample);
   /// The same over given samples, at the two Gauss points from `now` on.
@@ -88,13 +92,16 @@ class EffectRun {
   template <class Take> void run_lanes(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take);
   template <class Take> void run_in_turn(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take);
   template <class Take> void run_side_by_side(const RoleSignals& signals, size_t rows, Take&& take);
+  template <class Take> void superpose(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take);
   /// For the lanes from `from` up to `to`.
-  void give(const RoleSample& sample, double now, size_t from, size_t to);
+  void give(const GivenSignals& given, double now, size_t from, size_t to);
   void read(Number number, std::vector<double>& to) const { run_->read({&number, 1}, to.data()); }
 
   std::shared_ptr<const EffectPlan> plan_;
+  std::vector<double> starts_;               // of each fitted parameter
+  std::vector<std::vector<double>> fitted_;  // of each set
+  std::unique_ptr<EffectSample> linear_;     // of a linear effect; all following is empty then
   std::unique_ptr<LaneRun> run_;
-  std::vector<std::vector<double>> fitted_;  // of each lane
   std::vector<std::vector<double*>> bound_;
   Wire position_, velocity_, acceleration_, input_, force_;
   int64_t sample_ticks_ = 1;

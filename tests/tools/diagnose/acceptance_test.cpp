@@ -82,6 +82,22 @@ TEST(Acceptance, NoIntervalContainsZero) {
   }
 }
 
+/// What a window leaves wrong in a load that swings must not go on to the next: it grew from window to
+/// window.
+TEST(Acceptance, ALoadOnASpringIsSimulatedFromWhereTheMeasuredMotionLedIt) {
+  HiddenAxis axis;
+  Physics truth = axis.nominal();
+  truth.load_kg = 0.13, truth.gap_m = -1, truth.coupling_n_per_m = 772, truth.coupling_n_s_per_m = 0.2;
+  WantedMotion motion = there_and_back(0.2, 0.4);
+  for (int i = 0; i < 3; ++i) {
+    const WantedMotion more = there_and_back(0.2, 0.4);
+    motion.position.insert(motion.position.end(), more.position.begin(), more.position.end());
+  }
+  const Diagnosis d = diagnose(axis.diagram(), {axis.record("record", truth, motion)});
+  ASSERT_THAT(names(d), ElementsAre("flexible_mode")) << to_text(d);
+  EXPECT_LT(d.steps.back().simulation_rmse, 0.1 * d.steps.front().simulation_rmse) << to_text(d);
+}
+
 /// Cogging 24 times a turn is 24 times a turn, although the record alone says 23.97 or 24.03.
 TEST(Acceptance, PitchesOfARotaryAxisAreWholePartsOfATurn) {
   HiddenMachine machine;

@@ -1,6 +1,7 @@
 #include "tools/effects/effect_run.h"
 #include <gtest/gtest.h>
 #include <cmath>
+#include <set>
 #include "tests/engine/written_diagram.h"
 #include "tests/tools/effects/axis_sizes.h"
 
@@ -106,6 +107,30 @@ TEST(EffectRun, IsProportionalToItsLinearParameters) {
     for (size_t k = 0; k < sum.size(); ++k)
       ASSERT_NEAR(whole[k], sum[k], 1e-9 * size + 1e-15) << effect.name << " " << effect.form << " row " << k;
   }
+}
+
+TEST(EffectRun, LinearEffectsAreRecognizedAndSuperposeWhatTheyWouldIntegrate) {
+  const Sampled s;
+  std::set<std::string> linear;
+  for (const Effect& effect : whole_catalogue()) {
+    const auto plan = compiled(effect);
+    if (!plan->is_linear) continue;
+    linear.insert(effect.name);
+    auto integrated = std::make_shared<EffectPlan>(*plan);
+    integrated->is_linear = false;
+    std::vector<EffectRun::Output> fast(2), slow(2);
+    EffectRun(plan, 2).run(s.signals(), s.position.size(), fast);
+    EffectRun one(integrated, 2);
+    one.run(s.signals(), s.position.size(), std::span(slow).first(1));
+    for (auto part : {&EffectRun::Output::mean, &EffectRun::Output::slope}) {
+      double size = 0;
+      for (float v : slow[0].*part) size = std::max(size, double(std::abs(v)));
+      for (size_t k = 0; k < (slow[0].*part).size(); ++k)
+        for (const EffectRun::Output& lane : fast)
+          ASSERT_NEAR((lane.*part)[k], (slow[0].*part)[k], 1e-6 * size) << effect.name << " row " << k;
+    }
+  }
+  EXPECT_EQ(linear, (std::set<std::string>{"actuator_lag", "flexible_mode"}));
 }
 
 TEST(EffectRun, ALagHasTheExactMeanOfAStaircase) {

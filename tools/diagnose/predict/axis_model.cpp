@@ -6,6 +6,7 @@
 #include "tools/experiment/experiment_ports.h"
 #include "tools/experiment/sensor_gains.h"
 #include "tools/compare/machine.h"
+#include "tools/diagnose/criteria.h"
 #include "tools/diagnose/predict/injection.h"
 
 namespace loopwright::diagnosis {
@@ -175,6 +176,14 @@ bool AxisModel::set_added_inertia(double added) {
   if (!parameter) return false;
   *parameter = own_inertia_ + added;
   return true;
+}
+
+bool AxisModel::set_noise_enters_at_input(bool enters) {
+  noise_enters_at_input_ = enters;
+  if (record_.is_map || force_per_input_ == 0) return noise_enters_at_input_ = false;
+  const LinearAxis axis = linearize();
+  const double size = axis.push.norm() * axis.noise_push.norm();
+  return size > 0 && std::abs(axis.push.dot(axis.noise_push)) < criteria::same_push * size;
 }
 
 void AxisModel::start(double position, double velocity) {

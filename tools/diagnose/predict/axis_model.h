@@ -24,6 +24,7 @@ struct LinearAxis {
   Eigen::MatrixXd A;           ///< n×n
   Eigen::VectorXd push;        ///< n; effect of a unit of force that pushes forward
   Eigen::VectorXd input_push;  ///< n; effect of a unit of input
+  Eigen::VectorXd noise_push;  ///< n; effect of white noise per unit of force
   /// n; effect of a force that grows by one unit within the sample with zero mean, as a fraction of the push.
   /// ∫ (T - τ)(τ/T - ½) dτ = -T²/12 is a sixth of ∫ (T - τ) dτ, so the position changes by -1/6 of the push.
   Eigen::VectorXd slope_share;
@@ -66,6 +67,9 @@ class AxisModel {
   /// Of the user's own diagram.
   double nominal_inertia() const { return nominal_inertia_; }
   double nominal_damping() const { return nominal_damping_; }
+
+  /// White noise acts as the input does, instead of on the role force; returns whether that differs.
+  bool set_noise_enters_at_input(bool enters);
 
   /// Back to the start: position and velocity as given, everything else at the diagram's initial values.
   void start(double position, double velocity);
@@ -117,6 +121,7 @@ class AxisModel {
   Number input_ = -1, injected_ = -1, force_ = -1, position_ = -1, velocity_ = -1;
   bool all_outputs_ = false;  // a role is not a state: its block must run at every step
   std::string inertia_parameter_, force_unit_, position_unit_;
+  bool noise_enters_at_input_ = false;
   double own_inertia_ = 0, nominal_inertia_ = 0, nominal_damping_ = 0;
   std::vector<int> seen_;
   std::vector<int> inner_states_;   // between input and force

@@ -32,7 +32,7 @@ LinearAxis balance_of(const LinearAxis& moving, double force_per_input) {
   linear.A = Eigen::MatrixXd::Zero(1, 1), linear.C = Eigen::MatrixXd::Ones(1, 1);
   linear.push = Eigen::VectorXd::Ones(1);
   linear.input_push = Eigen::VectorXd::Constant(1, force_per_input);
-  linear.slope_share = Eigen::VectorXd::Zero(1);
+  linear.slope_share = Eigen::VectorXd::Zero(1), linear.noise_push = linear.push;
   return linear;
 }
 
@@ -108,6 +108,8 @@ LinearAxis AxisModel::linearize_motion() {
   }
   // Memories of sampled blocks are no states here: effects at the input act as in steady state.
   if (input_is_filtered_ && inner_states_.empty()) linear.input_push = linear.push * force_per_input_;
+  linear.noise_push = linear.push;
+  if (noise_enters_at_input_) linear.noise_push = linear.input_push / force_per_input_;
   const Eigen::Index v = velocity_ - plan_->signals, x = position_ - plan_->signals;
   linear.slope_share = Eigen::VectorXd::Zero(n);
   for (Eigen::Index i = 0; i < n; ++i)

@@ -37,7 +37,8 @@ Gains gains_of(const LinearAxis& axis, const Noise& noise, double nominal_inerti
   const double scale = axis.inertia / nominal_inertia;
   // In units in which all numbers are of order one.
   Eigen::VectorXd unit(n + 1), output(ports);
-  for (Eigen::Index i = 0; i < n; ++i) unit[i] = std::max(std::abs(push[i]) * noise.white, 1e-300);
+  for (Eigen::Index i = 0; i < n; ++i)
+    unit[i] = std::max(std::max(std::abs(push[i]), std::abs(axis.noise_push[i])) * noise.white, 1e-300);
   for (Eigen::Index p = 0; p < ports; ++p) output[p] = noise.measurement[size_t(p)];
   unit[n] = noise.white;
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n + 1, n + 1), C = Eigen::MatrixXd::Zero(ports, n + 1);
@@ -46,7 +47,7 @@ Gains gains_of(const LinearAxis& axis, const Noise& noise, double nominal_inerti
   A(n, n) = noise.memory;
   C.leftCols(n) = axis.C;
   Eigen::VectorXd white = Eigen::VectorXd::Zero(n + 1), slow = white;
-  white.head(n) = push * noise.white * scale;
+  white.head(n) = axis.noise_push * noise.white * scale;
   slow[n] = noise.step * scale;
   const Eigen::MatrixXd scaled_A = unit.cwiseInverse().asDiagonal() * A * unit.asDiagonal();
   const Eigen::MatrixXd scaled_C = output.cwiseInverse().asDiagonal() * C * unit.asDiagonal();

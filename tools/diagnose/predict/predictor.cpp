@@ -6,12 +6,13 @@
 #include <numeric>
 
 namespace loopwright::diagnosis {
-namespace {
 
-uint64_t next_identity() {
+uint64_t Path::next_identity() {
   static std::atomic<uint64_t> last = 0;
   return ++last;
 }
+
+namespace {
 
 /// Columns filtered in parallel, so that no column waits for its own previous sample. Vector types of the
 /// compiler become wider instructions in a function compiled for them. The bits stay the same, because
@@ -167,7 +168,7 @@ Path creep_along(const AxisRecord& map, size_t rows) {
   constexpr double creep = 1e-9;  // fraction of the way to the next balance
   const std::vector<double>& position = map.find("position")->value;
   Path path;
-  path.identity = next_identity(), path.sample_time = map.sample_time;
+  path.identity = Path::next_identity(), path.sample_time = map.sample_time;
   path.position = {position.begin(), position.begin() + std::ptrdiff_t(rows)};
   path.predicted_position = path.position, path.input = map.input;
   path.velocity.resize(rows), path.acceleration.resize(rows), path.rests.resize(rows),
@@ -257,7 +258,7 @@ Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains,
   Prediction result;
   result.error.resize(rows * ports), result.slow.resize(rows);
   Path& path = result.path;
-  path.identity = next_identity(), path.sample_time = record.sample_time;
+  path.identity = Path::next_identity(), path.sample_time = record.sample_time;
   for (auto* list : {&path.position, &path.velocity, &path.acceleration}) list->resize(rows);
   path.input = drives.input, path.force = first_rows(model.driving_force(), rows);
   path.predicted_position.resize(rows), path.rests.resize(rows), path.turns.resize(rows);

@@ -23,6 +23,7 @@ struct Drives {
 /// with future noise.
 struct Path {
   uint64_t identity = 0;  ///< equal only for equal paths, because results along a path are cached; 0: none
+  static uint64_t next_identity();  ///< that no path has yet
   double sample_time = 0;
   std::vector<double> position, velocity, acceleration, input;
   std::vector<double> input_slope;         ///< of the recorded input; empty: held

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <map>
 #include "tools/diagnose/criteria.h"
 #include "tools/effects/effect_run.h"
 #include "models/real/whole.h"
@@ -48,13 +49,15 @@ std::vector<double> grid_of(const CandidateParameter& p, bool is_first, int poin
   return grid;
 }
 
-/// The columns computed last: fits return to the same path and shape many times.
+/// The columns used last: fits return to the same path and shape many times.
 class Remembered {
  public:
-  const Columns* find(const Path& path, const std::vector<double>& shape) const {
+  const Columns* find(const Path& path, const std::vector<double>& shape) {
     const auto entry = std::ranges::find_if(
         entries_, [&](const Entry& e) { return e.path == path.identity && e.path != 0 && e.shape == shape; });
-    return entry == entries_.end() ? nullptr : &entry->columns;
+    if (entry == entries_.end()) return nullptr;
+    std::rotate(entry, entry + 1, entries_.end());
+    return &entries_.back().columns;
   }
   void keep(const Path& path, const std::vector<double>& shape, const Columns& columns) {
     if (path.identity == 0) return;
@@ -63,13 +66,13 @@ class Remembered {
   }
 
  private:
-  static constexpr size_t most = 12;
+  static constexpr size_t most = 16;
   struct Entry {
     uint64_t path;
     std::vector<double> shape;
     Columns columns;
   };
-  std::deque<Entry> entries_;
+  std::deque<Entry> entries_;  // the one used last at the end
 };
 
 /// An effect with the indices of its parameters.
@@ -78,6 +81,7 @@ struct Compiled {
   std::vector<size_t> linear, nonlinear;  // in EffectPlan::fitted
   Acts acts;
   Remembered remembered;
+  std::map<size_t, std::unique_ptr<EffectRun>> runs;  // by the number of sets that was asked for
 
   /// Runs only the shapes that are not cached.
   std::vector<Columns> columns(const Path& path, const std::vector<std::vector<double>>& shapes) {
@@ -99,7 +103,7 @@ struct Compiled {
     return result;
   }
   /// Every linear parameter of every shape has a lane.
-  std::vector<Columns> run(const Path& path, const std::vector<std::vector<double>>& shapes) const {
+  std::vector<Columns> run(const Path& path, const std::vector<std::vector<double>>& shapes) {
     RoleSignals signals;
     signals.position = acts == Acts::sensor ? path.predicted_position : path.position;
     signals.velocity = path.velocity, signals.acceleration = path.acceleration;
@@ -107,7 +111,7 @@ struct Compiled {
     const size_t rows = path.samples(), per_shape = std::max<size_t>(1, linear.size());
     const size_t wanted = shapes.size() * per_shape;
     std::vector<Columns> result(shapes.size());
-    EffectRun run(plan, int(wanted));
+    EffectRun& run = run_for(wanted);
     const size_t lanes = size_t(run.lanes());
     for (size_t first = 0; first < wanted; first += lanes) {
       std::vector<EffectRun::Output> outputs(std::min(lanes, wanted - first));
@@ -126,6 +130,11 @@ struct Compiled {
       }
     }
     return result;
+  }
+  EffectRun& run_for(size_t sets) {
+    std::unique_ptr<EffectRun>& run = runs[sets];
+    if (!run) run = std::make_unique<EffectRun>(plan, int(sets));
+    return *run;
   }
   EffectValues values(const Member& member) const {
     std::vector<double> fitted(plan->fitted.size());

@@ -43,11 +43,16 @@ struct ChangedInput {
 ChangedInput through(const std::vector<const Member*>& chain, const Path& path,
                      const std::vector<double>& raw_input) {
   if (chain.empty()) return {raw_input, path.input_slope};
+  /// Of a path with the recorded input, which differs from the path's own behind such effects.
+  constexpr uint64_t with_recorded_input = uint64_t(1) << 63;
   Path upstream = path;
-  upstream.input = raw_input, upstream.identity = 0;
+  upstream.input = raw_input;
+  if (path.identity != 0) upstream.identity = path.identity | with_recorded_input;
   std::vector<double> slope = path.input_slope;
-  for (const Member* member : chain)
+  for (const Member* member : chain) {
     add_columns(*member, member->candidate->columns(upstream, member->nonlinear), upstream.input, slope, -1);
+    upstream.identity = 0;
+  }
   return {std::move(upstream.input), std::move(slope)};
 }
 

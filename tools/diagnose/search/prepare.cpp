@@ -110,6 +110,23 @@ std::vector<Fitted> mark_usable(Trials& trials) {
   }
 }
 
+/// Where motor and load are two bodies in the diagram, and the roles those of the load, the noise of the
+/// input moves the motor. The likelihood decides.
+void look_where_noise_enters(Trials& trials, std::vector<Fitted>& nominal) {
+  bool differs = false;
+  for (Trial& trial : trials.list) differs |= trial.model->set_noise_enters_at_input(true);
+  if (differs) {
+    std::vector<Fitted> other = run_members(trials, {}, {}, trials.noise);
+    const Noise noise = fit_noise(trials, other, trials.noise, FreeNoise::with_random_walk);
+    other = run_members(trials, {}, {}, noise);
+    if (profile(trials, other) < profile(trials, nominal) - criteria::least_gain) {
+      trials.noise = noise, nominal = std::move(other);
+      return;
+    }
+  }
+  for (Trial& trial : trials.list) trial.model->set_noise_enters_at_input(false);
+}
+
 void reject_without_fitted_rows(const Trials& trials) {
   if (std::ranges::any_of(trials.list, [](const Trial& trial) { return trial.held_out_from > 0; })) return;
   Problems problems;
@@ -164,6 +181,7 @@ Trials prepare(const std::string& diagram, const std::vector<std::string>& exper
   std::vector<Fitted> nominal = mark_usable(trials);
   trials.noise = fit_noise(trials, nominal, trials.noise, FreeNoise::with_random_walk);
   nominal = run_members(trials, {}, {}, trials.noise);
+  look_where_noise_enters(trials, nominal);
   trials.lowest_position = 1e300, trials.highest_position = -1e300;
   for (size_t t = 0; t < trials.list.size(); ++t) {
     const Path& path = nominal[t].prediction.path;

@@ -47,7 +47,7 @@ InverseDynamics inverse_dynamics(Trial& trial) {
   if (record.is_map) {
     path = creep_along(record, record.rows());
   } else {
-    path.sample_time = record.sample_time;
+    path.identity = Path::next_identity(), path.sample_time = record.sample_time;
     path.position = path.predicted_position = result.motion.position;
     path.velocity = result.motion.velocity, path.acceleration = result.motion.acceleration;
     path.input = result.motion.input;

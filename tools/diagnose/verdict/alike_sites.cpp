@@ -2,23 +2,15 @@
 #include <fmt/format.h>
 #include <cmath>
 #include "models/random/philox.h"
+#include "tools/diagnose/criteria.h"
 
 namespace loopwright::diagnosis {
-namespace {
-
-/// Cosine between responses beyond which no shape of the catalogue tells two sites apart.
-constexpr double alike = 0.98;
-/// [rows] A trial term keeps its value as long; about as effects change along a motion.
-constexpr size_t hold = 20;
-
-}  // namespace
-
 std::vector<std::string> alike_sites(SiteFitter& fitter, SiteHypothesis h) {
   std::vector<std::string> sentences;
   SitePass pass;
   if (!fitter.pass(h, true, pass)) return sentences;
   std::vector<double> trial(pass.rows);
-  for (size_t k = 0; k < pass.rows; ++k) trial[k] = uniform_pair(1, 0, k / hold).first - 0.5;
+  for (size_t k = 0; k < pass.rows; ++k) trial[k] = uniform_pair(1, 0, k / criteria::trial_hold).first - 0.5;
   const std::vector<Site>& sites = fitter.model().sites();
   std::vector<std::pair<size_t, Eigen::VectorXd>> columns;
   for (size_t s = 0; s < sites.size(); ++s) {
@@ -32,7 +24,7 @@ std::vector<std::string> alike_sites(SiteFitter& fitter, SiteHypothesis h) {
   }
   for (size_t a = 0; a < columns.size(); ++a)
     for (size_t b = a + 1; b < columns.size(); ++b)
-      if (std::abs(columns[a].second.dot(columns[b].second)) > alike)
+      if (std::abs(columns[a].second.dot(columns[b].second)) > criteria::alike_responses)
         sentences.push_back(fmt::format("what acts at {} and what acts at {} look alike in what is measured",
                                         sites[columns[a].first].name, sites[columns[b].first].name));
   return sentences;

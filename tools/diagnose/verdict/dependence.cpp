@@ -61,11 +61,11 @@ double explained(const std::vector<double>& force, const std::vector<double>& va
                  size_t block, const std::vector<double>* side) {
   const Hats hats(variable, knots);
   const size_t width = hats.knots.size();
-  constexpr size_t folds = 5;
+  using criteria::folds;
   double left = 0, whole = 0;
   for (size_t fold = 0; fold < folds; ++fold) {
     const Eigen::Index n = Eigen::Index(width) * (side ? 2 : 1);
-    Eigen::MatrixXd G = Eigen::MatrixXd::Identity(n, n) * 1e-3;
+    Eigen::MatrixXd G = Eigen::MatrixXd::Identity(n, n) * criteria::ridge;
     Eigen::VectorXd b = Eigen::VectorXd::Zero(n);
     const auto place = [&](size_t i) {
       const auto [hat, weight] = hats.at(variable[i]);
@@ -94,19 +94,22 @@ double explained(const std::vector<double>& force, const std::vector<double>& va
 
 std::vector<RemainderShare> dependence_of(const Trials& trials, const std::vector<Fitted>& fitted) {
   const Remainder r = remainder_of(trials, fitted);
-  if (r.force.size() < 200) return {};
+  if (r.force.size() < criteria::least_remainder) return {};
   const double mean_s = std::max(criteria::remainder_mean_s, trials.list.front().model->record().sample_time);
   const size_t block = std::max<size_t>(1, whole_count(std::round(criteria::remainder_block_s / mean_s)));
   std::vector<RemainderShare> list;
-  list.push_back({"position", explained(r.force, r.position, 40, block, nullptr)});
+  list.push_back({"position", explained(r.force, r.position, criteria::levels_along, block, nullptr)});
   if (!trials.has_map()) {
-    list.push_back({"velocity", explained(r.force, r.velocity, 20, block, nullptr)});
-    list.push_back({"acceleration", explained(r.force, r.acceleration, 12, block, nullptr)});
-    list.push_back({"input", explained(r.force, r.input, 12, block, nullptr)});
-    list.push_back({"time", explained(r.force, r.time, 40, block, nullptr)});
+    list.push_back(
+        {"velocity", explained(r.force, r.velocity, criteria::levels_of_velocity, block, nullptr)});
+    list.push_back({"acceleration",
+                    explained(r.force, r.acceleration, criteria::levels_of_acceleration, block, nullptr)});
+    list.push_back({"input", explained(r.force, r.input, criteria::levels_of_acceleration, block, nullptr)});
+    list.push_back({"time", explained(r.force, r.time, criteria::levels_along, block, nullptr)});
   }
-  const double direction = explained(r.force, r.position, 40, block, &r.velocity);
-  if (direction > list.front().share + 0.05) list.push_back({"position,direction", direction});
+  const double direction = explained(r.force, r.position, criteria::levels_along, block, &r.velocity);
+  if (direction > list.front().share + criteria::least_dependence)
+    list.push_back({"position,direction", direction});
   std::ranges::stable_sort(list, std::ranges::greater{}, &RemainderShare::share);
   return list;
 }

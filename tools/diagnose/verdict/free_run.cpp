@@ -61,6 +61,12 @@ class FreeAxis {
     numbers_ = reinterpret_cast<double*>(run_->arena().data());
   }
 
+  /// The present state, and back to it.
+  void keep() { kept_.assign(run_->arena().begin(), run_->arena().end()), kept_at_ = run_->now(); }
+  void go_back() {
+    std::ranges::copy(kept_, run_->arena().begin());
+    run_->restored(kept_at_);
+  }
   void place(double position, double velocity) {
     if (moving_[0] >= plan_->signals) numbers_[moving_[0]] = position;
     if (moving_[1] >= plan_->signals) numbers_[moving_[1]] = velocity;
@@ -85,6 +91,8 @@ class FreeAxis {
   double* numbers_ = nullptr;  // the arena's
   Number input_ = -1, moving_[2] = {-1, -1}, measured_[2] = {-1, -1};
   bool shows_output_ = false;
+  std::vector<char> kept_;
+  Instant kept_at_;
 };
 
 /// Mean square of what a constant, and a straight line if `has_slope`, leave of the errors.
@@ -120,10 +128,8 @@ class Windows {
     follow_to(has_hold_out ? trial_.held_out_from : length);
     while (k + 2 * length < record_.rows() && !result_.diverged) {
       follow_to(k + length);
-      if (is_whole(k, k + length))
-        run_window(k, length);
-      else
-        follow_to(k + length);
+      if (is_whole(k, k + length)) run_window(k, length);
+      follow_to(k + length);
     }
   }
 
@@ -133,18 +139,22 @@ class Windows {
       if (record_.is_missing(k)) return false;
     return true;
   }
-  void run_window(size_t& k, size_t length) {
+  /// Afterwards the axis is where it was: a load that moves by itself is led by the measured motion alone. If
+  /// the errors of a window went on to the next, following and running freely in turn could amplify them.
+  void run_window(size_t from, size_t length) {
     const MeasuredPort& port = record_.measured.front();
     const bool is_velocity = port.role == "velocity";
-    axis_.place(motion_.position[k], motion_.velocity[k]);
+    axis_.keep();
+    axis_.place(motion_.position[from], motion_.velocity[from]);
     errors_.clear();
-    for (const size_t end = k + length; k < end; ++k) {
+    for (size_t k = from; k < from + length; ++k) {
       axis_.step(k);
       errors_.push_back(axis_.measured(is_velocity) - port.value[k + 1]);
     }
     const double square = square_beside_offsets(errors_, !is_velocity);
     if (!(square <= largest_ * largest_)) result_.diverged = true;
     result_.squares.push_back(square);
+    axis_.go_back();
   }
 
   FreeAxis& axis_;

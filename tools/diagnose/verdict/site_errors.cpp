@@ -1,10 +1,9 @@
 #include "tools/diagnose/verdict/site_errors.h"
 #include <cmath>
+#include "tools/diagnose/criteria.h"
 
 namespace loopwright::diagnosis {
 namespace {
-
-constexpr size_t simulations = 10, lags = 40;
 
 class MeanSquare {
  public:
@@ -27,7 +26,7 @@ double portmanteau_of(const SitePass& pass, size_t output, size_t rows) {
   }
   double square = 0, sum = 0;
   for (double x : e) square += x * x;
-  for (size_t lag = 1; lag <= lags && lag < e.size(); ++lag) {
+  for (size_t lag = 1; lag <= criteria::portmanteau_lags && lag < e.size(); ++lag) {
     double product = 0;
     for (size_t k = lag; k < e.size(); ++k) product += e[k] * e[k - lag];
     sum += product / square * product / square;
@@ -52,14 +51,15 @@ SiteErrors errors_of(SiteFitter& fitter, SiteHypothesis h) {
       const double square = pass.error[at] * pass.error[at];
       (k < fitted ? predicted : held_out).add(square);
       (k < fitted ? all : all_held_out).add(square / pass.variance[at]);
-      if (!std::isnan(square) && k > rows / 20) noise.add(pass.variance[at]);  // settled
+      if (!std::isnan(square) && k > rows / criteria::settling_part) noise.add(pass.variance[at]);  // settled
     }
     errors.predicted.push_back(predicted.root()), errors.held_out.push_back(held_out.root());
     errors.noise.push_back(noise.root());
     errors.portmanteau = std::max(errors.portmanteau, portmanteau_of(pass, j, fitted));
   }
   errors.mean_square = all.mean(), errors.held_out_mean_square = all_held_out.mean();
-  const size_t first = fitted < rows ? fitted : rows / 20, length = (rows - first) / simulations + 1;
+  const size_t first = fitted < rows ? fitted : rows / criteria::settling_part,
+               length = (rows - first) / criteria::simulations_of_any_diagram + 1;
   std::vector<MeanSquare> simulated(pass.outputs);
   std::vector<double> e;
   for (size_t from = first; from < rows; from += length) {

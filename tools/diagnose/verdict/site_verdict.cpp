@@ -2,16 +2,12 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include "tools/diagnose/criteria.h"
 #include "tools/diagnose/verdict/alike_sites.h"
 #include "tools/diagnose/verdict/site_errors.h"
 
 namespace loopwright::diagnosis {
 namespace {
-
-/// n Σ ρ² over 40 lags is near 40 when nothing is left; the largest of a thousand records is below this.
-constexpr double most_portmanteau = 120;
-/// A simulation that is worse than the nominal diagram's by more than this contradicts the answer.
-constexpr double worse_simulation = 1.05;
 
 std::string unit_text(const std::optional<Unit>& unit) { return unit ? to_string(unit->in_si()) : ""; }
 
@@ -163,13 +159,16 @@ class Telling {
   bool simulates_worse() const {
     if (errors_.diverges) return true;
     for (size_t j = 0; j < errors_.simulated.size(); ++j)
-      if (!nominal_.diverges && errors_.simulated[j] > worse_simulation * nominal_.simulated[j]) return true;
+      if (!nominal_.diverges &&
+          errors_.simulated[j] > criteria::worse_simulation_of_any_diagram * nominal_.simulated[j])
+        return true;
     return false;
   }
 
   void judge() {
     const bool has_unknown = !result_.remainder_variables.empty();
-    const bool is_white = !errors_.diverges && errors_.portmanteau < most_portmanteau;
+    const bool is_white =
+        !errors_.diverges && errors_.portmanteau < criteria::most_portmanteau_of_any_diagram;
     const bool names = !result_.effects.empty() || !result_.moved_parameters.empty();
     const bool worse = names && simulates_worse();
     if (worse)

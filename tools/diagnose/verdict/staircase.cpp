@@ -1,5 +1,6 @@
 #include "tools/diagnose/verdict/staircase.h"
 #include <algorithm>
+#include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/evidence.h"
 
 namespace loopwright::diagnosis {
@@ -8,10 +9,6 @@ namespace {
 bool corrects_nominal(const Member& member) {
   return member.candidate->name == "inertia" || member.candidate->name == "viscous_friction";
 }
-
-/// A correction of the nominal diagram that leaves 99 % of the missing force only trades with effects that
-/// are still to come, as damping does with eddy-current drag.
-constexpr double least_benefit_of_a_correction = 0.99;
 
 struct Stage {
   std::vector<size_t> members;  ///< for the conclusion
@@ -74,8 +71,9 @@ class Climb {
       rest.erase(rest.begin() + std::ptrdiff_t(i));
       Stage without = fitted(rest, stage.estimate);
       const double n = double(fitted_numbers(trials_));
-      const bool lowers_the_force = stage.force < least_benefit_of_a_correction * without.force;
-      if (lowers_the_force && without.criterion - stage.criterion > 0.02 * n) continue;
+      const bool lowers_the_force = stage.force < criteria::least_benefit_of_a_correction * without.force;
+      const double gain = without.criterion - stage.criterion;
+      if (lowers_the_force && gain > criteria::least_gain_of_a_correction_per_row * n) continue;
       return without_idle_corrections(std::move(without), is_correction);
     }
     return stage;
@@ -87,14 +85,14 @@ class Climb {
   const size_t catalogue_;
 };
 
-/// After the largest decrease, members that improve the error by less than a tenth of it are optional.
+/// Members at the end that hardly improve the error are optional.
 void mark_knee(std::vector<DiagnosisStep>& steps) {
   const auto error = [](const DiagnosisStep& s) {
     return s.held_out_force_rmse > 0 ? s.held_out_force_rmse : s.force_rmse;
   };
   const double whole = error(steps.front()) - error(steps.back());
   for (size_t i = steps.size(); i-- > 1;) {
-    if (error(steps[i - 1]) - error(steps[i]) > 0.05 * whole) break;
+    if (error(steps[i - 1]) - error(steps[i]) > criteria::knee * whole) break;
     steps[i].is_optional = true;
   }
 }

@@ -76,7 +76,8 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
                          [](const Member& m) { return !m.candidate->is_unknown; });
     const Estimate seen = fit_members(trials, named, tight, motion, 0);
     diagnosis.dependence = dependence_of(trials, seen.fitted);
-    if (!has_unknown && !diagnosis.dependence.empty() && diagnosis.dependence.front().share > 0.05)
+    if (!has_unknown && !diagnosis.dependence.empty() &&
+        diagnosis.dependence.front().share > criteria::least_dependence)
       add_variables(diagnosis.remainder_variables, diagnosis.dependence.front().variable);
   }
   const bool is_fatal = std::ranges::any_of(diagnosis.findings, &RecordFinding::is_fatal);

@@ -1,0 +1,150 @@
+#include "tools/effects/linear_effect.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include "models/real/whole.h"
+
+namespace loopwright {
+namespace {
+
+/// Samples that are tried with each set of parameters, of magnitudes from 10^-6 to 10^3: a threshold, a
+/// friction or a square shows at one of them.
+constexpr int tried_samples = 48;
+/// Of the sum of the magnitudes of all terms; rounding leaves less than 1e-12.
+constexpr double tolerance = 1e-9;
+
+bool remembers_only_states(const EffectPlan& effect) {
+  return std::ranges::all_of(effect.plan.blocks, [](const Plan::Block& block) {
+    const BlockInfo& info = block.type->info;
+    if (info.type == "ExternalSignal") return true;
+    const bool switches = !info.crossings.empty() && info.type != "Integrator";
+    return !info.is_sampled && !info.uses_time && info.buffers == 0 && info.memory_numbers.empty() &&
+           !switches;
+  });
+}
+
+/// Superposition, tried with the present parameters.
+bool superposes(EffectSample& sample, std::mt19937_64& random) {
+  const SampleMap map = sample.map();
+  std::uniform_real_distribution<double> magnitude(-6, 3), share(-1, 1);
+  std::vector<double> before(map.states), expected;
+  for (int i = 0; i < tried_samples; ++i) {
+    const double size = std::pow(10, magnitude(random));
+    GivenSignals given;
+    for (double& x : before) x = size * share(random);
+    for (double& u : given.value) u = size * share(random);
+    map.apply(before, given, expected);
+    const std::vector<double> result = sample.from(before, given);
+    for (size_t row = 0; row < result.size(); ++row) {
+      double terms = 0;
+      for (size_t c = 0; c < map.columns.size(); ++c)
+        terms += std::abs(map.columns[c][row] * (c < map.states ? before[c] : given.value[c - map.states]));
+      if (!(std::abs(result[row] - expected[row]) <= tolerance * terms)) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+void SampleMap::apply(const std::vector<double>& before, const GivenSignals& given,
+                      std::vector<double>& result) const {
+  result.assign(states + 2, 0.0);
+  for (size_t c = 0; c < columns.size(); ++c) {
+    const double factor = c < states ? before[c] : given.value[c - states];
+    if (factor == 0) continue;
+    for (size_t row = 0; row < result.size(); ++row) result[row] += factor * columns[c][row];
+  }
+}
+
+EffectSample::EffectSample(std::shared_ptr<const EffectPlan> plan)
+    : plan_(std::move(plan)),
+      run_(plan_->plan),
+      sample_ticks_(int64_t(whole_count(std::round(plan_->sizes.sample_time / plan_->plan.clock.time(1))))) {
+  using enum GivenSignals::Index;
+  for (const EffectPlan::Binding& binding : plan_->bindings) bound_.push_back(run_.parameter(binding.path));
+  wire("position", position, velocity, true, 0.5), wire("velocity", velocity, velocity_slope, true, 0);
+  wire("acceleration", acceleration, acceleration_slope, true, 0);
+  wire("input", input, input, false, 0), wire("force", force, force, false, 0);
+  for (int i = 0; i < plan_->plan.states; ++i)
+    if (plan_->plan.signals + i != plan_->integral) states_.push_back(size_t(i));
+}
+
+void EffectSample::wire(const char* role, GivenSignals::Index value, GivenSignals::Index slope, bool is_line,
+                        double bend_factor) {
+  const auto number = [&](const char* name) {
+    return run_.parameter(fmt::format("given_{}.{}", role, name));
+  };
+  if (!number("value")) return;
+  wires_.push_back({number("value"), value, 1}), since_.push_back(number("since"));
+  if (is_line) wires_.push_back({number("slope"), slope, 1});
+  if (bend_factor > 0) wires_.push_back({number("bend"), GivenSignals::velocity_slope, bend_factor});
+}
+
+void EffectSample::start(const std::vector<double>& fitted, double position, double velocity) {
+  RecordSizes sizes = plan_->sizes;
+  sizes.initial_position = position, sizes.initial_velocity = velocity;
+  const EffectValues values = values_of(plan_->effect, sizes, fitted);
+  for (size_t i = 0; i < bound_.size(); ++i) *bound_[i] = values.evaluate(plan_->bindings[i].value);
+  run_.reset({});
+}
+
+std::vector<double> EffectSample::states() {
+  std::vector<double> list;
+  for (const size_t i : states_) list.push_back(run_.states()[i]);
+  return list;
+}
+
+std::vector<double> EffectSample::from(const std::vector<double>& states, const GivenSignals& given) {
+  std::ranges::fill(run_.states(), 0.0);
+  for (size_t i = 0; i < states_.size(); ++i) run_.states()[states_[i]] = states[i];
+  for (const Wire& wire : wires_) *wire.number = wire.factor * given[wire.signal];
+  for (double* since : since_) *since = run_.now().time;
+  double integral = 0, area = 0, stated_slope = 0;
+  for (int64_t left = sample_ticks_; left > 0;) {
+    const uint64_t due = run_.due();
+    run_.evaluate(due, true), run_.accept(), run_.update(due);
+    if (left == sample_ticks_)
+      for (const Number slope : plan_->slopes) stated_slope += run_.number(slope);
+    const int64_t passed = std::min(plan_->plan.step_ticks, left);
+    run_.integrate(passed), left -= passed;
+    const double before = integral;
+    integral = run_.number(plan_->integral);
+    area += 0.5 * double(passed) / double(sample_ticks_) * (before + integral);
+  }
+  std::vector<double> result = this->states();
+  const double period = plan_->sizes.sample_time;  // mean and slope as in EffectRun::integrate_sample
+  result.push_back(integral / period);
+  result.push_back(12 * (0.5 * integral - area) / period + stated_slope);
+  return result;
+}
+
+SampleMap EffectSample::map() {
+  SampleMap map{states_.size(), {}};
+  std::vector<double> states(map.states);
+  GivenSignals given;
+  const auto respond_to = [&](double& one) { one = 1, map.columns.push_back(from(states, given)), one = 0; };
+  std::ranges::for_each(states, respond_to), std::ranges::for_each(given.value, respond_to);
+  return map;
+}
+
+bool is_linear(const std::shared_ptr<const EffectPlan>& plan) {
+  const bool has_states = plan->integral >= plan->plan.signals && plan->plan.states > 1;
+  if (!has_states || plan->acts_on_sensor || !remembers_only_states(*plan)) return false;
+  EffectSample sample(plan);
+  std::mt19937_64 random(1);
+  for (double FitRange::*at : {&FitRange::start, &FitRange::low, &FitRange::high}) {
+    std::vector<double> fitted;
+    for (const EffectParameter& p : plan->effect.parameters)
+      if (p.is_fitted) {
+        const FitRange range = range_of(p, plan->sizes);
+        fitted.push_back(p.is_linear ? range.start : range.*at);
+      }
+    sample.start(fitted, 0, 0);
+    if (!superposes(sample, random)) return false;
+  }
+  return true;
+}
+
+}  // namespace loopwright

@@ -1,0 +1,65 @@
+/// Effects that are linear in their states and in the signals that they are given, as a load on a spring or a
+/// lag is: a sample of theirs is a product with a matrix, which costs a small part of integrating it.
+#pragma once
+#include <array>
+#include <memory>
+#include <vector>
+#include "engine/run/run.h"
+#include "tools/effects/effect_plan.h"
+
+namespace loopwright {
+
+/// What an effect is given at the start of a sample. Within it the position is a parabola, velocity and
+/// acceleration are straight lines; input and force are held.
+struct GivenSignals {
+  enum Index { position, velocity, velocity_slope, acceleration, acceleration_slope, input, force, count };
+  std::array<double, count> value{};
+  double operator[](Index i) const { return value[i]; }
+};
+
+/// One sample of a linear effect: the states after it, and the mean and the slope of its force (see
+/// EffectRun), from the states before it and the given signals.
+struct SampleMap {
+  size_t states = 0;
+  /// One for each state, then for each given signal: its effect on the states, the mean and the slope.
+  std::vector<std::vector<double>> columns;
+
+  /// `result` is states, mean and slope.
+  void apply(const std::vector<double>& before, const GivenSignals& given, std::vector<double>& result) const;
+};
+
+/// The blocks of an effect with states of its own, one sample at a time.
+class EffectSample {
+ public:
+  explicit EffectSample(std::shared_ptr<const EffectPlan> plan);
+
+  /// Back to the start, with these fitted parameters and the first position and velocity of a record.
+  void start(const std::vector<double>& fitted, double position, double velocity);
+  std::vector<double> states();
+  /// The states after a sample from given states, then mean and slope of the force.
+  std::vector<double> from(const std::vector<double>& states, const GivenSignals& given);
+  /// By superposition; valid for linear effects.
+  SampleMap map();
+
+ private:
+  struct Wire {  // a parameter of an ExternalSignal
+    double* number;
+    GivenSignals::Index signal;
+    double factor;
+  };
+  void wire(const char* role, GivenSignals::Index value, GivenSignals::Index slope, bool is_line,
+            double bend_factor);
+
+  std::shared_ptr<const EffectPlan> plan_;
+  Run<double> run_;
+  std::vector<double*> bound_, since_;
+  std::vector<Wire> wires_;
+  std::vector<size_t> states_;  // without the integral
+  int64_t sample_ticks_ = 1;
+};
+
+/// Whether the blocks of an effect remember nothing but states, and superposition holds over all magnitudes
+/// of states and signals, at typical values and at both ends of the ranges of the parameters.
+bool is_linear(const std::shared_ptr<const EffectPlan>& plan);
+
+}  // namespace loopwright
