@@ -6,6 +6,7 @@
 #include "engine/json/reader.h"
 #include "engine/json/unit_hint.h"
 #include "engine/record/time_names.h"
+#include "engine/record/time_words.h"
 
 namespace loopwright {
 namespace {
@@ -41,10 +42,28 @@ const Column* find_time(const Recording& recording, const std::string& name, con
   return nullptr;
 }
 
-/// A name that suggests a unit of time other than seconds, although it is not interpreted: "t_ms".
-bool seems_in_another_unit(std::string_view name) {
-  constexpr std::array<std::string_view, 7> endings = {"_ms", "_us", "_ns", "_min", "_h", "_msec", "_usec"};
-  return std::ranges::any_of(endings, [&](std::string_view ending) { return name.ends_with(ending); });
+/// Numbers without a unit are seconds, unless the name says otherwise; then nothing is assumed.
+bool says_seconds(const Column& time, const ColumnError& error) {
+  const TimeWords words = time_words(time.name);
+  if (!words.is_counted && words.unit.empty()) return true;
+  if (words.is_counted) {
+    auto& p = error(fmt::format("the time \"{}\" has no unit, and its name says that it counts", time.name));
+    p.expected = "a column with the time, such as \"t [ms]\"";
+    p.hint = fmt::format("an experiment multiplies by the duration of one count: \"columns\": {{\"t\": {{\"column\": "
+                         "\"{}\", \"scale\": 0.5, \"unit\": \"ms\"}}}}",
+                         time.name);
+    if (!time.origin.empty()) p.found = time.origin;
+    return false;
+  }
+  auto& p = error(fmt::format("the time \"{}\" has no unit, and its name says another one than s", time.name));
+  const std::string ending = "_" + words.unit;
+  const std::string name = time.name.ends_with(ending) ? time.name.substr(0, time.name.size() - ending.size())
+                                                       : time.name;
+  p.expected = fmt::format("\"{} [{}]\" as the heading of the column", name, words.unit);
+  p.hint = fmt::format("or state it in the experiment: \"columns\": {{\"{}\": {{\"unit\": \"{}\"}}}}", time.name,
+                       words.unit);
+  if (!time.origin.empty()) p.found = time.origin;
+  return false;
 }
 
 /// Milliseconds are divided by a thousand, not multiplied by the reciprocal: 0.009, not 0.009000000000000001.
@@ -100,13 +119,7 @@ std::optional<Column> time_in_seconds(const Recording& recording, const std::str
   Column time = *found;
   time.unit = "s";
   if (found->unit.empty()) {
-    if (!seems_in_another_unit(found->name)) return time;
-    auto& p =
-        error(fmt::format("the time \"{}\" has no unit, and its name says another one than s", found->name));
-    const size_t underscore = found->name.rfind('_');
-    p.expected = fmt::format("\"{} [{}]\" as the heading of the column", found->name.substr(0, underscore),
-                             found->name.substr(underscore + 1));
-    if (!found->origin.empty()) p.found = found->origin;
+    if (says_seconds(*found, error)) return time;
     return {};
   }
   const auto unit = parse_unit(found->unit);

@@ -2,6 +2,7 @@
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
+#include <map>
 #include <ranges>
 #include <unordered_set>
 #include <utility>
@@ -45,6 +46,7 @@ class CsvReader {
   bool is_header(const std::vector<csv::Field>& fields) const;
   bool take_header_from_comment();
   void name_columns(const std::vector<csv::Field>& fields);
+  void distinguish_columns(const std::vector<csv::Field>& fields);
   void reserve_rows();
 
   void read_row(std::string_view line);
@@ -213,16 +215,31 @@ bool CsvReader::take_header_from_comment() {
   return true;
 }
 
+/// Columns that only their units distinguish, such as "F (N)" and "F (V)", keep their headings as names.
+void CsvReader::distinguish_columns(const std::vector<csv::Field>& fields) {
+  std::map<std::string, size_t> count;
+  for (const Column& column : recording_.columns) ++count[column.name];
+  for (size_t i = 0; i < fields.size(); ++i) {
+    Column& column = recording_.columns[i];
+    const std::string whole = csv::content(fields[i]);
+    if (!signed_ && count[column.name] > 1 && !whole.ends_with(']')) column.name = whole;
+  }
+}
+
 void CsvReader::name_columns(const std::vector<csv::Field>& fields) {
-  std::unordered_set<std::string> names;
   for (const csv::Field& field : fields) {
     const std::string content = csv::content(field);
-    const csv::Heading heading = csv::split_heading(content);
+    const csv::Heading heading = signed_ ? csv::split_heading(content) : csv::read_heading(content);
     Column& column = recording_.columns.emplace_back();
     column.name = signed_ ? unescape(heading.name) : heading.name;
     column.unit = signed_ ? unescape(heading.unit) : heading.unit;
     const LineColumn place = line_column(at(field.text));
     column.origin = fmt::format("{}:{}:{}", source_->name, place.line, place.column);
+  }
+  distinguish_columns(fields);
+  std::unordered_set<std::string> names;
+  for (const csv::Field& field : fields) {
+    const Column& column = recording_.columns[size_t(&field - fields.data())];
     if (field.open_quote) {
       problems_.error(at(field.text), "the quote before this column name is not closed");
     } else if (column.name.empty()) {

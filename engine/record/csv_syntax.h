@@ -18,6 +18,11 @@ struct Heading {
 };
 Heading split_heading(std::string_view text);
 
+/// The same for files of other programs, which also write "x (mm)", "x/mm", "v/(m/s)" and "x, mm". Only a unit
+/// that can be read is taken as one, and only where the heading has no other reading: x(t), max(F), u/2, km/h
+/// and "y (raw)" are names without unit.
+Heading read_heading(std::string_view text);
+
 /// The number that makes up the whole of `text`, except for surrounding blanks and a leading +; nothing if
 /// the text is not a number or is beyond the range of a double.
 std::optional<double> parse_number(std::string_view text);

@@ -20,7 +20,7 @@ bool needs_signature(const Column& column) {
 
 std::string heading(const Column& column, bool with_escapes) {
   std::string text = with_escapes ? escape(column.name) : column.name;
-  const bool name_seems_to_have_unit = csv::split_heading(text).name != text;
+  const bool name_seems_to_have_unit = csv::read_heading(text).name != text;
   if (!column.unit.empty() || name_seems_to_have_unit) {
     text += " [";
     text += with_escapes ? escape(column.unit, "[]") : column.unit;

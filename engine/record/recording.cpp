@@ -5,10 +5,18 @@
 #include <stdexcept>
 #include <unordered_set>
 
+#include "engine/record/csv_syntax.h"
+
 namespace loopwright {
 
 const Column* Recording::find(std::string_view name) const {
-  const auto found = std::ranges::find(columns, name, &Column::name);
+  auto found = std::ranges::find(columns, name, &Column::name);
+  if (found != columns.end()) return &*found;
+  // The heading as it stands in the file, "Time (ms)", finds the column "Time" in ms.
+  const csv::Heading heading = csv::read_heading(name);
+  if (heading.unit.empty()) return nullptr;
+  found = std::ranges::find_if(
+      columns, [&](const Column& column) { return column.name == heading.name && column.unit == heading.unit; });
   return found == columns.end() ? nullptr : &*found;
 }
 

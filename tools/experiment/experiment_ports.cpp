@@ -1,6 +1,7 @@
 #include "tools/experiment/experiment_ports.h"
 #include <fmt/format.h>
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include "engine/json/reader.h"
 
@@ -39,6 +40,36 @@ std::optional<Number> find_port(const Plan& plan, const std::string& port,
         "are these cycles (Hz), revolutions (rpm), radians (rad/s) or plain numbers (1/s)? give the column "
         "the unit that is meant";
   return numbers[0];
+}
+
+/// Rows that are a thousand samples of the diagram apart, to a hundredth of that, while no sample time is near
+/// them: such a time is rather in ms than in s. It may also be a slow log, so that this is no error.
+void check_unit_of_time(const Plan& plan, const Experiment& experiment, Problems& problems) {
+  constexpr double near = 20, alike = 0.01;  // times; of the factor
+  struct Scale {
+    double factor;
+    std::string_view unit;
+  };
+  constexpr Scale scales[] = {{1e3, "ms"}, {1e6, "us"}, {1e9, "ns"}, {1e-3, "s"}, {1e-6, "s"}};
+  const double step = experiment.time.sample_time;
+  if (step <= 0) return;
+  const Scale* found = nullptr;
+  double sample_time = 0;
+  for (const Plan::Block& block : plan.blocks) {
+    if (block.sample_time <= 0) continue;
+    const double ratio = step / block.sample_time;
+    if (ratio < near && ratio > 1 / near) return;
+    for (const Scale& scale : scales)
+      if (std::abs(ratio / scale.factor - 1) < alike) found = &scale, sample_time = block.sample_time;
+  }
+  if (!found) return;
+  auto& p = problems.warning(experiment.place, "/data", "",
+                             fmt::format("the rows are {:.6g} s apart, and the diagram has samples of {:.6g} s", step,
+                                         sample_time));
+  p.hint = found->factor > 1
+               ? fmt::format("is the time \"{0}\" in {1}? then its heading is \"{0} [{1}]\"",
+                             experiment.time_column, found->unit)
+               : fmt::format("is the unit of the time \"{}\" right?", experiment.time_column);
 }
 
 /// A constant in place of a recorded column, whether that exists or not.
@@ -83,6 +114,7 @@ LoadOptions with_drives(const std::string& diagram, const Experiment& experiment
 }  // namespace
 
 Plan logging(const Plan& plan, const Experiment& experiment, Problems& problems) {
+  check_unit_of_time(plan, experiment, problems);
   Plan changed = plan;
   changed.log.clear();
   const auto log = [&](const std::string& name, const std::optional<std::string>& unit, const Place& place,

@@ -6,7 +6,7 @@
 namespace loopwright {
 
 /// The plan with a log of the compared signals and the roles. Reports a problem for every port that does not
-/// exist or has another dimension than its column.
+/// exist or has another dimension than its column, and a warning if rows and samples are a thousand times apart.
 Plan logging(const Plan& plan, const Experiment& experiment, Problems& problems);
 
 /// The experiment with its compared columns in the units of their ports: hertz become radians per second, and

@@ -79,6 +79,38 @@ TEST_F(ColumnUnits, ANameThatSaysMillisecondsIsNotTakenForSeconds) {
   EXPECT_EQ(time(csv("t_s,y\n0,1\n1,2\n")), (std::vector<double>{0, 1}));
 }
 
+TEST_F(ColumnUnits, TimeInMillisecondsIsTakenInEveryNotation) {
+  for (const char* heading : {"t [ms]", "Time (ms)", "time(ms)", "t/ms", "t / ms", "\"Time, ms\""})
+    EXPECT_EQ(time(csv(std::string(heading) + ",x\n0,1\n9,2\n")), (std::vector<double>{0, 0.009})) << heading;
+  const Recording recording = csv("x,Time (ms)\n7,0\n8,9\n");
+  for (const char* name : {"Time (ms)", "Time"})
+    EXPECT_EQ(time(recording, name), (std::vector<double>{0, 0.009})) << name;
+  EXPECT_EQ(text(), "");
+}
+
+TEST_F(ColumnUnits, NamesThatSayAnotherUnitAreNotTakenForSeconds) {
+  for (const auto& [name, unit] : std::vector<std::pair<std::string, std::string>>{
+           {"timestamp_millis", "ms"}, {"time_msec", "ms"}, {"timeMs", "ms"},      {"TIME_MS", "ms"},
+           {"Timems", "ms"},           {"millis", "ms"},    {"milliseconds", "ms"}, {"t_usec", "us"},
+           {"micros", "us"},           {"time_us_32", "us"}, {"t µs", "us"},        {"time_ns", "ns"},
+           {"elapsed_min", "min"},     {"t_h", "h"}}) {
+    problems_ = {};
+    EXPECT_TRUE(time(csv(name + ",y\n0,1\n1,2\n")).empty()) << name;
+    EXPECT_THAT(text(), HasSubstr("its name says another one than s")) << name;
+    EXPECT_THAT(text(), HasSubstr(" [" + unit + "]\" as the heading")) << name;
+  }
+  for (const char* name : {"ticks", "sample", "Samples", "frames", "tick_count", "sampleIndex", "Time (ticks)"}) {
+    problems_ = {};
+    EXPECT_TRUE(time(csv(std::string(name) + ",y\n0,1\n1,2\n")).empty()) << name;
+    EXPECT_THAT(text(), HasSubstr("its name says that it counts")) << name;
+  }
+  problems_ = {};
+  for (const char* name : {"sample_time", "timestamp", "time_s", "t_sec", "seconds", "clock", "min_time", "k"})
+    EXPECT_FALSE(time(csv(std::string(name) + ",y\n0,1\n1,2\n")).empty()) << name;
+  EXPECT_FALSE(time(csv("time_ms [s],y\n0,1\n1,2\n")).empty()) << "the unit that is stated counts";
+  EXPECT_EQ(text(), "");
+}
+
 TEST_F(ColumnUnits, TheAlphabetDoesNotChooseTheTime) {
   const Column i{"i", "", {5, 6}}, t{"t", "", {0, 1}}, x{"x", "", {7, 8}};
   EXPECT_EQ(time(variables({i, t, x})), t.values);

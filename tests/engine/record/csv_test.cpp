@@ -189,6 +189,47 @@ TEST(CsvRead, TakesUnitsFromBrackets) {
   EXPECT_EQ(recording.columns[3].unit, "N");
 }
 
+TEST(CsvRead, TakesUnitsInTheNotationsOfOtherPrograms) {
+  const std::vector<std::array<const char*, 3>> cases = {
+      {"Time (ms)", "Time", "ms"},       {"time(ms)", "time", "ms"},      {"t/ms", "t", "ms"},
+      {"Time, ms", "Time", "ms"},        {"F(N)", "F", "N"},              {"F/N", "F", "N"},
+      {"v/(m/s)", "v", "m/s"},           {"v (mm/s)", "v", "mm/s"},       {"x / mm", "x", "mm"},
+      {"Time (min)", "Time", "min"},     {"torque (Nm)", "torque", "Nm"}, {"duty (%)", "duty", "%"},
+      {"load (t)", "load", "t"},         {"s/mm", "s", "mm"},             {"m/kg", "m", "kg"},
+      {"drive.pos (mm)", "drive.pos", "mm"}};
+  for (const auto& [heading, name, unit] : cases) {
+    const Recording recording = parse_right(fmt::format("y;\"{}\"\n1;2\n", heading));
+    EXPECT_EQ(recording.columns[1].name, name) << heading;
+    EXPECT_EQ(recording.columns[1].unit, unit) << heading;
+    EXPECT_EQ(recording.find(heading), &recording.columns[1]) << heading;
+    EXPECT_EQ(recording.find(name), &recording.columns[1]) << heading;
+  }
+}
+
+TEST(CsvRead, LeavesNamesThatAreNoUnits) {
+  for (const char* heading : {"f(x)", "x(t)", "max(F)", "u/2", "x (1)", "km/h", "m/s", "N/A", "dx/dt", "y (raw)",
+                              "x (min)", "force (max)", "x (-)", "motor.force[2]", "a, b", "pos (actual)", "w/o",
+                              "on/off", "I/O", "x/y", "(mm)", "t(x)", "Channel (1)", "u(k)", "y(k+1)"}) {
+    const Recording recording = parse_right(fmt::format("z;\"{}\"\n1;2\n", heading));
+    EXPECT_EQ(recording.columns[1].name, heading);
+    EXPECT_EQ(recording.columns[1].unit, "") << heading;
+  }
+}
+
+TEST(CsvRead, KeepsHeadingsThatOnlyUnitsDistinguish) {
+  const Recording recording = parse_right("F (N),F (V),x\n1,2,3\n");
+  EXPECT_THAT(names(recording), ElementsAre("F (N)", "F (V)", "x"));
+  EXPECT_EQ(recording.columns[0].unit, "N");
+  EXPECT_EQ(recording.columns[1].unit, "V");
+}
+
+TEST(CsvRoundTrip, RestoresNamesThatLookLikeHeadingsWithUnits) {
+  Recording recording;
+  for (const char* name : {"x (mm)", "x/mm", "x, mm", "v/(m/s)"}) recording.columns.push_back({name, "", {1, 2}});
+  recording.columns[1].unit = "N";
+  expect_round_trip(recording);
+}
+
 TEST(CsvRead, TakesFactsFromCommentsLiterally) {
   const Recording recording = parse_right("# file: C:\\new\n# recorded at 10:30:00\n#\nt\n1\n");
   const std::vector<std::pair<std::string, std::string>> facts = {

@@ -77,6 +77,46 @@ TEST_F(Experiments, TheTimeColumnHonoursItsUnit) {
   EXPECT_NEAR(c.signals[0].rmse, 0, 1e-9) << "x = t^2/4";
 }
 
+TEST_F(Experiments, UnitsOfHeadingsInParenthesesCount) {
+  for (const char* time : {"Time (ms)", "Time"}) {
+    folder.with("data.csv", "Time (ms),F (N),x/mm\n0,1,0\n1000,1,250\n2000,1,1000\n");
+    const std::string begin = R"~({"loopwright": 1, "data": "data.csv", "time": ")~";
+    folder.with("e.json", begin + time + R"~(", "drive": {"stage.force": {"column": "F (N)"}},
+        "compare": {"stage.position": {"column": "x", "unit": "mm"}}})~");
+    const Comparison c = folder.compared();
+    EXPECT_EQ(c.time, (std::vector<double>{0, 1, 2})) << time;
+    EXPECT_NEAR(c.signals[0].rmse, 0, 1e-9) << "x = t^2/4";
+  }
+}
+
+TEST_F(Experiments, ATimeThatSaysMillisecondsIsNotTakenForSeconds) {
+  folder.with("data.csv", "timestamp_millis,F,x_mm\n0,1,0\n1000,1,250\n2000,1,1000\n");
+  folder.with("e.json", R"({"loopwright": 1, "data": "data.csv", "drive": {"stage.force": {"column": "F"}},
+      "compare": {"stage.position": {"column": "x_mm", "unit": "mm"}}})");
+  expect_refusal({"its name says another one than s", "\"timestamp_millis [ms]\" as the heading"});
+}
+
+TEST_F(Experiments, RowsAThousandSamplesApartAreAWarning) {
+  folder.with("stage.json", diagram(R"("push": {"type": "Constant", "value": {"value": 0, "unit": "N"}},
+      "hold": {"type": "ZeroOrderHold", "sample_time": {"value": 1.25, "unit": "ms"}, "in": {"u": "push.y"}},
+      "stage": {"type": "Mass", "mass": {"value": 2, "unit": "kg"}, "in": {"force": "push.y"}})",
+                                    R"("method": "rk4", "step": 0.00125, "stop": 1)"));
+  const auto warnings = [&](const char* heading, double step) {
+    std::string text = std::string(heading) + ",F,x_mm\n";
+    for (int i = 0; i < 5; ++i) text += fmt::format("{},1,0\n", i * step);
+    folder.with("data.csv", text);
+    folder.with("e.json", R"({"loopwright": 1, "data": "data.csv", "drive": {"stage.force": {"column": "F"}},
+      "compare": {"stage.position": {"column": "x_mm", "unit": "mm"}}})");
+    std::string all;
+    for (const std::string& warning : folder.compared().warnings) all += warning;
+    return all;
+  };
+  EXPECT_TRUE(has(warnings("clock", 1.25), "the rows are 1.25 s apart, and the diagram has samples of 0.00125 s"));
+  EXPECT_TRUE(has(warnings("clock", 1.25), "its heading is \"clock [ms]\""));
+  EXPECT_FALSE(has(warnings("clock [ms]", 1.25), "apart"));
+  EXPECT_FALSE(has(warnings("clock", 0.0125), "apart")) << "a decimated log";
+}
+
 TEST_F(Experiments, AResolutionMayHaveAUnitOfItsOwn) {
   const auto resolution = [&](const std::string& text) {
     folder.experiment(drive,

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 #include "engine/json/reader.h"
+#include "engine/record/time_words.h"
 
 namespace loopwright::studio {
 namespace {
@@ -91,7 +92,8 @@ void split_unit(ColumnGuess& column) {
   const std::string unit = column.name.substr(cut + 1);
   const bool is_word = meanings_of({unit}) != std::array<bool, 5>{};
   if (unit.empty() || (is_word && unit.size() > 1) || !parse_unit(unit)) return;
-  column.unit = unit, column.unit_is_stated = false;
+  const std::string of_time = time_words(column.name).unit;  // ms for "millis"
+  column.unit = of_time.empty() ? unit : of_time, column.unit_is_stated = false;
   column.name.resize(cut);
 }
 
@@ -99,7 +101,13 @@ bool is_time(const ColumnGuess& column) {
   const Words words = words_of(column.name);
   const auto unit = parse_unit(column.unit);
   const bool has_unit = column.unit.empty() || (unit && unit->same_dimension(*parse_unit("s")));
-  return has_unit && words.size() == 1 && (words[0] == "t" || words[0] == "time");
+  return has_unit && words.size() == 1 && (words[0] == "t" || words[0] == "time" || words[0] == "timestamp");
+}
+
+/// The unit that the name of the time suggests, for a person to confirm: ms for "timestamp_millis".
+void guess_unit_of_time(ColumnGuess& time) {
+  if (!time.unit.empty()) return;
+  time.unit = time_words(time.column).unit, time.unit_is_stated = false;
 }
 
 /// The smallest step between rows, if all steps are multiples of it.
@@ -239,6 +247,31 @@ double add_candidates(ColumnGuess& guess, bool drives, const std::vector<PortOfD
   return scored.empty() ? 0 : scored.front().first;
 }
 
+/// Without a drive, the only column in the unit of the machine's input drives it; or, among columns without
+/// units, the only one that is called a force.
+void propose_drive(std::vector<ColumnGuess>& guesses, const std::vector<PortOfDiagram>& ports,
+                   const std::vector<RoleGuess>& roles) {
+  using Use = ColumnGuess::Use;
+  const auto role = std::ranges::find(roles, "input", &RoleGuess::role);
+  if (role == roles.end() || std::ranges::find(guesses, Use::drive, &ColumnGuess::use) != guesses.end()) return;
+  const auto port = std::ranges::find_if(
+      ports, [&](const PortOfDiagram& p) { return p.path == role->port && p.is_input; });
+  if (port == ports.end()) return;
+  std::vector<ColumnGuess*> in_unit, called;
+  for (ColumnGuess& guess : guesses) {
+    if (guess.use != Use::ignore) continue;
+    if (!guess.unit.empty() && port->unit && fits(guess, *port)) in_unit.push_back(&guess);
+    if (guess.unit.empty() && meanings_of(words_of(guess.name))[force]) called.push_back(&guess);
+  }
+  const bool by_unit = in_unit.size() == 1;
+  if (!by_unit && (!in_unit.empty() || called.size() != 1)) return;
+  ColumnGuess& drive = by_unit ? *in_unit.front() : *called.front();
+  drive.use = Use::drive, drive.port = port->path;
+  drive.why = by_unit ? fmt::format("the only column in the unit of {}", port->path) : "the only force by its name";
+  if (std::ranges::find(drive.candidates, port->path) == drive.candidates.end())
+    drive.candidates.insert(drive.candidates.begin(), port->path);
+}
+
 }  // namespace
 
 std::vector<ColumnGuess> guess_columns(const Recording& record, const std::vector<PortOfDiagram>& ports,
@@ -249,6 +282,7 @@ std::vector<ColumnGuess> guess_columns(const Recording& record, const std::vecto
   for (const Column& column : record.columns) {
     ColumnGuess guess;
     guess.column = guess.name = column.name, guess.unit = column.unit;
+    guess.unit_is_stated = !column.unit.empty();
     if (!column.values.empty()) {
       const auto [low, high] = std::ranges::minmax(column.values);
       guess.low = low, guess.high = high;
@@ -263,6 +297,8 @@ std::vector<ColumnGuess> guess_columns(const Recording& record, const std::vecto
   }
   if (!has_time && record.is_ordered && !guesses.empty())
     guesses.front().use = Use::time, guesses.front().why = "the first column";
+  for (ColumnGuess& guess : guesses)
+    if (guess.use == Use::time) guess_unit_of_time(guess);
   // The whole loop runs along its reference; without one, the machine runs along its force.
   const auto drives = [&](const ColumnGuess& guess) {
     const auto own = meanings_of(words_of(guess.name));
@@ -287,9 +323,9 @@ std::vector<ColumnGuess> guess_columns(const Recording& record, const std::vecto
     guess.why = guess.unit.empty() ? "name" : "name and unit";
     const double step = resolution_of(record.columns[c].values);
     if (guess.use == Use::compare && step > 0 && meanings_of(words_of(guess.name))[0])
-      guess.resolution =
-          guess.unit.empty() ? fmt::format("{:.3g}", step) : fmt::format("{:.3g} {}", step, guess.unit);
+      guess.resolution = fmt::format("{:.3g}", step);
   }
+  propose_drive(guesses, ports, roles);
   return guesses;
 }
 

@@ -30,7 +30,8 @@ struct ColumnGuess {
   std::string unit;            ///< of its numbers; empty: not known
   bool unit_is_stated = true;  ///< by the heading; otherwise guessed from the end of the name, "force_N"
   Use use = Use::ignore;
-  std::string port, why, resolution;
+  std::string port, why;
+  std::string resolution;  ///< a number in the unit of the column, whatever that is; empty: not seen
   double low = 0, high = 0;
   std::vector<std::string> candidates;
 };

@@ -1,6 +1,9 @@
 #include "tools/studio/session/experiment_text.h"
 #include <fmt/format.h>
 #include <algorithm>
+#include <cmath>
+#include "engine/record/csv_syntax.h"
+#include "engine/record/time_words.h"
 #include "tools/studio/session/draft.h"
 #include "tools/studio/session/intent.h"
 #include "tools/studio/session/member_change.h"
@@ -24,12 +27,30 @@ std::string lines_of(const std::vector<std::pair<std::string, std::string>>& ent
 std::string signal_text(const Value& column, bool drives) {
   std::string text = fmt::format("{{\"column\": {}", in_quotes(required_text(column, "column")));
   const auto add = [&](const char* key) {
-    if (const std::string_view value = text_in(column, key); !value.empty())
-      text += fmt::format(", \"{}\": {}", key, in_quotes(value));
+    const std::string value(text_in(column, key));
+    const auto number = csv::parse_number(value);
+    const bool is_number = number && std::isfinite(*number);
+    if (!value.empty())
+      text += fmt::format(", \"{}\": {}", key, is_number ? fmt::format("{}", *number) : in_quotes(value));
   };
   add("unit");
   add(drives ? "interpolation" : "resolution");
   return text + "}";
+}
+
+/// The unit of the time, if the heading does not state it: a renamed column of the same name.
+std::string time_columns(const Value& columns, std::string_view time) {
+  for (const Value& column : columns.items) {
+    const std::string_view unit = text_in(column, "unit");
+    const Value::Member* stated = column.find("unit_is_stated");
+    const bool is_in_heading = !stated || stated->value.boolean;
+    const TimeWords words = time_words(time);
+    const bool is_needed = unit != "s" || !words.unit.empty() || words.is_counted;
+    if (text_in(column, "use") == "time" && text_in(column, "column") == time && !unit.empty() && !is_in_heading &&
+        is_needed)
+      return fmt::format("{{{}: {{\"unit\": {}}}}}", in_quotes(time), in_quotes(unit));
+  }
+  return "";
 }
 
 TextChange renamed_name(const Value::Member& member, const std::string& to) {
@@ -64,6 +85,8 @@ std::string experiment_text(const Value& request, const std::string& data) {
   text += fmt::format("  \"data\": {},\n", in_quotes(data));
   if (const std::string_view time = text_in(request, "time"); !time.empty())
     text += fmt::format("  \"time\": {},\n", in_quotes(time));
+  if (const std::string of_time = time_columns(columns->value, text_in(request, "time")); !of_time.empty())
+    text += fmt::format("  \"columns\": {},\n", of_time);
   if (!drives.empty()) text += fmt::format("  \"drive\": {},\n", lines_of(drives));
   text += fmt::format("  \"compare\": {}", lines_of(compared));
   if (!roles.empty()) text += fmt::format(",\n  \"roles\": {}", lines_of(roles));

@@ -161,8 +161,19 @@ Handle::~Handle() {
   if (number_ >= 0) ::close(number_);
 }
 
+namespace {
+
+/// Without a slash at the end and without "./", so that paths of files begin with it: resolved paths have neither.
+std::string plain(const std::string& path) {
+  std::string normal = std::filesystem::path(path).lexically_normal().string();
+  while (normal.size() > 1 && normal.ends_with('/')) normal.pop_back();
+  return normal.empty() ? "." : normal;
+}
+
+}  // namespace
+
 Folder::Folder(std::string path)
-    : path_(std::move(path)), handle_(::open(path_.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC)) {
+    : path_(plain(path)), handle_(::open(path_.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC)) {
   if (!handle_)
     throw std::runtime_error(
         fmt::format("the folder \"{}\" cannot be opened: {}", path_, std::strerror(errno)));

@@ -163,36 +163,7 @@ namespace {
 /// Whether a run needs nothing but the file: it loads, and has no inputs that something else must drive.
 bool runs_alone(const CheckedText& text) { return text.loads() && !text.checked.is_part(); }
 
-std::string title_of(const std::string& text) {
-  const ParsedText parsed("", text);
-  return parsed.is_object() ? std::string(text_in(parsed.root, "title")) : "";
-}
-
 }  // namespace
-
-Json Session::file_list() const {
-  Json list = Json::array();
-  for (const Folder::File& file : files_) {
-    static const std::map<FileKind, std::string_view> names = {
-        {FileKind::unknown, "unknown"},       {FileKind::diagram, "diagram"},
-        {FileKind::experiment, "experiment"}, {FileKind::sweep, "sweep"},
-        {FileKind::training, "training"},     {FileKind::effect, "effect"},
-        {FileKind::device, "device"},         {FileKind::model, "model"}};
-    constexpr int64_t largest_with_title = 1 << 18;  // bytes: learned models and their like have none
-    std::string kind = "record", title;
-    try {
-      const std::string path = folder_.path_of(file.path);
-      Problems problems;
-      if (file.path.ends_with(".json")) kind = names.at(kind_of_file(path, problems));
-      if (kind != "record" && file.size < largest_with_title)
-        title = title_of(folder_.read(file.path).value_or(""));
-    } catch (const Refused&) {  // a name or a link that is not served, or a file that cannot be read
-      continue;
-    }
-    list.push_back({{"path", file.path}, {"kind", kind}, {"title", title}, {"size", file.size}});
-  }
-  return list;
-}
 
 /// The file to begin with: the first diagram that runs as it is. One with inputs waits for what drives them.
 std::string Session::first_that_runs() const {
@@ -200,36 +171,28 @@ std::string Session::first_that_runs() const {
   std::string first;
   int tried = 0;
   for (const Folder::File& file : folder_.files()) {
-    Problems problems;
-    if (!file.path.ends_with(".json") ||
-        kind_of_file(folder_.path_of(file.path), problems) != FileKind::diagram)
-      continue;
-    if (first.empty()) first = file.path;
-    if (++tried > most_tried) break;
-    const auto text = folder_.read(file.path);
-    if (text && runs_alone(check_text(folder_.path_of(file.path), *text, {}))) return file.path;
+    try {
+      Problems problems;
+      if (!file.path.ends_with(".json") ||
+          kind_of_file(folder_.path_of(file.path), problems) != FileKind::diagram)
+        continue;
+      const auto text = folder_.read(file.path);
+      if (first.empty()) first = file.path;
+      if (++tried > most_tried) break;
+      if (text && runs_alone(check_text(folder_.path_of(file.path), *text, {}))) return file.path;
+    } catch (const Refused&) {  // a name or a link that is not served
+    }
   }
   return first;
 }
 
 Json Session::hello(const Request&) {
+  files_ = folder_.files();
   if (opened_.empty()) opened_ = first_that_runs();
   return {{"version", LOOPWRIGHT_VERSION},
           {"folder", std::filesystem::absolute(folder_.path()).lexically_normal().filename().string()},
           {"open", opened_},
           {"files", file_list()}};
-}
-
-Json Session::files(const Request&) {
-  files_ = folder_.files();
-  return {{"files", file_list()}};
-}
-
-Json Session::store(const std::string& name, int64_t offset, bool is_last, std::string_view bytes) {
-  if (name.find('/') != name.npos || name.ends_with(".json"))
-    throw Refused("a record is a .csv or .mat file");
-  folder_.store_part(name, offset, is_last, bytes);
-  return {{"path", name}};
 }
 
 // ---- Documents ----
@@ -266,6 +229,7 @@ Json Session::document_json(const Document& document, const Seen& seen, bool wit
   } catch (const Refused&) {  // the level is gone: what contains it is shown
     json["view"] = view_json(text, "", seen.variants, document.layout());
   }
+  for (Json& block : json["view"]["blocks"]) block["file"] = openable(block["file"]);
   return json;
 }
 
@@ -410,6 +374,7 @@ Json Session::copy(const Request& request) {
 
 void Session::look() {
   const std::lock_guard lock(mutex_);
+  look_for_files();
   for (auto& [path, document] : documents_) {
     try {
       if (document->look()) tell_others(*document, 0);

@@ -1,5 +1,6 @@
 /// Everything that the studio does, behind messages (tools/studio/protocol.md). It knows nothing of HTTP.
 #pragma once
+#include <chrono>
 #include <functional>
 #include <map>
 #include <memory>
@@ -79,6 +80,8 @@ class Session {
   Json cancel(const Request&);
   Json file_list() const;
   std::string first_that_runs() const;
+  std::string openable(const std::string& file) const;
+  void look_for_files();
   Document& document(const std::string& path);
   Json document_json(const Document& document, const Seen& seen, bool with_text);
   /// Changes a document as `change` says; again if another program changed the file at the same moment.
@@ -122,6 +125,7 @@ class Session {
   std::map<std::string, std::unique_ptr<Document>> documents_;
   std::map<int64_t, std::map<std::string, Seen>> seen_;
   std::vector<Folder::File> files_;
+  std::chrono::steady_clock::time_point next_look_for_files_;
   mutable Results results_;
   Jobs jobs_;  ///< last: its threads end before anything else
 };

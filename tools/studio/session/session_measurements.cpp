@@ -31,10 +31,10 @@ Json column_json(const ColumnGuess& guess) {
 }
 
 /// The time column in s, as far as a summary needs it.
-void add_times(const Recording& record, const std::string& name, Json& json) {
-  const Column* time = record.find(name);
+void add_times(const Recording& record, const ColumnGuess& guess, Json& json) {
+  const Column* time = record.find(guess.column);
   if (!time || time->values.empty()) return;
-  const auto unit = parse_unit(time->unit.empty() ? "s" : time->unit);
+  const auto unit = parse_unit(guess.unit.empty() ? "s" : guess.unit);
   const double scale = unit && unit->same_dimension(*parse_unit("s")) ? unit->scale : 1;
   json["start"] = finite(time->values.front() * scale), json["stop"] = finite(time->values.back() * scale);
   const double rows = double(time->values.size());
@@ -116,6 +116,11 @@ Json force_json(const ForceAnalysis& f) {
   return json;
 }
 
+/// As the page shows it: "2.35 %", "1971 %".
+std::string percent(double number) {
+  return number >= 100 ? fmt::format("{:.0f} %", number) : fmt::format("{:.3g} %", number);
+}
+
 /// Where the diagram fails: the machine by its missing force, other blocks by the error of their signals.
 Json tint(const Comparison& comparison, const Experiment& experiment) {
   std::map<std::string, std::pair<double, std::string>> shares;
@@ -126,9 +131,11 @@ Json tint(const Comparison& comparison, const Experiment& experiment) {
       if (share > entry.first) entry = {share, text};
     }
   };
-  for (const ComparedSignal& signal : comparison.signals)
-    add(signal.name, std::min(1.0, signal.relative_percent / 100),
-        fmt::format("{} is off by {:.3g} % (rms)", signal.name, signal.relative_percent));
+  // The missing force says where: positions in an open loop drift whatever is missing, even noise.
+  if (!comparison.force)
+    for (const ComparedSignal& signal : comparison.signals)
+      add(signal.name, std::min(1.0, signal.relative_percent / 100),
+          fmt::format("{} is off by {} (rms)", signal.name, percent(signal.relative_percent)));
   if (comparison.force) {
     std::string on;
     double most = 0;
@@ -139,8 +146,8 @@ Json tint(const Comparison& comparison, const Experiment& experiment) {
     for (const auto& [role, port] : experiment.roles.ports)
       if (role == "force")
         add(port, std::min(1.0, comparison.force->residual.relative_percent / 100),
-            fmt::format("{:.3g} % of the driving force is missing here{}",
-                        comparison.force->residual.relative_percent, on));
+            fmt::format("{} of the driving force is missing here{}",
+                        percent(comparison.force->residual.relative_percent), on));
   }
   Json list = Json::array();
   for (const auto& [block, entry] : shares)
@@ -185,6 +192,7 @@ Json comparison_json(const Comparison& comparison, const Experiment& experiment,
             {"residual", residuals(comparison, points)},
             {"force", comparison.force ? force_json(*comparison.force) : Json(nullptr)},
             {"why_no_force", comparison.why_no_force},
+            {"drives", experiment.drives.size()},
             {"tint", tint(comparison, experiment)}};
   for (const ComparedSignal& signal : comparison.signals) {
     Json entry{{"name", signal.name},
@@ -224,7 +232,7 @@ Json Session::columns(const Request& request) {
         {"exists", exists}};
     for (const ColumnGuess& guess : guess_columns(record, ports, roles)) {
       if (guess.use == ColumnGuess::Use::time)
-        json["time"] = guess.column, add_times(record, guess.column, json);
+        json["time"] = guess.column, add_times(record, guess, json);
       json["columns"].push_back(column_json(guess));
     }
     constexpr size_t most_ports = 3000;

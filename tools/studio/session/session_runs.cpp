@@ -157,7 +157,7 @@ Json Session::run(const Request& request) {
                      {"time", result.time},
                      {"wall", result.statistics.wall_seconds},
                      {"hash", plan.hash},
-                     {"command", command_of(path, options)},
+                     {"command", command_of(folder_.path_of(path), options)},
                      {"warnings", result.warnings},
                      {"summary", run_summary(plan, result, figures)},
                      {"verdict", verdict_json(verdict(plan, result, figures))},

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <cmath>
 #include <complex>
+#include <filesystem>
 #include "tests/tools/studio/session/session_page.h"
 #include "tests/tools/studio/session/studio_folder.h"
 
@@ -157,3 +159,18 @@ TEST_F(Requests, TheStudioBeginsWithAFileThatRunsAlone) {
 }
 
 }  // namespace
+
+TEST_F(Requests, OneOddFileHidesNoOther) {
+  std::filesystem::create_symlink("/etc/hostname", folder_.path("outside.json"));
+  folder_.write("two\nlines.json", "{}");
+  folder_.write("\xff.json", "{}");
+  folder_.write("record.csv", "t,x\n0,0\n");
+  Page page(folder_.path(), "");
+  const Json hello = page.ask({{"do", "hello"}});
+  std::vector<std::string> paths;
+  for (const Json& file : hello["files"]) paths.push_back(file["path"]);
+  EXPECT_NE(std::ranges::find(paths, "loop.json"), paths.end()) << hello;
+  EXPECT_NE(std::ranges::find(paths, "record.csv"), paths.end()) << hello;
+  EXPECT_EQ(hello["open"], "loop.json");
+  EXPECT_EQ(paths.size(), 2u) << hello;
+}

@@ -73,6 +73,8 @@ TEST_F(Scene, ADroppedRecordIsComparedDiagnosedAndExplained) {
   const Json before = page.ask(request);
   EXPECT_GT(before["signals"][0]["rmse"], 50e-6);
   EXPECT_GT(before["force"]["rmse"].get<double>(), 10 * before["force"]["noise_floor"].get<double>());
+  for (const Json& entry : before["tint"])
+    EXPECT_EQ(entry["text"].get<std::string>().find("is off by"), std::string::npos) << "by the missing force alone";
   const Json diagnosis =
       page.ask({{"do", "diagnose"}, {"path", "nominal.json"}, {"experiments", {"train.experiment.json"}}});
   EXPECT_EQ(diagnosis["verdict"], "explained") << diagnosis["text"];
@@ -93,6 +95,8 @@ TEST_F(Scene, ADroppedRecordIsComparedDiagnosedAndExplained) {
   EXPECT_TRUE(added["document"]["loads"]);
   const Json after = page.ask(request);
   EXPECT_LT(after["signals"][0]["rmse"], 4e-6);
+  for (const Json& entry : after["tint"])
+    EXPECT_LE(entry["share"].get<double>(), after["force"]["relative"].get<double>() / 100) << entry;
   EXPECT_NEAR(after["signals"][0]["rmse"].get<double>(), preview["rmse"].get<double>(), 1e-12)
       << "as previewed";
   page.ask({{"do", "undo"}, {"path", "nominal.json"}});

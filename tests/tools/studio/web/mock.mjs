@@ -121,7 +121,7 @@ const diagnosis = () => ({ diagnosis: 1, verdict: "explained", title: "Two effec
 const columns = { data: "held_out.csv", rows: 12001, time: "time_s", sample_time: 0.001, start: 0, stop: 12, columns: [
   { column: "time_s", name: "time", unit: "s", min: 0, max: 12, use: "time", port: "", why: "rises steadily", resolution: "", interpolation: "", candidates: [] },
   { column: "reference_m", name: "reference", unit: "m", min: -0.1, max: 0.1, use: "drive", port: "controller.reference", why: "name and unit", resolution: "", interpolation: "hold", candidates: ["controller.reference"] },
-  { column: "force_N", name: "force", unit: "N", min: -2, max: 2, use: "ignore", port: "", why: "", resolution: "", interpolation: "hold", candidates: ["axis.force"] },
+  { column: "force_N", unit_is_stated: false, name: "force", unit: "N", min: -2, max: 2, use: "ignore", port: "", why: "", resolution: "", interpolation: "hold", candidates: ["axis.force"] },
   { column: "position_m", name: "position", unit: "m", min: -0.1, max: 0.1, use: "compare", port: "axis.position", why: "name and unit", resolution: "200 nm", interpolation: "linear", candidates: ["axis.position"] }],
   ports: [{ port: "axis.position", unit: "m", input: false }, { port: "axis.velocity", unit: "m/s", input: false }, { port: "axis.net_force", unit: "N", input: false }, { port: "axis.force", unit: "N", input: true }, { port: "controller.reference", unit: "m", input: true }],
   roles: [{ role: "position", port: "axis.position", why: "" }, { role: "velocity", port: "axis.velocity", why: "" }, { role: "force", port: "axis.net_force", why: "" }, { role: "input", port: "axis.force", why: "" }], hold_out: 0.25, experiment: "held_out.experiment.json", exists: false };

@@ -9,10 +9,11 @@ import "./style/scopes.css";
 import "./style/panels.css";
 import { App } from "./App";
 import { follow_address, read_address, recall_theme } from "./state/address";
-import { changed_outside, greet, on_change } from "./state/document";
+import { changed_outside, greet, list_files, on_change } from "./state/document";
 import { compare, compare_after_change, compare_after_slider, note_added } from "./state/measure";
 import { linearize_again, on_slider, run_after_change } from "./state/run";
 import { connect } from "./state/session";
+import { get } from "./state/store";
 
 recall_theme();
 const { experiment } = read_address();
@@ -33,4 +34,5 @@ connect({
   }),
   document: changed_outside,
 });
+window.addEventListener("focus", () => { if (get().connection === "open") void list_files(); });
 createRoot(document.getElementById("root")!).render(<App />);

@@ -53,6 +53,9 @@ export function quantity(value: number | null | undefined, unit: string, digits 
   return withMinus(text) + (shown ? NARROW_SPACE + shown : "");
 }
 
+/** As the program writes it: "2.35 %", "1971 %". */
+export const percent = (value: number): string => `${value >= 100 ? value.toFixed(0) : +value.toPrecision(3)} %`;
+
 /** A plain number without a unit, short. */
 export function short(value: number, digits = 4): string {
   if (!isFinite(value)) return value > 0 ? "∞" : value < 0 ? "−∞" : "NaN";

@@ -78,7 +78,7 @@ function DiagramPanel({ view }: { view: View }) {
           ))}</ul>
         </div>
       )}
-      {run && <SweepForm view={view} signals={run.signals.map((signal) => signal.name)} />}
+      {run && <SweepForm key={view.inside} view={view} signals={run.signals.map((signal) => signal.name)} />}
     </>
   );
 }

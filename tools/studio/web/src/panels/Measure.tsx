@@ -1,7 +1,8 @@
 // Measurements: choose or drop a record, confirm what its columns are, see how far the model is off.
-import { useRef } from "react";
-import { prettyUnit, quantity } from "../numbers";
-import type { Columns, ColumnUse } from "../protocol/types";
+import { useEffect, useRef } from "react";
+import { percent, prettyUnit, quantity } from "../numbers";
+import type { Column, Columns, ColumnUse } from "../protocol/types";
+import { list_files } from "../state/document";
 import { change_column, change_role, close_experiment, compare, confirm_columns, diagnose, drop_record, match_columns } from "../state/measure";
 import { jump_to_block } from "../state/places";
 import { patch, useStudio } from "../state/store";
@@ -15,6 +16,7 @@ export function Measure() {
 function Choose() {
   const files = useStudio((state) => state.files), path = useStudio((state) => state.document?.path ?? "");
   const picker = useRef<HTMLInputElement>(null);
+  useEffect(() => { void list_files(); }, []);
   const folder = path.includes("/") ? path.slice(0, path.lastIndexOf("/") + 1) : "";
   const near = (kind: string) => files.filter((file) => file.kind === kind && file.path.startsWith(folder));
   const experiments = near("experiment"), records = near("record");
@@ -37,7 +39,17 @@ function Choose() {
 const USES: { use: ColumnUse; title: string }[] = [{ use: "compare", title: "compare with" }, { use: "drive", title: "drives" }, { use: "time", title: "time" }, { use: "ignore", title: "not used" }];
 const MEANINGS: Record<string, string> = { position: "position", velocity: "velocity", force: "sum of forces", input: "input of the axis" };
 
+/** The unit of a column, typed where the heading does not state it. */
+function UnitField({ column, index }: { column: Column; index: number }) {
+  if (column.unit_is_stated !== false && column.unit) return <span className="unit" title="stated by the heading of the file">{prettyUnit(column.unit)}</span>;
+  return <input className="field mono unit" size={6} value={column.unit} placeholder={column.use === "time" ? "s" : "unit"} aria-label={`Unit of ${column.name}`} title="The heading states no unit. Which one have the numbers?" spellCheck={false}
+    onChange={(event) => change_column(index, { unit: event.target.value.trim() })} />;
+}
+
+const NO_DRIVE = "No column drives the diagram. It runs along its own reference, not along the measured one, and the errors show that as well.";
+
 function Confirm({ columns }: { columns: Columns }) {
+  const drives = columns.columns.some((column) => column.use === "drive");
   return (
     <form onSubmit={(event) => { event.preventDefault(); void confirm_columns(columns.exists); }} className="confirm">
       <div className="section">
@@ -50,7 +62,7 @@ function Confirm({ columns }: { columns: Columns }) {
         if (column.port && !ordered.includes(column.port)) ordered.unshift(column.port);
         return (
           <fieldset key={column.column} className={`section column ${column.use}`} data-column={column.name}>
-            <legend>{column.name}{column.unit && <span className="unit"> {prettyUnit(column.unit)}</span>}</legend>
+            <legend>{column.name}</legend>
             <div className="row">
               <select aria-label={`Use of ${column.name}`} value={column.use} onChange={(event) => change_column(index, { use: event.target.value as ColumnUse, ...(event.target.value === "ignore" || event.target.value === "time" ? { port: "" } : {}) })}>
                 {USES.map((entry) => <option key={entry.use} value={entry.use}>{entry.title}</option>)}
@@ -61,8 +73,9 @@ function Confirm({ columns }: { columns: Columns }) {
                   {ordered.map((port, i) => <option key={i} value={port}>{port}{unit_of(columns, port)}</option>)}
                 </select>
               )}
+              {column.use !== "ignore" && <UnitField column={column} index={index} />}
             </div>
-            <p className="soft small-text">{column.min !== null && `${quantity(column.min, column.unit)} … ${quantity(column.max, column.unit)}`}{column.why && ` · ${column.why}`}{column.use === "compare" && column.resolution && ` · resolution ${prettyUnit(column.resolution)}`}</p>
+            <p className="soft small-text">{column.min !== null && `${quantity(column.min, column.unit)} … ${quantity(column.max, column.unit)}`}{column.why && ` · ${column.why}`}{column.use === "compare" && column.resolution && ` · resolution ${column.resolution} ${prettyUnit(column.unit)}`}</p>
           </fieldset>
         );
       })}
@@ -85,7 +98,8 @@ function Confirm({ columns }: { columns: Columns }) {
         <label className="row"><span className="name">written to</span>
           <input className="field mono" value={columns.experiment} onChange={(event) => patch({ columns: { ...columns, experiment: event.target.value, exists: false } })} /></label>
         {columns.exists && <p className="hint">This file exists and will be replaced.</p>}
-        <p className="buttons"><button type="submit" className="primary">{columns.exists ? "Replace and compare" : "Confirm and compare"}</button>
+        {!drives && <p className="banner warning no-drive" role="alert">{NO_DRIVE}</p>}
+        <p className="buttons"><button type="submit" className="primary">{columns.exists ? "Replace and compare" : "Confirm and compare"}{!drives && " without a drive"}</button>
           <button type="button" onClick={() => patch({ columns: null })}>Cancel</button></p>
       </div>
     </form>
@@ -106,13 +120,14 @@ function Compared() {
           <button type="button" onClick={() => void compare()}>Again</button>
           <button type="button" onClick={close_experiment}>Close</button>
         </p>
+        {comparison?.drives === 0 && <p className="banner warning no-drive" role="alert">{NO_DRIVE}</p>}
         {comparison?.why_no_force && <p className="hint">{comparison.why_no_force}</p>}
       </div>
       {comparison && (
         <div className="section">
           <h3>Errors</h3>
           <table className="merit"><thead><tr><th scope="col">signal</th><th scope="col">rms</th><th scope="col">largest</th><th scope="col">relative</th></tr></thead><tbody>{comparison.signals.map((signal) => (
-            <tr key={signal.name}><th scope="row">{signal.name}</th><td>{quantity(signal.rmse, signal.unit, 3)}</td><td>{quantity(signal.max, signal.unit, 3)}</td><td>{signal.relative === null ? "–" : `${+signal.relative.toPrecision(2)} %`}</td></tr>))}</tbody></table>
+            <tr key={signal.name}><th scope="row">{signal.name}</th><td>{quantity(signal.rmse, signal.unit, 3)}</td><td>{quantity(signal.max, signal.unit, 3)}</td><td>{signal.relative === null ? "–" : percent(signal.relative)}</td></tr>))}</tbody></table>
         </div>
       )}
       {comparison && comparison.tint.length > 0 && (

@@ -105,7 +105,7 @@ export interface Force {
 }
 export interface Comparison {
   comparison: number; title: string; status: string; message: string; warnings: string[]; text: string;
-  signals: Compared[]; residual: Residual[]; force: Force | null; why_no_force: string;
+  signals: Compared[]; residual: Residual[]; force: Force | null; why_no_force: string; drives: number;
   tint: { block: string; share: number; text: string }[];
 }
 

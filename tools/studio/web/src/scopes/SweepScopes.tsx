@@ -13,6 +13,15 @@ function colours_of(values: number[]): { share: (value: number) => number; low: 
   const scale = is_logarithmic ? Math.log : (value: number) => value;
   return { low, high, is_logarithmic, share: (value) => (high > low ? (scale(value) - scale(low)) / (scale(high) - scale(low)) : 0.5) };
 }
+/** Both ends with as many digits as tell them apart. */
+function ends(low: number, high: number, unit: string): [string, string] {
+  const both = (digits: number): [string, string] => [quantity(low, unit, digits), quantity(high, unit, digits)];
+  for (let digits = 3; digits < 10; ++digits) {
+    const texts = both(digits);
+    if (texts[0] !== texts[1]) return texts;
+  }
+  return both(3);
+}
 const heat = (share: number): string => `color-mix(in oklab, var(--heat-high) ${Math.round(100 * share)}%, var(--heat-low))`;
 
 function choose(sweep: NonNullable<State["sweep"]>, i: number, j: number): void {
@@ -26,11 +35,12 @@ export function SweepScopes() {
   if (!sweep) return <p className="empty">Choose two numbers under Inspect, with nothing selected.</p>;
   const cells = sweep.values.flat(), found = cells.filter((value): value is number => value !== null);
   const gaps = cells.length - found.length, { share, low, high, is_logarithmic } = colours_of(found), changes = settings_text(sweep.set);
+  const [least, most] = ends(low, high, sweep.unit);
   return (
     <div className="sweep">
       <p>{sweep.metric} over {sweep.x_set} (→) and {sweep.y_set} (↑){changes && `, with ${prettyUnit(changes)}`}. A click runs the diagram there.</p>
       <p className="scale">
-        {found.length > 0 && <><b>{quantity(low, sweep.unit, 3)}</b><span className="heat" aria-hidden="true" style={{ backgroundImage: `linear-gradient(to right in oklab, ${heat(0)}, ${heat(1)})` }} /><b>{quantity(high, sweep.unit, 3)}</b></>}
+        {found.length > 0 && <><b>{least}</b><span className="heat" aria-hidden="true" style={{ backgroundImage: `linear-gradient(to right in oklab, ${heat(0)}, ${heat(1)})` }} /><b>{most}</b></>}
         {is_logarithmic && <span className="soft">logarithmic</span>}
         {gaps > 0 && <span className="soft"><span className="gap-sample" aria-hidden="true" /> {gaps} of {cells.length}: refused, or the run failed</span>}
       </p>

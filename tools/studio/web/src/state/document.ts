@@ -1,5 +1,5 @@
 // Actions on the open file: open, edit by intents, undo, conflicts, moving between levels.
-import type { Document, EditAnswer, Hello, Intent, Problem, TextEdit } from "../protocol/types";
+import type { Document, EditAnswer, FileEntry, Hello, Intent, Problem, TextEdit } from "../protocol/types";
 import { ask, attempt } from "./session";
 import { about_document } from "./request";
 import { close_errors, get, patch, tell } from "./store";
@@ -18,6 +18,12 @@ export async function greet(): Promise<void> {
   const wanted = get().document?.path || new URLSearchParams(location.hash.slice(1)).get("file") || hello.open ||
     hello.files.find((file) => file.kind === "diagram")?.path;
   if (wanted) await open(wanted, get().inside);
+}
+
+/** Files that other programs put into the folder meanwhile. */
+export async function list_files(): Promise<void> {
+  const answer = await attempt(ask<{ files: FileEntry[] }>("files"));
+  if (answer) patch({ files: answer.files });
 }
 
 export async function open(path: string, inside = ""): Promise<void> {

@@ -44,7 +44,16 @@ export async function match_columns(data: string): Promise<void> {
 
 export function change_column(index: number, change: { use?: ColumnUse; port?: string; resolution?: string; unit?: string }): void {
   const columns = get().columns;
-  if (columns) patch({ columns: { ...columns, columns: columns.columns.map((column, i) => (i === index ? { ...column, ...change } : column)) } });
+  if (!columns) return;
+  const changed = columns.columns[index];
+  // The summary was made with the proposed time and its unit.
+  const is_of_time = changed && (change.use !== undefined || change.unit !== undefined) && (changed.use === "time" || change.use === "time");
+  const summary = is_of_time ? { start: null, stop: null, sample_time: null } : {};
+  const next = columns.columns.map((column, i) => {
+    if (i === index) return { ...column, ...change, ...(change.unit === undefined ? {} : { unit_is_stated: false }) };
+    return change.use === "time" && column.use === "time" ? { ...column, use: "ignore" as ColumnUse } : column;
+  });
+  patch({ columns: { ...columns, ...summary, columns: next } });
 }
 export function change_role(role: string, port: string): void {
   const columns = get().columns;
@@ -58,7 +67,7 @@ export async function confirm_columns(replace: boolean): Promise<void> {
   const answer = await attempt(ask<{ experiment: string; text: string; problems: Problem[] }>("write_experiment", about_document({
     experiment: columns.experiment, title: "", data: columns.data,
     time: columns.columns.find((column) => column.use === "time")?.column ?? columns.time,
-    columns: columns.columns.filter((column) => column.use === "drive" || column.use === "compare")
+    columns: columns.columns.filter((column) => column.use !== "ignore")
       .map(({ column, use, port, unit, unit_is_stated, resolution, interpolation }) => ({ column, use, port, unit: unit_is_stated === false ? unit : "", resolution, interpolation })),
     roles: Object.fromEntries(columns.roles.filter((role) => role.port).map((role) => [role.role, role.port])),
     hold_out: columns.hold_out, replace,
