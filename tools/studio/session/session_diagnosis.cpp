@@ -51,9 +51,8 @@ Json card_json(const Diagnosis& diagnosis, const DiagnosedEffect& effect, size_t
                           {"interval", quantity(p.low, p.unit) + " … " + quantity(p.high, p.unit)},
                           {"at_limit", p.at_limit}});
   const DiagnosisStep* step = step_of(diagnosis, effect.name, count);
-  const bool is_addable =
-      std::ranges::find(diagnosis.all_additions.effects, effect.name, &AddedEffect::name) !=
-      diagnosis.all_additions.effects.end();
+  const bool is_addable = std::ranges::find(diagnosis.all_additions.effects, effect.name,
+                                            &AddedEffect::name) != diagnosis.all_additions.effects.end();
   return {{"effect", effect.name},
           {"form", effect.form},
           {"title", effect.title},

@@ -46,7 +46,8 @@ Json Session::files(const Request&) {
 /// The path of a request for a file that a diagram names; empty if the file is outside of the folder.
 std::string Session::openable(const std::string& file) const {
   if (file.empty()) return "";
-  const std::string relative = folder_.relative(std::filesystem::path(file).lexically_normal().generic_string());
+  const std::string relative =
+      folder_.relative(std::filesystem::path(file).lexically_normal().generic_string());
   try {
     folder_.path_of(relative);
   } catch (const Refused&) {
@@ -63,7 +64,8 @@ void Session::look_for_files() {
   next_look_for_files_ = now + pause;
   std::vector<Folder::File> found = folder_.files();
   const auto is_same = [&](const Folder::File& a, const Folder::File& b) {
-    return a.path == b.path && (a.size == b.size || documents_.contains(a.path));  // open files tell by themselves
+    return a.path == b.path &&
+           (a.size == b.size || documents_.contains(a.path));  // open files tell by themselves
   };
   if (std::ranges::equal(found, files_, is_same)) return;
   files_ = std::move(found);

@@ -231,8 +231,7 @@ Json Session::columns(const Request& request) {
         {"ports", Json::array()}, {"roles", Json::array()}, {"hold_out", 0.25}, {"experiment", experiment},
         {"exists", exists}};
     for (const ColumnGuess& guess : guess_columns(record, ports, roles)) {
-      if (guess.use == ColumnGuess::Use::time)
-        json["time"] = guess.column, add_times(record, guess, json);
+      if (guess.use == ColumnGuess::Use::time) json["time"] = guess.column, add_times(record, guess, json);
       json["columns"].push_back(column_json(guess));
     }
     constexpr size_t most_ports = 3000;
