@@ -205,6 +205,9 @@ constexpr double ridge = 1e-3;
 
 /// n Σ ρ² over 40 lags is near 40 when nothing is left; the largest of a thousand records is below this.
 constexpr double most_portmanteau_of_any_diagram = 120;
+/// Of a term to the signal at its site, root mean squares. Interpolation between the rows, and steps of the
+/// integration, leave this much on a record without noise.
+constexpr double least_share_of_site = 1e-3;
 /// [simulated rms error of the nominal diagram] A simulation with the terms that is worse contradicts them.
 constexpr double worse_simulation_of_any_diagram = 1.05;
 /// [simulations] Begun anew from the filtered states, over the rows that are judged.

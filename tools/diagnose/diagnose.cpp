@@ -365,10 +365,12 @@ bool have_roles(const std::vector<std::string>& experiments) {
     all.push_back(experiment);
     with_roles += !experiment || problems.has_errors() || !experiment->roles.ports.empty();
   }
-  Problems repeated;
-  refuse_repeated_records(all, repeated);
-  if (repeated.has_errors()) throw InputError(std::move(repeated));
-  if (with_roles == experiments.size()) return true;
+  if (with_roles == experiments.size()) {
+    Problems repeated;
+    refuse_repeated_records(all, repeated);
+    if (repeated.has_errors()) throw InputError(std::move(repeated));
+    return true;
+  }
   if (with_roles == 0 && experiments.size() == 1) return false;
   Problems problems;
   auto& p = problems.error({}, "/roles", "", "several experiments can be used together only with roles");

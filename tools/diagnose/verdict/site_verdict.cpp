@@ -40,33 +40,35 @@ class Telling {
   Telling(SiteFilter& filter, const SiteSearchResult& search, Diagnosis& result)
       : model_(filter.model()),
         search_(search),
+        found_(search.found),
         result_(result),
         fitted_(filter, model_.record().held_out_from, [] { return false; }),
         whole_(filter, model_.record().rows(), [] { return false; }) {}
 
   void run() {
-    covariance_ = covariance_of(fitted_, search_.found);
+    leave_out_what_is_nothing();
+    covariance_ = covariance_of(fitted_, found_);
     tell_terms(), tell_parameters(), tell_steps();
-    result_.not_observable = alike_sites(fitted_, search_.found);
+    result_.not_observable = alike_sites(fitted_, found_);
     judge();
   }
 
  private:
   DiagnosedParameter number(const std::vector<FittedNumber>& numbers, size_t i, std::string name,
                             std::string unit) const {
-    SiteHypothesis h = search_.found;
+    SiteHypothesis h = found_;
     const double value = value_of(h, numbers[i]);
     const double half = 1.96 * std::sqrt(std::max(0.0, covariance_(Eigen::Index(i), Eigen::Index(i))));
     return {std::move(name), std::move(unit), value, value - half, value + half, false};
   }
 
   void tell_terms() {
-    const std::vector<FittedNumber> numbers = fitted_numbers(search_.found);
-    SiteHypothesis h = search_.found;
+    const std::vector<FittedNumber> numbers = fitted_numbers(found_);
+    SiteHypothesis h = found_;
     SitePass pass;
     const bool has_path = fitted_.pass(h, true, pass);
-    for (size_t t = 0; t < search_.found.terms.size(); ++t) {
-      const SiteTerm& term = search_.found.terms[t];
+    for (size_t t = 0; t < found_.terms.size(); ++t) {
+      const SiteTerm& term = found_.terms[t];
       const Site& site = model_.sites()[size_t(term.site)];
       DiagnosedEffect effect;
       effect.name = term.shape->name, effect.title = term.shape->title;
@@ -85,12 +87,37 @@ class Telling {
                                              unit_of_coefficient(model_, term)));
       }
       for (const SiteRival& rival : search_.rivals)
-        if (rival.of == t) effect.alternatives.push_back(describe(model_, rival.term));
+        if (rival.of == place_[t]) effect.alternatives.push_back(describe(model_, rival.term));
       if (has_path) effect.force_rms = size_of_term(pass, term);
       if (term.shape == &unknown_function())
         for (const std::string& v : effect.variables) result_.remainder_variables.push_back(v);
       result_.effects.push_back(std::move(effect));
     }
+  }
+  /// Without noise every rest of the arithmetic is significant: what is far below the signal at its site is
+  /// no effect.
+  void leave_out_what_is_nothing() {
+    for (size_t t = 0; t < found_.terms.size(); ++t) place_.push_back(t);
+    SitePass pass;
+    SiteHypothesis h = found_;
+    if (h.terms.empty() || !fitted_.pass(h, true, pass)) return;
+    found_.terms.clear(), place_.clear();
+    for (size_t t = 0; t < h.terms.size(); ++t) {
+      const SiteTerm& term = h.terms[t];
+      if (size_of_term(pass, term) < criteria::least_share_of_site * size_at_site(pass, term.site)) continue;
+      found_.terms.push_back(term), place_.push_back(t);
+    }
+    is_left_out_ = found_.terms.size() < h.terms.size();
+  }
+  double size_at_site(const SitePass& pass, int site) const {
+    const std::vector<Number> numbers = model_.plan().find(model_.sites()[size_t(site)].name);
+    if (numbers.size() != 1 || size_t(numbers[0]) >= pass.numbers) return 0;
+    double square = 0;
+    for (size_t k = 0; k < pass.rows; ++k) {
+      const double value = pass.path[0][k * pass.numbers + size_t(numbers[0])];
+      square += value * value;
+    }
+    return std::sqrt(square / double(pass.rows));
   }
   double size_of_term(const SitePass& pass, const SiteTerm& term) const {
     double square = 0;
@@ -104,7 +131,7 @@ class Telling {
   }
 
   void tell_parameters() {
-    const std::vector<FittedNumber> numbers = fitted_numbers(search_.found);
+    const std::vector<FittedNumber> numbers = fitted_numbers(found_);
     for (size_t i = 0; i < numbers.size(); ++i) {
       if (numbers[i].kind != FittedNumber::Kind::factor) continue;
       const ModelParameter& parameter = model_.parameters()[size_t(numbers[i].owner)];
@@ -143,7 +170,7 @@ class Telling {
           added.push_back(name), named.push_back(name);
       add(h, added);
     }
-    errors_ = add(search_.found, {"as answered"});
+    errors_ = add(found_, {"as answered"});
     result_.holds_out = model_.record().held_out_from < model_.record().rows();
     const bool held = result_.holds_out;
     result_.error_before = held ? nominal_.held_out[0] : nominal_.predicted[0];
@@ -152,7 +179,7 @@ class Telling {
     result_.noise_floor = errors_.noise[0];
     result_.mean_square = errors_.mean_square, result_.held_out_mean_square = errors_.held_out_mean_square;
     result_.portmanteau = errors_.portmanteau;
-    result_.measurement_noise = search_.found.noise.measurement;
+    result_.measurement_noise = found_.noise.measurement;
   }
 
   /// The simulation must not contradict what one-step predictions say.
@@ -171,6 +198,15 @@ class Telling {
         !errors_.diverges && errors_.portmanteau < criteria::most_portmanteau_of_any_diagram;
     const bool names = !result_.effects.empty() || !result_.moved_parameters.empty();
     const bool worse = names && simulates_worse();
+    if (is_left_out_) {
+      RecordFinding& finding = result_.findings.emplace_back();
+      finding.what = "what remains is less than a thousandth of the signals at its places";
+      finding.cost = "it is not named";
+      if (!names) {
+        result_.verdict = Verdict::nothing_missing;
+        return;
+      }
+    }
     if (worse)
       result_.findings.push_back(
           {"with what was found, a simulation is worse than that of the diagram as it is",
@@ -185,6 +221,9 @@ class Telling {
 
   SiteModel& model_;
   const SiteSearchResult& search_;
+  SiteHypothesis found_;
+  std::vector<size_t> place_;  ///< of each of its terms among those of the search
+  bool is_left_out_ = false;
   Diagnosis& result_;
   SiteFitter fitted_, whole_;
   Eigen::MatrixXd covariance_;
