@@ -44,6 +44,13 @@ TEST(AnyDiagram, ACleanMotorLacksNothing) {
   EXPECT_EQ(d.verdict, Verdict::nothing_missing) << to_text(d);
   EXPECT_TRUE(answer(d).empty());
 }
+TEST(AnyDiagram, ACleanMotorLacksNothingWithoutNoiseEither) {
+  Plant plant = motor({}, 1);
+  plant.process_noise = {0, 0}, plant.measurement_noise = {1e-9, 1e-10};
+  const Diagnosis d = diagnosed(plant);
+  EXPECT_EQ(d.verdict, Verdict::nothing_missing) << to_text(d);
+  EXPECT_TRUE(answer(d).empty());
+}
 TEST(AnyDiagram, AResistanceThatIsNotAsStatedIsAParameterAndNoEffect) {
   Motor m;
   m.resistance = 1.5;

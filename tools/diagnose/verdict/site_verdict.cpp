@@ -192,26 +192,38 @@ class Telling {
     return false;
   }
 
+  /// Whether the simulation misses the record by no more than the arithmetic does.
+  bool is_exact() const {
+    if (errors_.diverges) return false;
+    for (size_t j = 0; j < errors_.simulated.size(); ++j) {
+      double sum = 0, square = 0, count = 0;
+      for (double y : model_.record().outputs[j].value)
+        if (!std::isnan(y)) sum += y, square += y * y, ++count;
+      const double spread = std::sqrt(std::max(0.0, square / count - sum * sum / (count * count)));
+      if (!(errors_.simulated[j] < criteria::error_of_arithmetic * spread)) return false;
+    }
+    return true;
+  }
+
   void judge() {
     const bool has_unknown = !result_.remainder_variables.empty();
     const bool is_white =
         !errors_.diverges && errors_.portmanteau < criteria::most_portmanteau_of_any_diagram;
     const bool names = !result_.effects.empty() || !result_.moved_parameters.empty();
     const bool worse = names && simulates_worse();
-    if (is_left_out_) {
+    const bool is_nothing = !names && (is_left_out_ || is_exact());
+    if (is_left_out_ || (is_nothing && !is_white)) {
       RecordFinding& finding = result_.findings.emplace_back();
-      finding.what = "what remains is less than a thousandth of the signals at its places";
+      finding.what = "what remains is as small as the errors of the arithmetic";
       finding.cost = "it is not named";
-      if (!names) {
-        result_.verdict = Verdict::nothing_missing;
-        return;
-      }
     }
     if (worse)
       result_.findings.push_back(
           {"with what was found, a simulation is worse than that of the diagram as it is",
            "names and parameters stand for something else", true, false});
-    if (worse || (!names && !is_white))
+    if (is_nothing)
+      result_.verdict = Verdict::nothing_missing;
+    else if (worse || (!names && !is_white))
       result_.verdict = Verdict::unexplained;
     else if (!is_white || has_unknown)
       result_.verdict = Verdict::partly_explained;
