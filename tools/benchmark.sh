@@ -9,4 +9,11 @@ cd "$root"
 tools/setup.sh
 [ -f build/release/build.ninja ] || cmake --preset release
 cmake --build build/release --target benchmarks
-exec build/release/bin/benchmarks build/benchmarks.json "$@"
+code=0
+build/release/bin/benchmarks build/benchmarks.json "$@" || code=$?
+if [ $# -eq 0 ]; then
+  cmake --build build/release --target loopwright hidden_effects
+  LOOPWRIGHT=$root/build/release/bin/loopwright HIDDEN_EFFECTS=$root/build/release/bin/hidden_effects LOOPWRIGHT_SOURCE=$root \
+    node tests/benchmarks/studio.mjs build/benchmarks.json || code=1
+fi
+exit $code

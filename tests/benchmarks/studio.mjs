@@ -97,7 +97,7 @@ async function loop(browser) {
   const slider = page.locator("input[type=range]").first();
   await slider.focus();
   const times = [];
-  for (let i = 0; i < 30; ++i) times.push((await timed(page, "run", () => page.keyboard.press(i % 2 ? "ArrowRight" : "ArrowLeft")))[1]);
+  for (let i = 0; i < 30; ++i) times.push((await timed(page, "run", () => page.keyboard.press(i % 2 ? "ArrowLeft" : "ArrowRight")))[1]);
   report("studio_slider_ms", median(times), 150, "from a step of a slider of the PS loop to the frame with its new curves, median of 30", { slowest: Math.max(...times) });
   await page.waitForTimeout(2000);
   const session = await page.context().newCDPSession(page);
@@ -126,11 +126,11 @@ async function long_record(browser, rows = 1e7) {
   }
   await new Promise((done) => out.end(done));
   writeFileSync(join(folder, "mass.json"), JSON.stringify({ loopwright: 1, solver: { method: "rk4", step, stop: 1 },
-    blocks: { push: { type: "Sine", amplitude: { value: 1, unit: "N" }, frequency: { value: 1, unit: "Hz" } },
+    blocks: { actuator: { type: "Gain", gain: 1, in: { u: "push.y" } }, push: { type: "Sine", amplitude: { value: 1, unit: "N" }, frequency: { value: 1, unit: "Hz" } },
       spring: { type: "Spring", stiffness: 1000, in: { position: "mass.position" } }, damping: { type: "ViscousFriction", damping: 5, in: { velocity: "mass.velocity" } },
-      force: { type: "Sum", signs: "+--", in: { terms: ["push.y", "spring.force", "damping.force"] } }, mass: { type: "Mass", mass: 1, in: { force: "force.sum" } } }, log: ["mass.position"] }));
+      force: { type: "Sum", signs: "+--", in: { terms: ["actuator.y", "spring.force", "damping.force"] } }, mass: { type: "Mass", mass: 1, in: { force: "force.sum" } } }, log: ["mass.position"] }));
   writeFileSync(join(folder, "record.experiment.json"), JSON.stringify({ loopwright: 1, data: "record.csv", time: "time",
-    drive: { "force.terms[0]": { column: "u" } }, compare: { "mass.position": { column: "x" } } }));
+    drive: { "actuator.u": { column: "u" } }, compare: { "mass.position": { column: "x" } } }));
   const { page, close } = await open(browser, join(folder, "mass.json"));
   await page.waitForSelector(".plot canvas");
   await page.click("#tab-measure");
