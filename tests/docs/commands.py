@@ -37,6 +37,7 @@ LEFT_OUT = [
 SHORTENED = [
     ("tools/reproduce_paper.sh", "tools/reproduce_paper.sh --runs 1", "one run for every number instead of five"),
     ("tools/hidden_effects.sh 300", "tools/hidden_effects.sh 4", "4 scenarios instead of 300"),
+    ("tools/hidden_effects.sh 120", "tools/hidden_effects.sh 2", "2 scenarios instead of 120"),
     ("tools/hidden_effects.sh 20", "tools/hidden_effects.sh 2", "2 scenarios instead of 20"),
     ("tools/conditions.sh 500", "tools/conditions.sh 2", "2 scenarios instead of 500"),
     ("tools/conditions.sh 61", "tools/conditions.sh 2", "2 scenarios instead of 61"),
