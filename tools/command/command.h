@@ -39,6 +39,7 @@ void add_diagnose(CLI::App& app, std::function<void(std::function<int()>)> choos
 void add_deploy(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_recover(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_probe(CLI::App& app, std::function<void(std::function<int()>)> choose);
+void add_look(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_linearize(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_studio(CLI::App& app, std::function<void(std::function<int()>)> choose);
 void add_design(CLI::App& app, std::function<void(std::function<int()>)> choose);

@@ -1,4 +1,4 @@
-#include "tools/command/look.h"
+#include "tools/command/command.h"
 #include "tools/look/look.h"
 
 namespace loopwright {

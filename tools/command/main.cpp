@@ -5,7 +5,6 @@
 #include <thread>
 #include "tools/command/command.h"
 #include "tools/command/command_line.h"
-#include "tools/command/look.h"
 
 namespace loopwright {
 namespace {
