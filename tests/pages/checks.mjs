@@ -35,6 +35,26 @@ export function overflows() {
   return found.slice(0, 10);
 }
 
+/** States of charts that overlap without one being inside the other, and texts that leave their state or cover another's. */
+export function chartFaults() {
+  const apart = (a, b) => a.right <= b.left + 0.6 || b.right <= a.left + 0.6 || a.bottom <= b.top + 0.6 || b.bottom <= a.top + 0.6;
+  const found = [], name = (g) => g.querySelector(".name").textContent;
+  const within = (a, b) => a.left >= b.left - 1 && a.right <= b.right + 1 && a.top >= b.top - 1 && a.bottom <= b.bottom + 1;
+  for (const chart of document.querySelectorAll("svg.diagram g.chart")) {
+    const states = [...chart.querySelectorAll("g.state")].map((g) => ({ g, name: name(g), box: g.querySelector(".edge").getBoundingClientRect() }));
+    states.forEach((a, i) => states.slice(i + 1).forEach((b) => {
+      if (!apart(a.box, b.box) && !within(a.box, b.box) && !within(b.box, a.box)) found.push(`state ${a.name} overlaps ${b.name}`);
+    }));
+    for (const { g, name, box } of states)
+      for (const text of g.querySelectorAll("text")) if (!within(text.getBoundingClientRect(), box)) found.push(`"${text.textContent}" leaves state ${name}`);
+    const guards = [...chart.querySelectorAll("g.guard")].map((g) => ({ name: g.textContent, box: g.getBoundingClientRect() }));
+    guards.forEach((a, i) => guards.slice(i + 1).forEach((b) => { if (!apart(a.box, b.box)) found.push(`guard "${a.name}" overlaps "${b.name}"`); }));
+    for (const { name, box } of guards)
+      for (const state of states) if (!state.g.classList.contains("outer") && !apart(box, state.box)) found.push(`guard "${name}" covers state ${state.name}`);
+  }
+  return found.slice(0, 10);
+}
+
 /** Blocks of diagrams that overlap, texts that leave their blocks or their picture, wires that cross blocks. */
 export function diagramFaults() {
   const found = [];

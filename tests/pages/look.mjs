@@ -5,7 +5,7 @@ import { mkdirSync } from "node:fs";
 import { basename, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
-import { diagramFaults, overflows, smallTexts } from "./checks.mjs";
+import { chartFaults, diagramFaults, overflows, smallTexts } from "./checks.mjs";
 
 const SMALLEST = 10;  // px of text
 
@@ -22,7 +22,7 @@ function readArguments(words) {
 }
 
 async function faultsOf(page) {
-  return [...await page.evaluate(smallTexts, SMALLEST), ...await page.evaluate(overflows), ...await page.evaluate(diagramFaults)];
+  return [...await page.evaluate(smallTexts, SMALLEST), ...await page.evaluate(overflows), ...await page.evaluate(diagramFaults), ...await page.evaluate(chartFaults)];
 }
 
 async function settled(page) {

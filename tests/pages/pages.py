@@ -60,6 +60,7 @@ def make_few(pages):
     pages.command('run', motor / 'conventional.json', '-q', '-o', first)
     pages.command('run', motor / 'conventional.json', '-q', '-o', second, '--set', 'payload=0.2621 kg')
     make_run(pages, motor / 'conventional.json', '--beside', second)
+    make_run(pages, SOURCE / 'diagrams/tutorial/homing.json')  # with the chart of a state machine
     pages.page('report', 'report', first, second, option='-o')
     pages.page('look', 'look', first)
     pages.page('linearize', 'linearize', motor / 'conventional.json', '--from', 'stage.command', '--to', 'stage.position',
@@ -72,7 +73,7 @@ def make_few(pages):
 def make_all(pages):
     make_few(pages)
     for diagram in sorted((SOURCE / 'diagrams').rglob('*.json')):
-        if runs_alone(diagram) and diagram.name != 'conventional.json':
+        if runs_alone(diagram) and diagram.name not in ('conventional.json', 'homing.json'):
             make_run(pages, diagram)
     motor, emps = SOURCE / 'diagrams/linear_motor', SOURCE / 'diagrams/emps'
     pages.page('stability', 'stability', motor / 'ps.json', '--no-kicks')

@@ -7,6 +7,7 @@
 #include "engine/plan/gates.h"
 #include "engine/plan/unit_expressions.h"
 #include "tools/draw/block_face.h"
+#include "tools/draw/machine_chart.h"
 #include "tools/draw/signal_rates.h"
 #include "tools/report/typography.h"
 
@@ -131,6 +132,10 @@ class GraphBuilder {
     for (const PortInfo& output : type.info.outputs) node.outputs.push_back(port(path, output.name));
     node.face = block_face(settings, node.inputs.size());
     node.details = settings.all();
+    if (type.info.type == "StateMachine") {
+      node.chart = machine_chart(settings);
+      node.face.text = fmt::format("{} states", node.chart.states.size());
+    }
     return node;
   }
 

@@ -47,6 +47,25 @@ std::size_t depth_of(const GraphNode& node) {
 
 }  // namespace
 
+std::string chart_json(const GraphChart& chart) {
+  if (chart.states.empty()) return "null";
+  std::string out = "{\"states\":[";
+  const auto separate = [&] {
+    if (out.back() != '[') out += ',';
+  };
+  for (const ChartState& state : chart.states) {
+    separate(), out += fmt::format(R"({{"name":{},"parent":{},"initial":{},"entries":[)",
+                                   json_string(state.name), state.parent, state.is_initial);
+    for (const std::string& entry : state.entries) separate(), out += json_string(entry);
+    out += "]}";
+  }
+  out += "],\"transitions\":[";
+  for (const ChartTransition& transition : chart.transitions)
+    separate(), out += fmt::format(R"({{"from":{},"to":{},"guard":{},"order":{}}})", transition.from,
+                                   transition.to, json_string(transition.guard), transition.order);
+  return out + "]}";
+}
+
 bool is_inside(const GraphNode& node, const GraphNode& subdiagram) {
   return node.path.size() > subdiagram.path.size() && node.path.starts_with(subdiagram.path) &&
          node.path[subdiagram.path.size()] == '.';
@@ -61,11 +80,12 @@ std::string graph_json(const Graph& graph) {
   out += "],\"nodes\":[";
   for (const GraphNode& node : graph.nodes)
     separate(),
-        fmt::format_to(std::back_inserter(out),
-                       R"({{"path":{},"type":{},"room":{},"inputs":{},"outputs":{},"face":{},"details":{}}})",
-                       json_string(node.path), json_string(node.type), json_string(node.room),
-                       ports_json(node.inputs), ports_json(node.outputs), face_json(node.face),
-                       json_string(node.details));
+        fmt::format_to(
+            std::back_inserter(out),
+            R"({{"path":{},"type":{},"room":{},"inputs":{},"outputs":{},"face":{},"details":{},"chart":{}}})",
+            json_string(node.path), json_string(node.type), json_string(node.room), ports_json(node.inputs),
+            ports_json(node.outputs), face_json(node.face), json_string(node.details),
+            chart_json(node.chart));
   out += "],\n\"edges\":[";
   for (const GraphEdge& edge : graph.edges)
     separate(), out += fmt::format("[{},{}]", end_json(edge.from), end_json(edge.to));

@@ -26,6 +26,25 @@ struct GraphFace {
   bool has_axes = false;  ///< lines through x = 0 and y = 0 behind the strokes
 };
 
+struct ChartState {
+  std::string name;
+  int parent = -1;                   ///< the state that contains it; -1: none
+  bool is_initial = false;           ///< entered by default with the state that contains it
+  std::vector<std::string> entries;  ///< "velocity = 20 mm/s": what it sets when it is entered
+};
+
+struct ChartTransition {
+  std::size_t from = 0, to = 0;
+  std::string guard;  ///< empty: always true
+  int order = 0;      ///< 1: the first that is tested of several from this state; 0: it is the only one
+};
+
+/// The chart of a state machine (tools/report/page/chart_*.js lay it out and draw it).
+struct GraphChart {
+  std::vector<ChartState> states;
+  std::vector<ChartTransition> transitions;
+};
+
 /// One block, or a subdiagram. A path with dots, "stage.friction", stands inside the subdiagram "stage".
 struct GraphNode {
   std::string path;
@@ -35,6 +54,7 @@ struct GraphNode {
   std::vector<GraphPort> inputs, outputs;
   GraphFace face;
   std::string details;  ///< effective parameters, one a line, for the pointer
+  GraphChart chart{};   ///< of a state machine, which opens as a subdiagram does; without states: it is none
 };
 
 /// One end of a wire: a port of a node. Inside a subdiagram its inputs are sources, its outputs readers.
@@ -57,6 +77,10 @@ struct Graph {
   std::vector<GraphNode> nodes;    ///< a subdiagram before its blocks
   std::vector<GraphEdge> edges;
 };
+
+/// A chart as JSON for the scripts: {"states": [{"name", "parent", "initial", "entries"}], "transitions":
+/// [{"from", "to", "guard", "order"}]}; null without states.
+std::string chart_json(const GraphChart& chart);
 
 /// The graph as JSON for the scripts; harmless inside a <script> element.
 std::string graph_json(const Graph& graph);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include "engine/json/file_kind.h"
 #include "tools/draw/diagram_graph.h"
+#include "tools/draw/machine_chart.h"
 #include "where.h"
 
 namespace loopwright {
@@ -53,6 +54,43 @@ TEST(DiagramGraph, HasEveryWireOfEveryShippedDiagram) {
   }
   EXPECT_GT(diagrams, 50u);
   EXPECT_GT(machines, 0u);  // its ports are those that the instance declares
+}
+
+TEST(DiagramGraph, AStateMachineHasItsChart) {
+  Problems problems;
+  const auto diagram = load_diagram(LOOPWRIGHT_SOURCE "/diagrams/examples/state_machine.json",
+                                    {.set = {{"speed", "30 mm/s"}}}, problems);
+  const auto plan = compile(*diagram, problems);
+  ASSERT_TRUE(plan) << problems.text();
+  const report::Graph graph = diagram_graph(*diagram, *plan);
+  const auto machine = std::ranges::find(graph.nodes, "machine", &report::GraphNode::path);
+  EXPECT_EQ(machine->face.text, "6 states");
+  EXPECT_EQ(
+      report::chart_json(machine->chart),
+      R"j({"states":[{"name":"idle","parent":-1,"initial":true,"entries":["velocity = 0 m/s","lamp = 0"]},)j"
+      R"j({"name":"running","parent":-1,"initial":false,"entries":["lamp = 1"]},)j"
+      R"j({"name":"warming","parent":1,"initial":true,"entries":[]},)j"
+      R"j({"name":"forward","parent":1,"initial":false,"entries":["velocity = 30 mm/s"]},)j"
+      R"j({"name":"backward","parent":1,"initial":false,"entries":["velocity = -30 mm/s"]},)j"
+      R"j({"name":"fault","parent":-1,"initial":false,"entries":["velocity = 0 m/s","lamp = 2"]}],)j"
+      R"j("transitions":[{"from":0,"to":1,"guard":"start","order":0},{"from":1,"to":5,"guard":"jam","order":1},)j"
+      R"j({"from":1,"to":0,"guard":"after(6 s)","order":2},{"from":2,"to":3,"guard":"after(warm_up)","order":0},)j"
+      R"j({"from":3,"to":4,"guard":"position > reach","order":0},)j"
+      R"j({"from":4,"to":3,"guard":"position \u003c 0 && after(0.1 s)","order":0},)j"
+      R"j({"from":5,"to":0,"guard":"acknowledge && !jam","order":0}]})j");
+}
+
+TEST(MachineChart, PrioritiesSortTransitions) {
+  const report::GraphChart chart = machine_chart(
+      R"([{"name":"a","transitions":[{"to":"b","when":"late","priority":2},{"to":"a","priority":1}]},{"name":"b"}])",
+      "[]", "b");
+  ASSERT_EQ(chart.transitions.size(), 2u);
+  EXPECT_EQ(chart.transitions[0].to, 0u);
+  EXPECT_EQ(chart.transitions[0].order, 1);
+  EXPECT_EQ(chart.transitions[1].guard, "late");
+  EXPECT_FALSE(chart.states[0].is_initial);
+  EXPECT_TRUE(chart.states[1].is_initial);
+  EXPECT_EQ(report::chart_json({}), "null");
 }
 
 }  // namespace

@@ -64,6 +64,31 @@ TEST(GraphPicture, ClosesSubdiagramsBelowADepth) {
   EXPECT_THAT(svg, Not(HasSubstr(">friction</text>")));
 }
 
+TEST(GraphPicture, DrawsTheChartOfAStateMachineInsideItsBlock) {
+  if (!is_there("node")) GTEST_SKIP() << "node is not installed";
+  Graph graph{
+      "",
+      {"1 ms"},
+      {{"machine", "StateMachine", "logic", {{"switch", "", "", -1}}, {{"state", "", "", 0}}, {}, {}}},
+      {}};
+  graph.nodes[0].face.text = "3 states";
+  graph.nodes[0].chart = {{{"off", -1, true, {}}, {"on", -1, false, {"servo = 1"}}, {"search", 1, true, {}}},
+                          {{0, 1, "switch && after(0.5 s)", 0}, {2, 0, "", 0}}};
+  const std::string open = draw_svg(graph).bytes, closed = draw_svg(graph, {.depth = 0}).bytes;
+  EXPECT_EQ(fault_in_html(open), "");
+  EXPECT_EQ(count(open, "<g class=\"state"), 3u);
+  EXPECT_EQ(count(open, "class=\"state outer\""), 1u);
+  EXPECT_EQ(count(open, "<circle class=\"initial\""), 2u)
+      << "of the machine, and of the state that contains another";
+  EXPECT_EQ(count(open, "<g class=\"transition\">"), 4u) << "two of them by default";
+  for (const std::string_view text :
+       {">servo = 1</text>", ">switch &amp;&amp; after(0.5 s)</text>", ">always</text>"})
+    EXPECT_THAT(open, HasSubstr(text));
+  EXPECT_THAT(open, Not(HasSubstr("3 states")));
+  EXPECT_THAT(closed, HasSubstr(">3 states</text>"));
+  EXPECT_THAT(closed, Not(HasSubstr("class=\"state\"")));
+}
+
 TEST(GraphPicture, NamesOfAnyKindAreHarmless) {
   if (!is_there("node")) GTEST_SKIP() << "node is not installed";
   const std::string evil = "a\"]; b -> c </script><script>alert(1)</script>\\";

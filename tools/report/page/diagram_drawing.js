@@ -1,5 +1,6 @@
 // Draws a diagram that has been laid out, as SVG. Colors come from diagram.css.
 import { FONT, escaped, fitted, lastName, textWidth } from "./diagram_text.js";
+import { drawChart } from "./chart_drawing.js";
 
 const round = (x) => Math.round(x * 10) / 10;
 const TEXT_LINE = 15, RATES = 7;
@@ -37,13 +38,14 @@ function boxContents(node, size, box, ports) {
   let out = text(box.x + box.width / 2, box.y + 15, lastName(node.path), FONT.name, "name");
   if (size.type) out += text(box.x + box.width / 2, box.y + 28, size.type, FONT.type, "type");
   const body = box.height - size.head - 8;
-  const tall = (size.fraction?.height ?? 0) + (size.curve ? size.curve.height + 4 : 0) + TEXT_LINE * size.lines.length;
+  const tall = (size.fraction?.height ?? 0) + (size.chart?.height ?? 0) + (size.curve ? size.curve.height + 4 : 0) + TEXT_LINE * size.lines.length;
   let y = box.y + size.head + Math.max(0, (body - tall) / 2);
   if (size.fraction) { out += fraction(node.face, middle, y, size.fraction.width); y += size.fraction.height; }
   if (size.curve) {
     out += curve(node.face.strokes, node.face.axes, middle - size.curve.width / 2, y, size.curve);
     y += size.curve.height + 4;
   }
+  if (size.chart) out += drawChart(size.chart, middle - size.chart.width / 2, y);
   size.lines.forEach((line, k) => { out += text(middle, y + 11 + k * TEXT_LINE, line, FONT.face, "face"); });
   return out + drawPortNames(size, box, ports);
 }
@@ -69,9 +71,9 @@ function roundBlock(node, box, ports) {
 
 function drawBlock(graph, index, size, box, ports) {
   const node = graph.nodes[index];
-  const closed = node.room === "subdiagram";
+  const closed = node.room === "subdiagram", opens = closed || node.chart;
   const detail = [`${node.path}  (${node.type})`, node.details].filter(Boolean).join("\n");
-  let out = `<g class="node ${letters(node.room)}" data-node="${index}"${closed ? ' role="button" tabindex="0"' : ""}><title>${escaped(detail)}</title>`;
+  let out = `<g class="node ${letters(node.room)}${opens ? " opens" : ""}" data-node="${index}"${opens ? ' role="button" tabindex="0"' : ""}><title>${escaped(detail)}</title>`;
   const under = () => text(box.x + box.width / 2, box.y + box.height + 14, lastName(node.path), FONT.name, "name");
   if (node.face.shape === "circle") out += roundBlock(node, box, ports) + text(box.x + box.width / 2, box.y - 5, lastName(node.path), FONT.name, "name");
   else if (node.face.shape === "gain") {

@@ -2,9 +2,9 @@
 import { layOut } from "./diagram_layout.js";
 import { drawDiagram } from "./diagram_drawing.js";
 
-/** Subdiagrams down to this depth are open. */
+/** Subdiagrams and state machines down to this depth are open. */
 function openPaths(graph, depth) {
-  return new Set(graph.nodes.filter((node) => node.room === "subdiagram" && node.path.split(".").length <= depth).map((node) => node.path));
+  return new Set(graph.nodes.filter((node) => (node.room === "subdiagram" || node.chart) && node.path.split(".").length <= depth).map((node) => node.path));
 }
 
 /** `style`: page.css, whose first rule has the colors, and diagram.css. */

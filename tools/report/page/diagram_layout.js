@@ -1,6 +1,7 @@
 // Lays out a block diagram with ELK: signals run from left to right, feedback returns below, wires are orthogonal.
 import { FONT, fitted, lastName, textWidth } from "./diagram_text.js";
 import { readingOrder } from "./diagram_order.js";
+import { layOutChart } from "./chart_layout.js";
 
 const PORT_PITCH = 17, HEAD = 20, TYPE_LINE = 13, LINE = 15, MARGIN = 8, CURVE = { width: 44, height: 30 }, CIRCLE = 30;
 const WIDEST_TEXT = 170;
@@ -30,11 +31,11 @@ function portTexts(node) {
 
 const widest = (texts, size, bold) => Math.max(0, ...texts.map((text) => textWidth(text, size, bold)));
 
-/** What a block shows and how large it is. */
-function measured(node) {
+/** What a block shows and how large it is. `chart`: of an open state machine, laid out. */
+function measured(node, chart) {
   const { face } = node;
   if (face.shape === "circle") return { width: CIRCLE, height: CIRCLE, outside: true };
-  const lines = face.text ? face.text.split("\n").slice(0, 4).map((line) => fitted(line, FONT.face, WIDEST_TEXT)) : [];
+  const lines = chart ? [] : face.text ? face.text.split("\n").slice(0, 4).map((line) => fitted(line, FONT.face, WIDEST_TEXT)) : [];
   if (face.shape === "gain") {
     const width = Math.max(40, widest(lines, FONT.face) + 26);
     return { width, height: 32, lines, outside: true };
@@ -42,8 +43,8 @@ function measured(node) {
   const fraction = face.denominator ? { width: widest([face.numerator, face.denominator], FONT.face) + 8, height: 34 } : null;
   const curve = face.strokes.length > 0 ? CURVE : null;
   const middle = {
-    width: Math.max(fraction?.width ?? 0, curve?.width ?? 0, widest(lines, FONT.face)),
-    height: (fraction?.height ?? 0) + (curve ? curve.height + 4 : 0) + LINE * lines.length,
+    width: Math.max(fraction?.width ?? 0, curve?.width ?? 0, chart?.width ?? 0, widest(lines, FONT.face)),
+    height: (fraction?.height ?? 0) + (curve ? curve.height + 4 : 0) + (chart?.height ?? 0) + LINE * lines.length,
   };
   const type = fraction || ["Constant", "Expression"].includes(node.type) ? "" : fitted(node.type, FONT.type, WIDEST_TEXT);
   const head = HEAD + (type ? TYPE_LINE : 0);
@@ -52,7 +53,7 @@ function measured(node) {
   const body = Math.max(middle.height, PORT_PITCH * Math.max(left.filter(Boolean).length ? left.length : 1, right.length, 1));
   const width = Math.max(56, textWidth(lastName(node.path), FONT.name, true) + 16, textWidth(type, FONT.type) + 16,
                          sides[0] + sides[1] + middle.width + 2 * MARGIN + (sides[0] ? 8 : 0) + (sides[1] ? 8 : 0));
-  return { width, height: head + body + MARGIN, head, type, lines, fraction, curve, left, right, sides };
+  return { width, height: head + body + MARGIN, head, type, lines, fraction, curve, chart, left, right, sides };
 }
 
 const portId = ([node, side, port]) => `${node}${side}${port}`;
@@ -104,8 +105,8 @@ const LAYERED = {
 };
 
 /** `portOrder`: of the ports of closed subdiagrams; while it is not known, ELK finds one. */
-function elkLeaf(index, node, feedback, unit, portOrder) {
-  const size = measured(node), isFree = node.room === "subdiagram" && !portOrder;
+function elkLeaf(index, node, chart, feedback, unit, portOrder) {
+  const size = measured(node, chart), isFree = node.room === "subdiagram" && !portOrder;
   const ports = node.face.shape === "circle" ? roundPorts(index, node, feedback, unit)
     : boxPorts(index, node, size, unit, node.room === "subdiagram" ? portOrder : null);
   const elk = {
@@ -165,8 +166,8 @@ function arrange(graph, seen) {
 
 const isReversed = ({ from, to }, feedback) => to[1] === "i" && from[0] !== to[0] && from[1] === "o" && feedback.has(portId(to));
 
-/** The graph as input of ELK, and the sizes of the contents of its blocks. */
-export function elkGraph(graph, open, portOrder = null) {
+/** The graph as input of ELK, and the sizes of the contents of its blocks. `charts`: of open state machines, by node. */
+export function elkGraph(graph, open, charts, portOrder = null) {
   const seen = visibleGraph(graph, open), { order, feedback } = arrange(graph, seen);
   const wired = new Set(seen.edges.map(({ from }) => portId(from)));
   const sizes = new Map();
@@ -177,7 +178,7 @@ export function elkGraph(graph, open, portOrder = null) {
       elk.children = children(i);
       return elk;
     }
-    const { elk, size } = elkLeaf(i, node, feedback, unit, portOrder);
+    const { elk, size } = elkLeaf(i, node, charts.get(i), feedback, unit, portOrder);
     sizes.set(i, size);
     return elk;
   });
@@ -212,9 +213,14 @@ function restored(laidOut) {
 
 /** Lays out the graph with `elk`, an instance of ELK; the result is what drawDiagram needs. */
 export async function layOut(elk, graph, open) {
+  const charts = new Map();
+  for (const i of visibleGraph(graph, open).nodes) {
+    const { chart, path } = graph.nodes[i];
+    if (chart && open.has(path)) charts.set(i, await layOutChart(elk, chart));
+  }
   // Twice, if there are closed subdiagrams: first for the order of their ports, then with ports in their places.
-  const first = elkGraph(graph, open);
+  const first = elkGraph(graph, open, charts);
   let laidOut = await elk.layout(first.root);
-  if (first.hasFreePorts) laidOut = await elk.layout(elkGraph(graph, open, portHeights(laidOut)).root);
+  if (first.hasFreePorts) laidOut = await elk.layout(elkGraph(graph, open, charts, portHeights(laidOut)).root);
   return { graph, laidOut: restored(laidOut), sizes: first.sizes, seen: first.seen };
 }

@@ -1,10 +1,13 @@
-// A block diagram on a page: zoom, pan, subdiagrams that open and close. The layout library is unpacked when the first
+// A block diagram on a page: zoom, pan, subdiagrams and state machines that open and close. The layout library is unpacked when the first
 // diagram is near the screen.
+import { escaped } from "./diagram_text.js";
 import { layOut } from "./diagram_layout.js";
 import { drawDiagram } from "./diagram_drawing.js";
+import { chartPicture } from "./chart_drawing.js";
+import { layOutChart } from "./chart_layout.js";
 
 const SMALLEST = 0.92;  // the smallest text, 11 px at full size, stays above 10 px
-const LARGEST = 4, MOST_BLOCKS = 300;
+const LARGEST = 4, MOST_BLOCKS = 300, MOST_CHARTS = 20;
 let library = null;
 
 async function unpack(text) {
@@ -27,7 +30,8 @@ export class DiagramView {
   constructor(figure) {
     this.figure = figure;
     this.graph = JSON.parse(figure.querySelector("script").textContent);
-    this.subdiagrams = this.graph.nodes.filter((node) => node.room === "subdiagram").map((node) => node.path);
+    this.machines = this.graph.nodes.filter((node) => node.chart);
+    this.subdiagrams = this.graph.nodes.filter((node) => node.room === "subdiagram" || node.chart).map((node) => node.path);
     this.open = new Set();
     this.scale = 1;
     this.canvas = figure.querySelector(".canvas");
@@ -53,8 +57,8 @@ export class DiagramView {
       return made;
     };
     if (this.subdiagrams.length > 0) {
-      this.openAll = button("Open all", "Show the blocks inside of all subdiagrams", () => this.show(new Set(this.subdiagrams)));
-      this.closeAll = button("Close all", "Show subdiagrams as blocks", () => this.show(new Set()));
+      this.openAll = button("Open all", "Show the blocks inside of all subdiagrams, and the states of all state machines", () => this.show(new Set(this.subdiagrams)));
+      this.closeAll = button("Close all", "Show subdiagrams and state machines as blocks", () => this.show(new Set()));
     }
     button("−", "Smaller", () => this.zoom(this.scale / 1.25));
     button("+", "Larger", () => this.zoom(this.scale * 1.25));
@@ -85,6 +89,16 @@ export class DiagramView {
     if (this.closeAll) this.closeAll.disabled = open.size === 0;
     this.fit();
     this.figure.dataset.drawn = "";
+  }
+
+  /** The charts of all state machines, each as a picture below the diagram. */
+  async showCharts() {
+    for (const { path, chart } of this.machines.slice(0, MOST_CHARTS)) {
+      const frame = document.createElement("div");
+      frame.className = "wide chart-frame";
+      frame.innerHTML = `<p>States of ${escaped(path)}</p>${chartPicture(await layOutChart(await elk(), chart), `States of ${path}`)}`;
+      (this.figure.querySelector("figcaption") ?? this.canvas).before(frame);
+    }
   }
 
   note(text) {
@@ -165,5 +179,8 @@ function withValues(style) {
 }
 
 export function startDiagrams() {
-  for (const figure of document.querySelectorAll("figure.block-diagram")) new DiagramView(figure).show(new Set());
+  for (const figure of document.querySelectorAll("figure.block-diagram")) {
+    const view = new DiagramView(figure);
+    view.showCharts().then(() => view.show(new Set()));
+  }
 }
