@@ -23,6 +23,12 @@ struct MotionLimits {
 
 class PointToPointMotion {
  public:
+  static constexpr int phases = 7;
+  struct Piece {
+    double duration = 0, acceleration = 0, jerk = 0;  ///< acceleration at its begin
+  };
+  using Pieces = std::array<Piece, phases>;  ///< raise, hold, lower; cruise; lower, hold, raise
+
   /// At rest at a position, for all times.
   static PointToPointMotion at_rest(double position) {
     PointToPointMotion motion;
@@ -31,11 +37,14 @@ class PointToPointMotion {
   }
   /// `from` keeps the limits, now and when its acceleration is taken back to zero.
   static PointToPointMotion between(const MotionState& from, double target, const MotionLimits& limits);
+  /// Seven given pieces, which end at `target` with a velocity and without acceleration after `duration`: the
+  /// first three from the start, the last three backwards from the end, between them what time is left.
+  static PointToPointMotion of_pieces(const MotionState& from, const Pieces& pieces, double target,
+                                      double end_velocity, double duration);
 
   double target() const { return target_; }
   /// Time from the start to rest at the target.
   double duration() const { return phases_.back().end; }
-  static constexpr int phases = 7;
   /// The phase at a time since the start; `phases` at rest at the target.
   int phase_at(double time) const {
     int phase = 0;
@@ -46,7 +55,7 @@ class PointToPointMotion {
   double end_of_phase(int phase) const { return phase < phases ? phases_[size_t(phase)].end : HUGE_VAL; }
   /// The state at a time, continued smoothly where the time is outside the phase.
   MotionState state_at(double time, int phase) const {
-    return phase < phases ? phases_[size_t(phase)].at(time) : MotionState{target_, 0, 0};
+    return phase < phases ? phases_[size_t(phase)].at(time) : MotionState{target_, end_velocity_, 0};
   }
   MotionState state_at(double time) const { return state_at(time, phase_at(time)); }
 
@@ -62,11 +71,6 @@ class PointToPointMotion {
               there.velocity + t * (there.acceleration + t * (jerk / 2)), there.acceleration + t * jerk};
     }
   };
-  struct Piece {
-    double duration = 0, acceleration = 0, jerk = 0;  // acceleration at its begin
-  };
-  using Pieces = std::array<Piece, phases>;  // raise, hold, lower; cruise; lower, hold, raise
-
   static MotionState after(const Piece& piece, const MotionState& begin) {
     MotionState from = begin;
     from.acceleration = piece.acceleration;
@@ -90,7 +94,7 @@ class PointToPointMotion {
   void join(const MotionState& from, double sign, const Pieces& pieces);
 
   std::array<Phase, phases> phases_{};
-  double target_ = 0;
+  double target_ = 0, end_velocity_ = 0;
 };
 
 /// The fastest stop of a motion that goes forward when its acceleration has been taken back.
@@ -207,6 +211,30 @@ inline void PointToPointMotion::join(const MotionState& from, double sign, const
     phase.origin = phase.end, phase.there = state;
     state = phase.at(phase.end - pieces[i].duration);
   }
+}
+
+inline PointToPointMotion PointToPointMotion::of_pieces(const MotionState& from, const Pieces& pieces,
+                                                        double target, double end_velocity, double duration) {
+  PointToPointMotion motion;
+  motion.target_ = target, motion.end_velocity_ = end_velocity;
+  MotionState state = from;
+  double time = 0;
+  for (size_t i = 0; i < 3; ++i) {
+    state.acceleration = pieces[i].acceleration;
+    motion.phases_[i] = {time + pieces[i].duration, time, pieces[i].jerk, state};
+    time = motion.phases_[i].end;
+    state = motion.phases_[i].at(time);
+  }
+  state = {target, end_velocity, 0};
+  double end = duration;
+  for (size_t i = phases; i-- > 3;) {
+    state.acceleration = pieces[i].acceleration + pieces[i].jerk * pieces[i].duration;
+    if (i == 3 || (i + 1 == phases && pieces[i].jerk != 0)) state.acceleration = 0;
+    motion.phases_[i] = {end, end, pieces[i].jerk, state};
+    end = std::max(time, end - pieces[i].duration);
+    state = motion.phases_[i].at(end);
+  }
+  return motion;
 }
 
 inline PointToPointMotion PointToPointMotion::between(const MotionState& from, double target,

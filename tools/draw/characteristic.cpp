@@ -75,6 +75,10 @@ const std::map<std::string_view, Strokes>& fixed() {
       {"Clock", {{{-1, -0.8}, {1, 0.8}}}},
       {"MotionProfile", {sampled([](double x) { return 0.8 * std::tanh(3 * x); })}},
       {"PointToPoint", {sampled([](double x) { return 0.8 * std::tanh(3 * x); })}},
+      {"SynchronizedMotion", {sampled([](double x) { return 0.8 * std::tanh(3 * x); }), sampled([](double x) {
+                                return 0.5 * std::tanh(3 * x);
+                              })}},
+      {"ViaPoints", {{{-0.9, -0.7}, {-0.5, 0.4}, {0.4, 0.7}, {0.9, -0.4}}}},
       {"RecordedColumn", {noise()}},
       {"Saturation", {{{-1, -0.7}, {-0.5, -0.7}, {0.5, 0.7}, {1, 0.7}}}},
       {"ForceSaturation", {sampled([](double x) { return 0.8 * std::tanh(2 * x); })}},

@@ -45,6 +45,9 @@ export function axis(key, description, plot) {
 /** The range that shows all data from `low` to `high`, with a margin of `padding` times its width. */
 export function wholeRange(description, padding, low, high) {
   if (low === null || high === null) return [0.1, 1];
+  // uPlot does not find the lines of a grid below this, and does not end. No page shows such numbers on purpose.
+  const least = 1e-18;
+  if (description.logarithmic) [low, high] = [Math.max(low, least), Math.max(high, least)];
   if (description.logarithmic) return low === high ? [low / 10, high * 10] : uPlot.rangeLog(low, high, 10, false);
   return padding || low === high ? uPlot.rangeNum(low, high, padding || 0.1, true) : [low, high];
 }
