@@ -1,6 +1,7 @@
 /// Reduces the points of a curve without changing its picture.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -11,6 +12,32 @@ namespace loopwright::report {
 /// so that gaps stay gaps. All indices when y is short enough. Source: Jugel et al., M4: A
 /// visualization-oriented time series data aggregation, PVLDB 7 (2014) 797.
 std::vector<std::size_t> thin(std::span<const double> y, std::size_t limit);
+
+/// The lowest and the highest sample of each of many short blocks of a curve, so that any part of it is
+/// thinned without a look at all of its samples.
+class CurveSummary {
+ public:
+  explicit CurveSummary(std::span<const double> y);
+
+  /// As `thin` of the samples from `begin` to `end` of the same y; indices of y.
+  std::vector<std::size_t> thin(std::span<const double> y, std::size_t begin, std::size_t end,
+                                std::size_t limit) const;
+  /// Of the samples from `begin` to `end`; extremes are those of finite ones, sums of all.
+  struct Range {
+    double lowest, highest;  ///< NaN if none is finite
+    double sum_of_squares;
+  };
+  Range range(std::span<const double> y, std::size_t begin, std::size_t end) const;
+
+ private:
+  struct Block {
+    double sum_of_squares;
+    std::uint16_t lowest, highest, gap;  ///< indices in the block; `no_index`: there is none
+  };
+  template <class OfBlock, class OfSample>
+  void visit(std::size_t begin, std::size_t end, OfBlock&& of_block, OfSample&& of_sample) const;
+  std::vector<Block> blocks_;
+};
 
 /// The largest number n such that lists of these lengths, cut to n each, contain at most `budget` entries
 /// together.

@@ -42,6 +42,39 @@ TEST(Thin, AVeryLowLimitStillKeepsTheExtremes) {
   EXPECT_EQ(thin(y, 1), (std::vector<size_t>{0, 1, 5, 7}));
 }
 
+TEST(CurveSummary, ThinsEveryPartAsIfItSawAllSamples) {
+  std::vector<double> y(20'000);
+  for (size_t i = 0; i < y.size(); ++i)
+    y[i] = std::round(20 * std::sin(0.37 * double(i)));  // with equal peaks
+  for (size_t i = 0; i < y.size(); i += 977) y[i] = i % 2 ? NAN : INFINITY;
+  for (size_t i = 5'000; i < 6'000; ++i) y[i] = NAN;
+  const CurveSummary summary(y);
+  for (size_t begin : {0u, 1u, 255u, 256u, 5'100u, 7'777u})
+    for (size_t end : {begin + 3, begin + 256, begin + 700, size_t(15'360), y.size() - 1, y.size()}) {
+      const std::span<const double> part = std::span(y).subspan(begin, end - begin);
+      for (size_t limit : {1u, 100u, 999u}) {
+        auto expected = thin(part, limit);
+        for (size_t& i : expected) i += begin;
+        ASSERT_EQ(summary.thin(y, begin, end, limit), expected) << begin << " to " << end;
+      }
+      double lowest = INFINITY, highest = -INFINITY, sum_of_squares = 0;
+      for (double v : part)
+        if (sum_of_squares += v * v; std::isfinite(v))
+          lowest = std::min(lowest, v), highest = std::max(highest, v);
+      const auto range = summary.range(y, begin, end);
+      if (lowest > highest) {
+        EXPECT_TRUE(std::isnan(range.lowest) && std::isnan(range.highest));
+        continue;
+      }
+      EXPECT_EQ(range.lowest, lowest);
+      EXPECT_EQ(range.highest, highest);
+      if (std::isfinite(sum_of_squares))
+        EXPECT_NEAR(range.sum_of_squares, sum_of_squares, 1e-12 * sum_of_squares);
+      else
+        EXPECT_FALSE(std::isfinite(range.sum_of_squares));
+    }
+}
+
 TEST(FairLimit, LetsShortSeriesLiveAndSharesTheRest) {
   EXPECT_EQ(fair_limit({10, 1000, 1000}, 210), 100u);
   EXPECT_EQ(fair_limit({50, 50}, 99), 49u);

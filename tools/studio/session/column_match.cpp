@@ -253,9 +253,10 @@ void propose_drive(std::vector<ColumnGuess>& guesses, const std::vector<PortOfDi
                    const std::vector<RoleGuess>& roles) {
   using Use = ColumnGuess::Use;
   const auto role = std::ranges::find(roles, "input", &RoleGuess::role);
-  if (role == roles.end() || std::ranges::find(guesses, Use::drive, &ColumnGuess::use) != guesses.end()) return;
-  const auto port = std::ranges::find_if(
-      ports, [&](const PortOfDiagram& p) { return p.path == role->port && p.is_input; });
+  if (role == roles.end() || std::ranges::find(guesses, Use::drive, &ColumnGuess::use) != guesses.end())
+    return;
+  const auto port =
+      std::ranges::find_if(ports, [&](const PortOfDiagram& p) { return p.path == role->port && p.is_input; });
   if (port == ports.end()) return;
   std::vector<ColumnGuess*> in_unit, called;
   for (ColumnGuess& guess : guesses) {
@@ -267,7 +268,8 @@ void propose_drive(std::vector<ColumnGuess>& guesses, const std::vector<PortOfDi
   if (!by_unit && (!in_unit.empty() || called.size() != 1)) return;
   ColumnGuess& drive = by_unit ? *in_unit.front() : *called.front();
   drive.use = Use::drive, drive.port = port->path;
-  drive.why = by_unit ? fmt::format("the only column in the unit of {}", port->path) : "the only force by its name";
+  drive.why =
+      by_unit ? fmt::format("the only column in the unit of {}", port->path) : "the only force by its name";
   if (std::ranges::find(drive.candidates, port->path) == drive.candidates.end())
     drive.candidates.insert(drive.candidates.begin(), port->path);
 }

@@ -46,8 +46,8 @@ std::string time_columns(const Value& columns, std::string_view time) {
     const bool is_in_heading = !stated || stated->value.boolean;
     const TimeWords words = time_words(time);
     const bool is_needed = unit != "s" || !words.unit.empty() || words.is_counted;
-    if (text_in(column, "use") == "time" && text_in(column, "column") == time && !unit.empty() && !is_in_heading &&
-        is_needed)
+    if (text_in(column, "use") == "time" && text_in(column, "column") == time && !unit.empty() &&
+        !is_in_heading && is_needed)
       return fmt::format("{{{}: {{\"unit\": {}}}}}", in_quotes(time), in_quotes(unit));
   }
   return "";

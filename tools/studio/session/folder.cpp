@@ -163,7 +163,8 @@ Handle::~Handle() {
 
 namespace {
 
-/// Without a slash at the end and without "./", so that paths of files begin with it: resolved paths have neither.
+/// Without a slash at the end and without "./", so that paths of files begin with it: resolved paths have
+/// neither.
 std::string plain(const std::string& path) {
   std::string normal = std::filesystem::path(path).lexically_normal().string();
   while (normal.size() > 1 && normal.ends_with('/')) normal.pop_back();

@@ -109,7 +109,8 @@ void apply_intent(const Value& intent, const IntentContext& context, Draft& draf
       apply_parameter_intent(intent, context, draft, effects) ||
       apply_wire_intent(intent, context, draft, effects) ||
       apply_block_intent(intent, context, draft, effects) ||
-      apply_name_intent(intent, context, draft, effects))
+      apply_name_intent(intent, context, draft, effects) ||
+      apply_wrap_intent(intent, context, draft, effects))
     return;
   throw Refused(fmt::format("there is no intent \"{}\"", required_text(intent, "intent")));
 }

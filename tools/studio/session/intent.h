@@ -45,6 +45,8 @@ bool apply_block_intent(const Value& intent, const IntentContext& context, Draft
                         IntentEffects& effects);
 bool apply_name_intent(const Value& intent, const IntentContext& context, Draft& draft,
                        IntentEffects& effects);
+bool apply_wrap_intent(const Value& intent, const IntentContext& context, Draft& draft,
+                       IntentEffects& effects);
 bool apply_text_intent(const Value& intent, Draft& draft, IntentEffects& effects);
 
 // ---- Shared ----

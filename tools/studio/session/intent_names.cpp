@@ -5,7 +5,7 @@
 #include "engine/json/reader.h"
 #include "tools/studio/session/intent.h"
 #include "tools/studio/session/member_change.h"
-#include "tools/studio/session/written_wires.h"
+#include "tools/studio/session/renamed_sources.h"
 
 namespace loopwright::studio {
 namespace {
@@ -19,40 +19,6 @@ TextChange renamed_member(const Value::Member& member, const std::string& to) {
   return {member.place.offset, end + 1, in_quotes(to)};
 }
 
-/// Every source in a diagram: wires into blocks, of outputs, and recorded signals.
-template <class F> void each_source(const Value& diagram, F&& f) {
-  const auto each_text = [&](const Value& value) {
-    if (value.kind == Kind::text) f(value);
-    for (const Value& item : value.items)
-      if (item.kind == Kind::text) f(item);
-  };
-  const auto each_source_of = [&](const Value& body) {
-    each_wire(body, [&](const std::string&, const Value& wire, size_t) { f(wire); });
-  };
-  if (const Value::Member* blocks = diagram.find("blocks"))
-    for (const Value::Member& block : blocks->value.members) {
-      each_source_of(block.value);
-      if (const Value::Member* variants = block.value.find("variants"))
-        for (const Value::Member& variant : variants->value.members) each_source_of(variant.value);
-    }
-  if (const Value::Member* outputs = diagram.find("outputs"))
-    for (const Value::Member& output : outputs->value.members) {
-      if (output.value.kind == Kind::text) f(output.value);
-      if (const Value::Member* source = output.value.find("source")) each_text(source->value);
-    }
-  if (const Value::Member* log = diagram.find("log")) each_text(log->value);
-}
-
-/// `path` and everything inside it get another name.
-TextChanges renamed_sources(const Value& diagram, const std::string& path, const std::string& new_path) {
-  TextChanges changes;
-  each_source(diagram, [&](const Value& source) {
-    if (source.text.starts_with(path + "."))
-      changes.push_back(replaced(source, in_quotes(new_path + source.text.substr(path.size()))));
-  });
-  return changes;
-}
-
 void rename_block(const Value& intent, const IntentContext& context, Draft& draft, IntentEffects& effects) {
   const Level level = draft.level(context.inside);
   const std::string name = required_text(intent, "name"), to = required_text(intent, "to");
@@ -64,16 +30,7 @@ void rename_block(const Value& intent, const IntentContext& context, Draft& draf
   effects.renamed.emplace_back(joined(level.inside, name), joined(level.inside, to));
   TextChanges changes{renamed_member(block, to)};
   std::ranges::move(renamed_sources(*level.diagram, name, to), std::back_inserter(changes));
-  // The diagrams around may read signals inside this one.
-  const std::vector<std::string> steps =
-      level.inside.empty() ? std::vector<std::string>() : split_path(level.inside);
-  std::string prefix;
-  for (size_t i = level.outer.size(); i-- > 0;) {
-    prefix = joined(steps[i], prefix);
-    if (prefix.ends_with('.')) prefix.pop_back();
-    std::ranges::move(renamed_sources(*level.outer[i], joined(prefix, name), joined(prefix, to)),
-                      std::back_inserter(changes));
-  }
+  std::ranges::move(renamed_in_outer_diagrams(level, name, to), std::back_inserter(changes));
   draft.change(std::move(changes));
 }
 
@@ -163,6 +120,29 @@ void rename_parameter(const Value& intent, const IntentContext& context, Draft& 
 }
 
 }  // namespace
+
+TextChanges renamed_sources(const Value& diagram, const std::string& path, const std::string& new_path) {
+  TextChanges changes;
+  each_source(diagram, [&](const Value& source) {
+    if (source.text.starts_with(path + "."))
+      changes.push_back(replaced(source, in_quotes(new_path + source.text.substr(path.size()))));
+  });
+  return changes;
+}
+
+TextChanges renamed_in_outer_diagrams(const Level& level, const std::string& name, const std::string& to) {
+  TextChanges changes;
+  const std::vector<std::string> steps =
+      level.inside.empty() ? std::vector<std::string>() : split_path(level.inside);
+  std::string prefix;
+  for (size_t i = level.outer.size(); i-- > 0;) {
+    prefix = joined(steps[i], prefix);
+    if (prefix.ends_with('.')) prefix.pop_back();
+    std::ranges::move(renamed_sources(*level.outer[i], joined(prefix, name), joined(prefix, to)),
+                      std::back_inserter(changes));
+  }
+  return changes;
+}
 
 bool apply_name_intent(const Value& intent, const IntentContext& context, Draft& draft,
                        IntentEffects& effects) {

@@ -1,7 +1,6 @@
 #include "tools/studio/session/results.h"
 #include <algorithm>
 #include <cmath>
-#include "tools/report/thin.h"
 
 namespace loopwright::studio {
 namespace {
@@ -29,29 +28,38 @@ Json thinned_curve(std::span<const double> x, std::span<const double> y, size_t 
   return {{"x", std::move(at)}, {"y", std::move(values)}};
 }
 
-Json signals_json(const Recording& recording, const Window& window, const std::set<std::string>& held) {
+Signals::Signals(Recording recorded) : recording(std::move(recorded)) {
+  summaries.reserve(recording.columns.size());
+  for (const Column& column : recording.columns) summaries.emplace_back(column.values);
+}
+
+Json signals_json(const Signals& signals, const Window& window, const std::set<std::string>& held) {
   Json list = Json::array();
-  if (recording.columns.empty()) return list;
-  const std::vector<double>& time = recording.columns.front().values;
+  const std::vector<Column>& columns = signals.recording.columns;
+  if (columns.empty()) return list;
+  const std::vector<double>& time = columns.front().values;
   const auto [first, last] = rows_of(time, window.from, window.to);
-  for (size_t c = 1; c < recording.columns.size(); ++c) {
-    const Column& column = recording.columns[c];
+  for (size_t c = 1; c < columns.size(); ++c) {
+    const Column& column = columns[c];
     if (!is_named(window, column.name)) continue;
-    const std::span<const double> values = std::span(column.values).subspan(first, last - first);
-    double square = 0, low = INFINITY, high = -INFINITY;
-    for (double v : values) square += v * v, low = std::min(low, v), high = std::max(high, v);
-    Json curve = thinned_curve(std::span(time).subspan(first, last - first), values, window.points);
+    const std::vector<double>& values = column.values;
+    const std::vector<size_t> kept = signals.summaries[c].thin(values, first, last, 2 * window.points);
+    std::vector<double> x, y;
+    x.reserve(kept.size()), y.reserve(kept.size());
+    for (size_t i : kept) x.push_back(time[i]), y.push_back(values[i]);
+    const auto range = signals.summaries[c].range(values, first, last);
+    const size_t rows = last - first;
     // A thinned curve has its extremes only: drawn as steps, each would look held over many samples.
-    const bool is_whole = curve["x"].size() == values.size();
+    const bool is_whole = kept.size() == rows;
     list.push_back({{"name", column.name},
                     {"unit", column.unit == "1" ? "" : column.unit},
                     {"steps", is_whole && held.contains(column.name)},
-                    {"rms", values.empty() ? 0 : std::sqrt(square / double(values.size()))},
-                    {"min", low},
-                    {"max", high},
-                    {"last", values.empty() ? NAN : values.back()},
-                    {"x", std::move(curve["x"])},
-                    {"y", std::move(curve["y"])}});
+                    {"rms", rows ? std::sqrt(range.sum_of_squares / double(rows)) : 0},
+                    {"min", range.lowest},
+                    {"max", range.highest},
+                    {"last", rows ? values[last - 1] : NAN},
+                    {"x", std::move(x)},
+                    {"y", std::move(y)}});
   }
   return list;
 }

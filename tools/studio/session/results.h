@@ -1,5 +1,6 @@
 /// What jobs have computed and the page may ask for again: runs, records, comparisons, diagnoses.
 #pragma once
+#include <algorithm>
 #include <deque>
 #include <map>
 #include <memory>
@@ -9,21 +10,31 @@
 #include "engine/record/recording.h"
 #include "tools/compare/compare.h"
 #include "tools/diagnose/diagnosis.h"
+#include "tools/fit/fit.h"
+#include "tools/report/thin.h"
 #include "tools/studio/session/checked_text.h"
 
 namespace loopwright::studio {
 
-struct StoredRun {
-  std::string path;  ///< of the diagram
-  Json facts;        ///< as the answer of "run", without signals
-  LoadOptions load;  ///< with which it was read
+/// A recording, with what makes any window of it quick to draw.
+struct Signals {
   Recording recording;
-  std::set<std::string> held;  ///< signals that hold between samples
+  std::vector<report::CurveSummary> summaries;  ///< of its columns
+  explicit Signals(Recording recorded);
+};
+
+struct StoredRun {
+  std::string path;                        ///< of the diagram
+  Json facts;                              ///< as the answer of "run", without signals
+  LoadOptions load;                        ///< with which it was read
+  std::shared_ptr<const Signals> signals;  ///< null: of a kept run, on the disk
+  std::set<std::string> held;              ///< signals that hold between samples
+  std::string kept_as = {};                ///< in the folder of kept runs; empty: it is not kept
 };
 
 struct StoredComparison {
   std::shared_ptr<const Comparison> comparison;
-  std::shared_ptr<const Recording> signals;  ///< measured, simulated, error
+  std::shared_ptr<const Signals> signals;  ///< measured, simulated, error
 };
 
 struct StoredDiagnosis {
@@ -32,14 +43,25 @@ struct StoredDiagnosis {
   LoadOptions load;
 };
 
-/// Numbered from 1 on; of each kind the last ones are kept. Thread-safe.
+struct StoredFit {
+  std::shared_ptr<const Fit> fit;
+  int64_t revision;  ///< of the diagram that was fitted
+};
+
+/// Whether an entry stays for good.
+template <class T> bool is_kept(const T&) { return false; }
+inline bool is_kept(const StoredRun& run) { return !run.kept_as.empty(); }
+
+/// Numbered from 1 on; of each kind the last ones stay, beside those that are kept. Thread-safe.
 template <class T> class Store {
  public:
   explicit Store(size_t most) : most_(most) {}
   int64_t add(std::shared_ptr<const T> entry) {
     const std::lock_guard lock(mutex_);
     entries_.emplace(++last_, std::move(entry));
-    if (entries_.size() > most_) entries_.erase(entries_.begin());
+    const auto is_free = [](const auto& other) { return !is_kept(*other.second); };
+    if (size_t(std::ranges::count_if(entries_, is_free)) > most_)
+      entries_.erase(std::ranges::find_if(entries_, is_free));
     return last_;
   }
   void replace(int64_t number, std::shared_ptr<const T> entry) {
@@ -67,10 +89,11 @@ struct Results {
   Store<StoredRun> runs{30};
   Store<StoredComparison> comparisons{4};
   Store<StoredDiagnosis> diagnoses{4};
+  Store<StoredFit> fits{4};
   /// The last record that was looked at.
   std::mutex record_mutex;
   std::string record_path;
-  std::shared_ptr<const Recording> record;
+  std::shared_ptr<const Signals> record;
 };
 
 /// A window of signals, thinned to at most four numbers a pixel.
@@ -79,7 +102,7 @@ struct Window {
   double from, to;                 ///< s
   size_t points = 1200;            ///< pixels
 };
-Json signals_json(const Recording& recording, const Window& window, const std::set<std::string>& held);
+Json signals_json(const Signals& signals, const Window& window, const std::set<std::string>& held);
 
 /// The rows of a window, unthinned.
 Recording cut(const Recording& recording, const Window& window);

@@ -6,7 +6,7 @@
 #include "engine/json/file_kind.h"
 #include "engine/json/json.h"
 #include "tools/studio/session/copied_blocks.h"
-#include "tools/studio/session/experiment_text.h"
+#include "tools/studio/session/kept_runs.h"
 
 namespace loopwright::studio {
 
@@ -60,7 +60,9 @@ Session::Session(std::string folder, std::string opened, Send send)
     : folder_(std::move(folder)),
       opened_(std::move(opened)),
       send_(std::move(send)),
-      files_(folder_.files()) {}
+      files_(folder_.files()) {
+  for (auto& run : kept_runs(folder_)) results_.runs.add(std::move(run));
+}
 
 void Session::send(int64_t client, const Json& message) const {
   send_(client, message.dump(-1, ' ', false, Json::error_handler_t::replace));
@@ -77,19 +79,35 @@ void Session::fail(int64_t client, int64_t id, const std::exception& error) cons
 
 const std::map<std::string_view, Session::Handler>& Session::handlers() {
   static const std::map<std::string_view, Handler> map = {
-      {"hello", &Session::hello},         {"files", &Session::files},
-      {"open", &Session::open},           {"edit", &Session::edit},
-      {"undo", &Session::undo},           {"redo", &Session::redo},
-      {"resolve", &Session::resolve},     {"copy", &Session::copy},
-      {"cancel", &Session::cancel},       {"find_blocks", &Session::find_blocks},
-      {"type", &Session::type},           {"complete", &Session::complete},
-      {"hover", &Session::hover},         {"run", &Session::run},
-      {"signals", &Session::signals},     {"export", &Session::export_view},
-      {"runs", &Session::runs},           {"name_run", &Session::name_run},
-      {"linearize", &Session::linearize}, {"sweep", &Session::sweep},
-      {"columns", &Session::columns},     {"write_experiment", &Session::write_experiment},
-      {"compare", &Session::compare},     {"diagnose", &Session::diagnose},
-      {"preview", &Session::preview},     {"add_effects", &Session::add_effects},
+      {"hello", &Session::hello},
+      {"files", &Session::files},
+      {"open", &Session::open},
+      {"edit", &Session::edit},
+      {"undo", &Session::undo},
+      {"redo", &Session::redo},
+      {"resolve", &Session::resolve},
+      {"copy", &Session::copy},
+      {"cancel", &Session::cancel},
+      {"find_blocks", &Session::find_blocks},
+      {"type", &Session::type},
+      {"complete", &Session::complete},
+      {"hover", &Session::hover},
+      {"run", &Session::run},
+      {"signals", &Session::signals},
+      {"export", &Session::export_view},
+      {"runs", &Session::runs},
+      {"name_run", &Session::name_run},
+      {"linearize", &Session::linearize},
+      {"sweep", &Session::sweep},
+      {"write_sweep", &Session::write_sweep},
+      {"fit", &Session::fit},
+      {"write_fit", &Session::write_fit},
+      {"columns", &Session::columns},
+      {"write_experiment", &Session::write_experiment},
+      {"compare", &Session::compare},
+      {"diagnose", &Session::diagnose},
+      {"preview", &Session::preview},
+      {"add_effects", &Session::add_effects},
   };
   return map;
 }
@@ -210,7 +228,7 @@ Document& Session::document(const std::string& path) {
   return *entry;
 }
 
-Json Session::document_json(const Document& document, const Seen& seen, bool with_text) {
+Json Session::document_json(const Document& document, Seen& seen, bool with_text) {
   LoadOptions options;
   options.variants = seen.variants;
   const CheckedText text = check_text(folder_.path_of(document.path()), document.text(), options);
@@ -229,7 +247,9 @@ Json Session::document_json(const Document& document, const Seen& seen, bool wit
   } catch (const Refused&) {  // the level is gone: what contains it is shown
     json["view"] = view_json(text, "", seen.variants, document.layout());
   }
-  for (Json& block : json["view"]["blocks"]) block["file"] = openable(block["file"]);
+  if (json["view"].is_object())
+    for (Json& block : json["view"]["blocks"]) block["file"] = openable(block["file"]);
+  seen.sent.shorten(json["view"]);
   return json;
 }
 
@@ -280,16 +300,17 @@ Json Session::changed(const Request& request, const std::function<Edited(Documen
     if (changed.look()) tell_others(changed, 0);
     try {
       const Edited edited = change(changed);
-      const Seen& seen = seen_[request.client][changed.path()];
+      Seen& seen = seen_[request.client][changed.path()];
       Json others = Json::array();
       for (const OtherFile& other : edited.others)
         if (!other.path.ends_with(".layout.json"))
           others.push_back({{"path", other.path}, {"text", other.after.value_or("")}});
       Json answer{{"edits", edits_json(edited)},
-                  {"document", document_json(changed, seen, false)},
+                  {"document", nullptr},
                   {"blocks", names_in_level(edited.blocks, seen.inside)},
                   {"experiments", std::move(others)}};
       tell_others(changed, request.client);
+      answer["document"] = document_json(changed, seen, false);  // last: what it says was sent is sent
       return answer;
     } catch (const ChangedMeanwhile&) {
       if (attempt == most_attempts) throw;
@@ -303,27 +324,6 @@ std::vector<std::string> Session::recorded(const Document& document, const LoadO
   if (text.checked.plan)
     for (const Plan::Logged& logged : text.checked.plan->log) names.push_back(logged.name);
   return names;
-}
-
-/// Experiments in the folder of a diagram all of whose ports lead to its blocks.
-std::vector<OtherFile> Session::followers(const Document& document,
-                                          const std::map<std::string, std::string>& renamed) const {
-  const ParsedText diagram(document.path(), document.text());
-  const Level level = find_level(diagram.root, "", {});
-  const auto is_of_diagram = [&](const std::string& port) {
-    return level.block(port.substr(0, port.find('.')));
-  };
-  const auto folder_of = [](const std::string& path) { return std::filesystem::path(path).parent_path(); };
-  std::vector<OtherFile> others;
-  for (const Folder::File& file : folder_.files()) {
-    if (!file.path.ends_with(".experiment.json") || folder_of(file.path) != folder_of(document.path()))
-      continue;
-    const std::optional<std::string> text = folder_.read(file.path);
-    if (!text || !std::ranges::all_of(ports_of_experiment(file.path, *text), is_of_diagram)) continue;
-    const std::string after = with_ports_renamed(file.path, *text, renamed);
-    if (after != *text) others.push_back({file.path, text, after});
-  }
-  return others;
 }
 
 Json Session::edit(const Request& request) {

@@ -10,6 +10,7 @@
 #include "tools/studio/session/document.h"
 #include "tools/studio/session/jobs.h"
 #include "tools/studio/session/results.h"
+#include "tools/studio/session/sent_view.h"
 
 namespace loopwright::studio {
 
@@ -68,6 +69,7 @@ class Session {
   struct Seen {
     std::string inside;
     Variants variants;
+    SentView sent = {};
   };
   Json hello(const Request&);
   Json files(const Request&);
@@ -83,7 +85,7 @@ class Session {
   std::string openable(const std::string& file) const;
   void look_for_files();
   Document& document(const std::string& path);
-  Json document_json(const Document& document, const Seen& seen, bool with_text);
+  Json document_json(const Document& document, Seen& seen, bool with_text);
   /// Changes a document as `change` says; again if another program changed the file at the same moment.
   Json changed(const Request& request, const std::function<Edited(Document&)>& change);
   std::vector<OtherFile> followers(const Document& document,
@@ -104,11 +106,14 @@ class Session {
   Json export_view(const Request&);
   Json runs(const Request&);
   Json name_run(const Request&);
-  Json linearize(const Request&);  // session_linear.cpp
-  Json sweep(const Request&);  // session_sweep.cpp
+  Json linearize(const Request&);    // session_linear.cpp
+  Json sweep(const Request&);        // session_sweep.cpp
+  Json write_sweep(const Request&);  // session_sweep.cpp
+  Json fit(const Request&);          // session_fit.cpp
+  Json write_fit(const Request&);    // session_fit.cpp
   /// The text of a diagram, as it is open or on the disk.
   std::shared_ptr<const SourceFile> source(const std::string& path);
-  std::shared_ptr<const Recording> source_of_signals(const std::string& name) const;
+  std::shared_ptr<const Signals> source_of_signals(const std::string& name) const;
 
   // ---- Measurements and diagnosis (session_measurements.cpp, session_diagnosis.cpp) ----
   Json columns(const Request&);

@@ -84,7 +84,15 @@ Json unknown_json(const Diagnosis& diagnosis) {
   Json dependence = Json::array();
   for (const RemainderShare& share : diagnosis.dependence)
     dependence.push_back({{"variable", share.variable}, {"share", share.share}});
-  return {{"variables", diagnosis.remainder_variables}, {"dependence", std::move(dependence)}};
+  // Functions that were learned without a name can be kept as they are: as lookup blocks.
+  Json learned = Json::array();
+  for (const AddedEffect& added : diagnosis.all_additions.effects)
+    if (added.effect.name.starts_with("unknown_"))
+      learned.push_back({{"effect", added.name}, {"title", added.effect.title}, {"note", added.note}});
+  return {{"variables", diagnosis.remainder_variables},
+          {"dependence", std::move(dependence)},
+          {"learned", std::move(learned)},
+          {"not_stated", diagnosis.all_additions.not_stated}};
 }
 
 /// The curves at rows that draw the residual before and after.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 #include "engine/json/file_kind.h"
+#include "tools/studio/session/experiment_text.h"
 #include "tools/studio/session/session.h"
 
 namespace loopwright::studio {
@@ -78,6 +79,27 @@ Json Session::store(const std::string& name, int64_t offset, bool is_last, std::
     throw Refused("a record is a .csv or .mat file");
   folder_.store_part(name, offset, is_last, bytes);
   return {{"path", name}};
+}
+
+/// Experiments in the folder of a diagram all of whose ports lead to its blocks.
+std::vector<OtherFile> Session::followers(const Document& document,
+                                          const std::map<std::string, std::string>& renamed) const {
+  const ParsedText diagram(document.path(), document.text());
+  const Level level = find_level(diagram.root, "", {});
+  const auto is_of_diagram = [&](const std::string& port) {
+    return level.block(port.substr(0, port.find('.')));
+  };
+  const auto folder_of = [](const std::string& path) { return std::filesystem::path(path).parent_path(); };
+  std::vector<OtherFile> others;
+  for (const Folder::File& file : folder_.files()) {
+    if (!file.path.ends_with(".experiment.json") || folder_of(file.path) != folder_of(document.path()))
+      continue;
+    const std::optional<std::string> text = folder_.read(file.path);
+    if (!text || !std::ranges::all_of(ports_of_experiment(file.path, *text), is_of_diagram)) continue;
+    const std::string after = with_ports_renamed(file.path, *text, renamed);
+    if (after != *text) others.push_back({file.path, text, after});
+  }
+  return others;
 }
 
 }  // namespace loopwright::studio

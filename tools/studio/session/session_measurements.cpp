@@ -155,15 +155,15 @@ Json tint(const Comparison& comparison, const Experiment& experiment) {
   return list;
 }
 
-std::shared_ptr<const Recording> signals_of(const Comparison& comparison) {
-  auto recording = std::make_shared<Recording>();
-  recording->columns.push_back({"time", "s", comparison.time, ""});
+std::shared_ptr<const Signals> signals_of(const Comparison& comparison) {
+  Recording recording;
+  recording.columns.push_back({"time", "s", comparison.time, ""});
   for (const ComparedSignal& signal : comparison.signals) {
-    recording->columns.push_back({"measured " + signal.name, signal.unit, signal.measured, ""});
-    recording->columns.push_back({"simulated " + signal.name, signal.unit, signal.simulated, ""});
-    recording->columns.push_back({"error " + signal.name, signal.unit, signal.error, ""});
+    recording.columns.push_back({"measured " + signal.name, signal.unit, signal.measured, ""});
+    recording.columns.push_back({"simulated " + signal.name, signal.unit, signal.simulated, ""});
+    recording.columns.push_back({"error " + signal.name, signal.unit, signal.error, ""});
   }
-  return recording;
+  return std::make_shared<Signals>(std::move(recording));
 }
 
 /// One set of rows for the three curves: those that draw the error, and those that draw the measurement.

@@ -10,28 +10,15 @@
 #include "tools/run/run_page.h"
 #include "tools/run/verdict.h"
 #include "tools/studio/session/member_change.h"
+#include "tools/studio/session/kept_runs.h"
 #include "tools/studio/session/session.h"
+#include "tools/studio/session/shell_command.h"
 
 namespace loopwright::studio {
 namespace {
 
-/// An argument for a shell.
-std::string shell_word(const std::string& text) {
-  if (text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./=-+") ==
-          text.npos &&
-      !text.empty())
-    return text;
-  std::string word = "'";
-  for (char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return word + "'";
-}
-
 std::string command_of(const std::string& path, const LoadOptions& options) {
-  std::string command = "loopwright run " + shell_word(path);
-  for (const auto& [name, value] : options.set) command += " --set " + shell_word(name + "=" + value);
-  for (const auto& [block, variant] : options.variants)
-    command += " --variant " + shell_word(block + "=" + variant);
-  return command;
+  return "loopwright run " + shell_word(path) + options_text(options);
 }
 
 std::string now_text() {
@@ -162,9 +149,9 @@ Json Session::run(const Request& request) {
                      {"summary", run_summary(plan, result, figures)},
                      {"verdict", verdict_json(verdict(plan, result, figures))},
                      {"set", set}};
-    stored->recording = std::move(result.recording);
+    stored->signals = std::make_shared<Signals>(std::move(result.recording));
     Json answer = stored->facts;
-    answer["signals"] = signals_json(stored->recording, window_of(points, {}), stored->held);
+    answer["signals"] = signals_json(*stored->signals, window_of(points, {}), stored->held);
     Json merit = Json::array();
     for (const Json& signal : answer["signals"])
       merit.push_back(
@@ -179,13 +166,15 @@ Json Session::run(const Request& request) {
   });
 }
 
-std::shared_ptr<const Recording> Session::source_of_signals(const std::string& name) const {
+std::shared_ptr<const Signals> Session::source_of_signals(const std::string& name) const {
   const size_t colon = name.find(':');
   const std::string kind = name.substr(0, colon), rest = colon == name.npos ? "" : name.substr(colon + 1);
   const bool is_number =
       !rest.empty() && rest.size() < 10 && rest.find_first_not_of("0123456789") == rest.npos;
   if (kind == "run" && is_number) {
-    if (const auto run = results_.runs.find(std::stoll(rest))) return {run, &run->recording};
+    const auto run = results_.runs.find(std::stoll(rest));
+    if (run && run->signals) return run->signals;
+    if (run) return signals_of_kept_run(folder_, run->kept_as);
   } else if (kind == "comparison" && is_number) {
     if (const auto comparison = results_.comparisons.find(std::stoll(rest))) return comparison->signals;
   } else if (kind == "record") {
@@ -196,13 +185,13 @@ std::shared_ptr<const Recording> Session::source_of_signals(const std::string& n
     const ColumnError error = [&](std::string message) -> Problem& {
       return problems.error({}, "", "", std::move(message));
     };
-    auto record = std::make_shared<Recording>(read_recording(path, problems, {.allow_not_finite = true}));
-    const auto time = time_in_seconds(*record, "", error);
+    Recording record = read_recording(path, problems, {.allow_not_finite = true});
+    const auto time = time_in_seconds(record, "", error);
     if (!time || problems.has_errors()) throw InputError(std::move(problems));
-    std::erase_if(record->columns, [&](const Column& column) { return column.name == time->name; });
-    record->columns.insert(record->columns.begin(), *time);
-    results_.record_path = path, results_.record = record;
-    return record;
+    std::erase_if(record.columns, [&](const Column& column) { return column.name == time->name; });
+    record.columns.insert(record.columns.begin(), *time);
+    results_.record_path = path, results_.record = std::make_shared<Signals>(std::move(record));
+    return results_.record;
   }
   throw Refused(fmt::format("\"{}\" is not kept any more", name));
 }
@@ -228,7 +217,7 @@ Json Session::export_view(const Request& request) {
                       request.number("to", INFINITY)};
   const std::string path = folder_.path_of(target);
   return start(request, [=, this](Work&) -> Json {
-    write_recording(path, cut(*source_of_signals(name), window));
+    write_recording(path, cut(source_of_signals(name)->recording, window));
     return {{"path", target}};
   });
 }
@@ -271,15 +260,14 @@ Json Session::name_run(const Request& request) {
   if (!run) throw Refused(fmt::format("run {} is not kept any more", number));
   auto named = std::make_shared<StoredRun>(*run);
   named->facts["name"] = request.text("name"), named->facts["note"] = request.text("note");
-  results_.runs.replace(number, named);
   if (request.flag("keep")) {
-    folder_.make_own_folder("runs");
-    const std::string stem =
-        fmt::format(".loopwright/runs/{}-{}", named->facts["hash"].get<std::string>(), number);
-    const std::string facts = stem + ".json", text = named->facts.dump(2) + "\n";
-    folder_.replace(facts, folder_.read(facts), text);
-    write_recording(folder_.path_of(stem + ".csv"), named->recording);
+    named->kept_as = keep_run(folder_, *named, run->kept_as);
+  } else if (!run->kept_as.empty()) {
+    named->signals = source_of_signals(fmt::format("run:{}", number));
+    remove_kept_run(folder_, run->kept_as);
+    named->kept_as.clear();
   }
+  results_.runs.replace(number, named);
   return named->facts;
 }
 

@@ -2,10 +2,12 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 #include "engine/diagram/in_memory.h"
 #include "engine/json/reader.h"
 #include "tools/studio/session/session.h"
+#include "tools/studio/session/shell_command.h"
 
 namespace loopwright::studio {
 namespace {
@@ -44,6 +46,24 @@ std::string measured_port(const std::string& metric) {
   if (!metric.starts_with("rms(") || !metric.ends_with(')'))
     throw Refused("the metric of two sliders is rms(PORT); `loopwright sweep` has others");
   return metric.substr(4, metric.size() - 5);
+}
+
+/// The sweep as a file for `loopwright sweep`, relative to its own folder.
+std::string sweep_text(const std::string& diagram, const LoadOptions& options,
+                       std::span<const SweptAxis> axes, const std::string& port) {
+  Json set = Json::object(), swept = Json::object();
+  for (const auto& [path, value] : options.set) set[path] = value;
+  for (const SweptAxis& axis : axes) {
+    swept[axis.set] = {
+        {"linear",
+         {{"from", axis.values.front()}, {"to", axis.values.back()}, {"count", axis.values.size()}}}};
+    if (!axis.unit.empty()) swept[axis.set]["unit"] = axis.unit;
+  }
+  for (const auto& [block, variant] : options.variants) swept[block] = {{"variants", {variant}}};
+  Json file{{"loopwright", 1}, {"diagram", diagram}};
+  if (!set.empty()) file["set"] = std::move(set);
+  file["axes"] = std::move(swept), file["metrics"] = {{"rms", {{"rms", port}}}};
+  return file.dump(2) + "\n";
 }
 
 double rms(const std::vector<double>& values) {
@@ -98,6 +118,28 @@ Json Session::sweep(const Request& request) {
     return {
         {"x", x.values}, {"y", y.values}, {"values", std::move(rows)}, {"metric", metric}, {"unit", unit}};
   });
+}
+
+Json Session::write_sweep(const Request& request) {
+  namespace fs = std::filesystem;
+  const std::string path = request.required("path");
+  LoadOptions options = request.options();
+  const SweptAxis axes[] = {axis_of(request.message, "x"), axis_of(request.message, "y")};
+  for (const SweptAxis& axis : axes)
+    std::erase_if(options.set, [&](const auto& set) { return set.first == axis.set; });
+  const std::string text = sweep_text(fs::path(path).filename().string(), options, axes,
+                                      measured_port(request.required("metric")));
+  const std::string stem = (fs::path(path).parent_path() / fs::path(path).stem()).string();
+  std::string file = stem + ".sweep.json";
+  for (int i = 2;; ++i, file = fmt::format("{}_{}.sweep.json", stem, i - 1)) {
+    const auto there = folder_.read(file);
+    if (there && *there != text) continue;
+    if (there || !folder_.replace(file, std::nullopt, text)) break;
+  }
+  const std::string target = folder_.path_of(file);
+  return {{"file", file},
+          {"command", fmt::format("loopwright sweep {} -o {}", shell_word(target),
+                                  shell_word(target.substr(0, target.size() - 5)))}};
 }
 
 }  // namespace loopwright::studio

@@ -3,6 +3,7 @@
 #include <map>
 #include <set>
 #include "engine/json/reader.h"
+#include "tools/fit/parameter.h"
 #include "tools/studio/session/checked_text.h"
 #include "tools/studio/session/member_change.h"
 #include "tools/studio/session/setting_text.h"
@@ -37,11 +38,13 @@ class View {
               {"levels", shown_.levels},      {"blocks", Json::array()},
               {"wires", Json::array()},       {"inputs", Json::array()},
               {"outputs", Json::array()},     {"parameters", Json::array()},
-              {"solver", Json::array()},      {"log", Json::array()}};
+              {"solver", Json::array()},      {"log", Json::array()},
+              {"places", Json::array()}};
     const Level level{&d, shown_.inside};
     sources_ = sources_by_block(level);
     for (const Value::Member& block : level.blocks().members) {
       view["blocks"].push_back(this->block(block));
+      view["places"].push_back({places_.units(block.place.offset), places_.units(end_of(block.value))});
       add_wires(block, view["wires"]);
     }
     add_ports(d, view);
@@ -144,7 +147,7 @@ class View {
     if (const auto position = layout_.find(path); position != layout_.end())
       json["position"] = {position->second.first, position->second.second};
     json["problems"] = problems_of(member, path);
-    json["offset"] = places_.units(member.place.offset), json["end"] = places_.units(end_of(member.value));
+    json["hardware"] = known && known->info.room == "io" && known->info.has_side_effects;
     return json;
   }
 
@@ -347,8 +350,13 @@ class View {
     if (found == shown_.loaded->parameters.end() || found->value.kind != Kind::number) return json;
     const double number = found->value.number;
     json["value"] = found->unit ? found->unit->from_si(number) : number;
+    // The numbers that every setting with this parameter accepts.
+    ParameterInfo limits;
+    Problems ignored;
+    if (const auto found_number = find_number(*shown_.loaded, member.name, ignored))
+      limits.low = found_number->least, limits.high = found_number->most;
     json["slider"] =
-        slider_json(slider_around(number, unit_written(member.value), nullptr), path_of(member.name));
+        slider_json(slider_around(number, unit_written(member.value), &limits), path_of(member.name));
     return json;
   }
 

@@ -19,7 +19,7 @@ const output = (name, unit, logged = false) => ({ ...port(name, unit), logged })
 const setting = (name, text, value = text, slider = null) => ({ name, text, value, slider });
 const block = (name, type, room, inputs, outputs, more = {}) => ({
   name, type, room, title: type, description: "", subdiagram: false, file: "", variants: [], variant: "", settings: [], inputs, outputs,
-  picture: { kind: "none" }, sample_time: null, rate: 0, position: null, problems: [], offset: 0, end: 0, ...more });
+  picture: { kind: "none" }, sample_time: null, rate: 0, position: null, problems: [], ...more });
 const wire = (from, to, index = 0, unit = "m") => ({ from, to, index, unit, clash: "" });
 const slider = (set, value, unit) => ({ low: 0, high: 2 * value, step: value / 200, unit, value, set, logarithmic: false });
 
@@ -64,6 +64,7 @@ function axis() {
 const text = () => JSON.stringify({ loopwright: 1, title: "The loop, as believed", parameters: { mass: { value: state.mass, unit: "kg" } }, blocks: { reference: { type: "RecordedColumn" }, axis: { diagram: "axis.json", effects: state.added } } }, null, 2);
 function document(inside, with_text = true) {
   const view = inside === "axis" ? axis() : top();
+  view.places = view.blocks.map(() => [0, 0]);
   for (const entry of view.blocks) entry.position = state.positions[`${inside}.${entry.name}`] ?? null;
   const problems = state.mass < 0 ? [{ severity: "error", text: "mass is negative", message: "mass is negative", hint: "a mass is positive", file: "nominal.json", line: 5, column: 7, offset: 70, end: 75, pointer: "/parameters/mass", block: "axis", port: "", here: true }] : [];
   if (problems.length) view.blocks.forEach((entry) => { if (entry.name === "axis") entry.problems = [0]; });

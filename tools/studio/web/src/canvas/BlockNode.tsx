@@ -58,7 +58,7 @@ function Ports({ node }: { node: GraphNode }) {
 function description(node: GraphNode): string {
   const block = node.block;
   if (!block) return `${node.name}, ${node.kind} of the diagram${node.unit ? `, ${prettyUnit(node.unit)}` : ""}`;
-  return [block.name, block.subdiagram ? "subdiagram" : spaced(block.type), block.description || block.title].filter(Boolean).join(", ");
+  return [block.name, block.subdiagram ? "subdiagram" : spaced(block.type), block.hardware && "hardware", block.description || block.title].filter(Boolean).join(", ");
 }
 
 const PORT_CHARACTER = 5.8;  // px
@@ -83,6 +83,7 @@ export const BlockNode = memo(function BlockNode({ data, selected }: NodeProps<B
       {block && <div className={label_above(node) ? "block-name above" : "block-name"}>{block.name}{block.variant && <span className="variant"> {block.variant}</span>}</div>}
       {tint && <div className="badge share" title={tint.text}>{Math.round(100 * tint.share)} %</div>}
       {severity && <div className={`badge ${severity}`} title="See the list of problems">!</div>}
+      {block?.hardware && <div className="badge hardware" title="A device: deployed, this block moves it. In the studio it is simulated.">⏚</div>}
       {rate && <div className="rate-mark" title={`sampled every ${block!.sample_time} s`} />}
     </div>
   );

@@ -1,6 +1,6 @@
 // One wire: the route of the layout while both blocks are where it put them, else a line with right angles.
 import { memo } from "react";
-import { BaseEdge, getSmoothStepPath, type Edge, type EdgeProps } from "@xyflow/react";
+import { BaseEdge, ViewportPortal, getSmoothStepPath, type Edge, type EdgeProps } from "@xyflow/react";
 import type { Point } from "../layout/messages";
 import type { GraphEdge } from "./graph";
 
@@ -45,7 +45,7 @@ export const WireEdge = memo(function WireEdge(props: EdgeProps<WireFlowEdge>) {
     <g className={classes}>
       <BaseEdge path={path} interactionWidth={16} {...(props.markerEnd ? { markerEnd: props.markerEnd } : {})} />
       {(clash || selected) && (
-        <text className={clash ? "wire-label clash" : "wire-label"} x={labelX} y={labelY - 6} textAnchor="middle">{clash || data?.label}</text>
+        <ViewportPortal><div className={clash ? "wire-label clash" : "wire-label"} style={{ transform: `translate(-50%, -100%) translate(${labelX}px, ${labelY - 4}px)` }}>{clash || data?.label}</div></ViewportPortal>
       )}
       <title>{clash ? `${data!.label}: ${clash}` : data?.label}</title>
     </g>

@@ -13,11 +13,14 @@ export function flow_of(ids: string[], edges: FlowEdge[]): { order: string[]; re
   return { order: between(order, returning, edges), returning };
 }
 
-const group = <T,>(list: T[], key: (entry: T) => string): Map<string, T[]> => {
+export function group<T>(list: T[], key: (entry: T) => string): Map<string, T[]> {
   const groups = new Map<string, T[]>();
-  for (const entry of list) groups.set(key(entry), [...(groups.get(key(entry)) ?? []), entry]);
+  for (const entry of list) {
+    const of_key = groups.get(key(entry));
+    if (of_key) of_key.push(entry); else groups.set(key(entry), [entry]);
+  }
   return groups;
-};
+}
 
 function mark_loops(ids: string[], edges: FlowEdge[]): string[] {
   const leaving = group(edges, (edge) => edge.from), entered = new Set(edges.map((edge) => edge.to));

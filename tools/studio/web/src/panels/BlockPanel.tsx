@@ -1,5 +1,5 @@
 // One block: its numbers, where its inputs come from, what its outputs show, what its type does.
-import { useEffect, useState } from "react";
+import { memo, useEffect, useMemo, useRef, useState } from "react";
 import { prettyUnit } from "../numbers";
 import { edit, enter, open } from "../state/document";
 import { toggle_signal } from "../state/run";
@@ -24,14 +24,26 @@ function useHelp(type: string): TypeHelp | null {
   return help;
 }
 
+/** All that a wire may come from; the same list as long as nothing of it changes. */
+function useSources(view: View): string[] {
+  const before = useRef<string[]>([]);
+  return useMemo(() => {
+    const now = [...view.inputs.map((input) => input.name), ...view.blocks.flatMap((other) => other.outputs.map((port) => `${other.name}.${port.name}`))];
+    const is_same = now.length === before.current.length && now.every((name, i) => name === before.current[i]);
+    return is_same ? before.current : (before.current = now);
+  }, [view]);
+}
+const Options = memo(({ names }: { names: string[] }) => names.map((name) => <option key={name}>{name}</option>));
+
 export function BlockPanel({ block, view }: { block: Block; view: View }) {
   const help = useHelp(block.type), editable = view.editable;
-  const sources = [...view.inputs.map((input) => input.name), ...view.blocks.flatMap((other) => other.outputs.map((port) => `${other.name}.${port.name}`))];
+  const sources = useSources(view);
   return (
     <>
       <div className="section">
         <div className="row"><Field value={block.name} label="Name of the block" disabled={!editable} send={(to) => void edit({ intent: "rename_block", name: block.name, to })} /></div>
         <p className="kind">{block.subdiagram ? "Subdiagram" : spaced(block.type)}{block.rate > 0 && <span className="soft"> · every {block.sample_time} s</span>}</p>
+        {block.hardware && <p className="hint">A device. <code>loopwright deploy</code> moves it; in the studio it is simulated, and nothing moves.</p>}
         {(help?.sentence || block.description) && <p className="soft description">{block.description || help?.sentence}</p>}
         {block.variants.length > 0 && (
           <label className="row"><span className="name">variant</span>
@@ -87,14 +99,14 @@ function Inputs({ block, view, sources }: { block: Block; view: View; sources: s
           const places = Math.max(1, port.wires + (port.many && view.editable ? 1 : 0));
           return Array.from({ length: port.wires ? places : 1 }, (_, index) => {
             const wire = view.wires.find((entry) => entry.to === to && entry.index === index);
-            const choices = wire && !sources.includes(wire.from) ? [wire.from, ...sources] : sources;
             return (
               <li key={`${port.name}${index}`} className="row">
                 <span className="name" title={port.sentence}>{port.name}{port.many && index < port.wires ? ` ${index + 1}` : ""}{port.unit && <span className="unit"> {prettyUnit(port.unit)}</span>}</span>
                 <select aria-label={`Source of ${to}${port.many ? ` ${index + 1}` : ""}`} value={wire?.from ?? ""} disabled={!view.editable}
                   onChange={(event) => void edit(event.target.value ? { intent: "connect", from: event.target.value, to, index } : { intent: "disconnect", to, index })}>
                   <option value="">{port.wires ? (port.many ? "+ another" : "not connected") : "not connected"}</option>
-                  {choices.map((source) => <option key={source}>{source}</option>)}
+                  {wire && !sources.includes(wire.from) && <option>{wire.from}</option>}
+                  <Options names={sources} />
                 </select>
               </li>
             );

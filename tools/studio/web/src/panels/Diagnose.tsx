@@ -39,7 +39,7 @@ export function Diagnose() {
         )}
       </div>
       {diagnosis?.cards.map((card) => <EffectCard key={card.effect + card.form} card={card} added={added.includes(card.effect)} />)}
-      {diagnosis && <Doubts diagnosis={diagnosis} />}
+      {diagnosis && <Doubts diagnosis={diagnosis} added={added} />}
     </>
   );
 }
@@ -88,7 +88,16 @@ function EffectCard({ card, added }: { card: Card; added: boolean }) {
   );
 }
 
-function Doubts({ diagnosis }: { diagnosis: Diagnosis }) {
+/** A function that the search learned without a name for it. */
+function Learned({ effect, title, note, added }: { effect: string; title: string; note: string; added: boolean }) {
+  return (
+    <div className="learned" data-learned={effect}><p>{title}{note && <span className="soft"> · {note}</span>}</p>
+      {added ? <p className="good-text">✓ in the diagram</p>
+        : <button type="button" onMouseEnter={() => void preview([effect])} onMouseLeave={() => void preview([])} onFocus={() => void preview([effect])} onBlur={() => void preview([])} onClick={() => void add([effect])}>Keep as a lookup block</button>}</div>
+  );
+}
+
+function Doubts({ diagnosis, added }: { diagnosis: Diagnosis; added: string[] }) {
   const { unknown, other_explanations, suggested, findings, not_looked_for } = diagnosis;
   const words = (names: string[]) => names.map((name) => name.replace(/_/g, " ")).join(", ");
   return (
@@ -96,7 +105,9 @@ function Doubts({ diagnosis }: { diagnosis: Diagnosis }) {
       {unknown && (
         <div className="card unknown"><h3>Something remains that no effect of the catalogue explains</h3>
           {unknown.variables.length > 0 && <p>It depends on {words(unknown.variables)}.</p>}
-          <Bars rows={unknown.dependence.map((entry) => ({ label: entry.variable, share: entry.share }))} /></div>
+          <Bars rows={unknown.dependence.map((entry) => ({ label: entry.variable, share: entry.share }))} />
+          {unknown.learned?.map((entry) => <Learned key={entry.effect} {...entry} added={added.includes(entry.effect)} />)}
+          {unknown.not_stated?.map((sentence) => <p key={sentence} className="hint">{sentence}</p>)}</div>
       )}
       {other_explanations.length > 0 && <div className="section"><h3>Other explanations</h3><ul>{other_explanations.map((entry, i) => (
         <li key={i}>{words(entry.effects) || "nothing"}{entry.in_place_of.length > 0 && ` in place of ${words(entry.in_place_of)}`}</li>))}</ul></div>}

@@ -1,6 +1,6 @@
 // The selected block, or, with nothing selected, the diagram itself: its parameters with their sliders, its solver.
 import { prettyUnit } from "../numbers";
-import { edit, open } from "../state/document";
+import { edit, open, wrap } from "../state/document";
 import { useStudio } from "../state/store";
 import type { Parameter, View } from "../protocol/types";
 import { BlockPanel } from "./BlockPanel";
@@ -28,6 +28,7 @@ function Several({ names, editable }: { names: string[]; editable: boolean }) {
       <p className="soft">{names.join(", ")}</p>
       {editable && (
         <p className="buttons">
+          <button type="button" title="Put these blocks into a subdiagram of their own (Ctrl+G)" onClick={() => void wrap(names)}>Wrap into a subdiagram</button>
           <button type="button" onClick={() => void edit({ intent: "duplicate", blocks: names })}>Duplicate</button>
           <button type="button" onClick={() => void edit({ intent: "remove_blocks", blocks: names })}>Remove</button>
         </p>

@@ -6,6 +6,7 @@ import { list_files } from "../state/document";
 import { change_column, change_role, close_experiment, compare, confirm_columns, diagnose, drop_record, match_columns } from "../state/measure";
 import { jump_to_block } from "../state/places";
 import { patch, useStudio } from "../state/store";
+import { Fit } from "./Fit";
 
 export function Measure() {
   const columns = useStudio((state) => state.columns), experiment = useStudio((state) => state.experiment);
@@ -130,6 +131,7 @@ function Compared() {
             <tr key={signal.name}><th scope="row">{signal.name}</th><td>{quantity(signal.rmse, signal.unit, 3)}</td><td>{quantity(signal.max, signal.unit, 3)}</td><td>{signal.relative === null ? "–" : percent(signal.relative)}</td></tr>))}</tbody></table>
         </div>
       )}
+      {comparison && <Fit />}
       {comparison && comparison.tint.length > 0 && (
         <div className="section"><h3>Where it lies</h3><ul className="plain">{comparison.tint.map((entry) => (
           <li key={entry.block}><button type="button" className="entry" onClick={() => void jump_to_block(entry.block)}><b>{entry.block}</b><span>{entry.text}</span></button></li>))}</ul></div>

@@ -137,8 +137,8 @@ export function TextView() {
 
   useEffect(() => { if (jump) reveal(jump.offset, jump.end); }, [jump]);
   useEffect(() => {
-    const block = selected.length === 1 ? get().document?.view?.blocks.find((entry) => entry.name === selected[0]) : undefined;
-    if (block && get().document?.view?.editable) reveal(block.offset, block.offset);
+    const shown = get().document?.view, block = selected.length === 1 ? shown?.blocks.findIndex((entry) => entry.name === selected[0]) ?? -1 : -1;
+    if (shown?.editable && block >= 0) reveal(shown.places[block]![0], shown.places[block]![0]);
   }, [selected]);
   return <div className="text-view" ref={place} />;
 }
@@ -151,7 +151,7 @@ function reveal(from: number, to: number): void {
 
 /** The block in whose text the cursor is becomes the selected one. */
 function select_block(offset: number): void {
-  const blocks = get().document?.view?.blocks ?? [];
-  const block = get().document?.view?.editable ? blocks.find((entry) => offset >= entry.offset && offset <= entry.end) : undefined;
+  const shown = get().document?.view;
+  const block = shown?.editable ? shown.blocks[shown.places.findIndex(([begin, end]) => offset >= begin && offset <= end)] : undefined;
   if (block && get().selected[0] !== block.name) patch({ selected: [block.name], selected_wire: "" });
 }

@@ -5,6 +5,7 @@ import { open } from "../state/document";
 import { begin_sliding, end_sliding, forget_override, keep_override, slide } from "../state/run";
 import { useStudio } from "../state/store";
 import { prettyUnit, quantity } from "../numbers";
+import { FitChoice } from "./Fit";
 
 /** Sends on Enter and on leaving; Escape brings back what was there. */
 export function Field({ value, label, send, disabled, mono, placeholder }: { value: string; label: string; send: (text: string) => void; disabled?: boolean; mono?: boolean; placeholder?: string }) {
@@ -41,6 +42,7 @@ export function SliderField({ slider, label }: { slider: Slider; label: string }
         aria-valuetext={`${value} ${slider.unit}`} data-set={slider.set}
         onPointerDown={begin_sliding} onPointerUp={end_sliding} onFocus={begin_sliding} onBlur={end_sliding}
         onChange={(event) => slide(slider, to_value(Number(event.target.value) / STEPS))} />
+      <FitChoice set={slider.set} label={label} />
       {override !== undefined && (
         <div className="override">
           <output htmlFor={id}>{+value.toPrecision(4)} {prettyUnit(slider.unit)}</output><span className="soft">not in the file</span>

@@ -1,4 +1,5 @@
 // One WebSocket to the program: requests with their answers, progress and events. Reconnects by itself.
+import { Views } from "./views";
 import type { Problem } from "./types";
 
 /** The program refused a request; `message` is what the command line would print. */
@@ -31,6 +32,7 @@ export class Connection {
   private last_id = 0;
   private readonly waiting = new Map<number, Waiting>();
   private pause = FIRST_PAUSE;
+  private views = new Views();
 
   constructor(private readonly url: string, private readonly hear: {
     open: () => void; lost: () => void; event: (message: Record<string, unknown>) => void;
@@ -41,8 +43,13 @@ export class Connection {
   private connect() {
     const socket = new WebSocket(this.url);
     this.socket = socket;
+    this.views = new Views();
     socket.onopen = () => { this.pause = FIRST_PAUSE; this.hear.open(); };
-    socket.onmessage = (event) => this.receive(JSON.parse(String(event.data)) as Message);
+    socket.onmessage = (event) => {
+      const message = JSON.parse(String(event.data)) as Message;
+      // Should page and program differ about what was sent, a new connection begins with everything.
+      if (this.views.complete(message)) this.receive(message); else socket.close();
+    };
     socket.onclose = () => {
       for (const request of this.waiting.values()) request.reject(new Disconnected("The connection to the program was lost."));
       this.waiting.clear();

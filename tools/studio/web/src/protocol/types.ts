@@ -24,8 +24,7 @@ export interface Block {
   name: string; type: string; room: string; title: string; description: string;
   subdiagram: boolean; file: string; variants: string[]; variant: string;
   settings: Setting[]; inputs: InputPort[]; outputs: OutputPort[]; picture: Picture;
-  sample_time: number | null; rate: number; position: [number, number] | null; problems: number[];
-  offset: number; end: number;
+  sample_time: number | null; rate: number; position: [number, number] | null; problems: number[]; hardware?: boolean;
 }
 export interface WireEntry { from: string; to: string; index: number; unit: string; clash: string }
 export interface DiagramInput { name: string; unit: string; description: string; offset: number; end: number }
@@ -37,7 +36,8 @@ export interface Parameter {
 export interface View {
   inside: string; editable: boolean; title: string; description: string;
   levels: { inside: string; title: string }[];
-  blocks: Block[]; wires: WireEntry[]; inputs: DiagramInput[]; outputs: DiagramOutput[];
+  blocks: Block[]; places: [number, number][];           // of the blocks in the text: offset and end
+  wires: WireEntry[]; inputs: DiagramInput[]; outputs: DiagramOutput[];
   parameters: Parameter[]; solver: { name: string; text: string }[]; log: string[];
 }
 
@@ -122,8 +122,16 @@ export interface Diagnosis {
   suggested: { text: string; between: string; and: string }[];
   findings: { what: string; cost: string; fatal: boolean }[];
   not_looked_for: { effects: string[]; why: string }[];
-  unknown: { variables: string[]; dependence: { variable: string; share: number }[] } | null;
+  unknown: {
+    variables: string[]; dependence: { variable: string; share: number }[];
+    learned?: { effect: string; title: string; note: string }[]; not_stated?: string[];
+  } | null;
   curves: { unit: string; time: (number | null)[]; position: (number | null)[]; velocity: (number | null)[]; before: (number | null)[]; after: (number | null)[] } | null;
+}
+export interface FitAnswer {
+  fit: number; command: string; converged: boolean; simulations: number; text: string; warnings: string[];
+  parameters: { name: string; start: string; value: string; interval: string; determined: boolean; at_limit: boolean }[];
+  signals: { name: string; unit: string; before: number; after: number; held_out_before: number; held_out_after: number }[];
 }
 export interface Preview { x: (number | null)[]; y: (number | null)[]; unit: string; rmse: number | null; signal: string }
 

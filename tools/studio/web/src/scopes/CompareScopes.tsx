@@ -1,5 +1,5 @@
 // Measured beside simulated, the error before and after, and what remains against time, position and velocity.
-import { useEffect, useMemo, useState } from "react";
+import { useEffect, useMemo, useRef, useState } from "react";
 import { prettyUnit, quantity } from "../numbers";
 import { ask, attempt } from "../state/session";
 import { SCOPE_POINTS } from "../state/run";
@@ -16,9 +16,13 @@ const show_range = (range: Range | null): void => patch({ range });
 
 /** In a range of time, the program sends what lies in it in full detail. */
 function useDetail(comparison: Comparison | null, range: Range | null): Map<string, Signal> {
-  const [detail, setDetail] = useState(new Map<string, Signal>());
+  const [detail, setDetail] = useState(new Map<string, Signal>()), seen = useRef<{ comparison: Comparison | null; range: Range | null }>({ comparison: null, range: null });
   useEffect(() => {
-    setDetail((old) => (old.size ? new Map() : old));
+    // Until it comes, what was there is shown: the detail of the range around it, if there is one.
+    const { comparison: old, range: around } = seen.current;
+    const is_within = comparison === old && range && around && around.from <= range.from && range.to <= around.to;
+    if (!is_within) setDetail((before) => (before.size ? new Map() : before));
+    seen.current = { comparison, range };
     if (!comparison || !range) return;
     let current = true;
     const names = comparison.signals.flatMap((signal) => ["measured", "simulated", "error"].map((what) => `${what} ${signal.name}`));

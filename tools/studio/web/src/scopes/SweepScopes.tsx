@@ -1,7 +1,7 @@
 // The picture of a sweep over two numbers: a click on a place runs the diagram there.
 import { prettyUnit, quantity } from "../numbers";
 import { settings_text, with_unit } from "../state/request";
-import { follow_overrides } from "../state/run";
+import { follow_overrides, write_sweep } from "../state/run";
 import { get, patch, useStudio, type State } from "../state/store";
 
 /** Values further apart than this factor are told apart by their logarithms: one that nearly diverges leaves colours for the others. */
@@ -44,6 +44,8 @@ export function SweepScopes() {
         {is_logarithmic && <span className="soft">logarithmic</span>}
         {gaps > 0 && <span className="soft"><span className="gap-sample" aria-hidden="true" /> {gaps} of {cells.length}: refused, or the run failed</span>}
       </p>
+      {sweep.file ? <p className="command"><code>{sweep.file.command}</code></p>
+        : <p className="buttons"><button type="button" title="Writes a sweep file beside the diagram, for loopwright sweep" onClick={() => void write_sweep()}>Repeat it in the terminal</button></p>}
       <table>
         <tbody>
           {sweep.y.map((_, row) => {

@@ -34,7 +34,7 @@ export async function open(path: string, inside = ""): Promise<void> {
   patch(same || !before.document ? {} : {
     run: null, ghost: null, pinned: [], runs: [], plots: [], plots_chosen: false, range: null, cursors: null, overrides: {}, linear: null,
     sweep: null, columns: null, experiment: "", comparison: null, comparison_before: null, diagnosis: null, staircase: [],
-    preview: null, added: [], scope_tab: "run",
+    preview: null, added: [], scope_tab: "run", fit_chosen: [], fit: null,
   });
   patch({ selected: [], selected_wire: "", highlighted: [] });
   show(document, inside);
@@ -45,11 +45,11 @@ export async function open(path: string, inside = ""): Promise<void> {
 export function show(document: Document, inside = get().inside): void {
   const state = get();
   if (state.document && (state.document.path !== document.path || state.document.revision !== document.revision)) close_errors();
-  const names = new Set(document.view?.blocks.map((block) => block.name));
+  const names = new Set(document.view?.blocks.map((block) => block.name)), left = state.selected.filter((name) => names.has(name));
   patch({
     document, inside: document.view?.inside ?? inside,
     ...(document.text === undefined ? {} : { text: document.text, text_from_program: state.text_from_program + 1 }),
-    selected: state.selected.filter((name) => names.has(name)),
+    selected: left.length === state.selected.length ? state.selected : left,
   });
 }
 
@@ -104,6 +104,12 @@ export function edit(...intents: Intent[]): Promise<EditAnswer | null> {
   });
 }
 
+/** Puts blocks into a subdiagram of their own, which is then selected. */
+export async function wrap(blocks: string[]): Promise<void> {
+  const answer = await edit({ intent: "wrap", blocks });
+  if (answer) patch({ selected: answer.blocks.slice(0, 1), selected_wire: "", panel: "inspect" });
+}
+
 /** What was typed into the text view; the text view already shows it. */
 export function edit_text(edits: TextEdit[]): Promise<boolean> {
   return in_order(async () => {
@@ -124,12 +130,12 @@ async function step(what: "undo" | "redo"): Promise<void> {
   if (answer) take(answer);
 }
 
-/** Effects of a diagnosis become part of the diagram. */
-export function add_effects(diagnosis: number, effects: string[]): Promise<EditAnswer | null> {
+/** A request that changes the diagram: effects of a diagnosis, fitted values. */
+export function change_by_program(what: "add_effects" | "write_fit", members: object): Promise<EditAnswer | null> {
   return in_order(async () => {
     const { document, inside } = get();
     if (!document) return null;
-    const answer = await attempt(ask<EditAnswer>("add_effects", about_document({ inside, diagnosis, effects, revision: document.revision })));
+    const answer = await attempt(ask<EditAnswer>(what, about_document({ inside, revision: document.revision, ...members })));
     if (answer) take(answer);
     return answer;
   });

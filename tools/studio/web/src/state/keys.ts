@@ -1,5 +1,5 @@
 // Keys of the whole page. Keys of single letters work where nothing is typed.
-import { edit, leave, redo, undo } from "./document";
+import { edit, leave, redo, undo, wrap } from "./document";
 import { run_live, zoom } from "./run";
 import { ask, attempt } from "./session";
 import { get, patch, tell, type Panel } from "./store";
@@ -7,7 +7,7 @@ import { get, patch, tell, type Panel } from "./store";
 export const KEYS: { keys: string; what: string }[] = [
   { keys: "Ctrl+Enter", what: "run" }, { keys: "Ctrl+Z, Ctrl+Y", what: "undo, redo: diagram, text and effects alike" }, { keys: "B or /", what: "add a block" }, { keys: "T", what: "text beside the diagram" },
   { keys: "Tab, then Space", what: "go from block to block and select one" }, { keys: "Enter, Backspace", what: "enter the selected subdiagram, leave it" }, { keys: "arrows", what: "move the selected block" },
-  { keys: "Delete", what: "remove what is selected" }, { keys: "Ctrl+C, Ctrl+V, Ctrl+D", what: "copy, paste, duplicate" }, { keys: "1 … 5", what: "panels" }, { keys: "+, −, arrows, 0", what: "in a plot: zoom, move, show everything" },
+  { keys: "Delete", what: "remove what is selected" }, { keys: "Ctrl+C, Ctrl+V, Ctrl+D", what: "copy, paste, duplicate" }, { keys: "Ctrl+G", what: "wrap the selected blocks into a subdiagram" }, { keys: "1 … 5", what: "panels" }, { keys: "+, −, arrows, 0", what: "in a plot: zoom, move, show everything" },
   { keys: "Shift+drag, Ctrl+wheel", what: "in a plot: move, zoom" }, { keys: "Escape", what: "close, select nothing" }, { keys: "?", what: "these keys" }];
 const PANELS: Panel[] = ["inspect", "runs", "measure", "diagnose", "problems"];
 
@@ -35,6 +35,7 @@ export function listen_to_keys(): () => void {
 
 const CONTROL: Record<string, () => void> = {
   z: () => void undo(), y: () => void redo(), c: () => void copy(), v: () => void paste(),
+  g: () => { const blocks = get().selected; if (blocks.length) void wrap(blocks); },
   d: () => { const blocks = get().selected; if (blocks.length) void edit({ intent: "duplicate", blocks }); },
 };
 const PLAIN: Record<string, () => void> = {

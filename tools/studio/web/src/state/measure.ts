@@ -1,6 +1,6 @@
 // Actions of measurements and of the diagnosis.
 import type { Columns, ColumnUse, Comparison, Diagnosis, Preview, Problem, Step } from "../protocol/types";
-import { add_effects } from "./document";
+import { change_by_program } from "./document";
 import { about_document } from "./request";
 import { SCOPE_POINTS } from "./run";
 import { ask, attempt, start } from "./session";
@@ -140,7 +140,7 @@ export async function add(effects: string[]): Promise<void> {
   const { diagnosis, text: text_before, added: before } = get();
   if (!diagnosis) return;
   void preview([]);
-  const answer = await add_effects(diagnosis.diagnosis, effects);
+  const answer = await change_by_program("add_effects", { diagnosis: diagnosis.diagnosis, effects });
   if (!answer) return;
   const all = effects.length ? effects : diagnosis.cards.filter((card) => card.addable && !card.optional).map((card) => card.effect);
   added_in.set(text_before, before);

@@ -237,3 +237,15 @@ export async function sweep(x: Swept, y: Swept, metric: string): Promise<void> {
   const { [x.set]: _x, [y.set]: _y, ...set } = members.set;
   if (answer) patch({ sweep: { ...answer, x_set: x.set, y_set: y.set, x_unit: x.unit, y_unit: y.unit, set }, scope_tab: "sweep", place: "scopes" });
 }
+
+/** The sweep that is shown as a file for `loopwright sweep`. */
+export async function write_sweep(): Promise<void> {
+  const { sweep: shown } = get();
+  if (!shown) return;
+  const axis = (set: string, unit: string, values: number[]) => ({ set, unit, low: values[0], high: values.at(-1), points: values.length });
+  const file = await attempt(ask<{ file: string; command: string }>("write_sweep",
+    about_document({ set: shown.set, x: axis(shown.x_set, shown.x_unit, shown.x), y: axis(shown.y_set, shown.y_unit, shown.y), metric: shown.metric })));
+  if (!file || get().sweep !== shown) return;
+  patch({ sweep: { ...shown, file } });
+  tell("good", `Written as ${file.file}.`);
+}

@@ -1,6 +1,6 @@
 // The state of the page: one immutable object, changed by patches. Components select the parts that they show.
 import { useSyncExternalStore } from "react";
-import type { Columns, Comparison, Diagnosis, Document, FileEntry, Linear, Preview, RunAnswer, RunEntry, Step, SweepAnswer } from "../protocol/types";
+import type { Columns, Comparison, Diagnosis, Document, FileEntry, FitAnswer, Linear, Preview, RunAnswer, RunEntry, Step, SweepAnswer } from "../protocol/types";
 
 export type Panel = "inspect" | "runs" | "measure" | "diagnose" | "problems";
 export type ScopeTab = "run" | "compare" | "linear" | "sweep";
@@ -43,7 +43,7 @@ export interface State {
   cursors: { a: number; b: number } | null;
   scope_tab: ScopeTab;
   linear: (Linear & LinearRequest & { set: Record<string, string> }) | null;
-  sweep: (SweepAnswer & { x_set: string; y_set: string; x_unit: string; y_unit: string; set: Record<string, string> }) | null;
+  sweep: (SweepAnswer & { x_set: string; y_set: string; x_unit: string; y_unit: string; set: Record<string, string>; file?: { file: string; command: string } }) | null;
 
   columns: Columns | null;               // to be confirmed
   experiment: string;                    // path; empty: none
@@ -55,6 +55,8 @@ export interface State {
   staircase: Step[];                     // while the search runs
   preview: (Preview & { effects: string[] }) | null;
   added: string[];                       // effects of the diagnosis that are in the diagram now
+  fit_chosen: string[];                  // parameters, as `set` names them
+  fit: FitAnswer | null;
 
   busy: Record<string, Busy>;
   panel: Panel;
@@ -73,6 +75,7 @@ const initial: State = {
   overrides: {}, run: null, ghost: null, pinned: [], runs: [], plots: [], plots_chosen: false, range: null, cursors: null,
   scope_tab: "run", linear: null, sweep: null,
   columns: null, experiment: "", comparison: null, comparison_before: null, diagnosis: null, diagnosed_with: [], diagnosed_set: {}, staircase: [], preview: null, added: [],
+  fit_chosen: [], fit: null,
   busy: {}, panel: "inspect", place: "diagram", show_palette: false, show_text: false, show_commands: false,
   theme: "system", dark: false, notes: [],
 };

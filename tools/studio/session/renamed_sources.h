@@ -1,0 +1,50 @@
+/// Every place of a diagram that names a signal, and what follows when a block gets another path.
+#pragma once
+#include "tools/studio/session/draft.h"
+#include "tools/studio/session/written_wires.h"
+
+namespace loopwright::studio {
+
+namespace detail {
+template <class F> void each_text(const Value& value, F&& f) {
+  if (value.kind == Value::Kind::text) f(value);
+  for (const Value& item : value.items)
+    if (item.kind == Value::Kind::text) f(item);
+}
+}  // namespace detail
+
+/// f(wire) for every wire into a block, in all of its variants.
+template <class F> void each_source_of_block(const Value& block, F&& f) {
+  const auto each_of = [&](const Value& body) {
+    each_wire(body, [&](const std::string&, const Value& wire, size_t) { f(wire); });
+  };
+  each_of(block);
+  if (const Value::Member* variants = block.find("variants"))
+    for (const Value::Member& variant : variants->value.members) each_of(variant.value);
+}
+/// f(source) for every output of a diagram.
+template <class F> void each_source_of_outputs(const Value& diagram, F&& f) {
+  const Value::Member* outputs = diagram.find("outputs");
+  if (!outputs) return;
+  for (const Value::Member& output : outputs->value.members) {
+    if (output.value.kind == Value::Kind::text) f(output.value);
+    if (const Value::Member* source = output.value.find("source")) detail::each_text(source->value, f);
+  }
+}
+/// f(signal) for everything that a diagram records.
+template <class F> void each_recorded(const Value& diagram, F&& f) {
+  if (const Value::Member* log = diagram.find("log")) detail::each_text(log->value, f);
+}
+template <class F> void each_source(const Value& diagram, F&& f) {
+  if (const Value::Member* blocks = diagram.find("blocks"))
+    for (const Value::Member& block : blocks->value.members) each_source_of_block(block.value, f);
+  each_source_of_outputs(diagram, f);
+  each_recorded(diagram, f);
+}
+
+/// `path` and everything inside it get another name, wherever the diagram reads them.
+TextChanges renamed_sources(const Value& diagram, const std::string& path, const std::string& new_path);
+/// The same for a block of a level in the diagrams around it, which may read signals inside.
+TextChanges renamed_in_outer_diagrams(const Level& level, const std::string& name, const std::string& to);
+
+}  // namespace loopwright::studio
