@@ -37,9 +37,10 @@ SettingPlace find_setting(const Value& object, std::span<const std::string> path
       size_t index = 0;
       const char* const end = path[i].data() + path[i].size();
       const auto [stop, code] = std::from_chars(path[i].data(), end, index);
-      if (code != std::errc() || stop != end || index >= at->items.size())
+      const bool is_next = is_last && index == at->items.size();
+      if (code != std::errc() || stop != end || (index >= at->items.size() && !is_next))
         throw Refused(fmt::format("the list has no item {}", path[i]));
-      if (is_last) return {at, &at->items[index], index, path[i]};
+      if (is_last) return {at, is_next ? nullptr : &at->items[index], index, path[i]};
       at = &at->items[index];
     } else {
       throw Refused(fmt::format("\"{}\" has no \"{}\"", path[i ? i - 1 : 0], path[i]));
@@ -56,6 +57,8 @@ TextChanges written(const SettingPlace& place, const std::string& typed, const P
     return without_entries(*place.container, leave_out);
   }
   if (place.value) return retyped(*place.value, typed, info);
+  if (place.container->kind == Kind::list)
+    return {with_item(*place.container, json_of_typed(typed, info))};
   if (!is_name(place.name) && place.name != "$schema")
     throw Refused(fmt::format("\"{}\" is no name", place.name));
   const std::string json = json_of_typed(typed, info);

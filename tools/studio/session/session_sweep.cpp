@@ -66,9 +66,9 @@ std::string sweep_text(const std::string& diagram, const LoadOptions& options,
   return file.dump(2) + "\n";
 }
 
+/// With the same bits as that of the signals of a run.
 double rms(const std::vector<double>& values) {
-  double sum = 0;
-  for (double v : values) sum += v * v;
+  const double sum = report::CurveSummary(values).range(values, 0, values.size()).sum_of_squares;
   return values.empty() ? NAN : std::sqrt(sum / double(values.size()));
 }
 

@@ -133,6 +133,7 @@ const ParameterInfo* find_parameter(const std::vector<ParameterInfo>& list,
       info = &info->element.front();
       continue;
     }
+    if (is_index && info->kind == ParameterKind::list && i + 1 < path.size()) continue;
     return find_parameter(info->fields, path.subspan(i));
   }
   return info;

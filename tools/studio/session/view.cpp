@@ -5,6 +5,7 @@
 #include "engine/json/reader.h"
 #include "tools/fit/parameter.h"
 #include "tools/studio/session/checked_text.h"
+#include "tools/studio/session/machine_picture.h"
 #include "tools/studio/session/member_change.h"
 #include "tools/studio/session/setting_text.h"
 #include "tools/studio/session/shown_level.h"
@@ -147,6 +148,7 @@ class View {
     if (const auto position = layout_.find(path); position != layout_.end())
       json["position"] = {position->second.first, position->second.second};
     json["problems"] = problems_of(member, path);
+    json["chart"] = machine_json(type, body, entry ? &entry->settings : nullptr);
     json["hardware"] = known && known->info.room == "io" && known->info.has_side_effects;
     return json;
   }

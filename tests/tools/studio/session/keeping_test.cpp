@@ -14,7 +14,7 @@ constexpr const char* axis = R"({
                  "bias": {"value": 0, "unit": "N"}},
   "solver": {"method": "rk4", "step": 0.001, "stop": 1},
   "blocks": {
-    "push": {"type": "Sine", "amplitude": {"value": 1, "unit": "N"}, "frequency": {"value": 1, "unit": "Hz"}, "offset": "=bias"},
+    "push": {"type": "Sine", "amplitude": {"value": 1, "unit": "N"}, "frequency": {"value": 1, "unit": "Hz"}, "bias": "=bias"},
     "net":  {"type": "Sum", "signs": "+-", "in": {"terms": ["push.y", "drag.force"]}},
     "mass": {"type": "Mass", "mass": "=mass", "in": {"force": "net.sum"}},
     "drag": {"type": "ViscousFriction", "damping": "=damping", "in": {"velocity": "mass.velocity"}}

@@ -61,7 +61,7 @@ TEST(SentView, WithWhatCameBeforeIsTheWholeView) {
   known.complete(page.ask({{"do", "open"}, {"path", "chain.json"}})["view"]);
   const std::vector<Json> requests = {
       edit_of({{"intent", "set"}, {"block", "b"}, {"setting", "gain"}, {"text", "25"}}),
-      edit_of({{"intent", "rename_block"}, {"block", "a"}, {"to", "source"}}),
+      edit_of({{"intent", "rename_block"}, {"name", "a"}, {"to", "source"}}),
       edit_of({{"intent", "disconnect"}, {"to", "c.u"}, {"index", 0}}),
       {{"do", "undo"}, {"path", "chain.json"}},
       edit_of({{"intent", "add_block"}, {"type", "Gain"}, {"name", "a"}}),

@@ -171,6 +171,67 @@ test("a dropped record is sent, matched, confirmed and compared", async () => {
   await page.waitForSelector("[data-rmse]");
 });
 
+test("a unit that the heading does not state is typed, and a record without a drive says so before it is written", async () => {
+  const page = await open(), sent = [];
+  await page.evaluate(() => {
+    window.sent = [];
+    const send = WebSocket.prototype.send;
+    WebSocket.prototype.send = function (text) { window.sent.push(JSON.parse(text)); send.call(this, text); };
+  });
+  await page.evaluate(() => {
+    const transfer = new DataTransfer();
+    transfer.items.add(new File(["time_s,position_m\n0,0\n"], "held_out.csv", { type: "text/csv" }));
+    for (const kind of ["dragenter", "dragover", "drop"]) document.body.dispatchEvent(new DragEvent(kind, { dataTransfer: transfer, bubbles: true, cancelable: true }));
+  });
+  await page.waitForSelector("fieldset[data-column=force]");
+  assert.equal(await page.locator("[data-column=position] input.unit").count(), 0, "a heading that states its unit is not asked about");
+  await page.selectOption("[aria-label='Use of force']", "compare");
+  await page.selectOption("[aria-label='Port of force']", "axis.net_force");
+  await page.fill("[aria-label='Unit of force']", "kN");
+  assert.equal(await page.locator(".no-drive").count(), 0);
+  await page.selectOption("[aria-label='Use of reference']", "ignore");
+  await page.waitForSelector(".no-drive[role=alert]:has-text('No column drives the diagram')");
+  assert.deepEqual(await page.evaluate(contrast_faults), []);
+  await page.click("button[type=submit]:has-text('without a drive')");
+  await page.waitForSelector("[data-rmse]");
+  sent.push(...await page.evaluate(() => window.sent));
+  const { columns } = sent.find((message) => message.do === "write_experiment");
+  assert.deepEqual(columns.find((column) => column.column === "force_N").unit, "kN");
+  assert.equal(columns.find((column) => column.column === "position_m").unit, "", "what the heading states is not written again");
+});
+
+test("the label of a wire stands above the blocks beside it", async () => {
+  const page = await open();
+  await page.waitForTimeout(300);
+  await page.evaluate(() => document.querySelector("[data-id='axis.force#0'] .react-flow__edge-path").dispatchEvent(new MouseEvent("click", { bubbles: true })));
+  await page.waitForSelector(".wire-label");
+  const is_above = await page.evaluate(() => {
+    const label = document.querySelector(".wire-label");
+    label.style.pointerEvents = "auto";
+    const box = label.getBoundingClientRect();
+    return [0.05, 0.5, 0.95].every((share) => document.elementFromPoint(box.left + share * box.width, box.top + box.height / 2) === label);
+  });
+  assert(is_above);
+});
+
+test("a change of a number draws no other block again, and leaves the view where it is", async () => {
+  const page = await open();
+  await page.waitForTimeout(600);      // until the diagram is fitted into its place
+  const transform = () => page.evaluate(() => document.querySelector(".react-flow__viewport").style.transform);
+  const before = await transform();
+  await page.evaluate(() => {
+    window.drawn = 0;
+    new MutationObserver((changes) => { window.drawn += changes.filter((change) => change.target instanceof Element && change.target.closest("[data-block=reference], [data-block=error]")).length; })
+      .observe(document.querySelector(".react-flow__nodes"), { subtree: true, childList: true, attributes: true, characterData: true });
+  });
+  await page.fill("[data-parameter=mass] .field", "0.7 kg");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => document.querySelector("button[aria-label=Undo]").disabled === false);
+  await page.waitForTimeout(500);
+  assert.equal(await transform(), before);
+  assert.equal(await page.evaluate(() => window.drawn), 0);
+});
+
 test("everything is reached by keys", async () => {
   const page = await open();
   await page.keyboard.press("b");

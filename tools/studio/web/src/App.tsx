@@ -2,6 +2,7 @@
 import { useEffect, useRef, useState, type PointerEvent } from "react";
 import { Boundary } from "./Boundary";
 import { Canvas } from "./canvas/Canvas";
+import { ChartView } from "./chart/ChartView";
 import { Palette } from "./canvas/Palette";
 import { Commands } from "./panels/Commands";
 import { Diagnose } from "./panels/Diagnose";
@@ -121,6 +122,7 @@ export function App() {
             <div className="canvas-area">
               <Boundary part="The diagram">
                 {document_open ? <Canvas /> : <p className="empty">Opening …</p>}
+                <ChartView />
                 <Palette />
               </Boundary>
             </div>

@@ -7,6 +7,7 @@ import "./style/page.css";
 import "./style/canvas.css";
 import "./style/scopes.css";
 import "./style/panels.css";
+import "./style/chart.css";
 import { App } from "./App";
 import { follow_address, read_address, recall_theme } from "./state/address";
 import { changed_outside, greet, list_files, on_change } from "./state/document";

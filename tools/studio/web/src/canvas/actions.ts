@@ -2,6 +2,7 @@
 // React Flow would draw all blocks and wires again.
 import type { KeyboardEvent, MouseEvent as ReactMouseEvent, DragEvent } from "react";
 import type { Connection, FinalConnectionState, NodeChange, XYPosition } from "@xyflow/react";
+import { open_chart } from "../state/chart";
 import { edit, enter } from "../state/document";
 import { toggle_signal } from "../state/run";
 import { signal_name } from "../state/signals";
@@ -71,6 +72,7 @@ export function show_wire(_event: ReactMouseEvent, { data }: WireFlowEdge): void
 
 export function enter_block(_event: ReactMouseEvent, { data }: BlockFlowNode): void {
   if (data.node.block?.subdiagram) enter(data.node.name);
+  else if (data.node.block?.chart) open_chart(data.node.name);
 }
 export const select_nothing = (): void => patch({ selected: [], selected_wire: "" });
 
@@ -94,5 +96,7 @@ function remove(): void {
 export function press(event: KeyboardEvent): void {
   if ((event.key === "Delete" || event.key === "Backspace") && !(event.target instanceof HTMLInputElement) && is_editable()) remove();
   const { selected, document } = get(), only = selected.length === 1 ? selected[0]! : "";
-  if (event.key === "Enter" && document?.view?.blocks.find((block) => block.name === only)?.subdiagram) enter(only);
+  const block = event.key === "Enter" ? document?.view?.blocks.find((entry) => entry.name === only) : undefined;
+  if (block?.subdiagram) enter(only);
+  else if (block?.chart) open_chart(only);
 }

@@ -1,4 +1,5 @@
 // What the canvas asks of the layout worker.
+import type { Chart } from "../protocol/types";
 
 export interface Point { x: number; y: number }
 export type Side = "WEST" | "EAST" | "SOUTH";
@@ -20,3 +21,13 @@ export interface Layout {
   junctions: Point[];
 }
 export interface LayoutAnswer { count: number; layout: Layout }
+
+/** The chart of a state machine, instead of a diagram. */
+export interface ChartRequest { count: number; chart: Chart }
+export interface ChartLayout {
+  width: number; height: number;
+  states: { index: number; x: number; y: number; width: number; height: number; title: string[]; lines: string[]; isOuter: boolean }[];
+  dots: Point[]; defaults: Point[][];
+  transitions: { index: number; points: Point[][]; label: { x: number; y: number; width: number; height: number; lines: string[] } }[];
+}
+export interface ChartAnswer { count: number; chart: ChartLayout }

@@ -1,7 +1,8 @@
 // Arranges blocks and routes wires, off the main thread. elkjs places and routes what nobody moved; wires of moved blocks
 // are routed here.
 import ELK, { type ElkExtendedEdge, type ElkNode } from "elkjs/lib/elk.bundled.js";
-import type { Layout, LayoutAnswer, LayoutNode, LayoutRequest, Point, Side } from "./messages";
+import { layOutChart } from "../../../../report/page/chart_layout.js";
+import type { ChartAnswer, ChartRequest, Layout, LayoutAnswer, LayoutNode, LayoutRequest, Point, Side } from "./messages";
 import { piece, route, straighten } from "./route";
 
 const OPTIONS = {
@@ -20,14 +21,18 @@ const VECTORS: Record<Side, Point> = { WEST: { x: -1, y: 0 }, EAST: { x: 1, y: 0
 const elk = new ELK();
 let newest = 0;
 
-self.onmessage = async (event: MessageEvent<LayoutRequest>) => {
-  newest = event.data.count;
-  await Promise.resolve();                       // requests that wait behind this one come first
-  if (event.data.count !== newest) return;
-  const layout = await arrange(event.data, OPTIONS).catch(() => arrange(event.data, PLAIN_OPTIONS)).catch(() => in_rows(event.data));
-  const answer: LayoutAnswer = { count: event.data.count, layout };
-  self.postMessage(answer);
+self.onmessage = async ({ data }: MessageEvent<LayoutRequest | ChartRequest>) => {
+  if ("chart" in data) self.postMessage({ count: data.count, chart: await layOutChart(elk, data.chart) } satisfies ChartAnswer);
+  else await answer(data);
 };
+
+async function answer(request: LayoutRequest): Promise<void> {
+  newest = request.count;
+  await Promise.resolve();                       // requests that wait behind this one come first
+  if (request.count !== newest) return;
+  const layout = await arrange(request, OPTIONS).catch(() => arrange(request, PLAIN_OPTIONS)).catch(() => in_rows(request));
+  self.postMessage({ count: request.count, layout } satisfies LayoutAnswer);
+}
 
 /** Whatever happens, every block is shown: in rows, with wires routed around them. */
 function in_rows({ nodes, edges }: LayoutRequest): Layout {

@@ -7,6 +7,8 @@ import { ask } from "../state/session";
 import { useStudio } from "../state/store";
 import { signal_name } from "../state/signals";
 import type { Block, TypeHelp, View } from "../protocol/types";
+import { ChartPanel } from "../chart/ChartPanel";
+import { open_chart } from "../state/chart";
 import { spaced } from "../canvas/symbols";
 import { Field, SliderField } from "./fields";
 
@@ -36,7 +38,7 @@ function useSources(view: View): string[] {
 const Options = memo(({ names }: { names: string[] }) => names.map((name) => <option key={name}>{name}</option>));
 
 export function BlockPanel({ block, view }: { block: Block; view: View }) {
-  const help = useHelp(block.type), editable = view.editable;
+  const help = useHelp(block.type), editable = view.editable, chart_is_open = useStudio((state) => state.chart === block.name);
   const sources = useSources(view);
   return (
     <>
@@ -58,6 +60,8 @@ export function BlockPanel({ block, view }: { block: Block; view: View }) {
           {editable && <button type="button" onClick={() => void edit({ intent: "remove_blocks", blocks: [block.name] })}>Remove</button>}
         </p>
       </div>
+      {block.chart && (chart_is_open ? <ChartPanel block={block} /> : <div className="section"><p className="buttons"><button type="button" className="primary" onClick={() => open_chart(block.name)}>Open the chart</button></p>
+        <p className="soft small-text">{block.chart.states.length} states, {block.chart.transitions.length} transitions</p></div>)}
       {block.settings.length > 0 && (
         <div className="section">
           <h3>{block.subdiagram ? "Parameters" : "Settings"}</h3>

@@ -30,11 +30,10 @@ function Found({ found }: { found: FitAnswer }) {
   const held_out = found.signals.some((signal) => signal.held_out_after > 0);
   return (
     <div className="card fitted" aria-label="Fitted values">
-      <table className="merit"><thead><tr><th scope="col">parameter</th><th scope="col">was</th><th scope="col">fitted</th><th scope="col">95 % interval</th></tr></thead><tbody>
-        {found.parameters.map((entry) => (
-          <tr key={entry.name} data-fitted={entry.name}><th scope="row">{entry.name}</th><td className="soft">{prettyUnit(entry.start)}</td><td>{prettyUnit(entry.value)}</td>
-            <td className="soft">{entry.determined ? prettyUnit(entry.interval) : "not determined by the record"}{entry.at_limit && " at its limit"}</td></tr>))}
-      </tbody></table>
+      <dl>{found.parameters.map((entry) => (
+        <div key={entry.name} data-fitted={entry.name}><dt className="mono">{entry.name}</dt>
+          <dd><span className="soft">{prettyUnit(entry.start)} →</span> <b>{prettyUnit(entry.value)}</b>{entry.at_limit && <span className="doubt"> at its limit</span>}</dd>
+          <dd className="soft small-text">{entry.determined ? `95 % interval ${prettyUnit(entry.interval)}` : "not determined by the record"}</dd></div>))}</dl>
       <table className="merit"><thead><tr><th scope="col">error, rms</th><th scope="col">before</th><th scope="col">fitted</th>{held_out && <th scope="col">rows held out</th>}</tr></thead><tbody>
         {found.signals.map((signal) => (
           <tr key={signal.name}><th scope="row">{signal.name}</th><td className="soft">{quantity(signal.before, signal.unit, 3)}</td><td>{quantity(signal.after, signal.unit, 3)}</td>

@@ -24,7 +24,12 @@ export interface Block {
   name: string; type: string; room: string; title: string; description: string;
   subdiagram: boolean; file: string; variants: string[]; variant: string;
   settings: Setting[]; inputs: InputPort[]; outputs: OutputPort[]; picture: Picture;
-  sample_time: number | null; rate: number; position: [number, number] | null; problems: number[]; hardware?: boolean;
+  sample_time: number | null; rate: number; position: [number, number] | null; problems: number[]; hardware?: boolean; chart?: Chart | null;
+}
+/** Of a state machine. `order`: in which the transitions of a state are tested; 0: it is the only one. */
+export interface Chart {
+  states: { name: string; parent: number; initial: boolean; entries: string[] }[];
+  transitions: { from: number; to: number; guard: string; order: number }[];
 }
 export interface WireEntry { from: string; to: string; index: number; unit: string; clash: string }
 export interface DiagramInput { name: string; unit: string; description: string; offset: number; end: number }

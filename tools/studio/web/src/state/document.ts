@@ -36,7 +36,7 @@ export async function open(path: string, inside = ""): Promise<void> {
     sweep: null, columns: null, experiment: "", comparison: null, comparison_before: null, diagnosis: null, staircase: [],
     preview: null, added: [], scope_tab: "run", fit_chosen: [], fit: null,
   });
-  patch({ selected: [], selected_wire: "", highlighted: [] });
+  patch({ selected: [], selected_wire: "", highlighted: [], chart: "", chart_part: null });
   show(document, inside);
   if (!same || before.document?.revision !== document.revision) for (const listener of after_change) listener();
 }

@@ -1,5 +1,6 @@
 // The state of the page: one immutable object, changed by patches. Components select the parts that they show.
 import { useSyncExternalStore } from "react";
+import type { ChartPart } from "./chart";
 import type { Columns, Comparison, Diagnosis, Document, FileEntry, FitAnswer, Linear, Preview, RunAnswer, RunEntry, Step, SweepAnswer } from "../protocol/types";
 
 export type Panel = "inspect" | "runs" | "measure" | "diagnose" | "problems";
@@ -58,6 +59,9 @@ export interface State {
   fit_chosen: string[];                  // parameters, as `set` names them
   fit: FitAnswer | null;
 
+  chart: string;                         // the state machine of this level whose chart is open; empty: none
+  chart_part: ChartPart | null;          // what is selected in it
+
   busy: Record<string, Busy>;
   panel: Panel;
   place: Place;
@@ -76,6 +80,7 @@ const initial: State = {
   scope_tab: "run", linear: null, sweep: null,
   columns: null, experiment: "", comparison: null, comparison_before: null, diagnosis: null, diagnosed_with: [], diagnosed_set: {}, staircase: [], preview: null, added: [],
   fit_chosen: [], fit: null,
+  chart: "", chart_part: null,
   busy: {}, panel: "inspect", place: "diagram", show_palette: false, show_text: false, show_commands: false,
   theme: "system", dark: false, notes: [],
 };
