@@ -31,8 +31,8 @@ class TimedMotion {
   /// `from` keeps the limits, now and when its acceleration is taken back to zero, as does `end_velocity`.
   TimedMotion(const MotionState& from, double target, double end_velocity, const MotionLimits& limits);
 
-  /// The shortest time.
-  double fastest() const { return bounds_.front().time; }
+  /// The shortest time; infinity if numbers of this size have none.
+  double fastest() const { return bounds_.empty() ? HUGE_VAL : bounds_.front().time; }
   /// The cruising velocity of a motion that takes this time; nothing if there is none.
   std::optional<double> cruise_for(double time) const;
   /// `cruise`: the one for that time; not a number: the fastest motion to rest, which need not cruise.
@@ -202,6 +202,7 @@ inline void TimedMotion::find_bounds() {
   // An axis that brakes at the start may be fastest without an instant at which its acceleration is zero.
   if (end_velocity_ == 0)
     bounds_.push_back({PointToPointMotion::between(from_, target_, limits_).duration(), NAN});
+  std::erase_if(bounds_, [](const Bound& bound) { return !std::isfinite(bound.time); });
   std::sort(bounds_.begin(), bounds_.end(), [](const Bound& a, const Bound& b) { return a.time < b.time; });
 }
 

@@ -130,6 +130,17 @@ TEST(TimedMotion, AnAxisThatBrakesForItsTargetCannotComeALittleLater) {
   EXPECT_TRUE(possible.back());
 }
 
+TEST(ViaPointMotion, LimitsOfAnySizeDoNoHarm) {
+  for (const double velocity : {5e-324, 1e-30, 1e30, 1.7e308})
+    for (const double acceleration : {5e-324, 1e-300, 1e300, 1.7e308})
+      for (const double jerk : {5e-324, 1.0, 1e300, HUGE_VAL})
+        EXPECT_GE(
+            ViaPointMotion({{0, 0}, {0.02, 0.08}, {0.15, 0.1}}, {{velocity, acceleration, jerk}, {1, 6, 200}})
+                .duration(),
+            0)
+            << "or infinite, which the block reports";
+}
+
 TEST(ViaPointMotion, PointsOnTheWayCostNothing) {
   const std::vector<MotionLimits> limits{{1, 5, 50}, {2, 10, 100}};
   const ViaPointMotion motion({{0, 0}, {0.3, 0.6}, {0.9, 1.8}, {1.4, 2.8}}, limits);
