@@ -5,7 +5,8 @@ import unittest
 
 from program import TUTORIAL, call
 
-EXAMPLES = ["motor_cascade", "thermal", "pendulum", "two_mass", "multirate", "gantry", "three_axes", "homing", "log_replay"]
+EXAMPLES = ["motor_cascade", "thermal", "pendulum", "two_mass", "multirate", "gantry", "three_axes", "homing", "log_replay",
+            "relay_tuning"]
 
 
 class EveryDiagram(unittest.TestCase):
