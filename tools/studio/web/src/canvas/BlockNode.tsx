@@ -2,7 +2,7 @@
 import { memo } from "react";
 import { Handle, Position, type NodeProps, type Node } from "@xyflow/react";
 import { prettyUnit } from "../numbers";
-import { spaced } from "./symbols";
+import { port_names_width, spaced } from "./symbols";
 import { label_above, type GraphNode, type Place } from "./graph";
 
 export interface BlockData extends Record<string, unknown> {
@@ -61,11 +61,10 @@ function description(node: GraphNode): string {
   return [block.name, block.subdiagram ? "subdiagram" : spaced(block.type), block.hardware && "hardware", block.description || block.title].filter(Boolean).join(", ");
 }
 
-const PORT_CHARACTER = 5.8;  // px
 /** The symbol stands in the middle of what the names of the ports leave free. */
 function between_names(node: GraphNode): { paddingLeft?: number; paddingRight?: number } {
   if (!node.look.named_ports) return {};
-  const longest = (side: string) => PORT_CHARACTER * Math.max(0, ...node.places.filter((place) => place.side === side).map((place) => place.port.length));
+  const longest = (side: string) => port_names_width(node.places.filter((place) => place.side === side).map((place) => place.port));
   return { paddingLeft: longest("WEST"), paddingRight: longest("EAST") };
 }
 

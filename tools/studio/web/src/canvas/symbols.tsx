@@ -15,10 +15,24 @@ export interface Look {
 }
 
 const CHARACTER = 6.9;    // px, mean width of a character of a symbol's text
-const PORT_CHARACTER = 5.8;
+const PORT_FONT = 10.5, PORT_INSET = 11;  // px, as canvas.css has them
 const PORT_PITCH = 22;    // px between ports
 const SUM_SIZE = 36;
 const MOST_WIRES_OF_CIRCLE = 3;
+
+let canvas: CanvasRenderingContext2D | null = null;
+const port_widths = new Map<string, number>();
+/** px from the side of a block to the end of the longest of these names of ports; 0 without names. */
+export function port_names_width(names: string[]): number {
+  canvas ??= document.createElement("canvas").getContext("2d");
+  if (canvas) canvas.font = `${PORT_FONT}px ${getComputedStyle(document.body).fontFamily}`;
+  const width = (name: string): number => {
+    const known = port_widths.get(name) ?? (canvas ? canvas.measureText(name).width : name.length * CHARACTER);
+    port_widths.set(name, known);
+    return known;
+  };
+  return names.length ? PORT_INSET + Math.max(...names.map(width)) : 0;
+}
 
 const textWidth = (text: string): number => [...text].length * CHARACTER;
 /** Multiples of 20, so that the middle of a side lies on the grid of 10. */
@@ -161,10 +175,9 @@ export function look(block: Block): Look {
   }
   // Names of ports are needed where there is more than one to mix up.
   const named = block.subdiagram || (block.room !== "math" && (block.inputs.length > 1 || block.outputs.length > 1));
-  const left = named ? Math.max(0, ...block.inputs.map((port) => port.name.length)) * PORT_CHARACTER : 0;
-  const right = named ? Math.max(0, ...block.outputs.map((port) => port.name.length)) * PORT_CHARACTER : 0;
+  const left = named ? port_names_width(block.inputs.map((port) => port.name)) : 0, right = named ? port_names_width(block.outputs.map((port) => port.name)) : 0;
   if (block.subdiagram)
-    return { shape: "subdiagram", width: twenties(Math.max(100, left + right + 44)), height: twenties(Math.max(56, tall)), content: null, named_ports: true };
+    return { shape: "subdiagram", width: twenties(Math.max(100, left + right + 24)), height: twenties(Math.max(56, tall)), content: null, named_ports: true };
   const inside = content(block);
-  return { shape: "box", width: twenties(Math.max(60, left + right + inside.width + 26)), height: twenties(Math.max(40, tall)), content: inside.node, named_ports: named };
+  return { shape: "box", width: twenties(Math.max(60, left + right + inside.width + (named ? 12 : 26))), height: twenties(Math.max(40, tall)), content: inside.node, named_ports: named };
 }

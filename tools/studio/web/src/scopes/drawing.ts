@@ -90,7 +90,14 @@ function table(curves: Curve[]): uPlot.AlignedData {
     const xs = order.map((i) => { const x = curve.x[i]!; last = x > last ? x : last + Math.max(Math.abs(last) * 1e-12, 1e-300); return last; });
     return [xs, order.map((i) => curve.y[i]!)] as uPlot.AlignedData;
   });
-  return tables.length === 1 ? tables[0]! : uPlot.join(tables);
+  return tables.length === 1 ? tables[0]! : joined(tables);
+}
+/** On the abscissae of all. A row that a curve does not have is undefined there: its line passes over it. */
+function joined(tables: uPlot.AlignedData[]): uPlot.AlignedData {
+  const sorted = Float64Array.from(tables.flatMap(([x]) => x as number[])).sort();
+  const xs = [...sorted].filter((x, i) => i === 0 || x !== sorted[i - 1]);
+  const columns = tables.map(([x, y]) => { let row = 0; return xs.map((at) => (x[row] === at ? (y as (number | null)[])[row++] : undefined)); });
+  return [xs, ...columns] as uPlot.AlignedData;
 }
 
 export class ScopePlot {
