@@ -1,6 +1,7 @@
 /// Intents that give blocks and parameters other names, in every place of the file that uses them.
 #include <fmt/format.h>
 #include <algorithm>
+#include <cctype>
 #include "engine/diagram/expression.h"
 #include "engine/json/reader.h"
 #include "tools/studio/session/intent.h"
@@ -52,6 +53,8 @@ class ParameterUses {
         for (const Value::Member& variant : member.value.members) in_block(variant.value);
       } else if (member.name == "formula") {
         in_formula(block, member.value);
+      } else if (member.name == "states" && text_in(block, "type") == "StateMachine") {
+        in_states(block, member.value);
       } else if (member.name != "diagram") {  // a subdiagram has parameters of its own
         in_value(member.value);
       }
@@ -68,6 +71,32 @@ class ParameterUses {
         if (own.text == name_) return;
     const size_t skip = formula.text.starts_with('=') ? 1 : 0;
     in_expression(formula, std::string_view(formula.text).substr(skip), skip);
+  }
+  /// Values that states set are expressions; guards use parameters by name, which inputs hide.
+  void in_states(const Value& machine, const Value& states) {
+    in_value(states);
+    if (const Value::Member* inputs = machine.find("inputs"))
+      for (const Value& input : inputs->value.items)
+        if (input.text == name_) return;
+    for (const Value& state : states.items)
+      if (const Value::Member* transitions = state.find("transitions"))
+        for (const Value& transition : transitions->value.items)
+          if (const Value::Member* guard = transition.find("when")) in_guard(guard->value);
+  }
+  void in_guard(const Value& guard) {
+    const auto is_part = [](char c) {
+      return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.';
+    };
+    std::string changed;
+    for (size_t at = 0; at < guard.text.size();) {
+      size_t end = at;
+      while (end < guard.text.size() && is_part(guard.text[end])) ++end;
+      const std::string word = guard.text.substr(at, end - at);
+      changed += word == name_ ? to_ : word;
+      if (end < guard.text.size()) changed += guard.text[end];
+      at = end + 1;
+    }
+    if (changed != guard.text) changes_.push_back(replaced(guard, in_quotes(changed)));
   }
   void in_expression(const Value& text, std::string_view expression, size_t skip) {
     std::string changed = text.text;
