@@ -7,8 +7,6 @@
 namespace loopwright::diagnosis {
 namespace {
 
-/// In the criterion, beside ln n for each.
-constexpr double cost_of_parameter = 4;
 /// In -2 ln L, and [of the parameter]: smaller changes are none.
 constexpr double least_gain = 25, least_change = 2e-3;
 constexpr size_t fitted_sets = 4;

@@ -5,6 +5,9 @@
 
 namespace loopwright::diagnosis {
 
+/// In the criterion, beside ln n for each that moved.
+inline constexpr double cost_of_parameter = 4;
+
 struct MovedParameters {
   SiteHypothesis hypothesis;  ///< the others exactly as the diagram states
   double criterion = 0;

@@ -18,6 +18,9 @@ struct TermShape {
     own,      ///< the signal at the site itself: a distortion, whose coefficient is one
   };
   std::string_view name, title;
+  /// The same as an expression of "signal", of the coefficients and of its own parameters, by which the shape is
+  /// written into a diagram; empty: a block of another kind.
+  std::string_view formula;
   Of of = Of::signal;
   int columns = 1;
   double cost = 0;  ///< nats, of its prior

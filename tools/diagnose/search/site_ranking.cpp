@@ -125,7 +125,7 @@ class Ranking {
     return values;
   }
   SiteTerm term_of(const TermShape& shape, int site, int variable, const std::vector<double>& values,
-               const std::array<double, most_nonlinear>& start) const {
+                   const std::array<double, most_nonlinear>& start) const {
     SiteTerm term;
     term.shape = &shape, term.site = site, term.variable = variable, term.nonlinear = start;
     const auto [low, high] = std::ranges::minmax(values);
@@ -140,7 +140,8 @@ class Ranking {
   /// The responses of the errors to the term's columns, at coefficients of one.
   Eigen::MatrixXd responses(SiteTerm& term) {
     const SiteVariable none;
-    const SiteVariable& variable = term.variable < 0 ? none : fitter_.model().variables()[size_t(term.variable)];
+    const SiteVariable& variable =
+        term.variable < 0 ? none : fitter_.model().variables()[size_t(term.variable)];
     Eigen::MatrixXd columns(Eigen::Index(pass_.error.size()), term.shape->columns);
     for (int c = 0; c < term.shape->columns; ++c) {
       double square = 0;
@@ -188,10 +189,12 @@ class Ranking {
     }
   }
   bool goes_with_constant(const TermShape& shape) const {
-    return with_constants_ && has_constant_ && (is_plain(shape) || shape.name == "absolute" || shape.name == "sign");
+    return with_constants_ && has_constant_ &&
+           (is_plain(shape) || shape.name == "absolute" || shape.name == "sign");
   }
   /// The term together with a constant, if both gain clearly more than the better of them.
-  void pair(const Eigen::MatrixXd& column, const SiteTerm& term, double gain_of_one, SiteCandidate& best) const {
+  void pair(const Eigen::MatrixXd& column, const SiteTerm& term, double gain_of_one,
+            SiteCandidate& best) const {
     Eigen::MatrixXd both(column.rows(), 2);
     both << column, constant_column_;
     SiteTerm joint = term;

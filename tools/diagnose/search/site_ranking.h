@@ -10,8 +10,8 @@ namespace loopwright::diagnosis {
 struct SiteCandidate {
   SiteTerm term;
   std::optional<SiteTerm> constant;  ///< beside the term, at its site
-  double cost = 0;  ///< nats: shape, distance between variable and site
-  double gain = 0;  ///< in -2 ln L, linearized; of distortions by a pass of the model
+  double cost = 0;                   ///< nats: shape, distance between variable and site
+  double gain = 0;                   ///< in -2 ln L, linearized; of distortions by a pass of the model
 
   bool is_same_key(const SiteTerm& other) const {
     return term.shape == other.shape && term.site == other.site && term.variable == other.variable;

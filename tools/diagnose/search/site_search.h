@@ -17,7 +17,7 @@ struct SiteRival {
 
 /// Other parameters that explain the record as well.
 struct ParameterRival {
-  std::vector<int> moved;   ///< instead of those that moved
+  std::vector<int> moved;       ///< instead of those that moved
   std::vector<SiteTerm> terms;  ///< a term in place of all moved parameters, if not empty
   double worse = 0;
 };

@@ -1,6 +1,7 @@
 #include "tools/diagnose/verdict/site_errors.h"
 #include <cmath>
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/site_whiteness.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -17,22 +18,6 @@ class MeanSquare {
   double sum_ = 0;
   size_t count_ = 0;
 };
-
-double portmanteau_of(const SitePass& pass, size_t output, size_t rows) {
-  std::vector<double> e;
-  for (size_t k = 0; k < rows; ++k) {
-    const size_t at = k * pass.outputs + output;
-    if (!std::isnan(pass.error[at])) e.push_back(pass.error[at] / std::sqrt(pass.variance[at]));
-  }
-  double square = 0, sum = 0;
-  for (double x : e) square += x * x;
-  for (size_t lag = 1; lag <= criteria::portmanteau_lags && lag < e.size(); ++lag) {
-    double product = 0;
-    for (size_t k = lag; k < e.size(); ++k) product += e[k] * e[k - lag];
-    sum += product / square * product / square;
-  }
-  return double(e.size()) * sum;
-}
 
 }  // namespace
 
