@@ -1,5 +1,9 @@
 #include "tools/diagnose/any_diagram.h"
 #include <fmt/format.h>
+#include "engine/diagram/in_memory.h"
+#include "engine/json/json.h"
+#include "tools/diagnose/improvement.h"
+#include "tools/diagnose/verdict/improve.h"
 #include "tools/diagnose/verdict/site_verdict.h"
 
 namespace loopwright {
@@ -15,26 +19,43 @@ void reject_options_of_an_axis(const std::string& experiment, const DiagnoseOpti
     p.hint = "name the roles of an axis in the experiment, or leave the option out";
   };
   if (!options.catalogues.empty()) reject("--effects");
-  if (!options.improved_diagram.empty()) reject("-o");
   if (problems.has_errors()) throw InputError(std::move(problems));
+}
+
+/// The diagram with what was found. It must load before it is written.
+void write_improved(const DiagnoseOptions& options, Diagnosis& result) {
+  Problems problems;
+  const auto file = read_source(result.diagram, {}, problems);
+  std::vector<std::shared_ptr<const Experiment>> experiments;
+  for (const std::string& path : result.experiments) experiments.push_back(load_experiment(path, problems));
+  if (problems.has_errors()) throw InputError(std::move(problems));
+  const Additions& additions = options.writes_all ? result.all_additions : result.additions;
+  const Improvement improved = improve(file, experiments, options.load, additions);
+  const auto loaded = load_diagram_text(improved.file, options.load, problems);
+  if (!loaded || !compile(*loaded, problems)) throw InputError(std::move(problems));
+  result.improved = options.improved_diagram;
+  result.improved_experiments = write(improved, result.experiments, result.improved);
+  result.experiment_ports = improved.moved, result.taken_out_by = improved.taken_out_by;
+  result.improved_notes = notes_of(additions);
+  std::ranges::copy(improved.left_out, std::back_inserter(result.improved_notes));
 }
 
 }  // namespace
 
-Diagnosis diagnose_any_diagram(const std::string& diagram, const std::string& experiment,
+Diagnosis diagnose_any_diagram(const std::string& diagram, const std::vector<std::string>& experiments,
                                const DiagnoseOptions& options) {
-  reject_options_of_an_axis(experiment, options);
+  reject_options_of_an_axis(experiments.front(), options);
   const std::function<void(const char*, double)> progress = [&](const char* stage, double done) {
     if (options.progress) options.progress(stage, done);
   };
   const auto is_interrupted = [&] { return options.interrupt && *options.interrupt; };
   progress("reading the record", 0);
-  SiteModel model(diagram, experiment, options.load);
+  SiteModel model(diagram, experiments, options.load);
   SiteFilter filter(model);
   SiteFitter fitter(filter, model.record().held_out_from, is_interrupted);
   Diagnosis result;
   result.has_roles = false;
-  result.diagram = diagram, result.experiments = {experiment}, result.title = model.plan().title;
+  result.diagram = diagram, result.experiments = experiments, result.title = model.plan().title;
   result.force_unit = result.measured_unit = model.record().outputs.front().unit;
   result.measured_port = model.record().outputs.front().port;
   const auto found = search_sites(fitter, progress);
@@ -51,6 +72,7 @@ Diagnosis diagnose_any_diagram(const std::string& diagram, const std::string& ex
   result.trail = found->trail;
   progress("prediction, simulation and verdict", 0.95);
   tell_sites(filter, *found, result);
+  if (!options.improved_diagram.empty()) write_improved(options, result);
   return result;
 }
 

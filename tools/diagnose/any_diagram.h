@@ -4,8 +4,8 @@
 
 namespace loopwright {
 
-/// One experiment. Throws InputError with every problem.
-Diagnosis diagnose_any_diagram(const std::string& diagram, const std::string& experiment,
+/// Throws InputError with every problem.
+Diagnosis diagnose_any_diagram(const std::string& diagram, const std::vector<std::string>& experiments,
                                const DiagnoseOptions& options);
 
 }  // namespace loopwright

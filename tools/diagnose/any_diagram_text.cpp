@@ -32,9 +32,10 @@ std::string any_diagram_text(const Diagnosis& d) {
   std::string text = verdict_of(d) + "\n";
   const auto line = [&](const std::string& words) { text += words + "\n"; };
   for (const DiagnosedEffect& effect : d.effects) {
-    line(fmt::format("  {}{} at {}  ({}; {} rms)", effect.name,
+    line(fmt::format("  {}{} at {}  ({}; {} rms{})", effect.name,
                      effect.variables.empty() ? "" : " of " + joined(effect.variables, ", "), effect.site,
-                     effect.title, shown(effect.force_rms, effect.site_unit)));
+                     effect.title, shown(effect.force_rms, effect.site_unit),
+                     effect.is_optional ? ", optional" : ""));
     for (const DiagnosedParameter& p : effect.parameters)
       line(fmt::format("    {} = {}", p.name, with_interval(p.value, p.low, p.high, p.unit)));
     for (const std::string& other : effect.alternatives)
@@ -60,7 +61,7 @@ std::string any_diagram_text(const Diagnosis& d) {
                      shown(step.simulation_rmse, d.measured_unit)));
   for (const RecordFinding& f : d.findings) line(fmt::format("The record: {}; {}.", f.what, f.cost));
   for (const std::string& sentence : d.not_observable) line("Not told apart: " + sentence + ".");
-  return text;
+  return text + words_of_improvement(d);
 }
 
 }  // namespace loopwright

@@ -208,6 +208,9 @@ constexpr double most_portmanteau_of_any_diagram = 120;
 /// Of a term to the signal at its site, root mean squares. Interpolation between the rows, and steps of the
 /// integration, leave this much on a record without noise.
 constexpr double least_share_of_site = 1e-3;
+/// Of a term to the signal at its site, root mean squares. A smaller one is written into the diagram on
+/// request.
+constexpr double material_share_of_site = 5e-3;
 /// Of a simulated error to the spread of its signal: a record without noise, of another solver or with other
 /// steps, agrees as closely as this with the right diagram.
 constexpr double error_of_arithmetic = 1e-5;

@@ -365,16 +365,15 @@ bool have_roles(const std::vector<std::string>& experiments) {
     all.push_back(experiment);
     with_roles += !experiment || problems.has_errors() || !experiment->roles.ports.empty();
   }
-  if (with_roles == experiments.size()) {
+  if (with_roles == experiments.size() || with_roles == 0) {
     Problems repeated;
     refuse_repeated_records(all, repeated);
     if (repeated.has_errors()) throw InputError(std::move(repeated));
-    return true;
+    return with_roles > 0;
   }
-  if (with_roles == 0 && experiments.size() == 1) return false;
   Problems problems;
-  auto& p = problems.error({}, "/roles", "", "several experiments can be used together only with roles");
-  p.expected = "\"roles\" in every experiment, or a single experiment without";
+  auto& p = problems.error({}, "/roles", "", "some of the experiments name roles, others do not");
+  p.expected = "\"roles\" in every experiment, or in none";
   p.found = fmt::format("{} of {} experiments name roles", with_roles, experiments.size());
   throw InputError(std::move(problems));
 }
@@ -383,7 +382,7 @@ bool have_roles(const std::vector<std::string>& experiments) {
 
 Diagnosis diagnose(const std::string& diagram, const std::vector<std::string>& experiments,
                    const DiagnoseOptions& options) {
-  if (!have_roles(experiments)) return diagnose_any_diagram(diagram, experiments.front(), options);
+  if (!have_roles(experiments)) return diagnose_any_diagram(diagram, experiments, options);
   try {
     return diagnose_to_the_end(diagram, experiments, options);
   } catch (const Interrupted&) {

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 #include <vector>
-#include "tools/effects/insert.h"
+#include "tools/effects/insert_term.h"
 #include "tools/report/report.h"
 
 namespace loopwright {
@@ -81,11 +81,13 @@ struct AddedEffect {
   Effect effect;
   std::vector<double> fitted;  ///< SI, in the order of the effect's file
   std::string note;            ///< the range of a function without a name
+  std::optional<Term> term;    ///< without roles, in the place of `effect`
 };
 /// Effects that were found, fitted together, in the order in which they are added.
 struct Additions {
   std::vector<AddedEffect> effects;
   std::vector<std::string> not_stated;  ///< functions without a name that no block can state: sentences
+  std::vector<std::pair<std::string, double>> parameters;  ///< that moved: path as for `--set`, SI
   MachineUnits units;
   RecordSizes sizes;
 };

@@ -16,6 +16,18 @@ bool can_be_learned(const Diagnosis& d) {
 
 }  // namespace
 
+std::string words_of_improvement(const Diagnosis& d) {
+  std::string text;
+  for (const std::string& note : d.improved_notes) text += note + "\n";
+  if (!d.taken_out_by.empty())
+    text += fmt::format("Each of these takes one effect out of {} when 0: {}.\n", d.improved,
+                        joined(d.taken_out_by, ", "));
+  for (const MovedPort& moved : d.experiment_ports) text += words_of(moved) + "\n";
+  if (!d.improved_experiments.empty())
+    text += "Written with the new ports: " + joined(d.improved_experiments, ", ") + ".\n";
+  return text;
+}
+
 std::string to_text(const Diagnosis& d) {
   if (!d.has_roles) return any_diagram_text(d);
   std::string text;
@@ -79,14 +91,7 @@ std::string to_text(const Diagnosis& d) {
   for (const RefusedEffect& r : d.refused) line(fmt::format("Not accepted: {}; {}.", r.effect, r.why));
   for (const NotLookedFor& n : d.not_looked_for)
     line(fmt::format("Not looked for: {}; {}.", joined(n.effects, ", "), n.why));
-  for (const std::string& note : d.improved_notes) line(note);
-  if (!d.taken_out_by.empty())
-    line(fmt::format("Each of these takes one effect out of {} when 0: {}.", d.improved,
-                     joined(d.taken_out_by, ", ")));
-  for (const MovedPort& moved : d.experiment_ports) line(words_of(moved));
-  if (!d.improved_experiments.empty())
-    line("Written with the new ports: " + joined(d.improved_experiments, ", ") + ".");
-  return text;
+  return text + words_of_improvement(d);
 }
 
 }  // namespace loopwright

@@ -1,6 +1,8 @@
 #include "tools/diagnose/improvement.h"
 #include <algorithm>
 #include "engine/diagram/in_memory.h"
+#include "engine/json/json.h"
+#include "tools/effects/written_number.h"
 #include "tools/experiment/sensor_gains.h"
 
 namespace loopwright {
@@ -46,14 +48,73 @@ RolePorts roles_of(const std::shared_ptr<const SourceFile>& diagram, const Exper
   return without_sensor_gains(*plan, experiment).roles.ports;
 }
 
+namespace {
+
+/// Terms and parameters that a diagnosis without roles found.
+class TermsWriter {
+ public:
+  TermsWriter(Improvement& improved, const std::vector<std::shared_ptr<const Experiment>>& experiments,
+              const LoadOptions& load)
+      : improved_(improved), load_(load) {
+    for (const auto& experiment : experiments)
+      for (const RecordedSignal& signal : experiment->drives) inserted_.driven.insert(signal.port);
+  }
+  void add(const Term& term) {
+    Problems problems;
+    const InsertedTerms before = inserted_;
+    if (auto text = insert_term(improved_.file, load_.variants, term, inserted_, problems))
+      set_text(std::move(*text));
+    else
+      inserted_ = before, leave_out(problems);
+  }
+  void set(const std::vector<std::pair<std::string, double>>& parameters) {
+    Problems of_file;
+    const Value root = parse_json(improved_.file, of_file);
+    TextEdits edits;
+    for (const auto& [path, value] : parameters) {
+      Problems problems;
+      write_number(improved_.file, root, path, value, edits, problems);
+      if (problems.has_errors()) leave_out(problems);
+    }
+    set_text(edits.apply(improved_.file->text));
+  }
+  void finish() {
+    std::ranges::move(inserted_.blocks, std::back_inserter(improved_.blocks));
+    std::ranges::move(inserted_.taken_out_by, std::back_inserter(improved_.taken_out_by));
+    std::ranges::move(inserted_.moved, std::back_inserter(improved_.moved));
+  }
+
+ private:
+  void leave_out(const Problems& problems) {
+    improved_.left_out.push_back("Not in the diagram: " + problems.list().front().message + ".");
+  }
+  void set_text(std::string text) {
+    improved_.file = std::make_shared<SourceFile>(SourceFile{improved_.file->name, std::move(text)});
+  }
+
+  Improvement& improved_;
+  const LoadOptions& load_;
+  InsertedTerms inserted_;
+};
+
+}  // namespace
+
 Improvement improve(const std::shared_ptr<const SourceFile>& diagram,
                     const std::vector<std::shared_ptr<const Experiment>>& experiments,
                     const LoadOptions& load, const Additions& additions) {
-  Improvement improved{diagram, {}, {}, {}};
-  InsertionSite site{roles_of(diagram, *experiments.front(), load), load.variants, additions.units, true};
+  Improvement improved;
+  improved.file = diagram;
+  const bool has_roles = std::ranges::any_of(additions.effects, [](const AddedEffect& a) { return !a.term; });
+  InsertionSite site{{}, load.variants, additions.units, true};
+  if (has_roles) site.roles = roles_of(diagram, *experiments.front(), load);
   Problems problems;
   std::vector<MovedPort> moved;
+  TermsWriter terms(improved, experiments, load);
   for (const AddedEffect& added : additions.effects) {
+    if (added.term) {
+      terms.add(*added.term);
+      continue;
+    }
     auto inserted = insert_effect(improved.file, site, added.effect, added.fitted, additions.sizes, problems);
     if (!inserted) throw InputError(std::move(problems));
     note_moves(*inserted, moved);
@@ -62,6 +123,8 @@ Improvement improve(const std::shared_ptr<const SourceFile>& diagram,
     std::ranges::move(inserted->blocks, std::back_inserter(improved.blocks));
     improved.file = std::make_shared<SourceFile>(SourceFile{diagram->name, std::move(inserted->text)});
   }
+  terms.set(additions.parameters);
+  terms.finish();
   for (const MovedPort& port : moved)
     if (std::ranges::any_of(experiments, [&](const auto& e) { return names(*e, port.from); }))
       improved.moved.push_back(port);

@@ -10,6 +10,7 @@ struct Improvement {
   std::vector<std::string> blocks;         ///< the added ones, by path
   std::vector<MovedPort> moved;            ///< ports that the experiments must name differently with it
   std::vector<std::string> taken_out_by;   ///< of each effect the parameter that takes it out when 0
+  std::vector<std::string> left_out;       ///< what cannot be written, without roles: sentences
 };
 
 /// The ports of the quantities themselves, where the experiment names sensors. Throws InputError.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 #include <vector>
-#include "tools/effects/insert.h"
+#include "tools/diagnose/diagnosis.h"
 #include "tools/report/typography.h"
 
 namespace loopwright {
@@ -29,5 +29,8 @@ inline std::string words_of(const MovedPort& moved) {
       "reach the added effect.",
       joined(moved.to, " and "), moved.from);
 }
+
+/// How the improved diagram was written, if it was.
+std::string words_of_improvement(const Diagnosis& diagnosis);
 
 }  // namespace loopwright

@@ -51,12 +51,11 @@ TEST(AnyDiagramLimits, ASampledBlockOnTheWayIsRefusedByName) {
   EXPECT_THAT(text, testing::HasSubstr("computer"));
   EXPECT_THAT(text, testing::HasSubstr("UnitDelay remembers more than states"));
 }
-TEST(AnyDiagramLimits, EffectFilesAndAnImprovedDiagramAreRefused) {
+TEST(AnyDiagramLimits, EffectFilesOfAnAxisAreRefused) {
   DiagnoseOptions options;
-  options.catalogues = {"diagrams/effects"}, options.improved_diagram = "improved.json";
-  const std::string text = refusal(oscillator({}, 1), options);
-  EXPECT_THAT(text, testing::HasSubstr("--effects has no meaning without roles"));
-  EXPECT_THAT(text, testing::HasSubstr("-o has no meaning without roles"));
+  options.catalogues = {"diagrams/effects"};
+  EXPECT_THAT(refusal(oscillator({}, 1), options),
+              testing::HasSubstr("--effects has no meaning without roles"));
 }
 TEST(AnyDiagramLimits, AFewRowsAreRefused) {
   Plant plant = oscillator({}, 1);

@@ -200,4 +200,40 @@ inline Plant drive_train(const DriveTrain& m, uint64_t seed) {
   return plant;
 }
 
+/// A valve with a lag before a vessel; only the vessel is measured.
+struct Valve {
+  double dead_zone = 0;  ///< of the command
+  Law lost = nothing;    ///< from the vessel, of its content and the valve
+};
+inline Plant valve(const Valve& m, uint64_t seed) {
+  Plant plant;
+  plant.diagram = R"json({"loopwright": 1, "title": "A valve and a vessel",
+  "parameters": {"valve_rate": {"value": 8, "unit": "1/s"}, "rate": {"value": 1.5, "unit": "1/s"}, "gain": {"value": 2, "unit": "1/s"}},
+  "solver": {"method": "rk4", "step": 0.01, "stop": 1},
+  "blocks": {
+    "none":    {"type": "Constant", "value": {"value": 0, "unit": "1"}},
+    "command": {"type": "Gain", "gain": 1, "in": {"u": "none.y"}},
+    "lift":    {"type": "Sum", "signs": "+-", "in": {"terms": ["command.y", "valve.y"]}},
+    "moved":   {"type": "Gain", "gain": "=valve_rate", "in": {"u": "lift.sum"}},
+    "valve":   {"type": "Integrator", "initial": {"value": 0, "unit": "1"}, "in": {"u": "moved.y"}},
+    "supply":  {"type": "Gain", "gain": "=gain", "in": {"u": "valve.y"}},
+    "decay":   {"type": "Gain", "gain": "=rate", "in": {"u": "vessel.y"}},
+    "net":     {"type": "Sum", "signs": "+-", "in": {"terms": ["supply.y", "decay.y"]}},
+    "vessel":  {"type": "Integrator", "initial": {"value": 0, "unit": "1"}, "in": {"u": "net.sum"}}
+  }})json";
+  plant.drive = R"("command.u": {"column": "u", "unit": "1"})";
+  plant.compare = R"("vessel.y": {"column": "y0", "unit": "1"})";
+  plant.rate = [m](const Numbers& x, double u, const Numbers& w) {
+    const double passed = u - std::clamp(u, -m.dead_zone, m.dead_zone);
+    return Numbers{8 * (passed + w[0] - x[0]), 2 * x[0] + w[1] - 1.5 * x[1] - m.lost(x[1], x[0])};
+  };
+  plant.outputs = [](const Numbers& x) { return Numbers{x[1]}; };
+  plant.input = [steps = random_steps(0.7, seed), more = random_steps(0.15, seed + 1)](double t) {
+    return steps(t) + 0.4 * more(t);
+  };
+  plant.initial = {0, 0}, plant.process_noise = {2e-3, 2e-3}, plant.measurement_noise = {3e-4};
+  plant.sample_time = 0.05, plant.seed = seed, plant.rows = 1600;
+  return plant;
+}
+
 }  // namespace loopwright

@@ -13,13 +13,13 @@ std::vector<std::string> names(const std::vector<Site>& sites) {
 
 TEST(Sites, OfAMotorAreItsTwoSumsAndItsInput) {
   const RecordedPlant files(motor({}, 1));
-  const SiteModel model(files.diagram(), files.experiment(), {});
+  const SiteModel model(files.diagram(), {files.experiment()}, {});
   EXPECT_THAT(names(model.sites()),
               testing::UnorderedElementsAre("voltages.sum", "torques.sum", "amplifier.u"));
 }
 TEST(Sites, ASignalThatTwoSumsReadIsACoupling) {
   const RecordedPlant files(tanks({}, 1));
-  const SiteModel model(files.diagram(), files.experiment(), {});
+  const SiteModel model(files.diagram(), {files.experiment()}, {});
   EXPECT_THAT(names(model.sites()),
               testing::UnorderedElementsAre("balance1.sum", "balance2.sum", "outlet1.y", "pump.u"));
   const auto coupling = std::ranges::find(model.sites(), "outlet1.y", &Site::name);
@@ -28,7 +28,7 @@ TEST(Sites, ASignalThatTwoSumsReadIsACoupling) {
 }
 TEST(Sites, ADifferenceThatOnlyAGainReadsIsNoSiteOfItsOwn) {
   const RecordedPlant files(thermal({}, 1));
-  const SiteModel model(files.diagram(), files.experiment(), {});
+  const SiteModel model(files.diagram(), {files.experiment()}, {});
   EXPECT_THAT(names(model.sites()),
               testing::UnorderedElementsAre("heat1.sum", "heat2.sum", "flow.y", "heater.u"));
 }
@@ -43,7 +43,7 @@ struct Passed {
 
   explicit Passed(const Plant& plant)
       : files(plant),
-        model(files.diagram(), files.experiment(), {}),
+        model(files.diagram(), {files.experiment()}, {}),
         filter(model),
         factors(model.parameters().size(), 1.0) {
     model.use(factors, {});
@@ -130,7 +130,7 @@ TEST(SiteFilter, ErrorsOfARightDiagramAreWhiteAtTheTrueNoise) {
 }
 TEST(SiteModel, ASettingOfTheDiagramChangesAllBlocksThatReadIt) {
   const RecordedPlant files(motor({}, 6));
-  const SiteModel model(files.diagram(), files.experiment(), {});
+  const SiteModel model(files.diagram(), {files.experiment()}, {});
   const auto inductance = std::ranges::find(model.parameters(), "inductance", &ModelParameter::name);
   ASSERT_NE(inductance, model.parameters().end());
   ASSERT_EQ(inductance->numbers.size(), 1u);

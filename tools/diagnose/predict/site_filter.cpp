@@ -32,7 +32,7 @@ SiteFilter::SiteFilter(SiteModel& model) : model_(model), record_(model.record()
   y_.resize(record_.outputs.size()), y_moved_.resize(record_.outputs.size());
   site_scale_.assign(model.sites().size(), 1.0);
   state_scale_.assign(size_t(n), 1.0);
-  const std::vector<double> initial = initial_states();
+  const std::vector<double> initial = initial_states(0);
   for (size_t i = 0; i < initial.size(); ++i)
     if (initial[i] != 0) state_scale_[i] = std::abs(initial[i]);
   for (size_t j = 0; j < record_.outputs.size(); ++j) {
@@ -54,7 +54,8 @@ SiteNoise SiteFilter::guess_noise() const {
     std::vector<double> squares;
     const std::vector<double>& y = output.value;
     for (size_t k = 3; k < y.size(); ++k)
-      if (const double d = y[k] - 3 * y[k - 1] + 3 * y[k - 2] - y[k - 3]; std::isfinite(d))
+      if (const double d = y[k] - 3 * y[k - 1] + 3 * y[k - 2] - y[k - 3];
+          std::isfinite(d) && !record_.begins_at(k) && !record_.begins_at(k - 1) && !record_.begins_at(k - 2))
         squares.push_back(d * d / 20);
     double mean = 0;
     for (double s : squares) mean += s / double(squares.size());
@@ -98,12 +99,12 @@ void SiteFilter::allocate(size_t rows, bool with_columns, SitePass& pass) const 
   for (auto& path : pass.path) path.resize(rows * pass.numbers);
 }
 
-std::vector<double> SiteFilter::initial_states() {
+std::vector<double> SiteFilter::initial_states(size_t row) {
   std::vector<double> states = model_.initial_states();
   for (size_t j = 0; j < record_.outputs.size(); ++j)
     if (const int state = model_.measured_state(j); state >= 0)
-      for (double y : record_.outputs[j].value)
-        if (std::isfinite(y)) {
+      for (size_t k = row; k < record_.rows() && (k == row || !record_.begins_at(k)); ++k)
+        if (const double y = record_.outputs[j].value[k]; std::isfinite(y)) {
           states[size_t(state)] = y;
           break;
         }
@@ -248,11 +249,13 @@ void SiteFilter::predict_covariance(const SitePass& pass, size_t row, const Site
 bool SiteFilter::run(size_t rows, const SiteNoise& noise, bool with_columns, SitePass& pass) {
   allocate(rows, with_columns, pass);
   pass.log_variances = pass.squares = 0, pass.readings = 0;
-  const std::vector<double> initial = initial_states();
-  x_ = ConstMap(initial.data(), Eigen::Index(initial.size()));
-  P_.setZero();
-  for (size_t i = 0; i < pass.states; ++i) P_(Eigen::Index(i), Eigen::Index(i)) = initial_variance(i);
   for (size_t row = 0; row < rows; ++row) {
+    if (record_.begins_at(row)) {
+      const std::vector<double> initial = initial_states(row);
+      x_ = ConstMap(initial.data(), Eigen::Index(initial.size()));
+      P_.setZero();
+      for (size_t i = 0; i < pass.states; ++i) P_(Eigen::Index(i), Eigen::Index(i)) = initial_variance(i);
+    }
     if (!correct(row, noise, pass)) return false;
     if (!model_.flow(row, x_.data(), next_.data(), with_columns ? middle_.data() : nullptr)) return false;
     if (!linearize(row, noise, pass)) return false;
@@ -264,9 +267,11 @@ bool SiteFilter::run(size_t rows, const SiteNoise& noise, bool with_columns, Sit
 
 bool SiteFilter::run_frozen(const SitePass& gains, std::span<double> error) {
   const size_t n = gains.states;
-  const std::vector<double> initial = initial_states();
-  x_ = ConstMap(initial.data(), Eigen::Index(initial.size()));
   for (size_t row = 0; row < gains.rows; ++row) {
+    if (record_.begins_at(row)) {
+      const std::vector<double> initial = initial_states(row);
+      x_ = ConstMap(initial.data(), Eigen::Index(initial.size()));
+    }
     if (!model_.outputs(row, x_.data(), y_.data())) return false;
     delta_.setZero();
     for (size_t j = 0; j < gains.outputs; ++j) {
@@ -287,8 +292,9 @@ bool SiteFilter::run_frozen(const SitePass& gains, std::span<double> error) {
 }
 
 bool SiteFilter::simulate(const SitePass& pass, size_t from, size_t to, std::span<double> error) {
-  x_ = ConstMap(&pass.filtered[from * pass.states], Eigen::Index(pass.states));
   for (size_t row = from; row < to; ++row) {
+    if (row == from || record_.begins_at(row))
+      x_ = ConstMap(&pass.filtered[row * pass.states], Eigen::Index(pass.states));
     if (!model_.outputs(row, x_.data(), y_.data())) return false;
     for (size_t j = 0; j < pass.outputs; ++j)
       error[(row - from) * pass.outputs + j] = record_.outputs[j].value[row] - y_[j];

@@ -74,7 +74,8 @@ class SiteFilter {
 
  private:
   void allocate(size_t rows, bool with_columns, SitePass& pass) const;
-  std::vector<double> initial_states();
+  /// Of the record that begins at the row.
+  std::vector<double> initial_states(size_t row);
   double initial_variance(size_t state) const;
   bool correct(size_t row, const SiteNoise& noise, SitePass& pass);
   bool slopes_of_outputs(size_t row, SitePass& pass);

@@ -40,11 +40,14 @@ double SiteFilter::objective_with(const SitePass& pass, const SiteNoise& noise) 
     using Vector = Eigen::Matrix<double, N, 1>;
     using Matrix = Eigen::Matrix<double, N, N>;
     using MapOf = Eigen::Map<const Vector>;
-    Matrix P = Matrix::Zero(n, n), product(n, n);
-    for (size_t i = 0; i < pass.states; ++i) P(Eigen::Index(i), Eigen::Index(i)) = initial_variance(i);
-    Vector difference = Vector::Zero(n), delta(n), gain(n), change(n);  // from the states of the pass
+    Matrix P(n, n), product(n, n);
+    Vector difference(n), delta(n), gain(n), change(n);  // from the states of the pass
     double objective = 0;
     for (size_t row = 0; row < pass.rows; ++row) {
+      if (record_.begins_at(row)) {
+        P.setZero(), difference.setZero();
+        for (size_t i = 0; i < pass.states; ++i) P(Eigen::Index(i), Eigen::Index(i)) = initial_variance(i);
+      }
       delta.setZero();
       for (size_t j = 0; j < pass.outputs; ++j) {
         const size_t at = row * pass.outputs + j;
@@ -81,8 +84,9 @@ void SiteFilter::respond(const SitePass& pass, int site, std::span<const double>
   with_size(pass.states, [&]<int N>() {
     using Vector = Eigen::Matrix<double, N, 1>;
     using MapOf = Eigen::Map<const Vector>;
-    Vector difference = Vector::Zero(n), next(n);
+    Vector difference(n), next(n);
     for (size_t row = 0; row < pass.rows; ++row) {
+      if (record_.begins_at(row)) difference.setZero();
       for (size_t j = 0; j < pass.outputs; ++j) {
         const size_t at = row * pass.outputs + j;
         if (std::isnan(pass.error[at])) {

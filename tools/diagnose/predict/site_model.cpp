@@ -73,12 +73,12 @@ void evaluate_late(Plan& plan, int block) {
   if (entry != plan.order.end() && reader != entry) std::rotate(entry, entry + 1, reader);
 }
 
-/// Sites by the names that the experiment gives.
-void limit_search(std::vector<Site>& sites, const Experiment& experiment, Problems& problems) {
-  if (experiment.sites.empty()) return;
+/// Sites by the names that an experiment gives.
+void limit_search(std::vector<Site>& sites, const std::vector<Wire>& wanted_sites, Problems& problems) {
+  if (wanted_sites.empty()) return;
   KnownNames names;
   for (Site& site : sites) site.is_searched = false, names.add(site.name);
-  for (const Wire& wanted : experiment.sites) {
+  for (const Wire& wanted : wanted_sites) {
     const auto found = std::ranges::find(sites, wanted.source, &Site::name);
     if (found != sites.end())
       found->is_searched = true;
@@ -110,15 +110,20 @@ void reject_what_remembers(const Plan& plan, const std::vector<bool>& needed, Pr
 
 SiteModel::~SiteModel() = default;
 
-SiteModel::SiteModel(const std::string& diagram, const std::string& experiment_path,
+SiteModel::SiteModel(const std::string& diagram, const std::vector<std::string>& paths,
                      const LoadOptions& options) {
   Problems problems;
-  const auto experiment = load_experiment(experiment_path, problems);
-  if (!experiment) throw InputError(std::move(problems));
-  reject_map(*experiment, problems);
-  record_ = read_signal_record(*experiment, problems);
-  if (!problems.has_errors()) build(diagram, driven_by(*experiment, options), *experiment, problems);
-  if (problems.has_errors()) explain_failure(diagram, {experiment_path}, options, std::move(problems));
+  Experiments experiments;
+  std::vector<SignalRecord> records;
+  for (const std::string& path : paths) {
+    experiments.push_back(load_experiment(path, problems));
+    if (!experiments.back()) throw InputError(std::move(problems));
+    reject_map(*experiments.back(), problems);
+    records.push_back(read_signal_record(*experiments.back(), problems));
+  }
+  if (!problems.has_errors()) record_ = joined(records, problems);
+  if (!problems.has_errors()) build(diagram, driven_by(*experiments.front(), options), experiments, problems);
+  if (problems.has_errors()) explain_failure(diagram, paths, options, std::move(problems));
   find_variables();
   for (const RecordedInput& input : record_.inputs)  // the user's name for it
     for (SiteVariable& variable : variables_)
@@ -142,13 +147,23 @@ void SiteModel::complete_units(const Plan& stated) {
     if (variable.minus < 0) complete(variable.name, variable.unit, variable.quantity);
 }
 
-void SiteModel::build(const std::string& path, const LoadOptions& options, const Experiment& experiment,
+/// In the units of the diagram's ports.
+void SiteModel::read_records(const Plan& plan, const Experiments& experiments, Problems& problems) {
+  std::vector<SignalRecord> records;
+  for (const auto& experiment : experiments) {
+    logging(plan, *experiment, problems);
+    records.push_back(read_signal_record(in_units_of_ports(plan, *experiment), problems));
+  }
+  if (!problems.has_errors()) record_ = joined(records, problems);
+}
+
+void SiteModel::build(const std::string& path, const LoadOptions& options, const Experiments& experiments,
                       Problems& problems) {
   const auto diagram = load_diagram(path, options, problems);
   const auto plain = diagram ? compile(*diagram, problems) : nullptr;
   if (!plain || problems.has_errors()) return;
-  logging(*plain, experiment, problems);
-  record_ = read_signal_record(in_units_of_ports(*plain, experiment), problems);
+  read_records(*plain, experiments, problems);
+  if (problems.has_errors()) return;
   const auto rewritten = with_sites(*diagram, *plain, sites_);
   const auto compiled = compile(*rewritten, problems);
   if (!compiled || problems.has_errors()) return;
@@ -163,7 +178,9 @@ void SiteModel::build(const std::string& path, const LoadOptions& options, const
   for (const RecordedInput& input : record_.inputs)
     for (Site& site : sites_)
       if (site.own_signal == driver_of(input.port) + ".y") site.name = site.own_signal = input.port;
-  limit_search(sites_, experiment, problems);
+  std::vector<Wire> wanted;
+  for (const auto& experiment : experiments) std::ranges::copy(experiment->sites, std::back_inserter(wanted));
+  limit_search(sites_, wanted, problems);
   plan_ = std::move(plan);
   find_inputs_and_outputs(problems);
   if (problems.has_errors()) return;

@@ -70,8 +70,9 @@ struct SiteSignal {
 
 class SiteModel {
  public:
-  /// Throws InputError with every problem of diagram and experiment.
-  SiteModel(const std::string& diagram, const std::string& experiment, const LoadOptions& options);
+  /// Throws InputError with every problem of diagram and experiments, which drive and compare the same ports.
+  SiteModel(const std::string& diagram, const std::vector<std::string>& experiments,
+            const LoadOptions& options);
   ~SiteModel();
 
   const SignalRecord& record() const { return record_; }
@@ -111,8 +112,10 @@ class SiteModel {
   bool outputs(size_t row, const double* states, double* to);
 
  private:
-  void build(const std::string& diagram, const LoadOptions& options, const Experiment& experiment,
+  using Experiments = std::vector<std::shared_ptr<const Experiment>>;
+  void build(const std::string& diagram, const LoadOptions& options, const Experiments& experiments,
              Problems& problems);
+  void read_records(const Plan& plan, const Experiments& experiments, Problems& problems);
   void complete_units(const Plan& stated);
   void find_inputs_and_outputs(Problems& problems);
   void find_variables();

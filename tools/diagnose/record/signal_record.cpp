@@ -63,12 +63,54 @@ SignalRecord read_signal_record(const Experiment& experiment, Problems& problems
   }
   record.held_out_from = whole_between<size_t>(
       std::round(double(record.rows()) * (1 - experiment.hold_out_fraction)), 0, record.rows());
-  if (record.held_out_from < fewest_rows) {
-    auto& p = problems.error(experiment.place, "/hold_out", "", "too few rows are left to fit");
-    p.expected = fmt::format("at least {} rows", fewest_rows);
-    p.found = fmt::format("{}", record.held_out_from);
-  }
   return record;
+}
+
+void reject_too_few(const SignalRecord& record, Problems& problems) {
+  if (problems.has_errors() || record.held_out_from >= fewest_rows) return;
+  auto& p = problems.error({}, "/hold_out", "", "too few rows are left to fit");
+  p.expected = fmt::format("at least {} rows", fewest_rows);
+  p.found = fmt::format("{} in {}", record.held_out_from, record.path);
+}
+
+SignalRecord joined(const std::vector<SignalRecord>& records, Problems& problems) {
+  SignalRecord all = records.front();
+  if (records.size() > 1) {
+    const auto ports = [](const SignalRecord& record) {
+      std::vector<std::string> list;
+      for (const RecordedInput& input : record.inputs) list.push_back(input.port);
+      for (const RecordedOutput& output : record.outputs) list.push_back(output.port);
+      return list;
+    };
+    all.time.clear(), all.begins.clear();
+    for (RecordedInput& input : all.inputs) input.value.clear();
+    for (RecordedOutput& output : all.outputs) output.value.clear();
+    const auto append = [&](const SignalRecord& record, size_t from, size_t to) {
+      const auto copy = [&](const std::vector<double>& part, std::vector<double>& whole) {
+        whole.insert(whole.end(), part.begin() + std::ptrdiff_t(from), part.begin() + std::ptrdiff_t(to));
+      };
+      for (size_t row = from; row < to; ++row) all.begins.push_back(row == from);
+      copy(record.time, all.time);
+      for (size_t i = 0; i < all.inputs.size(); ++i) copy(record.inputs[i].value, all.inputs[i].value);
+      for (size_t j = 0; j < all.outputs.size(); ++j) copy(record.outputs[j].value, all.outputs[j].value);
+    };
+    for (const SignalRecord& record : records)
+      if (ports(record) != ports(records.front())) {
+        auto& p = problems.error({}, "/compare", "", "the records do not drive and compare the same ports");
+        p.expected = "those of " + records.front().path + ", in the same order", p.found = record.path;
+        return all;
+      }
+    for (const SignalRecord& record : records) append(record, 0, record.held_out_from);
+    all.held_out_from = all.rows();
+    for (const SignalRecord& record : records) append(record, record.held_out_from, record.rows());
+    if (all.rows() > most_rows) {
+      auto& p = problems.error({}, "/data", "", "too many rows for a diagnosis without roles");
+      p.expected = fmt::format("at most {} rows in all records together", most_rows);
+      p.found = fmt::format("{}", all.rows());
+    }
+  }
+  reject_too_few(all, problems);
+  return all;
 }
 
 }  // namespace loopwright::diagnosis

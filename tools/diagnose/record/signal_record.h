@@ -21,19 +21,28 @@ struct RecordedOutput {
 
 struct SignalRecord {
   std::string title, path;
-  std::vector<double> time;  ///< s, increasing, at any distance
+  std::vector<double> time;  ///< s, increasing within a record, at any distance
   double sample_time = 0;    ///< s; the median distance of the time stamps
   std::vector<RecordedInput> inputs;
   std::vector<RecordedOutput> outputs;
   size_t held_out_from = 0;  ///< first row held out of the identification; rows() without hold-out
+  std::vector<bool> begins;  ///< of several records: rows at which one begins, with states of its own
 
   size_t rows() const { return time.size(); }
-  /// Length of the sample that begins at the row; that of the last row is typical.
-  double step(size_t row) const { return row + 1 < time.size() ? time[row + 1] - time[row] : sample_time; }
+  bool begins_at(size_t row) const { return row == 0 || (row < begins.size() && begins[row]); }
+  /// Length of the sample that begins at the row; that of the last row of a record is typical.
+  double step(size_t row) const {
+    return row + 1 < time.size() && !begins_at(row + 1) ? time[row + 1] - time[row] : sample_time;
+  }
 };
 
 /// What the experiment drives and compares. Problems: nothing drives the diagram, too few rows, a column that
 /// does not change.
 SignalRecord read_signal_record(const Experiment& experiment, Problems& problems);
+
+/// Several records of one diagram, one after the other: what is fitted of each, then what is held out. A
+/// record that is held out in part begins a second time there. `time` is that of each record. Problems:
+/// records with other ports, too many rows together, nothing that is fitted.
+SignalRecord joined(const std::vector<SignalRecord>& records, Problems& problems);
 
 }  // namespace loopwright::diagnosis

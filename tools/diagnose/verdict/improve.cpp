@@ -81,7 +81,7 @@ Improver::Improver(const std::string& diagram, const std::vector<std::string>& e
 
 Additions Improver::additions(std::vector<Member> members) const {
   std::ranges::stable_sort(members, {}, [](const Member& m) { return m.candidate->stage; });
-  Additions result{{}, {}, units_, sizes_};
+  Additions result{{}, {}, {}, units_, sizes_};
   for (const Member& member : members) {
     const Candidate& candidate = *member.candidate;
     AddedEffect added{shown_name(candidate), {}, {}, {}};

@@ -4,20 +4,12 @@
 #include <cmath>
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/verdict/alike_sites.h"
+#include "tools/diagnose/verdict/site_additions.h"
 #include "tools/diagnose/verdict/site_errors.h"
+#include "tools/diagnose/verdict/site_units.h"
 
 namespace loopwright::diagnosis {
 namespace {
-
-std::string unit_text(const std::optional<Unit>& unit) { return unit ? to_string(unit->in_si()) : ""; }
-
-std::string unit_of_coefficient(const SiteModel& model, const SiteTerm& term) {
-  const Site& site = model.sites()[size_t(term.site)];
-  if (term.variable < 0 || term.shape->power == 0) return unit_text(site.unit);
-  const std::optional<Unit>& of_signal = model.variables()[size_t(term.variable)].unit;
-  if (!site.unit || !of_signal) return "";
-  return to_string(site.unit->in_si() * power(of_signal->in_si(), -term.shape->power));
-}
 
 /// Of all fitted numbers, in the order of fitted_numbers().
 Eigen::MatrixXd covariance_of(SiteFitter& fitter, SiteHypothesis h) {
@@ -50,6 +42,10 @@ class Telling {
     covariance_ = covariance_of(fitted_, found_);
     tell_terms(), tell_parameters(), tell_steps();
     result_.not_observable = alike_sites(fitted_, found_);
+    std::vector<bool> optional(found_.terms.size()), none(found_.terms.size());
+    for (size_t t = 0; t < optional.size(); ++t) optional[t] = result_.effects[t].is_optional;
+    result_.additions = site_additions(model_, found_, optional);
+    result_.all_additions = site_additions(model_, found_, none);
     judge();
   }
 
@@ -88,7 +84,11 @@ class Telling {
       }
       for (const SiteRival& rival : search_.rivals)
         if (rival.of == place_[t]) effect.alternatives.push_back(describe(model_, rival.term));
-      if (has_path) effect.force_rms = size_of_term(pass, term);
+      if (has_path) {
+        effect.force_rms = size_of_term(pass, term);
+        effect.is_optional =
+            effect.force_rms < criteria::material_share_of_site * size_at_site(pass, term.site);
+      }
       if (term.shape == &unknown_function())
         for (const std::string& v : effect.variables) result_.remainder_variables.push_back(v);
       result_.effects.push_back(std::move(effect));

@@ -145,7 +145,7 @@ Additions chosen(const Diagnosis& diagnosis, const std::vector<std::string>& nam
     return std::ranges::find(names, added.name) != names.end();
   };
   for (const Additions* all : {&diagnosis.additions, &diagnosis.all_additions}) {
-    Additions some{{}, {}, all->units, all->sizes};
+    Additions some{{}, {}, all->parameters, all->units, all->sizes};
     std::ranges::copy_if(all->effects, std::back_inserter(some.effects), has_name);
     const auto is_there = [&](const std::string& name) {
       return std::ranges::find(some.effects, name, &AddedEffect::name) != some.effects.end();

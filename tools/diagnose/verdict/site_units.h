@@ -1,0 +1,18 @@
+/// Units of what is found at a site, in SI.
+#pragma once
+#include "tools/diagnose/predict/site_model.h"
+
+namespace loopwright::diagnosis {
+
+inline std::string unit_text(const std::optional<Unit>& unit) { return unit ? to_string(unit->in_si()) : ""; }
+
+/// Empty where the site or the variable has no unit.
+inline std::string unit_of_coefficient(const SiteModel& model, const SiteTerm& term) {
+  const Site& site = model.sites()[size_t(term.site)];
+  if (term.variable < 0 || term.shape->power == 0) return unit_text(site.unit);
+  const std::optional<Unit>& of_signal = model.variables()[size_t(term.variable)].unit;
+  if (!site.unit || !of_signal) return "";
+  return to_string(site.unit->in_si() * power(of_signal->in_si(), -term.shape->power));
+}
+
+}  // namespace loopwright::diagnosis
