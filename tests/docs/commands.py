@@ -41,6 +41,7 @@ SHORTENED = [
     ("tools/hidden_effects.sh 20", "tools/hidden_effects.sh 2", "2 scenarios instead of 20"),
     ("tools/conditions.sh 500", "tools/conditions.sh 2", "2 scenarios instead of 500"),
     ("tools/conditions.sh 61", "tools/conditions.sh 2", "2 scenarios instead of 61"),
+    ("tools/any_diagram.sh 31", "tools/any_diagram.sh 2", "2 scenarios instead of 31"),
     ("--evaluations 300", "--evaluations 20", "20 runs of the search instead of 300"),
     ("loopwright sweep diagrams/linear_motor/robustness.sweep.json -o /tmp/robustness",
      "loopwright sweep diagrams/linear_motor/robustness.sweep.json -o /tmp/robustness --shard 0/20", "a twentieth of the runs"),

@@ -178,7 +178,7 @@ TEST(AnyDiagram, DragOfTheMotorIsFoundAtTheMotor) {
 TEST(AnyDiagram, ADeadZoneBeforeAValveThatIsNotMeasuredIsNoOtherLawWithOtherGains) {
   const Diagnosis d = diagnosed(valve({.dead_zone = 0.13}, 1));
   ASSERT_EQ(answer(d), std::vector<std::string>{"command.u: dead_zone(command.u)"}) << to_text(d);
-  expect_parameter(d.effects[0], "half_width", 0.13, 0.01, "");
+  expect_parameter(d.effects[0], "half_width", 0.13, 0.01, "1");
   expect_explained(d);
 }
 
