@@ -82,7 +82,7 @@ export const BlockNode = memo(function BlockNode({ data, selected }: NodeProps<B
       {block && <div className={label_above(node) ? "block-name above" : "block-name"}>{block.name}{block.variant && <span className="variant"> {block.variant}</span>}</div>}
       {tint && <div className="badge share" title={tint.text}>{Math.round(100 * tint.share)} %</div>}
       {severity && <div className={`badge ${severity}`} title="See the list of problems">!</div>}
-      {block?.hardware && <div className="badge hardware" title="A device: deployed, this block moves it. In the studio it is simulated.">⏚</div>}
+      {block?.hardware && <div className="badge hardware" title="A device: deployed, this block moves it. The studio opens no device.">⏚</div>}
       {rate && <div className="rate-mark" title={`sampled every ${block!.sample_time} s`} />}
     </div>
   );

@@ -45,7 +45,7 @@ export function BlockPanel({ block, view }: { block: Block; view: View }) {
       <div className="section">
         <div className="row"><Field value={block.name} label="Name of the block" disabled={!editable} send={(to) => void edit({ intent: "rename_block", name: block.name, to })} /></div>
         <p className="kind">{block.subdiagram ? "Subdiagram" : spaced(block.type)}{block.rate > 0 && <span className="soft"> · every {block.sample_time} s</span>}</p>
-        {block.hardware && <p className="hint">A device. <code>loopwright deploy</code> moves it; in the studio it is simulated, and nothing moves.</p>}
+        {block.hardware && <p className="hint">A device. <code>loopwright deploy</code> moves it; the studio opens no device, and nothing moves.</p>}
         {(help?.sentence || block.description) && <p className="soft description">{block.description || help?.sentence}</p>}
         {block.variants.length > 0 && (
           <label className="row"><span className="name">variant</span>
