@@ -186,6 +186,25 @@ class Conditional(unittest.TestCase):
             moved = sum(self.compare(seed, pathlib.Path(name)) for seed in range(DIAGRAMS))
         self.assertGreater(moved, DIAGRAMS * TICKS)
 
+    def resume(self, seed, folder):
+        """A run that goes on from a checkpoint has the rows of the one that was not set aside, bit for bit."""
+        self.compare(seed, folder)
+        whole, sizes = table_of(folder / "out.csv"), []
+        call = [LOOPWRIGHT, "run", folder / "diagram.json", "-q"]
+        for ticks in (31, 50):  # more than half of them: there is one checkpoint
+            for options in (["-o", folder / "first.csv", "--checkpoint", folder / "c", "--checkpoint-every", str((ticks - 0.5) * TICK)],
+                            ["-o", folder / "rest.csv", "--resume", folder / "c"]):
+                done = subprocess.run(call + options, capture_output=True, text=True)
+                self.assertEqual(done.returncode, 0, f"seed {seed}: {done.stderr}")
+                self.assertEqual(table_of(options[1]), whole, f"seed {seed}, after {ticks} ticks")
+            sizes.append((folder / "c").stat().st_size)
+        self.assertLess(*sizes, "a checkpoint has the rows until then")
+
+    def test_a_run_that_is_resumed_has_the_same_bits(self):
+        with tempfile.TemporaryDirectory() as name:
+            for seed in range(min(DIAGRAMS, 25)):
+                self.resume(seed, pathlib.Path(name))
+
     def oscillator(self, method, states, outputs):
         """sin t enables the integral of a constant, a cosine in passing, while it is above 0.3."""
         inside = {"inputs": {"v": ""}, "blocks": {
