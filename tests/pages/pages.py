@@ -84,6 +84,8 @@ def make_all(pages):
     if (sweep / 'report.html').exists():
         pages.made.append(sweep / 'report.html')
     if os.environ.get('LOOPWRIGHT_DATA'):
+        pages.page('fit', 'fit', emps / 'published.json', emps / 'closed_loop.experiment.json',
+                   '--parameters', 'mass,damping,coulomb,offset')
         pages.page('diagnose', 'diagnose', emps / 'nominal.json', emps / 'open_loop.experiment.json')
 
 

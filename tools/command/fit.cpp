@@ -13,7 +13,7 @@ namespace {
 
 struct Arguments {
   DiagramArguments diagram;
-  std::string json, output;
+  std::string json, output, report;
   std::vector<std::string> experiments, parameters, of_each, held_out, ranges;
   bool offsets = false;
   int iterations = 40;
@@ -57,6 +57,7 @@ void write_fitted(const Arguments& a, const std::string& text) {
 int run(const Arguments& a) {
   require_writable(a.json, "--json");
   require_writable(a.output, "--output");
+  require_writable_file(a.report, "--report");
   reject_two_on_stdout({{"--json", a.json}, {"--output", a.output}});
   reject_swapped(a.diagram.path, a.experiments);
   Progress progress("fit");
@@ -74,8 +75,10 @@ int run(const Arguments& a) {
     if (problems.has_errors()) throw InputError(std::move(problems));
     write_fitted(a, text);
   }
+  if (!a.report.empty())
+    report::write_html(a.report, fit_page(result, std::filesystem::path(a.diagram.path).filename().string()));
   write_json(a.json, [&] { return to_json(result); });
-  give_summary(to_text(result), {a.json, a.output});
+  give_summary(to_text(result), {a.json, a.output, a.report});
   return result.was_interrupted ? interrupted : done;
 }
 
@@ -96,6 +99,7 @@ void add_fit(CLI::App& app, std::function<void(std::function<int()>)> choose) {
   command->add_option("--range", a->ranges, "Bounds of a parameter in SI units: mass=80:120");
   command->add_flag("--offsets", a->offsets, "Take the mean error of every compared signal out");
   command->add_option("-o,--output", a->output, "Write the diagram with the fitted values; - for stdout");
+  command->add_option("--report", a->report, "Write a page with values, intervals and curves (HTML)");
   command->add_option("--json", a->json, "Write values and intervals as JSON; - for stdout");
   command->add_option("--iterations", a->iterations, "At most so many iterations")
       ->check(CLI::PositiveNumber);

@@ -202,15 +202,29 @@ std::vector<FittedSignal> pooled(const FitModel& model, const std::vector<Fitted
   return list;
 }
 
+FitCorrelations correlations_of(const Eigen::MatrixXd& c, const std::vector<FittedParameter*>& parameters) {
+  FitCorrelations result;
+  for (const FittedParameter* parameter : parameters) result.names.push_back(parameter->path);
+  for (Eigen::Index i = 0; i < c.rows(); ++i) {
+    auto& row = result.of_each.emplace_back();
+    for (Eigen::Index k = 0; k < c.cols(); ++k) {
+      const double size = std::sqrt(c(i, i) * c(k, k));
+      row.push_back(i == k ? 1 : size > 0 ? std::clamp(c(i, k) / size, -1.0, 1.0) : 0);
+    }
+  }
+  return result;
+}
+
 void add_intervals(FitModel& model, const Best& best, const std::vector<FittedParameter*>& parameters,
-                   std::vector<std::string>& warnings) {
+                   Fit& result) {
   const FitModel::Weights weights = model.weights_of(best.runs);
   const std::vector<double> errors = model.errors(best.values, weights);
   if (errors.empty()) return;
   const Eigen::MatrixXd j = model.jacobian(best.values, weights, errors);
   if (j.rows() == 0) return;
-  warn_of_what_is_open(j, parameters, warnings);
+  warn_of_what_is_open(j, parameters, result.warnings);
   const Eigen::MatrixXd c = covariance(j, errors, model.rows_of_errors());
+  result.correlations = correlations_of(c, parameters);
   constexpr double t = 2.07;  // two-sided 95 % of Student's distribution with some 22 degrees of freedom
   for (size_t i = 0; i < parameters.size(); ++i) {
     const double half = t * std::sqrt(std::max(0.0, c(Eigen::Index(i), Eigen::Index(i))));
@@ -268,7 +282,7 @@ Fit fit(const std::string& diagram, const std::vector<std::string>& experiments,
     for (FittedRecord& record : result.records)
       for (FittedParameter& p : record.parameters)
         if (p.path == path) all.push_back(&p);
-  if (!result.was_interrupted) add_intervals(model, best, all, result.warnings);
+  if (!result.was_interrupted) add_intervals(model, best, all, result);
   warn_of_limits(all, result.warnings);
   for (const Comparison& c : before)
     if (const int64_t missing = c.missing_samples; missing > 0)
@@ -276,6 +290,7 @@ Fit fit(const std::string& diagram, const std::vector<std::string>& experiments,
           fmt::format("{} sample{} between the rows of the recording {} missing: held inputs "
                       "were held there",
                       missing, missing == 1 ? "" : "s", missing == 1 ? "is" : "are"));
+  result.before = before, result.after = std::move(best.runs);
   result.simulations = model.simulations();
   return result;
 }

@@ -42,12 +42,20 @@ struct FittedRecord {
   std::vector<FittedSignal> signals;
 };
 
+/// How the estimates of the parameters depend on each other: the correlation of each two, from -1 to 1.
+struct FitCorrelations {
+  std::vector<std::string> names;            ///< of all unknowns
+  std::vector<std::vector<double>> of_each;  ///< by row and column; empty without intervals
+};
+
 struct Fit {
   std::vector<FittedParameter> parameters;  ///< shared by all records
   std::vector<FittedSignal> signals;        ///< over all records
   std::vector<FittedRecord> records;
   std::vector<std::string>
       warnings;  ///< parameters at a limit, combinations that the records cannot distinguish
+  FitCorrelations correlations;
+  std::vector<Comparison> before, after;  ///< of each record
   bool has_converged = false, was_interrupted = false;
   int simulations = 0;
 };
@@ -68,5 +76,7 @@ std::string with_fitted_values(const std::string& diagram, const Fit& fit, Probl
 
 std::string to_json(const Fit& fit);
 std::string to_text(const Fit& fit);
+/// `title`: of the page, such as the name of the diagram.
+report::Page fit_page(const Fit& fit, const std::string& title);
 
 }  // namespace loopwright

@@ -85,6 +85,40 @@ TEST_F(Fitted, LostRowsChangeNoParameterAndAreCounted) {
       << to_text(result);
 }
 
+TEST_F(Fitted, ThePageHasTheVerdictTheIntervalsAndTheCurves) {
+  const Fit result = fitted({"mass", "damping"});
+  ASSERT_EQ(result.correlations.names, (std::vector<std::string>{"mass", "damping"}));
+  const double correlation = result.correlations.of_each[0][1];
+  EXPECT_NEAR(correlation, result.correlations.of_each[1][0], 1e-12);
+  EXPECT_EQ(result.correlations.of_each[0][0], 1);
+  EXPECT_GT(std::abs(correlation), 0.01);
+  EXPECT_LT(std::abs(correlation), 1);
+  const report::Page page = fit_page(result, "axis.json");
+  const std::string html = report::to_html(page), text = report::to_text(page);
+  for (const std::string part :
+       {"The fit settled.", "the error falls from", "held-out rows", "simulated before", "simulated after",
+        fmt::format("{:.2f}", correlation).c_str(), "Correlations"})
+    EXPECT_NE(html.find(part), html.npos) << part;
+  // The curves are those of the numbers beside them.
+  const ComparedSignal &before = result.before[0].signals[0], &after = result.after[0].signals[0];
+  EXPECT_EQ(before.measured, after.measured);
+  for (size_t k = 0; k < after.error.size(); ++k)
+    ASSERT_NEAR(after.simulated[k] - after.measured[k], after.error[k], 1e-15) << k;
+  EXPECT_NEAR(result.signals[0].after, 1e-3, 1e-4);
+  EXPECT_GT(before.rmse, 10 * after.rmse);
+}
+
+TEST_F(Fitted, ThePageSaysWhatDidNotSettleAndWhatIsNotDetermined) {
+  FitOptions options;
+  options.most_iterations = 1;
+  Fit result = fit(folder.path("axis.json"), {folder.path("e.json")}, {"mass", "spare"}, {}, options);
+  result.has_converged = false;
+  const std::string html = report::to_html(fit_page(result, "axis.json"));
+  EXPECT_NE(html.find("The fit did not settle"), html.npos);
+  EXPECT_NE(html.find("not determined by these records"), html.npos);
+  EXPECT_NE(html.find("the record does not depend on"), html.npos);
+}
+
 TEST_F(Fitted, TimeInMillisecondsIsTheSameRecord) {
   const Fit seconds = fitted({"mass", "damping"});
   heading = "t [ms],u,x\n", time_unit = 1e-3;
