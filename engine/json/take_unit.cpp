@@ -1,4 +1,6 @@
 #include "engine/json/take_unit.h"
+#include <algorithm>
+#include <atomic>
 #include <fmt/format.h>
 #include "engine/unit/scaled_rate.h"
 
@@ -21,11 +23,23 @@ std::string shown(double number, const Unit& unit) {
   return fmt::format("{:.4g} {}", number, to_string(unit));
 }
 
+std::atomic<bool> changed_readings_are_named = false;
+
+/// Once for each number of a file, however often it is read.
 void warn_of_conversion(const Value& number, double converted, const Unit& wanted, const Reader& reader) {
-  reader.problems.warning(
-      number.place, number.place.pointer(), reader.block,
+  if (!changed_readings_are_named) return;
+  Problem problem;
+  problem.severity = Problem::Severity::warning;
+  problem.place = number.place, problem.pointer = number.place.pointer();
+  problem.block = reader.block;
+  problem.message =
       fmt::format("{}{} is {}; earlier versions read {}", named(number), shown(number.number, *number.unit),
-                  shown(converted, wanted), shown(number.number, wanted)));
+                  shown(converted, wanted), shown(number.number, wanted));
+  const auto is_known = [&](const Problem& other) {
+    return other.message == problem.message && other.place.file == problem.place.file &&
+           other.place.offset == problem.place.offset;
+  };
+  if (std::ranges::none_of(reader.problems.list(), is_known)) reader.problems.add(std::move(problem));
 }
 
 void warn_of_expression(const Value& number, double converted, const Unit& wanted, const Reader& reader) {
@@ -75,6 +89,8 @@ void tell_ambiguity(const Value& number, const Unit& wanted, const Reader& reade
 }
 
 }  // namespace
+
+void name_changed_readings(bool on) { changed_readings_are_named = on; }
 
 UnitTaken take_unit(Value& number, const Unit& wanted, const Reader& reader) {
   const Conversion to_wanted = conversion(*number.unit, wanted);

@@ -3,6 +3,7 @@
 #include "blocks/learning/model_file.h"
 #include "engine/json/file_kind.h"
 #include "engine/json/json.h"
+#include "engine/json/take_unit.h"
 #include "hw/drivers.h"
 #include "hw/realtime/axes.h"
 #include "tools/command/command.h"
@@ -123,6 +124,7 @@ Verdict check_file(const std::string& path, const CheckOptions& options, Problem
 /// Reports every problem of every file at once.
 int check(const std::vector<std::string>& paths, const CheckOptions& options) {
   int wrong = 0;
+  name_changed_readings(true);
   for (const std::string& path : paths) {
     Problems problems;
     Verdict verdict;

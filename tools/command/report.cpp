@@ -19,6 +19,21 @@ std::vector<NamedRecording> named(const std::vector<std::string>& paths,
   return list;
 }
 
+void convert_to_units_of(const Recording& first, Recording& other) {
+  for (Column& column : other.columns) {
+    const Column* const wanted =
+        &column == &other.columns.front() ? &first.columns.front() : first.find(column.name);
+    if (!wanted || wanted->unit == column.unit) continue;
+    const auto from = parse_unit(column.unit), to = parse_unit(wanted->unit);
+    if (!from || !to) continue;
+    const Conversion between = conversion(*from, *to);
+    const bool is_known = between.kind == Conversion::Kind::none || between.kind == Conversion::Kind::turns;
+    if (!is_known) continue;
+    for (double& value : column.values) value = to->from_si(between(from->to_si(value)));
+    column.unit = wanted->unit;
+  }
+}
+
 namespace {
 
 struct Arguments {
@@ -33,6 +48,7 @@ int report_recordings(const Arguments& a) {
   for (const std::string& path : a.recordings)
     recordings.push_back(read_recording(path, problems, {.allow_not_finite = true}));
   if (problems.has_errors()) throw InputError(std::move(problems));
+  for (size_t i = 1; i < recordings.size(); ++i) convert_to_units_of(recordings[0], recordings[i]);
   report::write_html(a.page, recordings_page(named(a.recordings, recordings)));
   return done;
 }

@@ -113,7 +113,7 @@ int run_once(const Arguments& a, Watch* watch = nullptr) {
   tell_text(to_text(plan->warnings));
   if (!a.replay.empty()) return replay_log(a, *plan);
   warn_of_hardware(*plan);
-  const std::vector<Recording> others = read_beside(a);
+  std::vector<Recording> others = read_beside(a);
   const std::vector<FollowedSignal> followed = pairs_to_judge(*diagram, *plan);
   Progress progress("run");
   take_time_after_interruption();  // the computed results are written
@@ -138,6 +138,7 @@ int run_once(const Arguments& a, Watch* watch = nullptr) {
   else if (!a.output.empty())
     write_recording(a.output, result.recording);
   if (!a.report.empty()) {
+    for (Recording& other : others) convert_to_units_of(result.recording, other);
     report::Page page = run_page(diagram.get(), *plan, result, figures, named(a.beside, others));
     if (watch) page.reload_s = reload_s;
     report::write_html(a.report, page);

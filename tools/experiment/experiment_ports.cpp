@@ -12,11 +12,22 @@ namespace {
 /// name.
 bool is_driver(std::string_view port) { return port.starts_with("recorded_"); }
 
+/// The numbers of a port. One wire of a list that is driven, "force.terms[0]", has those of its driver.
+std::vector<Number> numbers_of(const Plan& plan, const std::string& port) {
+  std::vector<Number> numbers = plan.find(port);
+  if (!numbers.empty() || !port.ends_with(']')) return numbers;
+  std::string driver = "recorded_" + port;
+  std::ranges::replace_if(
+      driver, [](char c) { return c == '.' || c == '[' || c == ']'; }, '_');
+  numbers = plan.find(driver + ".value");                       // of a recorded column
+  return numbers.empty() ? plan.find(driver + ".y") : numbers;  // of a placeholder
+}
+
 /// The port's number. Reports a problem if the diagram has no such port, or one of another dimension.
 std::optional<Number> find_port(const Plan& plan, const std::string& port,
                                 const std::optional<std::string>& unit, const Place& place,
                                 const std::string& pointer, Problems& problems) {
-  const std::vector<Number> numbers = plan.find(port);
+  const std::vector<Number> numbers = numbers_of(plan, port);
   if (numbers.size() != 1) {
     auto& p = problems.error(place, pointer, "",
                              numbers.empty() ? fmt::format("the diagram has no port \"{}\"", port)
@@ -42,8 +53,8 @@ std::optional<Number> find_port(const Plan& plan, const std::string& port,
   return numbers[0];
 }
 
-/// Rows that are a thousand samples of the diagram apart, to a hundredth of that, while no sample time is near
-/// them: such a time is rather in ms than in s. It may also be a slow log, so that this is no error.
+/// Rows that are a thousand samples of the diagram apart, to a hundredth of that, while no sample time is
+/// near them: such a time is rather in ms than in s. It may also be a slow log, so that this is no error.
 void check_unit_of_time(const Plan& plan, const Experiment& experiment, Problems& problems) {
   constexpr double near = 20, alike = 0.01;  // times; of the factor
   struct Scale {
@@ -63,13 +74,12 @@ void check_unit_of_time(const Plan& plan, const Experiment& experiment, Problems
       if (std::abs(ratio / scale.factor - 1) < alike) found = &scale, sample_time = block.sample_time;
   }
   if (!found) return;
-  auto& p = problems.warning(experiment.place, "/data", "",
-                             fmt::format("the rows are {:.6g} s apart, and the diagram has samples of {:.6g} s", step,
-                                         sample_time));
-  p.hint = found->factor > 1
-               ? fmt::format("is the time \"{0}\" in {1}? then its heading is \"{0} [{1}]\"",
-                             experiment.time_column, found->unit)
-               : fmt::format("is the unit of the time \"{}\" right?", experiment.time_column);
+  auto& p = problems.warning(
+      experiment.place, "/data", "",
+      fmt::format("the rows are {:.6g} s apart, and the diagram has samples of {:.6g} s", step, sample_time));
+  p.hint = found->factor > 1 ? fmt::format("is the time \"{0}\" in {1}? then its heading is \"{0} [{1}]\"",
+                                           experiment.time_column, found->unit)
+                             : fmt::format("is the unit of the time \"{}\" right?", experiment.time_column);
 }
 
 /// A constant in place of a recorded column, whether that exists or not.

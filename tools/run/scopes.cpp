@@ -145,7 +145,8 @@ std::vector<report::Plot> spectra(const std::vector<NamedRecording>& runs) {
         if (!column || !std::ranges::all_of(column->values, [](double v) { return std::isfinite(v); }))
           continue;
         AmplitudeSpectrum s = amplitude_spectrum(column->values, even_step(run.recording->columns[0].values));
-        if (!s.frequency.empty() && peak_of(*column) > 0)
+        // Of a constant only the rounding of its mean would be seen.
+        if (!s.frequency.empty() && std::ranges::max(column->values) > std::ranges::min(column->values))
           plot.series.push_back(
               {curve_name(signal, run, runs.size()), std::move(s.frequency), std::move(s.amplitude)});
       }

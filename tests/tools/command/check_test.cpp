@@ -18,6 +18,30 @@ class Check : public ::testing::Test {
   DiagramFolder folder;
 };
 
+TEST_F(Check, NamesAChangedReadingOnceAndARunDoesNot) {
+  folder.with("d.json",
+              R"({"loopwright": 1, "solver": {"stop": 1, "step": 0.01}, "blocks": {"t": {"type": "Clock"},
+    "low": {"type": "LowPass", "cutoff": {"value": 2, "unit": "Hz"}, "in": {"u": "t.time"}}}})");
+  const std::string words = "earlier versions read";
+  const Outcome checked = run({"check", "d.json"});
+  EXPECT_EQ(checked.code, 0);
+  ASSERT_NE(checked.err.find(words), checked.err.npos) << checked.err;
+  EXPECT_EQ(checked.err.find(words), checked.err.rfind(words)) << checked.err;
+  const Outcome ran = run({"run", "d.json", "-o", "r.csv"});
+  EXPECT_EQ(ran.code, 0);
+  EXPECT_EQ((ran.out + ran.err).find(words), ran.out.npos) << ran.err;
+}
+
+TEST_F(Check, RecordingsInMillimetresAndMicrometresAreCompared) {
+  folder.with("a.csv", "time [s],x [mm]\n0,0\n1,1\n2,2\n");
+  folder.with("b.csv", "time [ms],x [um]\n0,0\n1000,1000\n2000,2500\n");
+  ASSERT_EQ(run({"report", "a.csv", "b.csv", "-o", "p.html"}).code, 0);
+  const std::string page = text_of(folder.path("p.html"));
+  EXPECT_EQ(page.find("Not compared"), page.npos);
+  EXPECT_NE(page.find("Difference of x"), page.npos);
+  EXPECT_NE(page.find("[0,0,0.5]"), page.npos) << "in the unit of the first";
+}
+
 TEST_F(Check, EveryKindOfFileIsToldByItsKeys) {
   folder.with("data.csv", "t,x\n0,0\n1,1\n2,2\n");
   folder.with(

@@ -1,4 +1,5 @@
 // Experiments and data that do not match are reported with source location.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <cmath>
 #include "tests/tools/experiment/experiment_folder.h"
@@ -43,6 +44,24 @@ TEST_F(Experiments, AComparedColumnInTheWrongUnitIsAnError) {
 TEST_F(Experiments, ADrivingColumnInTheWrongUnitIsAnError) {
   folder.experiment(R"("stage.force": {"column": "F", "unit": "V"})");
   expect_refusal({"V", "N", "stage"});
+}
+
+TEST_F(Experiments, OneWireOfAListIsDriven) {
+  folder.with("stage.json", diagram(R"("push": {"type": "Constant", "value": {"value": 4, "unit": "N"}},
+    "pull": {"type": "Constant", "value": {"value": 100, "unit": "N"}},
+    "sum": {"type": "Sum", "signs": "+-", "in": {"terms": ["push.y", "pull.y"]}},
+    "stage": {"type": "Mass", "mass": {"value": 2, "unit": "kg"}, "in": {"force": "sum.sum"}})",
+                                    R"("method": "rk4", "step": 0.05, "stop": 1)"));
+  // A constant force of 4 N less the 1 N of the record on 2 kg.
+  folder.data(
+      every(0.05, 20), [](double) { return 1.0; }, [](double t) { return 0.75 * t * t; });
+  folder.experiment(R"("sum.terms[1]": {"column": "F", "unit": "N"})");
+  EXPECT_LT(folder.compared().signals[0].rmse, 1e-12);
+  folder.experiment(R"("sum.terms[1]": {"column": "F", "unit": "m"})");
+  EXPECT_THAT(folder.refusal(), ::testing::HasSubstr("expected: a signal in N\n  found: m"));
+  EXPECT_THAT(folder.refusal(), ::testing::Not(::testing::HasSubstr("has no port")));
+  folder.experiment(R"("sum.terms[3]": {"column": "F", "unit": "N"})");
+  EXPECT_THAT(folder.refusal(), ::testing::HasSubstr("has no wire 3"));
 }
 
 TEST_F(Experiments, AColumnInRatesPerMinuteIsNoSpeedInRadians) {
@@ -111,7 +130,8 @@ TEST_F(Experiments, RowsAThousandSamplesApartAreAWarning) {
     for (const std::string& warning : folder.compared().warnings) all += warning;
     return all;
   };
-  EXPECT_TRUE(has(warnings("clock", 1.25), "the rows are 1.25 s apart, and the diagram has samples of 0.00125 s"));
+  EXPECT_TRUE(
+      has(warnings("clock", 1.25), "the rows are 1.25 s apart, and the diagram has samples of 0.00125 s"));
   EXPECT_TRUE(has(warnings("clock", 1.25), "its heading is \"clock [ms]\""));
   EXPECT_FALSE(has(warnings("clock [ms]", 1.25), "apart"));
   EXPECT_FALSE(has(warnings("clock", 0.0125), "apart")) << "a decimated log";
