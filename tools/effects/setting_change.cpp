@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include "engine/diagram/expression.h"
+#include "tools/effects/take_out.h"
 
 namespace loopwright {
 namespace {
@@ -18,6 +19,14 @@ std::optional<double> in_unit(const SettingChange& change, const std::string& wr
   return turn(change.add) / to->scale;
 }
 
+/// Whether this program added the parameter with an effect: its switch, or a number beside the switch.
+bool is_of_an_effect(const Value::Member& parameters, std::string_view name) {
+  return std::ranges::any_of(parameters.value.members, [&](const Value::Member& other) {
+    return other.name.starts_with(switch_prefix) &&
+           (other.name == name || name.starts_with(other.name.substr(switch_prefix.size()) + "_"));
+  });
+}
+
 /// The unit in which a parameter can be added to an expression of the diagram; empty: a bare number.
 std::string unit_beside(const Nest::Level& level, const std::string& expression, const std::string& si) {
   const auto wanted = parse_unit(si);
@@ -30,8 +39,9 @@ std::string unit_beside(const Nest::Level& level, const std::string& expression,
     const auto written = unit ? parse_unit(unit->value.text) : std::nullopt;
     if (written && wanted && written->fits(*wanted)) return unit->value.text;
     // Only the number of an outermost diagram is certainly bare: a block can give a parameter of its
-    // subdiagram a unit.
-    is_bare = is_bare && level.prefix.empty() && parameter && parameter->value.kind == Kind::number;
+    // subdiagram a unit, but not that of an effect.
+    const bool is_number = parameter && parameter->value.kind == Kind::number && level.prefix.empty();
+    is_bare = is_bare && (is_number || (parameter && !unit && is_of_an_effect(*list, use.name)));
   }
   return is_bare ? "" : si;
 }

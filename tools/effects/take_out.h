@@ -10,7 +10,8 @@ inline const std::string switch_value = "=@with";
 /// Whether a setting of a block has it.
 bool mentions_switch(const Value& block);
 /// The parameter of the diagram: "with_cogging".
-inline std::string switch_of(const std::string& effect) { return "with_" + effect; }
+inline const std::string switch_prefix = "with_";
+inline std::string switch_of(const std::string& effect) { return switch_prefix + effect; }
 
 /// The same effect with more blocks. A force is multiplied by the number. An effect of the input or of the
 /// sensor is chosen, or the signal without it; the input is then read by one block alone. What is added to

@@ -51,6 +51,22 @@ TEST(Rows, AnOscillationOfFewRowsBetweenItsTurnsIsJudged) {
   expect_friction(diagnosis_of(machine), 0.8);
 }
 
+/// Its friction stops the mass within a sample: one Runge-Kutta step a sample would leave 27 % of
+/// the speed instead of 20 %.
+TEST(Rows, APoleAsFastAsTheRowsIsSteppedFinely) {
+  FlawedMachine machine;
+  machine.sample_time = 2e-3, machine.damping = 1.6 * machine.mass / machine.sample_time;
+  machine.oscillation_hz = 20, machine.stroke = 2e-3, machine.duration = 8, machine.force_noise = 0.1;
+  expect_nothing(diagnosis_of(machine));
+}
+
+/// An oscillation turns more often in a second and a half than strokes do in a minute.
+TEST(Rows, AShortRecordOfAFastMotionIsEnough) {
+  FlawedMachine machine;
+  machine.oscillation_hz = 20, machine.stroke = 2e-3, machine.coulomb = 0.8, machine.duration = 1.9;
+  expect_friction(diagnosis_of(machine), 0.8);
+}
+
 TEST(Rows, TooFewOfThemGiveNoVerdictAndAreCounted) {
   FlawedMachine machine;
   machine.oscillation_hz = 10, machine.stroke = 0.02, machine.sample_time = 0.02, machine.duration = 5;

@@ -128,6 +128,46 @@ TEST(TakingOut, TwoErrorsOfASensorAddUp) {
     }
 }
 
+/// A mass in kg with one effect's share is an expression of bare numbers, to which the next one adds its own.
+TEST(TakingOut, TwoEffectsShareTheMass) {
+  DiagramFolder folder;
+  folder.with("axis.json", R"({"loopwright": 1, "inputs": {"force": "N"},
+    "outputs": {"position": "mass.position", "velocity": "mass.velocity", "net_force": "net_force.sum"},
+    "blocks": {"net_force": {"type": "Sum", "in": {"terms": ["force"]}},
+               "mass": {"type": "Mass", "mass": {"value": 2, "unit": "kg"}, "in": {"force": "net_force.sum"}}}})");
+  folder.with("top.json",
+              R"({"loopwright": 1, "solver": {"method": "rk4", "step": 0.0001, "stop": 0.2}, "blocks": {
+    "push": {"type": "Constant", "value": {"value": 1, "unit": "N"}},
+    "axis": {"diagram": "axis.json", "in": {"force": "push.y"}}}, "log": ["axis.position"]})");
+  folder.with("flat.json",
+              R"({"loopwright": 1, "solver": {"method": "rk4", "step": 0.0001, "stop": 0.2}, "blocks": {
+    "push": {"type": "Constant", "value": {"value": 1, "unit": "N"}},
+    "net": {"type": "Sum", "in": {"terms": ["push.y"]}},
+    "mass": {"type": "Mass", "mass": {"value": 2, "unit": "kg"}, "in": {"force": "net.sum"}}},
+    "log": ["mass.position"]})");
+  const RolePorts nested{
+      {"position", "axis.position"}, {"velocity", "axis.velocity"}, {"force", "axis.net_force"}};
+  const RolePorts flat{{"position", "mass.position"}, {"velocity", "mass.velocity"}, {"force", "net.sum"}};
+  for (const auto& [name, roles, position] :
+       {std::tuple{"top.json", nested, "axis.position"}, std::tuple{"flat.json", flat, "mass.position"}}) {
+    const auto nominal = source(folder.path(name));
+    auto file = nominal;
+    std::vector<std::pair<std::string, std::string>> out;
+    for (const char* effect_name : {"backlash", "flexible_mode", "inertia"}) {
+      const Effect effect = effect_named(effect_name);
+      std::vector<double> fitted;
+      for (const EffectParameter& p : effect.parameters)
+        if (p.is_fitted) fitted.push_back(range_of(p, axis_sizes()).start);
+      const Insertion insertion = inserted(file, {roles, {}, {}, true}, effect, fitted);
+      out.emplace_back(insertion.taken_out_by, "0");
+      file = std::make_shared<SourceFile>(SourceFile{file->name, insertion.text});
+    }
+    const RunResult bare = run_text(*nominal), all = run_text(*file), none = run_text(*file, out);
+    EXPECT_LE(largest_difference(bare, none, position), 1e-12) << file->text;
+    EXPECT_GE(largest_difference(bare, all, position), 1e-4) << file->text;
+  }
+}
+
 /// Even if an effect reads the command in several blocks, an experiment drives one port.
 TEST(TakingOut, AnEffectOfADrivenPortIsDrivenAtOnePort) {
   DiagramFolder folder;

@@ -74,10 +74,10 @@ void keep_only(Plan& plan, const std::vector<Number>& wanted) {
   });
 }
 
-double step_by_samples(Plan& plan, const AxisRecord& record) {
-  if (!record.duration.empty()) divide_ticks(plan);
+double step_by_samples(Plan& plan, const AxisRecord& record, int steps) {
+  if (!record.duration.empty() || steps > 1) divide_ticks(plan);
   const double ticks = record.sample_time / plan.clock.time(1);
-  plan.step_ticks = std::max<int64_t>(1, std::llround(ticks));
+  plan.step_ticks = std::max<int64_t>(1, std::llround(ticks / steps));
   return ticks;
 }
 
@@ -125,23 +125,19 @@ AxisModel::AxisModel(const std::string& path, const std::string& experiment_path
     if (behind >= 0 && is_sampled_between(*changed, behind, port.number)) port.number = behind;
   }
   silence(*changed, input_), silence(*changed, injected_);
-  sample_ticks_ = step_by_samples(*changed, record_);
   std::vector<Number> wanted{force_, position_, velocity_};
   for (const MeasuredPort& port : record_.measured) wanted.push_back(port.number);
   keep_only(*changed, wanted);
   if (position_ >= 0)
     if (const auto unit = plan->unit_of(position_)) position_unit_ = to_string(*unit);
-  plan_ = std::move(changed);
-  run_ = std::make_unique<Run<double>>(*plan_);
-  switch_off_noise(*run_, *plan_);
-  numbers_ = reinterpret_cast<double*>(run_->arena().data());
+  run_with(*changed, 1);
   for (Number n : wanted) all_outputs_ |= n >= 0 && n < plan_->signals && n != force_;
   inertia_parameter_ = inertia_parameter(*plan_, *run_, force_);
   if (!inertia_parameter_.empty()) own_inertia_ = *run_->parameter(inertia_parameter_);
   for (int i = 0; i < plan_->states; ++i) seen_.push_back(i);
   look_between_input_and_force();
   work_out_driving_force(force_unit);
-  const LinearAxis linear = linearize_motion();
+  const LinearAxis linear = shorten_steps(*changed);
   keep_seen_states(linear);
   nominal_inertia_ = linear.inertia, nominal_damping_ = linear.damping;
   if (std::isfinite(nominal_inertia_) && nominal_inertia_ > 0) return;
@@ -153,6 +149,37 @@ AxisModel::AxisModel(const std::string& path, const std::string& experiment_path
 
 AxisModel::~AxisModel() = default;
 AxisModel::AxisModel(AxisModel&&) noexcept = default;
+
+void AxisModel::run_with(const Plan& plan, int steps) {
+  auto own = std::make_shared<Plan>(plan);
+  sample_ticks_ = step_by_samples(*own, record_, steps);
+  plan_ = std::move(own), steps_a_sample_ = steps;
+  run_ = std::make_unique<Run<double>>(*plan_);
+  switch_off_noise(*run_, *plan_);
+  numbers_ = reinterpret_cast<double*>(run_->arena().data());
+}
+
+/// Until half a step leads to the same motion.
+LinearAxis AxisModel::shorten_steps(const Plan& plan) {
+  LinearAxis linear = linearize_motion();
+  if (record_.is_map || !plan_->steps_between_samples) return linear;
+  for (int steps = 1; steps < criteria::most_steps_a_sample; steps *= 2) {
+    run_with(plan, 2 * steps);
+    LinearAxis shorter = linearize_motion();
+    const auto poles = [](const LinearAxis& axis) {
+      Eigen::VectorXd sizes = axis.A.eigenvalues().cwiseAbs();
+      std::ranges::sort(sizes);
+      return sizes;
+    };
+    const double change = (poles(linear) - poles(shorter)).cwiseAbs().maxCoeff();
+    if (change < criteria::same_pole) {
+      run_with(plan, steps);
+      break;
+    }
+    linear = std::move(shorter);
+  }
+  return linear;
+}
 
 /// Backward from the measured ports through the linear axis.
 void AxisModel::keep_seen_states(const LinearAxis& linear) {

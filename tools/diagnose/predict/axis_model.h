@@ -42,7 +42,7 @@ void keep_only(Plan& plan, const std::vector<Number>& wanted);
 
 /// A solver step becomes a sample of the record, whose samples may have any length. Returns the ticks of a
 /// sample time.
-double step_by_samples(Plan& plan, const AxisRecord& record);
+double step_by_samples(Plan& plan, const AxisRecord& record, int steps);
 
 class AxisModel {
  public:
@@ -79,6 +79,8 @@ class AxisModel {
   double position() const;
   double velocity() const;
   double measured(size_t port) const;
+  /// Steps of the method in a sample: several if a pole of the diagram is that fast.
+  int steps_a_sample() const { return steps_a_sample_; }
   /// Observable states.
   std::span<const int> states() const { return seen_; }
   double state(int index) const;
@@ -110,12 +112,15 @@ class AxisModel {
                                             const Eigen::VectorXd& from);
   double held_force(double input);
   double net_force_along(double position, double velocity, double input, double force);
+  void run_with(const Plan& plan, int steps);
+  LinearAxis shorten_steps(const Plan& plan);
   LinearAxis linearize_motion();
   void keep_seen_states(const LinearAxis& linear);
   Eigen::VectorXd sample_from(const Eigen::VectorXd& states, double input, double force);
 
   std::shared_ptr<const Plan> plan_;
   double sample_ticks_ = 1;
+  int steps_a_sample_ = 1;
   std::unique_ptr<Run<double>> run_;
   double* numbers_ = nullptr;  // the arena's
   Number input_ = -1, injected_ = -1, force_ = -1, position_ = -1, velocity_ = -1;

@@ -138,7 +138,7 @@ class Search {
       proposals.push_back(pair);
     }
     const double least =
-        std::max(criteria::least_gain, criteria::least_gain_per_row * double(fitted_numbers(trials_)));
+        std::max(criteria::least_gain, criteria::least_gain_per_row * judged_numbers(trials_));
     std::vector<std::pair<double, Estimate>> tried;
     for (const Proposal& proposal : proposals) {
       Estimate trial = refined(applied(proposal, best_.members), 2);

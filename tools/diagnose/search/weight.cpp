@@ -105,10 +105,16 @@ Weight weigh(const Trials& trials, Estimate& estimate, size_t member) {
 
 }  // namespace
 
+double judged_numbers(const Trials& trials) {
+  const double sample_time = trials.list.front().model->record().sample_time;
+  return double(fitted_numbers(trials)) * std::min(1.0, sample_time / judged_row_s);
+}
+
 double material(const Trials& trials, const Estimate& estimate, const Weight& weight) {
-  const double n = double(fitted_numbers(trials));
-  const double least_force_now =
-      std::max(least_force * trials.force_rms, least_force_to_noise * estimate.noise.white);
+  const double n = judged_numbers(trials);
+  const double white =
+      estimate.noise.white * std::sqrt(n / double(std::max<size_t>(1, fitted_numbers(trials))));
+  const double least_force_now = std::max(least_force * trials.force_rms, least_force_to_noise * white);
   // A delay acts only for moments, but is clearly visible.
   const double size = std::max(weight.force_rms / least_force_now, weight.wald / (plain_wald_per_row * n));
   return std::min({weight.wald / std::max(least_wald, least_wald_per_row * n), size,

@@ -17,6 +17,9 @@ struct Weight {
 /// Computes the covariance of an estimate with the given noise, and the weight of every member.
 std::vector<Weight> weigh_all(Trials& trials, Estimate& estimate);
 
+/// Number of fitted rows × ports; rows at a higher rate than once in criteria::judged_row_s count as parts.
+double judged_numbers(const Trials& trials);
+
 /// How far a member is above all thresholds of certainty and force; a member below one of them is not
 /// accepted.
 double material(const Trials& trials, const Estimate& estimate, const Weight& weight);

@@ -19,9 +19,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// The diagram cut open at its input, without controller and noise.
 class FreeAxis {
  public:
-  FreeAxis(const Improvement& diagram, const Experiment& recorded, const AxisRecord& record,
+  FreeAxis(const Improvement& diagram, const Experiment& recorded, const AxisModel& model,
            const LoadOptions& options)
-      : record_(record) {
+      : record_(model.record()) {
     Problems problems;
     const Value root = parse_json(diagram.file, problems);
     const auto plan_with = [&](const LoadOptions& with) {
@@ -53,7 +53,7 @@ class FreeAxis {
       shows_output_ |= measured_[i] >= 0 && measured_[i] < plan_->signals;
     }
     silence(*plan_, input_);
-    sample_ticks_ = step_by_samples(*plan_, record);
+    sample_ticks_ = step_by_samples(*plan_, record_, model.steps_a_sample());
     keep_only(*plan_, {moving_[0], moving_[1], measured_[0], measured_[1]});
     run_ = std::make_unique<Run<double>>(*plan_);
     switch_off_noise(*run_, *plan_);
@@ -206,7 +206,7 @@ FreeRun run_freely(const Improvement& diagram, const Improver& improver, const L
     AxisModel& model = *trials.list[t].model;
     const size_t length = rows_of_window(model, noise);
     result.horizon_s = std::max(result.horizon_s, double(length) * model.record().sample_time);
-    FreeAxis axis(diagram, *improver.experiments()[t], model.record(), load);
+    FreeAxis axis(diagram, *improver.experiments()[t], model, load);
     Windows(axis, trials.list[t], inverse[t], result).run(length);
   }
   return result;
