@@ -43,8 +43,8 @@ constexpr double same_pole = 1e-4;
 /// [steps in a sample] A pole that would need more has settled within a sample anyway.
 constexpr int most_steps_a_sample = 64;
 
-/// [reversals] Of a record of less than two seconds that supports a verdict even with fewer than plenty_of_rows:
-/// an oscillation shows as much in a short time as other motions do in a long one.
+/// [reversals] Of a record of less than two seconds that supports a verdict even with fewer than
+/// plenty_of_rows: an oscillation shows as much in a short time as other motions do in a long one.
 constexpr int plenty_of_reversals = 20;
 
 // Noise.
@@ -98,8 +98,9 @@ constexpr double independent_block_s = 0.5;
 /// [χ²] Five standard deviations; and shares of the rows, below which a model is not exact enough to tell: of
 /// certainty, and of a size that needs no large force, because a delay acts only for moments.
 constexpr double least_wald = 25, least_wald_per_row = 0.001, plain_wald_per_row = 0.01;
-/// [s] Rows that are closer count as parts of one for these shares, and beside the noise of as long a mean: a small
-/// error of the model gains with the time of the record, not with its rate, as white force noise has it.
+/// [s] Rows that are closer count as parts of one for these shares, and beside the noise of as long a mean: a
+/// small error of the model gains with the time of the record, not with its rate, as white force noise has
+/// it.
 constexpr double judged_row_s = 1e-3;
 /// [force of the input, rms] Of a material effect; and of the part of it that no other effect could replace.
 constexpr double least_force = 0.005, least_unique_force = 0.001;

@@ -9,7 +9,9 @@
 #include "tools/diagnose/search/doubt.h"
 #include "tools/diagnose/search/remaining_force.h"
 #include "tools/diagnose/verdict/acceptance.h"
+#include "tools/diagnose/verdict/found_parameters.h"
 #include "tools/diagnose/verdict/improve.h"
+#include "tools/diagnose/verdict/plots.h"
 #include "tools/diagnose/search/prepare.h"
 #include "tools/diagnose/search/search.h"
 #include "tools/experiment/repeated_records.h"
@@ -36,23 +38,6 @@ const Effect& effect_of(const Catalogue& catalogue, const Candidate* candidate) 
   return catalogue.effects[size_t(candidate - catalogue.candidates.data())];
 }
 
-/// "(N*m)*s/(rad)" in usual notation: parentheses only around products of several units, and not around the
-/// first factor.
-std::string without_idle_brackets(const std::string& unit) {
-  std::string text;
-  for (size_t i = 0; i < unit.size(); ++i) {
-    const size_t end = unit[i] == '(' ? unit.find(')', i) : unit.npos;
-    const std::string inside = end == unit.npos ? "" : unit.substr(i + 1, end - i - 1);
-    const bool is_one = std::ranges::all_of(inside, [](unsigned char c) { return std::isalpha(c); });
-    const bool is_raised = end + 1 < unit.size() && unit[end + 1] == '^';
-    const bool idle =
-        !inside.empty() && inside.find('(') == inside.npos && (is_one || (i == 0 && !is_raised));
-    text += idle ? inside : std::string(1, unit[i]);
-    if (idle) i = end;
-  }
-  return text;
-}
-
 /// Whether the result explains everything, including a motion that leads its input: only a load that swings
 /// or rattles makes an axis look like that.
 bool explains_lead(const Conclusion& conclusion) {
@@ -68,31 +53,6 @@ void suggest(std::vector<SuggestedExperiment>& list, SuggestedExperiment experim
     return e.between == experiment.between && e.and_effect == experiment.and_effect;
   });
   if (!is_there) list.push_back(std::move(experiment));
-}
-
-/// Values and intervals of a member's parameters, in SI.
-std::vector<DiagnosedParameter> parameters_of_member(const Conclusion& conclusion, size_t index,
-                                                     const MachineUnits& units) {
-  const Estimate& estimate = conclusion.estimate;
-  std::vector<Member> members = estimate.members;
-  const std::vector<FreeParameter> free = free_parameters(members);
-  std::vector<DiagnosedParameter> list;
-  for (size_t i = 0; i < free.size(); ++i) {
-    if (free[i].member != index) continue;
-    const CandidateParameter& range = range_of(members, free[i]);
-    const double value = value_of(members, free[i]);
-    const double half =
-        1.96 * std::sqrt(std::max(0.0, estimate.covariance(Eigen::Index(i), Eigen::Index(i))));
-    list.push_back({range.name, without_idle_brackets(unit_in(range.unit, units)), value, value - half,
-                    value + half, range.ends_at(value)});
-  }
-  if (const Member& member = members[index]; member.is_part_of_turn) {
-    const CandidateParameter& pitch = member.candidate->nonlinear[0];
-    const double value = member.nonlinear[0];
-    list.push_back({pitch.name, without_idle_brackets(unit_in(pitch.unit, units)), value, value, value, false,
-                    conclusion.turn / value});
-  }
-  return list;
 }
 
 }  // namespace
@@ -229,6 +189,7 @@ void tell_effects(const Conclusion& conclusion, const Staircase& staircase, cons
                           effect.title,
                           effect.physics,
                           parameters_of_member(conclusion, index, units),
+                          wave_of_member(conclusion, index, units),
                           conclusion.inclusion[index],
                           {},
                           conclusion.weights[index].force_rms,
@@ -266,19 +227,6 @@ void tell_errors(const Trials& trials, const Conclusion& conclusion, const Inqui
   result.white_force = noise.white, result.slow_force = noise.slow();
   result.slow_force_time_s = -trials.list.front().model->record().sample_time / std::log(noise.memory);
   result.measurement_noise = noise.measurement;
-}
-
-/// Of the first record.
-Diagnosis::Curves residual_curves(const Trials& trials, const InverseDynamics& inverse,
-                                  const Conclusion& conclusion) {
-  Diagnosis::Curves curves;
-  curves.position = inverse.path.position;
-  curves.before = residual_with(trials.list.front(), inverse, {});
-  curves.after = residual_with(trials.list.front(), inverse, conclusion.estimate.members);
-  if (!trials.has_map()) curves.velocity = inverse.path.velocity, curves.time = inverse.motion.time;
-  for (size_t k = 0; k < inverse.motion.rows(); ++k)
-    if (!inverse.motion.counts[k]) curves.before[k] = curves.after[k] = std::nan("");
-  return curves;
 }
 
 Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std::string>& experiments,
@@ -351,7 +299,7 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
     result.experiment_ports = improved.moved, result.taken_out_by = improved.taken_out_by;
     result.improved_notes = notes_of(options.writes_all ? result.all_additions : result.additions);
   }
-  result.curves = residual_curves(trials, inverse.front(), conclusion);
+  add_plots(trials, inverse.front(), accepted, improver, units, options.load, result);
   return result;
 }
 

@@ -18,6 +18,7 @@ struct DiagnosedParameter {
 struct DiagnosedEffect {
   std::string name, form, title, physics;
   std::vector<DiagnosedParameter> parameters;
+  std::vector<DiagnosedParameter> wave;   ///< amplitude and phase of a sine and a cosine; empty without them
   double inclusion = 0;                   ///< probability that it is present
   std::vector<std::string> alternatives;  ///< indistinguishable from it by this record
   double force_rms = 0;                   ///< SI
@@ -27,6 +28,11 @@ struct DiagnosedEffect {
   std::string site, site_unit;
   std::vector<std::string> variables;
 };
+
+/// Parameters of a pattern, sine sin x + cosine cos x, in the files of effects.
+inline constexpr std::string_view sine_name = "sine", cosine_name = "cosine";
+/// What a reader is told: amplitude and phase in place of sine and cosine.
+std::vector<DiagnosedParameter> told_parameters(const DiagnosedEffect& effect);
 
 /// A parameter of the diagram that is not as the diagram states.
 struct MovedParameter {
@@ -92,6 +98,13 @@ struct Additions {
   RecordSizes sizes;
 };
 
+/// The force that only this effect explains, over the variable that determines most of it.
+struct MissingTerm {
+  std::string effect, site, variable, unit;  ///< site: a port of the diagram
+  std::vector<double> at, found;        ///< what the diagram with all other effects leaves; NaN: not counted
+  std::vector<double> shape_at, shape;  ///< force of the effect: means over narrow ranges of the variable
+};
+
 enum class Verdict { nothing_missing, explained, partly_explained, unexplained };
 std::string_view name_of(Verdict verdict);
 
@@ -136,6 +149,12 @@ struct Diagnosis {
   struct Curves {
     std::vector<double> time, position, velocity, before, after;
   } curves;  ///< force residuals of the first record; a map has neither times nor speeds
+  std::vector<MissingTerm> terms;  ///< of the effects that are not optional, in the first record
+  struct Whiteness {
+    std::vector<double> lag_s, before, after;  ///< correlation of prediction errors so far apart
+    double most = 0;                           ///< 95 % of the correlations of white errors are smaller
+  } whiteness;
+  report::Graph picture;  ///< the improved diagram; empty without effects
 };
 
 /// Stable keys, docs/diagnose.md.

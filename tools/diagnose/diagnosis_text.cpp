@@ -28,6 +28,14 @@ std::string words_of_improvement(const Diagnosis& d) {
   return text;
 }
 
+std::vector<DiagnosedParameter> told_parameters(const DiagnosedEffect& effect) {
+  if (effect.wave.empty()) return effect.parameters;
+  std::vector<DiagnosedParameter> list = effect.wave;
+  for (const DiagnosedParameter& p : effect.parameters)
+    if (p.name != sine_name && p.name != cosine_name) list.push_back(p);
+  return list;
+}
+
 std::string to_text(const Diagnosis& d) {
   if (!d.has_roles) return any_diagram_text(d);
   std::string text;
@@ -51,7 +59,7 @@ std::string to_text(const Diagnosis& d) {
                      effect.form.empty() ? "" : " of the " + effect.form, effect.title,
                      shown(effect.force_rms, d.force_unit), effect.inclusion,
                      effect.is_optional ? ", optional" : ""));
-    for (const DiagnosedParameter& p : effect.parameters)
+    for (const DiagnosedParameter& p : told_parameters(effect))
       if (p.times_a_turn > 0)
         line(fmt::format("    {} = {}  ({:.0f} times a turn)", p.name, shown(p.value, p.unit),
                          p.times_a_turn));

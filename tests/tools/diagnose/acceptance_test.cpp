@@ -68,6 +68,38 @@ TEST(Acceptance, TheStaircaseOfTheSimulationFalls) {
   EXPECT_LT(d.simulation_horizon_s, 0.3);
 }
 
+/// What the page draws is the axis: each force over its own variable, white errors, and the added blocks.
+TEST(Acceptance, ThePlotsShowEachTermAtItsSite) {
+  HiddenAxis axis;
+  Physics truth = axis.nominal();
+  truth.coulomb_n = 0.2, truth.cogging = {0.15, 0.024, 0.3};
+  const Diagnosis d = diagnose(axis.diagram(), {axis.record("record", truth, there_and_back(0.2, 0.4))});
+  const auto largest = [](const std::vector<double>& list) {
+    double most = 0;
+    for (double v : list) most = std::max(most, std::abs(v));
+    return most;
+  };
+  ASSERT_EQ(d.terms.size(), 2u);
+  for (const MissingTerm& term : d.terms) {
+    const bool is_cogging = term.effect == "cogging";
+    EXPECT_EQ(term.variable, is_cogging ? "Position" : "Velocity");
+    EXPECT_NE(term.site, "");
+    EXPECT_NEAR(largest(term.shape), is_cogging ? 0.15 : 0.2, 0.015);
+    EXPECT_EQ(term.at.size(), term.found.size());
+  }
+  const auto cogging = std::ranges::find(d.effects, "cogging", &DiagnosedEffect::name);
+  const std::vector<DiagnosedParameter> told = told_parameters(*cogging);
+  ASSERT_EQ(told.size(), 3u);
+  EXPECT_EQ(told[0].name, "amplitude");
+  EXPECT_NEAR(told[0].value, 0.15, 0.003);
+  EXPECT_LT(told[0].high - told[0].low, 0.01);
+  EXPECT_EQ(told[1].name, "phase");
+  EXPECT_GT(largest(d.whiteness.before), 0.5);
+  EXPECT_LT(largest(d.whiteness.after), 3 * d.whiteness.most);
+  EXPECT_GE(std::ranges::count(d.picture.nodes, "added", &report::GraphNode::room), 2);
+  EXPECT_THAT(report::to_html(diagnosis_page(d)), testing::HasSubstr("over position"));
+}
+
 /// No effect that is named has an interval with zero in it.
 TEST(Acceptance, NoIntervalContainsZero) {
   HiddenAxis axis;

@@ -112,7 +112,7 @@ class FlawedAxis {
   }
 
   void write_record() {
-    constexpr double finest = 2e-5;
+    constexpr double finest = 2e-5, steps_a_decay = 500;
     const double T = machine_.sample_time;
     const size_t rows = size_t(machine_.duration / T);
     const double cutoff = 2 * std::numbers::pi * std::min(12.0, 0.04 / T), gain = cutoff * cutoff;
@@ -153,7 +153,8 @@ class FlawedAxis {
       if (!is_lost) out << line;
       if (repeats) out << line;
       const double push = machine_.force_noise * normal();
-      const int substeps = std::max(20, int(std::ceil(step / finest)));
+      const double decays = machine_.damping / machine_.mass * step;
+      const int substeps = std::max({20, int(std::ceil(step / finest)), int(steps_a_decay * decays)});
       for (int i = 0; i < substeps; ++i)
         advance(x, v, begin + rise * (i + 0.5) / substeps + push + slow, step / substeps);
       const double memory = std::exp(-T / 0.03);

@@ -159,10 +159,11 @@ void AxisModel::run_with(const Plan& plan, int steps) {
   numbers_ = reinterpret_cast<double*>(run_->arena().data());
 }
 
-/// Until half a step leads to the same motion.
+/// Until half a step leads to the same motion. Dry friction with memory remembers every step: linearized over
+/// several steps, it would be at another place each time.
 LinearAxis AxisModel::shorten_steps(const Plan& plan) {
   LinearAxis linear = linearize_motion();
-  if (record_.is_map || !plan_->steps_between_samples) return linear;
+  if (record_.is_map || !plan_->steps_between_samples || run_->has_accepted_memory()) return linear;
   for (int steps = 1; steps < criteria::most_steps_a_sample; steps *= 2) {
     run_with(plan, 2 * steps);
     LinearAxis shorter = linearize_motion();

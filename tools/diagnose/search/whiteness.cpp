@@ -9,10 +9,26 @@
 namespace loopwright::diagnosis {
 namespace {
 
-/// Of one port, with this many rows added up.
-double portmanteau(const Trials& trials, const std::vector<Fitted>& fitted, size_t port, size_t together) {
+/// n Σ ρ².
+double portmanteau(const LaggedProducts& products) {
+  const std::vector<double>& squares = products.sum;
+  double sum = 0;
+  for (size_t lag = 1; lag < squares.size(); ++lag) sum += squares[lag] * squares[lag];
+  return squares[0] > 0 ? products.rows * sum / (squares[0] * squares[0]) : 0;
+}
+
+/// A normal random number; the same for the same row.
+double normal(size_t record, size_t row) {
+  const UniformPair u = uniform_pair(1, record, row);
+  return std::sqrt(-2 * std::log(u.first)) * std::cos(2 * std::numbers::pi * u.second);
+}
+
+}  // namespace
+
+LaggedProducts lagged_products(const Trials& trials, const std::vector<Fitted>& fitted, size_t port,
+                               size_t together) {
   constexpr size_t lags = criteria::portmanteau_lags;
-  double squares[lags + 1] = {}, n = 0;
+  LaggedProducts products{std::vector<double>(lags + 1)};
   std::vector<double> error;
   std::vector<char> counts;
   for (size_t t = 0; t < trials.list.size(); ++t) {
@@ -27,32 +43,24 @@ double portmanteau(const Trials& trials, const std::vector<Fitted>& fitted, size
     }
     for (size_t k = 0; k < error.size(); ++k) {
       if (!counts[k]) continue;
-      n += 1;
+      products.rows += 1;
       for (size_t lag = 0; lag <= std::min(lags, k); ++lag)
-        if (counts[k - lag]) squares[lag] += error[k] * error[k - lag];
+        if (counts[k - lag]) products.sum[lag] += error[k] * error[k - lag];
     }
   }
-  double sum = 0;
-  for (size_t lag = 1; lag <= lags; ++lag) sum += squares[lag] * squares[lag];
-  return squares[0] > 0 ? n * sum / (squares[0] * squares[0]) : 0;
+  return products;
 }
 
-/// A normal random number; the same for the same row.
-double normal(size_t record, size_t row) {
-  const UniformPair u = uniform_pair(1, record, row);
-  return std::sqrt(-2 * std::log(u.first)) * std::cos(2 * std::numbers::pi * u.second);
+size_t rows_in_a_lag(const Trials& trials) {
+  const double sample_time = trials.list.front().model->record().sample_time;
+  return std::max<size_t>(1, whole_count(std::round(criteria::portmanteau_lag_s / sample_time)));
 }
-
-}  // namespace
 
 double portmanteau(const Trials& trials, const std::vector<Fitted>& fitted) {
-  const double sample_time = trials.list.front().model->record().sample_time;
-  const size_t together =
-      std::max<size_t>(1, whole_count(std::round(criteria::portmanteau_lag_s / sample_time)));
   double most = 0;
   for (size_t port = 0; port < trials.ports(); ++port)
-    for (const size_t rows : {size_t(1), together})
-      most = std::max(most, portmanteau(trials, fitted, port, rows));
+    for (const size_t rows : {size_t(1), rows_in_a_lag(trials)})
+      most = std::max(most, portmanteau(lagged_products(trials, fitted, port, rows)));
   return most;
 }
 

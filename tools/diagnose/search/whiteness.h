@@ -4,6 +4,17 @@
 
 namespace loopwright::diagnosis {
 
+/// Σ e(k) e(k - lag) over the fitted rows, for lags from 0 to 40.
+struct LaggedProducts {
+  std::vector<double> sum;
+  double rows = 0;
+};
+/// Of one port, with this many rows added up.
+LaggedProducts lagged_products(const Trials& trials, const std::vector<Fitted>& fitted, size_t port,
+                               size_t together);
+/// As many as make a lag of criteria::portmanteau_lag_s.
+size_t rows_in_a_lag(const Trials& trials);
+
 /// n Σ ρ² over 40 lags, of the port and the spacing at which it is greatest: rows, and sums of rows over a
 /// millisecond. Near 40 when the errors are white.
 double portmanteau(const Trials& trials, const std::vector<Fitted>& fitted);

@@ -32,7 +32,7 @@ export class DiagramView {
     this.graph = JSON.parse(figure.querySelector("script").textContent);
     this.machines = this.graph.nodes.filter((node) => node.chart);
     this.subdiagrams = this.graph.nodes.filter((node) => node.room === "subdiagram" || node.chart).map((node) => node.path);
-    this.open = new Set();
+    this.open = new Set(this.subdiagrams.filter((path) => this.graph.nodes.some((node) => node.room === "added" && node.path.startsWith(`${path}.`))));
     this.scale = 1;
     this.canvas = figure.querySelector(".canvas");
     this.figure.querySelector(".tools")?.remove();
@@ -181,6 +181,6 @@ function withValues(style) {
 export function startDiagrams() {
   for (const figure of document.querySelectorAll("figure.block-diagram")) {
     const view = new DiagramView(figure);
-    view.showCharts().then(() => view.show(new Set()));
+    view.showCharts().then(() => view.show(view.open));
   }
 }

@@ -41,7 +41,7 @@ const DiagnosisStep* step_of(const Diagnosis& diagnosis, const std::string& effe
 
 Json card_json(const Diagnosis& diagnosis, const DiagnosedEffect& effect, size_t count) {
   Json parameters = Json::array();
-  for (const DiagnosedParameter& p : effect.parameters)
+  for (const DiagnosedParameter& p : told_parameters(effect))
     parameters.push_back({{"name", p.name},
                           {"value", p.value},
                           {"low", p.low},
