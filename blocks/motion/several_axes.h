@@ -4,20 +4,22 @@
 #include <string>
 #include <vector>
 #include "engine/block.h"
-#include "models/motion/point_to_point.h"
+#include "models/motion/timed_motion.h"
 
 namespace loopwright::blocks {
 
-constexpr size_t most_axes = 8;  // what a block keeps in its mode
+constexpr size_t most_axes = most_axes_together;
 
 /// The axes are those of `velocity`; without `jerk` velocities are trapezoids.
 struct AxisLimits {
   std::vector<double> velocity, acceleration, jerk;
 
+  MotionLimits of_axis(size_t i) const {
+    return {velocity[i], acceleration[i], jerk.empty() ? HUGE_VAL : jerk[i]};
+  }
   std::vector<MotionLimits> of_each() const {
     std::vector<MotionLimits> limits;
-    for (size_t i = 0; i < velocity.size(); ++i)
-      limits.push_back({velocity[i], acceleration[i], jerk.empty() ? HUGE_VAL : jerk[i]});
+    for (size_t i = 0; i < velocity.size(); ++i) limits.push_back(of_axis(i));
     return limits;
   }
 };

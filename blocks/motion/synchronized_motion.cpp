@@ -9,7 +9,6 @@
 /// continuously needs a sample time here. All axes have one unit; a new target takes some 0.1 ms an axis.
 #include "blocks/logic/truth.h"
 #include "blocks/motion/several_axes.h"
-#include "models/motion/timed_motion.h"
 #include "models/real/whole.h"
 
 namespace loopwright::blocks {
@@ -114,16 +113,15 @@ struct SynchronizedMotion : AxisLimits {
   }
   /// Whether there is a motion.
   bool move(const Instant& now, const In& in, bool is_reset, Mode& mode) const {
-    const std::vector<MotionLimits> limits = of_each();
-    std::vector<TimedMotion> moving;
-    for (size_t i = 0; i < limits.size(); ++i) {
+    boost::container::static_vector<TimedMotion, most_axes> moving;
+    for (size_t i = 0; i < velocity.size(); ++i) {
       const MotionState from =
           is_reset ? MotionState{in.reset_value[i], 0, 0} : mode.motions[i].state_at(now.time - mode.start);
-      moving.emplace_back(from, in.target[i], 0, limits[i]);
+      moving.emplace_back(from, in.target[i], 0, of_axis(i));
     }
-    const CommonMotion common = common_motion(moving);
+    const CommonMotion common = common_motion({moving.data(), moving.size()});
     if (!std::isfinite(common.duration)) return false;
-    for (size_t i = 0; i < limits.size(); ++i)
+    for (size_t i = 0; i < moving.size(); ++i)
       mode.motions[i] = moving[i].motion(common.duration, common.cruises[i]);
     mode.start = now.time;
     return true;

@@ -12,11 +12,16 @@
 /// later; it would overshoot and return. Where such a gap begins or ends, either c is at its limit, or no
 /// time is left for cruising.
 #pragma once
+#include <boost/container/static_vector.hpp>
 #include <optional>
-#include <vector>
+#include <span>
 #include "models/motion/point_to_point.h"
 
 namespace loopwright {
+
+/// Axes that arrive together. Lists have a greatest length, because motions are found within a step, which
+/// allocates nothing.
+constexpr size_t most_axes_together = 8;
 
 /// The fastest change of velocity, to a state without acceleration: jerk, constant acceleration, jerk.
 struct VelocityChange {
@@ -42,8 +47,14 @@ class TimedMotion {
   struct Bound {
     double time, cruise;
   };
+  static constexpr size_t most_corners = 10;
+  static constexpr int parts = 6;  // of the smooth intervals between corners, in which the distance may turn
+  /// One at each limit, at each corner, in each part of the intervals between corners, and of the fastest
+  /// motion.
+  static constexpr size_t most_bounds = 2 + most_corners + parts * (most_corners - 1) + 1;
+  using Bounds = boost::container::static_vector<Bound, most_bounds>;
   /// In rising order.
-  const std::vector<Bound>& bounds() const { return bounds_; }
+  const Bounds& bounds() const { return bounds_; }
 
  private:
   struct Changes {
@@ -54,7 +65,8 @@ class TimedMotion {
   Changes changes(double cruise) const;
   double changing_time(double cruise) const { return changes(cruise).time(); }
   double position_at(double time, double cruise) const;
-  std::vector<double> corners() const;
+  using Corners = boost::container::static_vector<double, most_corners>;
+  Corners corners() const;
   void find_bounds();
   std::optional<double> cruise_between(double low, double high, double time) const;
   double outermost(double inner, double outer, double time) const;
@@ -62,15 +74,16 @@ class TimedMotion {
   MotionState from_;
   double target_, distance_, end_velocity_, tolerance_;
   MotionLimits limits_;
-  std::vector<Bound> bounds_;
+  Bounds bounds_;
 };
 
 /// The motions of all axes in the shortest common time.
 struct CommonMotion {
   double duration = 0;
-  std::vector<double> cruises;
+  boost::container::static_vector<double, most_axes_together> cruises;
 };
-CommonMotion common_motion(const std::vector<TimedMotion>& axes);
+/// At most `most_axes_together`.
+CommonMotion common_motion(std::span<const TimedMotion> axes);
 
 namespace timed_motion {
 
@@ -155,9 +168,9 @@ inline double TimedMotion::position_at(double time, double cruise) const {
 }
 
 /// Cruising velocities at which t₁ + t₂ or its derivatives have corners, rising, with both limits.
-inline std::vector<double> TimedMotion::corners() const {
+inline TimedMotion::Corners TimedMotion::corners() const {
   const double most = limits_.velocity, a = from_.acceleration, jerk = limits_.jerk;
-  std::vector<double> result{-most, most, 0, end_velocity_, from_.velocity};
+  Corners result{-most, most, 0, end_velocity_, from_.velocity};
   if (std::isfinite(jerk)) {
     const double square = limits_.acceleration * limits_.acceleration;
     result.push_back(from_.velocity + a * std::fabs(a) / (2 * jerk));
@@ -180,8 +193,7 @@ inline void TimedMotion::find_bounds() {
     const double cruising = (distance_ - both.distance()) / limit;
     if (cruising >= 0) bounds_.push_back({both.time() + cruising, limit});
   }
-  constexpr int parts = 6;  // of the smooth intervals between corners, in which the distance may turn
-  const std::vector<double> ends = corners();
+  const Corners ends = corners();
   // What the last bit of c leaves of the distance is cruised.
   const auto add = [&](double cruise) {
     const double rest = cruise == 0 ? 0 : left(cruise) / cruise;
@@ -202,7 +214,9 @@ inline void TimedMotion::find_bounds() {
   // An axis that brakes at the start may be fastest without an instant at which its acceleration is zero.
   if (end_velocity_ == 0)
     bounds_.push_back({PointToPointMotion::between(from_, target_, limits_).duration(), NAN});
-  std::erase_if(bounds_, [](const Bound& bound) { return !std::isfinite(bound.time); });
+  bounds_.erase(std::remove_if(bounds_.begin(), bounds_.end(),
+                               [](const Bound& bound) { return !std::isfinite(bound.time); }),
+                bounds_.end());
   std::sort(bounds_.begin(), bounds_.end(), [](const Bound& a, const Bound& b) { return a.time < b.time; });
 }
 
@@ -266,10 +280,11 @@ inline PointToPointMotion TimedMotion::motion(double time, double cruise) const 
   return PointToPointMotion::of_pieces(from_, pieces, target_, end_velocity_, time);
 }
 
-inline CommonMotion common_motion(const std::vector<TimedMotion>& axes) {
+inline CommonMotion common_motion(std::span<const TimedMotion> axes) {
   double least = 0;
   for (const TimedMotion& axis : axes) least = std::max(least, axis.fastest());
-  std::vector<TimedMotion::Bound> candidates;
+  boost::container::static_vector<TimedMotion::Bound, TimedMotion::most_bounds * most_axes_together>
+      candidates;
   for (const TimedMotion& axis : axes)
     for (const TimedMotion::Bound& bound : axis.bounds())
       if (bound.time >= least) candidates.push_back(bound);
@@ -287,7 +302,9 @@ inline CommonMotion common_motion(const std::vector<TimedMotion>& axes) {
     }
     if (common.cruises.size() == axes.size()) return common;
   }
-  return {HUGE_VAL, std::vector<double>(axes.size(), 0)};
+  CommonMotion none{HUGE_VAL, {}};
+  none.cruises.resize(axes.size(), 0);
+  return none;
 }
 
 }  // namespace loopwright
