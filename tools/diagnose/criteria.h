@@ -219,6 +219,11 @@ constexpr double ridge = 1e-3;
 
 // Any diagram.
 
+/// [rms of an output] What it does within the rows of a mean: 12 means a period of a sine. With fewer,
+/// straight lines between the means of an input are too coarse.
+constexpr double most_averaged_away = 0.15;
+/// [readings] A mean needs all of its rows: if more means than these would be missing, none are made.
+constexpr double most_missing_of_means = 0.2;
 /// n Σ ρ² over 40 lags is near 40 when nothing is left; the largest of a thousand records is below this.
 constexpr double most_portmanteau_of_any_diagram = 120;
 /// Of a term to the signal at its site, root mean squares. Interpolation between the rows, and steps of the

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include "models/real/whole.h"
+#include "tools/diagnose/record/shorten.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -36,13 +37,6 @@ SignalRecord read_signal_record(const Experiment& experiment, Problems& problems
     p.found = fmt::format("{}", record.time.size());
     return record;
   }
-  if (record.time.size() > most_rows) {
-    auto& p = problems.error(experiment.place, "/data", "", "too many rows for a diagnosis without roles");
-    p.expected = fmt::format("at most {} rows", most_rows);
-    p.found = fmt::format("{}", record.time.size());
-    p.hint = "cut out a part that shows everything, or leave out samples";
-    return record;
-  }
   record.sample_time = median_step(record.time);
   for (size_t i = 0; i < experiment.drives.size(); ++i) {
     const RecordedSignal& drive = experiment.drives[i];
@@ -73,8 +67,10 @@ void reject_too_few(const SignalRecord& record, Problems& problems) {
   p.found = fmt::format("{} in {}", record.held_out_from, record.path);
 }
 
-SignalRecord joined(const std::vector<SignalRecord>& records, Problems& problems) {
+SignalRecord joined(std::vector<SignalRecord> records, Problems& problems) {
+  const std::optional<RecordFinding> shortened = shorten(records, most_rows);
   SignalRecord all = records.front();
+  all.shortened = shortened;
   if (records.size() > 1) {
     const auto ports = [](const SignalRecord& record) {
       std::vector<std::string> list;
@@ -103,11 +99,6 @@ SignalRecord joined(const std::vector<SignalRecord>& records, Problems& problems
     for (const SignalRecord& record : records) append(record, 0, record.held_out_from);
     all.held_out_from = all.rows();
     for (const SignalRecord& record : records) append(record, record.held_out_from, record.rows());
-    if (all.rows() > most_rows) {
-      auto& p = problems.error({}, "/data", "", "too many rows for a diagnosis without roles");
-      p.expected = fmt::format("at most {} rows in all records together", most_rows);
-      p.found = fmt::format("{}", all.rows());
-    }
   }
   reject_too_few(all, problems);
   return all;

@@ -1,8 +1,10 @@
 /// A record of any diagram: the inputs that drive it and the outputs that were measured, at their own time
 /// stamps.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
+#include "tools/diagnose/diagnosis.h"
 #include "tools/experiment/experiment.h"
 
 namespace loopwright::diagnosis {
@@ -27,6 +29,7 @@ struct SignalRecord {
   std::vector<RecordedOutput> outputs;
   size_t held_out_from = 0;  ///< first row held out of the identification; rows() without hold-out
   std::vector<bool> begins;  ///< of several records: rows at which one begins, with states of its own
+  std::optional<RecordFinding> shortened;  ///< how, if there were too many rows
 
   size_t rows() const { return time.size(); }
   bool begins_at(size_t row) const { return row == 0 || (row < begins.size() && begins[row]); }
@@ -41,8 +44,8 @@ struct SignalRecord {
 SignalRecord read_signal_record(const Experiment& experiment, Problems& problems);
 
 /// Several records of one diagram, one after the other: what is fitted of each, then what is held out. A
-/// record that is held out in part begins a second time there. `time` is that of each record. Problems:
-/// records with other ports, too many rows together, nothing that is fitted.
-SignalRecord joined(const std::vector<SignalRecord>& records, Problems& problems);
+/// record that is held out in part begins a second time there. `time` is that of each record. Too many rows
+/// are shortened. Problems: records with other ports, nothing that is fitted.
+SignalRecord joined(std::vector<SignalRecord> records, Problems& problems);
 
 }  // namespace loopwright::diagnosis

@@ -15,6 +15,9 @@ namespace loopwright::diagnosis {
 namespace {
 
 constexpr size_t most_effects = 8;
+/// A map shows a motor's lines one by one, and little else. Functions of position without a name, which can
+/// stand for any long line, come after all of them.
+constexpr size_t most_steps_in_a_map = 16;
 constexpr size_t tried_extensions = 4;
 constexpr size_t tried_exchanges = 3;
 
@@ -33,8 +36,7 @@ class Search {
 
   SearchResult run() {
     bool goes_on = grow(4);
-    // Cogging has many lines, and a map shows little else: as many effects as for a start without a name.
-    if (goes_on && is_much_left() && trials_.has_map()) goes_on = grow(2);
+    if (goes_on && is_much_left() && trials_.has_map()) goes_on = grow(most_steps_in_a_map);
     if (is_much_left() || explain_without_name()) {
       start_from_what_has_no_name();
       goes_on = true;
