@@ -3,6 +3,7 @@
 #include <numbers>
 #include "tests/tools/diagnose/diagnosed.h"
 #include "tests/tools/diagnose/hidden_axis.h"
+#include "tools/diagnose/verdict/acceptance.h"
 #include "tools/diagnose/verdict/free_run.h"
 
 namespace loopwright {
@@ -50,6 +51,20 @@ TEST(Acceptance, ARunIsWorseIfSeveralWindowsAreFarWorse) {
   }
   EXPECT_TRUE(is_worse(run_of(before), run_of(several)));
   EXPECT_FALSE(is_worse(run_of(before), run_of(one)));
+}
+
+/// A false effect may gain from the noise of single rows: the simulation scatters too much to refuse it
+/// alone.
+TEST(Acceptance, AnEffectThatHelpsNowhereIsRefusedWithoutCertainty) {
+  using diagnosis::Errors;
+  const Errors before{1.16e-6, 65e-3, 70e-3}, after{1.43e-6, 75e-3, 78e-3};
+  EXPECT_TRUE(are_larger(before, after));
+  EXPECT_FALSE(are_larger(after, before));
+  EXPECT_FALSE(are_larger(before, before));
+  for (const Errors& better_somewhere :
+       {Errors{1.1e-6, 75e-3, 78e-3}, Errors{1.43e-6, 64e-3, 78e-3}, Errors{1.43e-6, 75e-3, 69e-3}})
+    EXPECT_FALSE(are_larger(before, better_somewhere));
+  EXPECT_TRUE(are_larger(Errors{1, 1, 0}, Errors{1.1, 1.1, 0}));  // nothing is held out
 }
 
 /// Each step of the staircase simulates better, and the last one down to the noise.

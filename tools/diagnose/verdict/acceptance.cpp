@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <optional>
+#include <utility>
+#include "tools/diagnose/criteria.h"
 #include "tools/diagnose/wording.h"
 
 namespace loopwright::diagnosis {
@@ -45,6 +47,11 @@ class Judge {
           is_worse_without(state, state.staircase.added[i].front()))
         return why_worse(state, i);
     for (size_t i = 1; i < state.runs.size(); ++i)
+      if (helps_nowhere(state, i) && !has_own_load(state.staircase.members[i]) &&
+          helps_nowhere_beside_all(state, state.staircase.added[i].front()))
+        return Refusal{state.staircase.added[i].front(),
+                       "neither does the diagram simulate better with it, nor do the forces balance better"};
+    for (size_t i = 1; i < state.runs.size(); ++i)
       for (size_t m : state.staircase.added[i])
         if (state.conclusion.weights[m].certainty < 1 && !is_worse(state.runs[i], state.runs[i - 1]))
           return Refusal{m, "its interval contains zero, and the diagram simulates no worse without it"};
@@ -55,13 +62,33 @@ class Judge {
   /// Whether all effects together simulate worse than all others. In the middle of the staircase an effect
   /// may only lack its companion: friction that is fitted beside a drift without a name spoils other rows.
   bool is_worse_without(const Acceptance& state, size_t member) {
+    return is_worse(without_member(state, member).second, state.runs.back());
+  }
+  /// The others, fitted again, and their simulation.
+  std::pair<Estimate, FreeRun> without_member(const Acceptance& state, size_t member) {
     const Estimate& e = state.conclusion.estimate;
     std::vector<Member> members = e.members;
     members.erase(members.begin() + std::ptrdiff_t(member));
-    const Estimate others = fit_members(trials_, std::move(members), e.noise, e.motion, iterations);
-    const FreeRun without =
-        run_freely(improver_.with(others.members), improver_, load_, trials_, inverse_, e.noise);
-    return is_worse(without, state.runs.back());
+    Estimate others = fit_members(trials_, std::move(members), e.noise, e.motion, iterations);
+    FreeRun run = run_freely(improver_.with(others.members), improver_, load_, trials_, inverse_, e.noise);
+    return {std::move(others), std::move(run)};
+  }
+  static bool helps_nowhere(const Acceptance& state, size_t step) {
+    const auto errors = [&](size_t i) {
+      const DiagnosisStep& s = state.staircase.steps[i];
+      return Errors{state.runs[i].rmse(), s.force_rmse, s.held_out_force_rmse};
+    };
+    return are_larger(errors(step - 1), errors(step));
+  }
+  /// All effects against all others.
+  bool helps_nowhere_beside_all(const Acceptance& state, size_t member) {
+    const auto [others, without] = without_member(state, member);
+    const auto errors = [&](const FreeRun& run, const std::vector<Member>& members) {
+      const ResidualSize left = residual_size(trials_, inverse_, members);
+      return Errors{run.rmse(), left.fitted, left.held_out};
+    };
+    return are_larger(errors(without, others.members),
+                      errors(state.runs.back(), state.conclusion.estimate.members));
   }
   Refusal why_worse(const Acceptance& state, size_t step) {
     const std::string& unit = trials_.list.front().model->record().measured.front().unit;
@@ -80,6 +107,14 @@ class Judge {
 };
 
 }  // namespace
+
+bool are_larger(const Errors& before, const Errors& after) {
+  const auto is_larger = [](double was, double is) {
+    return is * is > (1 + criteria::least_worsening) * was * was;
+  };
+  return is_larger(before.simulation, after.simulation) && is_larger(before.force, after.force) &&
+         (after.held_out_force == 0 || is_larger(before.held_out_force, after.held_out_force));
+}
 
 Acceptance accept(Conclusion conclusion, Trials& trials, const std::vector<InverseDynamics>& inverse,
                   const Improver& improver, const LoadOptions& load, size_t catalogue,

@@ -16,10 +16,20 @@ struct Acceptance {
   std::string why_not_run;  ///< empty: it was run
 };
 
+/// What a set of effects leaves, root mean squares: of the free simulation, and of the balance of forces in
+/// the fitted and in the held-out rows (0: there are none).
+struct Errors {
+  double simulation = 0, force = 0, held_out_force = 0;
+};
+/// Whether all of them are, though none may be so beyond doubt. An effect that makes them larger gains from
+/// the noise of single rows alone: at tens of kilohertz encoder counts that a controller answers look like a
+/// delay.
+bool are_larger(const Errors& before, const Errors& after);
+
 /// Removes effects one by one as long as the diagram with one of them simulates worse than without it (unless
-/// a load moves by itself: where it is at the beginning of a window is not known), or as the interval of one
-/// contains zero while the diagram simulates no worse without it. `without(conclusion, member)` is the
-/// conclusion from the others.
+/// a load moves by itself: where it is at the beginning of a window is not known), as all errors are larger
+/// with one, or as the interval of one contains zero while the diagram simulates no worse without it.
+/// `without(conclusion, member)` is the conclusion from the others.
 Acceptance accept(Conclusion conclusion, Trials& trials, const std::vector<InverseDynamics>& inverse,
                   const Improver& improver, const LoadOptions& load, size_t catalogue,
                   const std::function<Conclusion(const Conclusion&, size_t)>& without);
