@@ -27,7 +27,7 @@ double normal(size_t record, size_t row) {
 
 LaggedProducts lagged_products(const Trials& trials, const std::vector<Fitted>& fitted, size_t port,
                                size_t together) {
-  constexpr size_t lags = criteria::portmanteau_lags;
+  const size_t lags = criteria::portmanteau_lags;
   LaggedProducts products{std::vector<double>(lags + 1)};
   std::vector<double> error;
   std::vector<char> counts;
