@@ -15,8 +15,8 @@ import scenario  # noqa: E402
 import score  # noqa: E402
 import variable_criteria  # noqa: E402
 
-# Quick development records of the conditions benchmark that are right with the thresholds as they are; four are clean.
-SEEDS = (100000, 100005, 100014, 100019, 100023, 100024, 100029, 100035, 100038, 100041, 100042)
+# Quick development records of the conditions benchmark that are right with the thresholds as they are; three are clean.
+SEEDS = (100000, 100005, 100014, 100021, 100030, 100035, 100042)
 FACTORS = (0.5, 1.5)
 NONE = ("judged_row_s", 1.0)  # no threshold is changed
 WITHOUT_ROLES = "Any diagram."  # the section of thresholds that records with roles do not meet
