@@ -33,7 +33,7 @@ static int find(const std::string& words) {
 void add_blocks(CLI::App& app, std::function<void(std::function<int()>)> choose) {
   CLI::App* command = app.add_subcommand("blocks", "List the blocks, or describe one");
   struct Arguments {
-    std::string type, words;
+    std::string type, words, pictures;
     bool markdown = false;
     DiagramArguments libraries;
   };
@@ -42,7 +42,10 @@ void add_blocks(CLI::App& app, std::function<void(std::function<int()>)> choose)
   command->add_option("--find", a->words, "Blocks by words, also by their names in Simulink: \"mux\"")
       ->type_name("WORDS")
       ->excludes(type);
-  command->add_flag("--markdown", a->markdown, "The whole reference as a page");
+  CLI::Option* const markdown = command->add_flag("--markdown", a->markdown, "The whole reference as a page");
+  command->add_option("--pictures", a->pictures, "Links to the pictures of blocks in this folder")
+      ->type_name("FOLDER")
+      ->needs(markdown);
   command->add_option("--blocks", a->libraries.libraries, "Shared library with more blocks")
       ->type_name("FILE.so")
       ->allow_extra_args(false);
@@ -51,7 +54,7 @@ void add_blocks(CLI::App& app, std::function<void(std::function<int()>)> choose)
       a->libraries.options();
       if (!a->words.empty()) return find(a->words);
       if (!a->markdown) return show(a->type);
-      answer_data(block_reference());
+      answer_data(block_reference(a->pictures));
       return done;
     });
   });

@@ -30,7 +30,7 @@ std::vector<FoundBlock> find_blocks(std::string_view words);
 /// "Transfer Fcn", "anti-windup"); empty if nothing was found.
 std::string found_blocks(std::string_view words);
 
-/// The reference page docs/blocks.md.
-std::string block_reference();
+/// The reference page docs/blocks.md, with links to the pictures of blocks, NAME.svg, that exist in a folder.
+std::string block_reference(const std::string& pictures = "");
 
 }  // namespace loopwright

@@ -26,8 +26,8 @@ std::string text_of(const fs::path& path) {
 }
 
 TEST(Reference, ThePageInDocsIsWhatTheProgramWrites) {
-  EXPECT_EQ(text_of(root / "docs/blocks.md"), block_reference())
-      << "loopwright blocks --markdown > docs/blocks.md";
+  EXPECT_EQ(text_of(root / "docs/blocks.md"), block_reference(root / "docs/images/blocks"))
+      << "loopwright blocks --markdown --pictures docs/images/blocks > docs/blocks.md";
 }
 
 TEST(Reference, EveryTypeStandsInTheListThePageAndItsOwnText) {
