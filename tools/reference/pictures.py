@@ -14,7 +14,7 @@ import loopwright
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 WIDTH, HEIGHT = 300, 150  # [px] of the area of a plot
-LEFT, RIGHT, TOP, BOTTOM = 46, 14, 8, 22  # [px] around it
+LEFT, RIGHT, TOP, BOTTOM = 54, 14, 8, 22  # [px] around it
 LINE = 15  # [px] height of a line of the legend
 TOLERANCE = 0.35  # [px] by which a curve may leave its points
 COLOURS = ["first", "second", "third", "fourth", "fifth"]
@@ -88,14 +88,13 @@ def unit_text(unit):
     return f" [{unit}]" if unit and unit != "1" else ""
 
 
-def plot(result, panel, left):
-    """One plot of a picture, `left` pixels from its edge; returns its text and its height."""
+def plot(result, panel, left, top):
+    """The text of one plot of a picture, whose frame begins `left` and `top` pixels from the edges, less its labels."""
     over, names, window = panel
     time = list(result.time)
     rows = [i for i, t in enumerate(time) if window is None or window[0] <= t <= window[1]]
     xs = [float((result.time if over is None else result[over])[i]) for i in rows]
     curves = [[float(result[name][i]) for i in rows] for name in names]
-    top = TOP + LINE * len(names)
     x_axis = Axis(xs, left + LEFT, WIDTH, 0.0 if over is None else 0.04)
     y_axis = Axis([y for curve in curves for y in curve], top + HEIGHT, -HEIGHT, 0.06)
     parts = []
@@ -104,7 +103,7 @@ def plot(result, panel, left):
         parts.append(f'<line class="grid" x1="{left + LEFT}" x2="{left + LEFT + WIDTH}" y1="{y:g}" y2="{y:g}"/>')
         parts.append(f'<text x="{left + LEFT - 4}" y="{y + 4:g}" text-anchor="end">{label}</text>')
     label_of_axis = f"{over or 'time'}{unit_text('s' if over is None else result.units[over])}"
-    room = WIDTH - 7 * len(label_of_axis)
+    room = WIDTH - 7 * len(label_of_axis) - 8
     for value, label in x_axis.labels(5):
         x = round(x_axis.pixel(value), 1)
         parts.append(f'<line class="grid" x1="{x:g}" x2="{x:g}" y1="{top}" y2="{top + HEIGHT}"/>')
@@ -114,9 +113,9 @@ def plot(result, panel, left):
     parts.append(f'<rect class="frame" x="{left + LEFT}" y="{top}" width="{WIDTH}" height="{HEIGHT}"/>')
     for number, (name, curve) in enumerate(zip(names, curves)):
         parts.append(f'<path class="{COLOURS[number]}" d="{path_of(xs, curve, x_axis, y_axis)}"/>')
-        parts.append(f'<text class="{COLOURS[number]}" x="{left + LEFT}" y="{TOP + LINE * (number + 1) - 5}">'
+        parts.append(f'<text class="{COLOURS[number]}" x="{left + LEFT}" y="{top - LINE * (len(names) - number - 1) - 5}">'
                      f"{name}{unit_text(result.units[name])}</text>")
-    return "\n".join(parts), top + HEIGHT + BOTTOM
+    return "\n".join(parts)
 
 
 def picture(name, panels):
@@ -124,11 +123,12 @@ def picture(name, panels):
     file = ROOT / "diagrams" / "examples" / f"{name}.json"
     diagram = loopwright.load(str(file))
     result = diagram.run()
-    texts, heights = zip(*(plot(result, panel, i * (LEFT + WIDTH + RIGHT)) for i, panel in enumerate(panels)))
-    width = len(panels) * (LEFT + WIDTH + RIGHT)
+    top = TOP + LINE * max(len(names) for _, names, _ in panels)
+    texts = [plot(result, panel, i * (LEFT + WIDTH + RIGHT), top) for i, panel in enumerate(panels)]
+    width, height = len(panels) * (LEFT + WIDTH + RIGHT), top + HEIGHT + BOTTOM
     title = json.loads(file.read_text(encoding="utf-8"))["title"].replace("&", "&amp;").replace("<", "&lt;")
-    return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{max(heights)}" '
-            f'viewBox="0 0 {width} {max(heights)}">\n<title>{title}</title>\n{STYLE}\n' + "\n".join(texts) + "\n</svg>\n")
+    return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" '
+            f'viewBox="0 0 {width} {height}">\n<title>{title}</title>\n{STYLE}\n' + "\n".join(texts) + "\n</svg>\n")
 
 
 def over_time(*names, window=None):
@@ -177,7 +177,6 @@ PICTURES = {
     "latch": [over_time("current.y"), over_time("acknowledge.y", "fault.y")],
     "lookup_1d": [over("current.y", "lines.y", "smooth.y")],
     "low_pass": [over_time("step.y", "butterworth.y", "critically_damped.y")],
-    "lu_gre_friction": [over_time("mass.position"), over_time("spring.force", "friction.force")],
     "modulo": [over("shaft.y", "wrapped.y")],
     "motion_profile": [over_time("reference.position"), over_time("reference.acceleration")],
     "moving_average": [over_time("signal.sum", "mean.y")],
@@ -202,15 +201,15 @@ PICTURES = {
     "smooth_coulomb_friction": [over("mass.velocity", "friction.force")],
     "state_machine": [over_time("machine.state"), over_time("slide.y")],
     "stribeck_friction": [over_time("spring.force", "friction.force"), over_time("mass.position")],
-    "synchronized_motion": [],
+    "synchronized_motion": [over_time("path.position[0]", "path.position[1]", "path.position[2]"),
+                            over_time("path.velocity[0]", "path.velocity[1]", "path.velocity[2]")],
     "thermal_drift": [over_time("motor.y")],
     "thermal_node": [over_time("winding.temperature", "housing.temperature"), over_time("losses.y", "housing.loss")],
     "timer": [over_time("moves.y", "release.y", "warning.y"), over_time("warning.elapsed")],
     "transport_delay": [over_time("step.y", "plant.y", "pipe.y")],
-    "two_mass": [over_time("axis.motor_velocity", "axis.load_velocity")],
     "unit_delay": [over_time("sine.y", "late.y")],
-    "velocity_estimator": [over_time("difference.velocity", "mean.velocity", "filtered.velocity", "reference.velocity")],
-    "via_points": [],
+    "velocity_estimator": [over_time("difference.velocity", "mean.velocity", "filtered.velocity", "reference.velocity", window=(0.2, 0.26))],
+    "via_points": [over("path.position[0]", "path.position[1]"), over_time("path.velocity[0]", "path.velocity[1]")],
     "zero_order_hold": [over_time("sine.y", "held.y")],
 }
 
