@@ -10,6 +10,7 @@ TEST(ThermalNode, WarmsExponentiallyTowardsItsSteadyTemperature) {
   BlockUnderTest node("ThermalNode", R"({"capacity": 400, "conductance": 0.8, "initial": 290})");
   node.input("heat") = 20, node.input("surroundings") = 290;
   node.advance(300, 300);
+  node.evaluate();
   EXPECT_NEAR(node.output("temperature"), 290 + 25 * (1 - std::exp(-0.6)), 1e-9);
   EXPECT_NEAR(node.output("loss"), 20 * (1 - std::exp(-0.6)), 1e-9);
 }
@@ -18,6 +19,7 @@ TEST(ThermalNode, KeepsItsHeatWithoutConductance) {
   BlockUnderTest node("ThermalNode", R"({"capacity": 50})");
   node.input("heat") = 10;
   node.advance(100, 10);
+  node.evaluate();
   EXPECT_NEAR(node.output("temperature"), 293.15 + 20, 1e-9);
   EXPECT_EQ(node.output("loss"), 0);
 }
@@ -25,6 +27,7 @@ TEST(ThermalNode, KeepsItsHeatWithoutConductance) {
 TEST(ThermalNode, CoolsToSurroundingsThatAreNotWired) {
   BlockUnderTest node("ThermalNode", R"({"capacity": 10, "conductance": 1, "initial": 350})");
   node.advance(400, 400);
+  node.evaluate();
   EXPECT_NEAR(node.output("temperature"), 293.15, 1e-9);
 }
 
