@@ -1,6 +1,8 @@
 #include "hw/drivers.h"
 #include <fmt/format.h>
 #include <algorithm>
+#include "engine/block/parameter_shape.h"
+#include "hw/device/device_shape.h"
 #include "hw/quanser/quanser.h"
 #include "hw/udp/udp.h"
 
@@ -9,10 +11,10 @@ namespace {
 
 // To add hardware: add a folder with a Driver, and a line here.
 const DriverType types[] = {
-    {"quanser", "Cards behind Quanser's HIL library",
+    {"quanser", "Cards behind Quanser's HIL library", &parameters_of<quanser::Settings>,
      [](const DeviceDescription& device, Problems& problems) { quanser::read_settings(device, problems); },
      &quanser::foreign_code, quanser::what_taking_over_does, &quanser::make_driver},
-    {"udp", "Devices that speak UDP",
+    {"udp", "Devices that speak UDP", &parameters_of<udp::Settings>,
      [](const DeviceDescription& device, Problems& problems) { udp::read_settings(device, problems); },
      [](const DeviceDescription&) { return std::string(); }, nullptr, &udp::make_driver},
 };
@@ -20,6 +22,13 @@ const DriverType types[] = {
 }  // namespace
 
 std::span<const DriverType> driver_types() { return types; }
+
+FileShape device_file_shape() {
+  std::vector<std::pair<std::string_view, FileShape>> drivers;
+  for (const DriverType& type : types)
+    drivers.emplace_back(type.name, shape_of(type.settings(), Writing::evaluated));
+  return device_shape(drivers);
+}
 
 const DriverType* find_driver(std::string_view name) {
   const auto found = std::ranges::find(types, name, &DriverType::name);

@@ -1,5 +1,6 @@
 /// The available kinds of hardware.
 #pragma once
+#include "engine/json/file_shape.h"
 #include "hw/device/driver.h"
 
 namespace loopwright::hw {
@@ -7,6 +8,8 @@ namespace loopwright::hw {
 struct DriverType {
   std::string_view name;  ///< "driver" in a device file
   std::string_view sentence;
+  /// Its part of the file, an object under its name.
+  std::vector<ParameterInfo> (*settings)();
   /// Checks the driver's part of the file; opens and loads nothing.
   void (*check)(const DeviceDescription& device, Problems& problems);
   /// The file of foreign code that `make` loads and runs, shown to a person beforehand; empty: none.
@@ -19,6 +22,10 @@ struct DriverType {
 };
 
 std::span<const DriverType> driver_types();
+
+/// The keys of device files, with the settings of all drivers.
+FileShape device_file_shape();
+
 /// Null when no driver has the name.
 const DriverType* find_driver(std::string_view name);
 

@@ -1,7 +1,9 @@
 #include "blocks/learning/model_file.h"
+#include "blocks/learning/model_shape.h"
 #include <fmt/format.h>
 #include <cmath>
 #include "engine/block.h"
+#include "engine/block/parameter_shape.h"
 #include "engine/json/file_kind.h"
 #include "engine/json/json.h"
 #include "engine/json/reader.h"
@@ -173,7 +175,8 @@ template <class T> Value value_of(const T& x) {
 }
 
 std::string checksum_of(Value file) {
-  std::erase_if(file.members, [](const Value::Member& m) { return m.name == "checksum"; });
+  std::erase_if(file.members,
+                [](const Value::Member& m) { return m.name == "checksum" || m.name == "$schema"; });
   return content_hash(to_json(file));
 }
 
@@ -318,6 +321,13 @@ bool is_intact(const Value& file, const Reader& reader) {
 
 }  // namespace
 
+FileShape model_shape() {
+  FileShape shape = shape_of(parameters_of<ModelEntry>(), Writing::plain);
+  shape.keys.push_back(
+      shapes::optional("$schema", shapes::text(), "The JSON Schema of this file, for editors"));
+  return shape;
+}
+
 LearnedModel read_model(const std::string& path, const Place& reference, Problems& problems) {
   auto source = read_source(path, reference, problems);
   return source ? read_model(std::move(source), problems) : LearnedModel{};
@@ -330,11 +340,13 @@ LearnedModel read_model(std::shared_ptr<const SourceFile> source, Problems& prob
       if (problems.list()[i].severity == Problem::Severity::error) return true;
     return false;
   };
-  const Value file = parse_json(std::move(source), problems);
+  Value file = parse_json(std::move(source), problems);
   const Reader reader{problems, ""};
   if (failed() || !reader.expect(file, Value::Kind::object, "a model", "an object in braces") ||
       !expect_kind(file, FileKind::model, problems) || !is_intact(file, reader))
     return {};
+  reader.text(file, "$schema");
+  std::erase_if(file.members, [](const Value::Member& m) { return m.name == "$schema"; });
   ModelEntry entry;
   read_fields(entry, file, "", problems);
   if (failed()) return {};

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <cmath>
 #include <filesystem>
+#include "engine/json/matrix_form.h"
 #include "engine/json/take_unit.h"
 
 namespace loopwright {
@@ -33,6 +34,18 @@ namespace reading {
 
 std::string number_text(double x) { return fmt::format("{}", x); }
 
+static std::string list_text(const Value& v) {
+  switch (matrix_form(v)) {
+    case MatrixForm::row:
+      return fmt::format("a row of {}", v.items.size());
+    case MatrixForm::column:
+      return fmt::format("a column of {}", v.items.size());
+    case MatrixForm::full:
+      return fmt::format("a matrix of {} rows and {} columns", v.items.size(), v.items[0].items.size());
+    default:
+      return fmt::format("a list of {}", v.items.size());
+  }
+}
 static std::string kind_of(const Value& v) {
   switch (v.kind) {
     case Value::Kind::null:
@@ -44,7 +57,7 @@ static std::string kind_of(const Value& v) {
     case Value::Kind::text:
       return "the text \"" + v.text.substr(0, 60) + "\"";
     case Value::Kind::list:
-      return fmt::format("a list of {}", v.items.size());
+      return list_text(v);
     case Value::Kind::object:
       return "an object";
   }

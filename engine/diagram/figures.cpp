@@ -15,6 +15,10 @@ bool is_number(const Value& value) {
 }
 
 void read_band(const Value& value, const Reader& reader, FigureRequest& request) {
+  if (value.kind == Value::Kind::object) {
+    reader.reject_unknown(value, {"value", "unit"}, "\"band\"");
+    reader.text(value, "unit");
+  }
   if (is_number(value))
     request.band = value;
   else
@@ -24,6 +28,15 @@ void read_band(const Value& value, const Reader& reader, FigureRequest& request)
 
 }  // namespace
 
+FileShape figure_shape() {
+  using namespace shapes;
+  return object(
+      {required("signal", text(), "A logged signal"),
+       required("reference", text(), "The logged signal that it is to follow"),
+       optional("band", either({number(), object({required("value", number()), optional("unit", text())})}),
+                "Within it the signal has settled; 2 % of the last move when left out")});
+}
+
 std::vector<FigureRequest> read_figures(const Value& list, const Reader& reader) {
   std::vector<FigureRequest> requests;
   if (!reader.expect(list, Value::Kind::list, "\"figures\"",
@@ -31,7 +44,7 @@ std::vector<FigureRequest> read_figures(const Value& list, const Reader& reader)
     return requests;
   for (const Value& item : list.items) {
     if (!reader.expect(item, Value::Kind::object, "an entry of \"figures\"", shape)) continue;
-    reader.reject_unknown(item, {"signal", "reference", "band"}, "an entry of \"figures\"");
+    reject_unknown(reader, item, figure_shape(), "an entry of \"figures\"");
     const Value::Member *signal = item.find("signal"), *reference = item.find("reference");
     if (!signal || !reference) {
       reader.error(item, fmt::format("\"{}\" is missing", signal ? "reference" : "signal")).expected = shape;

@@ -3,6 +3,7 @@
 #pragma once
 #include <vector>
 #include "engine/diagram/diagram.h"
+#include "engine/json/file_shape.h"
 #include "engine/json/reader.h"
 
 namespace loopwright {
@@ -12,6 +13,9 @@ struct FigureRequest {
   Wire signal, reference;
   Value band;  ///< a number, perhaps with its unit; null if it was omitted
 };
+
+/// The keys of an entry.
+FileShape figure_shape();
 
 /// Reads the list. A mistake is reported, and its entry omitted.
 std::vector<FigureRequest> read_figures(const Value& list, const Reader& reader);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include "engine/diagram/value_file.h"
+#include "engine/json/matrix_form.h"
 #include "engine/json/take_unit.h"
 #include "engine/unit/scaled_rate.h"
 
@@ -261,6 +262,7 @@ Value ParameterScope::evaluate(const Value& value, const std::string& block) {
   if (value.items.empty() && value.members.empty()) return value;
   Value result;
   result.kind = value.kind;
+  set_matrix_form(result, matrix_form(value));
   result.place = value.place;
   result.items.reserve(value.items.size());
   result.members.reserve(value.members.size());

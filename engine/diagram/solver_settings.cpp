@@ -1,6 +1,7 @@
 #include "engine/diagram/solver_settings.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include "engine/diagram/names_elsewhere.h"
@@ -10,6 +11,11 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 const Unit second = {1.0, {0, 0, 1}};
+
+constexpr std::array<std::string_view, 6> methods = {"euler",  "heun",      "rk4",
+                                                     "dopri5", "cvode-bdf", "cvode-adams"};
+constexpr std::array<std::string_view, 2> ways_with_loops = {"error", "solve"};
+constexpr double largest_seed = 9007199254740992.0;  // 2^53: every integer up to this is a double
 
 enum class Range { any, positive, not_negative };
 
@@ -35,8 +41,7 @@ class SettingsReader {
   void whole(std::string_view key, Setting<uint64_t>& to) {
     const Value value = evaluated(key, to);
     if (!to.is_given || !is_number(value, key, Unit{})) return;
-    constexpr double largest = 9007199254740992.0;  // 2^53: every integer up to this is a double
-    if (value.number < 0 || value.number > largest || value.number != std::floor(value.number)) {
+    if (value.number < 0 || value.number > largest_seed || value.number != std::floor(value.number)) {
       Problem& problem = reader_.error(value, fmt::format("\"{}\" is out of range", key));
       problem.expected = "a whole number from 0 to 2^53";
       problem.found = shown(value);
@@ -95,16 +100,34 @@ class SettingsReader {
 
 }  // namespace
 
+FileShape solver_shape() {
+  using namespace shapes;
+  const auto key = [](std::string_view name, FileShape shape, std::string sentence) {
+    shape.is_evaluated = true;
+    return optional(name, std::move(shape), std::move(sentence));
+  };
+  FileShape positive = number(0);
+  positive.low_is_open = true;
+  return object({key("method", choice({methods.begin(), methods.end()}), "With a fixed or a variable step"),
+                 key("start", number(), "Time of the first instant [s]"),
+                 key("stop", number(), "Time of the last instant [s]"),
+                 key("step", positive, "Of a method with a fixed step [s]"),
+                 key("maximum_step", positive, "Of a method with a variable step [s]"),
+                 key("relative_tolerance", positive, "Error of a step over the size of the state"),
+                 key("absolute_tolerance", positive, "Error of a step, for states near zero"),
+                 key("record_step", positive, "Time between rows of the recording [s]"),
+                 key("algebraic_loops", choice({ways_with_loops.begin(), ways_with_loops.end()}),
+                     "An error, or solved by Newton's method"),
+                 key("seed", whole(0, largest_seed), "Of all random signals")});
+}
+
 SolverSettings read_solver_settings(const Value& object, ParameterScope& scope, const Reader& reader) {
   SolverSettings solver;
   solver.place = object.place;
   if (!reader.expect(object, Value::Kind::object, "\"solver\"", "an object")) return solver;
-  reader.reject_unknown(object,
-                        {"method", "start", "stop", "step", "maximum_step", "relative_tolerance",
-                         "absolute_tolerance", "record_step", "algebraic_loops", "seed"},
-                        "the solver");
+  reject_unknown(reader, object, solver_shape(), "the solver");
   SettingsReader read(object, scope, reader);
-  read.choice("method", {"euler", "heun", "rk4", "dopri5", "cvode-bdf", "cvode-adams"}, solver.method);
+  read.choice("method", {methods.begin(), methods.end()}, solver.method);
   read.number("start", second, Range::any, solver.start);
   read.number("stop", second, Range::any, solver.stop);
   read.number("step", second, Range::positive, solver.step);
@@ -112,7 +135,7 @@ SolverSettings read_solver_settings(const Value& object, ParameterScope& scope, 
   read.number("relative_tolerance", Unit{}, Range::positive, solver.relative_tolerance);
   read.number("absolute_tolerance", Unit{}, Range::positive, solver.absolute_tolerance);
   read.number("record_step", second, Range::positive, solver.record_step);
-  read.choice("algebraic_loops", {"error", "solve"}, solver.algebraic_loops);
+  read.choice("algebraic_loops", {ways_with_loops.begin(), ways_with_loops.end()}, solver.algebraic_loops);
   read.whole("seed", solver.seed);
   if (solver.stop.is_given && solver.stop.value < solver.start.value) {
     Problem& problem = reader.problems.error(solver.stop.place, solver.stop.place.pointer(), reader.block,

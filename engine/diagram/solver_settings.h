@@ -2,8 +2,12 @@
 #pragma once
 #include "engine/diagram/diagram.h"
 #include "engine/diagram/parameter_scope.h"
+#include "engine/json/file_shape.h"
 
 namespace loopwright {
+
+/// The keys of "solver".
+FileShape solver_shape();
 
 /// Reads every key, checks its range and unit, and rejects unknown keys.
 SolverSettings read_solver_settings(const Value& object, ParameterScope& scope, const Reader& reader);

@@ -1,7 +1,9 @@
 #include "engine/diagram/value_file.h"
 #include <charconv>
 #include <fmt/format.h>
+#include <cmath>
 #include "engine/diagram/diagram.h"
+#include "engine/diagram/mat_value.h"
 #include "engine/json/json.h"
 
 namespace loopwright {
@@ -37,6 +39,10 @@ const Value* find_named(const Value& file, const Value& name, const std::string&
       problem.found = fmt::format("a list of {} at \"{}\"", value->items.size(), part);
       return nullptr;
     }
+    if (const std::string reason = why_unusable(*value); !reason.empty())
+      problem.found = reason;
+    else if (value->kind != Value::Kind::object)
+      problem.found = fmt::format("{} before \"{}\"", shown(*value), part);
     KnownNames names;
     for (const Value::Member& known : value->members) names.add(known.name);
     names.explain(problem, part);
@@ -63,6 +69,44 @@ bool is_plain(const Value& value, const Reader& reader) {
   return true;
 }
 
+/// Nothing after a problem.
+std::optional<Value> values_of_json(const std::string& path, const Place& reference, const Reader& reader) {
+  const auto source = read_source(path, reference, reader.problems);
+  if (!source) return {};
+  const size_t before = reader.problems.list().size();
+  Value content = parse_json(source, reader.problems);
+  if (reader.problems.list().size() != before) return {};
+  return content;
+}
+
+/// The element of a list, ".1.2", that is NaN or infinite; nothing if there is none.
+std::optional<std::pair<std::string, double>> not_finite(const Value& value) {
+  if (value.kind == Value::Kind::number && !std::isfinite(value.number)) return std::pair("", value.number);
+  for (size_t i = 0; i < value.items.size(); ++i)
+    if (auto inside = not_finite(value.items[i]))
+      return std::pair(fmt::format(".{}{}", i, inside->first), inside->second);
+  return {};
+}
+
+/// Reports variables of a MAT file that no value can be made of.
+bool is_usable(const Value& value, const Value& reference, const Reader& reader) {
+  const std::string &file = reference.find("file")->value.text, &name = reference.find("name")->value.text;
+  const Value& at = reference.find("name")->value;
+  if (const std::string reason = why_unusable(value); !reason.empty()) {
+    auto& problem = reader.error(at, fmt::format("\"{}\" in \"{}\" cannot be used", name, file));
+    problem.expected = "real numbers in a matrix, a text, or a cell of texts";
+    problem.found = reason;
+    return false;
+  }
+  if (const auto wrong = not_finite(value)) {
+    auto& problem = reader.error(at, fmt::format("\"{}\" in \"{}\" is not finite", name, file));
+    problem.expected = "finite numbers";
+    problem.found = fmt::format("{} at {}{}", wrong->second, name, wrong->first);
+    return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 bool refers_to_file(const Value& value) {
@@ -72,16 +116,15 @@ bool refers_to_file(const Value& value) {
 
 Value value_from_file(const Value& reference, const Reader& reader) {
   const Value &file = reference.find("file")->value, &name = reference.find("name")->value;
-  if (!reader.expect(file, Value::Kind::text, "\"file\"", "the path of a JSON file") ||
+  if (!reader.expect(file, Value::Kind::text, "\"file\"", "the path of a JSON or MAT file") ||
       !reader.expect(name, Value::Kind::text, "\"name\"", "the name of a value in it"))
     return broken(reference);
-  const auto source = read_source(resolve_relative(file.place, file.text), file.place, reader.problems);
-  if (!source) return broken(reference);
-  const size_t before = reader.problems.list().size();
-  const Value content = parse_json(source, reader.problems);
-  if (reader.problems.list().size() != before) return broken(reference);
-  const Value* const found = find_named(content, name, file.text, reader);
-  return found && is_plain(*found, reader) ? *found : broken(reference);
+  const std::string path = resolve_relative(file.place, file.text);
+  const std::optional<Value> content =
+      is_mat_path(path) ? values_of_mat(path, reference, reader) : values_of_json(path, file.place, reader);
+  const Value* const found = content ? find_named(*content, name, file.text, reader) : nullptr;
+  if (!found || !is_usable(*found, reference, reader) || !is_plain(*found, reader)) return broken(reference);
+  return *found;
 }
 
 }  // namespace loopwright

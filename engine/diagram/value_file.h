@@ -1,4 +1,5 @@
-/// Values of another JSON file in the place of values in a diagram: {"file": "gains.json", "name": "K"}.
+/// Values of another JSON or MAT file in the place of values in a diagram: {"file": "gains.json", "name":
+/// "K"}.
 #pragma once
 #include "engine/json/reader.h"
 
@@ -10,7 +11,8 @@ bool refers_to_file(const Value& value);
 /// The number, flag, text or list with this name. The path of the file is relative to the file that contains
 /// it; the parts of the name are joined by dots, elements of lists are counted from 0: "poles.0.re". The file
 /// contains plain JSON: numbers with units, {"value": 5, "unit": "mm"}, but neither expressions nor further
-/// files. Reports whatever is missing; the result is then broken.
+/// files. A MAT file is one whose name ends in ".mat", see mat_value.h. Reports whatever is missing; the
+/// result is then broken.
 Value value_from_file(const Value& reference, const Reader& reader);
 
 }  // namespace loopwright

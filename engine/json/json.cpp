@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include "engine/file/regular_file.h"
 #include "engine/json/nearest_file.h"
+#include "engine/json/read_bytes.h"
 #include "engine/json/tokens.h"
 
 namespace loopwright {
@@ -73,6 +74,11 @@ void write(const Value& value, std::string& to) {
 
 std::shared_ptr<const SourceFile> read_source(const std::string& path, const Place& reference,
                                               Problems& problems) {
+  return read_bytes(path, reference, largest_json_file, problems);
+}
+
+std::shared_ptr<const SourceFile> read_bytes(const std::string& path, const Place& reference, size_t largest,
+                                             Problems& problems) {
   const auto fail = [&](std::string reason) {
     // A file named on the command line has no source location of its reference: the message then shows its
     // own name.
@@ -83,7 +89,7 @@ std::shared_ptr<const SourceFile> read_source(const std::string& path, const Pla
     return nullptr;
   };
   auto file = std::make_shared<SourceFile>(SourceFile{path, {}});
-  const std::string reason = read_regular_file(path, largest_json_file, file->text);
+  const std::string reason = read_regular_file(path, largest, file->text);
   if (!reason.empty()) return fail(reason);
   problems.note_file(path, file->text);
   return file;

@@ -108,6 +108,7 @@ std::string Reader::text(const Value& object, std::string_view key) const {
 
 void Reader::check_version(const Value& file) const {
   text(file, "$schema");
+  text(file, "description");
   const Value::Member* version = file.find("loopwright");
   if (version && version->value.kind == Value::Kind::number && version->value.number == 1) return;
   Problem& problem = version ? error(*version, "this version of the format is not known")

@@ -2,20 +2,21 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include "engine/diagram/expression.h"
+#include "engine/json/matrix_form.h"
 
 namespace loopwright {
 namespace {
 
 bool is_vector(const PortInfo& port) { return port.shape == PortInfo::Shape::vector || port.joins_vectors; }
 
-const ParameterInfo* find_parameter(const BlockInfo& info, std::string_view name) {
-  const auto found = std::ranges::find(info.parameters, name, &ParameterInfo::name);
-  return found == info.parameters.end() ? nullptr : &*found;
+const ParameterInfo* find_parameter(const std::vector<ParameterInfo>& parameters, std::string_view name) {
+  const auto found = std::ranges::find(parameters, name, &ParameterInfo::name);
+  return found == parameters.end() ? nullptr : &*found;
 }
 
 bool is_by_element(const BlockInfo& info, const Value::Member& member) {
   if (member.value.kind != Value::Kind::list || member.value.items.empty()) return false;
-  const ParameterInfo* parameter = find_parameter(info, member.name);
+  const ParameterInfo* parameter = find_parameter(info.parameters, member.name);
   return parameter && parameter->kind == ParameterKind::number;
 }
 
@@ -54,7 +55,76 @@ void find_formulas(const Value& settings, std::vector<const Value*>& found) {
       found.push_back(&member.value);
 }
 
+/// The same inside a further list.
+void wrap(Value& value, MatrixForm form) {
+  Value list;
+  list.kind = Value::Kind::list, list.place = value.place;
+  set_matrix_form(list, form);
+  list.items.push_back(std::move(value));
+  value = std::move(list);
+}
+
+bool has_matrix(const Value& value, const ParameterInfo& info) {
+  if (matrix_form(value) != MatrixForm::none) return info.kind == ParameterKind::list;
+  if (info.fields.empty()) return false;
+  const auto in_item = [&](const Value& item) { return has_matrix(item, info.element[0]); };
+  const auto in_member = [&](const Value::Member& member) {
+    const ParameterInfo* field = find_parameter(info.fields, member.name);
+    return field && has_matrix(member.value, *field);
+  };
+  return (!info.element.empty() && std::ranges::any_of(value.items, in_item)) ||
+         std::ranges::any_of(value.members, in_member);
+}
+
+/// Brings matrices into the forms that parameters have.
+class Former {
+ public:
+  explicit Former(const Reader& reader) : reader_(reader) {}
+
+  void form(Value& value, const ParameterInfo& info) const {
+    if (matrix_form(value) != MatrixForm::none) return form_matrix(value, info);
+    if (!info.fields.empty() && !info.element.empty())
+      for (Value& item : value.items) form(item, info.element[0]);
+    for (Value::Member& member : value.members)
+      if (const ParameterInfo* field = find_parameter(info.fields, member.name)) form(member.value, *field);
+  }
+
+ private:
+  void form_matrix(Value& value, const ParameterInfo& info) const {
+    if (info.kind != ParameterKind::list) return;
+    if (matrix_form(value) == MatrixForm::one) wrap(value, MatrixForm::row);
+    if (info.element[0].kind != ParameterKind::list) return reject_full(value, info);
+    if (matrix_form(value) == MatrixForm::column)
+      for (Value& item : value.items) wrap(item, MatrixForm::none);
+    if (matrix_form(value) == MatrixForm::row) wrap(value, MatrixForm::full);
+    set_matrix_form(value, MatrixForm::full);
+  }
+  void reject_full(Value& value, const ParameterInfo& info) const {
+    if (matrix_form(value) != MatrixForm::full) return;
+    auto& p = reader_.error(value, "wrong kind of value");
+    p.expected = "a list, as in [1, 2], or a matrix of one row or one column";
+    p.found =
+        fmt::format("a matrix of {} rows and {} columns", value.items.size(), value.items[0].items.size());
+    p.hint = info.sentence;
+    value.kind = Value::Kind::null, value.is_broken = true;
+  }
+
+  const Reader& reader_;
+};
+
 }  // namespace
+
+std::optional<Value> settings_in_form(const BlockInfo& info, const Value& settings, const Reader& reader) {
+  const auto needs = [&](const Value::Member& member) {
+    const ParameterInfo* parameter = find_parameter(info.parameters, member.name);
+    return parameter && has_matrix(member.value, *parameter);
+  };
+  if (std::ranges::none_of(settings.members, needs)) return {};
+  Value result = settings;
+  for (Value::Member& member : result.members)
+    if (needs(member)) Former(reader).form(member.value, *find_parameter(info.parameters, member.name));
+  return result;
+}
 
 bool takes_numbers_by_element(const BlockInfo& info) {
   return std::ranges::none_of(info.inputs, is_vector) && std::ranges::none_of(info.outputs, is_vector) &&
@@ -89,7 +159,7 @@ std::vector<Value> settings_by_element(const BlockInfo& info, const Value& setti
 
 std::optional<Value> settings_with_constants(const BlockInfo& info, const Value& settings,
                                              const std::vector<Parameter>& parameters) {
-  if (!find_parameter(info, "constants")) return {};
+  if (!find_parameter(info.parameters, "constants")) return {};
   std::vector<const Value*> formulas;
   find_formulas(settings, formulas);
   if (formulas.empty()) return {};

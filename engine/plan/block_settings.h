@@ -4,12 +4,18 @@
 #include <optional>
 #include "engine/block/registry.h"
 #include "engine/diagram/diagram.h"
+#include "engine/json/reader.h"
 
 namespace loopwright {
 
 /// Whether a number of the block may be a list, with an element for each element of its signals: a block that
 /// is repeated for the elements of vectors, and whose unit does not depend on its numbers.
 bool takes_numbers_by_element(const BlockInfo& info);
+
+/// The settings with matrices in the form that each parameter has: a single number as a list, one row or one
+/// column as a list of rows (engine/json/matrix_form.h). Nothing if there is no matrix. A matrix of several
+/// rows and columns for a list is a problem.
+std::optional<Value> settings_in_form(const BlockInfo& info, const Value& settings, const Reader& reader);
 
 /// Settings in which numbers are lists, one for each element; empty: all elements have the same settings.
 /// Lists of different lengths are a problem.

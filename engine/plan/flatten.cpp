@@ -64,7 +64,7 @@ class Flattener {
       return -1;
     }
     flat.gate = scope.gate;
-    const Value& settings = settings_of(*scope.diagram, *flat.type, entry);
+    const Value& settings = settings_of(*scope.diagram, *flat.type, entry, flat.path);
     const auto by_element = settings_by_element(flat.type->info, settings, flat.path, problems_);
     if (by_element.size() < 2) {
       flat.value = read_value(*flat.type, by_element.empty() ? settings : by_element[0], flat.path);
@@ -122,10 +122,16 @@ class Flattener {
     }
   }
 
-  /// As in the file, or with the parameters of the diagram that its formula names.
-  const Value& settings_of(const Diagram& diagram, const BlockType& type, const BlockEntry& entry) {
-    auto extended = settings_with_constants(type.info, entry.settings, diagram.parameters);
-    return extended ? flat_.extended_settings.emplace_back(std::move(*extended)) : entry.settings;
+  /// As in the file, or with matrices in the forms that the block takes and the parameters of the diagram
+  /// that its formula names.
+  const Value& settings_of(const Diagram& diagram, const BlockType& type, const BlockEntry& entry,
+                           const std::string& path) {
+    const Value* settings = &entry.settings;
+    if (auto formed = settings_in_form(type.info, *settings, {problems_, path}))
+      settings = &flat_.extended_settings.emplace_back(std::move(*formed));
+    if (auto extended = settings_with_constants(type.info, *settings, diagram.parameters))
+      settings = &flat_.extended_settings.emplace_back(std::move(*extended));
+    return *settings;
   }
 
   std::shared_ptr<void> read_value(const BlockType& type, const Value& settings, const std::string& path) {

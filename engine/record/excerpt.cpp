@@ -31,6 +31,22 @@ size_t count_of(const Value& object, std::string_view key, double otherwise, con
 
 }  // namespace
 
+FileShape Excerpt::column_shape() {
+  using namespace shapes;
+  return object({optional("column", text(), "Column of the data; that of this name when left out"),
+                 optional("unit", text(), "Unit of the new numbers"),
+                 optional("scale", number(), "value = scale * number in the file + offset"),
+                 optional("offset", stated(), "In the unit of the new numbers")});
+}
+
+FileShape Excerpt::rows_shape() {
+  using namespace shapes;
+  return object({optional("from", stated(), "Time of the first row that is used [s]"),
+                 optional("to", stated(), "Time of the last row that is used [s]"),
+                 optional("skip", whole(0, most_rows), "Rows left out at the beginning of the file"),
+                 optional("decimate", whole(1, most_rows), "Every n-th of the rows is used")});
+}
+
 Excerpt Excerpt::read(const Value& file, const Reader& reader) {
   Excerpt excerpt;
   const Value::Member* columns = file.find("columns");
@@ -46,7 +62,7 @@ std::optional<Excerpt::NewColumn> Excerpt::read_column(const Value::Member& entr
   if (!reader.expect(entry.value, Value::Kind::object, entry.name,
                      "{\"column\": …, \"unit\": …, \"scale\": …}"))
     return {};
-  reader.reject_unknown(entry.value, {"column", "unit", "scale", "offset"}, "a column");
+  reject_unknown(reader, entry.value, column_shape(), "a column");
   NewColumn column;
   column.name = entry.name, column.place = entry.place, column.at = entry.value;
   column.column = reader.text(entry.value, "column"), column.unit = reader.text(entry.value, "unit");
@@ -64,7 +80,7 @@ void Excerpt::read_rows(const Value::Member& excerpt, const Reader& reader) {
   if (!reader.expect(excerpt.value, Value::Kind::object, "\"excerpt\"",
                      "{\"from\": \"2 s\", \"to\": \"10 s\"}"))
     return;
-  reader.reject_unknown(excerpt.value, {"from", "to", "skip", "decimate"}, "an excerpt");
+  reject_unknown(reader, excerpt.value, rows_shape(), "an excerpt");
   has_rows_ = true, rows_at_ = excerpt.value;
   if (const Value::Member* from = excerpt.value.find("from")) from_ = time_of(*from, reader).value_or(from_);
   if (const Value::Member* to = excerpt.value.find("to")) to_ = time_of(*to, reader).value_or(to_);

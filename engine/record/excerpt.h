@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <vector>
+#include "engine/json/file_shape.h"
 #include "engine/json/reader.h"
 #include "engine/json/stated_number.h"
 #include "engine/record/recording.h"
@@ -17,6 +18,9 @@ namespace loopwright {
 /// first ones are left out, then those outside of the times, and of the rest every n-th is kept.
 class Excerpt {
  public:
+  /// What stands at a name in "columns", and at "excerpt".
+  static FileShape column_shape();
+  static FileShape rows_shape();
   /// Reads both keys, where present.
   static Excerpt read(const Value& file, const Reader& reader);
 

@@ -10,7 +10,6 @@
 
 #include "engine/record/recorded_bytes.h"
 #include "engine/record/mat.h"
-#include "engine/record/mat_layout.h"
 #include "engine/record/mat_logs.h"
 #include "engine/record/mat_names.h"
 #include "engine/record/mat_variables.h"
@@ -200,21 +199,11 @@ Recording read_mat(const std::string& path, Problems& problems, const ReadOption
 
   // A location without text: lines and columns have no meaning in a binary file.
   const Place place{std::make_shared<SourceFile>(SourceFile{path, {}}), 0};
-  const auto damaged = [&](const std::string& what, std::string hint = {}) {
-    problems.error(place, {}, {}, what).hint = std::move(hint);
-    return Recording{};
-  };
-  const std::optional<mat::Layout> layout = mat::outline(file->text);
-  if (!layout) return damaged("this is no MAT file");
-  if (!layout->damage.empty())
-    return damaged(fmt::format("byte {}: {}", layout->damage_offset, layout->damage),
-                   "was the copy complete?");
-  const bool is_hdf5 = layout->version == mat::Layout::Version::seven_three;
-  mat::Variables variables = mat::read_variables(file->text, is_hdf5 ? path : "", options);
-  if (!variables.failure.empty()) return damaged(variables.failure);
-  if (layout->variables && variables.count != *layout->variables)
-    return damaged(fmt::format("the file is damaged: {} of its {} can be read", variables.count,
-                               count_of(*layout->variables, "variable")));
+  mat::Variables variables = mat::read_all_variables(*file, options);
+  if (!variables.failure.empty()) {
+    problems.error(place, {}, {}, variables.failure).hint = variables.hint;
+    return {};
+  }
   ProblemLimit limit(problems, options.most_problems);
   return Assembly(place, limit, options).assemble(variables.list);
 }

@@ -150,6 +150,7 @@ Variable convert(std::string name, const matvar_t& source) {
     if (!count || !copy_numbers_of_any_class(source, *count, variable.numbers))
       return unusable(std::move(name), "no numbers, or damaged ones");
     variable.kind = Variable::Kind::numbers;
+    variable.is_logical = source.isLogical != 0;
     variable.rows = source.dims[0];
     variable.columns = source.dims[1];
   }

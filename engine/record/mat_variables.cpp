@@ -18,6 +18,7 @@
 #include <optional>
 #include <string_view>
 
+#include "engine/record/mat_layout.h"
 #include "engine/record/mat_values.h"
 
 namespace loopwright::mat {
@@ -43,10 +44,11 @@ class Packer {
   bool put(size_t number) { return put(&number, sizeof number); }
   bool put(const std::string& text) { return put(text.size()) && put(text.data(), text.size()); }
   bool put(const Variable& variable) {
-    bool all =
-        put(variable.name) && put(size_t(variable.kind)) && put(variable.rows) && put(variable.columns) &&
-        put(size_t(variable.is_log_of_matrices)) && put(variable.numbers.size()) &&
-        put(variable.numbers.data(), variable.numbers.size() * sizeof(double)) && put(variable.texts.size());
+    bool all = put(variable.name) && put(size_t(variable.kind)) && put(variable.rows) &&
+               put(variable.columns) && put(size_t(variable.is_logical)) &&
+               put(size_t(variable.is_log_of_matrices)) && put(variable.numbers.size()) &&
+               put(variable.numbers.data(), variable.numbers.size() * sizeof(double)) &&
+               put(variable.texts.size());
     for (const std::string& text : variable.texts) all = all && put(text);
     return all;
   }
@@ -73,10 +75,11 @@ class Unpacker {
     return get(text.data(), size);
   }
   bool get(Variable& variable) {
-    size_t kind = 0, is_log = 0, numbers = 0, texts = 0;
-    if (!get(variable.name) || !get(kind) || !get(variable.rows) || !get(variable.columns) || !get(is_log) ||
-        !get(numbers))
+    size_t kind = 0, is_logical = 0, is_log = 0, numbers = 0, texts = 0;
+    if (!get(variable.name) || !get(kind) || !get(variable.rows) || !get(variable.columns) ||
+        !get(is_logical) || !get(is_log) || !get(numbers))
       return false;
+    variable.is_logical = is_logical != 0;
     variable.is_log_of_matrices = is_log != 0;
     if (kind > size_t(Variable::Kind::other) || numbers > bytes_.size() / sizeof(double)) return false;
     variable.kind = static_cast<Variable::Kind>(kind);
@@ -225,6 +228,27 @@ Variables read_variables(std::string_view file, const std::string& hdf5_path, co
   if (result >= 0) ::close(result);
   if (!variables.failure.empty()) variables.list.clear();
   return variables;
+}
+
+Variables read_all_variables(const SourceFile& file, const ReadOptions& options) {
+  Variables failed;
+  const std::optional<Layout> layout = outline(file.text);
+  if (!layout) {
+    failed.failure = "this is no MAT file";
+    return failed;
+  }
+  if (!layout->damage.empty()) {
+    failed.failure = fmt::format("byte {}: {}", layout->damage_offset, layout->damage);
+    failed.hint = "was the copy complete?";
+    return failed;
+  }
+  const bool is_hdf5 = layout->version == Layout::Version::seven_three;
+  Variables variables = read_variables(file.text, is_hdf5 ? file.name : "", options);
+  if (!variables.failure.empty() || !layout->variables || variables.count == *layout->variables)
+    return variables;
+  failed.failure = fmt::format("the file is damaged: {} of its {} variable{} can be read", variables.count,
+                               *layout->variables, *layout->variables == 1 ? "" : "s");
+  return failed;
 }
 
 }  // namespace loopwright::mat

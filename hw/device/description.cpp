@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include "engine/block/parameter_shape.h"
 #include "engine/json/file_kind.h"
+#include "hw/device/device_shape.h"
 #include "engine/json/json.h"
 #include "engine/diagram/parameter_scope.h"
 #include "engine/json/reader.h"
@@ -20,12 +22,9 @@ class DeviceReader {
     reader_.check_version(file);
     to.title = reader_.text(file, "title"), to.place = file.place;
     read_driver(file, to);
-    Value without_drivers = file;  // each driver has a key of its own
-    std::erase_if(without_drivers.members, [&](const Value::Member& m) { return is_driver(m.name); });
-    reader_.reject_unknown(without_drivers,
-                           {"$schema", "loopwright", "title", "description", "driver", "inputs", "outputs",
-                            "clock", "watchdog", "policy"},
-                           "a device");
+    std::vector<std::pair<std::string_view, FileShape>> drivers;  // each has a key of its own
+    for (const std::string& name : drivers_) drivers.emplace_back(name, shapes::anything());
+    reject_unknown(reader_, file, device_shape(drivers), "a device");
     read_channels(file, "inputs", to.inputs);
     read_channels(file, "outputs", to.outputs);
     section(file, "clock", to.clock);
@@ -166,6 +165,32 @@ template <class Channel> int place_of(const std::vector<Channel>& channels, std:
 
 int DeviceDescription::find_input(std::string_view name) const { return place_of(inputs, name); }
 int DeviceDescription::find_output(std::string_view name) const { return place_of(outputs, name); }
+
+FileShape device_shape(const std::vector<std::pair<std::string_view, FileShape>>& drivers) {
+  using namespace shapes;
+  const auto section = [](const std::vector<ParameterInfo>& fields) {
+    return shape_of(fields, Writing::evaluated);
+  };
+  std::vector<FileShape> alternatives;
+  for (const auto& [name, settings] : drivers) {
+    std::vector<FileShape::Key> keys = {
+        optional("title", text()),
+        optional("description", text()),
+        required("driver", choice({name}), "The kind of hardware"),
+        optional("inputs", by_name(section(parameters_of<InputChannel>())), "Channels that are read"),
+        optional("outputs", by_name(section(parameters_of<OutputChannel>())), "Channels that are written"),
+        optional("clock", section(parameters_of<ClockSettings>()), "Who owns time"),
+        optional("watchdog", section(parameters_of<WatchdogSettings>()), "What the device does alone"),
+        optional("policy", section(parameters_of<Policy>()), "Late, lost and invalid samples")};
+    for (const auto& [other, of_other] : drivers) {
+      const bool is_needed =
+          other == name && std::ranges::any_of(settings.keys, &FileShape::Key::is_required);
+      keys.push_back({other, other == name ? settings : anything(), is_needed});
+    }
+    alternatives.push_back(file(std::move(keys)));
+  }
+  return either(std::move(alternatives));
+}
 
 std::shared_ptr<const DeviceDescription> read_device(const std::string& path, const Place& reference,
                                                      std::span<const std::string> drivers,

@@ -63,6 +63,7 @@ BEFORE = {
 NAMES = {
     ("docs/diagram_format.md", "A mass on a spring, pushed"): "spring_by_frequency.json",
     ("docs/diagnose.md", "Holding current"): "holding.experiment.json",
+    ("docs/editors.md", "Two gains"): "gains.sweep.json",
     ("docs/effects.md", "A bump on the track"): "bump.json",
     ("docs/sweeps.md", "Payload and cogging"): "diagrams/linear_motor/example.sweep.json",
 }

@@ -60,14 +60,4 @@ void add_blocks(CLI::App& app, std::function<void(std::function<int()>)> choose)
   });
 }
 
-void add_schema(CLI::App& app, std::function<void(std::function<int()>)> choose) {
-  CLI::App* command = app.add_subcommand("schema", "Print the JSON Schema of diagram files, for editors");
-  command->callback([=] {
-    choose([]() -> int {
-      answer_data(diagram_schema());
-      return done;
-    });
-  });
-}
-
 }  // namespace loopwright

@@ -8,7 +8,7 @@
 #include "hw/realtime/axes.h"
 #include "tools/command/command.h"
 #include "tools/experiment/experiment.h"
-#include "tools/effects/effect.h"
+#include "tools/effects/check_blocks.h"
 #include "tools/gp/train.h"
 #include "tools/run/checked_diagram.h"
 #include "tools/sweep/sweep_plan.h"
@@ -69,6 +69,7 @@ Verdict check_training(const std::string& path, const LoadOptions& options, Prob
 
 Verdict check_effect(const std::string& path, Problems& problems) {
   const std::vector<Effect> forms = load_effect(path, problems);
+  for (const Effect& form : forms) check_blocks(form, problems);
   if (forms.empty()) return {};
   return fmt::format("an effect in {} form{}", forms.size(), forms.size() == 1 ? "" : "s");
 }

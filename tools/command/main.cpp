@@ -5,6 +5,7 @@
 #include <thread>
 #include "tools/command/command.h"
 #include "tools/command/command_line.h"
+#include "tools/command/examples.h"
 
 namespace loopwright {
 namespace {
@@ -17,7 +18,8 @@ int run_program(int count, char** arguments) {
       "Exit codes: 0 done; 1 a run failed, or a check of a machine did; 2 wrong input, nothing was written;\n"
       "130 interrupted, what was computed is kept. Results go to stdout or where -o, --json and --report "
       "say;\n"
-      "summaries go to stdout, or to stderr where results take it; problems and progress go to stderr.");
+      "summaries go to stdout, or to stderr where results take it; problems and progress go to stderr, on a\n"
+      "terminal in colours unless NO_COLOR is set.");
   std::function<int()> action;
   const auto choose = [&](std::function<int()> chosen) { action = std::move(chosen); };
   add_check(app, choose);
@@ -41,6 +43,7 @@ int run_program(int count, char** arguments) {
   add_stability(app, choose);
   add_studio(app, choose);
   add_completion(app, choose);
+  add_examples(app);
   try {
     app.parse(count, arguments);
     check_values(app);

@@ -3,8 +3,10 @@
 #include <filesystem>
 #include <set>
 #include "engine/json/problem.h"
+#include "engine/record/atomic_file.h"
 #include "engine/record/installation.h"
 #include "tools/command/command.h"
+#include "tools/schema/schema.h"
 
 namespace loopwright {
 namespace {
@@ -30,7 +32,8 @@ std::set<std::string> kinds() {
   throw InputError(std::move(problems));
 }
 
-/// The folder appears as a whole or not at all.
+/// The shipped project, and the schemas of its files for editors. The folder appears as a whole or not at
+/// all.
 int create(const Arguments& a) {
   const auto known = kinds();
   if (!known.contains(a.kind)) {
@@ -46,6 +49,9 @@ int create(const Arguments& a) {
   const fs::path part = fs::path(folder.string() + ".part");
   try {
     fs::copy(shared_file("diagrams/projects/" + a.kind), part, fs::copy_options::recursive);
+    write_schemas((part / "schemas").string());
+    fs::create_directory(part / ".vscode");
+    write_file((part / ".vscode/settings.json").string(), editor_settings("schemas"));
     fs::rename(part, folder);
   } catch (const fs::filesystem_error& error) {
     std::error_code ignored;

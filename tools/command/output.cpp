@@ -7,6 +7,7 @@
 #include <cstring>
 #include <iostream>
 #include "engine/json/problem.h"
+#include "tools/command/colours.h"
 
 namespace loopwright {
 namespace {
@@ -43,7 +44,10 @@ void tell_terminal(std::string_view text) {
   }
 }
 
-void tell_text(std::string_view text) { tell_terminal(printable(text)); }
+void tell_text(std::string_view text) {
+  static const bool on_colour_terminal = has_colours();
+  tell_terminal(on_colour_terminal ? coloured(printable(text)) : printable(text));
+}
 
 void answer_data(std::string_view bytes) {
   errno = 0;

@@ -4,7 +4,6 @@
 #include "engine/diagram/expression.h"
 
 namespace loopwright {
-namespace {
 
 RecordSizes example_sizes() {
   RecordSizes sizes;
@@ -13,6 +12,8 @@ RecordSizes example_sizes() {
   sizes.sample_time = 1e-3;
   return sizes;
 }
+
+namespace {
 
 /// With every quantity and its unit.
 std::vector<Quantity> example_quantities() {

@@ -5,6 +5,9 @@
 
 namespace loopwright {
 
+/// The record of a plausible machine.
+RecordSizes example_sizes();
+
 /// A number, or an expression over record quantities whose unit must be that of the parameter. Returns its
 /// value for a plausible machine, to check that a range makes sense. 0 after a problem.
 double example_of_bound(const Value& value, const std::string& unit, const Reader& reader);

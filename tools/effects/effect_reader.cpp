@@ -9,6 +9,8 @@
 #include "engine/diagram/wires.h"
 #include "tools/effects/bound.h"
 #include "tools/effects/effect.h"
+#include "tools/effects/effect_shape.h"
+#include "tools/effects/member_reader.h"
 
 namespace loopwright {
 namespace {
@@ -20,7 +22,7 @@ using Kind = Value::Kind;
 class FormReader {
  public:
   FormReader(const Value& file, const Value* form, Problems& problems)
-      : file_(file), form_(form), reader_{problems, ""} {}
+      : file_(file), form_(form), read_{{problems, ""}}, reader_(read_.reader) {}
 
   Effect read() {
     read_words();
@@ -28,8 +30,10 @@ class FormReader {
       for (const Value::Member& member : list->members) read_parameter(member);
     read_blocks();
     read_attachments();
-    read_needs();
-    read_confusable();
+    if (const Value* needs = object("needs", "what a record must contain, with a \"text\""))
+      effect_.needs = read_needs(*needs, read_);
+    if (const Value::Member* others = member("confusable"))
+      effect_.confusable = read_confusable(others->value, read_);
     return std::move(effect_);
   }
 
@@ -48,64 +52,20 @@ class FormReader {
                                      fmt::format("an object of {}", expected));
     return fits ? &found->value : nullptr;
   }
-  std::string text(const Value& owner, std::string_view key, std::string_view what) {
-    const std::string found = reader_.text(owner, key);
-    if (found.empty() && !owner.find(key))
-      reader_.error(owner, fmt::format("{} has no \"{}\"", what, key)).expected = "a text";
-    return found;
-  }
-  bool flag(const Value& owner, std::string_view key) {
-    const Value::Member* found = owner.find(key);
-    return found &&
-           reader_.expect(found->value, Kind::boolean, fmt::format("\"{}\"", key), "true or false") &&
-           found->value.boolean;
-  }
-  double number(const Value& owner, std::string_view key, double otherwise) {
-    return reader_.optional_number(owner, key, otherwise, 0);
-  }
-  int count(const Value& owner, std::string_view key, int otherwise) {
-    constexpr double most = 1e6;
-    const double given = number(owner, key, otherwise);
-    if (given <= most && given == std::floor(given)) return int(given);
-    reader_.error(*owner.find(key), fmt::format("\"{}\" is no count", key)).expected =
-        fmt::format("a whole number from 0 to {}", most);
-    return otherwise;
-  }
-  std::vector<std::string> texts(const Value& list, std::string_view what) {
-    std::vector<std::string> found;
-    if (!reader_.expect(list, Kind::list, what, "a list of texts")) return found;
-    for (const Value& item : list.items)
-      if (reader_.expect(item, Kind::text, what, "a text in quotes")) found.push_back(item.text);
-    return found;
-  }
-
-  /// One word of a list; false, and a problem, if it is not in the list.
-  template <class Meaning>
-  bool read_word(const Value& item, const char* key, std::string_view what, const char* problem,
-                 const std::vector<std::pair<std::string, Meaning>>& known, Meaning& meaning) {
-    const std::string word = text(item, key, what);
-    const auto found = std::ranges::find(known, word, [](const auto& k) { return k.first; });
-    if (found != known.end()) return meaning = found->second, true;
-    if (!item.find(key)) return false;
-    KnownNames names;
-    for (const auto& [name, unused] : known) names.add(name);
-    names.explain(reader_.error(*item.find(key), problem), word);
-    return false;
-  }
-
   void read_words() {
-    effect_.name = text(file_, "effect", "the file");
-    effect_.title = text(file_, "title", "the effect");
+    effect_.name = read_.text(file_, "effect", "the file");
+    effect_.title = read_.text(file_, "title", "the effect");
     if (const auto* words = member("physics"))
       effect_.physics = reader_.text(form_ && form_->find("physics") ? *form_ : file_, words->name);
     else
-      text(file_, "physics", "the effect");
-    if (const auto* list = member("equivalents")) effect_.equivalents = texts(list->value, "\"equivalents\"");
-    effect_.is_repeatable = flag(file_, "repeatable");
+      read_.text(file_, "physics", "the effect");
+    if (const auto* list = member("equivalents"))
+      effect_.equivalents = read_.texts(list->value, "\"equivalents\"");
+    effect_.is_repeatable = read_.flag(file_, "repeatable");
     if (const Value& owner = form_ && form_->find("at_rest") ? *form_ : file_; owner.find("at_rest"))
-      read_word(owner, "at_rest", "the effect", "an axis at rest is not so",
-                {{"free", AtRest::free}, {"holds", AtRest::holds}, {"gives", AtRest::gives}},
-                effect_.at_rest);
+      read_.word(owner, "at_rest", "the effect", "an axis at rest is not so",
+                 {{"free", AtRest::free}, {"holds", AtRest::holds}, {"gives", AtRest::gives}},
+                 effect_.at_rest);
   }
 
   // ---- Parameters ----
@@ -115,23 +75,27 @@ class FormReader {
         !reader_.expect(member.value, Kind::object, "a parameter", "{\"unit\": …, \"range\": …}"))
       return;
     const Value& body = member.value;
-    reader_.reject_unknown(
-        body, {"description", "unit", "linear", "period", "scale", "range", "start", "points", "value"},
-        "a parameter of an effect");
+    reject_unknown(reader_, body, shapes::either({fitted_parameter_shape(), given_parameter_shape()}),
+                   "a parameter of an effect");
     EffectParameter parameter;
     parameter.name = member.name, parameter.place = member.place;
     parameter.description = reader_.text(body, "description");
     parameter.unit = reader_.text(body, "unit");
-    parameter.is_linear = flag(body, "linear"), parameter.is_period = flag(body, "period");
+    parameter.is_linear = read_.flag(body, "linear"), parameter.is_period = read_.flag(body, "period");
     const Value::Member* value = body.find("value");
     parameter.is_fitted = !value;
     if (value)
-      parameter.value = value->value, reject_fit_keys(body), read_plausible_range(body, parameter);
+      read_given(*value, body, parameter);
     else
       read_fit(body, parameter);
     if (std::ranges::any_of(record_sizes, [&](const NamedSize& s) { return s.name == member.name; }))
       reader_.error(member, fmt::format("\"{}\" is the name of a size of the record", member.name));
     effect_.parameters.push_back(std::move(parameter));
+  }
+  void read_given(const Value::Member& value, const Value& body, EffectParameter& parameter) {
+    if (read_.expect_computed(value.value, "\"value\"")) parameter.value = value.value;
+    reject_fit_keys(body);
+    read_plausible_range(body, parameter);
   }
   void reject_fit_keys(const Value& body) {
     for (const char* key : {"start", "scale", "points", "linear", "period"})
@@ -149,6 +113,8 @@ class FormReader {
       reader_.error(*range, "a range has two ends").found = shown(range->value);
       return;
     }
+    for (const Value& end : range->value.items)
+      if (!read_.expect_computed(end, "an end of the range")) return;
     parameter.low = range->value.items[0], parameter.high = range->value.items[1];
     parameter.is_bounded = true;
   }
@@ -245,38 +211,44 @@ class FormReader {
   void read_attachment(const Value& item) {
     using To = Attachment::To;
     using Stage = Attachment::Stage;
-    reader_.reject_unknown(item, {"to", "from", "slope", "stage", "parameter", "add", "optional"},
-                           "an attachment");
     Attachment attachment;
     attachment.place = item.place;
-    attachment.from = text(item, "from", "the attachment");
-    const bool is_known = read_word(
+    attachment.from = read_.text(item, "from", "the attachment");
+    const bool is_known = read_.word(
         item, "to", "the attachment", "an effect cannot be attached there",
         {{"force", To::force}, {"input", To::input}, {"sensor", To::sensor}, {"parameter", To::parameter}},
         attachment.to);
+    const bool is_to_parameter = attachment.to == To::parameter;
+    reject_unknown(
+        reader_, item,
+        !is_known         ? shapes::either({signal_attachment_shape(), parameter_attachment_shape()})
+        : is_to_parameter ? parameter_attachment_shape()
+                          : signal_attachment_shape(),
+        is_known ? fmt::format("an attachment to the {}", item.find("to")->value.text) : "an attachment");
     if (!is_known) return;
     if (item.find("stage"))
-      read_word(item, "stage", "the attachment", "the way of the input has no such stage",
-                {{"command", Stage::command},
-                 {"amplifier", Stage::amplifier},
-                 {"iron", Stage::iron},
-                 {"magnets", Stage::magnets}},
-                attachment.stage);
+      read_.word(item, "stage", "the attachment", "the way of the input has no such stage",
+                 {{"command", Stage::command},
+                  {"amplifier", Stage::amplifier},
+                  {"iron", Stage::iron},
+                  {"magnets", Stage::magnets}},
+                 attachment.stage);
     check_source(item, "from", attachment.from);
     if (item.find("slope")) {
-      attachment.slope = text(item, "slope", "the attachment");
+      attachment.slope = read_.text(item, "slope", "the attachment");
       check_source(item, "slope", attachment.slope);
     }
-    if (attachment.to == To::parameter) {
+    if (is_to_parameter) {
       if (const auto* targets = item.find("parameter"))
-        attachment.targets = texts(targets->value, "\"parameter\"");
+        attachment.targets = read_.texts(targets->value, "\"parameter\"");
       if (attachment.targets.empty())
         reader_.error(item, "the attachment names no parameter").expected = "\"parameter\": [\"Mass.mass\"]";
-      if (const auto* add = item.find("add"))
+      const auto* add = item.find("add");
+      if (add && read_.expect_computed(add->value, "\"add\""))
         attachment.add = add->value;
-      else
+      else if (!add)
         reader_.error(item, "the attachment does not say what to add").expected = "\"add\": \"=mass\"";
-      attachment.is_optional = flag(item, "optional");
+      attachment.is_optional = read_.flag(item, "optional");
     }
     effect_.attachments.push_back(std::move(attachment));
   }
@@ -291,67 +263,10 @@ class FormReader {
                   path.empty() ? from : path[0]);
   }
 
-  // ---- Data for the search ----
-
-  void read_needs() {
-    const Value* needs = object("needs", "what a record must contain, with a \"text\"");
-    if (!needs) return;
-    reader_.reject_unknown(*needs,
-                           {"text", "directions", "speeds", "accelerations", "reversals", "passes", "periods",
-                            "duration_s", "varied_force"},
-                           "\"needs\"");
-    Excitation& e = effect_.needs;
-    e.text = text(*needs, "text", "\"needs\"");
-    e.directions = count(*needs, "directions", 1), e.speeds = count(*needs, "speeds", 1);
-    e.accelerations = count(*needs, "accelerations", 0);
-    e.reversals = count(*needs, "reversals", 0), e.passes = count(*needs, "passes", 1);
-    e.periods = number(*needs, "periods", 0), e.duration_s = number(*needs, "duration_s", 0);
-    e.varied_force = flag(*needs, "varied_force");
-  }
-
-  void read_confusable() {
-    const Value::Member* list = member("confusable");
-    if (!list || !reader_.expect(list->value, Kind::list, "\"confusable\"", "a list of objects")) return;
-    for (const Value& item : list->value.items) {
-      if (!reader_.expect(item, Kind::object, "a confusable effect", "{\"with\": …, \"experiment\": …}"))
-        continue;
-      reader_.reject_unknown(item, {"with", "when", "experiment"}, "a confusable effect");
-      ConfusableEffect other;
-      other.with = text(item, "with", "the confusable effect");
-      other.when = reader_.text(item, "when");
-      if (const auto* experiment = item.find("experiment"))
-        other.experiment = read_experiment(experiment->value);
-      else
-        reader_.error(item, "the experiment that separates them is missing").expected = "\"experiment\": {…}";
-      effect_.confusable.push_back(std::move(other));
-    }
-  }
-  SeparatingExperiment read_experiment(const Value& value) {
-    SeparatingExperiment e;
-    if (!reader_.expect(value, Kind::object, "\"experiment\"", "an object")) return e;
-    reader_.reject_unknown(value,
-                           {"text", "speeds", "distance", "acceleration", "passes", "pause_s", "added_mass",
-                            "chirp_amplitude", "chirp_from_hz", "chirp_to_hz"},
-                           "an experiment");
-    e.text = text(value, "text", "the experiment");
-    if (const auto* speeds = value.find("speeds");
-        speeds && reader_.expect(speeds->value, Kind::list, "\"speeds\"", "a list of numbers")) {
-      e.speeds.clear();
-      for (const Value& speed : speeds->value.items)
-        if (reader_.expect(speed, Kind::number, "a speed", "a number")) e.speeds.push_back(speed.number);
-      if (e.speeds.empty()) reader_.error(*speeds, "the experiment has no speed");
-    }
-    e.distance = number(value, "distance", 1), e.acceleration = number(value, "acceleration", 1);
-    e.passes = count(value, "passes", 1), e.pause_s = number(value, "pause_s", 0.2);
-    e.added_mass = number(value, "added_mass", 0);
-    e.chirp_amplitude = number(value, "chirp_amplitude", 0);
-    e.chirp_from_hz = number(value, "chirp_from_hz", 1), e.chirp_to_hz = number(value, "chirp_to_hz", 100);
-    return e;
-  }
-
   const Value& file_;
   const Value* form_;
-  Reader reader_;
+  MemberReader read_;
+  const Reader& reader_;
   Effect effect_;
 };
 
@@ -365,21 +280,17 @@ std::vector<Effect> load_effect(const std::string& path, Problems& problems) {
   const Reader reader{own, ""};
   if (!own.has_errors() && reader.expect(file, Kind::object, "an effect", "an object in braces") &&
       expect_kind(file, FileKind::effect, own)) {
-    reader.reject_unknown(file,
-                          {"$schema", "loopwright", "effect", "title", "physics", "parameters", "blocks",
-                           "attach", "equivalents", "needs", "confusable", "repeatable", "at_rest", "forms"},
-                          "an effect");
+    reject_unknown(reader, file, effect_shape(), "an effect");
     reader.check_version(file);
     const Value::Member* forms = file.find("forms");
     if (!forms)
       effects.push_back(FormReader(file, nullptr, own).read());
+    else if (forms->value.kind == Kind::object && forms->value.members.empty())
+      reader.error(*forms, "the effect has no form").expected = "a form, or no \"forms\"";
     else if (reader.expect(forms->value, Kind::object, "\"forms\"", "an object: name → what differs"))
       for (const Value::Member& form : forms->value.members) {
         if (!reader.expect(form.value, Kind::object, "a form", "an object")) continue;
-        reader.reject_unknown(
-            form.value,
-            {"physics", "parameters", "blocks", "attach", "equivalents", "needs", "confusable", "at_rest"},
-            "a form of an effect");
+        reject_unknown(reader, form.value, effect_form_shape(), "a form of an effect");
         effects.push_back(FormReader(file, &form.value, own).read());
         effects.back().form = form.name;
       }

@@ -14,6 +14,7 @@
 #include "hw/realtime/deploy.h"
 #include "tools/experiment/balances.h"
 #include "tools/experiment/data_file.h"
+#include "tools/experiment/experiment_shape.h"
 
 namespace loopwright {
 namespace {
@@ -32,10 +33,7 @@ class Loader {
         !reader_.expect(file, Value::Kind::object, "an experiment", "an object in braces") ||
         !expect_kind(file, FileKind::experiment, problems_))
       return nullptr;
-    reader_.reject_unknown(file,
-                           {"$schema", "loopwright", "title", "description", "data", "time", "drive",
-                            "compare", "roles", "sites", "hold_out", "rows", "columns", "excerpt"},
-                           "an experiment");
+    reject_unknown(reader_, file, experiment_shape(), "an experiment");
     reader_.check_version(file);
     result_->title = reader_.text(file, "title"), result_->place = file.place;
     read_signals(file, "drive", result_->drives);
@@ -67,9 +65,9 @@ class Loader {
         continue;
       const bool drives = key == "drive";
       if (drives)
-        reader_.reject_unknown(entry.value, {"column", "unit", "interpolation"}, "a driven port");
+        reject_unknown(reader_, entry.value, driven_port_shape(), "a driven port");
       else
-        reader_.reject_unknown(entry.value, {"column", "unit", "resolution"}, "a compared port");
+        reject_unknown(reader_, entry.value, compared_port_shape(), "a compared port");
       RecordedSignal signal;
       signal.port = entry.name, signal.place = entry.place, signal.pointer = entry.value.place.pointer();
       signal.column = reader_.text(entry.value, "column");
@@ -106,8 +104,7 @@ class Loader {
     const Value::Member* roles = file.find("roles");
     if (!roles || !reader_.expect(roles->value, Value::Kind::object, "\"roles\"", "an object: role → port"))
       return;
-    reader_.reject_unknown(roles->value, {"position", "velocity", "acceleration", "force", "input"},
-                           "the roles");
+    reject_unknown(reader_, roles->value, roles_shape(), "the roles");
     for (const Value::Member& role : roles->value.members) {
       result_->roles.ports.emplace_back(role.name, reader_.text(roles->value, role.name));
       result_->roles.places.push_back(role.place);
@@ -128,7 +125,7 @@ class Loader {
     if (!hold_out ||
         !reader_.expect(hold_out->value, Value::Kind::object, "\"hold_out\"", "{\"fraction\": 0.3}"))
       return;
-    reader_.reject_unknown(hold_out->value, {"fraction"}, "\"hold_out\"");
+    reject_unknown(reader_, hold_out->value, hold_out_shape(), "\"hold_out\"");
     result_->hold_out_fraction = reader_.optional_number(hold_out->value, "fraction", 0, 0, 1);
   }
 

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include "engine/block.h"
+#include "engine/block/parameter_shape.h"
+#include "tools/gp/training_shape.h"
 #include "engine/json/edit.h"
 #include "engine/json/file_kind.h"
 #include "engine/json/json.h"
@@ -223,6 +225,8 @@ Training training_of(const TrainingEntry& e) {
 }
 
 }  // namespace
+
+FileShape training_shape() { return shape_of(parameters_of<TrainingEntry>(), Writing::evaluated); }
 
 gp::Kernel kernel_of(const Training& training) {
   using Kind = gp::Shape::Kind;

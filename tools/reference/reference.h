@@ -6,9 +6,6 @@
 
 namespace loopwright {
 
-/// JSON Schema (draft 2020-12) of diagram files, for editors.
-std::string diagram_schema();
-
 /// One block type for a terminal: sentence, ports, parameters with units, ranges and defaults, events.
 std::string block_text(const BlockInfo& info);
 

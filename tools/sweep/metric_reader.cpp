@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include "engine/json/stated_number.h"
+#include "tools/sweep/sweep_shape.h"
 
 namespace loopwright {
 namespace {
@@ -21,23 +22,11 @@ constexpr std::array<std::pair<std::string_view, Metric::Kind>, 10> metric_kinds
 }};
 
 void reject_what_does_not_belong(const Reader& reader, const Metric& metric, const Value& body) {
-  using Kind = Metric::Kind;
-  std::vector<std::string> known{"unit", "from", "to", "least", "most", std::string(to_name(metric.kind))};
-  std::vector<std::string> needed;
-  if (metric.kind == Kind::settling_time) needed = {"target", "band"};
-  if (metric.kind == Kind::overshoot) needed = {"target"};
-  if (metric.kind == Kind::percentile) known.push_back("percent");
-  if (metric.kind == Kind::first_violation) needed = {"threshold"};
-  for (const std::string& key : needed)
-    if (!body.find(key))
-      reader.error(body, fmt::format("\"{}\" of \"{}\" is missing", key, to_name(metric.kind)));
-  known.insert(known.end(), needed.begin(), needed.end());
-  for (const Value::Member& member : body.members) {
-    if (std::find(known.begin(), known.end(), member.name) != known.end()) continue;
-    auto& p =
-        reader.error(member, fmt::format("\"{}\" has no key \"{}\"", to_name(metric.kind), member.name));
-    KnownNames(known).explain(p, member.name);
-  }
+  const FileShape shape = metric_shape(metric.kind);
+  for (const FileShape::Key& key : shape.keys)
+    if (key.is_required && !body.find(key.name))
+      reader.error(body, fmt::format("\"{}\" of \"{}\" is missing", key.name, to_name(metric.kind)));
+  reject_unknown(reader, body, shape, fmt::format("\"{}\"", to_name(metric.kind)));
 }
 
 /// Reads the numbers of a metric. What has a unit of its own is compared with the signal later.

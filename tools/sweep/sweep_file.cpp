@@ -8,6 +8,7 @@
 #include "engine/plan/plan.h"
 #include "models/real/double_functions.h"
 #include "tools/sweep/metric_reader.h"
+#include "tools/sweep/sweep_shape.h"
 
 namespace loopwright {
 namespace {
@@ -30,13 +31,9 @@ class Loader {
         !reader_.expect(file, Value::Kind::object, "a sweep", "an object in braces") ||
         !expect_kind(file, FileKind::sweep, problems_))
       return nullptr;
-    reader_.reject_unknown(file,
-                           {"$schema", "loopwright", "title", "description", "diagram", "set", "variants",
-                            "seed", "axes", "paired", "samples", "metrics", "keep"},
-                           "a sweep");
+    reject_unknown(reader_, file, sweep_shape(), "a sweep");
     reader_.check_version(file);
     sweep_->title = reader_.text(file, "title");
-    reader_.text(file, "description");
     read_diagram(file);
     read_settings(file);
     if (const auto* seed = file.find("seed"))
@@ -54,12 +51,14 @@ class Loader {
 
  private:
   // ---- pieces of JSON ----
-  int64_t whole(const Value::Member& member, double low, double high) {
-    const double n = reader_.number(member.value, fmt::format("\"{}\"", member.name), low, high);
+  int64_t whole(const Value& value, const std::string& what, double low, double high) {
+    const double n = reader_.number(value, what, low, high);
     if (n == std::floor(n)) return int64_t(n);
-    reader_.error(member.value, fmt::format("\"{}\" is no whole number", member.name)).found =
-        shown(member.value);
+    reader_.error(value, fmt::format("{} is no whole number", what)).found = shown(value);
     return int64_t(low);
+  }
+  int64_t whole(const Value::Member& member, double low, double high) {
+    return whole(member.value, fmt::format("\"{}\"", member.name), low, high);
   }
   const Value* object(const Value& in, std::string_view key, std::string_view expected) {
     const Value::Member* member = in.find(key);
@@ -114,9 +113,7 @@ class Loader {
     const Value& body = member.value;
     if (!reader_.expect(body, Value::Kind::object, "an axis", "{\"values\": […]} or {\"uniform\": {…}}"))
       return;
-    reader_.reject_unknown(
-        body, {"values", "linear", "logarithmic", "uniform", "log_uniform", "normal", "variants", "unit"},
-        "an axis");
+    reject_unknown(reader_, body, axis_shape(), "an axis");
     if (body.find("unit") && reader_.unit(body.find("unit")->value)) axis.unit = reader_.text(body, "unit");
     const bool has_unit = !axis.unit.empty();
     if (!has_unit) axis.unit = unit_of_numbers(body);
@@ -161,7 +158,7 @@ class Loader {
                                                                  : "{\"from\": …, \"to\": …, \"count\": …}";
     if (!reader_.expect(way.value, Value::Kind::object, fmt::format("\"{}\"", way.name), expected)) return;
     if (way.name == "normal") {
-      reader_.reject_unknown(way.value, {"mean", "deviation"}, "\"normal\"");
+      reject_unknown(reader_, way.value, normal_shape(), "\"normal\"");
       axis.kind = Axis::Kind::normal;
       axis.low = required(axis, way.value, "mean", expected);
       axis.high = required(axis, way.value, "deviation", expected);
@@ -169,10 +166,8 @@ class Loader {
       return;
     }
     const bool is_logarithmic = way.name.starts_with("log"), is_sampled = way.name.ends_with("uniform");
-    if (is_sampled)
-      reader_.reject_unknown(way.value, {"from", "to"}, fmt::format("\"{}\"", way.name));
-    else
-      reader_.reject_unknown(way.value, {"from", "to", "count"}, fmt::format("\"{}\"", way.name));
+    reject_unknown(reader_, way.value, is_sampled ? distribution_shape() : grid_shape(),
+                   fmt::format("\"{}\"", way.name));
     const double from = required(axis, way.value, "from", expected),
                  to = required(axis, way.value, "to", expected);
     if (is_logarithmic && (from <= 0 || to <= 0))
@@ -271,7 +266,7 @@ class Loader {
             "\"samples\": {\"method\": \"sobol\", \"count\": 1024}";
       return;
     }
-    reader_.reject_unknown(*samples, {"method", "count"}, "\"samples\"");
+    reject_unknown(reader_, *samples, samples_shape(), "\"samples\"");
     if (!is_sampled)
       reader_.error(*samples, "no axis is sampled").hint = "\"uniform\", \"log_uniform\" and \"normal\" are";
     if (const auto* count = samples->find("count"))
@@ -304,7 +299,7 @@ class Loader {
     if (value.kind == Value::Kind::text && (value.text == "all" || value.text == "failed")) {
       keep.kind = value.text == "all" ? Keep::Kind::all : Keep::Kind::failed;
     } else if (value.kind == Value::Kind::object && value.find("worst")) {
-      reader_.reject_unknown(value, {"worst", "of"}, "\"keep\"");
+      reject_unknown(reader_, value, worst_shape(), "\"keep\"");
       keep.kind = Keep::Kind::worst;
       keep.count = int(whole(*value.find("worst"), 1, 1e4));
       keep.metric = reader_.text(value, "of");
@@ -316,12 +311,12 @@ class Loader {
         known.explain(reader_.error(value, fmt::format("there is no metric \"{}\"", keep.metric)),
                       keep.metric);
     } else if (value.kind == Value::Kind::object && value.find("runs")) {
-      reader_.reject_unknown(value, {"runs"}, "\"keep\"");
+      reject_unknown(reader_, value, selected_shape(), "\"keep\"");
       keep.kind = Keep::Kind::selected;
       const Value& runs = value.find("runs")->value;
       if (reader_.expect(runs, Value::Kind::list, "\"runs\"", "a list of run numbers"))
         for (const Value& item : runs.items)
-          keep.runs.push_back(int64_t(reader_.number(item, "a run", 0, most_runs)));
+          keep.runs.push_back(whole(item, "the number of a run", 0, most_runs));
     } else {
       auto& p = reader_.error(value, "what shall be kept is not known");
       p.expected = expected, p.found = shown(value);

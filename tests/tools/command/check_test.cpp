@@ -69,6 +69,16 @@ TEST_F(Check, EveryKindOfFileIsToldByItsKeys) {
   }
 }
 
+TEST_F(Check, LooksAtTheBlocksOfAnEffect) {
+  const char* effect = R"({"loopwright": 1, "effect": "e", "title": "x", "physics": "y", "parameters": {},
+    "blocks": {"g": {"type": "Gian", "gain": 1, "in": {"u": "position"}}}, "attach": [{"to": "sensor", "from": "g.y"}],
+    "needs": {"text": ""}})";
+  folder.with("e.json", effect);
+  const Outcome outcome = run({"check", "e.json"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_TRUE(contains(outcome.err, "did you mean \"Gain\"?")) << outcome.err;
+}
+
 TEST_F(Check, EachKindIsHeldToItsOwnRules) {
   folder.with("e.json",
               R"({"loopwright": 1, "data": "none.csv", "comparre": {}, "drive": {"a.u": {"colum": "x"}}})");

@@ -37,7 +37,9 @@ TEST_F(Installed, EveryCommandWorksFromWhereItWasMovedTo) {
       << "the device file lies where diagrams look for it";
   EXPECT_TRUE(contains(run({"blocks", "Mass"}).out, "Mass"));
   EXPECT_TRUE(contains(run({"schema"}).out, "$defs"));
-  EXPECT_EQ(text_of(folder.path("moved/share/loopwright/schema/diagram.schema.json")), run({"schema"}).out);
+  for (const char* kind : {"diagram", "experiment", "sweep", "training", "effect", "device", "model"})
+    EXPECT_EQ(text_of(folder.path("moved/share/loopwright/schema/") + kind + ".schema.json"),
+              run({"schema", kind}).out);
   EXPECT_TRUE(fs::exists(folder.path("moved/share/loopwright/docs/blocks.md")));
   EXPECT_TRUE(fs::exists(folder.path("moved/include/loopwright/engine/block.h")));
   const std::string job = folder.path("moved/") + diagrams + "linear_motor/common_job.json";

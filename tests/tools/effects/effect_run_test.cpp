@@ -243,6 +243,21 @@ TEST(EffectFile, EveryMistakeIsToldAtItsPlace) {
     EXPECT_TRUE(has(text, part)) << part << "\n" << text;
 }
 
+TEST(EffectFile, EveryKeyOfAnAttachmentHasAMeaningThere) {
+  DiagramFolder folder;
+  folder.with("wrong.json", R"({
+  "loopwright": 1, "effect": "wrong", "title": "Wrong", "physics": "Nothing.",
+  "parameters": {"level": {"unit": "$force", "value": true}},
+  "blocks": {"drag": {"type": "QuadraticDrag", "drag": 1, "in": {"velocity": "velocity"}}},
+  "attach": [{"to": "force", "from": "drag.force", "add": "=level"}],
+  "needs": {"text": ""}
+})");
+  Problems problems;
+  EXPECT_TRUE(load_effect(folder.path("wrong.json"), problems).empty());
+  EXPECT_TRUE(has(problems.text(), "an attachment to the force has no key \"add\"")) << problems.text();
+  EXPECT_TRUE(has(problems.text(), "\"value\" is of the wrong kind")) << problems.text();
+}
+
 /// For an effect file that can be read, but does not compile.
 std::string compile_problems(const std::string& path) {
   Problems problems;

@@ -31,6 +31,15 @@ TEST(SweepFile, TellsEveryProblemAtItsPlace) {
     EXPECT_THAT(text, HasSubstr(part));
 }
 
+TEST(SweepFile, RunsThatAreKeptHaveWholeNumbers) {
+  DiagramFolder folder;
+  folder.with("sweep.json", R"({"loopwright": 1, "diagram": "loop.json", "axes": {"a.x": {"values": [1]}},
+    "metrics": {"m": {"rms": "e"}}, "keep": {"runs": [0, 1.5]}})");
+  Problems problems;
+  EXPECT_EQ(load_sweep(folder.path("sweep.json"), problems), nullptr);
+  EXPECT_THAT(problems.text(), HasSubstr("the number of a run is no whole number"));
+}
+
 TEST(SweepPlan, PointsToTheAxisThatTheDiagramRefuses) {
   EXPECT_THAT(SweepFolder(R"("mas.mass": {"values": [1]})").problems(), HasSubstr("did you mean \"mass\""));
   const std::string range = SweepFolder(R"("mass.mass": {"values": [1, -2]})").problems();
