@@ -58,7 +58,7 @@ struct Reader {
   /// The text of an optional member; empty if it is absent or not a text.
   std::string text(const Value& object, std::string_view key) const;
   /// Reports a problem unless the file states the version of the format that this build supports, and
-  /// "$schema" (used by editors) is a text.
+  /// "$schema" (used by editors) and "description" (which nothing else reads) are texts.
   void check_version(const Value& file) const;
   /// Reports a problem for every member that is not in `known`.
   void reject_unknown(const Value& object, std::initializer_list<std::string_view> known,

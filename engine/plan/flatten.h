@@ -61,7 +61,7 @@ struct FlatDiagram {
   std::deque<BlockEntry> made_entries;                           ///< of the blocks that are made for gates
   std::vector<std::shared_ptr<const BlockType>> instance_types;  ///< of blocks with ports of their own
   Settings settings;                                             ///< of the blocks, in their order
-  std::deque<Value> extended_settings;  ///< of blocks whose formula names parameters of the diagram
+  std::deque<Value> extended_settings;  ///< of blocks that do not use them as written
   std::vector<FlatLog> log;
   std::vector<FlatName> names;    ///< ports of blocks have plain names: path.port
   std::vector<FlatName> outputs;  ///< of the outermost diagram
