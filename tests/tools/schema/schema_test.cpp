@@ -24,8 +24,10 @@ TEST(Schema, IsJsonOfTheSameDraftForEveryKind) {
 }
 
 void expect_definitions(const Json& part, const Json& schema) {
-  if (part.is_object() && part.contains("$ref"))
-    EXPECT_NO_THROW(schema.at(Json::json_pointer(part.at("$ref").get<std::string>().substr(1)))) << part;
+  if (part.is_object() && part.contains("$ref")) {
+    const std::string pointer = part.at("$ref").get<std::string>().substr(1);
+    EXPECT_TRUE(schema.contains(Json::json_pointer(pointer))) << part;
+  }
   if (part.is_structured())
     for (const Json& inner : part) expect_definitions(inner, schema);
 }
