@@ -9,28 +9,31 @@ namespace {
 
 constexpr std::size_t samples_per_stretch = 5;
 
-/// What is kept of a stretch: extremes of its finite samples, and its last gap.
+/// What is kept of a stretch: the first ones of the extremes of its finite samples, and its last gap.
 struct Extremes {
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
-  std::size_t lowest = none, highest = none, gap = none;
+  std::size_t lowest_at = none, highest_at = none, gap_at = none;
+  double lowest = std::numeric_limits<double>::quiet_NaN(), highest = lowest;
 
-  void take_gap(std::size_t i) { gap = i; }
-  void take_lowest(std::span<const double> y, std::size_t i) {
-    if (lowest == none || y[i] < y[lowest]) lowest = i;
+  void take_lowest(double value, std::size_t i) {
+    if (lowest_at == none || value < lowest) lowest = value, lowest_at = i;
   }
-  void take_highest(std::span<const double> y, std::size_t i) {
-    if (highest == none || y[i] > y[highest]) highest = i;
+  void take_highest(double value, std::size_t i) {
+    if (highest_at == none || value > highest) highest = value, highest_at = i;
   }
-  void take(std::span<const double> y, std::size_t i) {
-    if (!std::isfinite(y[i])) return take_gap(i);
-    take_lowest(y, i), take_highest(y, i);
+  void take(double value, std::size_t i) {
+    if (!std::isfinite(value)) {
+      gap_at = i;
+      return;
+    }
+    take_lowest(value, i), take_highest(value, i);
   }
 };
 
 void append(const Extremes& extremes, std::size_t begin, std::size_t end, std::vector<std::size_t>& kept) {
   const auto or_begin = [&](std::size_t i) { return i == Extremes::none ? begin : i; };
-  std::size_t chosen[samples_per_stretch] = {begin, or_begin(extremes.lowest), or_begin(extremes.highest),
-                                             end - 1, or_begin(extremes.gap)};
+  std::size_t chosen[samples_per_stretch] = {
+      begin, or_begin(extremes.lowest_at), or_begin(extremes.highest_at), end - 1, or_begin(extremes.gap_at)};
   std::sort(std::begin(chosen), std::end(chosen));
   kept.insert(kept.end(), std::begin(chosen), std::unique(std::begin(chosen), std::end(chosen)));
 }
@@ -55,45 +58,79 @@ std::vector<std::size_t> thin_part(std::size_t first, std::size_t last, std::siz
   return kept;
 }
 
-constexpr std::size_t block_size = 256;  // samples: a stretch looks at most at two of its blocks in detail
-constexpr std::uint16_t no_index = std::numeric_limits<std::uint16_t>::max();
+// A part begins and ends with at most a block of samples, and with at most `blocks_of_one` blocks of a level.
+constexpr std::size_t shortest_block = 64, blocks_of_one = 16;
+constexpr std::uint32_t no_index = std::numeric_limits<std::uint32_t>::max();
+
+/// `offset`: of the block, in the samples that `extremes` are about.
+template <class Block> void take_block(const Block& block, std::size_t offset, Extremes& extremes) {
+  if (block.lowest_at != no_index) {
+    extremes.take_lowest(block.lowest, offset + block.lowest_at);
+    extremes.take_highest(block.highest, offset + block.highest_at);
+  }
+  if (block.gap_at != no_index) extremes.gap_at = offset + block.gap_at;
+}
+
+template <class Block> Block block_of(const Extremes& extremes, double sum_of_squares) {
+  const auto at = [](std::size_t i) {
+    return i == Extremes::none ? no_index : static_cast<std::uint32_t>(i);
+  };
+  return {sum_of_squares,         extremes.lowest,         extremes.highest,
+          at(extremes.lowest_at), at(extremes.highest_at), at(extremes.gap_at)};
+}
 
 }  // namespace
 
 std::vector<std::size_t> thin(std::span<const double> y, std::size_t limit) {
   return thin_part(0, y.size(), limit, [&](std::size_t begin, std::size_t end) {
     Extremes extremes;
-    for (std::size_t i = begin; i < end; ++i) extremes.take(y, i);
+    for (std::size_t i = begin; i < end; ++i) extremes.take(y[i], i);
     return extremes;
   });
 }
 
 CurveSummary::CurveSummary(std::span<const double> y) {
-  const auto in_block = [](std::size_t i, std::size_t begin) {
-    return i == Extremes::none ? no_index : static_cast<std::uint16_t>(i - begin);
-  };
-  // The last block may be shorter; it is always looked at in detail.
-  blocks_.reserve(y.size() / block_size);
-  for (std::size_t begin = 0; begin + block_size <= y.size(); begin += block_size) {
+  std::vector<Block> blocks;
+  blocks.reserve(y.size() / shortest_block);
+  for (std::size_t begin = 0; begin + shortest_block <= y.size(); begin += shortest_block) {
     Extremes extremes;
     double sum_of_squares = 0;
-    for (std::size_t i = begin; i < begin + block_size; ++i)
-      extremes.take(y, i), sum_of_squares += y[i] * y[i];
-    blocks_.push_back({sum_of_squares, in_block(extremes.lowest, begin), in_block(extremes.highest, begin),
-                       in_block(extremes.gap, begin)});
+    for (std::size_t i = 0; i < shortest_block; ++i)
+      extremes.take(y[begin + i], i), sum_of_squares += y[begin + i] * y[begin + i];
+    blocks.push_back(block_of<Block>(extremes, sum_of_squares));
+  }
+  // Indices in a block of all samples still fit into 32 bits: longer blocks are not made.
+  for (std::size_t size = shortest_block; !blocks.empty(); size *= blocks_of_one) {
+    levels_.push_back(std::move(blocks));
+    blocks.clear();
+    if (size > no_index / blocks_of_one) return;
+    const std::vector<Block>& parts = levels_.back();
+    for (std::size_t first = 0; first + blocks_of_one <= parts.size(); first += blocks_of_one) {
+      Extremes extremes;
+      double sum_of_squares = 0;
+      for (std::size_t b = 0; b < blocks_of_one; ++b)
+        take_block(parts[first + b], b * size, extremes), sum_of_squares += parts[first + b].sum_of_squares;
+      blocks.push_back(block_of<Block>(extremes, sum_of_squares));
+    }
   }
 }
 
 template <class OfBlock, class OfSample>
 void CurveSummary::visit(std::size_t begin, std::size_t end, OfBlock&& of_block, OfSample&& of_sample) const {
-  const std::size_t first = (begin + block_size - 1) / block_size, last = end / block_size;
-  if (first >= last) {
-    for (std::size_t i = begin; i < end; ++i) of_sample(i);
-    return;
+  for (std::size_t at = begin; at < end;) {
+    const std::size_t boundary = (at + shortest_block - 1) / shortest_block * shortest_block;
+    if (boundary > at || at + shortest_block > end) {
+      const std::size_t until = boundary > at ? std::min(boundary, end) : end;
+      for (; at < until; ++at) of_sample(at);
+      continue;
+    }
+    // The longest block that begins here and does not reach beyond the end.
+    std::size_t level = 0, size = shortest_block;
+    while (level + 1 < levels_.size() && at % (size * blocks_of_one) == 0 && at + size * blocks_of_one <= end)
+      ++level, size *= blocks_of_one;
+    of_block(levels_[level][at / size], at);
+    at += size;
   }
-  for (std::size_t i = begin; i < first * block_size; ++i) of_sample(i);
-  for (std::size_t b = first; b < last; ++b) of_block(blocks_[b], b * block_size);
-  for (std::size_t i = last * block_size; i < end; ++i) of_sample(i);
 }
 
 std::vector<std::size_t> CurveSummary::thin(std::span<const double> y, std::size_t first, std::size_t last,
@@ -101,13 +138,8 @@ std::vector<std::size_t> CurveSummary::thin(std::span<const double> y, std::size
   return thin_part(first, last, limit, [&](std::size_t begin, std::size_t end) {
     Extremes extremes;
     visit(
-        begin, end,
-        [&](const Block& block, std::size_t at) {
-          if (block.lowest != no_index)
-            extremes.take_lowest(y, at + block.lowest), extremes.take_highest(y, at + block.highest);
-          if (block.gap != no_index) extremes.take_gap(at + block.gap);
-        },
-        [&](std::size_t i) { extremes.take(y, i); });
+        begin, end, [&](const Block& block, std::size_t at) { take_block(block, at, extremes); },
+        [&](std::size_t i) { extremes.take(y[i], i); });
     return extremes;
   });
 }
@@ -118,15 +150,10 @@ CurveSummary::Range CurveSummary::range(std::span<const double> y, std::size_t b
   visit(
       begin, end,
       [&](const Block& block, std::size_t at) {
-        if (block.lowest != no_index)
-          extremes.take_lowest(y, at + block.lowest), extremes.take_highest(y, at + block.highest);
-        sum_of_squares += block.sum_of_squares;
+        take_block(block, at, extremes), sum_of_squares += block.sum_of_squares;
       },
-      [&](std::size_t i) { extremes.take(y, i), sum_of_squares += y[i] * y[i]; });
-  const auto value = [&](std::size_t i) {
-    return i == Extremes::none ? std::numeric_limits<double>::quiet_NaN() : y[i];
-  };
-  return {value(extremes.lowest), value(extremes.highest), sum_of_squares};
+      [&](std::size_t i) { extremes.take(y[i], i), sum_of_squares += y[i] * y[i]; });
+  return {extremes.lowest, extremes.highest, sum_of_squares};
 }
 
 std::size_t fair_limit(std::vector<std::size_t> lengths, std::size_t budget) {

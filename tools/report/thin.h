@@ -13,8 +13,8 @@ namespace loopwright::report {
 /// visualization-oriented time series data aggregation, PVLDB 7 (2014) 797.
 std::vector<std::size_t> thin(std::span<const double> y, std::size_t limit);
 
-/// The lowest and the highest sample of each of many short blocks of a curve, so that any part of it is
-/// thinned without a look at all of its samples.
+/// The extremes of short stretches of a curve, of longer ones made of these, and so on, so that any part of
+/// the curve is thinned by a look at few of its samples, however many it has. 8 % of the memory of the curve.
 class CurveSummary {
  public:
   explicit CurveSummary(std::span<const double> y);
@@ -30,13 +30,14 @@ class CurveSummary {
   Range range(std::span<const double> y, std::size_t begin, std::size_t end) const;
 
  private:
+  /// The values stand beside their indices: what is far apart in memory is not looked at.
   struct Block {
-    double sum_of_squares;
-    std::uint16_t lowest, highest, gap;  ///< indices in the block; `no_index`: there is none
+    double sum_of_squares, lowest, highest;
+    std::uint32_t lowest_at, highest_at, gap_at;  ///< from the begin of the block; `no_index`: there is none
   };
   template <class OfBlock, class OfSample>
   void visit(std::size_t begin, std::size_t end, OfBlock&& of_block, OfSample&& of_sample) const;
-  std::vector<Block> blocks_;
+  std::vector<std::vector<Block>> levels_;  ///< shortest blocks first; complete ones only
 };
 
 /// The largest number n such that lists of these lengths, cut to n each, contain at most `budget` entries

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 namespace loopwright::report {
 namespace {
@@ -73,6 +74,59 @@ TEST(CurveSummary, ThinsEveryPartAsIfItSawAllSamples) {
       else
         EXPECT_FALSE(std::isfinite(range.sum_of_squares));
     }
+}
+
+namespace {
+
+/// Rises and falls, equal neighbours, peaks of one sample, gaps of one sample and of thousands.
+std::vector<double> curve_with_gaps(size_t size, std::mt19937& random) {
+  std::vector<double> y(size);
+  double value = 0;
+  size_t gap = 0;
+  for (double& sample : y) {
+    if (random() % 3) value = std::round(value + double(random() % 7) - 3);
+    if (random() % 5000 == 0) gap = random() % 3 ? 1 : random() % 4000;
+    sample = random() % 997 == 0 ? 1e4 * (double(random() % 3) - 1) : value;
+    if (gap > 0) --gap, sample = random() % 4 ? NAN : INFINITY;
+  }
+  return y;
+}
+
+}  // namespace
+
+/// Windows and numbers of stretches drawn at random: nothing that all samples would show is lost.
+TEST(CurveSummary, LosesNoExtremeOfAnyWindow) {
+  std::mt19937 random(11);
+  for (const size_t size : {1u, 63u, 64u, 1'024u, 20'000u, 300'000u}) {
+    const std::vector<double> y = curve_with_gaps(size, random);
+    const CurveSummary summary(y);
+    for (int attempt = 0; attempt < 60; ++attempt) {
+      const size_t begin = random() % size, end = begin + 1 + random() % (size - begin);
+      const size_t limit = 1 + random() % (attempt % 2 ? 40 : 3000);
+      const std::vector<size_t> kept = summary.thin(y, begin, end, limit);
+      std::vector<size_t> expected = thin(std::span(y).subspan(begin, end - begin), limit);
+      for (size_t& i : expected) i += begin;
+      ASSERT_EQ(kept, expected) << begin << " to " << end << " of " << size << ", " << limit;
+      const size_t stretches = end - begin <= limit ? end - begin : std::max<size_t>(1, limit / 5);
+      size_t at = 0;
+      for (size_t k = 0; k < stretches; ++k) {
+        const size_t from = begin + (end - begin) * k / stretches,
+                     to = begin + (end - begin) * (k + 1) / stretches;
+        double lowest = INFINITY, highest = -INFINITY, kept_lowest = INFINITY, kept_highest = -INFINITY;
+        bool has_gap = false, keeps_gap = false;
+        const auto take = [](double value, double& low, double& high, bool& gap) {
+          if (!std::isfinite(value)) return void(gap = true);
+          low = std::min(low, value), high = std::max(high, value);
+        };
+        for (size_t i = from; i < to; ++i) take(y[i], lowest, highest, has_gap);
+        for (; at < kept.size() && kept[at] < to; ++at)
+          take(y[kept[at]], kept_lowest, kept_highest, keeps_gap);
+        ASSERT_EQ(kept_lowest, lowest);
+        ASSERT_EQ(kept_highest, highest);
+        ASSERT_EQ(keeps_gap, has_gap);
+      }
+    }
+  }
 }
 
 TEST(FairLimit, LetsShortSeriesLiveAndSharesTheRest) {

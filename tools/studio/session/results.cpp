@@ -29,8 +29,7 @@ Json thinned_curve(std::span<const double> x, std::span<const double> y, size_t 
 }
 
 Signals::Signals(Recording recorded) : recording(std::move(recorded)) {
-  summaries.reserve(recording.columns.size());
-  for (const Column& column : recording.columns) summaries.emplace_back(column.values);
+  for (size_t c = 1; c < recording.columns.size(); ++c) summaries.emplace_back(recording.columns[c].values);
 }
 
 Json signals_json(const Signals& signals, const Window& window, const std::set<std::string>& held) {
@@ -43,11 +42,12 @@ Json signals_json(const Signals& signals, const Window& window, const std::set<s
     const Column& column = columns[c];
     if (!is_named(window, column.name)) continue;
     const std::vector<double>& values = column.values;
-    const std::vector<size_t> kept = signals.summaries[c].thin(values, first, last, 2 * window.points);
+    const report::CurveSummary& summary = signals.summaries[c - 1];
+    const std::vector<size_t> kept = summary.thin(values, first, last, 2 * window.points);
     std::vector<double> x, y;
     x.reserve(kept.size()), y.reserve(kept.size());
     for (size_t i : kept) x.push_back(time[i]), y.push_back(values[i]);
-    const auto range = signals.summaries[c].range(values, first, last);
+    const auto range = summary.range(values, first, last);
     const size_t rows = last - first;
     // A thinned curve has its extremes only: drawn as steps, each would look held over many samples.
     const bool is_whole = kept.size() == rows;

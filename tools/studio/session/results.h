@@ -8,7 +8,6 @@
 #include <set>
 #include <span>
 #include "engine/record/recording.h"
-#include "tools/compare/compare.h"
 #include "tools/diagnose/diagnosis.h"
 #include "tools/fit/fit.h"
 #include "tools/report/thin.h"
@@ -19,7 +18,7 @@ namespace loopwright::studio {
 /// A recording, with what makes any window of it quick to draw.
 struct Signals {
   Recording recording;
-  std::vector<report::CurveSummary> summaries;  ///< of its columns
+  std::vector<report::CurveSummary> summaries;  ///< of its columns behind the time
   explicit Signals(Recording recorded);
 };
 
@@ -33,7 +32,6 @@ struct StoredRun {
 };
 
 struct StoredComparison {
-  std::shared_ptr<const Comparison> comparison;
   std::shared_ptr<const Signals> signals;  ///< measured, simulated, error
 };
 

@@ -6,6 +6,7 @@
 #include "engine/diagram/in_memory.h"
 #include "engine/json/reader.h"
 #include "engine/record/recording_file.h"
+#include "tools/compare/compare.h"
 #include "tools/experiment/experiment_ports.h"
 #include "tools/report/thin.h"
 #include "tools/studio/session/column_match.h"
@@ -155,13 +156,14 @@ Json tint(const Comparison& comparison, const Experiment& experiment) {
   return list;
 }
 
-std::shared_ptr<const Signals> signals_of(const Comparison& comparison) {
+/// Takes the samples: those of a long record are not in memory twice.
+std::shared_ptr<const Signals> signals_of(Comparison&& comparison) {
   Recording recording;
-  recording.columns.push_back({"time", "s", comparison.time, ""});
-  for (const ComparedSignal& signal : comparison.signals) {
-    recording.columns.push_back({"measured " + signal.name, signal.unit, signal.measured, ""});
-    recording.columns.push_back({"simulated " + signal.name, signal.unit, signal.simulated, ""});
-    recording.columns.push_back({"error " + signal.name, signal.unit, signal.error, ""});
+  recording.columns.push_back({"time", "s", std::move(comparison.time), ""});
+  for (ComparedSignal& signal : comparison.signals) {
+    recording.columns.push_back({"measured " + signal.name, signal.unit, std::move(signal.measured), ""});
+    recording.columns.push_back({"simulated " + signal.name, signal.unit, std::move(signal.simulated), ""});
+    recording.columns.push_back({"error " + signal.name, signal.unit, std::move(signal.error), ""});
   }
   return std::make_shared<Signals>(std::move(recording));
 }
@@ -292,15 +294,13 @@ Json Session::compare(const Request& request) {
     run_options.progress = [&](double time, double stop) {
       work.progress("run", stop > 0 ? time / stop : 0);
     };
-    const auto comparison =
-        std::make_shared<Comparison>(loopwright::compare(path, experiment_path, options, run_options));
+    Comparison comparison = loopwright::compare(path, experiment_path, options, run_options);
     Problems problems;
     const auto experiment = read_experiment(experiment_path, problems);
     if (!experiment) throw InputError(std::move(problems));
-    const int64_t number = results_.comparisons.add(
-        std::make_shared<StoredComparison>(StoredComparison{comparison, signals_of(*comparison)}));
-    Json json{{"comparison", number}};
-    json.update(comparison_json(*comparison, *experiment, points));
+    Json json = comparison_json(comparison, *experiment, points);
+    json["comparison"] = results_.comparisons.add(
+        std::make_shared<StoredComparison>(StoredComparison{signals_of(std::move(comparison))}));
     return json;
   });
 }

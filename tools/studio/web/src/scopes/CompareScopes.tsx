@@ -1,5 +1,5 @@
 // Measured beside simulated, the error before and after, and what remains against time, position and velocity.
-import { useEffect, useMemo, useRef, useState } from "react";
+import { useLayoutEffect, useMemo, useRef, useState } from "react";
 import { prettyUnit, quantity } from "../numbers";
 import { ask, attempt } from "../state/session";
 import { SCOPE_POINTS } from "../state/run";
@@ -17,7 +17,8 @@ const show_range = (range: Range | null): void => patch({ range });
 /** In a range of time, the program sends what lies in it in full detail. */
 function useDetail(comparison: Comparison | null, range: Range | null): Map<string, Signal> {
   const [detail, setDetail] = useState(new Map<string, Signal>()), seen = useRef<{ comparison: Comparison | null; range: Range | null }>({ comparison: null, range: null });
-  useEffect(() => {
+  // Before what is there is painted for the new range: the program works meanwhile.
+  useLayoutEffect(() => {
     // Until it comes, what was there is shown: the detail of the range around it, if there is one.
     const { comparison: old, range: around } = seen.current;
     const is_within = comparison === old && range && around && around.from <= range.from && range.to <= around.to;

@@ -1,6 +1,7 @@
 // One plot, drawn by uPlot: curves with their own abscissae, zoom by dragging and wheel, cursors A and B, a band.
 import uPlot from "uplot";
 import { decimalsFor, exponentFor, quantity, scaledUnit, superscript, withMinus } from "../numbers";
+import { CurvePainter } from "./painter";
 
 export type Style = "line" | "steps" | "points" | "ghost" | "pinned" | "measured" | "preview";
 type Values = readonly (number | null)[];
@@ -35,15 +36,16 @@ function translucent(colour: string, alpha: number): string {
 }
 const ALPHA: Partial<Record<Style, number>> = { ghost: 0.42, pinned: 0.8, points: 0.6 };
 
-function series(curve: Curve): uPlot.Series {
+const colour_of = (curve: Curve): string => translucent(stroke(curve), ALPHA[curve.style] ?? 1);
+function thickness_of({ style }: Curve): number { return style === "measured" ? 2.4 : style === "ghost" ? 1.3 : style === "preview" ? 2 : 1.6; }
+
+function series(curve: Curve, painter: CurvePainter): uPlot.Series {
   const base: uPlot.Series = {
-    label: curve.label, scale: "y", pxAlign: 0, stroke: () => translucent(stroke(curve), ALPHA[curve.style] ?? 1), points: { show: false },
-    width: curve.style === "measured" ? 2.4 : curve.style === "ghost" ? 1.3 : 1.6,
+    label: curve.label, scale: "y", pxAlign: 0, stroke: () => colour_of(curve), points: { show: false }, width: thickness_of(curve), paths: painter.paths,
   };
   if (curve.style === "ghost") base.dash = [5, 4];
   if (curve.style === "pinned") base.dash = [9, 3, 2, 3];
-  if (curve.style === "preview") { base.dash = [2, 3]; base.width = 2; }
-  if (curve.style === "steps") base.paths = uPlot.paths.stepped!({ align: 1 });
+  if (curve.style === "preview") base.dash = [2, 3];
   if (curve.style === "points") {
     base.paths = () => null;
     base.points = { show: true, size: 3, width: 0, fill: () => translucent(stroke(curve), ALPHA.points!) };
@@ -108,6 +110,7 @@ export class ScopePlot {
   private range: { from: number; to: number } | null = null;
 
   constructor(private readonly target: HTMLElement, private curves: Curve[], private readonly options: PlotOptions, private readonly events: PlotEvents) {
+    const painters = curves.map(({ style }) => new CurvePainter(style === "steps"));
     this.plot = new uPlot({
       width: Math.max(120, target.clientWidth), height: options.height,
       padding: [6, 10, 0, 0],
@@ -121,8 +124,9 @@ export class ScopePlot {
         drag: { x: true, y: false, setScale: false }, points: { show: true, size: 6 }, focus: { prox: -1 },
       },
       axes: [axis("x", options.x_label, options.x_unit, options), axis("y", options.y_label ?? "", options.y_unit, options)],
-      series: [{}, ...curves.map(series)],
+      series: [{}, ...curves.map((curve, k) => series(curve, painters[k]!))],
       hooks: {
+        drawSeries: [(u, k) => { const curve = curves[k - 1]; if (curve) painters[k - 1]!.draw(u, colour_of(curve), thickness_of(curve) * devicePixelRatio); }],
         setSelect: [(u) => this.selected(u)], setCursor: [(u) => this.read(u)], draw: [() => this.place_flags()], drawClear: [(u) => this.draw_band(u)],
       },
     }, table(curves), target);
