@@ -1,8 +1,10 @@
-/// Two sliders at once: the size of a signal over their ranges.
+/// Two sliders at once: a figure of a signal over their ranges.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numeric>
 #include <optional>
 #include "engine/diagram/in_memory.h"
 #include "engine/json/reader.h"
@@ -41,16 +43,36 @@ SweptAxis axis_of(const Value& request, std::string_view name) {
   return result;
 }
 
-/// The port of "rms(axis.position)". Throws Refused.
-std::string measured_port(const std::string& metric) {
-  if (!metric.starts_with("rms(") || !metric.ends_with(')'))
-    throw Refused("the metric of two sliders is rms(PORT); `loopwright sweep` has others");
-  return metric.substr(4, metric.size() - 5);
-}
+/// A figure of a recorded signal, as `loopwright sweep` names it.
+struct Measured {
+  std::string kind, port;
+
+  /// "rms(axis.position)". Throws Refused.
+  explicit Measured(const std::string& metric) {
+    static constexpr std::string_view kinds[] = {"rms", "mean", "maximum", "minimum", "peak", "final"};
+    const size_t bracket = std::min(metric.find('('), metric.size());
+    kind = metric.substr(0, bracket);
+    if (std::ranges::find(kinds, kind) == std::end(kinds) || !metric.ends_with(')'))
+      throw Refused(fmt::format("the metric of two sliders is {}(PORT); `loopwright sweep` has others",
+                                fmt::join(kinds, ", ")));
+    port = metric.substr(bracket + 1, metric.size() - bracket - 2);
+  }
+
+  double of(const std::vector<double>& values) const {
+    if (values.empty()) return NAN;
+    if (kind == "final") return values.back();
+    if (kind == "mean") return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
+    // The root mean square has the same bits as that of the signals of a run.
+    const auto range = report::CurveSummary(values).range(values, 0, values.size());
+    if (kind == "rms") return std::sqrt(range.sum_of_squares / double(values.size()));
+    if (kind == "peak") return std::max(std::abs(range.lowest), std::abs(range.highest));
+    return kind == "maximum" ? range.highest : range.lowest;
+  }
+};
 
 /// The sweep as a file for `loopwright sweep`, relative to its own folder.
 std::string sweep_text(const std::string& diagram, const LoadOptions& options,
-                       std::span<const SweptAxis> axes, const std::string& port) {
+                       std::span<const SweptAxis> axes, const Measured& measured) {
   Json set = Json::object(), swept = Json::object();
   for (const auto& [path, value] : options.set) set[path] = value;
   for (const SweptAxis& axis : axes) {
@@ -62,14 +84,8 @@ std::string sweep_text(const std::string& diagram, const LoadOptions& options,
   for (const auto& [block, variant] : options.variants) swept[block] = {{"variants", {variant}}};
   Json file{{"loopwright", 1}, {"diagram", diagram}};
   if (!set.empty()) file["set"] = std::move(set);
-  file["axes"] = std::move(swept), file["metrics"] = {{"rms", {{"rms", port}}}};
+  file["axes"] = std::move(swept), file["metrics"] = {{measured.kind, {{measured.kind, measured.port}}}};
   return file.dump(2) + "\n";
-}
-
-/// With the same bits as that of the signals of a run.
-double rms(const std::vector<double>& values) {
-  const double sum = report::CurveSummary(values).range(values, 0, values.size()).sum_of_squares;
-  return values.empty() ? NAN : std::sqrt(sum / double(values.size()));
 }
 
 }  // namespace
@@ -78,7 +94,8 @@ Json Session::sweep(const Request& request) {
   const auto file = source(request.required("path"));
   LoadOptions options = request.options();
   const SweptAxis x = axis_of(request.message, "x"), y = axis_of(request.message, "y");
-  const std::string metric = request.required("metric"), port = measured_port(metric);
+  const std::string metric = request.required("metric");
+  const Measured measured(metric);
   if (x.set == y.set) throw Refused(fmt::format("\"{}\" cannot be on both axes", x.set));
   // What an axis sweeps is not set besides.
   std::erase_if(options.set, [&](const auto& set) { return set.first == x.set || set.first == y.set; });
@@ -105,10 +122,11 @@ Json Session::sweep(const Request& request) {
         RunOptions run_options;
         run_options.interrupt = &work.job.interrupt();
         const RunResult result = simulate(*plan, run_options);
-        const Column* column = result.recording.find(port);
-        if (!column) throw Refused(fmt::format("\"{}\" is not recorded", port));
+        const Column* column = result.recording.find(measured.port);
+        if (!column) throw Refused(fmt::format("\"{}\" is not recorded", measured.port));
         unit = column->unit == "1" ? "" : column->unit;
-        row.push_back(result.status == RunStatus::finished ? Json(rms(column->values)) : Json(nullptr));
+        row.push_back(result.status == RunStatus::finished ? Json(measured.of(column->values))
+                                                           : Json(nullptr));
       }
       rows.push_back(std::move(row));
       work.progress("sweep", double(j + 1) / double(y.values.size()));
@@ -127,8 +145,8 @@ Json Session::write_sweep(const Request& request) {
   const SweptAxis axes[] = {axis_of(request.message, "x"), axis_of(request.message, "y")};
   for (const SweptAxis& axis : axes)
     std::erase_if(options.set, [&](const auto& set) { return set.first == axis.set; });
-  const std::string text = sweep_text(fs::path(path).filename().string(), options, axes,
-                                      measured_port(request.required("metric")));
+  const std::string text =
+      sweep_text(fs::path(path).filename().string(), options, axes, Measured(request.required("metric")));
   const std::string stem = (fs::path(path).parent_path() / fs::path(path).stem()).string();
   std::string file = stem + ".sweep.json";
   for (int i = 2;; ++i, file = fmt::format("{}_{}.sweep.json", stem, i - 1)) {

@@ -6,6 +6,7 @@ import { useStudio } from "../state/store";
 import type { View } from "../protocol/types";
 
 type Side = "x" | "y";
+const FIGURES = ["rms", "peak", "maximum", "minimum", "mean", "final"];
 
 function Axis({ side, choices, chosen, choose }: { side: Side; choices: Swept[]; chosen: Swept; choose: (set: string) => void }) {
   const title = side === "x" ? "across" : "up";
@@ -45,14 +46,15 @@ export function SweepForm({ view, signals }: { view: View; signals: string[] }) 
     const across = ranged(x, "x"), up = ranged(y, "y");
     const wrong = [across, up].find(({ low, high }) => !(Number.isFinite(low) && Number.isFinite(high) && low < high));
     setFault(x.set === y.set ? "Choose two different numbers." : wrong ? `The range of ${wrong.set} is two numbers, the smaller first.` : "");
-    if (x.set !== y.set && !wrong) void sweep(across, up, `rms(${String(data.get("signal"))})`);
+    if (x.set !== y.set && !wrong) void sweep(across, up, `${String(data.get("figure"))}(${String(data.get("signal"))})`);
   };
   return (
     <form className="section" noValidate onSubmit={(event) => { event.preventDefault(); start(event.currentTarget); }}>
       <h3>Sweep of two numbers</h3>
       <Axis side="x" choices={choices} chosen={x} choose={(set) => setNames({ x: set, y: y.set === set ? "" : y.set })} />
       <Axis side="y" choices={choices} chosen={y} choose={(set) => setNames({ x: x.set === set ? "" : x.set, y: set })} />
-      <label className="row"><span className="name">rms of</span><select name="signal" defaultValue={first_choice(view, signals, compared)}>{signals.map((signal) => <option key={signal}>{signal}</option>)}</select></label>
+      <label className="row"><span className="name">figure</span><select name="figure">{FIGURES.map((figure) => <option key={figure} value={figure}>{figure === "peak" ? "peak (greatest magnitude)" : figure}</option>)}</select></label>
+      <label className="row"><span className="name">of</span><select name="signal" defaultValue={first_choice(view, signals, compared)}>{signals.map((signal) => <option key={signal}>{signal}</option>)}</select></label>
       {fault && <p className="error-text" role="alert">{fault}</p>}
       <button type="submit">Sweep</button>
     </form>
