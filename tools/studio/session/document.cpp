@@ -43,7 +43,7 @@ void Document::take_from_outside(const std::string& theirs) {
   on_disk_ = theirs;
   if (was_saved || !base) {
     conflict_.reset();
-    step("change from outside", difference(text_, theirs), {}, undo_);
+    step({"change from outside", difference(text_, theirs), {}, {}}, undo_);
     return;
   }
   const auto mine = rebased(difference(*base, text_), difference(*base, theirs));
@@ -54,7 +54,7 @@ void Document::take_from_outside(const std::string& theirs) {
     return;
   }
   const std::string merged = applied(theirs, *mine);
-  step("change from outside", difference(text_, merged), {}, undo_);
+  step({"change from outside", difference(text_, merged), {}, {}}, undo_);
   if (is_json(merged)) write(merged);
 }
 
@@ -116,12 +116,13 @@ void Document::accept(const std::string& text, const TextChanges& changes) {
 }
 
 /// Writes and takes over; with nothing changed after an exception.
-Edited Document::step(const std::string& what, TextChanges changes, std::vector<OtherFile> others,
-                      std::vector<Step>& to) {
-  Edited edited{std::move(changes), text_, {}, std::move(others)};
+Edited Document::step(const Step& done, std::vector<Step>& to) {
+  Edited edited{done.changes, text_, {}, done.others, done.renamed};
   const std::string text = applied(text_, edited.changes);
-  Step reverse{what, inverse(text_, edited.changes), edited.others};
+  Step reverse{done.what, inverse(text_, edited.changes), edited.others, {}};
   for (OtherFile& other : reverse.others) std::swap(other.before, other.after);
+  for (const Renaming& renaming : edited.renamed | std::views::reverse)
+    reverse.renamed.push_back({renaming.kind, renaming.to, renaming.from});
   write_others(edited.others);
   try {
     if ((!on_disk_ || text != *on_disk_) && is_json(text) && !conflict_) write(text);
@@ -167,7 +168,9 @@ OtherFile Document::with_positions(const IntentEffects& effects) const {
         return entry.first == block || entry.first.starts_with(block + ".");
       });
   }
-  for (const auto& [from, to] : effects.renamed) {
+  for (const Renaming& renaming : effects.renamed) {
+    if (renaming.kind != Renaming::Kind::block) continue;
+    const std::string &from = renaming.from, &to = renaming.to;
     Layout renamed;
     for (const auto& [block, position] : layout) {
       const bool is_inside = block == from || block.starts_with(from + ".");
@@ -211,15 +214,15 @@ Edited Document::edit(const std::vector<Value>& intents, const IntentContext& co
   else
     apply(intents, context, draft, effects);
   std::vector<OtherFile> others;
-  if (!effects.positions.empty() || !effects.renamed.empty()) {
+  const auto is_block = [](const Renaming& renaming) { return renaming.kind == Renaming::Kind::block; };
+  if (!effects.positions.empty() || std::ranges::any_of(effects.renamed, is_block)) {
     OtherFile layout = with_positions(effects);
     if (layout.before != layout.after) others.push_back(std::move(layout));
   }
   if (!effects.renamed.empty() && context.followers)
-    std::ranges::move(context.followers({effects.renamed.begin(), effects.renamed.end()}),
-                      std::back_inserter(others));
-  if (draft.text() == text_ && others.empty()) return {{}, text_, effects.blocks, {}};
-  Edited edited = step(effects.what, draft.changes(), std::move(others), undo_);
+    std::ranges::move(context.followers(effects.renamed), std::back_inserter(others));
+  if (draft.text() == text_ && others.empty()) return {{}, text_, effects.blocks, {}, {}};
+  Edited edited = step({effects.what, draft.changes(), std::move(others), effects.renamed}, undo_);
   redo_.clear();
   edited.blocks = effects.blocks;
   return edited;
@@ -227,7 +230,7 @@ Edited Document::edit(const std::vector<Value>& intents, const IntentContext& co
 
 Edited Document::take(const std::string& what, const std::string& text, std::vector<OtherFile> others,
                       std::vector<std::string> blocks) {
-  Edited edited = step(what, difference(text_, text), std::move(others), undo_);
+  Edited edited = step({what, difference(text_, text), std::move(others), {}}, undo_);
   redo_.clear();
   edited.blocks = std::move(blocks);
   return edited;
@@ -236,7 +239,7 @@ Edited Document::take(const std::string& what, const std::string& text, std::vec
 Edited Document::back(std::vector<Step>& from, std::vector<Step>& to) {
   if (from.empty()) throw Refused("there is nothing to undo");
   const Step last = from.back();
-  Edited edited = step(last.what, last.changes, last.others, to);
+  Edited edited = step(last, to);
   from.pop_back();
   return edited;
 }

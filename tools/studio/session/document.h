@@ -19,6 +19,7 @@ struct Edited {
   std::string before;               ///< the text before
   std::vector<std::string> blocks;  ///< that were added or changed
   std::vector<OtherFile> others;
+  std::vector<Renaming> renamed;
 };
 
 class Document {
@@ -57,6 +58,7 @@ class Document {
     std::string what;
     TextChanges changes;  ///< that undo or repeat it
     std::vector<OtherFile> others;
+    std::vector<Renaming> renamed;
   };
 
   /// A revision, and what leads back to the one before.
@@ -64,8 +66,8 @@ class Document {
     TextChanges changes, reverse;
   };
 
-  Edited step(const std::string& what, TextChanges changes, std::vector<OtherFile> others,
-              std::vector<Step>& to);
+  /// `done`: changes and others, and what they rename.
+  Edited step(const Step& done, std::vector<Step>& to);
   Edited back(std::vector<Step>& from, std::vector<Step>& to);
   void apply(const std::vector<Value>& intents, const IntentContext& context, Draft& draft,
              IntentEffects& effects) const;

@@ -53,10 +53,6 @@ std::string time_columns(const Value& columns, std::string_view time) {
   return "";
 }
 
-TextChange renamed_name(const Value::Member& member, const std::string& to) {
-  return {member.place.offset, member.place.offset + in_quotes(member.name).size(), in_quotes(to)};
-}
-
 }  // namespace
 
 std::string experiment_text(const Value& request, const std::string& data) {
@@ -96,36 +92,44 @@ std::string experiment_text(const Value& request, const std::string& data) {
   return text + "\n}\n";
 }
 
-std::vector<std::string> ports_of_experiment(const std::string& path, const std::string& text) {
-  const ParsedText parsed(path, text);
+std::vector<std::string> ports_of_experiment(const Value& experiment) {
   std::vector<std::string> ports;
-  for (const char* key : {"drive", "compare"})
-    if (const Value::Member* list = parsed.root.find(key))
-      for (const Value::Member& member : list->value.members) ports.push_back(member.name);
-  if (const Value::Member* roles = parsed.root.find("roles"))
-    for (const Value::Member& role : roles->value.members) ports.push_back(role.value.text);
+  ports_renamed(experiment, [&](const std::string& port) {
+    ports.push_back(port);
+    return port;
+  });
   return ports;
+}
+
+TextChanges ports_renamed(const Value& experiment,
+                          const std::function<std::string(const std::string& port)>& new_name) {
+  TextChanges changes;
+  const auto in_text = [&](const Value& port) {
+    if (port.kind != Kind::text) return;
+    if (const std::string to = new_name(port.text); to != port.text)
+      changes.push_back(replaced(port, in_quotes(to)));
+  };
+  for (const char* key : {"drive", "compare"})
+    if (const Value::Member* list = experiment.find(key))
+      for (const Value::Member& member : list->value.members)
+        if (const std::string to = new_name(member.name); to != member.name)
+          changes.push_back(renamed_member(member, to));
+  if (const Value::Member* roles = experiment.find("roles"))
+    for (const Value::Member& role : roles->value.members) in_text(role.value);
+  if (const Value::Member* sites = experiment.find("sites"))
+    for (const Value& site : sites->value.items) in_text(site);
+  return changes;
 }
 
 std::string with_ports_renamed(const std::string& path, const std::string& text,
                                const std::map<std::string, std::string>& renamed) {
   const ParsedText parsed(path, text);
   if (!parsed.is_object()) return text;
-  const auto new_name = [&](const std::string& port) -> std::string {
+  TextChanges changes = ports_renamed(parsed.root, [&](const std::string& port) {
     for (const auto& [from, to] : renamed)
       if (port == from || port.starts_with(from + ".")) return to + port.substr(from.size());
     return port;
-  };
-  TextChanges changes;
-  for (const char* key : {"drive", "compare"})
-    if (const Value::Member* list = parsed.root.find(key))
-      for (const Value::Member& member : list->value.members)
-        if (const std::string to = new_name(member.name); to != member.name)
-          changes.push_back(renamed_name(member, to));
-  if (const Value::Member* roles = parsed.root.find("roles"))
-    for (const Value::Member& role : roles->value.members)
-      if (const std::string to = new_name(role.value.text); to != role.value.text)
-        changes.push_back(replaced(role.value, in_quotes(to)));
+  });
   std::ranges::sort(changes, {}, &TextChange::from);
   return applied(text, changes);
 }

@@ -1,13 +1,26 @@
 /// What a user wants changed in a diagram, as changes of its text.
 #pragma once
 #include <functional>
-#include <map>
 #include <optional>
+#include <set>
 #include "tools/studio/session/draft.h"
 
 namespace loopwright::studio {
 
-/// A file that changes together with the diagram: its layout, an experiment whose ports are renamed.
+/// A block or a parameter with another name, or a block in another place. Other files may name it.
+struct Renaming {
+  enum class Kind { block, parameter };
+  Kind kind = Kind::block;
+  std::string from, to;  ///< paths: "stage.axis" → "stage.slide"
+  // Of the level in which it stands:
+  bool has_namesake = false;    ///< of a block: a parameter is called so, too; of a parameter: a block
+  bool meets_namesake = false;  ///< the same for the new name
+  std::set<std::string> in_scope =
+      {};  ///< of a parameter: blocks and parameters whose expressions may use it
+};
+
+/// A file that changes together with the diagram: its layout, a sweep, an experiment, a diagram that contains
+/// it.
 struct OtherFile {
   std::string path;
   std::optional<std::string> before, after;  ///< nothing: there is no file
@@ -19,16 +32,15 @@ struct IntentEffects {
   std::string what;                 ///< for the list of undo: "set mass"
   /// Positions of the layout file: block path → position, or nothing to forget it.
   std::vector<std::pair<std::string, std::optional<std::pair<double, double>>>> positions;
-  /// Blocks by path, and their new paths: "axis" → "stage". Other files may name them.
-  std::vector<std::pair<std::string, std::string>> renamed;
+  std::vector<Renaming> renamed;  ///< in the order in which it was done
 };
 
 struct IntentContext {
   std::string inside;
   /// The names of the signals that are recorded now; for a diagram without "log".
   std::function<std::vector<std::string>()> recorded;
-  /// The files beside the diagram that name renamed blocks, with the new names.
-  std::function<std::vector<OtherFile>(const std::map<std::string, std::string>& renamed)> followers = {};
+  /// The other files that name what is renamed, with the new names. May throw Refused.
+  std::function<std::vector<OtherFile>(const std::vector<Renaming>& renamed)> followers = {};
 };
 
 /// Carries out an intent (tools/studio/protocol.md). Throws Refused if it cannot be, with nothing changed.

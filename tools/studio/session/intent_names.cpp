@@ -13,13 +13,6 @@ namespace {
 
 using Kind = Value::Kind;
 
-TextChange renamed_member(const Value::Member& member, const std::string& to) {
-  const std::string& text = member.place.file->text;
-  size_t end = member.place.offset + 1;
-  while (end < text.size() && text[end] != '"') end += text[end] == '\\' ? 2 : 1;
-  return {member.place.offset, end + 1, in_quotes(to)};
-}
-
 void rename_block(const Value& intent, const IntentContext& context, Draft& draft, IntentEffects& effects) {
   const Level level = draft.level(context.inside);
   const std::string name = required_text(intent, "name"), to = required_text(intent, "to");
@@ -28,7 +21,7 @@ void rename_block(const Value& intent, const IntentContext& context, Draft& draf
   require_free_name(level, to);
   effects.what = fmt::format("rename {} to {}", name, to);
   effects.blocks.push_back(joined(level.inside, to));
-  effects.renamed.emplace_back(joined(level.inside, name), joined(level.inside, to));
+  effects.renamed.push_back({Renaming::Kind::block, joined(level.inside, name), joined(level.inside, to)});
   TextChanges changes{renamed_member(block, to)};
   std::ranges::move(renamed_sources(*level.diagram, name, to), std::back_inserter(changes));
   std::ranges::move(renamed_in_outer_diagrams(level, name, to), std::back_inserter(changes));
@@ -114,7 +107,7 @@ class ParameterUses {
   TextChanges changes_;
 };
 
-TextChanges uses_of_parameter(const Value& diagram, const std::string& name, const std::string& to) {
+TextChanges uses_in_diagram(const Value& diagram, const std::string& name, const std::string& to) {
   ParameterUses uses(name, to);
   if (const Value::Member* parameters = diagram.find("parameters")) uses.in_value(parameters->value);
   if (const Value::Member* solver = diagram.find("solver")) uses.in_value(solver->value);
@@ -135,7 +128,9 @@ void rename_parameter(const Value& intent, const IntentContext& context, Draft& 
     throw Refused(fmt::format("\"{}\" is no name of a parameter", to));
   if (parameters->value.find(to)) throw Refused(fmt::format("there is a parameter \"{}\" already", to));
   effects.what = fmt::format("rename {} to {}", name, to);
-  TextChanges changes = uses_of_parameter(*level.diagram, name, to);
+  effects.renamed.push_back(
+      {Renaming::Kind::parameter, joined(level.inside, name), joined(level.inside, to)});
+  TextChanges changes = uses_in_diagram(*level.diagram, name, to);
   changes.push_back(renamed_member(*parameter, to));
   // The block that contains this diagram passes a value on by name.
   if (!level.outer.empty()) {
@@ -149,6 +144,12 @@ void rename_parameter(const Value& intent, const IntentContext& context, Draft& 
 }
 
 }  // namespace
+
+TextChanges uses_of_parameter(const Value& value, const std::string& name, const std::string& to) {
+  ParameterUses uses(name, to);
+  uses.in_value(value);
+  return uses.take();
+}
 
 TextChanges renamed_sources(const Value& diagram, const std::string& path, const std::string& new_path) {
   TextChanges changes;

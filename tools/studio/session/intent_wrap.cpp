@@ -122,10 +122,12 @@ class Wrapping {
     for (const Value::Member& block : level_.blocks().members)
       if (!wrapped_.contains(block.name)) each_source_of_block(block.value, read_output);
     each_source_of_outputs(*level_.diagram, read_output);
-    each_recorded(*level_.diagram, [&](const Value& logged) {
-      if (is_inside(Source(logged.text)))
-        changes.push_back(replaced(logged, in_quotes(name_ + "." + logged.text)));
-    });
+    const auto keep_inside = [&](const Value& signal) {
+      if (is_inside(Source(signal.text)))
+        changes.push_back(replaced(signal, in_quotes(name_ + "." + signal.text)));
+    };
+    each_recorded(*level_.diagram, keep_inside);
+    each_in_figures(*level_.diagram, keep_inside);
     return changes;
   }
 
@@ -199,7 +201,8 @@ bool apply_wrap_intent(const Value& intent, const IntentContext& context, Draft&
   for (const std::string& wrapped : names) {
     std::ranges::move(renamed_in_outer_diagrams(level, wrapped, name + "." + wrapped),
                       std::back_inserter(changes));
-    effects.renamed.emplace_back(joined(level.inside, wrapped), joined(joined(level.inside, name), wrapped));
+    effects.renamed.push_back(
+        {Renaming::Kind::block, joined(level.inside, wrapped), joined(joined(level.inside, name), wrapped)});
   }
   effects.blocks.push_back(joined(level.inside, name));
   effects.what =

@@ -64,6 +64,13 @@ TextChange replaced(const Value& old, std::string text) {
   return {old.place.offset, end_of(old), std::move(text)};
 }
 
+TextChange renamed_member(const Value::Member& member, const std::string& to) {
+  const std::string& text = member.place.file->text;
+  size_t end = member.place.offset + 1;
+  while (end < text.size() && text[end] != '"') end += text[end] == '\\' ? 2 : 1;
+  return {member.place.offset, end + 1, in_quotes(to)};
+}
+
 TextChange with_member(const Value& object, const std::string& name, const std::string& value,
                        const std::string& indentation) {
   return with_entry(object, member_text(object, name, value), indentation);

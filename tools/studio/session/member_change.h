@@ -13,6 +13,8 @@ std::string_view source_of(const Value& value);
 
 /// A new value in place of an old one.
 TextChange replaced(const Value& old, std::string text);
+/// A member under another name.
+TextChange renamed_member(const Value::Member& member, const std::string& to);
 /// A new member behind the last one: on a line of its own if that has its own line, and with its value in the
 /// same column if those of the object are aligned. `indentation` is that of the first member of an empty
 /// object that gets a line for each member; empty: it stays on one line.

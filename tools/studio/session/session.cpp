@@ -5,7 +5,7 @@
 #include "engine/diagram/in_memory.h"
 #include "engine/json/file_kind.h"
 #include "engine/json/json.h"
-#include "tools/studio/session/copied_blocks.h"
+#include "tools/studio/session/followers.h"
 #include "tools/studio/session/kept_runs.h"
 
 namespace loopwright::studio {
@@ -60,7 +60,8 @@ Session::Session(std::string folder, std::string opened, Send send)
     : folder_(std::move(folder)),
       opened_(std::move(opened)),
       send_(std::move(send)),
-      files_(folder_.files()) {
+      files_(folder_.files()),
+      left_over_(take_left_over(folder_)) {
   for (auto& run : kept_runs(folder_)) results_.runs.add(std::move(run));
 }
 
@@ -74,6 +75,7 @@ void Session::fail(int64_t client, int64_t id, const std::exception& error) cons
     static const ParsedText nothing("", "{}");
     json["problems"] = problems_json(input->problems.list(), nothing, folder_.path());
   }
+  if (dynamic_cast<const NeedsConsent*>(&error)) json["consent"] = true;
   send(client, {{"id", id}, {"error", std::move(json)}});
 }
 
@@ -81,6 +83,7 @@ const std::map<std::string_view, Session::Handler>& Session::handlers() {
   static const std::map<std::string_view, Handler> map = {
       {"hello", &Session::hello},
       {"files", &Session::files},
+      {"remove_left_over", &Session::remove_left_over},
       {"open", &Session::open},
       {"edit", &Session::edit},
       {"undo", &Session::undo},
@@ -210,7 +213,8 @@ Json Session::hello(const Request&) {
   return {{"version", LOOPWRIGHT_VERSION},
           {"folder", std::filesystem::absolute(folder_.path()).lexically_normal().filename().string()},
           {"open", opened_},
-          {"files", file_list()}};
+          {"files", file_list()},
+          {"left_over", left_over_list()}};
 }
 
 // ---- Documents ----
@@ -268,108 +272,6 @@ void Session::tell_others(const Document& document, int64_t except) {
     if (client == except || seen == paths.end()) continue;
     send(client, {{"event", "document"}, {"document", document_json(document, seen->second, true)}});
   }
-}
-
-namespace {
-
-/// The blocks of a level that were changed, or that contain a change.
-std::set<std::string> names_in_level(const std::vector<std::string>& paths, const std::string& inside) {
-  std::set<std::string> names;
-  const std::string prefix = inside.empty() ? "" : inside + ".";
-  for (const std::string& path : paths)
-    if (path.starts_with(prefix))
-      names.insert(path.substr(prefix.size(), path.find('.', prefix.size()) - prefix.size()));
-  return names;
-}
-
-Json edits_json(const Edited& edited) {
-  const Utf16 places(edited.before);
-  Json list = Json::array();
-  for (const TextChange& change : edited.changes)
-    list.push_back(
-        {{"from", places.units(change.from)}, {"to", places.units(change.to)}, {"text", change.text}});
-  return list;
-}
-
-}  // namespace
-
-Json Session::changed(const Request& request, const std::function<Edited(Document&)>& change) {
-  constexpr int most_attempts = 5;
-  Document& changed = document(request.required("path"));
-  for (int attempt = 1;; ++attempt) {
-    if (changed.look()) tell_others(changed, 0);
-    try {
-      const Edited edited = change(changed);
-      Seen& seen = seen_[request.client][changed.path()];
-      Json others = Json::array();
-      for (const OtherFile& other : edited.others)
-        if (!other.path.ends_with(".layout.json"))
-          others.push_back({{"path", other.path}, {"text", other.after.value_or("")}});
-      Json answer{{"edits", edits_json(edited)},
-                  {"document", nullptr},
-                  {"blocks", names_in_level(edited.blocks, seen.inside)},
-                  {"experiments", std::move(others)}};
-      tell_others(changed, request.client);
-      answer["document"] = document_json(changed, seen, false);  // last: what it says was sent is sent
-      return answer;
-    } catch (const ChangedMeanwhile&) {
-      if (attempt == most_attempts) throw;
-    }
-  }
-}
-
-std::vector<std::string> Session::recorded(const Document& document, const LoadOptions& options) const {
-  const CheckedText text = check_text(folder_.path_of(document.path()), document.text(), options);
-  std::vector<std::string> names;
-  if (text.checked.plan)
-    for (const Plan::Logged& logged : text.checked.plan->log) names.push_back(logged.name);
-  return names;
-}
-
-Json Session::edit(const Request& request) {
-  const Value* intents = request.find("intents");
-  if (!intents || intents->kind != Kind::list || intents->items.empty())
-    throw Refused("there are no intents");
-  const std::string path = request.required("path");
-  Seen& seen = seen_[request.client][path];
-  if (request.find("variants")) seen.variants = request.text_map("variants");
-  if (request.find("inside")) seen.inside = request.text("inside");
-  const int64_t revision = request.whole("revision", -1);
-  return changed(request, [&](Document& document) {
-    LoadOptions options;
-    options.variants = seen.variants;
-    const IntentContext context{seen.inside, [&] { return recorded(document, options); },
-                                [&](const auto& renamed) { return followers(document, renamed); }};
-    return document.edit(intents->items, context, seen.variants,
-                         revision < 0 ? document.revision() : revision);
-  });
-}
-
-Json Session::undo(const Request& request) {
-  return changed(request, [](Document& document) { return document.undo(); });
-}
-
-Json Session::redo(const Request& request) {
-  return changed(request, [](Document& document) { return document.redo(); });
-}
-
-Json Session::resolve(const Request& request) {
-  const std::string keep = request.required("keep");
-  return changed(request, [&](Document& document) {
-    if (!document.conflict()) throw Refused("there is no conflict");
-    if (keep == "theirs") return document.resolve(*document.conflict());
-    if (keep == "mine") return document.resolve(document.text());
-    if (keep == "text") return document.resolve(request.required("text"));
-    throw Refused("\"keep\" is mine, theirs or text");
-  });
-}
-
-Json Session::copy(const Request& request) {
-  const std::string path = request.required("path");
-  const Seen& seen = seen_[request.client][path];
-  const ParsedText parsed(path, document(path).text());
-  const Level level = find_level(parsed.root, request.text("inside"), seen.variants);
-  return {{"text", copied_blocks(level, request.texts("blocks"))}};
 }
 
 void Session::look() {

@@ -9,6 +9,7 @@
 #include "tools/studio/session/checked_text.h"
 #include "tools/studio/session/document.h"
 #include "tools/studio/session/jobs.h"
+#include "tools/studio/session/left_over.h"
 #include "tools/studio/session/results.h"
 #include "tools/studio/session/sent_view.h"
 
@@ -73,14 +74,16 @@ class Session {
   };
   Json hello(const Request&);
   Json files(const Request&);
+  Json remove_left_over(const Request&);
   Json open(const Request&);
-  Json edit(const Request&);
-  Json undo(const Request&);
-  Json redo(const Request&);
-  Json resolve(const Request&);
-  Json copy(const Request&);
+  Json edit(const Request&);     // session_edits.cpp
+  Json undo(const Request&);     // session_edits.cpp
+  Json redo(const Request&);     // session_edits.cpp
+  Json resolve(const Request&);  // session_edits.cpp
+  Json copy(const Request&);     // session_edits.cpp
   Json cancel(const Request&);
   Json file_list() const;
+  Json left_over_list() const;
   std::string first_that_runs() const;
   std::string openable(const std::string& file) const;
   void look_for_files();
@@ -88,8 +91,6 @@ class Session {
   Json document_json(const Document& document, Seen& seen, bool with_text);
   /// Changes a document as `change` says; again if another program changed the file at the same moment.
   Json changed(const Request& request, const std::function<Edited(Document&)>& change);
-  std::vector<OtherFile> followers(const Document& document,
-                                   const std::map<std::string, std::string>& renamed) const;
   void tell_others(const Document& document, int64_t except);
   std::vector<std::string> recorded(const Document& document, const LoadOptions& options) const;
   std::string file_of(const Request& request) const { return folder_.path_of(request.required("path")); }
@@ -130,6 +131,7 @@ class Session {
   std::map<std::string, std::unique_ptr<Document>> documents_;
   std::map<int64_t, std::map<std::string, Seen>> seen_;
   std::vector<Folder::File> files_;
+  std::vector<LeftOver> left_over_;
   std::chrono::steady_clock::time_point next_look_for_files_;
   mutable Results results_;
   Jobs jobs_;  ///< last: its threads end before anything else

@@ -1,8 +1,8 @@
 /// The files of the folder: which there are, and records that are dropped into it.
+#include <fmt/format.h>
 #include <algorithm>
 #include <filesystem>
 #include "engine/json/file_kind.h"
-#include "tools/studio/session/experiment_text.h"
 #include "tools/studio/session/session.h"
 
 namespace loopwright::studio {
@@ -44,6 +44,23 @@ Json Session::files(const Request&) {
   return {{"files", file_list()}};
 }
 
+/// Texts that a studio left behind when it was killed, and that are not those of their files.
+Json Session::left_over_list() const {
+  Json list = Json::array();
+  for (const LeftOver& left : left_over_)
+    list.push_back({{"file", left.file}, {"path", left.path}, {"when", left.when}, {"text", left.text}});
+  return list;
+}
+
+Json Session::remove_left_over(const Request& request) {
+  const auto left = std::ranges::find(left_over_, request.required("file"), &LeftOver::file);
+  if (left == left_over_.end()) throw Refused("no such text was left behind");
+  if (!studio::remove_left_over(folder_, *left))
+    throw Refused(fmt::format("\"{}\" is another file by now, or cannot be removed", left->file));
+  left_over_.erase(left);
+  return {{"left_over", left_over_list()}};
+}
+
 /// The path of a request for a file that a diagram names; empty if the file is outside of the folder.
 std::string Session::openable(const std::string& file) const {
   if (file.empty()) return "";
@@ -79,27 +96,6 @@ Json Session::store(const std::string& name, int64_t offset, bool is_last, std::
     throw Refused("a record is a .csv or .mat file");
   folder_.store_part(name, offset, is_last, bytes);
   return {{"path", name}};
-}
-
-/// Experiments in the folder of a diagram all of whose ports lead to its blocks.
-std::vector<OtherFile> Session::followers(const Document& document,
-                                          const std::map<std::string, std::string>& renamed) const {
-  const ParsedText diagram(document.path(), document.text());
-  const Level level = find_level(diagram.root, "", {});
-  const auto is_of_diagram = [&](const std::string& port) {
-    return level.block(port.substr(0, port.find('.')));
-  };
-  const auto folder_of = [](const std::string& path) { return std::filesystem::path(path).parent_path(); };
-  std::vector<OtherFile> others;
-  for (const Folder::File& file : folder_.files()) {
-    if (!file.path.ends_with(".experiment.json") || folder_of(file.path) != folder_of(document.path()))
-      continue;
-    const std::optional<std::string> text = folder_.read(file.path);
-    if (!text || !std::ranges::all_of(ports_of_experiment(file.path, *text), is_of_diagram)) continue;
-    const std::string after = with_ports_renamed(file.path, *text, renamed);
-    if (after != *text) others.push_back({file.path, text, after});
-  }
-  return others;
 }
 
 }  // namespace loopwright::studio

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include "tests/tools/studio/session/session_page.h"
 #include "tests/tools/studio/session/studio_folder.h"
+#include "tools/sweep/lane_group.h"
 
+using namespace loopwright;
 using namespace loopwright::studio;
 
 namespace {
@@ -96,6 +98,39 @@ TEST_F(Keeping, ASweepIsRepeatedByTheFileThatIsWritten) {
   EXPECT_EQ(page.ask(request)["file"], "axis.sweep.json");
   request["x"]["points"] = 4;
   EXPECT_NE(page.ask(request)["file"], "axis.sweep.json");
+}
+
+/// Every figure, against the program's own sweep of the file that is written.
+TEST_F(Keeping, AFigureOfASweepIsThatOfTheFile) {
+  Page page(folder_.path(), "axis.json");
+  for (const char* figure : {"rms", "peak", "maximum", "minimum", "mean", "final"}) {
+    SCOPED_TRACE(figure);
+    Json request{{"do", "sweep"},
+                 {"path", "axis.json"},
+                 {"metric", fmt::format("{}(mass.position)", figure)},
+                 {"set", {{"bias", "-0.5 N"}}},
+                 {"x", {{"set", "mass"}, {"unit", "kg"}, {"low", 0.5}, {"high", 1}, {"points", 3}}},
+                 {"y", {{"set", "damping"}, {"unit", "N*s/m"}, {"low", 0}, {"high", 2}, {"points", 2}}}};
+    const Json swept = page.ask(request);
+    request["do"] = "write_sweep";
+    Problems problems;
+    const auto sweep = load_sweep(folder_.path(page.ask(request)["file"]), problems);
+    ASSERT_TRUE(sweep) << problems.text();
+    const SweepPlan plan(sweep);
+    for (size_t i = 0; i < 3; ++i)
+      for (size_t j = 0; j < 2; ++j) {
+        const int64_t run = int64_t(2 * i + j);
+        const double value = swept["values"][j][i];
+        EXPECT_NEAR(value, make_alone(plan, plan.options(run), run).metrics[0],
+                    1e-12 + 1e-12 * std::abs(value));
+      }
+  }
+  const Json refused = page.wait(page.send({{"do", "sweep"},
+                                            {"path", "axis.json"},
+                                            {"metric", "median(mass.position)"},
+                                            {"x", {{"set", "mass"}, {"low", 1}, {"high", 2}}},
+                                            {"y", {{"set", "damping"}, {"low", 1}, {"high", 2}}}}));
+  EXPECT_TRUE(refused.contains("error"));
 }
 
 TEST_F(Keeping, TheSliderOfAZeroStaysWithinWhatItsBlocksAccept) {

@@ -156,7 +156,7 @@ const answers = {
   },
   columns: () => columns, write_experiment: ({ experiment }) => ({ experiment, text: "{}", problems: [] }), compare: comparison,
   preview: ({ effects }) => { const left = Math.max(2e-6, hidden() - (effects.includes("cogging") ? 60e-6 : 0) - (effects.includes("coulomb_friction") ? 38e-6 : 0)); const y = error(left); return { x: times, y, unit: "m", rmse: rms(y), signal: "axis.position" }; },
-  add_effects: ({ effects, inside }) => { const names = effects.length ? effects : ["cogging", "coulomb_friction"]; const made = change(`add ${names.join(" and ")}`, () => { state.added = [...new Set([...state.added, ...names])]; }); return { edits: made, document: document(inside, false), blocks: inside ? names : ["axis"], experiments: [] }; },
+  add_effects: ({ effects, inside }) => { const names = effects.length ? effects : ["cogging", "coulomb_friction"]; const made = change(`add ${names.join(" and ")}`, () => { state.added = [...new Set([...state.added, ...names])]; }); return { edits: made, document: document(inside, false), blocks: inside ? names : ["axis"], others: [] }; },
   linearize: ({ from, to, break: cut }) => {
     const frequency = Array.from({ length: 200 }, (_, i) => 10 ** (i / 50));
     return { is_loop_gain: Boolean(cut) && to === from, sampled: true, sample_time: 0.001, frequency, magnitude_db: frequency.map((w) => -20 * Math.log10(w)), phase_deg: frequency.map((w) => -90 - Math.atan(w / 100) * 57.3), nyquist: { re: [0], im: [0] },

@@ -14,7 +14,7 @@ import { TextView } from "./panels/TextView";
 import { Scopes } from "./scopes/Scopes";
 import { go_to } from "./state/address";
 import { listen_to_keys } from "./state/keys";
-import { resolve } from "./state/document";
+import { remove_left_over, resolve, restore } from "./state/document";
 import { drop_record } from "./state/measure";
 import { close_note, patch, useStudio, type Panel, type Place } from "./state/store";
 import { TopBar } from "./TopBar";
@@ -66,6 +66,7 @@ const bounded = (share: number): number => Math.max(0.15, Math.min(0.85, share))
 
 function Banners() {
   const connection = useStudio((state) => state.connection), conflict = useStudio((state) => state.document?.conflict ?? null), path = useStudio((state) => state.document?.path);
+  const left_over = useStudio((state) => state.left_over);
   return (
     <>
       {connection === "lost" && <div className="banner error" role="alert">The connection to the program is lost. Every file is as it was last saved. Trying again …</div>}
@@ -73,6 +74,10 @@ function Banners() {
         <div className="banner warning" role="alert">{path} was changed by another program, and the text here is not JSON yet.
           <button type="button" onClick={() => void resolve("mine")}>Keep mine</button><button type="button" onClick={() => void resolve("theirs")}>Take theirs</button></div>
       )}
+      {left_over.map((left) => (
+        <div key={left.file} className="banner warning" role="alert">A studio that was killed left a text of {left.path}, of {left.when.replace("T", " ").replace("Z", " UTC")}, in {left.file}.
+          <button type="button" onClick={() => void restore(left)}>Put it into the file</button><button type="button" onClick={() => void remove_left_over(left)}>Remove it</button></div>
+      ))}
     </>
   );
 }

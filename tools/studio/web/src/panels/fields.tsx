@@ -1,5 +1,5 @@
 // Input fields that send what was typed when it is complete, and sliders that run the diagram while they move.
-import { useEffect, useId, useState } from "react";
+import { useEffect, useId, useRef, useState } from "react";
 import type { Slider } from "../protocol/types";
 import { open } from "../state/document";
 import { begin_sliding, end_sliding, forget_override, keep_override, slide } from "../state/run";
@@ -7,14 +7,15 @@ import { useStudio } from "../state/store";
 import { prettyUnit, quantity } from "../numbers";
 import { FitChoice } from "./Fit";
 
-/** Sends on Enter and on leaving; Escape brings back what was there. */
+/** Sends on Enter and on leaving; Escape brings back what was there, and so does leaving after a refusal. */
 export function Field({ value, label, send, disabled, mono, placeholder }: { value: string; label: string; send: (text: string) => void; disabled?: boolean; mono?: boolean; placeholder?: string }) {
-  const [text, setText] = useState(value);
-  useEffect(() => setText(value), [value]);
-  const done = () => { if (text !== value) send(text); };
+  const [text, setText] = useState(value), sent = useRef<string | null>(null);
+  useEffect(() => { setText(value); sent.current = null; }, [value]);
+  const done = () => { if (text !== value) { sent.current = text; send(text); } };
+  const leave = () => { if (text === sent.current) setText(value); else done(); };
   return (
     <input className={mono === false ? "field" : "field mono"} value={text} aria-label={label} disabled={disabled} spellCheck={false} placeholder={placeholder}
-      onChange={(event) => setText(event.target.value)} onBlur={done}
+      onChange={(event) => setText(event.target.value)} onBlur={leave}
       onKeyDown={(event) => {
         if (event.key === "Enter") done();
         if (event.key === "Escape") setText(value);

@@ -2,9 +2,9 @@
 import { Views } from "./views";
 import type { Problem } from "./types";
 
-/** The program refused a request; `message` is what the command line would print. */
+/** The program refused a request; `message` is what the command line would print. `consent`: it waits for the user to agree. */
 export class Refused extends Error {
-  constructor(message: string, readonly problems: Problem[]) { super(message); }
+  constructor(message: string, readonly problems: Problem[], readonly consent = false) { super(message); }
 }
 /** Cancelled, or overtaken by a later request of the same lane. Not an error: nobody waits for the answer any more. */
 export class Dropped extends Error {}
@@ -20,7 +20,7 @@ interface Waiting {
   partial?: (partial: never) => void;
 }
 interface Message {
-  id?: number; ok?: unknown; error?: { text: string; problems?: Problem[] }; dropped?: boolean;
+  id?: number; ok?: unknown; error?: { text: string; problems?: Problem[]; consent?: boolean }; dropped?: boolean;
   progress?: Progress; partial?: unknown; event?: string;
 }
 export interface Job<T> { answer: Promise<T>; cancel: () => void }
@@ -67,7 +67,7 @@ export class Connection {
     if (message.partial !== undefined) { request.partial?.(message.partial as never); return; }
     this.waiting.delete(message.id!);
     if (message.dropped) request.reject(new Dropped("dropped"));
-    else if (message.error) request.reject(new Refused(message.error.text, message.error.problems ?? []));
+    else if (message.error) request.reject(new Refused(message.error.text, message.error.problems ?? [], message.error.consent));
     else request.resolve(message.ok as never);
   }
 

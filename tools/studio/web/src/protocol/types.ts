@@ -1,7 +1,9 @@
 // The messages of tools/studio/protocol.md, as types.
 
 export interface FileEntry { path: string; kind: string; title?: string; size?: number }
-export interface Hello { version: string; folder: string; open: string; files: FileEntry[] }
+/** A text of `path` that a studio left behind in a hidden file when it was killed. */
+export interface LeftOver { file: string; path: string; when: string; text: string }
+export interface Hello { version: string; folder: string; open: string; files: FileEntry[]; left_over?: LeftOver[] }
 
 export interface Problem {
   severity: "error" | "warning"; text: string; message: string; hint: string;
@@ -52,7 +54,8 @@ export interface Document {
   undo: string; redo: string; loads: boolean; runs_alone: boolean; summary: string; problems: Problem[]; view: View | null;
 }
 export interface TextEdit { from: number; to: number; text: string }
-export interface EditAnswer { edits: TextEdit[]; document: Document; blocks: string[]; experiments?: { path: string; text: string }[] }
+export interface Renamed { kind: "block" | "parameter"; from: string; to: string }
+export interface EditAnswer { edits: TextEdit[]; document: Document; blocks: string[]; others?: { path: string; text: string }[]; renamed?: Renamed[] }
 
 export type Intent = { intent: string } & Record<string, unknown>;
 

@@ -1,6 +1,8 @@
 // Actions on the open file: open, edit by intents, undo, conflicts, moving between levels.
-import type { Document, EditAnswer, FileEntry, Hello, Intent, Problem, TextEdit } from "../protocol/types";
+import type { Document, EditAnswer, FileEntry, Hello, Intent, LeftOver, Problem, TextEdit } from "../protocol/types";
+import { Refused } from "../protocol/connection";
 import { ask, attempt } from "./session";
+import { follow_names } from "./names";
 import { about_document } from "./request";
 import { close_errors, get, patch, tell } from "./store";
 
@@ -14,7 +16,7 @@ const HIGHLIGHT_TIME = 4000;  // ms that changed blocks stay highlighted
 export async function greet(): Promise<void> {
   const hello = await attempt(ask<Hello>("hello"));
   if (!hello) return;
-  patch({ folder: hello.folder, files: hello.files });
+  patch({ folder: hello.folder, files: hello.files, left_over: hello.left_over ?? [] });
   const wanted = get().document?.path || new URLSearchParams(location.hash.slice(1)).get("file") || hello.open ||
     hello.files.find((file) => file.kind === "diagram")?.path;
   if (wanted) await open(wanted, get().inside);
@@ -24,6 +26,16 @@ export async function greet(): Promise<void> {
 export async function list_files(): Promise<void> {
   const answer = await attempt(ask<{ files: FileEntry[] }>("files"));
   if (answer) patch({ files: answer.files });
+}
+
+/** Puts a text that was left behind into its file, as a step that can be undone. The hidden file stays until it is removed. */
+export async function restore({ path, text }: LeftOver): Promise<void> {
+  if (get().document?.path !== path) await open(path);
+  if (get().document?.path === path) await edit({ intent: "replace_text", text });
+}
+export async function remove_left_over({ file }: LeftOver): Promise<void> {
+  const answer = await attempt(ask<{ left_over: LeftOver[] }>("remove_left_over", { file }));
+  if (answer) patch({ left_over: answer.left_over });
 }
 
 export async function open(path: string, inside = ""): Promise<void> {
@@ -78,6 +90,8 @@ export function apply_edits(text: string, edits: TextEdit[]): string {
 function take(answer: EditAnswer, from_text_view = false): void {
   const state = get();
   patch({ text: apply_edits(state.text, answer.edits), highlighted: answer.blocks });
+  follow_names(answer.renamed ?? []);
+  if (answer.others?.length) tell("note", `Changed with it: ${answer.others.map((other) => other.path).join(", ")}.`);
   if (!from_text_view) patch({ text_from_program: get().text_from_program + 1 });
   const { text: _unused, ...document } = answer.document;
   show(document);
@@ -98,7 +112,11 @@ export function edit(...intents: Intent[]): Promise<EditAnswer | null> {
   return in_order(async () => {
     const { document, inside } = get();
     if (!document) return null;
-    const answer = await attempt(ask<EditAnswer>("edit", { path: document.path, revision: document.revision, inside, intents }));
+    const send = (more = {}) => ask<EditAnswer>("edit", { path: document.path, revision: document.revision, inside, intents, ...more });
+    const answer = await attempt(send().catch((error: unknown) => {
+      if (!(error instanceof Refused) || !error.consent) throw error;
+      return confirm(`${error.message}\n\nDo it anyway?`) ? send({ despite_others: true }) : null;
+    }));
     if (answer) take(answer);
     return answer;
   });

@@ -1,7 +1,7 @@
 // The state of the page: one immutable object, changed by patches. Components select the parts that they show.
 import { useSyncExternalStore } from "react";
 import type { ChartPart } from "./chart";
-import type { Columns, Comparison, Diagnosis, Document, FileEntry, FitAnswer, Linear, Preview, RunAnswer, RunEntry, Step, SweepAnswer } from "../protocol/types";
+import type { Columns, Comparison, Diagnosis, Document, FileEntry, FitAnswer, LeftOver, Linear, Preview, RunAnswer, RunEntry, Step, SweepAnswer } from "../protocol/types";
 
 export type Panel = "inspect" | "runs" | "measure" | "diagnose" | "problems";
 export type ScopeTab = "run" | "compare" | "linear" | "sweep";
@@ -22,6 +22,7 @@ export interface State {
   connection: "connecting" | "open" | "lost";
   folder: string;
   files: FileEntry[];
+  left_over: LeftOver[];
   document: Document | null;
   text: string;                          // of the document
   text_from_program: number;             // counts changes of the text that did not come from the text view
@@ -74,7 +75,7 @@ export interface State {
 }
 
 const initial: State = {
-  connection: "connecting", folder: "", files: [], document: null, text: "", text_from_program: 0, inside: "", file_inside: "", variants: {},
+  connection: "connecting", folder: "", files: [], left_over: [], document: null, text: "", text_from_program: 0, inside: "", file_inside: "", variants: {},
   selected: [], selected_wire: "", highlighted: [], jump: null,
   overrides: {}, run: null, ghost: null, pinned: [], runs: [], plots: [], plots_chosen: false, range: null, cursors: null,
   scope_tab: "run", linear: null, sweep: null,
