@@ -189,15 +189,17 @@ template <class Take> void EffectRun::run_side_by_side(const RoleSignals& signal
 template <class Take>
 void EffectRun::superpose(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take) {
   const RoleSample first = signals.at(0);
+  std::vector<SampleMap> maps;
+  std::vector<std::vector<double>> states;
   for (size_t lane = 0; lane < lanes; ++lane) {
     linear_->start(fitted_[lane], first.position, first.velocity);
-    std::vector<double> states = linear_->states(), next;
-    const SampleMap map = linear_->map();
-    for (size_t row = 0; row < rows; ++row) {
-      map.apply(states, given_at(signals.at(row)), next);
-      take(lane, row, next[map.states], next[map.states + 1]);
-      states.swap(next);
-    }
+    states.push_back(linear_->states()), maps.push_back(linear_->map());
+  }
+  SampleMaps side_by_side(maps, states);
+  for (size_t row = 0; row < rows; ++row) {
+    side_by_side.step(given_at(signals.at(row)));
+    for (size_t lane = 0; lane < lanes; ++lane)
+      take(lane, row, side_by_side.mean(lane), side_by_side.slope(lane));
   }
 }
 

@@ -58,6 +58,33 @@ void SampleMap::apply(const std::vector<double>& before, const GivenSignals& giv
   }
 }
 
+SampleMaps::SampleMaps(std::span<const SampleMap> maps, std::span<const std::vector<double>> states)
+    : states_(maps.front().states),
+      sets_(maps.size()),
+      before_(states_ * sets_),
+      result_((states_ + 2) * sets_) {
+  for (size_t c = 0; c < maps.front().columns.size(); ++c)
+    for (size_t row = 0; row < states_ + 2; ++row)
+      for (const SampleMap& map : maps) matrix_.push_back(map.columns[c][row]);
+  for (size_t i = 0; i < states_; ++i)
+    for (size_t set = 0; set < sets_; ++set) before_[i * sets_ + set] = states[set][i];
+}
+
+void SampleMaps::step(const GivenSignals& given) {
+  std::ranges::fill(result_, 0.0);
+  const double* column = matrix_.data();
+  for (size_t c = 0; c < states_; ++c, column += result_.size())
+    for (size_t row = 0; row < states_ + 2; ++row)
+      for (size_t set = 0; set < sets_; ++set)
+        result_[row * sets_ + set] += before_[c * sets_ + set] * column[row * sets_ + set];
+  for (size_t c = 0; c < given.value.size(); ++c, column += result_.size()) {
+    const double factor = given.value[c];
+    if (factor == 0) continue;
+    for (size_t i = 0; i < result_.size(); ++i) result_[i] += factor * column[i];
+  }
+  std::copy_n(result_.begin(), before_.size(), before_.begin());
+}
+
 EffectSample::EffectSample(std::shared_ptr<const EffectPlan> plan)
     : plan_(std::move(plan)),
       run_(plan_->plan),

@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <memory>
+#include <span>
 #include <vector>
 #include "engine/run/run.h"
 #include "tools/effects/effect_plan.h"
@@ -26,6 +27,22 @@ struct SampleMap {
 
   /// `result` is states, mean and slope.
   void apply(const std::vector<double>& before, const GivenSignals& given, std::vector<double>& result) const;
+};
+
+/// The same maps of several sets of parameters side by side, each with its own states.
+class SampleMaps {
+ public:
+  /// `states`: of each map, before the first sample.
+  SampleMaps(std::span<const SampleMap> maps, std::span<const std::vector<double>> states);
+  /// The next sample, with the same numbers as SampleMap::apply.
+  void step(const GivenSignals& given);
+  double mean(size_t set) const { return result_[states_ * sets_ + set]; }
+  double slope(size_t set) const { return result_[(states_ + 1) * sets_ + set]; }
+
+ private:
+  size_t states_, sets_;
+  std::vector<double> matrix_;           ///< columns, in each the rows, in each the sets
+  std::vector<double> before_, result_;  ///< rows, in each the sets
 };
 
 /// The blocks of an effect with states of its own, one sample at a time.
