@@ -129,6 +129,15 @@ constexpr double most_held_out = 1.5;
 /// [probability] Of an effect that ranks among the certain ones.
 constexpr double sure = 0.9;
 
+// Work: see search/work.h.
+
+/// [operations] A record of 56 s with one or two effects needs a twentieth of it, one with a load that flies
+/// half. Half a minute to a minute of processor time.
+constexpr double most_work = 50e9;
+/// [most_work] Used up, the search accepts no further effect; and no further rival is compared. What was
+/// found is fitted, weighed and simulated in any case.
+constexpr double work_of_search = 0.6, work_with_rivals = 0.8;
+
 // Rest.
 
 /// [mean square in motion] Errors that the set does not explain occur at rest too.

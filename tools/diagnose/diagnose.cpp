@@ -77,7 +77,7 @@ class Inquiry {
 
   /// From the fitted rows.
   Conclusion with_names() {
-    const std::vector<Shape> shapes = shapes_along_fitted_rows();
+    const std::vector<Shape>& shapes = shapes_along_fitted_rows();
     progress_("searching", 0.4);
     SearchResult searched = search(trials_, catalogue_.candidates, shapes, unknown_, fitted_motion_);
     progress_("fitting effects and noise together", 0.7);
@@ -88,7 +88,7 @@ class Inquiry {
     return conclusion;
   }
   Conclusion without_names() {
-    const std::vector<Shape> shapes = shapes_along_fitted_rows();
+    const std::vector<Shape>& shapes = shapes_along_fitted_rows();
     Conclusion conclusion = conclude(trials_, catalogue_.candidates, shapes,
                                      fit_members(trials_, {}, search_noise(trials_), fitted_motion_, 0));
     look_at_all_rows(conclusion);
@@ -96,7 +96,7 @@ class Inquiry {
   }
   /// The same without a member.
   Conclusion without(const Conclusion& conclusion, size_t member) {
-    const std::vector<Shape> shapes = shapes_along_fitted_rows();
+    const std::vector<Shape>& shapes = shapes_along_fitted_rows();
     std::vector<Member> members = conclusion.estimate.members;
     members.erase(members.begin() + std::ptrdiff_t(member));
     const Estimate& e = conclusion.estimate;
@@ -112,18 +112,23 @@ class Inquiry {
   void fit_all_rows() {
     for (Trial& trial : trials_.list) trial.held_out_from = trial.usable.size();
   }
-  double held_out_mean_square() const { return mean_square(trials_, on_all_rows_.fitted, true); }
+  double held_out_mean_square() const { return mean_square(trials_, *on_all_rows_.fitted, true); }
   /// The motion of the last conclusion, including held-out rows.
   const Motion& motion_of_all_rows() const { return on_all_rows_.motion; }
 
  private:
-  std::vector<Shape> shapes_along_fitted_rows() {
-    progress_("running every effect's blocks on the records", 0.1);
+  /// They are computed again only if other rows are fitted.
+  const std::vector<Shape>& shapes_along_fitted_rows() {
     trials_.run_along(Trials::Rows::fitted);
+    std::vector<size_t> rows;
+    for (const Trial& trial : trials_.list) rows.push_back(trial.rows());
+    if (rows == rows_of_shapes_) return shapes_;
+    progress_("running every effect's blocks on the records", 0.1);
+    rows_of_shapes_ = std::move(rows);
     fitted_motion_ = cut(motion_, trials_);
-    std::vector<Shape> shapes = shapes_of(catalogue_.candidates, fitted_motion_);
-    add_without_doubt(trials_, fitted_motion_, shapes);
-    return shapes;
+    shapes_ = shapes_of(catalogue_.candidates, fitted_motion_);
+    add_without_doubt(trials_, fitted_motion_, shapes_);
+    return shapes_;
   }
   void look_at_all_rows(const Conclusion& conclusion) {
     const Estimate& e = conclusion.estimate;
@@ -139,6 +144,8 @@ class Inquiry {
   const std::vector<Candidate> unknown_;
   const std::function<void(const char*, double)>& progress_;
   Motion fitted_motion_;
+  std::vector<Shape> shapes_;  // along it
+  std::vector<size_t> rows_of_shapes_;
   Estimate on_all_rows_;
 };
 
@@ -229,6 +236,13 @@ void tell_errors(const Trials& trials, const Conclusion& conclusion, const Inqui
   result.measurement_noise = noise.measurement;
 }
 
+RecordFinding ended_at_limit(double most_work) {
+  return {
+      fmt::format("the search ended at its limit of {:.3g}e9 operations", most_work / 1e9),
+      "effects that had not been tried are not named, and alternatives may be missing: hold out more, record "
+      "less, or state in the diagram what is known"};
+}
+
 Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std::string>& experiments,
                               const DiagnoseOptions& options) {
   const std::function<void(const char*, double)> progress = [&](const char* stage, double done) {
@@ -238,6 +252,7 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   Motion motion;
   Trials trials = prepare(diagram, experiments, options.load, motion);
   trials.interrupt = options.interrupt;
+  *trials.work = Work(options.most_work);
   std::vector<const AxisModel*> models;
   for (const Trial& trial : trials.list) models.push_back(trial.model.get());
   const MachineUnits units = units_of(*models.front());
@@ -270,6 +285,7 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
       accept(conclusion_from(inquiry, result.findings), trials, inverse, improver, options.load,
              catalogue.candidates.size(),
              [&](const Conclusion& c, size_t member) { return inquiry.without(c, member); });
+  if (trials.work->was_short()) result.findings.push_back(ended_at_limit(options.most_work));
   const Conclusion& conclusion = accepted.conclusion;
   const Staircase& staircase = accepted.staircase;
   result.refused = std::move(accepted.refused);
@@ -300,6 +316,7 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
     result.improved_notes = notes_of(options.writes_all ? result.all_additions : result.additions);
   }
   add_plots(trials, inverse.front(), accepted, improver, units, options.load, result);
+  result.trail.push_back(fmt::format("work: {:.3g}e9 operations", trials.work->done() / 1e9));
   return result;
 }
 

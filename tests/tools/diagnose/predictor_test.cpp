@@ -82,7 +82,8 @@ TEST(Predictor, OtherGainsNeedNoOtherRun) {
   other.white *= 3, other.measurement[0] *= 0.5, other.memory = 1, other.step = 0.002;
   const Gains gains = gains_of(p.axis, other, p.model.nominal_inertia());
   const std::vector<double> expected = predict(p.model, p.axis, gains, p.drives, waits).error;
-  const std::vector<double> error = with_gains(p.axis, first, p.gains, gains);
+  std::vector<double> error;
+  with_gains(p.axis, first, p.gains, gains, error);
   double off = 0, size = 0;
   for (size_t k = 0; k < error.size(); ++k)
     off += std::pow(error[k] - expected[k], 2), size += expected[k] * expected[k];

@@ -1,4 +1,5 @@
 #include "tools/diagnose/predict/predictor.h"
+#include "tools/diagnose/predict/sizes.h"
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -188,18 +189,14 @@ std::vector<const Column*> pointers(const Columns& columns) {
 void responses(const LinearAxis& axis, const Gains& gains, const Path& path, Acts acts,
                std::span<const Column* const> columns, std::span<const size_t> rows,
                std::span<double* const> to) {
-  const auto states = axis.A.rows(), ports = axis.C.rows();
   const bool is_input = acts == Acts::input;
   for (size_t first = 0; first < columns.size(); first += side_by_side) {
     const size_t count = std::min<size_t>(side_by_side, columns.size() - first);
     const auto some = columns.subspan(first, count);
     const Rows wanted{rows, to.subspan(first, count)};
-    if (states == 2 && ports == 1)
-      run_on_this_machine(ErrorFilter<2, 1>(axis, gains, is_input), path, acts, some, wanted);
-    else if (states == 2 && ports == 2)
-      run_on_this_machine(ErrorFilter<2, 2>(axis, gains, is_input), path, acts, some, wanted);
-    else
-      run_on_this_machine(ErrorFilter<0, 0>(axis, gains, is_input), path, acts, some, wanted);
+    with_sizes(axis, [&]<int States, int Ports>() {
+      run_on_this_machine(ErrorFilter<States, Ports>(axis, gains, is_input), path, acts, some, wanted);
+    });
   }
 }
 
@@ -341,14 +338,11 @@ void change_gains(const LinearAxis& axis, const Prediction& prediction, const Ga
 
 }  // namespace
 
-std::vector<double> with_gains(const LinearAxis& axis, const Prediction& prediction, const Gains& from,
-                               const Gains& to) {
-  std::vector<double> error(prediction.error.size());
-  if (axis.A.rows() == 2 && axis.C.rows() == 1)
-    change_gains<2, 1>(axis, prediction, from, to, error);
-  else
-    change_gains<0, 0>(axis, prediction, from, to, error);
-  return error;
+void with_gains(const LinearAxis& axis, const Prediction& prediction, const Gains& from, const Gains& to,
+                std::vector<double>& error) {
+  error.resize(prediction.error.size());
+  with_sizes(
+      axis, [&]<int States, int Ports>() { change_gains<States, Ports>(axis, prediction, from, to, error); });
 }
 
 void whiten(std::vector<double>& error, const Gains& gains) {

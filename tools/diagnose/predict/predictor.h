@@ -66,8 +66,8 @@ Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains,
                    const Pace& pace);
 
 /// The errors that other gains would give on the same record, without stepping the diagram again.
-std::vector<double> with_gains(const LinearAxis& axis, const Prediction& prediction, const Gains& from,
-                               const Gains& to);
+void with_gains(const LinearAxis& axis, const Prediction& prediction, const Gains& from, const Gains& to,
+                std::vector<double>& error);
 
 /// z[k] = whiten · e[k], in place.
 void whiten(std::vector<double>& error, const Gains& gains);

@@ -17,7 +17,7 @@ using namespace criteria;
 
 void maximise(Trials& trials, Estimate& estimate) {
   for (int round = 0; round < 2; ++round) {
-    const Noise noise = fit_noise_alone(trials, estimate.fitted, estimate.noise, FreeNoise::all);
+    const Noise noise = fit_noise_alone(trials, *estimate.fitted, estimate.noise, FreeNoise::all);
     estimate = fit_members(trials, estimate.members, noise, estimate.motion, 8);
   }
 }
@@ -39,6 +39,8 @@ class Rivals {
       : trials_(trials), estimate_(estimate), catalogue_(catalogue), reach_(reach) {}
 
   double reach() const { return reach_; }
+  /// No further rival is fitted.
+  bool is_spent() const { return trials_.work->is_spent(criteria::work_with_rivals); }
   /// With a proposal applied and all parameters fitted.
   Estimate fitted(const Proposal& proposal) {
     return fit_members(trials_, applied(proposal, estimate_.members), estimate_.noise, estimate_.motion, 4);
@@ -55,6 +57,7 @@ class Rivals {
     return loss < reach_ ? std::optional(loss) : std::nullopt;
   }
   std::optional<double> loss_of(const Proposal& proposal) {
+    if (is_spent()) return {};
     Estimate other = fitted(proposal);
     if (const double loss = criterion_of(other) - criterion_of(estimate_); loss > reach_ && loss < 4 * reach_)
       maximise(trials_, other);
@@ -75,7 +78,7 @@ class Rivals {
   /// white.
   std::optional<Estimate> better(double doubt) {
     const auto at_limit = [](const Estimate& e) { return std::ranges::count_if(e.members, is_at_limit); };
-    if (!best_.is_valid || at_limit(best_) > at_limit(estimate_)) return {};
+    if (!best_.is_valid || at_limit(best_) > at_limit(estimate_) || is_spent()) return {};
     maximise(trials_, best_);
     const double gain = criterion_of(estimate_) - criterion_of(best_);
     return gain + preference(best_.members, estimate_.members) > std::max(clearly_better, doubt)
@@ -135,7 +138,7 @@ void add_simpler_friction(std::vector<Substitute>& list, const Trials& trials, R
   };
   const double left = residual_size(trials, *trials.inverse, estimate.members).fitted;
   for (const Proposal& proposal : exchanges) {
-    if (!is_simpler(proposal)) continue;
+    if (!is_simpler(proposal) || rivals.is_spent()) continue;
     const Estimate other = rivals.fitted(proposal);
     if (!other.is_valid) continue;
     const double with_other = residual_size(trials, *trials.inverse, other.members).fitted;
@@ -177,7 +180,7 @@ std::optional<Estimate> simplified(Rivals& rivals, const std::vector<Member>& me
     for (const Proposal& proposal : exchanges) {
       const bool is_simpler = proposal.removed == std::vector<size_t>{m} && proposal.added.size() == 1 &&
                               parameters_of(*proposal.added[0].candidate) < parameters_of(*member.candidate);
-      if (!is_simpler || proposal.gain <= -10 * rivals.reach()) continue;
+      if (!is_simpler || proposal.gain <= -10 * rivals.reach() || rivals.is_spent()) continue;
       Estimate other = rivals.fitted(proposal);
       if (rivals.loss_of(proposal, other) || rivals.is_promised(proposal, other)) return other;
     }
@@ -263,7 +266,7 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
     leave_out_doubtful(trials, estimate);
     keep_material(trials, result, candidates.size());
   }
-  result.portmanteau = portmanteau(trials, estimate.fitted);
+  result.portmanteau = portmanteau(trials, *estimate.fitted);
   if (result.portmanteau > criteria::most_portmanteau)
     result.counts_portmanteau = portmanteau_of_counts(trials, estimate);
   result.is_negligible = is_negligible(trials, estimate.members);
@@ -290,7 +293,7 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
     next.trail.insert(next.trail.begin(), result.trail.begin(), result.trail.end());
     return next;
   }
-  const Noise free = fit_noise(trials, estimate.fitted, estimate.noise, FreeNoise::all);
+  const Noise free = fit_noise(trials, *estimate.fitted, estimate.noise, FreeNoise::all);
   result.is_remainder_noise = free.slow() <= criteria::most_slow_noise * free.white;
   return result;
 }

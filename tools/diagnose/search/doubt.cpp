@@ -126,8 +126,8 @@ void leave_out_doubtful(Trials& trials, Estimate& estimate) {
     trials.list[t].usable = std::move(usable[t]);
   }
   if (!changes) return;
-  estimate.mean_square = mean_square(trials, estimate.fitted);
-  estimate.profile = profile(trials, estimate.fitted);
+  estimate.mean_square = mean_square(trials, *estimate.fitted);
+  estimate.profile = profile(trials, *estimate.fitted);
 }
 
 }  // namespace loopwright::diagnosis

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/remembered_runs.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -31,6 +32,9 @@ bool is_feasible(const Shape& shape, const Eigen::VectorXd& theta, Eigen::Index 
   }
   return true;
 }
+
+/// Squares that a solution leaves, beyond rounding.
+double left_by(double squares, double of) { return std::max(squares, 1e-12 * of); }
 
 }  // namespace
 
@@ -129,15 +133,19 @@ Evidence::Evidence(const Trials& trials, const Estimate& estimate, const std::ve
   n_ = double(count);
   X_.resize(Eigen::Index(count), width + 1);
   Eigen::Index top = 0;
+  const auto sensitivities =
+      trials.remembered->sensitivities(trials, members_, estimate.motion, estimate.fitted);
   for (size_t t = 0; t < trials.list.size(); ++t) {
-    const Fitted& fitted = estimate.fitted[t];
+    const Fitted& fitted = (*estimate.fitted)[t];
     const Path& path = *estimate.motion.paths[t];
     const auto fill = [&](Eigen::Index column, const std::vector<double>& values) {
       Eigen::Index r = top;
       for (size_t k : rows[t])
         for (size_t p = 0; p < ports; ++p) X_(r++, column) = values[k * ports + p];
     };
-    const Sensitivity own = sensitivity(estimate.members, path, fitted, trials.list[t].input);
+    const Sensitivity& own = (*sensitivities)[t];
+    trials.work->add(path.samples(), double(width) * Work::of_a_response);
+    trials.work->add(rows[t].size() * ports, double(width * Eigen::Index(free_.size())) * Work::of_a_product);
     for (size_t c = 0; c < own.columns.size(); ++c) fill(Eigen::Index(c), own.columns[c]);
     for (const Acts acts : {Acts::force, Acts::input, Acts::sensor}) {
       std::vector<const Column*> columns;
@@ -162,7 +170,7 @@ Evidence::Evidence(const Trials& trials, const Estimate& estimate, const std::ve
   for (size_t s = 0; s < shapes.size(); ++s) multiply(s, s);
   b_ = X_.leftCols(width).transpose() * X_.col(width);
   squares_ = X_.col(width).squaredNorm();
-  explained_ = solve(member_columns(), b_, squares_).squares;
+  explained_ = left_by(solve(G_, member_columns(), b_, squares_).squares, squares_);
 }
 
 /// The same shape with all its rows, which has the same responses; if there is none, the shape itself.
@@ -193,23 +201,6 @@ void Evidence::multiply(size_t shape, size_t other) {
       G_.block(i, j, width_of(shape), width_of(other)).transpose().eval();
 }
 
-Evidence::Solution Evidence::solve(const std::vector<int>& columns, const Eigen::VectorXd& b,
-                                   double squares) const {
-  const Eigen::Index n = Eigen::Index(columns.size());
-  if (n == 0) return {squares, {}};
-  Eigen::MatrixXd G(n, n);
-  Eigen::VectorXd right(n), scale(n);
-  for (Eigen::Index i = 0; i < n; ++i)
-    scale[i] = 1 / std::sqrt(std::max(G_(columns[size_t(i)], columns[size_t(i)]), 1e-300));
-  for (Eigen::Index i = 0; i < n; ++i) {
-    right[i] = scale[i] * b[columns[size_t(i)]];
-    for (Eigen::Index j = 0; j < n; ++j)
-      G(i, j) = scale[i] * scale[j] * G_(columns[size_t(i)], columns[size_t(j)]) + (i == j ? 1e-9 : 0.0);
-  }
-  const Eigen::VectorXd theta = G.ldlt().solve(right);
-  return {std::max(squares - right.dot(theta), 1e-12 * squares), scale.cwiseProduct(theta)};
-}
-
 std::vector<int> Evidence::member_columns(const std::vector<size_t>& without, bool only_linear) const {
   std::vector<int> columns;
   for (size_t i = 0; i < free_.size(); ++i)
@@ -232,8 +223,10 @@ Evidence::Errors Evidence::errors_without(const std::vector<size_t>& removed) co
     else if (m.candidate->amplitude_is_one)
       theta[Eigen::Index(i)] = m.nonlinear[p.index];
   }
-  const Eigen::VectorXd added = G_.leftCols(own) * theta;
-  return {removed, b_ + added, squares_ + 2 * theta.dot(b_.head(own)) + theta.dot(added.head(own))};
+  const Eigen::VectorXd added = G_.leftCols(own) * theta, b = b_ + added;
+  const double squares = squares_ + 2 * theta.dot(b_.head(own)) + theta.dot(added.head(own));
+  return {removed, b, squares, solve(G_, member_columns(removed), b, squares),
+          solve(G_, member_columns(removed, true), b, squares)};
 }
 
 /// A candidate is a member only once; one that repeats along the axis may be added again at another pitch.
@@ -249,64 +242,61 @@ bool Evidence::may_be_added(const Shape& shape, const std::vector<size_t>& remov
   return true;
 }
 
-std::optional<Proposal> Evidence::with_shapes(const std::vector<size_t>& shapes, const Errors& errors) const {
-  const std::vector<size_t>& removed = errors.removed;
-  const auto with_members = [&](bool only_linear) {
-    std::vector<int> columns = member_columns(removed, only_linear);
-    for (size_t s : shapes)
-      for (int c = 0; c < width_of(s); ++c) columns.push_back(first_column_[s] + c);
-    return columns;
-  };
-  const Solution solution = solve(with_members(false), errors.b, errors.squares);
-  Eigen::Index first = Eigen::Index(member_columns(removed).size());
+std::vector<int> Evidence::columns_of(const std::vector<size_t>& shapes) const {
+  std::vector<int> columns;
+  for (size_t s : shapes)
+    for (int c = 0; c < width_of(s); ++c) columns.push_back(first_column_[s] + c);
+  return columns;
+}
+
+/// What the shapes save together with all parameters of the members that stay; empty: not within their
+/// ranges.
+std::optional<double> Evidence::gain_of(const std::vector<size_t>& shapes, const Errors& errors) const {
+  const Added added = add(G_, columns_of(shapes), errors.members, errors.b);
+  Eigen::Index first = 0;
   double cost = 0;
   for (size_t s : shapes) {
-    if (!is_feasible(*shapes_[s], solution.theta, first)) return {};
+    if (!is_feasible(*shapes_[s], added.theta, first)) return {};
     first += width_of(s);
     cost += price(parameters_of(*shapes_[s]->candidate), 1, n_, catalogue_);
   }
-  for (size_t m : removed) cost -= price(parameters_of(*members_[m].candidate), 1, n_, catalogue_);
-  // If the members' shapes are poorly determined, the full step would leave the linear range.
-  const std::vector<int> columns = with_members(true);
-  Proposal proposal = with_step(shapes, removed, solve(columns, errors.b, errors.squares).theta);
-  proposal.gain = n_ * std::log(explained_ / solution.squares) - cost;
-  return proposal;
+  for (size_t m : errors.removed) cost -= price(parameters_of(*members_[m].candidate), 1, n_, catalogue_);
+  return n_ * std::log(explained_ / left_by(added.squares, errors.squares)) - cost;
 }
 
-/// `theta`: steps of the linear parameters of the members that stay, then of the shapes.
-Proposal Evidence::with_step(const std::vector<size_t>& shapes, const std::vector<size_t>& removed,
-                             const Eigen::VectorXd& theta) const {
-  Proposal proposal;
-  proposal.removed = removed;
+/// The step of the linear parameters of the members that stay, and of the shapes: if the members' shapes are
+/// poorly determined, the full step would leave the linear range.
+Proposal Evidence::with_step(const std::vector<size_t>& shapes, const Errors& errors, double gain) const {
+  const Added added = add(G_, columns_of(shapes), errors.amplitudes, errors.b);
+  Proposal proposal{errors.removed, {}, {}, gain};
   Eigen::Index next = 0;
   for (const FreeParameter& p : free_)
-    if (std::ranges::find(removed, p.member) == removed.end())
-      proposal.step.push_back(p.is_linear ? theta[next++] : 0);
+    if (std::ranges::find(errors.removed, p.member) == errors.removed.end())
+      proposal.step.push_back(p.is_linear ? added.before[next++] : 0);
+  next = 0;
   for (size_t s : shapes) {
     const Shape& shape = *shapes_[s];
     Member member{shape.candidate, {}, shape.nonlinear};
     for (int c = 0; c < width_of(s); ++c, ++next)
-      member.linear.push_back(shape.candidate->amplitude_is_one ? 1 : theta[next]);
+      member.linear.push_back(shape.candidate->amplitude_is_one ? 1 : added.theta[next]);
     proposal.added.push_back(std::move(member));
   }
   return proposal;
 }
 
 /// For every candidate that is not a member, the shape that saves most.
-std::vector<size_t> Evidence::best_shapes(const Errors& errors) const {
-  std::vector<size_t> best;
-  std::vector<double> gains;
+std::vector<Evidence::Promise> Evidence::best_shapes(const Errors& errors) const {
+  std::vector<Promise> best;
   for (size_t s = 0; s < shapes_.size(); ++s) {
     if (!may_be_added(*shapes_[s], errors.removed)) continue;
-    const auto proposal = with_shapes({s}, errors);
-    if (!proposal) continue;
-    const auto same = std::ranges::find_if(
-        best, [&](size_t other) { return shapes_[other]->candidate == shapes_[s]->candidate; });
-    if (same == best.end()) {
-      best.push_back(s), gains.push_back(proposal->gain);
-    } else if (double& gain = gains[size_t(same - best.begin())]; proposal->gain > gain) {
-      *same = s, gain = proposal->gain;
-    }
+    const auto gain = gain_of({s}, errors);
+    if (!gain) continue;
+    const auto same = std::ranges::find(best, shapes_[s]->candidate,
+                                        [&](const Promise& p) { return shapes_[p.shape]->candidate; });
+    if (same == best.end())
+      best.push_back({s, *gain});
+    else if (*gain > same->gain)
+      *same = {s, *gain};
   }
   return best;
 }
@@ -314,27 +304,27 @@ std::vector<size_t> Evidence::best_shapes(const Errors& errors) const {
 std::vector<Proposal> Evidence::extensions() const {
   std::vector<Proposal> list;
   const Errors errors = errors_without({});
-  for (size_t s : best_shapes(errors))
-    if (auto proposal = with_shapes({s}, errors); proposal && proposal->gain > 0)
-      list.push_back(std::move(*proposal));
+  for (const auto [shape, gain] : best_shapes(errors))
+    if (gain > 0) list.push_back(with_step({shape}, errors, gain));
   std::ranges::stable_sort(list, std::ranges::greater{}, &Proposal::gain);
   return list;
 }
 
 Proposal Evidence::best_pair(bool one_without_name) {
   const Errors errors = errors_without({});
-  const std::vector<size_t> best = best_shapes(errors);
-  Proposal result;
+  const std::vector<Promise> best = best_shapes(errors);
+  std::vector<size_t> pair;
+  double most = 0;
   for (size_t i = 0; i < best.size(); ++i)
     for (size_t j = i + 1; j < best.size(); ++j) {
-      const bool has_unknown =
-          shapes_[best[i]]->candidate->is_unknown != shapes_[best[j]]->candidate->is_unknown;
-      if (one_without_name && !has_unknown) continue;
-      multiply(best[i], best[j]);
-      if (auto pair = with_shapes({best[i], best[j]}, errors); pair && pair->gain > result.gain)
-        result = std::move(*pair);
+      const size_t one = best[i].shape, other = best[j].shape;
+      if (one_without_name && shapes_[one]->candidate->is_unknown == shapes_[other]->candidate->is_unknown)
+        continue;
+      multiply(one, other);
+      if (const auto gain = gain_of({one, other}, errors); gain && *gain > most)
+        most = *gain, pair = {one, other};
     }
-  return result;
+  return pair.empty() ? Proposal{} : with_step(pair, errors, most);
 }
 
 std::vector<std::vector<size_t>> Evidence::removals() const {
@@ -350,8 +340,7 @@ std::vector<Proposal> Evidence::exchanges() const {
   std::vector<Proposal> list;
   for (const auto& removed : removals()) {
     const Errors errors = errors_without(removed);
-    for (size_t s : best_shapes(errors))
-      if (auto proposal = with_shapes({s}, errors)) list.push_back(std::move(*proposal));
+    for (const auto [shape, gain] : best_shapes(errors)) list.push_back(with_step({shape}, errors, gain));
   }
   std::ranges::stable_sort(list, std::ranges::greater{}, &Proposal::gain);
   return list;
@@ -361,14 +350,14 @@ std::vector<Proposal> Evidence::exchanges_for_pairs() {
   std::vector<Proposal> list;
   for (const auto& removed : removals()) {
     const Errors errors = errors_without(removed);
-    const std::vector<size_t> best = best_shapes(errors);
-    std::vector<double> alone;
-    for (size_t s : best) alone.push_back(with_shapes({s}, errors)->gain);
+    const std::vector<Promise> best = best_shapes(errors);
     for (size_t i = 0; i < best.size(); ++i)
       for (size_t j = i + 1; j < best.size(); ++j) {
-        multiply(best[i], best[j]);
-        auto proposal = with_shapes({best[i], best[j]}, errors);
-        if (proposal && proposal->gain > std::max(alone[i], alone[j])) list.push_back(std::move(*proposal));
+        const std::vector<size_t> pair{best[i].shape, best[j].shape};
+        multiply(pair[0], pair[1]);
+        const auto gain = gain_of(pair, errors);
+        if (gain && *gain > std::max(best[i].gain, best[j].gain))
+          list.push_back(with_step(pair, errors, *gain));
       }
   }
   std::ranges::stable_sort(list, std::ranges::greater{}, &Proposal::gain);
@@ -379,7 +368,7 @@ std::vector<double> Evidence::gains_of_removal() const {
   std::vector<double> gains;
   for (size_t m = 0; m < members_.size(); ++m) {
     const Errors errors = errors_without({m});
-    const double without = solve(member_columns({m}), errors.b, errors.squares).squares;
+    const double without = left_by(errors.members.squares, errors.squares);
     gains.push_back(price(parameters_of(*members_[m].candidate), 1, n_, catalogue_) -
                     n_ * std::log(without / explained_));
   }

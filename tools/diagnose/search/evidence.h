@@ -1,6 +1,7 @@
 /// Evidence of the prediction errors for additional effects: columns of every candidate on a coarse grid of
 /// shapes, and their sums of squares, so that a set of effects costs only one small solve.
 #pragma once
+#include "tools/diagnose/search/elimination.h"
 #include "tools/diagnose/search/maximum_likelihood.h"
 
 namespace loopwright::diagnosis {
@@ -64,17 +65,13 @@ class Evidence {
   double rows() const { return n_; }
 
  private:
-  struct Solution {
-    double squares = 0;
-    Eigen::VectorXd theta;
-  };
   /// The errors with some members removed.
   struct Errors {
     std::vector<size_t> removed;
     Eigen::VectorXd b;  ///< products with all columns
     double squares = 0;
+    Solved members, amplitudes;  ///< the members that stay; only their linear parameters
   };
-  Solution solve(const std::vector<int>& columns, const Eigen::VectorXd& b, double squares) const;
   std::vector<int> member_columns(const std::vector<size_t>& without = {}, bool only_linear = false) const;
   /// Every member, and every pair.
   std::vector<std::vector<size_t>> removals() const;
@@ -85,11 +82,16 @@ class Evidence {
   void clear_doubtful(size_t shape, const std::vector<char>& doubtful, const std::vector<size_t>& rows,
                       Eigen::Index top, size_t ports);
   int width_of(size_t shape) const { return int(shapes_[shape]->columns[0].size()); }
-  std::optional<Proposal> with_shapes(const std::vector<size_t>& shapes, const Errors& errors) const;
-  Proposal with_step(const std::vector<size_t>& shapes, const std::vector<size_t>& removed,
-                     const Eigen::VectorXd& theta) const;
+  std::vector<int> columns_of(const std::vector<size_t>& shapes) const;
+  std::optional<double> gain_of(const std::vector<size_t>& shapes, const Errors& errors) const;
+  Proposal with_step(const std::vector<size_t>& shapes, const Errors& errors, double gain) const;
   bool may_be_added(const Shape& shape, const std::vector<size_t>& removed) const;
-  std::vector<size_t> best_shapes(const Errors& errors) const;
+  /// A shape, and what it saves.
+  struct Promise {
+    size_t shape;
+    double gain;
+  };
+  std::vector<Promise> best_shapes(const Errors& errors) const;
 
   const std::vector<Member> members_;
   const std::vector<const Shape*> shapes_;
@@ -97,7 +99,7 @@ class Evidence {
   std::vector<FreeParameter> free_;
   std::vector<int> first_column_;  // of each shape
   Eigen::MatrixXd X_;              // rows used × columns: members', shapes', errors
-  Eigen::MatrixXd G_;  // Xᵀ X, as far as needed: for two shapes only if they were tried together
+  Products G_;  // Xᵀ X, as far as needed: for two shapes only if they were tried together
   Eigen::VectorXd b_;
   double squares_ = 0, n_ = 0, explained_ = 0;  // explained_: remaining squares after the members
 };

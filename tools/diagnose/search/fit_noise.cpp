@@ -37,15 +37,17 @@ struct Objective {
   const Trials& trials;
   const std::vector<Fitted>& fitted;
   Coordinates coordinates;
+  std::vector<double> error = {};  ///< of one evaluation
 
-  double operator()(const Noise& noise) const {
+  double operator()(const Noise& noise) {
     double sum = 0;
     const size_t ports = trials.ports();
     for (size_t t = 0; t < trials.list.size(); ++t) {
       const Trial& trial = trials.list[t];
       const Gains gains = gains_of(fitted[t].axis, noise, trial.model->nominal_inertia());
-      std::vector<double> error = with_gains(fitted[t].axis, fitted[t].prediction, fitted[t].gains, gains);
+      with_gains(fitted[t].axis, fitted[t].prediction, fitted[t].gains, gains, error);
       whiten(error, gains);
+      trials.work->add(error.size(), 3 * Work::of_a_response);
       for (size_t k = 0; k < std::min(trial.held_out_from, error.size() / ports); ++k) {
         if (!trial.usable[k]) continue;
         sum += gains.log_determinant;
@@ -57,7 +59,7 @@ struct Objective {
 };
 
 double evaluate(unsigned, const double* x, double*, void* data) {
-  const Objective& objective = *static_cast<const Objective*>(data);
+  Objective& objective = *static_cast<Objective*>(data);
   return objective(objective.coordinates.at(x));
 }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include "tools/diagnose/search/candidate.h"
+#include "tools/diagnose/search/work.h"
 
 namespace loopwright::diagnosis {
 
@@ -13,6 +14,7 @@ namespace loopwright::diagnosis {
 struct Interrupted {};
 
 struct InverseDynamics;
+class RememberedRuns;
 
 /// One record with the model that follows it.
 struct Trial {
@@ -39,6 +41,8 @@ struct Trials {
   const std::atomic<bool>* interrupt =
       nullptr;  ///< once true, the next run along the records throws Interrupted
   std::function<void(const std::vector<Member>&)> found;  ///< told of every set that the search accepts
+  std::shared_ptr<RememberedRuns> remembered;             ///< never null
+  std::shared_ptr<Work> work = std::make_shared<Work>();  ///< done so far, and its limit
   size_t ports() const { return list.front().model->record().measured.size(); }
   /// All records are maps of balances, or none.
   bool has_map() const { return list.front().model->record().is_map; }
@@ -65,6 +69,8 @@ struct Fitted {
   Prediction prediction;
   std::vector<double> white;  ///< whitened errors
 };
+/// Of every record. They do not change, and estimates share them.
+using Results = std::shared_ptr<const std::vector<Fitted>>;
 
 /// Runs the nominal diagram with the members along each record, as far as the trials require; without members
 /// no motion is needed.
@@ -95,6 +101,7 @@ struct FreeParameter {
   size_t member;
   bool is_linear;
   size_t index;
+  bool operator==(const FreeParameter&) const = default;
 };
 std::vector<FreeParameter> free_parameters(const std::vector<Member>& members);
 double& value_of(std::vector<Member>& members, const FreeParameter& parameter);

@@ -1,5 +1,6 @@
 #include "tools/diagnose/search/maximum_likelihood.h"
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/remembered_runs.h"
 #include "tools/diagnose/search/rest.h"
 #include "models/real/whole.h"
 #include <algorithm>
@@ -18,14 +19,17 @@ struct NormalEquations {
 };
 
 /// Jᵀ J and Jᵀ e over the fitted rows of all records.
-NormalEquations normal_equations(const Trials& trials, const std::vector<Member>& members,
-                                 const std::vector<Fitted>& fitted, const Motion& motion) {
-  const Eigen::Index n = Eigen::Index(free_parameters(members).size());
+NormalEquations normal_equations(const Trials& trials, const Estimate& estimate) {
+  const Eigen::Index n = Eigen::Index(free_parameters(estimate.members).size());
   NormalEquations equations{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
   const size_t ports = trials.ports();
+  const auto sensitivities =
+      trials.remembered->sensitivities(trials, estimate.members, estimate.motion, estimate.fitted);
   for (size_t t = 0; t < trials.list.size(); ++t) {
     const Trial& trial = trials.list[t];
-    const Sensitivity s = sensitivity(members, *motion.paths[t], fitted[t], trial.input);
+    const Sensitivity& s = (*sensitivities)[t];
+    const std::vector<double>& white = (*estimate.fitted)[t].white;
+    trials.work->add(white.size(), double(n * n) * Work::of_a_product);
     constexpr size_t chunk = 1024;
     Eigen::MatrixXd rows(Eigen::Index(chunk * ports), n + 1);
     for (size_t start = 0; start < trial.held_out_from; start += chunk) {
@@ -34,7 +38,7 @@ NormalEquations normal_equations(const Trials& trials, const std::vector<Member>
         if (!trial.usable[k]) continue;
         for (size_t p = 0; p < ports; ++p, ++r) {
           for (Eigen::Index c = 0; c < n; ++c) rows(r, c) = s.columns[size_t(c)][k * ports + p];
-          rows(r, n) = fitted[t].white[k * ports + p];
+          rows(r, n) = white[k * ports + p];
         }
       }
       equations.G.noalias() += rows.topRows(r).leftCols(n).transpose() * rows.topRows(r).leftCols(n);
@@ -96,10 +100,10 @@ std::vector<Member> moved(std::vector<Member> members, const std::vector<FreePar
 Estimate evaluated(Trials& trials, std::vector<Member> members, const Noise& noise, const Motion& motion) {
   Estimate estimate;
   estimate.members = std::move(members), estimate.noise = noise, estimate.motion = motion;
-  estimate.fitted = run_members(trials, estimate.members, motion, noise);
-  estimate.mean_square = mean_square(trials, estimate.fitted);
-  estimate.profile = profile(trials, estimate.fitted);
-  estimate.against_at_rest = against_at_rest(trials, estimate.members, estimate.fitted, noise);
+  estimate.fitted = trials.remembered->run(trials, estimate.members, motion, noise);
+  estimate.mean_square = mean_square(trials, *estimate.fitted);
+  estimate.profile = profile(trials, *estimate.fitted);
+  estimate.against_at_rest = against_at_rest(trials, estimate.members, *estimate.fitted, noise);
   estimate.is_valid =
       std::isfinite(estimate.mean_square) && std::ranges::all_of(estimate.members, [](const Member& m) {
         return !m.candidate->is_plausible || m.candidate->is_plausible(m);
@@ -121,8 +125,8 @@ void take_own_motion(Trials& trials, Estimate& estimate, double far) {
 
 Estimate on_own_motion(Trials& trials, Estimate estimate) {
   Motion motion{{}, estimate.profile};
-  for (Fitted& fitted : estimate.fitted)
-    motion.paths.push_back(std::make_shared<const Path>(std::move(fitted.prediction.path)));
+  for (const Fitted& fitted : *estimate.fitted)
+    motion.paths.emplace_back(estimate.fitted, &fitted.prediction.path);
   return evaluated(trials, std::move(estimate.members), estimate.noise, motion);
 }
 
@@ -132,7 +136,7 @@ Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& n
   const std::vector<FreeParameter> free = free_parameters(best.members);
   const double far = same_motion * double(fitted_numbers(trials));
   for (int i = 0; i < iterations && best.is_valid && !free.empty(); ++i) {
-    const NormalEquations equations = normal_equations(trials, best.members, best.fitted, best.motion);
+    const NormalEquations equations = normal_equations(trials, best);
     const Eigen::VectorXd step = step_in_range(equations, best.members, free);
     if (step.dot(equations.b) < criteria::least_step_gain * best.mean_square)
       break;  // predicted gain of the step
@@ -174,11 +178,13 @@ void widen_by_blocks(const Trials& trials, Estimate& estimate) {
   if (n == 0) return;
   const size_t ports = trials.ports();
   Eigen::MatrixXd between = Eigen::MatrixXd::Zero(n, n), within = between;  // of blocks, of rows
+  const auto sensitivities =
+      trials.remembered->sensitivities(trials, estimate.members, estimate.motion, estimate.fitted);
   for (size_t t = 0; t < trials.list.size(); ++t) {
     const Trial& trial = trials.list[t];
-    const Fitted& fitted = estimate.fitted[t];
+    const Fitted& fitted = (*estimate.fitted)[t];
     const Path& path = *estimate.motion.paths[t];
-    const Sensitivity s = sensitivity(estimate.members, path, fitted, trial.input);
+    const Sensitivity& s = (*sensitivities)[t];
     const size_t block = std::max<size_t>(1, whole_count(criteria::independent_block_s / path.sample_time));
     Eigen::VectorXd sum(n), score(n);
     for (size_t start = 0; start < trial.held_out_from; start += block) {
@@ -220,7 +226,7 @@ void refer_to_zero(Estimate& estimate) {
 void work_out_covariance(Trials& trials, Estimate& estimate) {
   const std::vector<FreeParameter> free = free_parameters(estimate.members);
   if (free.empty()) return;
-  const NormalEquations e = normal_equations(trials, estimate.members, estimate.fitted, estimate.motion);
+  const NormalEquations e = normal_equations(trials, estimate);
   // A level that no row reaches is completely unknown, but must be a finite number.
   const auto inverse_root = [](double squares) { return squares > 0 ? 1 / std::sqrt(squares) : 1.0; };
   const Eigen::VectorXd scale = e.G.diagonal().unaryExpr(inverse_root);

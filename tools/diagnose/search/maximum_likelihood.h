@@ -8,7 +8,7 @@ struct Estimate {
   std::vector<Member> members;
   Noise noise;
   Motion motion;  ///< motion on which the members ran
-  std::vector<Fitted> fitted;
+  Results fitted;
   double mean_square = 0;      ///< of the whitened errors; 1 when model and noise are correct
   double profile = 0;          ///< see profile(): smaller is better
   double against_at_rest = 0;  ///< see against_at_rest()

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/remembered_runs.h"
 #include "tools/experiment/experiment_ports.h"
 
 namespace loopwright::diagnosis {
@@ -151,6 +152,7 @@ void reject_mixed(const Trials& trials) {
 Trials prepare(const std::string& diagram, const std::vector<std::string>& experiments,
                const LoadOptions& options, Motion& motion) {
   Trials trials;
+  trials.remembered = std::make_shared<RememberedRuns>();
   std::vector<double> speed;
   double square = 0;
   size_t n = 0;

@@ -37,7 +37,7 @@ class Search {
   SearchResult run() {
     bool goes_on = grow(4);
     if (goes_on && is_much_left() && trials_.has_map()) goes_on = grow(most_steps_in_a_map);
-    if (is_much_left() || explain_without_name()) {
+    if (!is_spent() && (is_much_left() || explain_without_name())) {
       start_from_what_has_no_name();
       goes_on = true;
     }
@@ -117,11 +117,12 @@ class Search {
     return *evidence_;
   }
 
+  bool is_spent() const { return trials_.work->is_spent(criteria::work_of_search); }
   bool is_much_left() const { return best_.mean_square >= criteria::much_left; }
 
   /// False when nothing more was found.
   bool grow(size_t most) {
-    for (size_t step = 0; step < most; ++step) {
+    for (size_t step = 0; step < most && !is_spent(); ++step) {
       if (!extend()) return false;
       sharpen_noise();
       exchange();
@@ -242,6 +243,7 @@ class Search {
     for (const Member& member : best.members)
       if (member.candidate->is_unknown) starts.push_back({member});
     for (std::vector<Member>& start : starts) {
+      if (is_spent()) break;
       take(nominal);
       take(refined(start, 4));
       if (!best_.is_valid || score(best_) >= score(nominal)) continue;
@@ -258,7 +260,7 @@ class Search {
   /// A member, or two, for another: also an equally good one, if it makes others unnecessary.
   void exchange() {
     for (int round = 0; round < 4; ++round) {
-      if (best_.members.empty()) return;
+      if (best_.members.empty() || is_spent()) return;
       const std::vector<Proposal> proposals = evidence().exchanges();
       std::vector<std::vector<Member>> others;
       for (size_t i = 0; i < std::min(tried_exchanges, proposals.size()); ++i)
@@ -311,7 +313,7 @@ class Search {
   /// Once little is left to find, the noise level can be estimated from the remainder.
   void sharpen_noise() {
     if (is_much_left()) return;
-    noise_ = fit_noise_alone(trials_, best_.fitted, noise_, FreeNoise::white_and_slow);
+    noise_ = fit_noise_alone(trials_, *best_.fitted, noise_, FreeNoise::white_and_slow);
     take(fit_members(trials_, best_.members, noise_, best_.motion, 2));
     trail_.push_back(fmt::format("noise: white {:.3g}, slow {:.3g}", noise_.white, noise_.slow()));
   }

@@ -1,4 +1,5 @@
 #include "tools/diagnose/search/spectrum.h"
+#include "tools/diagnose/search/backward.h"
 #include "models/real/whole.h"
 #include <algorithm>
 #include <cmath>
@@ -11,45 +12,16 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// The predictor's error filter with its slow force, as matrices.
-struct ErrorSystem {
-  Eigen::MatrixXd onward, correct, C;  // x[k+1] = onward (x[k] - correct e[k]) - enter φ, e = C x
-  Eigen::VectorXd enter;
-
-  ErrorSystem(const Fitted& fitted, bool is_input) {
-    const Eigen::Index n = fitted.axis.A.rows();
-    onward = Eigen::MatrixXd::Zero(n + 1, n + 1);
-    onward.topLeftCorner(n, n) = fitted.axis.A;
-    onward.topRightCorner(n, 1) = fitted.axis.push;
-    onward(n, n) = fitted.gains.memory;
-    correct = fitted.gains.K;
-    C = Eigen::MatrixXd::Zero(fitted.axis.C.rows(), n + 1);
-    C.leftCols(n) = fitted.axis.C;
-    enter = Eigen::VectorXd::Zero(n + 1);
-    enter.head(n) = is_input ? fitted.axis.input_push : fitted.axis.push;
-  }
-};
-
 /// For each sample, the derivative of the explained error with respect to the consumed (or equivalent) force
 /// at that sample: one backward run through the filter instead of a forward run for every pitch.
 std::vector<double> adjoint(const Trial& trial, const Fitted& fitted, Acts acts) {
   const ErrorSystem system(fitted, acts == Acts::input);
-  const Path& path = fitted.prediction.path;
-  const Eigen::Index ports = system.C.rows();
-  const Eigen::MatrixXd seen = system.C.transpose();
-  std::vector<double> weight(path.samples());
-  Eigen::VectorXd lambda = Eigen::VectorXd::Zero(system.enter.size()), r(ports), back(system.enter.size());
-  for (size_t k = path.samples(); k-- > 0;) {
-    r.setZero();
-    if (trial.usable[k] && k < trial.held_out_from)
-      r = fitted.gains.whiten.transpose() *
-          Eigen::Map<const Eigen::VectorXd>(fitted.white.data() + k * size_t(ports), ports);
-    back.noalias() = system.onward.transpose() * lambda;
-    if (path.forgets(k)) back[back.size() - 1] = 0;
-    const Eigen::VectorXd through = system.correct.transpose() * back;
-    weight[k] = acts == Acts::sensor ? r[0] - through[0] : -system.enter.dot(lambda);
-    lambda = back + seen * (r - through);
-  }
+  std::vector<double> weight(fitted.prediction.path.samples());
+  run_backward(
+      system, fitted, [&](size_t k) { return trial.usable[k] && k < trial.held_out_from; },
+      [&](size_t k, const auto& after, const auto&, const auto& sensed, const auto& through) {
+        weight[k] = acts == Acts::sensor ? sensed[0] - through[0] : -system.enter.dot(after);
+      });
   return weight;
 }
 
@@ -107,7 +79,7 @@ std::vector<double> spectrum(const Trials& trials, const Estimate& estimate, con
   constexpr size_t speeds = 64;
   std::vector<double> by_speed(speeds, 0.0);
   double top = candidate.repeats_in_time ? 1 : 0;
-  for (const Fitted& fitted : estimate.fitted)
+  for (const Fitted& fitted : *estimate.fitted)
     for (double v : fitted.prediction.path.velocity)
       if (!candidate.repeats_in_time) top = std::max(top, std::abs(v));
   for (size_t t = 0; t < trials.list.size(); ++t) {
@@ -130,7 +102,7 @@ std::vector<double> spectrum(const Trials& trials, const Estimate& estimate, con
   std::vector<Complex> lines;
   Eigen::FFT<double>().fwd(lines, density);
   // The filter's gain at the frequency of a pitch at a speed, from a table.
-  const Fitted& fitted = estimate.fitted.front();
+  const Fitted& fitted = estimate.fitted->front();
   const ErrorSystem system(fitted, candidate.acts == Acts::input);
   constexpr size_t table_size = 400;
   std::vector<double> table;
@@ -187,7 +159,7 @@ std::vector<Shape> periodic_shapes(const Trials& trials, const Estimate& estimat
         candidate.repeats_in_time ? SpatialGrid(0, trials.longest_s, low) : SpatialGrid(lowest, highest, low);
     Weights& weight = weights[candidate.acts];
     for (size_t t = weight.size(); t < trials.list.size(); ++t)
-      weight.push_back(adjoint(trials.list[t], estimate.fitted[t], candidate.acts));
+      weight.push_back(adjoint(trials.list[t], (*estimate.fitted)[t], candidate.acts));
     std::vector<double> pitches =
         peaks(spectrum(trials, estimate, candidate, weight, grid, stroke), grid, low, high, lines);
     for (const Member& member : estimate.members)

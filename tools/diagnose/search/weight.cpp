@@ -73,7 +73,7 @@ double force_rms(const Trials& trials, const Estimate& estimate, size_t index) {
   double sum = 0, n = 0;
   for (size_t t = 0; t < trials.list.size(); ++t) {
     const Trial& trial = trials.list[t];
-    const Fitted& fitted = estimate.fitted[t];
+    const Fitted& fitted = (*estimate.fitted)[t];
     const Columns columns = member.candidate->columns(*estimate.motion.paths[t], member.nonlinear);
     std::vector<float> whole(columns[0].mean->size());
     for (size_t c = 0; c < columns.size(); ++c)
@@ -123,7 +123,7 @@ double material(const Trials& trials, const Estimate& estimate, const Weight& we
 
 std::vector<Weight> weigh_all(Trials& trials, Estimate& estimate) {
   work_out_covariance(trials, estimate);
-  if (portmanteau(trials, estimate.fitted) > most_portmanteau) widen_by_blocks(trials, estimate);
+  if (portmanteau(trials, *estimate.fitted) > most_portmanteau) widen_by_blocks(trials, estimate);
   refer_to_zero(estimate);
   std::vector<Weight> weights;
   for (size_t m = 0; m < estimate.members.size(); ++m) weights.push_back(weigh(trials, estimate, m));

@@ -69,7 +69,7 @@ double portmanteau_of_counts(const Trials& trials, const Estimate& estimate) {
   for (size_t t = 0; t < feigned.size(); ++t) {
     const MeasuredPort& sensor = trials.list[t].model->record().measured.front();
     if (!(sensor.resolution > 0) || trials.has_map()) return 0;
-    const Fitted& fitted = estimate.fitted[t];
+    const Fitted& fitted = (*estimate.fitted)[t];
     const Path& path = fitted.prediction.path;
     const std::vector<double>& motion = sensor.role == "velocity" ? path.velocity : path.position;
     const double other = std::sqrt(

@@ -129,8 +129,8 @@ std::vector<MissingTerm> missing_terms(const Trials& trials, const InverseDynami
 Diagnosis::Whiteness whiteness_of(Trials& trials, const Estimate& estimate) {
   Diagnosis::Whiteness result;
   const double sample_time = trials.list.front().model->record().sample_time;
-  const LaggedProducts products = lagged_products(trials, estimate.fitted, 0, rows_in_a_lag(trials));
-  result.after = correlations(trials, estimate.fitted);
+  const LaggedProducts products = lagged_products(trials, *estimate.fitted, 0, rows_in_a_lag(trials));
+  result.after = correlations(trials, *estimate.fitted);
   result.before = correlations(trials, run_members(trials, {}, {}, estimate.noise));
   for (size_t lag = 1; lag <= result.after.size(); ++lag)
     result.lag_s.push_back(double(lag * rows_in_a_lag(trials)) * sample_time);

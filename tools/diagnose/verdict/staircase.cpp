@@ -51,14 +51,14 @@ class Climb {
       std::vector<size_t> rest;
       std::ranges::copy_if(from.members, std::back_inserter(rest), [&](size_t other) { return other != m; });
       Stage stage = fitted(rest, from.estimate);
-      if (best.estimate.fitted.empty() || stage.force < best.force) best = std::move(stage);
+      if (!best.estimate.fitted || stage.force < best.force) best = std::move(stage);
     }
     return with_own_noise(without_idle_corrections(std::move(best), is_correction));
   }
   /// The force that this stage lacks is larger than the final noise.
   Stage with_own_noise(Stage stage) {
     const Estimate& e = stage.estimate;
-    const Noise noise = fit_noise_alone(trials_, e.fitted, e.noise, FreeNoise::white_and_slow);
+    const Noise noise = fit_noise_alone(trials_, *e.fitted, e.noise, FreeNoise::white_and_slow);
     stage.estimate = fit_members(trials_, e.members, noise, e.motion, 4);
     stage.force = residual_size(trials_, inverse_, stage.estimate.members).fitted;
     return stage;

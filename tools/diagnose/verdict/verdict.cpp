@@ -75,7 +75,7 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
     std::ranges::copy_if(e.members, std::back_inserter(named),
                          [](const Member& m) { return !m.candidate->is_unknown; });
     const Estimate seen = fit_members(trials, named, tight, motion, 0);
-    diagnosis.dependence = dependence_of(trials, seen.fitted);
+    diagnosis.dependence = dependence_of(trials, *seen.fitted);
     if (!has_unknown && !diagnosis.dependence.empty() &&
         diagnosis.dependence.front().share > criteria::least_dependence)
       add_variables(diagnosis.remainder_variables, diagnosis.dependence.front().variable);

@@ -1,0 +1,82 @@
+#include "tools/diagnose/search/remembered_runs.h"
+#include <algorithm>
+
+namespace loopwright::diagnosis {
+namespace {
+
+/// Moves the entry to the end, as the one used last.
+template <class Entries> auto& used(Entries& entries, typename Entries::iterator entry) {
+  std::rotate(entry, entry + 1, entries.end());
+  return entries.back();
+}
+
+}  // namespace
+
+RememberedRuns::Question RememberedRuns::question_of(const Trials& trials, const std::vector<Member>& members,
+                                                     const Motion& motion, const Noise& noise) {
+  Question question;
+  for (const Member& member : members) {
+    question.candidates.push_back(member.candidate);
+    for (const auto* values : {&member.linear, &member.nonlinear})
+      question.numbers.insert(question.numbers.end(), values->begin(), values->end());
+  }
+  question.numbers.insert(question.numbers.end(), {noise.white, noise.step, noise.memory});
+  question.numbers.insert(question.numbers.end(), noise.measurement.begin(), noise.measurement.end());
+  for (const auto& path : motion.paths) question.paths.push_back(path->identity);
+  for (const Trial& trial : trials.list) question.rows.push_back(trial.rows());
+  return question;
+}
+
+Results RememberedRuns::run(Trials& trials, const std::vector<Member>& members, const Motion& motion,
+                            const Noise& noise) {
+  const auto anew = [&] {
+    return std::make_shared<const std::vector<Fitted>>(run_members(trials, members, motion, noise));
+  };
+  Question question = question_of(trials, members, motion, noise);
+  // Without a motion where the noise enters is not yet decided; paths without an identity may change.
+  if (question.paths.empty() || std::ranges::find(question.paths, uint64_t(0)) != question.paths.end())
+    return anew();
+  const auto known = std::ranges::find(runs_, question, &Run::question);
+  if (known != runs_.end()) return used(runs_, known).results;
+  for (const Trial& trial : trials.list)
+    trials.work->add(trial.rows(), double(1 + members.size()) * Work::of_a_sample);
+  runs_.push_back({std::move(question), anew()});
+  if (runs_.size() > most_runs) runs_.pop_front();
+  return runs_.back().results;
+}
+
+std::shared_ptr<const std::vector<Sensitivity>> RememberedRuns::sensitivities(
+    const Trials& trials, const std::vector<Member>& members, const Motion& motion, const Results& results) {
+  std::vector<FreeParameter> free = free_parameters(members);
+  const auto known = std::ranges::find_if(
+      sensitive_, [&](const Sensitive& s) { return s.results == results && s.free == free; });
+  if (known != sensitive_.end()) return used(sensitive_, known).sensitivities;
+  auto list = std::make_shared<std::vector<Sensitivity>>();
+  for (size_t t = 0; t < trials.list.size(); ++t) {
+    trials.work->add(trials.list[t].rows(),
+                     double(free.size()) * Work::of_a_response + double(members.size()) * Work::of_a_sample);
+    list->push_back(sensitivity(members, *motion.paths[t], (*results)[t], trials.list[t].input));
+  }
+  keep({results, std::move(free), list});
+  return list;
+}
+
+size_t RememberedRuns::numbers_of(const Sensitive& sensitive) {
+  size_t count = 0;
+  for (const Sensitivity& s : *sensitive.sensitivities)
+    for (const std::vector<double>& column : s.columns) count += column.size();
+  return count;
+}
+
+void RememberedRuns::keep(Sensitive sensitive) {
+  sensitive_.push_back(std::move(sensitive));
+  size_t count = 0, kept = 0;
+  while (kept < std::min(most_sensitivities, sensitive_.size())) {
+    count += numbers_of(*(sensitive_.rbegin() + std::ptrdiff_t(kept)));
+    if (kept > 0 && count > most_numbers) break;
+    ++kept;
+  }
+  sensitive_.erase(sensitive_.begin(), sensitive_.end() - std::ptrdiff_t(kept));
+}
+
+}  // namespace loopwright::diagnosis

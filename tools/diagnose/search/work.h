@@ -1,0 +1,32 @@
+/// The work of a search, counted and not timed: where it ends at its limit, it ends there on every machine,
+/// and the answer is the same.
+#pragma once
+#include <cstddef>
+#include <limits>
+
+namespace loopwright::diagnosis {
+
+class Work {
+ public:
+  /// [operations] For a row: a sample of a diagram or of an effect, of a column through the error filter, and
+  /// a product of two numbers. An operation takes about a nanosecond.
+  static constexpr double of_a_sample = 250, of_a_response = 4, of_a_product = 0.25;
+
+  Work() = default;
+  explicit Work(double most) : most_(most) {}
+  void add(size_t rows, double operations) { done_ += double(rows) * operations; }
+  /// Whether so much of the limit is used up. What is then left out, the answer says.
+  bool is_spent(double share) {
+    const bool is_spent = done_ > share * most_;
+    was_short_ |= is_spent;
+    return is_spent;
+  }
+  bool was_short() const { return was_short_; }
+  double done() const { return done_; }
+
+ private:
+  double done_ = 0, most_ = std::numeric_limits<double>::infinity();
+  bool was_short_ = false;
+};
+
+}  // namespace loopwright::diagnosis
