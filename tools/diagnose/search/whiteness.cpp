@@ -5,6 +5,7 @@
 #include "models/random/philox.h"
 #include "models/real/whole.h"
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/backward.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -21,6 +22,22 @@ double portmanteau(const LaggedProducts& products) {
 double normal(size_t record, size_t row) {
   const UniformPair u = uniform_pair(1, record, row);
   return std::sqrt(-2 * std::log(u.first)) * std::cos(2 * std::numbers::pi * u.second);
+}
+
+/// The measured quantity as all rows of the record tell it, of the first port: the prediction, corrected by
+/// what later errors say about it (fixed-interval smoother, de Jong 1989). The predictor alone follows coarse
+/// counts from step to step, and would not find them again.
+std::vector<double> smoothed(const Fitted& fitted, const MeasuredPort& sensor, size_t ports) {
+  const ErrorSystem system(fitted, false);
+  const Eigen::MatrixXd covariance = (fitted.gains.whiten.transpose() * fitted.gains.whiten).inverse();
+  const Eigen::VectorXd per_error = (fitted.gains.K * covariance).col(0);
+  std::vector<double> motion(fitted.prediction.path.samples());
+  run_backward(
+      system, fitted, [](size_t) { return true; },
+      [&](size_t k, const auto&, const auto& before, const auto&, const auto&) {
+        motion[k] = sensor.value[k] - fitted.prediction.error[k * ports] + per_error.dot(before);
+      });
+  return motion;
 }
 
 }  // namespace
@@ -71,7 +88,7 @@ double portmanteau_of_counts(const Trials& trials, const Estimate& estimate) {
     if (!(sensor.resolution > 0) || trials.has_map()) return 0;
     const Fitted& fitted = (*estimate.fitted)[t];
     const Path& path = fitted.prediction.path;
-    const std::vector<double>& motion = sensor.role == "velocity" ? path.velocity : path.position;
+    const std::vector<double> motion = smoothed(fitted, sensor, trials.ports());
     const double other = std::sqrt(
         std::max(0.0, std::pow(estimate.noise.measurement[0], 2) - std::pow(sensor.resolution, 2) / 12));
     std::vector<float> error(motion.size());

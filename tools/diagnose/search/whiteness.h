@@ -20,7 +20,7 @@ size_t rows_in_a_lag(const Trials& trials);
 double portmanteau(const Trials& trials, const std::vector<Fitted>& fitted);
 
 /// What the counts of the first sensor add to the portmanteau: at slow speeds their errors are not white. The
-/// estimated motion is counted anew, and the errors of that count are filtered as the predictor filters them,
+/// smoothed motion is counted anew, and the errors of that count are filtered as the predictor filters them,
 /// beside white noise.
 double portmanteau_of_counts(const Trials& trials, const Estimate& estimate);
 
