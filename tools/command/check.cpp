@@ -9,6 +9,8 @@
 #include "tools/command/command.h"
 #include "tools/experiment/experiment.h"
 #include "tools/effects/check_blocks.h"
+#include "tools/effects/effect.h"
+#include "tools/effects/site_effect.h"
 #include "tools/gp/train.h"
 #include "tools/run/checked_diagram.h"
 #include "tools/sweep/sweep_plan.h"
@@ -69,8 +71,11 @@ Verdict check_training(const std::string& path, const LoadOptions& options, Prob
 
 Verdict check_effect(const std::string& path, Problems& problems) {
   const std::vector<Effect> forms = load_effect(path, problems);
+  if (forms.empty()) {
+    const auto at_site = problems.has_errors() ? std::nullopt : load_site_effect(path, problems);
+    return at_site ? "an effect at a site of any diagram" : Verdict{};
+  }
   for (const Effect& form : forms) check_blocks(form, problems);
-  if (forms.empty()) return {};
   return fmt::format("an effect in {} form{}", forms.size(), forms.size() == 1 ? "" : "s");
 }
 

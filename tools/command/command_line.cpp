@@ -223,7 +223,8 @@ bool is_output(const CLI::Option& option) {
   return !option.get_positional() && std::ranges::find(names, name_of(option)) != names.end();
 }
 bool is_input(const CLI::Option& option) {
-  constexpr std::array<std::string_view, 5> names = {"--replay", "--resume", "--on", "--blocks", "--effects"};
+  constexpr std::array<std::string_view, 6> names = {"--replay", "--resume",  "--on",
+                                                     "--blocks", "--effects", "--more-effects"};
   return option.get_positional() || std::ranges::find(names, name_of(option)) != names.end();
 }
 

@@ -7,7 +7,7 @@ namespace {
 
 struct Arguments {
   DiagramArguments diagram;
-  std::vector<std::string> experiments, catalogues;
+  std::vector<std::string> experiments, catalogues, more_catalogues;
   std::string json, report, improved;
   bool trail = false, all = false;
 };
@@ -19,7 +19,8 @@ int run(const Arguments& a) {
   reject_swapped(a.diagram.path, a.experiments);
   DiagnoseOptions options;
   options.load = a.diagram.options(), options.catalogues = a.catalogues,
-  options.improved_diagram = a.improved, options.writes_all = a.all;
+  options.more_catalogues = a.more_catalogues, options.improved_diagram = a.improved,
+  options.writes_all = a.all;
   options.interrupt = &interruption();
   Progress progress("diagnose");
   options.progress = [&](const char*, double done) { progress.show(done, 1); };
@@ -42,6 +43,7 @@ void add_diagnose(CLI::App& app, std::function<void(std::function<int()>)> choos
   a->diagram.add_to(*command);
   command->add_option("experiments", a->experiments, "Experiment files (JSON), one or more")->required();
   command->add_option("--effects", a->catalogues, "Folders with effect files in the place of the catalogue");
+  command->add_option("--more-effects", a->more_catalogues, "Folders with effect files beside the catalogue");
   command->add_option("--json", a->json, "Write the diagnosis as JSON; - for stdout");
   command->add_option("--report", a->report, "Write an HTML page that tells the story");
   command->add_option("-o,--output", a->improved, "Write the diagram with the effects that were found");

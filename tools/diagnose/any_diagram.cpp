@@ -1,8 +1,9 @@
 #include "tools/diagnose/any_diagram.h"
-#include <fmt/format.h>
 #include "engine/diagram/in_memory.h"
 #include "engine/json/json.h"
 #include "tools/diagnose/improvement.h"
+#include "tools/diagnose/search/own_shapes.h"
+#include "tools/diagnose/search/site_opinion.h"
 #include "tools/diagnose/verdict/improve.h"
 #include "tools/diagnose/verdict/site_verdict.h"
 
@@ -10,17 +11,6 @@ namespace loopwright {
 namespace {
 
 using namespace diagnosis;
-
-void reject_options_of_an_axis(const std::string& experiment, const DiagnoseOptions& options) {
-  Problems problems;
-  const auto reject = [&](const char* option) {
-    auto& p = problems.error({}, "", "", fmt::format("{} has no meaning without roles", option));
-    p.found = experiment;
-    p.hint = "name the roles of an axis in the experiment, or leave the option out";
-  };
-  if (!options.catalogues.empty()) reject("--effects");
-  if (problems.has_errors()) throw InputError(std::move(problems));
-}
 
 /// The diagram with what was found. It must load before it is written.
 void write_improved(const DiagnoseOptions& options, Diagnosis& result) {
@@ -44,7 +34,7 @@ void write_improved(const DiagnoseOptions& options, Diagnosis& result) {
 
 Diagnosis diagnose_any_diagram(const std::string& diagram, const std::vector<std::string>& experiments,
                                const DiagnoseOptions& options) {
-  reject_options_of_an_axis(experiments.front(), options);
+  const ShapeCatalogue catalogue(options.catalogues, options.more_catalogues);
   const std::function<void(const char*, double)> progress = [&](const char* stage, double done) {
     if (options.progress) options.progress(stage, done);
   };
@@ -53,13 +43,14 @@ Diagnosis diagnose_any_diagram(const std::string& diagram, const std::vector<std
   SiteModel model(diagram, experiments, options.load);
   SiteFilter filter(model);
   SiteFitter fitter(filter, model.record().held_out_from, is_interrupted);
+  fitter.offer(catalogue.shapes());
   Diagnosis result;
   result.has_roles = false;
   result.diagram = diagram, result.experiments = experiments, result.title = model.plan().title;
   result.force_unit = result.measured_unit = model.record().outputs.front().unit;
   result.measured_port = model.record().outputs.front().port;
   if (model.record().shortened) result.findings.push_back(*model.record().shortened);
-  const auto found = search_sites(fitter, progress);
+  const auto found = search_with_second_opinion(fitter, progress);
   if (is_interrupted()) {
     result.was_interrupted = true;
     return result;

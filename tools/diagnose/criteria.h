@@ -250,6 +250,12 @@ constexpr double worse_simulation_of_any_diagram = 1.05;
 constexpr size_t simulations_of_any_diagram = 10;
 /// [of the record] The start, in which the filter settles: 1/20 of it.
 constexpr size_t settling_part = 20;
+/// [signal at its site, rms] Noise held over a sample, as the best predictions ask for. More of it may stand
+/// for a missing effect. Machines, heat and tanks have a hundredth.
+constexpr double most_process_noise = 0.05;
+/// [rms error of simulation] An answer by simulation stands only if it leaves at most this of the other's,
+/// also over the held-out rows; without them chance has a larger part.
+constexpr double better_simulation_held_out = 0.9, better_simulation_without_hold_out = 0.8;
 /// [cosine between responses] Beyond it no shape of the catalogue tells two sites apart.
 constexpr double alike_responses = 0.98;
 /// [rows] A trial term keeps its value as long; about as effects change along a motion.

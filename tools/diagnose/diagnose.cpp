@@ -257,8 +257,9 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   for (const Trial& trial : trials.list) models.push_back(trial.model.get());
   const MachineUnits units = units_of(*models.front());
   const RecordSizes sizes = sizes_of(motion.paths, models);
-  const std::vector<std::string> folders =
+  std::vector<std::string> folders =
       options.catalogues.empty() ? std::vector<std::string>{catalogue_folder()} : options.catalogues;
+  std::ranges::copy(options.more_catalogues, std::back_inserter(folders));
   const WhyNot cannot_be_added = attachable(diagram, experiments.front(), options.load, units, sizes);
   const auto why_not = [&](const Effect& effect) {
     std::string why = trials.has_map() ? not_in_a_map(effect) : std::string();

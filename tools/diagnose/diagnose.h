@@ -13,9 +13,10 @@ namespace loopwright {
 struct DiagnoseOptions {
   LoadOptions load;  ///< --set, --variant
   std::vector<std::string>
-      catalogues;                ///< folders with effect files; empty: the catalogue of the installation
-  std::string improved_diagram;  ///< path of the diagram with the effects; empty: not written
-  bool writes_all = false;       ///< also the optional effects
+      catalogues;  ///< folders with effect files; empty: the catalogue of the installation
+  std::vector<std::string> more_catalogues;  ///< folders with further effect files
+  std::string improved_diagram;              ///< path of the diagram with the effects; empty: not written
+  bool writes_all = false;                   ///< also the optional effects
   std::function<void(const char* stage, double done)> progress;
   /// Told of every set of effects that the search accepts, with the force that it leaves in the fitted rows.
   std::function<void(const std::vector<std::string>& effects, double force)> found;

@@ -127,7 +127,8 @@ struct Effect {
   const EffectParameter* find(std::string_view parameter) const;
 };
 
-/// Every effect of a file: one, or one for each of its forms. Empty after a problem.
+/// Every effect of a file: one, or one for each of its forms. Empty after a problem, and for an effect at a
+/// site of any diagram (site_effect.h).
 std::vector<Effect> load_effect(const std::string& path, Problems& problems);
 
 /// All effect files of the folders, sorted by name; a repeated name replaces the earlier one.

@@ -279,7 +279,7 @@ std::vector<Effect> load_effect(const std::string& path, Problems& problems) {
   const Value file = source ? parse_json(source, own) : Value{};
   const Reader reader{own, ""};
   if (!own.has_errors() && reader.expect(file, Kind::object, "an effect", "an object in braces") &&
-      expect_kind(file, FileKind::effect, own)) {
+      expect_kind(file, FileKind::effect, own) && !file.find("site")) {
     reject_unknown(reader, file, effect_shape(), "an effect");
     reader.check_version(file);
     const Value::Member* forms = file.find("forms");

@@ -1,5 +1,6 @@
 #include "tools/effects/effect_shape.h"
 #include "tools/effects/member_reader.h"
+#include "tools/effects/site_effect.h"
 
 namespace loopwright {
 
@@ -34,6 +35,14 @@ FileShape effect_file(bool has_forms) {
   if (has_forms)
     keys.push_back(required("forms", by_name(effect_form_shape(), 1), "Variants: name → what differs"));
   return file(std::move(keys));
+}
+
+/// A kind of signal, or a list of kinds.
+FileShape signal_kinds(std::vector<std::string_view> further) {
+  further.insert(further.end(), site_kinds().begin(), site_kinds().end());
+  further.push_back("any");
+  const FileShape kind = choice(std::move(further));
+  return either({kind, list(kind)});
 }
 
 }  // namespace
@@ -98,6 +107,31 @@ FileShape separating_experiment_shape() {
                  optional("added_mass", not_negative(), "Of the mass of the machine"),
                  optional("chirp_amplitude", not_negative(), "Of the level of the force"),
                  optional("chirp_from_hz", not_negative()), optional("chirp_to_hz", not_negative())});
+}
+
+FileShape site_effect_shape() {
+  return file({required("effect", text(), "Its name, which is also that of its file"),
+               required("title", text(), "One line for people"),
+               required("physics", text(), "What happens, for people"),
+               required("site", signal_kinds({}), "Where it may act"),
+               required("of", signal_kinds({"site"}), "On which signals it depends; \"site\": its own"),
+               optional("parameters", by_name(site_parameter_shape())),
+               required("formula", text(), "Of signal and the parameters")});
+}
+
+FileShape site_parameter_shape() {
+  return object(
+      {required("unit", text(), "$site, $site/$signal, $site/$signal^2 or $signal"),
+       optional("description", text()), optional("linear", flag(), "The effect is proportional to it"),
+       optional("range", range(), "Lowest and highest value, over the sizes of the signal"),
+       optional("points", number(1, most_site_points), "How many values of the range a search tries first"),
+       optional("scale", choice({"linear", "logarithmic"}), "Spacing of a search")});
+}
+
+FileShape any_effect_shape() {
+  FileShape any = effect_shape();
+  any.parts.push_back(site_effect_shape());
+  return any;
 }
 
 }  // namespace loopwright

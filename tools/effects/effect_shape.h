@@ -4,7 +4,10 @@
 
 namespace loopwright {
 
-FileShape effect_shape();
+FileShape effect_shape();       ///< of an axis
+FileShape site_effect_shape();  ///< at a site of any diagram
+FileShape site_parameter_shape();
+FileShape any_effect_shape();  ///< one of both
 FileShape effect_form_shape();
 FileShape fitted_parameter_shape();
 FileShape given_parameter_shape();

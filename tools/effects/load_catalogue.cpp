@@ -3,25 +3,10 @@
 #include <fmt/format.h>
 #include "engine/json/reader.h"
 #include "tools/effects/effect.h"
+#include "tools/effects/effect_files.h"
 
 namespace loopwright {
 namespace {
-
-namespace fs = std::filesystem;
-
-std::vector<std::string> effect_files(const std::string& folder, Problems& problems) {
-  std::vector<std::string> files;
-  std::error_code code;
-  if (!fs::is_directory(folder, code)) {
-    problems.error({}, "", "", fmt::format("the folder of effects \"{}\" is not there", folder)).hint =
-        "the environment variable LOOPWRIGHT_EFFECTS may name it";
-    return files;
-  }
-  for (const auto& entry : fs::directory_iterator(folder, code))
-    if (entry.path().extension() == ".json") files.push_back(entry.path().string());
-  std::ranges::sort(files);
-  return files;
-}
 
 /// Effects name each other; a name that does not exist is a typing error.
 void check_names(const std::vector<Effect>& effects, Problems& problems) {
@@ -38,6 +23,21 @@ void check_names(const std::vector<Effect>& effects, Problems& problems) {
 }
 
 }  // namespace
+
+std::vector<std::string> effect_files(const std::string& folder, Problems& problems) {
+  namespace fs = std::filesystem;
+  std::vector<std::string> files;
+  std::error_code code;
+  if (!fs::is_directory(folder, code)) {
+    problems.error({}, "", "", fmt::format("the folder of effects \"{}\" is not there", folder)).hint =
+        "the environment variable LOOPWRIGHT_EFFECTS may name it";
+    return files;
+  }
+  for (const auto& entry : fs::directory_iterator(folder, code))
+    if (entry.path().extension() == ".json") files.push_back(entry.path().string());
+  std::ranges::sort(files);
+  return files;
+}
 
 std::vector<Effect> load_catalogue(const std::vector<std::string>& folders, Problems& problems) {
   std::vector<Effect> catalogue;

@@ -28,7 +28,7 @@ constexpr std::array<Kind, 7> kinds = {{
     {{"experiment", "experiment.schema.json", "*.experiment.json"}, FileKind::experiment, &experiment_shape},
     {{"sweep", "sweep.schema.json", "*.sweep.json"}, FileKind::sweep, &sweep_shape},
     {{"training", "training.schema.json", "*.training.json"}, FileKind::training, &training_shape},
-    {{"effect", "effect.schema.json", "**/effects/*.json"}, FileKind::effect, &effect_shape},
+    {{"effect", "effect.schema.json", "**/effects/*.json"}, FileKind::effect, &any_effect_shape},
     {{"device", "device.schema.json", "*.device.json"}, FileKind::device, &hw::device_file_shape},
     {{"model", "model.schema.json", "*.model.json"}, FileKind::model, &model_shape},
 }};

@@ -1,6 +1,7 @@
 // What a diagnosis without roles refuses, and how its search is limited.
 #include "tests/tools/diagnose/diagnosed.h"
 #include "tests/tools/diagnose/plants.h"
+#include "where.h"
 
 namespace loopwright {
 namespace {
@@ -53,9 +54,9 @@ TEST(AnyDiagramLimits, ASampledBlockOnTheWayIsRefusedByName) {
 }
 TEST(AnyDiagramLimits, EffectFilesOfAnAxisAreRefused) {
   DiagnoseOptions options;
-  options.catalogues = {"diagrams/effects"};
+  options.catalogues = {LOOPWRIGHT_SOURCE "/diagrams/effects"};
   EXPECT_THAT(refusal(oscillator({}, 1), options),
-              testing::HasSubstr("--effects has no meaning without roles"));
+              testing::HasSubstr("no effect in these folders acts at a site of a diagram"));
 }
 TEST(AnyDiagramLimits, AFewRowsAreRefused) {
   Plant plant = oscillator({}, 1);

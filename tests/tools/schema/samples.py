@@ -105,7 +105,12 @@ DELAY = {
     **HEAD, "effect": "sample", "physics": "None", "needs": {"text": ""}, "parameters": {},
     "blocks": {"late": {"type": "Gain", "gain": 0.5, "in": {"u": "input"}}},
     "attach": [{"to": "input", "stage": "command", "from": "late.y"}]}
-EFFECTS = [EFFECT, MASS, DELAY,
+AT_SITE = {
+    **HEAD, "effect": "sample", "physics": "None", "site": ["force", "any"], "of": "velocity", "formula": "slope * signal * tanh(signal / knee)",
+    "parameters": {"slope": {"description": "Of it", "unit": "$site/$signal", "linear": True},
+                   "knee": {"unit": "$signal", "linear": False, "range": ["=0.01*largest_signal", "=largest_signal"], "points": 5,
+                            "scale": "logarithmic"}}}
+EFFECTS = [EFFECT, MASS, DELAY, AT_SITE,
            {**{key: value for key, value in EFFECT.items() if key not in FORM_KEYS},
             "forms": {"full": {key: EFFECT[key] for key in FORM_KEYS}}}]
 

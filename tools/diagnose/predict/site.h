@@ -18,11 +18,13 @@ struct Site {
     input,   ///< a recorded input
     block,   ///< the output of a block with states of its own, such as a valve or an amplifier
     wire,    ///< the input of a block with states that no Sum feeds
+    sensor,  ///< a compared output: a term there changes what is measured and nothing else
   };
   Kind kind = Kind::sum;
-  std::string name;         ///< the port at which the term acts, "axis.net_force.sum"
-  std::string term_block;  ///< path of the block of the rewritten diagram that provides the term
-  std::string own_signal;   ///< the distorted port; empty at a Sum
+  std::string name;  ///< the port at which the term acts, "axis.net_force.sum"; that of a sensor says so
+  std::string
+      term_block;  ///< path of the block of the rewritten diagram that provides the term; none at a sensor
+  std::string own_signal;  ///< the distorted port; empty at a Sum
   std::optional<Unit> unit;
   Quantity quantity = Quantity::other;
   bool is_searched = true;  ///< the experiment may limit the search

@@ -24,14 +24,11 @@ double SitePass::scaled_objective() const {
   return log_variances + count * std::log(squares / count) + count;
 }
 
-SiteFilter::SiteFilter(SiteModel& model) : model_(model), record_(model.record()) {
-  const Eigen::Index n = model.states();
-  P_.resize(n, n), product_.resize(n, n);
-  for (Eigen::VectorXd* v : {&x_, &next_, &moved_, &moved_next_, &middle_, &gain_, &delta_, &difference_})
-    v->setZero(n);
+SiteFilter::SiteFilter(SiteModel& model)
+    : model_(model), record_(model.record()), model_states_(size_t(model.states())) {
   y_.resize(record_.outputs.size()), y_moved_.resize(record_.outputs.size());
   site_scale_.assign(model.sites().size(), 1.0);
-  state_scale_.assign(size_t(n), 1.0);
+  state_scale_.assign(model_states_, 1.0);
   const std::vector<double> initial = initial_states(0);
   for (size_t i = 0; i < initial.size(); ++i)
     if (initial[i] != 0) state_scale_[i] = std::abs(initial[i]);
@@ -68,9 +65,21 @@ SiteNoise SiteFilter::guess_noise() const {
   return noise;
 }
 
+SiteNoise SiteFilter::noise_of_simulation() const {
+  constexpr double little = 1e-3;    // [of a size of notable effect]
+  constexpr double first_size = 10;  // [of the measurement noise]
+  constexpr double first_time = 20;  // [samples]
+  SiteNoise noise = guess_noise();
+  noise.is_of_simulation = true;
+  for (double& sigma : noise.process) sigma *= little;
+  for (double sigma : noise.measurement)
+    noise.slow.push_back(first_size * sigma), noise.slow_time.push_back(first_time * record_.sample_time);
+  return noise;
+}
+
 void SiteFilter::learn_scales(const SitePass& pass) {
   const size_t n = pass.states;
-  for (size_t i = 0; i < n; ++i) {
+  for (size_t i = 0; i < model_states_; ++i) {
     std::vector<double> sizes;
     for (size_t k = pass.rows / 10; k < pass.rows; ++k) sizes.push_back(std::abs(pass.filtered[k * n + i]));
     const auto high = sizes.begin() + std::ptrdiff_t(9 * sizes.size() / 10);
@@ -79,21 +88,25 @@ void SiteFilter::learn_scales(const SitePass& pass) {
   }
   for (size_t s = 0; s < pass.sites; ++s) {  // what moves a state by a hundredth of its size in a sample
     double scale = std::numeric_limits<double>::infinity();
-    for (size_t i = 0; i < n; ++i)
+    for (size_t i = 0; i < model_states_; ++i)
       if (const double g = std::abs(pass.G[s * n + i]); g > 0)
         scale = std::min(scale, 0.01 * state_scale_[i] / g);
     if (std::isfinite(scale)) site_scale_[s] = scale;
   }
 }
 
-void SiteFilter::allocate(size_t rows, bool with_columns, SitePass& pass) const {
-  const size_t n = size_t(model_.states()), outputs = record_.outputs.size(), sites = model_.sites().size();
+void SiteFilter::allocate(size_t rows, bool with_columns, SitePass& pass) {
+  const size_t n = model_states_ + pass.noise.slow.size(), outputs = record_.outputs.size(),
+               sites = model_.sites().size();
   pass.rows = rows, pass.states = n, pass.outputs = outputs, pass.sites = sites;
   pass.numbers = size_t(model_.numbers()), pass.has_columns = with_columns;
   for (auto* list : {&pass.error, &pass.variance, &pass.innovation}) list->resize(rows * outputs);
   for (auto* list : {&pass.C, &pass.gain}) list->resize(rows * outputs * n);
   for (auto* list : {&pass.correction, &pass.filtered}) list->resize(rows * n);
   pass.A.resize(rows * n * n), pass.G.resize(rows * sites * n);
+  P_.resize(Eigen::Index(n), Eigen::Index(n)), product_.resize(Eigen::Index(n), Eigen::Index(n));
+  for (Eigen::VectorXd* v : {&x_, &next_, &moved_, &moved_next_, &middle_, &gain_, &delta_, &difference_})
+    v->setZero(Eigen::Index(n));
   if (!with_columns) return;
   pass.ramp.resize(rows * sites * n);
   for (auto& path : pass.path) path.resize(rows * pass.numbers);
@@ -111,8 +124,28 @@ std::vector<double> SiteFilter::initial_states(size_t row) {
   return states;
 }
 
-double SiteFilter::initial_variance(size_t state) const {
+void SiteFilter::begin_at(size_t row) {
+  const std::vector<double> initial = initial_states(row);
+  x_.setZero();
+  x_.head(Eigen::Index(model_states_)) = ConstMap(initial.data(), Eigen::Index(model_states_));
+}
+
+double SiteFilter::initial_variance(const SiteNoise& noise, size_t state) const {
+  if (state >= model_states_) return squared(noise.slow[state - model_states_]);
   return squared(initial_deviation * state_scale_[state]);
+}
+
+void SiteFilter::add_slow_errors(const SiteNoise& noise) {
+  for (size_t j = 0; j < noise.slow.size(); ++j) y_[j] += x_[Eigen::Index(model_states_ + j)];
+}
+
+bool SiteFilter::advance(size_t row, const SiteNoise& noise, double* middle) {
+  if (!model_.flow(row, x_.data(), next_.data(), middle)) return false;
+  for (size_t j = 0; j < noise.slow.size(); ++j) {
+    const auto i = Eigen::Index(model_states_ + j);
+    next_[i] = noise.kept(j, record_.step(row)) * x_[i];
+  }
+  return true;
 }
 
 void SiteFilter::choose_substeps(const SitePass& pass) {
@@ -126,7 +159,7 @@ void SiteFilter::choose_substeps(const SitePass& pass) {
     const bool finer_good = model_.flow(row, from, moved_next_.data());
     model_.set_substeps(count);
     if (!good || !finer_good) return finer_good;
-    for (size_t i = 0; i < pass.states; ++i)
+    for (size_t i = 0; i < model_states_; ++i)
       if (std::abs(next_[Eigen::Index(i)] - moved_next_[Eigen::Index(i)]) > difference * state_scale_[i])
         return true;
     return false;
@@ -142,20 +175,22 @@ bool SiteFilter::slopes_of_outputs(size_t row, SitePass& pass) {
   bool are_all_known = true;
   for (size_t j = 0; j < pass.outputs; ++j) {
     std::fill_n(C + j * n, n, 0.0);
-    if (const int state = model_.measured_state(j); state >= 0)
+    if (const int state = model_.measured_state(j); state >= 0 && !model_.is_distorted(j))
       C[j * n + size_t(state)] = 1;
     else
       are_all_known = false;
+    if (!pass.noise.slow.empty()) C[j * n + model_states_ + j] = 1;
   }
   if (are_all_known) return true;
   moved_ = x_;
-  for (size_t i = 0; i < n; ++i) {
+  for (size_t i = 0; i < model_states_; ++i) {
     const double change = difference_step * state_scale_[i];
     moved_[Eigen::Index(i)] += change;
     if (!model_.outputs(row, moved_.data(), y_moved_.data())) return false;
     moved_[Eigen::Index(i)] = x_[Eigen::Index(i)];
     for (size_t j = 0; j < pass.outputs; ++j)
-      if (model_.measured_state(j) < 0) C[j * n + i] = (y_moved_[j] - y_[j]) / change;
+      if (model_.measured_state(j) < 0 || model_.is_distorted(j))
+        C[j * n + i] = (y_moved_[j] - y_[j]) / change;
   }
   return true;
 }
@@ -163,6 +198,7 @@ bool SiteFilter::slopes_of_outputs(size_t row, SitePass& pass) {
 bool SiteFilter::correct(size_t row, const SiteNoise& noise, SitePass& pass) {
   const Eigen::Index n = Eigen::Index(pass.states);
   if (!model_.outputs(row, x_.data(), y_.data()) || !slopes_of_outputs(row, pass)) return false;
+  add_slow_errors(noise);
   delta_.setZero();
   for (size_t j = 0; j < pass.outputs; ++j) {
     const size_t at = row * pass.outputs + j;
@@ -192,6 +228,10 @@ bool SiteFilter::correct(size_t row, const SiteNoise& noise, SitePass& pass) {
 }
 
 bool SiteFilter::respond_to(int site, bool ramp, size_t row, std::span<double> to) {
+  if (model_.output_of_sensor(site) >= 0) {
+    std::ranges::fill(to, 0.0);
+    return true;
+  }
   SiteSignal& signal = model_.at_site(site);
   const double size = site_scale_[size_t(site)];
   if (ramp)
@@ -200,15 +240,18 @@ bool SiteFilter::respond_to(int site, bool ramp, size_t row, std::span<double> t
     signal.held = size;
   const bool good = model_.flow(row, x_.data(), moved_next_.data());
   signal.held = signal.ramp = 0;
-  for (size_t i = 0; i < to.size(); ++i)
+  for (size_t i = 0; i < to.size(); ++i)  // the slow errors stay as they are
     to[i] = (moved_next_[Eigen::Index(i)] - next_[Eigen::Index(i)]) / size;
   return good;
 }
 
 bool SiteFilter::linearize(size_t row, const SiteNoise& noise, SitePass& pass) {
   const size_t n = pass.states;
-  moved_ = x_;
-  for (size_t i = 0; i < n; ++i) {
+  moved_ = x_, moved_next_ = next_;
+  Map(&pass.A[row * n * n], Eigen::Index(n * n)).setZero();
+  for (size_t j = 0; j < noise.slow.size(); ++j)
+    pass.A[row * n * n + (model_states_ + j) * (n + 1)] = noise.kept(j, record_.step(row));
+  for (size_t i = 0; i < model_states_; ++i) {
     const double change = difference_step * state_scale_[i];
     moved_[Eigen::Index(i)] += change;
     if (!model_.flow(row, moved_.data(), moved_next_.data())) return false;
@@ -242,22 +285,27 @@ void SiteFilter::predict_covariance(const SitePass& pass, size_t row, const Site
     const ConstMap G(&pass.G[(row * pass.sites + size_t(noise.sites[s])) * n], Eigen::Index(n));
     P_.noalias() += (shorter * squared(noise.process[s])) * G * G.transpose();
   }
+  for (size_t j = 0; j < noise.slow.size(); ++j) {
+    const auto i = Eigen::Index(model_states_ + j);
+    P_(i, i) += squared(noise.slow[j]) * (1 - squared(noise.kept(j, record_.step(row))));
+  }
   product_ = P_.transpose();
   P_ = 0.5 * (P_ + product_);
 }
 
 bool SiteFilter::run(size_t rows, const SiteNoise& noise, bool with_columns, SitePass& pass) {
+  pass.noise = noise;
   allocate(rows, with_columns, pass);
   pass.log_variances = pass.squares = 0, pass.readings = 0;
   for (size_t row = 0; row < rows; ++row) {
     if (record_.begins_at(row)) {
-      const std::vector<double> initial = initial_states(row);
-      x_ = ConstMap(initial.data(), Eigen::Index(initial.size()));
+      begin_at(row);
       P_.setZero();
-      for (size_t i = 0; i < pass.states; ++i) P_(Eigen::Index(i), Eigen::Index(i)) = initial_variance(i);
+      for (size_t i = 0; i < pass.states; ++i)
+        P_(Eigen::Index(i), Eigen::Index(i)) = initial_variance(noise, i);
     }
     if (!correct(row, noise, pass)) return false;
-    if (!model_.flow(row, x_.data(), next_.data(), with_columns ? middle_.data() : nullptr)) return false;
+    if (!advance(row, noise, with_columns ? middle_.data() : nullptr)) return false;
     if (!linearize(row, noise, pass)) return false;
     predict_covariance(pass, row, noise);
     x_ = next_;
@@ -267,12 +315,11 @@ bool SiteFilter::run(size_t rows, const SiteNoise& noise, bool with_columns, Sit
 
 bool SiteFilter::run_frozen(const SitePass& gains, std::span<double> error) {
   const size_t n = gains.states;
+  for (Eigen::VectorXd* v : {&x_, &next_, &delta_}) v->setZero(Eigen::Index(n));
   for (size_t row = 0; row < gains.rows; ++row) {
-    if (record_.begins_at(row)) {
-      const std::vector<double> initial = initial_states(row);
-      x_ = ConstMap(initial.data(), Eigen::Index(initial.size()));
-    }
+    if (record_.begins_at(row)) begin_at(row);
     if (!model_.outputs(row, x_.data(), y_.data())) return false;
+    add_slow_errors(gains.noise);
     delta_.setZero();
     for (size_t j = 0; j < gains.outputs; ++j) {
       const size_t at = row * gains.outputs + j;
@@ -285,20 +332,7 @@ bool SiteFilter::run_frozen(const SitePass& gains, std::span<double> error) {
       delta_ += error[at] * ConstMap(&gains.gain[at * n], Eigen::Index(n));
     }
     x_ += delta_;
-    if (!model_.flow(row, x_.data(), next_.data())) return false;
-    x_ = next_;
-  }
-  return true;
-}
-
-bool SiteFilter::simulate(const SitePass& pass, size_t from, size_t to, std::span<double> error) {
-  for (size_t row = from; row < to; ++row) {
-    if (row == from || record_.begins_at(row))
-      x_ = ConstMap(&pass.filtered[row * pass.states], Eigen::Index(pass.states));
-    if (!model_.outputs(row, x_.data(), y_.data())) return false;
-    for (size_t j = 0; j < pass.outputs; ++j)
-      error[(row - from) * pass.outputs + j] = record_.outputs[j].value[row] - y_[j];
-    if (!model_.flow(row, x_.data(), next_.data())) return false;
+    if (!advance(row, gains.noise, nullptr)) return false;
     x_ = next_;
   }
   return true;

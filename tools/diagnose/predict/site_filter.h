@@ -9,22 +9,33 @@
 #pragma once
 #include <Eigen/Dense>
 #include <array>
+#include <cmath>
 #include <span>
 #include <vector>
 #include "tools/diagnose/predict/site_model.h"
 
 namespace loopwright::diagnosis {
 
-/// White noise, as standard deviations.
+/// White noise, as standard deviations, and slow errors of the outputs.
 struct SiteNoise {
   std::vector<int> sites;           ///< where noise acts
   std::vector<double> process;      ///< [unit of the site] held over a typical sample; shorter ones have more
   std::vector<double> measurement;  ///< [unit of the output]
+  /// [unit of the output] What a simulation misses, as a state of its own that decays: empty, or for each
+  /// output.
+  std::vector<double> slow;
+  std::vector<double> slow_time;  ///< [s]
+  bool is_of_simulation = false;  ///< the process noise is as good as none, and is not fitted
+
+  /// Share of the slow error of an output that is left after a time in s.
+  double kept(size_t output, double time) const { return std::exp(-time / slow_time[output]); }
 };
 
 /// Everything along one pass, row after row.
 struct SitePass {
-  size_t rows = 0, states = 0, outputs = 0, sites = 0, numbers = 0;
+  size_t rows = 0, outputs = 0, sites = 0, numbers = 0;
+  size_t states = 0;  ///< of the model, then the slow errors of the outputs
+  SiteNoise noise;
   bool has_columns = false;                 ///< G of all sites, ramps and the path
   std::vector<double> error, variance;      ///< rows × outputs; NaN: no reading
   std::vector<double> innovation;           ///< rows × outputs: y - h(x̂)
@@ -50,6 +61,9 @@ class SiteFilter {
   SiteModel& model() { return model_; }
   /// A first guess of the noise, before anything is known but the record.
   SiteNoise guess_noise() const;
+  /// With so little noise in the states that predictions are a simulation from estimated initial states,
+  /// whose errors may be slow. Noise in a state that is not measured could otherwise explain anything.
+  SiteNoise noise_of_simulation() const;
   /// Sizes of states and sites from a pass; differences are taken in proportion to them.
   void learn_scales(const SitePass& pass);
 
@@ -63,6 +77,8 @@ class SiteFilter {
   /// Without any correction from row `from` on, starting from the filtered state there: y - h, NaN where
   /// there is no reading.
   bool simulate(const SitePass& pass, size_t from, size_t to, std::span<double> error);
+  /// The same from the initial states that fit these rows best.
+  bool simulate_freely(size_t from, size_t to, std::span<double> error);
   /// -2 ln L of another noise, linearized about the pass.
   double objective_with(const SitePass& pass, const SiteNoise& noise) const;
   /// Response of the whitened errors to a term at a site that takes these values at the start, middle and end
@@ -73,18 +89,26 @@ class SiteFilter {
   void choose_substeps(const SitePass& pass);
 
  private:
-  void allocate(size_t rows, bool with_columns, SitePass& pass) const;
+  void allocate(size_t rows, bool with_columns, SitePass& pass);
   /// Of the record that begins at the row.
   std::vector<double> initial_states(size_t row);
-  double initial_variance(size_t state) const;
+  /// x_ at the beginning of a record.
+  void begin_at(size_t row);
+  double initial_variance(const SiteNoise& noise, size_t state) const;
+  /// Of x_, to y_.
+  void add_slow_errors(const SiteNoise& noise);
+  /// next_ from x_.
+  bool advance(size_t row, const SiteNoise& noise, double* middle);
   bool correct(size_t row, const SiteNoise& noise, SitePass& pass);
   bool slopes_of_outputs(size_t row, SitePass& pass);
   bool linearize(size_t row, const SiteNoise& noise, SitePass& pass);
   bool respond_to(int site, bool ramp, size_t row, std::span<double> to);
   void predict_covariance(const SitePass& pass, size_t row, const SiteNoise& noise);
+  bool simulate_from(const Eigen::VectorXd& initial, size_t from, size_t to, std::span<double> error);
 
   SiteModel& model_;
   const SignalRecord& record_;
+  const size_t model_states_;
   std::vector<double> state_scale_, site_scale_;
   Eigen::MatrixXd P_, product_;
   Eigen::VectorXd x_, next_, moved_, moved_next_, middle_, gain_, delta_, difference_;

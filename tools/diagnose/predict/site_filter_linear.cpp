@@ -40,13 +40,14 @@ double SiteFilter::objective_with(const SitePass& pass, const SiteNoise& noise) 
     using Vector = Eigen::Matrix<double, N, 1>;
     using Matrix = Eigen::Matrix<double, N, N>;
     using MapOf = Eigen::Map<const Vector>;
-    Matrix P(n, n), product(n, n);
+    Matrix P(n, n), A(n, n), product(n, n);
     Vector difference(n), delta(n), gain(n), change(n);  // from the states of the pass
     double objective = 0;
     for (size_t row = 0; row < pass.rows; ++row) {
       if (record_.begins_at(row)) {
         P.setZero(), difference.setZero();
-        for (size_t i = 0; i < pass.states; ++i) P(Eigen::Index(i), Eigen::Index(i)) = initial_variance(i);
+        for (size_t i = 0; i < pass.states; ++i)
+          P(Eigen::Index(i), Eigen::Index(i)) = initial_variance(noise, i);
       }
       delta.setZero();
       for (size_t j = 0; j < pass.outputs; ++j) {
@@ -60,15 +61,29 @@ double SiteFilter::objective_with(const SitePass& pass, const SiteNoise& noise) 
         delta += (e / S) * gain;
         objective += std::log(S) + e * e / S;
       }
-      const Eigen::Map<const Matrix> A(&pass.A[row * pass.states * pass.states], n, n);
+      A = Eigen::Map<const Matrix>(&pass.A[row * pass.states * pass.states], n, n);
+      for (size_t j = 0; j < noise.slow.size(); ++j) {
+        const auto i = Eigen::Index(model_states_ + j);
+        A(i, i) = noise.kept(j, record_.step(row));
+      }
       change = difference + delta - MapOf(&pass.correction[row * pass.states], n);
       difference.noalias() = A * change;
+      for (size_t j = 0; j < noise.slow.size(); ++j) {  // they decay differently than along the pass
+        const size_t i = model_states_ + j;
+        difference[Eigen::Index(i)] +=
+            (A(Eigen::Index(i), Eigen::Index(i)) - pass.A[(row * pass.states + i) * pass.states + i]) *
+            pass.filtered[row * pass.states + i];
+      }
       product.noalias() = A * P;
       P.noalias() = product * A.transpose();
       const double shorter = record_.sample_time / record_.step(row);
       for (size_t s = 0; s < noise.sites.size(); ++s) {
         const MapOf G(&pass.G[(row * pass.sites + size_t(noise.sites[s])) * pass.states], n);
         P.noalias() += ((shorter * squared(noise.process[s])) * G) * G.transpose();
+      }
+      for (size_t j = 0; j < noise.slow.size(); ++j) {
+        const auto i = Eigen::Index(model_states_ + j);
+        P(i, i) += squared(noise.slow[j]) * (1 - A(i, i) * A(i, i));
       }
       product = P.transpose();
       P = 0.5 * (P + product);
@@ -81,6 +96,7 @@ void SiteFilter::respond(const SitePass& pass, int site, std::span<const double>
                          std::span<const double> middle, std::span<const double> end,
                          std::span<double> column) const {
   const auto n = Eigen::Index(pass.states);
+  const int sensor = model_.output_of_sensor(site);
   with_size(pass.states, [&]<int N>() {
     using Vector = Eigen::Matrix<double, N, 1>;
     using MapOf = Eigen::Map<const Vector>;
@@ -93,7 +109,8 @@ void SiteFilter::respond(const SitePass& pass, int site, std::span<const double>
           column[at] = 0;
           continue;
         }
-        const double e = MapOf(&pass.C[at * pass.states], n).dot(difference);
+        const double measured = int(j) == sensor ? start[row] : 0;
+        const double e = MapOf(&pass.C[at * pass.states], n).dot(difference) + measured;
         column[at] = e / std::sqrt(pass.variance[at]);
         difference -= e * MapOf(&pass.gain[at * pass.states], n);
       }

@@ -147,6 +147,21 @@ void SiteModel::complete_units(const Plan& stated) {
     if (variable.minus < 0) complete(variable.name, variable.unit, variable.quantity);
 }
 
+void SiteModel::add_sensors(const Plan& plan) {
+  for (const RecordedOutput& output : record_.outputs) {
+    Site site;
+    site.kind = Site::Kind::sensor, site.name = output.port + " (sensor)", site.own_signal = output.port;
+    site.unit = plan.unit_of(plan.find(output.port).front()), site.quantity = quantity_of(site.unit);
+    sensor_sites_.push_back(sites_.size());
+    sites_.push_back(std::move(site));
+  }
+}
+
+int SiteModel::output_of_sensor(int site) const {
+  const auto found = std::ranges::find(sensor_sites_, size_t(site));
+  return found == sensor_sites_.end() ? -1 : int(found - sensor_sites_.begin());
+}
+
 /// In the units of the diagram's ports.
 void SiteModel::read_records(const Plan& plan, const Experiments& experiments, Problems& problems) {
   std::vector<SignalRecord> records;
@@ -168,8 +183,10 @@ void SiteModel::build(const std::string& path, const LoadOptions& options, const
   const auto compiled = compile(*rewritten, problems);
   if (!compiled || problems.has_errors()) return;
   auto plan = std::make_shared<Plan>(*compiled);
+  add_sensors(*plain);
   signals_.resize(sites_.size());
   for (size_t s = 0; s < sites_.size(); ++s) {
+    if (sites_[s].kind == Site::Kind::sensor) continue;
     const int block = block_at(*plan, sites_[s].term_block);
     plan->blocks[size_t(block)].type = &site_block_type();
     plan->blocks[size_t(block)].value = std::make_shared<SiteBlock>(SiteBlock{&signals_[s]});
@@ -296,16 +313,21 @@ bool SiteModel::look(size_t row, double time, const double* states, double* numb
 }
 
 bool SiteModel::outputs(size_t row, const double* states, double* to) {
+  bool good = true;
   if (all_are_states_) {
     for (size_t j = 0; j < outputs_.size(); ++j) to[j] = states[outputs_[j] - plan_->signals];
-    return true;
+  } else {
+    set_inputs(row);
+    run_->look_at(record_.time[row], states);
+    run_->evaluate(0, true);
+    good = !run_->failed();
+    if (!good) run_->restored(run_->now());
+    for (size_t j = 0; j < outputs_.size(); ++j) to[j] = numbers_[outputs_[j]];
   }
-  set_inputs(row);
-  run_->look_at(record_.time[row], states);
-  run_->evaluate(0, true);
-  const bool good = !run_->failed();
-  if (!good) run_->restored(run_->now());
-  for (size_t j = 0; j < outputs_.size(); ++j) to[j] = numbers_[outputs_[j]];
+  for (size_t j = 0; j < outputs_.size(); ++j) {
+    const double true_value = to[j];
+    for (const auto& [term, variable] : signals_[sensor_sites_[j]].terms) to[j] += term.value(true_value);
+  }
   return good;
 }
 

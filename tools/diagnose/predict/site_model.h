@@ -24,6 +24,7 @@ struct SiteVariable {
   std::optional<Unit> unit;
   Quantity quantity = Quantity::other;
   bool is_state = false;
+  bool is_of_sensor = false;  ///< only its sensor can depend on it
 
   double at(const double* numbers) const {
     return minus < 0 ? numbers[number] : numbers[number] - numbers[minus];
@@ -92,6 +93,10 @@ class SiteModel {
   std::string state_name(int state) const;
   /// The state that is measured by the output; -1: a function of states.
   int measured_state(size_t output) const { return measured_state_[output]; }
+  /// The output that the site is the sensor of; -1: none.
+  int output_of_sensor(int site) const;
+  /// Whether a term changes what the output measures.
+  bool is_distorted(size_t output) const { return !signals_[sensor_sites_[output]].terms.empty(); }
   /// Steps of the integration in a sample.
   int substeps() const { return substeps_; }
   void set_substeps(int count) { substeps_ = count; }
@@ -116,10 +121,12 @@ class SiteModel {
   void build(const std::string& diagram, const LoadOptions& options, const Experiments& experiments,
              Problems& problems);
   void read_records(const Plan& plan, const Experiments& experiments, Problems& problems);
+  void add_sensors(const Plan& plan);
   void complete_units(const Plan& stated);
   void find_inputs_and_outputs(Problems& problems);
   void find_variables();
   void find_nearness();
+  void find_variable_of_sensor(size_t output);
   void set_inputs(size_t row);
 
   SignalRecord record_;
@@ -133,6 +140,7 @@ class SiteModel {
   std::vector<Nearness> nearness_;
   std::vector<int> own_;
   std::vector<bool> drives_state_;
+  std::vector<size_t> sensor_sites_;  // of the outputs
   struct Input {
     double *value, *slope, *since;
   };

@@ -108,6 +108,7 @@ void SiteModel::find_variables() {
       variables_.push_back(std::move(variable));
     }
   }
+  for (size_t j = 0; j < outputs_.size(); ++j) find_variable_of_sensor(j);
   const size_t plain = variables_.size();
   for (size_t a = 0; a < plain; ++a)
     for (size_t b = a + 1; b < plain; ++b) {
@@ -118,9 +119,25 @@ void SiteModel::find_variables() {
     }
 }
 
+/// What a sensor measures, unless it is a variable already.
+void SiteModel::find_variable_of_sensor(size_t output) {
+  const Site& site = sites_[sensor_sites_[output]];
+  if (std::ranges::find(variables_, outputs_[output], &SiteVariable::number) != variables_.end()) return;
+  SiteVariable variable;
+  variable.name = site.own_signal, variable.number = outputs_[output], variable.unit = site.unit;
+  variable.quantity = site.quantity, variable.is_of_sensor = true;
+  variables_.push_back(std::move(variable));
+}
+
 void SiteModel::find_nearness() {
   nearness_.assign(sites_.size() * variables_.size(), Nearness::unusable);
   for (size_t s = 0; s < sites_.size(); ++s) {
+    if (const int output = output_of_sensor(int(s)); output >= 0) {
+      const auto own = std::ranges::find(variables_, outputs_[size_t(output)], &SiteVariable::number);
+      own_.push_back(int(own - variables_.begin())), drives_state_.push_back(false);
+      nearness_[s * variables_.size() + size_t(own_.back())] = Nearness::near;
+      continue;
+    }
     const Number term = plan_->find(sites_[s].term_block + ".y").front();
     const int place = order_of(*plan_, term);
     const Neighbourhood around(*plan_, term);
@@ -128,6 +145,7 @@ void SiteModel::find_nearness() {
     own_.push_back(-1);
     for (size_t v = 0; v < variables_.size(); ++v) {
       const SiteVariable& variable = variables_[v];
+      if (variable.is_of_sensor) continue;
       if (!sites_[s].own_signal.empty() && variable.name == sites_[s].own_signal) own_[s] = int(v);
       if (!variable.is_state && order_of(*plan_, variable.number) > place) continue;
       const bool is_near = around.has(variable.number) && (variable.minus < 0 || around.has(variable.minus));

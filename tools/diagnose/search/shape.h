@@ -1,6 +1,7 @@
 /// The shapes that a missing term may have, as functions of one signal.
 #pragma once
 #include <array>
+#include <functional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -18,8 +19,8 @@ struct TermShape {
     own,      ///< the signal at the site itself: a distortion, whose coefficient is one
   };
   std::string_view name, title;
-  /// The same as an expression of "signal", of the coefficients and of its own parameters, by which the shape is
-  /// written into a diagram; empty: a block of another kind.
+  /// The same as an expression of "signal", of the coefficients and of its own parameters, by which the shape
+  /// is written into a diagram; empty: a block of another kind.
   std::string_view formula;
   Of of = Of::signal;
   int columns = 1;
@@ -28,12 +29,18 @@ struct TermShape {
   /// the unit of the site.
   std::array<std::string_view, 2> coefficients;
   double power = 0;
-  void (*evaluate)(double signal, const double* p, double* column);
+  std::function<void(double signal, const double* p, double* column)> evaluate = nullptr;
   /// Names of its own parameters, in the unit of the signal; empty: none.
   std::array<std::string_view, most_nonlinear> nonlinear{};
-  bool (*fits)(Quantity site, Quantity signal) = nullptr;
+  std::function<bool(Quantity site, Quantity signal)> fits = nullptr;
   /// Values of its own parameters to begin with, from the largest size and the range of the signal.
-  std::vector<std::array<double, most_nonlinear>> (*starts)(std::span<const double> signal) = nullptr;
+  std::function<std::vector<std::array<double, most_nonlinear>>(std::span<const double> signal)> starts =
+      nullptr;
+  /// Within which its own parameters are fitted; empty: about as large as the signal.
+  struct Ranges {
+    std::array<double, most_nonlinear> low{}, high{};
+  };
+  std::function<Ranges(std::span<const double> signal)> ranges = nullptr;
 
   int nonlinear_count() const { return int(nonlinear[0] != "") + int(nonlinear[1] != ""); }
 };

@@ -20,6 +20,17 @@ constexpr double step_lengths[] = {1, 0.4, 0.1, 0.02};
 constexpr double enough = 0.05;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
+/// The numbers of a noise that are fitted.
+std::vector<double*> fitted_numbers(SiteNoise& noise) {
+  std::vector<double*> list;
+  const auto add = [&](std::vector<double>& values) {
+    for (double& value : values) list.push_back(&value);
+  };
+  if (!noise.is_of_simulation) add(noise.process);
+  add(noise.measurement), add(noise.slow), add(noise.slow_time);
+  return list;
+}
+
 }  // namespace
 
 std::vector<FittedNumber> fitted_numbers(const SiteHypothesis& h) {
@@ -170,13 +181,16 @@ void SiteFitter::refine(SiteHypothesis& h, int steps, bool with_prior) {
 SiteNoise SiteFitter::best_noise(const SitePass& pass, const SiteNoise& from) const {
   constexpr double widest = 12;  // e-fold changes within one search
   const SiteNoise guess = filter_.guess_noise();
-  const size_t sites = from.sites.size(), count = sites + from.measurement.size();
+  SiteNoise noise = from;
+  const std::vector<double*> numbers = fitted_numbers(noise);
+  const size_t count = numbers.size();
+  std::vector<double> first;
+  for (const double* number : numbers) first.push_back(*number);
   const auto noise_at = [&](const std::vector<double>& at) {
-    SiteNoise noise = from;
-    for (size_t i = 0; i < count; ++i)
-      (i < sites ? noise.process[i] : noise.measurement[i - sites]) *= std::exp(at[i]);
+    for (size_t i = 0; i < count; ++i) *numbers[i] = first[i] * std::exp(at[i]);
     for (size_t j = 0; j < noise.measurement.size(); ++j)
       noise.measurement[j] = std::max(noise.measurement[j], 1e-4 * guess.measurement[j]);
+    for (double& time : noise.slow_time) time = std::clamp(time, shortest_slow_time(), longest_slow_time());
     return noise;
   };
   using Objective = std::function<double(const std::vector<double>&)>;
@@ -204,9 +218,10 @@ std::optional<SiteNoise> SiteFitter::evened(const SiteNoise& noise) const {
   SiteNoise even = noise;
   bool has_vanished = false;
   double largest = 0;
-  for (size_t s = 0; s < noise.sites.size(); ++s)
+  const size_t sites = noise.is_of_simulation ? 0 : noise.sites.size();
+  for (size_t s = 0; s < sites; ++s)
     largest = std::max(largest, noise.process[s] / filter_.site_scale(noise.sites[s]));
-  for (size_t s = 0; s < noise.sites.size(); ++s) {
+  for (size_t s = 0; s < sites; ++s) {
     const double size = largest * filter_.site_scale(noise.sites[s]);
     has_vanished |= noise.process[s] < vanished * size;
     even.process[s] = std::max(noise.process[s], size);
@@ -244,6 +259,11 @@ void SiteFitter::anneal(SiteHypothesis& h, bool with_prior) {
   constexpr double better = 2;  // in -2 ln L
   fit_noise(h);
   if (!std::isfinite(h.objective)) return;
+  if (h.noise.is_of_simulation) {  // there is but one optimum
+    refine(h, 6, with_prior);
+    fit_noise(h);
+    return;
+  }
   const SiteNoise guess = filter_.guess_noise();
   int failures = 0;
   double factor = colder;

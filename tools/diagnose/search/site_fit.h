@@ -41,6 +41,10 @@ class SiteFitter {
   SiteFilter& filter() { return filter_; }
   SiteModel& model() { return filter_.model(); }
   size_t rows() const { return rows_; }
+  bool is_interrupted() const { return is_interrupted_(); }
+  /// Shapes with a name that the search offers; they outlive the fitter.
+  std::span<const TermShape> shapes() const { return shapes_; }
+  void offer(std::span<const TermShape> shapes) { shapes_ = shapes; }
 
   /// A whole pass; false if the model diverges. Sets the hypothesis' objectives.
   bool pass(SiteHypothesis& hypothesis, bool with_columns, SitePass& to);
@@ -64,11 +68,16 @@ class SiteFitter {
   void use(const SiteHypothesis& hypothesis);
   SiteNoise best_noise(const SitePass& pass, const SiteNoise& from) const;
   std::optional<SiteNoise> evened(const SiteNoise& noise) const;
+  /// [s] Slow errors of a simulation: faster ones are noise of the measurement, slower ones take out what
+  /// offsets and drifts would explain.
+  double shortest_slow_time() const { return 2 * filter_.model().record().sample_time; }
+  double longest_slow_time() const { return 0.1 * double(rows_) * filter_.model().record().sample_time; }
   void keep_within_limits(SiteHypothesis& hypothesis, const FittedNumber& number, double before) const;
 
   SiteFilter& filter_;
   const size_t rows_;
   std::function<bool()> is_interrupted_;
+  std::span<const TermShape> shapes_ = named_shapes();
   SitePass pass_;
   std::vector<double> errors_;
 };

@@ -12,7 +12,7 @@ constexpr double weakest_direction = 1e-7;
 /// In -2 ln L: what the second of two terms that are ranked together must gain.
 constexpr double least_gain_of_second = 40;
 /// Nats, beside those of the shape.
-constexpr double of_far = 6, of_derived = 3, of_difference = 2, of_indirect_sum = 3;
+constexpr double of_far = 6, of_derived = 3, of_difference = 2, of_indirect_sum = 3, of_sensor = 3;
 
 /// Far from its site a variable enters by plain laws only, and so does a recorded input or the output of a
 /// filter into its own distortion: others would resemble saturation and dead zone.
@@ -59,7 +59,7 @@ class Ranking {
       if (!model.sites()[size_t(site)].is_searched || !acts(site)) continue;
       has_constant_ = false;
       for (const TermShape& shape : shapes) {
-        if (shape.of == TermShape::Of::nothing && !is_distorted(site))
+        if (shape.of == TermShape::Of::nothing && (!is_distorted(site) || is_sensor(site)))
           rank(shape, site, -1, list);
         else if (shape.of == TermShape::Of::own)
           try_distortion(shape, site, list);
@@ -89,8 +89,29 @@ class Ranking {
         });
         if (!is_multiple_[v]) directions.push_back(along / size);
       }
+    find_functions_of_states();
+  }
+  /// A level of a function of a state is a level of the state.
+  void find_functions_of_states() {
+    const std::vector<SiteVariable>& variables = fitter_.model().variables();
+    is_function_.assign(variables.size(), false);
+    for (size_t s = 0; s < variables.size(); ++s) {
+      if (!variables[s].is_state || variables[s].minus >= 0) continue;
+      const std::vector<double> state = signal(int(s));
+      std::vector<size_t> order(state.size());
+      for (size_t k = 0; k < order.size(); ++k) order[k] = k;
+      std::ranges::sort(order, {}, [&](size_t k) { return state[k]; });
+      for (size_t v = 0; v < variables.size(); ++v) {
+        if (variables[v].is_state || is_function_[v]) continue;
+        const std::vector<double> values = signal(int(v));
+        const auto value = [&](size_t k) { return values[k]; };
+        is_function_[v] = std::ranges::is_sorted(order, std::less{}, value) ||
+                          std::ranges::is_sorted(order, std::greater{}, value);
+      }
+    }
   }
   bool acts(int site) const {
+    if (is_sensor(site)) return true;
     for (size_t k = 0; k < pass_.rows; ++k)
       for (size_t i = 0; i < pass_.states; ++i)
         if (pass_.G[(k * pass_.sites + size_t(site)) * pass_.states + i] != 0) return true;
@@ -100,8 +121,9 @@ class Ranking {
   /// Sum behind it.
   bool is_distorted(int site) const {
     const Site::Kind kind = fitter_.model().sites()[size_t(site)].kind;
-    return kind == Site::Kind::input || kind == Site::Kind::block;
+    return kind == Site::Kind::input || kind == Site::Kind::block || kind == Site::Kind::sensor;
   }
+  bool is_sensor(int site) const { return fitter_.model().sites()[size_t(site)].kind == Site::Kind::sensor; }
   bool is_there(const TermShape& shape, int site, int variable) const {
     return std::ranges::any_of(at_.terms, [&](const SiteTerm& t) {
       return t.shape == &shape && t.site == site && t.variable == variable && shape.name != "periodic";
@@ -115,6 +137,7 @@ class Ranking {
                            : is_multiple_[size_t(variable)])
       return false;
     if (nearness == Nearness::far && !is_plain(shape)) return false;
+    if (shape.nonlinear[0] == "level" && is_function_[size_t(variable)]) return false;
     return shape.fits(model.sites()[size_t(site)].quantity, model.variables()[size_t(variable)].quantity);
   }
   /// Along the path, at the start of each sample.
@@ -134,6 +157,10 @@ class Ranking {
     for (size_t p = 0; p < most_nonlinear; ++p) {
       term.low[p] = is_level ? low : 1e-4 * std::min(largest, high - low);
       term.high[p] = is_level ? high : 3 * std::max(largest, high - low);
+    }
+    if (shape.ranges) {
+      const TermShape::Ranges ranges = shape.ranges(values);
+      term.low = ranges.low, term.high = ranges.high;
     }
     return term;
   }
@@ -223,12 +250,25 @@ class Ranking {
     for (Eigen::Index c = 0; c < norm.size(); ++c) term.coefficient[size_t(c)] = coefficient[c];
     return double(pass_.readings) * std::log(before / std::max(after, 1e-12 * before));
   }
+  /// A distortion of what is measured moves no state, so that its response is nearly linear.
+  bool is_promising(const TermShape& shape, int site, int own, const std::vector<double>& values) {
+    double most = 0;
+    for (const auto& start : shape.starts(values)) {
+      if (start[0] == 0) continue;
+      SiteTerm term = term_of(shape, site, own, values, start);
+      Eigen::MatrixXd column = responses(term);
+      column -= basis_ * (basis_.transpose() * column);
+      most = std::max(most, explain(column, term));
+    }
+    return most > least_gain_of_second;
+  }
   /// A strong distortion is far from linear: every first value is judged by a pass of the model.
   void try_distortion(const TermShape& shape, int site, std::vector<SiteCandidate>& list) {
     const int own = fitter_.model().own_variable(site);
     if (own < 0 || is_there(shape, site, own)) return;
     if (fitter_.model().nearness(site, own) == Nearness::unusable) return;
     const std::vector<double> values = signal(own);
+    if (is_sensor(site) && !is_promising(shape, site, own, values)) return;
     SiteCandidate best;
     for (const auto& start : shape.starts(values)) {
       if (start[0] == 0) continue;
@@ -254,7 +294,7 @@ class Ranking {
   double constant_gain_ = 0;
   bool has_constant_ = false;
   bool is_good_ = false;
-  std::vector<bool> is_multiple_;
+  std::vector<bool> is_multiple_, is_function_;
   Eigen::MatrixXd basis_;
   Eigen::VectorXd rest_;
   std::array<std::vector<double>, 3> phi_;
@@ -266,6 +306,7 @@ double cost_of(const SiteModel& model, const SiteTerm& term) {
   double cost = term.shape->cost;
   const Site& site = model.sites()[size_t(term.site)];
   if (site.kind == Site::Kind::sum && !model.drives_state(term.site)) cost += of_indirect_sum;
+  if (site.kind == Site::Kind::sensor) cost += of_sensor;
   if (term.variable < 0 || term.variable == model.own_variable(term.site)) return cost;
   const SiteVariable& variable = model.variables()[size_t(term.variable)];
   if (model.nearness(term.site, term.variable) == Nearness::far) cost += of_far;

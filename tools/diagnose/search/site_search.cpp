@@ -24,14 +24,15 @@ constexpr double least_gain_of_unknown = 60, least_gain_of_unknown_per_reading =
 
 class SiteSearch {
  public:
-  SiteSearch(SiteFitter& fitter, const std::function<void(const char*, double)>& progress)
-      : fitter_(fitter), progress_(progress) {}
+  SiteSearch(SiteFitter& fitter, const std::function<void(const char*, double)>& progress, ErrorsOf errors)
+      : fitter_(fitter), progress_(progress), errors_(errors) {}
 
   std::optional<SiteSearchResult> run() {
     SiteHypothesis& nominal = result_.nominal;
     nominal.factors.assign(model().parameters().size(), 1.0);
     nominal.is_free.assign(model().parameters().size(), false);
-    if (!start(nominal)) return {};
+    const bool is_good = errors_ == ErrorsOf::predictions ? start(nominal) : start_simulation(nominal);
+    if (!is_good) return {};
     progress_("fitting parameters", 0.1);
     result_.parameters = with_free_parameters(nominal);
     tell("parameters free", result_.parameters);
@@ -88,6 +89,8 @@ class SiteSearch {
     for (double s : at.noise.process) noise += fmt::format(" {:.3g}", s);
     noise += " |";
     for (double r : at.noise.measurement) noise += fmt::format(" {:.3g}", r);
+    for (size_t j = 0; j < at.noise.slow.size(); ++j)
+      noise += fmt::format(" | slow {:.3g} {:.3g} s", at.noise.slow[j], at.noise.slow_time[j]);
     result_.trail.push_back(fmt::format("{}: -2 ln L {:.1f}, criterion {:.1f}, noise{}", what, at.objective,
                                         criterion(at), noise));
   }
@@ -112,6 +115,16 @@ class SiteSearch {
       fitter_.filter().choose_substeps(pass_);
     }
     h.noise = fitter_.filter().guess_noise();
+    readings_ = double(pass_.readings);
+    fitter_.fit_noise(h);
+    tell("the diagram as it is", h);
+    return fitter_.pass(h, false, pass_);
+  }
+
+  /// With the sizes that predictions have found.
+  bool start_simulation(SiteHypothesis& h) {
+    h.noise = fitter_.filter().noise_of_simulation();
+    if (!fitter_.pass(h, false, pass_)) return false;
     readings_ = double(pass_.readings);
     fitter_.fit_noise(h);
     tell("the diagram as it is", h);
@@ -160,7 +173,7 @@ class SiteSearch {
   /// The best candidates after parameters and terms, at first also those about the nominal parameters: a
   /// strong term bends the parameters that are fitted without it.
   std::vector<SiteCandidate> candidates(const SiteHypothesis& at) {
-    std::vector<SiteCandidate> ranked = rank_terms(fitter_, at, named_shapes(), true), pairs;
+    std::vector<SiteCandidate> ranked = rank_terms(fitter_, at, fitter_.shapes(), true), pairs;
     std::ranges::copy_if(ranked, std::back_inserter(pairs), [](const auto& c) { return bool(c.constant); });
     std::erase_if(ranked, [](const auto& c) { return bool(c.constant); });
     pairs.resize(std::min(fitted_pairs, pairs.size()));
@@ -204,7 +217,7 @@ class SiteSearch {
       SiteHypothesis without = at;
       const SiteTerm term = at.terms[t];
       without.terms.erase(without.terms.begin() + std::ptrdiff_t(t));
-      std::vector<SiteCandidate> others = rank_terms(fitter_, without, named_shapes());
+      std::vector<SiteCandidate> others = rank_terms(fitter_, without, fitter_.shapes());
       std::erase_if(others, [&](const SiteCandidate& c) { return c.is_same_key(term); });
       others.resize(std::min<size_t>(3, others.size()));
       for (SiteHypothesis& other : fits(without, others)) {
@@ -268,7 +281,7 @@ class SiteSearch {
   /// A single term with the diagram's own parameters against moved parameters without a term.
   void compare_with_single_terms(SiteHypothesis& at) {
     if (!at.terms.empty() || at.free_parameters() == 0) return;
-    std::vector<SiteCandidate> ranked = rank_terms(fitter_, result_.nominal, named_shapes());
+    std::vector<SiteCandidate> ranked = rank_terms(fitter_, result_.nominal, fitter_.shapes());
     std::erase_if(ranked,
                   [](const SiteCandidate& c) { return c.term.shape->name == "linear"; });  // a parameter
     ranked.resize(std::min<size_t>(3, ranked.size()));
@@ -286,6 +299,7 @@ class SiteSearch {
   SitePass pass_;
   double readings_ = 0, begin_ = 0.2;
   size_t keys_ = 10;
+  const ErrorsOf errors_;
 };
 
 }  // namespace
@@ -297,8 +311,9 @@ std::string describe(const SiteModel& model, const SiteTerm& term) {
 }
 
 std::optional<SiteSearchResult> search_sites(SiteFitter& fitter,
-                                             const std::function<void(const char*, double)>& progress) {
-  return SiteSearch(fitter, progress).run();
+                                             const std::function<void(const char*, double)>& progress,
+                                             ErrorsOf errors) {
+  return SiteSearch(fitter, progress, errors).run();
 }
 
 }  // namespace loopwright::diagnosis

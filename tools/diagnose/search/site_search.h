@@ -22,6 +22,23 @@ struct ParameterRival {
   double worse = 0;
 };
 
+/// A site at which noise of this share of its size was found.
+struct NoisySite {
+  int site;
+  double share;
+};
+/// What was found by simulation beside what was found by predictions, see site_opinion.h.
+struct SecondOpinion {
+  std::vector<NoisySite> noisy;    ///< why it was asked for
+  std::vector<int> unmeasured;     ///< states on which no output depends directly
+  bool is_answer = false;          ///< what was found by simulation is the answer
+  std::vector<std::string> other;  ///< terms and parameters that are not the answer
+  bool agrees = false;             ///< they are the same
+  /// [unit of the first output] rms by which simulations with the answer and with the other miss it; nothing
+  /// if one diverges.
+  std::optional<double> error, other_error;
+};
+
 struct SiteSearchResult {
   SiteHypothesis nominal;     ///< the diagram as it is, with its best noise
   SiteHypothesis parameters;  ///< all parameters free
@@ -30,11 +47,16 @@ struct SiteSearchResult {
   std::vector<ParameterRival> parameter_rivals;
   std::vector<SiteHypothesis> steps;  ///< as terms were accepted
   std::vector<std::string> trail;
+  std::optional<SecondOpinion> second_opinion;
 };
+
+/// Errors by which a search judges.
+enum class ErrorsOf { predictions, simulation };
 
 /// Null when the model diverges along the record, whatever its noise.
 std::optional<SiteSearchResult> search_sites(SiteFitter& fitter,
-                                             const std::function<void(const char*, double)>& progress);
+                                             const std::function<void(const char*, double)>& progress,
+                                             ErrorsOf errors = ErrorsOf::predictions);
 
 std::string describe(const SiteModel& model, const SiteTerm& term);
 

@@ -14,6 +14,7 @@ std::vector<std::string> alike_sites(SiteFitter& fitter, SiteHypothesis h) {
   const std::vector<Site>& sites = fitter.model().sites();
   std::vector<std::pair<size_t, Eigen::VectorXd>> columns;
   for (size_t s = 0; s < sites.size(); ++s) {
+    if (sites[s].kind == Site::Kind::sensor) continue;
     Eigen::VectorXd column(Eigen::Index(pass.error.size()));
     fitter.filter().respond(pass, int(s), trial, trial, trial, {column.data(), pass.error.size()});
     if (!(column.norm() > 0)) {

@@ -105,8 +105,16 @@ class Writer {
 Additions site_additions(const SiteModel& model, const SiteHypothesis& found,
                          const std::vector<bool>& leave_out) {
   Additions additions;
-  for (size_t t = 0; t < found.terms.size(); ++t)
-    if (!leave_out[t]) additions.effects.push_back(Writer(model, found.terms[t]).added());
+  for (size_t t = 0; t < found.terms.size(); ++t) {
+    const Site& site = model.sites()[size_t(found.terms[t].site)];
+    if (leave_out[t]) continue;
+    if (site.kind == Site::Kind::sensor)
+      additions.not_stated.push_back(
+          fmt::format("The error of what is measured at {} ({}) is not written into the diagram.",
+                      site.own_signal, found.terms[t].shape->name));
+    else
+      additions.effects.push_back(Writer(model, found.terms[t]).added());
+  }
   for (size_t i = 0; i < found.is_free.size(); ++i)
     if (found.is_free[i])
       additions.parameters.emplace_back(model.parameters()[i].name,

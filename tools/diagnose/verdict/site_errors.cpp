@@ -1,6 +1,7 @@
 #include "tools/diagnose/verdict/site_errors.h"
 #include <cmath>
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/site_simulation.h"
 #include "tools/diagnose/search/site_whiteness.h"
 
 namespace loopwright::diagnosis {
@@ -18,6 +19,17 @@ class MeanSquare {
   double sum_ = 0;
   size_t count_ = 0;
 };
+
+void use_simulation(SiteFitter& fitter, const SiteHypothesis& h, SiteErrors& errors) {
+  const auto simulation = simulation_errors(fitter, h);
+  errors.diverges = !simulation;
+  if (!simulation) return;
+  errors.predicted = simulation->fitted, errors.simulated = simulation->judged();
+  errors.held_out = simulation->held_out.empty() ? errors.held_out : simulation->held_out;
+  errors.noise = h.noise.measurement;
+  for (size_t j = 0; j < h.noise.slow.size(); ++j)
+    errors.leaves_slow_error |= h.noise.slow[j] > h.noise.measurement[j];
+}
 
 }  // namespace
 
@@ -41,6 +53,11 @@ SiteErrors errors_of(SiteFitter& fitter, SiteHypothesis h) {
     errors.predicted.push_back(predicted.root()), errors.held_out.push_back(held_out.root());
     errors.noise.push_back(noise.root());
     errors.portmanteau = std::max(errors.portmanteau, portmanteau_of(pass, j, fitted));
+  }
+  if (h.noise.is_of_simulation) {
+    errors.mean_square = all.mean(), errors.held_out_mean_square = all_held_out.mean();
+    use_simulation(fitter, h, errors);
+    return errors;
   }
   errors.mean_square = all.mean(), errors.held_out_mean_square = all_held_out.mean();
   const size_t first = fitted < rows ? fitted : rows / criteria::settling_part,

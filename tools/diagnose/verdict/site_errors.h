@@ -9,12 +9,13 @@ struct SiteErrors {
   std::vector<double> predicted, held_out;           ///< rms for each output, one sample ahead
   std::vector<double> simulated;                     ///< rms for each output, see simulated_rows
   double mean_square = 0, held_out_mean_square = 0;  ///< of the whitened errors
-  double portmanteau = 0;     ///< n Σ ρ² over 40 lags, the worst output; 40 when white
-  std::vector<double> noise;  ///< rms for each output, if nothing but noise were left
+  double portmanteau = 0;          ///< n Σ ρ² over 40 lags, the worst output; 40 when white
+  std::vector<double> noise;       ///< rms for each output, if nothing but noise were left
+  bool leaves_slow_error = false;  ///< larger than the noise of the measurement
 };
 
 /// Over the whole record. The simulation begins anew from the filtered states ten times, over the held-out
-/// rows if there are any.
+/// rows if there are any. Of an answer by simulation all errors are those of simulation_errors().
 SiteErrors errors_of(SiteFitter& whole_record, SiteHypothesis hypothesis);
 
 }  // namespace loopwright::diagnosis

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/site_size.h"
+#include "tools/diagnose/verdict/site_opinion_text.h"
 #include "tools/diagnose/verdict/alike_sites.h"
 #include "tools/diagnose/verdict/site_additions.h"
 #include "tools/diagnose/verdict/site_errors.h"
@@ -41,6 +43,7 @@ class Telling {
     leave_out_what_is_nothing();
     covariance_ = covariance_of(fitted_, found_);
     tell_terms(), tell_parameters(), tell_steps();
+    if (search_.second_opinion) tell_second_opinion(model_, *search_.second_opinion, result_);
     result_.not_observable = alike_sites(fitted_, found_);
     std::vector<bool> optional(found_.terms.size()), none(found_.terms.size());
     for (size_t t = 0; t < optional.size(); ++t) optional[t] = result_.effects[t].is_optional;
@@ -85,9 +88,9 @@ class Telling {
       for (const SiteRival& rival : search_.rivals)
         if (rival.of == place_[t]) effect.alternatives.push_back(describe(model_, rival.term));
       if (has_path) {
-        effect.force_rms = size_of_term(pass, term);
+        effect.force_rms = size_of_term(model_, pass, term);
         effect.is_optional =
-            effect.force_rms < criteria::material_share_of_site * size_at_site(pass, term.site);
+            effect.force_rms < criteria::material_share_of_site * size_at_site(model_, pass, term.site);
       }
       if (term.shape == &unknown_function())
         for (const std::string& v : effect.variables) result_.remainder_variables.push_back(v);
@@ -100,34 +103,16 @@ class Telling {
     for (size_t t = 0; t < found_.terms.size(); ++t) place_.push_back(t);
     SitePass pass;
     SiteHypothesis h = found_;
-    if (h.terms.empty() || !fitted_.pass(h, true, pass)) return;
+    if (h.terms.empty() || h.noise.is_of_simulation || !fitted_.pass(h, true, pass)) return;
     found_.terms.clear(), place_.clear();
     for (size_t t = 0; t < h.terms.size(); ++t) {
       const SiteTerm& term = h.terms[t];
-      if (size_of_term(pass, term) < criteria::least_share_of_site * size_at_site(pass, term.site)) continue;
+      if (size_of_term(model_, pass, term) <
+          criteria::least_share_of_site * size_at_site(model_, pass, term.site))
+        continue;
       found_.terms.push_back(term), place_.push_back(t);
     }
     is_left_out_ = found_.terms.size() < h.terms.size();
-  }
-  double size_at_site(const SitePass& pass, int site) const {
-    const std::vector<Number> numbers = model_.plan().find(model_.sites()[size_t(site)].name);
-    if (numbers.size() != 1 || size_t(numbers[0]) >= pass.numbers) return 0;
-    double square = 0;
-    for (size_t k = 0; k < pass.rows; ++k) {
-      const double value = pass.path[0][k * pass.numbers + size_t(numbers[0])];
-      square += value * value;
-    }
-    return std::sqrt(square / double(pass.rows));
-  }
-  double size_of_term(const SitePass& pass, const SiteTerm& term) const {
-    double square = 0;
-    for (size_t k = 0; k < pass.rows; ++k) {
-      const double* numbers = &pass.path[0][k * pass.numbers];
-      const double value =
-          term.value(term.variable < 0 ? 0 : model_.variables()[size_t(term.variable)].at(numbers));
-      square += value * value;
-    }
-    return std::sqrt(square / double(pass.rows));
   }
 
   void tell_parameters() {
@@ -168,7 +153,7 @@ class Telling {
       for (const SiteTerm& term : h.terms)
         if (const std::string name = describe(model_, term); std::ranges::find(named, name) == named.end())
           added.push_back(name), named.push_back(name);
-      add(h, added);
+      if (!added.empty()) add(h, added);  // otherwise terms were only removed
     }
     errors_ = add(found_, {"as answered"});
     result_.holds_out = model_.record().held_out_from < model_.record().rows();
@@ -207,8 +192,8 @@ class Telling {
 
   void judge() {
     const bool has_unknown = !result_.remainder_variables.empty();
-    const bool is_white =
-        !errors_.diverges && errors_.portmanteau < criteria::most_portmanteau_of_any_diagram;
+    const bool is_white = !errors_.diverges && !errors_.leaves_slow_error &&
+                          errors_.portmanteau < criteria::most_portmanteau_of_any_diagram;
     const bool names = !result_.effects.empty() || !result_.moved_parameters.empty();
     const bool worse = names && simulates_worse();
     const bool is_nothing = !names && (is_left_out_ || is_exact());

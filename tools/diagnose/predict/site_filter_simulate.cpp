@@ -1,0 +1,103 @@
+/// The model along a record without any correction.
+#include <algorithm>
+#include <cmath>
+#include "tools/diagnose/predict/site_filter.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+using ConstMap = Eigen::Map<const Eigen::VectorXd>;
+
+/// [of the size of a state] Steps of differences.
+constexpr double difference_step = 1e-6;
+
+/// One over the spread of each output, so that outputs of different units count alike.
+std::vector<double> weights_of(const SignalRecord& record, size_t from, size_t to) {
+  std::vector<double> weights;
+  for (const RecordedOutput& output : record.outputs) {
+    double sum = 0, square = 0, count = 0;
+    for (size_t row = from; row < to; ++row)
+      if (const double y = output.value[row]; std::isfinite(y)) sum += y, square += y * y, ++count;
+    const double variance = count > 0 ? square / count - sum * sum / (count * count) : 0;
+    weights.push_back(variance > 0 ? 1 / std::sqrt(variance) : 1);
+  }
+  return weights;
+}
+
+/// Row by row; a missing reading counts as no error.
+Eigen::VectorXd weighted(std::span<const double> error, const std::vector<double>& weights) {
+  Eigen::VectorXd v(Eigen::Index(error.size()));
+  for (size_t i = 0; i < error.size(); ++i)
+    v[Eigen::Index(i)] = std::isnan(error[i]) ? 0 : error[i] * weights[i % weights.size()];
+  return v;
+}
+
+}  // namespace
+
+bool SiteFilter::simulate(const SitePass& pass, size_t from, size_t to, std::span<double> error) {
+  for (size_t row = from; row < to; ++row) {
+    if (row == from || record_.begins_at(row))
+      x_ = ConstMap(&pass.filtered[row * pass.states], Eigen::Index(pass.states));
+    if (!model_.outputs(row, x_.data(), y_.data())) return false;
+    for (size_t j = 0; j < pass.outputs; ++j)
+      error[(row - from) * pass.outputs + j] = record_.outputs[j].value[row] - y_[j];
+    if (!model_.flow(row, x_.data(), next_.data())) return false;
+    x_ = next_;
+  }
+  return true;
+}
+
+bool SiteFilter::simulate_from(const Eigen::VectorXd& initial, size_t from, size_t to,
+                               std::span<double> error) {
+  x_ = initial, next_.resize(initial.size());
+  const size_t outputs = record_.outputs.size();
+  for (size_t row = from; row < to; ++row) {
+    if (!model_.outputs(row, x_.data(), y_.data())) return false;
+    for (size_t j = 0; j < outputs; ++j) {
+      double& e = error[(row - from) * outputs + j];
+      e = record_.outputs[j].value[row] - y_[j];
+      if (std::isinf(e)) return false;
+    }
+    if (!model_.flow(row, x_.data(), next_.data())) return false;
+    x_ = next_;
+  }
+  return true;
+}
+
+bool SiteFilter::simulate_freely(size_t from, size_t to, std::span<double> error) {
+  constexpr int most_steps = 8;
+  constexpr double enough = 1e-4;  // [of the squares] Smaller improvements end it.
+  constexpr double weakest_direction = 1e-6;
+  const std::vector<double> weights = weights_of(record_, from, to), begin = initial_states(from);
+  const Eigen::Map<const Eigen::VectorXd> scale(state_scale_.data(), Eigen::Index(state_scale_.size()));
+  Eigen::VectorXd best = ConstMap(begin.data(), Eigen::Index(begin.size()));
+  std::vector<double> trial(error.size());
+  if (!simulate_from(best, from, to, error)) return false;
+  for (int step = 0; step < most_steps; ++step) {
+    const Eigen::VectorXd rest = weighted(error, weights);
+    Eigen::MatrixXd J(rest.size(), best.size());
+    for (Eigen::Index i = 0; i < best.size(); ++i) {  // for a change by the size of the state
+      Eigen::VectorXd moved = best;
+      moved[i] += difference_step * scale[i];
+      if (!simulate_from(moved, from, to, trial)) return true;
+      J.col(i) = (weighted(trial, weights) - rest) / difference_step;
+    }
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+    solver.setThreshold(weakest_direction);
+    const Eigen::VectorXd move = solver.compute(J).solve(-rest);
+    bool is_better = false;
+    for (double length : {1.0, 0.3, 0.1}) {
+      const Eigen::VectorXd moved = best + length * move.cwiseProduct(scale);
+      if (!simulate_from(moved, from, to, trial)) continue;
+      const double before = rest.squaredNorm(), after = weighted(trial, weights).squaredNorm();
+      if (!(after < before)) continue;
+      is_better = after < (1 - enough) * before;
+      best = moved, std::ranges::copy(trial, error.begin());
+      break;
+    }
+    if (!is_better) break;
+  }
+  return true;
+}
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,95 @@
+#include "tools/diagnose/search/site_opinion.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/site_simulation.h"
+#include "tools/diagnose/search/site_size.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+/// Sites where the noise of the answer is a large part of the signal.
+std::vector<NoisySite> noisy_sites(SiteFitter& fitter, SiteHypothesis h) {
+  std::vector<NoisySite> list;
+  SitePass pass;
+  if (!fitter.pass(h, true, pass)) return list;
+  for (size_t s = 0; s < h.noise.sites.size(); ++s) {
+    const int site = h.noise.sites[s];
+    const double size = size_at_site(fitter.model(), pass, site);
+    if (size > 0 && h.noise.process[s] > criteria::most_process_noise * size)
+      list.push_back({site, h.noise.process[s] / size});
+  }
+  return list;
+}
+
+/// States on which no output depends directly.
+std::vector<int> unmeasured_states(SiteFitter& fitter, SiteHypothesis h) {
+  std::vector<int> list;
+  SitePass pass;
+  if (!fitter.pass(h, false, pass)) return list;
+  for (int state = 0; state < fitter.model().states(); ++state) {
+    bool is_seen = false;
+    for (size_t at = size_t(state); at < pass.C.size(); at += pass.states) is_seen |= pass.C[at] != 0;
+    if (!is_seen) list.push_back(state);
+  }
+  return list;
+}
+
+/// Mean of ln(rms of the one / rms of the other) over the outputs.
+double log_ratio(const std::vector<double>& one, const std::vector<double>& other) {
+  double sum = 0;
+  for (size_t j = 0; j < one.size(); ++j) sum += std::log(one[j] / other[j]);
+  return sum / double(one.size());
+}
+
+/// Both in what was fitted and in what was held out: a term may fit the slow errors of a record by chance.
+bool is_clearly_better(const SimulationErrors& simulation, const SimulationErrors& predictions) {
+  const bool has_held_out = !simulation.held_out.empty();
+  const double needed = std::log(has_held_out ? criteria::better_simulation_held_out
+                                              : criteria::better_simulation_without_hold_out);
+  return log_ratio(simulation.fitted, predictions.fitted) < needed &&
+         (!has_held_out || log_ratio(simulation.held_out, predictions.held_out) < needed);
+}
+
+std::vector<std::string> named_in(const SiteModel& model, const SiteHypothesis& h) {
+  std::vector<std::string> list;
+  for (const SiteTerm& term : h.terms) list.push_back(describe(model, term));
+  for (size_t i = 0; i < h.is_free.size(); ++i)
+    if (h.is_free[i]) list.push_back(model.parameters()[i].name);
+  return list;
+}
+
+}  // namespace
+
+std::optional<SiteSearchResult> search_with_second_opinion(
+    SiteFitter& fitter, const std::function<void(const char*, double)>& progress) {
+  std::optional<SiteSearchResult> first = search_sites(fitter, progress);
+  if (!first || fitter.is_interrupted()) return first;
+  const std::vector<int> unmeasured = unmeasured_states(fitter, first->found);
+  if (unmeasured.empty()) return first;
+  const std::vector<NoisySite> noisy = noisy_sites(fitter, first->found);
+  if (noisy.empty()) return first;
+  first->trail.push_back("again by simulation: noise in the states could explain anything");
+  std::optional<SiteSearchResult> second = search_sites(fitter, progress, ErrorsOf::simulation);
+  if (!second || fitter.is_interrupted()) return first;
+  std::vector<std::string> trail = std::move(first->trail);
+  std::ranges::move(second->trail, std::back_inserter(trail));
+  const auto of_first = simulation_errors(fitter, first->found),
+             of_second = simulation_errors(fitter, second->found);
+  const bool is_answer = of_second && (!of_first || is_clearly_better(*of_second, *of_first));
+  for (const auto& [name, errors] : {std::pair{"predictions", of_first}, {"simulation", of_second}})
+    trail.push_back(errors ? fmt::format("answer by {}: simulation misses the first output by {:.4g}", name,
+                                         errors->judged()[0])
+                           : fmt::format("answer by {} diverges in simulation", name));
+  SecondOpinion opinion{noisy, unmeasured, is_answer,
+                        named_in(fitter.model(), (is_answer ? first : second)->found)};
+  if (const auto& errors = is_answer ? of_second : of_first) opinion.error = errors->judged()[0];
+  if (const auto& errors = is_answer ? of_first : of_second) opinion.other_error = errors->judged()[0];
+  opinion.agrees = opinion.other == named_in(fitter.model(), (is_answer ? second : first)->found);
+  SiteSearchResult answer = std::move(is_answer ? *second : *first);
+  answer.trail = std::move(trail), answer.second_opinion = std::move(opinion);
+  return answer;
+}
+
+}  // namespace loopwright::diagnosis

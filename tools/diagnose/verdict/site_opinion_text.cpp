@@ -1,0 +1,40 @@
+#include "tools/diagnose/verdict/site_opinion_text.h"
+#include <fmt/format.h>
+#include "tools/diagnose/wording.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+std::string missed(const std::optional<double>& error, const std::string& unit) {
+  return error ? fmt::format("misses {}", shown(*error, unit)) : "diverges";
+}
+
+}  // namespace
+
+void tell_second_opinion(const SiteModel& model, const SecondOpinion& opinion, Diagnosis& result) {
+  std::vector<std::string> noisy;
+  for (const NoisySite& site : opinion.noisy)
+    noisy.push_back(fmt::format("{:.0f} % of {}", 100 * site.share, model.sites()[size_t(site.site)].name));
+  std::vector<std::string> unmeasured;
+  for (int state : opinion.unmeasured) unmeasured.push_back(model.state_name(state));
+  RecordFinding finding;
+  finding.what = fmt::format(
+      "noise of {} in every sample would explain it whatever the diagram lacks (not measured: {})",
+      loopwright::joined(noisy, " and "), loopwright::joined(unmeasured, ", "));
+  const std::string& unit = result.measured_unit;
+  const std::string other = opinion.other.empty() ? "nothing" : loopwright::joined(opinion.other, " + ");
+  if (opinion.is_answer)
+    finding.cost = fmt::format(
+        "the answer is that of free simulations, with which one {}; by predictions of one sample {} would be "
+        "named, with which it {}",
+        missed(opinion.error, unit), other, missed(opinion.other_error, unit));
+  else if (opinion.agrees)
+    finding.cost = "free simulations ask for the same";
+  else
+    finding.cost = fmt::format(
+        "free simulations would name {}; with that one {}, with the answer it {}: that decides nothing",
+        other, missed(opinion.other_error, unit), missed(opinion.error, unit));
+  result.findings.push_back(std::move(finding));
+}
+
+}  // namespace loopwright::diagnosis

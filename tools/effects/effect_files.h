@@ -1,0 +1,12 @@
+/// The effect files of a folder.
+#pragma once
+#include <string>
+#include <vector>
+#include "engine/json/problem.h"
+
+namespace loopwright {
+
+/// Sorted by name. A problem if the folder is not there.
+std::vector<std::string> effect_files(const std::string& folder, Problems& problems);
+
+}  // namespace loopwright
