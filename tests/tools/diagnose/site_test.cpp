@@ -1,4 +1,7 @@
 // Where terms can act in a diagram, and how the predictor responds to them.
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include "tests/tools/diagnose/plants.h"
 #include "tools/diagnose/predict/site_filter.h"
 
@@ -33,6 +36,25 @@ TEST(Sites, ADifferenceThatOnlyAGainReadsIsNoSiteOfItsOwn) {
   const SiteModel model(files.diagram(), {files.experiment()}, {});
   EXPECT_THAT(names(model.sites()),
               testing::UnorderedElementsAre("heat1.sum", "heat2.sum", "flow.y", "heater.u"));
+}
+
+TEST(Sites, SensorsAreLookedAtOnlyIfTheExperimentNamesThem) {
+  const RecordedPlant files(motor({}, 1));
+  const auto searched_sensors = [&](const std::string& experiment) {
+    std::vector<std::string> list;
+    const SiteModel model(files.diagram(), {experiment}, {});
+    for (const Site& site : model.sites())
+      if (site.kind == Site::Kind::sensor && site.is_searched) list.push_back(site.name);
+    return list;
+  };
+  EXPECT_THAT(searched_sensors(files.experiment()), testing::IsEmpty());
+  auto json = nlohmann::json::parse(std::ifstream(files.experiment()));
+  const std::string sensor = json["compare"].begin().key() + " (sensor)";
+  json["sites"] = {sensor};
+  const std::string naming =
+      std::filesystem::path(files.experiment()).replace_filename("sensor.experiment.json").string();
+  std::ofstream(naming) << json.dump();
+  EXPECT_THAT(searched_sensors(naming), testing::ElementsAre(sensor));
 }
 
 struct Passed {

@@ -150,7 +150,8 @@ void SiteModel::complete_units(const Plan& stated) {
 void SiteModel::add_sensors(const Plan& plan) {
   for (const RecordedOutput& output : record_.outputs) {
     Site site;
-    site.kind = Site::Kind::sensor, site.name = output.port + " (sensor)", site.own_signal = output.port;
+    site.kind = Site::Kind::sensor, site.is_searched = false;  // unless the experiment names it
+    site.name = output.port + " (sensor)", site.own_signal = output.port;
     site.unit = plan.unit_of(plan.find(output.port).front()), site.quantity = quantity_of(site.unit);
     sensor_sites_.push_back(sites_.size());
     sites_.push_back(std::move(site));
