@@ -89,7 +89,7 @@ EFFECT = {
     "blocks": {"k": {"type": "Constant", "value": "=1/half"},
                "scaled": {"type": "Product", "in": {"factors": ["position", "k.y"]}},
                "force": {"type": "Gain", "gain": "=height", "in": {"u": "scaled.product"}}},
-    "attach": [{"to": "force", "from": "force.y"}],
+    "attach": [{"to": "force", "from": "force.y", "slope": "scaled.product"}],
     "needs": {"text": "motion", "directions": 1, "speeds": 1, "accelerations": 0, "reversals": 0, "passes": 1, "periods": 0,
               "duration_s": 0, "varied_force": False},
     "confusable": [{"with": "spring", "when": "always", "experiment": {
@@ -112,7 +112,8 @@ AT_SITE = {
                             "scale": "logarithmic"}}}
 EFFECTS = [EFFECT, MASS, DELAY, AT_SITE,
            {**{key: value for key, value in EFFECT.items() if key not in FORM_KEYS},
-            "forms": {"full": {key: EFFECT[key] for key in FORM_KEYS}}}]
+            "forms": {name: {key: form[key] for key in FORM_KEYS if key in form}
+                      for name, form in {"full": EFFECT, "mass": MASS, "delay": DELAY}.items()}}]
 
 DIAGRAMS = [
     {**HEAD, "description": "All keys",
