@@ -225,7 +225,8 @@ class Agreement(unittest.TestCase):
             for root, part in roots.items():
                 for path, node in places(part):
                     if isinstance(node, dict) and path and path[-1] == "properties" and "if" not in path:
-                        place = (root, *(step for step in path if not isinstance(step, int)))
+                        of = "file" if root == "diagram" else root  # an inner diagram has the keys of a file
+                        place = (of, *(step for step in path if not isinstance(step, int)))
                         for key in node:
                             used[place, key] = used.get((place, key), False) or (id(node), key) in seen
             self.assertEqual([where for where, is_used in used.items() if not is_used], [], kind)
