@@ -1,7 +1,6 @@
 // What a diagram of any kind lacks, found without roles.
 #include <memory>
-#include "tests/tools/diagnose/diagnosed.h"
-#include "tests/tools/diagnose/plants.h"
+#include "tests/tools/diagnose/diagnosed_plant.h"
 
 namespace loopwright {
 namespace {
@@ -14,16 +13,6 @@ std::vector<std::string> answer(const Diagnosis& d) {
                    (effect.variables.empty() ? "" : "(" + effect.variables.front() + ")"));
   for (const MovedParameter& p : d.moved_parameters) list.push_back(p.name);
   return list;
-}
-
-Diagnosis diagnosed(const Plant& plant) {
-  const RecordedPlant files(plant);
-  const Diagnosis d = diagnose(files.diagram(), {files.experiment()});
-  if (getenv("SHOW_DIAGNOSES")) {
-    for (const std::string& line : d.trail) puts(line.c_str());
-    puts(to_text(d).c_str());
-  }
-  return d;
 }
 
 /// The held-out errors are those of the noise, and so is what remains.

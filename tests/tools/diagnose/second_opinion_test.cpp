@@ -1,8 +1,7 @@
 // Where a state is not measured, noise in it could explain anything: answers by simulation.
 #include <gmock/gmock.h>
 #include <cmath>
-#include "tests/tools/diagnose/diagnosed.h"
-#include "tests/tools/diagnose/plants.h"
+#include "tests/tools/diagnose/diagnosed_plant.h"
 #include "tools/diagnose/predict/site_filter.h"
 #include "where.h"
 
@@ -30,16 +29,6 @@ Plant lower_tank_only(const Tanks& m, uint64_t seed) {
   plant.outputs = [](const Numbers& x) { return Numbers{x[1]}; };
   plant.measurement_noise = {1e-3}, plant.rows = 1600;
   return plant;
-}
-
-Diagnosis diagnosed(const Plant& plant) {
-  const RecordedPlant files(plant);
-  const Diagnosis d = diagnose(files.diagram(), {files.experiment()});
-  if (getenv("SHOW_DIAGNOSES")) {
-    for (const std::string& line : d.trail) puts(line.c_str());
-    puts(to_text(d).c_str());
-  }
-  return d;
 }
 
 /// Predictions of one sample blame it on noise in the upper tank, and name something else.
