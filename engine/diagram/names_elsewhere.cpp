@@ -7,7 +7,7 @@ namespace loopwright {
 namespace {
 
 // clang-format off
-constexpr NameElsewhere table[] = {
+constexpr NameElsewhere known_names[] = {
     {"1-D Lookup Table", "Lookup1D", ""},
     {"1/s", "Integrator", ""},
     {"1/z", "UnitDelay", ""},
@@ -287,7 +287,7 @@ std::string_view without_number(std::string_view name) {
   return name.substr(0, name.find_last_not_of("0123456789") + 1);
 }
 
-std::span<const NameElsewhere> names_elsewhere() { return table; }
+std::span<const NameElsewhere> names_elsewhere() { return known_names; }
 
 std::string advice(const NameElsewhere& entry) {
   if (!entry.method.empty())
@@ -308,8 +308,8 @@ const NameElsewhere* find_name_elsewhere(std::string_view written) {
   const std::string name = plain_name(written);
   const auto find = [](std::string_view wanted) -> const NameElsewhere* {
     const auto found = std::ranges::find_if(
-        table, [&](const NameElsewhere& entry) { return plain_name(entry.name) == wanted; });
-    return found == std::end(table) || wanted.empty() ? nullptr : &*found;
+        known_names, [&](const NameElsewhere& entry) { return plain_name(entry.name) == wanted; });
+    return found == std::end(known_names) || wanted.empty() ? nullptr : &*found;
   };
   const NameElsewhere* const exact = find(name);
   return exact ? exact : find(without_number(name));

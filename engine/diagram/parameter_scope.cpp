@@ -21,13 +21,6 @@ bool is_number_with_unit(const Value& value) {
          value.find("unit");
 }
 
-Value broken(const Value& at) {
-  Value value;
-  value.is_broken = true;
-  value.place = at.place;
-  return value;
-}
-
 std::string_view without_spaces(std::string_view text) {
   const size_t begin = std::min(text.find_first_not_of(' '), text.size());
   return text.substr(begin, text.find_last_not_of(' ') + 1 - begin);
@@ -90,7 +83,7 @@ void ParameterScope::declare_one(const Value::Member& member) {
   }
   reader_.reject_unknown(member.value, {"value", "unit", "description"}, "a parameter");
   entry.parameter.description = reader_.text(member.value, "description");
-  entry.written = broken(member.value);
+  entry.written = Value::broken(member.value);
   if (const Value::Member* unit = member.value.find("unit")) {
     entry.parameter.unit = reader_.unit(unit->value);
     if (!entry.parameter.unit) return;
@@ -155,7 +148,7 @@ void ParameterScope::resolve_from(size_t first) {
     } else if (entries_[need].progress == Progress::in_work) {
       report_cycle(stack, need);
       for (const size_t member : stack) {  // members below the cycle depend on it
-        entries_[member].parameter.value = broken(entries_[member].written);
+        entries_[member].parameter.value = Value::broken(entries_[member].written);
         entries_[member].progress = Progress::done;
       }
       return;
@@ -249,7 +242,7 @@ void ParameterScope::convert(Value& value, const std::optional<Unit>& unit, cons
     problem.expected = unit ? to_string(*unit) : "a bare number, as the parameter has no unit";
     problem.found = shown_unit(value);
   }
-  value = broken(value);
+  value = Value::broken(value);
 }
 
 // ---- Evaluation
@@ -283,7 +276,7 @@ Value ParameterScope::evaluate_text(const Value& text, const std::string& block)
   if (is_name(name) && !is_constant_name(name)) {  // passes on texts and lists as well
     Place place = text.place;
     const Entry* entry = find({name, 0, false}, place, text, block);
-    if (!entry || entry->parameter.value.is_broken) return broken(text);
+    if (!entry || entry->parameter.value.is_broken) return Value::broken(text);
     Value value = entry->parameter.value;
     if (value.kind != Value::Kind::text || !stands_in_file(value)) value.place = text.place;
     if (value.kind == Value::Kind::number) value.text = text.text;
@@ -302,7 +295,7 @@ Value ParameterScope::evaluate_text(const Value& text, const std::string& block)
   auto known = computed_.find(text.text);
   if (known == computed_.end()) {
     const auto found = loopwright::evaluate(expression, {text.place, block, lookup}, reader_.problems);
-    if (!found) return broken(text);
+    if (!found) return Value::broken(text);
     known = computed_.emplace(text.text, *found).first;
   }
   const Quantity& quantity = known->second;
@@ -318,8 +311,8 @@ Value ParameterScope::number_with_unit(const Value& object, const std::string& b
   const Reader reader{reader_.problems, block};
   const auto unit = reader.unit(object.find("unit")->value);
   Value number = evaluate(object.find("value")->value, block);
-  if (!unit || number.is_broken) return broken(object);
-  if (!reader.expect(number, Value::Kind::number, "\"value\"", "a number")) return broken(object);
+  if (!unit || number.is_broken) return Value::broken(object);
+  if (!reader.expect(number, Value::Kind::number, "\"value\"", "a number")) return Value::broken(object);
   if (!number.unit) {
     give_unit(number, *unit);
     return number;
@@ -331,7 +324,7 @@ Value ParameterScope::number_with_unit(const Value& object, const std::string& b
     problem.found = shown_unit(number);
   }
   number.whole &= unit->scale == 1;
-  return taken == UnitTaken::yes ? number : broken(object);
+  return taken == UnitTaken::yes ? number : Value::broken(object);
 }
 
 ParameterScope::Entry* ParameterScope::find(const NameUse& use, const Place& place, const Value& text,

@@ -9,13 +9,6 @@
 namespace loopwright {
 namespace {
 
-Value broken(const Value& at) {
-  Value value;
-  value.is_broken = true;
-  value.place = at.place;
-  return value;
-}
-
 /// The element of a list by its number.
 const Value* element(const Value& list, std::string_view number) {
   size_t index = 0;
@@ -118,12 +111,13 @@ Value value_from_file(const Value& reference, const Reader& reader) {
   const Value &file = reference.find("file")->value, &name = reference.find("name")->value;
   if (!reader.expect(file, Value::Kind::text, "\"file\"", "the path of a JSON or MAT file") ||
       !reader.expect(name, Value::Kind::text, "\"name\"", "the name of a value in it"))
-    return broken(reference);
+    return Value::broken(reference);
   const std::string path = resolve_relative(file.place, file.text);
   const std::optional<Value> content =
       is_mat_path(path) ? values_of_mat(path, reference, reader) : values_of_json(path, file.place, reader);
   const Value* const found = content ? find_named(*content, name, file.text, reader) : nullptr;
-  if (!found || !is_usable(*found, reference, reader) || !is_plain(*found, reader)) return broken(reference);
+  if (!found || !is_usable(*found, reference, reader) || !is_plain(*found, reader))
+    return Value::broken(reference);
   return *found;
 }
 

@@ -28,6 +28,8 @@ struct Value {
   Place place;
 
   const Member* find(std::string_view name) const;
+  /// Stands for a value whose problem is already reported.
+  static Value broken(const Value& at);
 };
 
 struct Value::Member {
@@ -35,6 +37,13 @@ struct Value::Member {
   Place place;  ///< of the name
   Value value;
 };
+
+inline Value Value::broken(const Value& at) {
+  Value value;
+  value.is_broken = true;
+  value.place = at.place;
+  return value;
+}
 
 inline const Value::Member* Value::find(std::string_view name) const {
   for (const Member& member : members)

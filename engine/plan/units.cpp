@@ -10,9 +10,9 @@
 namespace loopwright {
 namespace {
 
-class Solver {
+class UnitSolver {
  public:
-  Solver(const FlatDiagram& flat, const Diagram& diagram, Problems& problems)
+  UnitSolver(const FlatDiagram& flat, const Diagram& diagram, Problems& problems)
       : flat_(flat),
         problems_(problems),
         said_(flat, diagram),
@@ -337,7 +337,7 @@ class Solver {
 }  // namespace
 
 PortUnits check_units(const FlatDiagram& flat, const Diagram& diagram, Problems& problems) {
-  return Solver(flat, diagram, problems).run();
+  return UnitSolver(flat, diagram, problems).run();
 }
 
 WiresWithoutUnit wires_without_unit(const FlatDiagram& flat, const PortUnits& units) {

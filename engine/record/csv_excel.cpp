@@ -10,9 +10,7 @@
 namespace loopwright {
 namespace {
 
-constexpr size_t chunk = 1 << 20;  // [bytes] limits the memory; longer writes are not faster
-
-std::string heading(const Column& column) {
+std::string quoted_heading(const Column& column) {
   std::string text = "\"";
   for (const char c : column.name + (column.unit.empty() ? "" : " [" + column.unit + "]"))
     text += c == '"' ? "\"\"" : std::string(1, c);
@@ -27,12 +25,12 @@ void append_cell(std::string& text, double value) {
 }
 
 /// Passes the text to `write(std::string_view)` in pieces.
-template <class Write> void put(const Recording& recording, Write&& write) {
+template <class Write> void put_excel(const Recording& recording, Write&& write) {
   check_recording(recording);
   std::string text = "\xEF\xBB\xBF";  // Excel takes text without it as that of an old code page
   for (const Column& column : recording.columns) {
     if (&column != &recording.columns.front()) text += ';';
-    text += heading(column);
+    text += quoted_heading(column);
   }
   text += "\r\n";
   for (size_t row = 0; row < recording.rows(); ++row) {
@@ -41,7 +39,7 @@ template <class Write> void put(const Recording& recording, Write&& write) {
       append_cell(text, column.values[row]);
     }
     text += "\r\n";
-    if (text.size() < chunk) continue;
+    if (text.size() < written_piece) continue;
     write(text);
     text.clear();
   }
@@ -52,12 +50,12 @@ template <class Write> void put(const Recording& recording, Write&& write) {
 
 void write_excel_csv(const std::string& path, const Recording& recording) {
   AtomicFile file(path);
-  put(recording, [&](std::string_view text) { file.write(text); });
+  put_excel(recording, [&](std::string_view text) { file.write(text); });
   file.commit();
 }
 
 void print_excel_csv(std::FILE* stream, const Recording& recording) {
-  put(recording, [&](std::string_view text) { std::fwrite(text.data(), 1, text.size(), stream); });
+  put_excel(recording, [&](std::string_view text) { std::fwrite(text.data(), 1, text.size(), stream); });
   if (std::fflush(stream) != 0 || std::ferror(stream))
     throw std::runtime_error("the recording cannot be printed");
 }

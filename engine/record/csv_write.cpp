@@ -50,8 +50,6 @@ std::string header(const Recording& recording) {
   return text += '\n';
 }
 
-constexpr size_t chunk = 1 << 20;  // [bytes] limits the memory; longer writes are not faster
-
 /// Passes the text to `write(std::string_view)` in pieces.
 template <class Write> void put(const Recording& recording, Write&& write) {
   check_recording(recording);
@@ -62,7 +60,7 @@ template <class Write> void put(const Recording& recording, Write&& write) {
       text += ',';
     }
     text.back() = '\n';
-    if (text.size() >= chunk) {
+    if (text.size() >= written_piece) {
       write(text);
       text.clear();
     }
@@ -89,7 +87,7 @@ void CsvWriter::add(std::span<const double> row) {
     text_ += ',';
   }
   text_.back() = '\n';
-  if (text_.size() < chunk) return;
+  if (text_.size() < written_piece) return;
   file_.write(text_);
   text_.clear();
 }

@@ -27,6 +27,9 @@ std::string_view trim(std::string_view text);
 /// full: 100000, not 1e+05.
 void append_number(std::string& text, double value);
 
+/// Files are written in pieces of this size [bytes]: it limits the memory, and longer ones are not faster.
+inline constexpr size_t written_piece = 1 << 20;
+
 /// UTF-16 as stored by MATLAB. A byte b that is not UTF-8 becomes the lone surrogate 0xDC00 + b and is
 /// restored exactly (as in Python, PEP 383); other lone surrogates become U+FFFD.
 std::u16string to_utf16(std::string_view text);

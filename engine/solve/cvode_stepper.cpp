@@ -16,13 +16,11 @@ namespace {
 
 using sundials::own;
 using sundials::Owner;
+using sundials::require;
 
 struct ReleaseCvode {
   void operator()(void* memory) const { CVodeFree(&memory); }
 };
-
-/// Errors of CVODE are handled by its return codes; its messages are discarded.
-void say_nothing(int, const char*, const char*, char*, void*) {}
 
 class CvodeStepper final : public Stepper {
  public:
@@ -80,10 +78,6 @@ class CvodeStepper final : public Stepper {
   std::unique_ptr<void, ReleaseCvode> cvode_;
 };
 
-void require(int flag, const char* call) {
-  if (flag != CV_SUCCESS) throw std::runtime_error(std::string("CVODE refused ") + call);
-}
-
 CvodeStepper::CvodeStepper(const SolverOptions& options, const OdeSystem& system)
     : Stepper(options, system), trial_(states_), nudge_rate_(states_), errors_(states_) {
   const auto length = static_cast<sunindextype>(states_);
@@ -93,7 +87,7 @@ CvodeStepper::CvodeStepper(const SolverOptions& options, const OdeSystem& system
   cvode_.reset(CVodeCreate(stiff ? CV_BDF : CV_ADAMS, context_.get()));
   if (cvode_ == nullptr) throw std::bad_alloc();
   void* const cvode = cvode_.get();
-  require(CVodeSetErrHandlerFn(cvode, say_nothing, nullptr), "CVodeSetErrHandlerFn");
+  require(CVodeSetErrHandlerFn(cvode, sundials::print_nothing, nullptr), "CVodeSetErrHandlerFn");
   require(CVodeInit(cvode, derivatives, 0.0, end_.get()), "CVodeInit");
   require(CVodeSetUserData(cvode, this), "CVodeSetUserData");
   {

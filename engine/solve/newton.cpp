@@ -36,6 +36,7 @@ namespace {
 
 using sundials::own;
 using sundials::Owner;
+using sundials::require;
 
 /// A solution smaller than this fraction of its typical size counts as zero.
 constexpr double negligible_part = 1e-3;
@@ -44,12 +45,7 @@ struct ReleaseKinsol {
   void operator()(void* memory) const { KINFree(&memory); }
 };
 
-void say_nothing(int, const char*, const char*, char*, void*) {}
 void say_no_progress(const char*, const char*, char*, void*) {}
-
-void require(int flag, const char* call) {
-  if (flag != KIN_SUCCESS) throw std::runtime_error(fmt::format("KINSOL refused {}", call));
-}
 
 void throw_if_senseless(const NewtonOptions& options, const AlgebraicSystem& system) {
   const char* complaint = nullptr;
@@ -117,7 +113,7 @@ NewtonSolver::Work::Work(const NewtonOptions& options, const AlgebraicSystem& sy
   kinsol.reset(KINCreate(context.get()));
   if (kinsol == nullptr) throw std::bad_alloc();
   void* const memory = kinsol.get();
-  require(KINSetErrHandlerFn(memory, say_nothing, nullptr), "KINSetErrHandlerFn");
+  require(KINSetErrHandlerFn(memory, sundials::print_nothing, nullptr), "KINSetErrHandlerFn");
   require(KINSetInfoHandlerFn(memory, say_no_progress, nullptr), "KINSetInfoHandlerFn");
   require(KINInit(memory, residual_function, y_vector.get()), "KINInit");
   require(KINSetUserData(memory, this), "KINSetUserData");

@@ -8,6 +8,8 @@
 
 #include <memory>
 #include <new>
+#include <stdexcept>
+#include <string>
 #include <type_traits>
 
 namespace loopwright::sundials {
@@ -26,6 +28,14 @@ template <class Handle> using Owner = std::unique_ptr<std::remove_pointer_t<Hand
 template <class Handle> Owner<Handle> own(Handle handle) {
   if (handle == nullptr) throw std::bad_alloc();
   return Owner<Handle>(handle);
+}
+
+/// In place of the handler that prints errors: callers look at the flags.
+inline void print_nothing(int, const char*, const char*, char*, void*) {}
+
+/// `flag` is what a set-up function returned, 0 after success. Throws std::runtime_error otherwise.
+inline void require(int flag, const char* call) {
+  if (flag != 0) throw std::runtime_error(std::string("SUNDIALS refused ") + call);
 }
 
 inline Owner<SUNContext> make_context() {

@@ -10,7 +10,7 @@ struct ErrorName {
   int32_t code;
   std::string_view name;
 };
-constexpr ErrorName names[] = {
+constexpr ErrorName error_names[] = {
 #include "hw/quanser/error_names.inc"
 };
 
@@ -23,8 +23,8 @@ bool is_between(int32_t code, int32_t low, int32_t high) { return code >= low &&
 
 std::string_view error_name(int32_t code) {
   const int32_t positive = std::abs(code);
-  const auto found = std::ranges::lower_bound(names, positive, {}, &ErrorName::code);
-  return found != std::end(names) && found->code == positive ? found->name : std::string_view{};
+  const auto found = std::ranges::lower_bound(error_names, positive, {}, &ErrorName::code);
+  return found != std::end(error_names) && found->code == positive ? found->name : std::string_view{};
 }
 
 bool is_not_supported(int32_t code) {

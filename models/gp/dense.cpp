@@ -11,8 +11,6 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-double square(double x) { return x * x; }
-
 MatrixXd covariance_matrix(const Kernel& kernel, const std::vector<Point>& x) {
   const auto n = Eigen::Index(x.size());
   MatrixXd k(n, n);

@@ -7,8 +7,6 @@
 namespace loopwright::gp {
 namespace {
 
-double square(double x) { return x * x; }
-
 /// -log c, which is 2 sin²(πr/τ)/ℓ² or r²/(2ℓ²).
 double exponent(const Shape& shape, double r) {
   switch (shape.kind) {

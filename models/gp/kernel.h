@@ -14,6 +14,8 @@ namespace loopwright::gp {
 
 using Point = std::array<double, 2>;
 
+inline double square(double x) { return x * x; }
+
 /// How the covariance decreases with the distance r along one input.
 struct Shape {
   enum class Kind {

@@ -11,8 +11,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-double square(double x) { return x * x; }
-
 /// The part of a basis that one term uses along one input.
 Basis basis_of(const Statistics& statistics, const Shape& shape, size_t input) {
   if (shape.kind == Shape::Kind::constant) return {};

@@ -5,7 +5,7 @@
 #include <cstring>
 #include "tests/conformance/registered.h"
 
-namespace loopwright {
+namespace loopwright::behaviour_test {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -287,4 +287,4 @@ TEST_P(ModeChanges, AreAnnouncedByACrossing) {
 LOOPWRIGHT_FOR_EVERY_BLOCK(ModeChanges);
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::behaviour_test

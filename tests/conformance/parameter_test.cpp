@@ -7,7 +7,7 @@
 #include "engine/json/json.h"
 #include "tests/conformance/registered.h"
 
-namespace loopwright {
+namespace loopwright::parameter_test {
 namespace {
 
 class Parameters : public EveryBlock {};
@@ -287,4 +287,4 @@ TEST_P(Words, NameEveryPortAndParameterOnce) {
 LOOPWRIGHT_FOR_EVERY_BLOCK(Words);
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::parameter_test

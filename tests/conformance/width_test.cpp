@@ -5,7 +5,7 @@
 #include "tests/conformance/registered.h"
 #include "tests/engine/diagram/diagram_folder.h"
 
-namespace loopwright {
+namespace loopwright::width_test {
 namespace {
 
 class Width : public EveryBlock {
@@ -107,4 +107,4 @@ TEST_P(Width, OfAVectorIsSoManyScalarBlocks) {
 LOOPWRIGHT_FOR_EVERY_BLOCK(Width);
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::width_test

@@ -5,7 +5,7 @@
 #include "engine/run/simulation.h"
 #include "tests/engine/diagram/diagram_folder.h"
 
-namespace loopwright {
+namespace loopwright::found_test {
 namespace {
 
 /// Every problem of a diagram around these blocks, as text.
@@ -124,4 +124,4 @@ TEST(Found, AStopTimeFromOutsideLeavesThePlaceOfTheSolverSettings) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::found_test

@@ -5,7 +5,7 @@
 #include "tests/fuzz/pipeline.h"
 #include "tests/fuzz/watchdog.h"
 
-namespace loopwright::fuzz {
+namespace loopwright::fuzz::hostile_test {
 namespace {
 
 class Hostile : public testing::Test {
@@ -182,4 +182,4 @@ TEST_F(Hostile, MemoryWithoutEndIsRefused) {
 }
 
 }  // namespace
-}  // namespace loopwright::fuzz
+}  // namespace loopwright::fuzz::hostile_test

@@ -13,7 +13,7 @@
 #include "tests/fuzz/watchdog.h"
 #include "tests/tools/command/program.h"
 
-namespace loopwright::fuzz {
+namespace loopwright::fuzz::mutant_test {
 namespace {
 
 constexpr int parts = 4;  // of each kind, to be divided among processes
@@ -90,4 +90,4 @@ INSTANTIATE_TEST_SUITE_P(Files, Mutants,
                          });
 
 }  // namespace
-}  // namespace loopwright::fuzz
+}  // namespace loopwright::fuzz::mutant_test

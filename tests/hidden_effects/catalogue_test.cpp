@@ -17,7 +17,7 @@ extern "C" {
 }
 
 namespace fs = std::filesystem;
-using namespace loopwright;
+namespace loopwright::catalogue_test {
 
 namespace {
 
@@ -114,3 +114,5 @@ INSTANTIATE_TEST_SUITE_P(Catalogue, TrueEffect, testing::Range(0, int(CATALOGUE)
                          [](const auto& effect) { return std::string(effect_names[effect.param]); });
 
 }  // namespace
+
+}  // namespace loopwright::catalogue_test

@@ -11,6 +11,7 @@ extern "C" {
 #include "tests/hidden_effects/scenario.h"
 }
 
+namespace generator_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -377,3 +378,5 @@ TEST(Motion, DerivativesBelongTogether) {
 }
 
 }  // namespace
+
+}  // namespace generator_test

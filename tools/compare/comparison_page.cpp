@@ -8,10 +8,6 @@ namespace {
 
 using report::Series;
 
-std::string shown(double value, const std::string& unit) {
-  const report::Quantity q = report::engineering(value, unit);
-  return q.unit.empty() ? q.value : q.value + " " + q.unit;
-}
 /// Two decimals, but 100 only for 100: "99.998" must not look like a perfect fit.
 std::string fit_text(double percent) {
   const std::string text = fmt::format("{:.2f}", percent);
@@ -61,7 +57,7 @@ std::vector<report::Notice> verdict(const Comparison& c) {
         {severity,
          fmt::format(
              "{}: the model is off by {} rms and {} at most, {:.3g} % of the measured signal (rms){}.",
-             s.name, shown(s.rmse, s.unit), shown(s.max_abs, s.unit), s.relative_percent,
+             s.name, report::shown(s.rmse, s.unit), report::shown(s.max_abs, s.unit), s.relative_percent,
              below_resolution       ? "; this is less than the sensor resolves"
              : s.fit_percent < poor ? "; it does not describe the record"
                                     : "")});
@@ -85,7 +81,8 @@ report::Section signal_section(const Comparison& c, const ComparedSignal& s) {
   report::Plot error;
   error.x = {"Time", "s", false}, error.y = {"Error", shown_unit(s.unit), false}, error.group = "time";
   error.series = {{"simulated − measured", c.time, s.error, Series::Shape::line}};
-  if (s.resolution > 0) error.caption = fmt::format("The sensor resolves {}.", shown(s.resolution, s.unit));
+  if (s.resolution > 0)
+    error.caption = fmt::format("The sensor resolves {}.", report::shown(s.resolution, s.unit));
   section.items.push_back(overlay(c, s));
   section.items.push_back(std::move(error));
   if (!c.position.empty())
@@ -110,8 +107,9 @@ report::Page comparison_page(const Comparison& c, const std::string& title) {
                       {},
                       "Simulated minus measured; fit is 100 (1 − ‖y − ŷ‖ / ‖y − mean y‖)"};
   for (const ComparedSignal& s : c.signals)
-    table.rows.push_back({s.name, shown(s.rmse, s.unit), shown(s.max_abs, s.unit), shown(s.mean, s.unit),
-                          fmt::format("{:.2f}", s.relative_percent), fit_text(s.fit_percent)});
+    table.rows.push_back({s.name, report::shown(s.rmse, s.unit), report::shown(s.max_abs, s.unit),
+                          report::shown(s.mean, s.unit), fmt::format("{:.2f}", s.relative_percent),
+                          fit_text(s.fit_percent)});
   report::Section summary{"Summary", {}};
   for (report::Notice& notice : verdict(c)) summary.items.push_back(std::move(notice));
   for (const std::string& warning : c.warnings)

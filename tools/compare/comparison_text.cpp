@@ -9,11 +9,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string shown(double value, const std::string& unit) {
-  const report::Quantity q = report::engineering(value, unit);
-  return q.unit.empty() ? q.value : q.value + " " + q.unit;
-}
-
 Json where_json(const ForceAnalysis& force) {
   Json list = Json::array();
   for (const ResidualShare& share : force.where) {
@@ -67,8 +62,8 @@ std::string force_text(const Comparison& comparison) {
   const std::string &force = f.motion.force_unit, &position = f.motion.position_unit;
   std::string text =
       fmt::format("\n  force that the model lacks: {} rms, {:.2f} % of the force; noise floor {} ({})\n",
-                  shown(f.residual.rmse, force), f.residual.relative_percent,
-                  shown(f.residual.noise_floor, force), f.residual.floor_source);
+                  report::shown(f.residual.rmse, force), f.residual.relative_percent,
+                  report::shown(f.residual.noise_floor, force), f.residual.floor_source);
   std::vector<Dependence> ranked = f.dependence;
   std::ranges::stable_sort(ranked, std::greater{}, &Dependence::share);
   std::string depends;
@@ -78,7 +73,7 @@ std::string force_text(const Comparison& comparison) {
     std::ranges::replace(name, '_', ' ');
     depends += fmt::format("{}{} {:.0f} %", depends.empty() ? "" : ", ", name, 100 * d.share);
     if (d.at > 0)
-      depends += fmt::format(" (period {})", shown(1 / d.at, d.variable[0] == 's' ? position : "s"));
+      depends += fmt::format(" (period {})", report::shown(1 / d.at, d.variable[0] == 's' ? position : "s"));
   }
   std::string constant;
   for (const Dependence& d : f.dependence)
@@ -90,9 +85,9 @@ std::string force_text(const Comparison& comparison) {
   for (const ResidualShare& s : f.where)
     if (s.axis == "segment" && s.of_rows > 0)
       text += fmt::format("{} {:.0f} % (of {:.0f} % of the time)  ", s.label, 100 * s.share, 100 * s.of_rows);
-  text += fmt::format("\n  position, open loop: {} rms", shown(f.open_loop.whole_record, position));
+  text += fmt::format("\n  position, open loop: {} rms", report::shown(f.open_loop.whole_record, position));
   for (const auto& [horizon, error] : f.open_loop.restarted)
-    text += fmt::format("; restarted every {:g} ms: {}", 1e3 * horizon, shown(error, position));
+    text += fmt::format("; restarted every {:g} ms: {}", 1e3 * horizon, report::shown(error, position));
   text += "\n";
   std::string missing;
   for (const Identifiability& entry : f.identifiable)
@@ -133,16 +128,12 @@ std::string to_json(const Comparison& comparison) {
 std::string to_text(const Comparison& comparison) {
   size_t width = 6;
   for (const ComparedSignal& s : comparison.signals) width = std::max(width, s.name.size());
-  const auto shown = [](double value, const std::string& unit) {
-    const report::Quantity q = report::engineering(value, unit);
-    return fmt::format("{} {}", q.value, q.unit);
-  };
   std::string text = fmt::format("  {:<{}} {:>12} {:>12} {:>12} {:>10} {:>9}\n", "signal", width,
                                  "error, rms", "greatest", "mean", "relative", "fit");
   for (const ComparedSignal& s : comparison.signals)
     text += fmt::format("  {:<{}} {:>12} {:>12} {:>12} {:>8.2f} % {:>7.2f} %\n", s.name, width,
-                        shown(s.rmse, s.unit), shown(s.max_abs, s.unit), shown(s.mean, s.unit),
-                        s.relative_percent, s.fit_percent);
+                        report::shown(s.rmse, s.unit), report::shown(s.max_abs, s.unit),
+                        report::shown(s.mean, s.unit), s.relative_percent, s.fit_percent);
   if (const int64_t missing = comparison.missing_samples; missing > 0)
     text += fmt::format("  {} sample{} between the {} rows of the recording {} missing\n", missing,
                         missing == 1 ? "" : "s", comparison.time.size(), missing == 1 ? "is" : "are");

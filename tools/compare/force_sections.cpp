@@ -10,10 +10,6 @@ namespace {
 
 using report::Series;
 
-std::string shown(double value, const std::string& unit) {
-  const report::Quantity q = report::engineering(value, unit);
-  return q.unit.empty() ? q.value : q.value + " " + q.unit;
-}
 report::KeyNumbers::Number key(std::string label, double value, const std::string& unit,
                                std::string note = "") {
   const report::Quantity q = report::engineering(value, unit);
@@ -109,9 +105,9 @@ report::Section where_section(const ForceAnalysis& f) {
     std::string name = d.variable;
     std::ranges::replace(name, '_', ' ');
     const bool has_period = d.at > 0 && d.share > 0;
-    table.rows.push_back({name, fmt::format("{:.1f}", 100 * d.share),
-                          fmt::format("{:.1f}", 100 * std::max(0.0, d.by_chance)),
-                          has_period ? shown(1 / d.at, name[0] == 's' ? f.motion.position_unit : "s") : ""});
+    table.rows.push_back(
+        {name, fmt::format("{:.1f}", 100 * d.share), fmt::format("{:.1f}", 100 * std::max(0.0, d.by_chance)),
+         has_period ? report::shown(1 / d.at, name[0] == 's' ? f.motion.position_unit : "s") : ""});
   }
   section.items.push_back(std::move(table));
   return section;

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include "tools/design/design.h"
+#include "tools/design/design_json.h"
 
 namespace loopwright {
 namespace {
@@ -9,8 +10,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Json = nlohmann::ordered_json;
-
-std::string unit_text(const std::optional<Unit>& unit) { return unit ? to_string(*unit) : ""; }
 
 /// The last `parts` parts of a path as one name: "mass_position".
 std::string end_of(const std::string& path, int parts) {
@@ -39,13 +38,6 @@ Json port_json(const DesignSignal& signal) {
 Json number_json(double number, const std::optional<Unit>& of, const std::optional<Unit>& per) {
   if (!of || !per) return number;
   return {{"value", number}, {"unit", to_string(*of * power(*per, -1))}};
-}
-
-Json matrix_json(const MatrixXd& matrix) {
-  Json rows = Json::array();
-  for (Index i = 0; i < matrix.rows(); ++i)
-    rows.push_back(std::vector<double>(matrix.row(i).begin(), matrix.row(i).end()));
-  return rows;
 }
 
 /// The names of both lists, all different.

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include "tools/design/design.h"
+#include "tools/design/design_json.h"
 #include "tools/linearize/analysis.h"
 
 namespace loopwright {
@@ -11,15 +12,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Json = nlohmann::ordered_json;
-
-std::string unit_text(const std::optional<Unit>& unit) { return unit ? to_string(*unit) : ""; }
-
-Json matrix_json(const MatrixXd& matrix) {
-  Json rows = Json::array();
-  for (Index i = 0; i < matrix.rows(); ++i)
-    rows.push_back(std::vector<double>(matrix.row(i).begin(), matrix.row(i).end()));
-  return rows;
-}
 
 Json signals_json(const std::vector<DesignSignal>& signals) {
   Json list = Json::array();

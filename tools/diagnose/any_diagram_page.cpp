@@ -6,7 +6,7 @@
 namespace loopwright {
 namespace {
 
-report::Notice verdict_of(const Diagnosis& d) {
+report::Notice notice_of(const Diagnosis& d) {
   using Severity = report::Notice::Severity;
   const std::string fall =
       fmt::format(" The error of {} one sample ahead falls from {} to {}; noise alone would leave {}.",
@@ -56,8 +56,8 @@ report::Section what_was_found(const Diagnosis& d) {
   return section;
 }
 
-report::Section staircase(const Diagnosis& d) {
-  report::Section section{"The staircase of the error", {}};
+report::Section sites_staircase(const Diagnosis& d) {
+  report::Section section{"The sites_staircase of the error", {}};
   report::Table table{{"Diagram", "One sample ahead, fitted", "Simulated"},
                       {},
                       "The simulation begins anew ten times, over the held-out rows if there are any."};
@@ -98,9 +98,9 @@ report::Page any_diagram_page(const Diagnosis& d) {
   report::Page page;
   page.title = d.title, page.subtitle = "What does the diagram lack?";
   page.facts = {{"Diagram", d.diagram}, {"Record", joined(d.experiments, ", ")}};
-  page.sections.push_back({"Answer", {verdict_of(d)}});
+  page.sections.push_back({"Answer", {notice_of(d)}});
   page.sections.push_back(what_was_found(d));
-  page.sections.push_back(staircase(d));
+  page.sections.push_back(sites_staircase(d));
   page.sections.push_back(limits(d));
   return page;
 }

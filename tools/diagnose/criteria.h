@@ -256,6 +256,8 @@ constexpr double most_process_noise = 0.05;
 /// [rms error of simulation] An answer by simulation stands only if it leaves at most this of the other's,
 /// also over the held-out rows; without them chance has a larger part.
 constexpr double better_simulation_held_out = 0.9, better_simulation_without_hold_out = 0.8;
+/// [of the strongest] Directions of a fit that are weaker are left out.
+constexpr double weakest_direction = 1e-7;
 /// [cosine between responses] Beyond it no shape of the catalogue tells two sites apart.
 constexpr double alike_responses = 0.98;
 /// [rows] A trial term keeps its value as long; about as effects change along a motion.

@@ -143,7 +143,7 @@ Experiment with_moved_ports(const Experiment& experiment, const std::vector<Move
   for (auto* list : {&result.drives, &result.compared})
     for (RecordedSignal& signal : *list) signal.port = moved_port(signal.port, moved);
   for (auto& [role, port] : result.roles.ports) port = moved_port(port, moved);
-  for (Column& column : result.data.columns) column.name = moved_port(column.name, moved);
+  for (auto& column : result.data.columns) column.name = moved_port(column.name, moved);
   return result;
 }
 

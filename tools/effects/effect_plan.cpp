@@ -15,12 +15,12 @@ using Kind = Value::Kind;
 /// Steps of the solver within a sample, for blocks with states of their own.
 constexpr int steps_per_sample = 4;
 
-Value text(std::string words, const Place& place = {}) {
+Value text_value(std::string words, const Place& place = {}) {
   Value value;
   value.kind = Kind::text, value.text = std::move(words), value.place = place;
   return value;
 }
-Value number(double n, const Place& place = {}) {
+Value number_value(double n, const Place& place = {}) {
   Value value;
   value.kind = Kind::number, value.number = n, value.place = place;
   return value;
@@ -30,7 +30,7 @@ Value object(std::vector<Value::Member> members, const Place& place = {}) {
   value.kind = Kind::object, value.members = std::move(members), value.place = place;
   return value;
 }
-Value list(std::vector<Value> items) {
+Value list_value(std::vector<Value> items) {
   Value value;
   value.kind = Kind::list, value.items = std::move(items);
   return value;
@@ -53,19 +53,21 @@ class Bench {
   Value diagram(std::optional<int> steps) {
     std::vector<Value::Member> blocks, in;
     for (const std::string& role : roles()) {
-      blocks.push_back({"given_" + role, {}, object({{"type", {}, text("ExternalSignal")}})});
-      in.push_back({role, {}, text("given_" + role + ".y")});
+      blocks.push_back({"given_" + role, {}, object({{"type", {}, text_value("ExternalSignal")}})});
+      in.push_back({role, {}, text_value("given_" + role + ".y")});
     }
     blocks.push_back({"effect", {}, object({{"diagram", {}, inside()}, {"in", {}, object(std::move(in))}})});
     if (steps)
       blocks.push_back({"integral",
                         {},
-                        object({{"type", {}, text("Integrator")},
-                                {"in", {}, object({{"u", {}, text("effect.value")}})}})});
+                        object({{"type", {}, text_value("Integrator")},
+                                {"in", {}, object({{"u", {}, text_value("effect.value")}})}})});
     const double step = sizes_.sample_time / steps.value_or(1);
-    Value solver =
-        object({{"method", {}, text("rk4")}, {"step", {}, number(step)}, {"stop", {}, number(1e6)}});
-    return object({{"loopwright", {}, number(1)}, {"solver", {}, solver}, {"blocks", {}, object(blocks)}});
+    Value solver = object({{"method", {}, text_value("rk4")},
+                           {"step", {}, number_value(step)},
+                           {"stop", {}, number_value(1e6)}});
+    return object(
+        {{"loopwright", {}, number_value(1)}, {"solver", {}, solver}, {"blocks", {}, object(blocks)}});
   }
 
   std::vector<double> starts() const {
@@ -95,19 +97,20 @@ class Bench {
   Value inside() {
     std::vector<Value::Member> inputs;
     for (const std::string& role : roles())
-      inputs.push_back({role, {}, text(unit_in(unit_of_role(role), units_))});
+      inputs.push_back({role, {}, text_value(unit_in(unit_of_role(role), units_))});
     std::vector<Value> terms;
     std::string signs;
-    for (const Attachment& a : effect_.attachments) terms.push_back(text(a.from, a.place)), signs += '+';
-    if (is(To::input)) terms.push_back(text("input")), signs += '-';
-    if (is(To::sensor)) terms.push_back(text("position")), signs += '-';
+    for (const Attachment& a : effect_.attachments)
+      terms.push_back(text_value(a.from, a.place)), signs += '+';
+    if (is(To::input)) terms.push_back(text_value("input")), signs += '-';
+    if (is(To::sensor)) terms.push_back(text_value("position")), signs += '-';
     Value blocks = effect_.blocks;
     blocks.members.push_back({"value_of_effect",
                               {},
-                              object({{"type", {}, text("Sum")},
-                                      {"signs", {}, text(signs)},
-                                      {"in", {}, object({{"terms", {}, list(std::move(terms))}})}})});
-    Value outputs = object({{"value", {}, object({{"source", {}, text("value_of_effect.sum")}})}});
+                              object({{"type", {}, text_value("Sum")},
+                                      {"signs", {}, text_value(signs)},
+                                      {"in", {}, object({{"terms", {}, list_value(std::move(terms))}})}})});
+    Value outputs = object({{"value", {}, object({{"source", {}, text_value("value_of_effect.sum")}})}});
     return object({{"parameters", {}, parameters()},
                    {"inputs", {}, object(std::move(inputs))},
                    {"outputs", {}, std::move(outputs)},
@@ -122,8 +125,9 @@ class Bench {
     return object(std::move(list));
   }
   Value quantity(double value, std::string_view unit, const Place& place) const {
-    return object(
-        {{"value", place, number(value, place)}, {"unit", place, text(unit_in(unit, units_), place)}}, place);
+    return object({{"value", place, number_value(value, place)},
+                   {"unit", place, text_value(unit_in(unit, units_), place)}},
+                  place);
   }
 
   const Effect& effect_;

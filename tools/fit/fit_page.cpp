@@ -10,10 +10,6 @@ namespace {
 
 using Severity = report::Notice::Severity;
 
-std::string shown(double value, const std::string& unit) {
-  const report::Quantity q = report::engineering(value, unit);
-  return q.unit.empty() ? q.value : q.value + " " + q.unit;
-}
 std::string plain_unit(const std::string& unit) { return unit == "1" ? "" : unit; }
 
 bool has_fitted_rows(const FittedSignal& s) { return s.before > 0 || s.after > 0 || s.held_out_before == 0; }
@@ -30,16 +26,16 @@ std::vector<report::Notice> verdict(const Fit& fit) {
     notices.push_back({Severity::good, "The fit settled."});
   for (const FittedSignal& s : fit.signals) {
     if (!has_fitted_rows(s)) continue;
-    std::string text = fmt::format("{}: the error falls from {} to {} rms", s.name, shown(s.before, s.unit),
-                                   shown(s.after, s.unit));
+    std::string text = fmt::format("{}: the error falls from {} to {} rms", s.name,
+                                   report::shown(s.before, s.unit), report::shown(s.after, s.unit));
     if (!(s.after < s.before))
       text = fmt::format("{}: the error does not fall; it is {} rms, and was {}", s.name,
-                         shown(s.after, s.unit), shown(s.before, s.unit));
+                         report::shown(s.after, s.unit), report::shown(s.before, s.unit));
     // Rows that the fit has not seen decide whether the values hold elsewhere.
     const bool is_worse_elsewhere = s.held_out_after > s.held_out_before;
     if (s.held_out_before > 0)
       text += fmt::format(". On held-out rows it {} from {} to {}", is_worse_elsewhere ? "rises" : "falls",
-                          shown(s.held_out_before, s.unit), shown(s.held_out_after, s.unit));
+                          report::shown(s.held_out_before, s.unit), report::shown(s.held_out_after, s.unit));
     const bool is_bad = is_worse_elsewhere || !(s.after <= s.before);
     notices.push_back({is_bad ? Severity::warning : Severity::note, text + "."});
   }
@@ -52,10 +48,10 @@ report::Table parameter_table(const std::vector<FittedParameter>& parameters, st
       {"Parameter", "Before", "Fitted", "Change (%)", "95 % interval, from", "to"}, {}, std::move(caption)};
   for (const FittedParameter& p : parameters) {
     const double change = 100 * (p.value - p.start) / std::abs(p.start);
-    std::vector<std::string> row{p.path, shown(p.start, p.unit), shown(p.value, p.unit),
+    std::vector<std::string> row{p.path, report::shown(p.start, p.unit), report::shown(p.value, p.unit),
                                  std::isfinite(change) ? fmt::format("{:+.3g}", change) : "–"};
     if (p.is_determined)
-      row.insert(row.end(), {shown(p.low, p.unit), shown(p.high, p.unit)});
+      row.insert(row.end(), {report::shown(p.low, p.unit), report::shown(p.high, p.unit)});
     else
       row.push_back("not determined by these records");
     table.rows.push_back(std::move(row));
@@ -108,9 +104,9 @@ report::Section record_section(const std::string& title, const FittedRecord& rec
     errors.y = {"Error", plain_unit(now.unit), false};
     errors.caption = "Simulated minus measured";
     if (const FittedSignal& own = record.signals[s]; own.held_out_before > 0 && !record.is_held_out)
-      errors.caption +=
-          fmt::format("; held-out rows at the end: {} rms before, {} after",
-                      shown(own.held_out_before, own.unit), shown(own.held_out_after, own.unit));
+      errors.caption += fmt::format("; held-out rows at the end: {} rms before, {} after",
+                                    report::shown(own.held_out_before, own.unit),
+                                    report::shown(own.held_out_after, own.unit));
     errors.series = {{"before", before.time, old.error}, {"after", after.time, now.error}};
     for (report::Plot* plot : {&curves, &errors}) {
       for (report::Series& series : plot->series) series.x.resize(std::min(series.x.size(), series.y.size()));
@@ -136,7 +132,7 @@ report::Page fit_page(const Fit& fit, const std::string& title) {
     if (!has_fitted_rows(s)) continue;
     const report::Quantity q = report::engineering(s.after, s.unit);
     numbers.numbers.push_back(
-        {"Error of " + s.name + ", RMS", q.value, q.unit, "was " + shown(s.before, s.unit)});
+        {"Error of " + s.name + ", RMS", q.value, q.unit, "was " + report::shown(s.before, s.unit)});
   }
   outcome.items.push_back(std::move(numbers));
   page.sections.push_back(std::move(outcome));

@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-using Kind = LinearizationNote::Kind;
+using NoteKind = LinearizationNote::Kind;
 
 /// Blocks that remember more samples than this are rejected: matrices are dense.
 constexpr size_t most_states = 2000;
@@ -46,7 +46,7 @@ class BlockSlopes {
   Index rows() const { return Index(linear_.outputs.size()); }
   Index columns() const { return Index(linear_.inputs.size()); }
 
-  void note(Kind kind, std::string text, double size = 0) {
+  void note(NoteKind kind, std::string text, double size = 0) {
     notes_.push_back({kind, block_.path, std::move(text), size});
   }
 
@@ -78,12 +78,13 @@ class BlockSlopes {
     for (size_t row = 0; row < size; ++row) {
       into(Index(row), column) = std::isfinite(found.value[row]) ? found.value[row] : 0.0;
       if (found.has_corner(row))
-        note(Kind::corner, fmt::format("stands on a corner with respect to {}: slope {:.4g} below and {:.4g} "
-                                       "above, {:.4g} is taken",
-                                       name(), found.left[row], found.right[row], found.value[row]));
+        note(NoteKind::corner,
+             fmt::format("stands on a corner with respect to {}: slope {:.4g} below and {:.4g} "
+                         "above, {:.4g} is taken",
+                         name(), found.left[row], found.right[row], found.value[row]));
       else if (!(found.error[row] <= 1e-6 * std::abs(found.value[row]) + 1e-9 * found.size[row] + 1e-12))
-        note(Kind::inaccurate, fmt::format("the slope with respect to {} is uncertain: {:.6g} ± {:.1g}",
-                                           name(), found.value[row], found.error[row]));
+        note(NoteKind::inaccurate, fmt::format("the slope with respect to {} is uncertain: {:.6g} ± {:.1g}",
+                                               name(), found.value[row], found.error[row]));
     }
   }
 
@@ -117,7 +118,7 @@ class BlockSlopes {
         if (linear_.D(o, i) == 0 && is_fed(o, i) && plan_.source_of(linear_.inputs[size_t(i)]).first >= 0)
           unheard += (unheard.empty() ? "" : " and ") + input_name(i);
       if (!unheard.empty())
-        note(Kind::flat, fmt::format("{} does not follow {} here", output_name(o), unheard));
+        note(NoteKind::flat, fmt::format("{} does not follow {} here", output_name(o), unheard));
     }
   }
 
@@ -127,7 +128,7 @@ class BlockSlopes {
       const Staircase stairs = find_staircase(bench_, size_t(i));
       if (stairs.slope.empty()) continue;
       for (Index o = 0; o < rows(); ++o) linear_.D(o, i) = stairs.slope[size_t(o)];
-      note(Kind::staircase,
+      note(NoteKind::staircase,
            fmt::format("steps {:.4g} wide in {}, taken as a straight line of slope {:.6g}", stairs.width,
                        input_name(i), linear_.D.col(i).cwiseAbs().maxCoeff()),
            stairs.width * linear_.D.col(i).cwiseAbs().maxCoeff());
@@ -136,8 +137,8 @@ class BlockSlopes {
   }
   void note_held() {
     for (const LinearizationNote& other : notes_)
-      if (other.block == block_.path && other.kind == Kind::staircase) return;
-    note(Kind::held, fmt::format("{} keeps the mode that it is in", block_.type->info.type));
+      if (other.block == block_.path && other.kind == NoteKind::staircase) return;
+    note(NoteKind::held, fmt::format("{} keeps the mode that it is in", block_.type->info.type));
   }
 
   void find_continuous() {
@@ -171,8 +172,8 @@ class BlockSlopes {
   void find_sampled() {
     linear_.kind = LinearBlock::Kind::sampled;
     if (bench_.remembered().size() > most_states) {
-      note(Kind::inaccurate, fmt::format("remembers {} numbers, more than {}: its outputs are held",
-                                         bench_.remembered().size(), most_states));
+      note(NoteKind::inaccurate, fmt::format("remembers {} numbers, more than {}: its outputs are held",
+                                             bench_.remembered().size(), most_states));
       linear_.kind = LinearBlock::Kind::algebraic;
       return;
     }

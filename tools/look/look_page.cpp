@@ -7,11 +7,9 @@
 namespace loopwright {
 namespace {
 
-std::string shown(double value, const std::string& unit) {
-  const report::Quantity q = report::engineering(value, unit);
-  return q.unit.empty() ? q.value : q.value + " " + q.unit;
+std::string or_dash(double value, const std::string& unit) {
+  return value > 0 ? report::shown(value, unit) : "–";
 }
-std::string or_dash(double value, const std::string& unit) { return value > 0 ? shown(value, unit) : "–"; }
 
 /// With a capital and a full stop.
 std::string sentence(std::string text) {
@@ -38,8 +36,9 @@ report::Table table_of(const Look& look) {
   report::Table table;
   table.head = {"Column", "Least", "Greatest", "Mean", "Deviation", "Resolution", "Noise", "Repeats"};
   for (const LookedColumn& c : look.columns)
-    table.rows.push_back({c.name, shown(c.least, c.unit), shown(c.greatest, c.unit), shown(c.mean, c.unit),
-                          shown(c.deviation, c.unit), or_dash(c.resolution, c.unit), or_dash(c.noise, c.unit),
+    table.rows.push_back({c.name, report::shown(c.least, c.unit), report::shown(c.greatest, c.unit),
+                          report::shown(c.mean, c.unit), report::shown(c.deviation, c.unit),
+                          or_dash(c.resolution, c.unit), or_dash(c.noise, c.unit),
                           or_dash(c.repeats_after, "s")});
   table.caption =
       "Resolution: the height of the steps in which a column changes. Noise: the standard deviation of what "
@@ -56,7 +55,7 @@ report::Section time_section(const LookedTime& time) {
     table.rows.push_back({std::move(name), std::move(value)});
   };
   row("Column", time.column + (time.unit.empty() ? ", no unit: s" : " [" + time.unit + "]"));
-  row("From, to", shown(time.at.front(), "s") + " to " + shown(time.at.back(), "s"));
+  row("From, to", report::shown(time.at.front(), "s") + " to " + report::shown(time.at.back(), "s"));
   row("A row every", or_dash(time.sample_time, "s"));
   row("Even", time.is_even ? "yes" : "no");
   row("Missing samples", fmt::format("{}", time.missing));
@@ -74,7 +73,7 @@ report::Section time_section(const LookedTime& time) {
     step.x.push_back(time.at[i - 1]), step.y.push_back(time.at[i] - time.at[i - 1]);
   plot.series.push_back(std::move(step));
   plot.caption = fmt::format("The time from each row to the next; {} on an even record without gaps.",
-                             shown(time.sample_time, "s"));
+                             report::shown(time.sample_time, "s"));
   section.items.push_back(std::move(plot));
   return section;
 }
@@ -102,8 +101,8 @@ report::Section plots(const Look& look) {
       for (size_t i = 0; i < look.rows; ++i) series.x.push_back(double(i + 1));
     }
     plot.series.push_back(std::move(series));
-    plot.caption =
-        fmt::format("{} between {} and {}.", c.name, shown(c.least, c.unit), shown(c.greatest, c.unit));
+    plot.caption = fmt::format("{} between {} and {}.", c.name, report::shown(c.least, c.unit),
+                               report::shown(c.greatest, c.unit));
     if (!c.outliers.empty()) {
       report::Series points{"out of line", {}, {}, report::Series::Shape::points};
       for (size_t row : c.outliers)

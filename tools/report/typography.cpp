@@ -182,4 +182,9 @@ Quantity engineering(double value, std::string_view unit, int digits) {
           std::string(prefixes[size_t(step + 4)]) + readable_unit(unit)};
 }
 
+std::string shown(double value, std::string_view unit, int digits) {
+  const Quantity q = engineering(value, unit, digits);
+  return q.unit.empty() ? q.value : q.value + " " + q.unit;
+}
+
 }  // namespace loopwright::report

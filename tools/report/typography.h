@@ -37,4 +37,7 @@ struct Quantity {
 };
 Quantity engineering(double value, std::string_view unit, int digits = 4);
 
+/// The same as one text: "1.789 µm".
+std::string shown(double value, std::string_view unit, int digits = 4);
+
 }  // namespace loopwright::report

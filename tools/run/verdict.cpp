@@ -10,11 +10,7 @@ namespace {
 using report::Notice;
 using Severity = Notice::Severity;
 
-std::string shown(double value, const std::string& unit) {
-  const report::Quantity q = report::engineering(value, unit, 3);
-  return q.unit.empty() ? q.value : q.value + " " + q.unit;
-}
-
+std::string shown(double value, const std::string& unit) { return report::shown(value, unit, 3); }
 std::string percent(double share) { return fmt::format("{:.3g} %", 100 * share); }
 
 /// "stage.position follows reference.position (guessed …)": named once, in front of what is said about it.

@@ -60,8 +60,6 @@ Json block_schema(const BlockInfo& info) {
   return schema;
 }
 
-Json reference(const std::string& name) { return {{"$ref", "#/$defs/" + name}}; }
-
 Json described(Json schema, const char* sentence) {
   schema["description"] = sentence;
   return schema;

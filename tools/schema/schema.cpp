@@ -17,13 +17,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Kind {
+struct KindOfFile {
   SchemaKind names;
   FileKind kind;
   FileShape (*shape)();  ///< null: of a diagram
 };
 
-constexpr std::array<Kind, 7> kinds = {{
+constexpr std::array<KindOfFile, 7> kinds = {{
     {{"diagram", "diagram.schema.json", ""}, FileKind::diagram, nullptr},
     {{"experiment", "experiment.schema.json", "*.experiment.json"}, FileKind::experiment, &experiment_shape},
     {{"sweep", "sweep.schema.json", "*.sweep.json"}, FileKind::sweep, &sweep_shape},
@@ -40,14 +40,14 @@ static_assert(kinds.size() == size_t(FileKind::model),
 const std::vector<SchemaKind>& schema_kinds() {
   static const std::vector<SchemaKind> names = [] {
     std::vector<SchemaKind> list;
-    for (const Kind& kind : kinds) list.push_back(kind.names);
+    for (const KindOfFile& kind : kinds) list.push_back(kind.names);
     return list;
   }();
   return names;
 }
 
 std::string schema_of(std::string_view name) {
-  for (const Kind& kind : kinds) {
+  for (const KindOfFile& kind : kinds) {
     if (kind.names.name != name) continue;
     const Json schema = kind.shape ? to_schema(kind.shape()) : diagram_file_schema();
     const std::string article(with_article(kind.kind));  // "an experiment"

@@ -8,8 +8,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Kind = FileShape::Kind;
 
-Json reference(const std::string& name) { return {{"$ref", "#/$defs/" + name}}; }
-
 Json number(const FileShape& shape) {
   Json schema = {{"type", shape.kind == Kind::whole ? "integer" : "number"}};
   if (std::isfinite(shape.low)) schema[shape.low_is_open ? "exclusiveMinimum" : "minimum"] = shape.low;
@@ -101,6 +99,8 @@ void collect_references(const Json& schema, const Json& definitions, std::set<st
 }
 
 }  // namespace
+
+Json reference(const std::string& name) { return {{"$ref", "#/$defs/" + name}}; }
 
 Json to_schema(const FileShape& shape) {
   Json schema = shape.is_evaluated ? evaluated(shape) : plain(shape);

@@ -10,6 +10,9 @@ namespace loopwright {
 /// "#/$defs/block".
 nlohmann::ordered_json to_schema(const FileShape& shape);
 
+/// Refers to a definition of the same schema.
+nlohmann::ordered_json reference(const std::string& name);
+
 /// Definitions of how numbers may be written.
 nlohmann::ordered_json common_definitions();
 

@@ -10,11 +10,6 @@ namespace {
 
 using Severity = report::Notice::Severity;
 
-std::string shown(double value, const std::string& unit) {
-  const report::Quantity q = report::engineering(value, unit);
-  return q.unit.empty() ? q.value : q.value + " " + q.unit;
-}
-
 report::Notice verdict(const StabilityReport& r) {
   if (!r.linear_part_is_stable)
     return {Severity::error, "The linear part of the loop is unstable: no certificate can hold."};
@@ -135,9 +130,9 @@ report::Section kicks(const StabilityReport& r) {
   plot.title = "Difference that a kick makes";
   plot.x = {"Time", "s", false}, plot.y = {"Position", r.position_unit == "1" ? "" : r.position_unit, false};
   for (const KickTest& kick : r.kicks) {
-    table.rows.push_back({fmt::format("{:.4g}", kick.alpha), shown(kick.peak, r.position_unit),
-                          shown(kick.rest, r.position_unit), shown(kick.tolerance, r.position_unit),
-                          kick.decays ? "yes" : "no"});
+    table.rows.push_back({fmt::format("{:.4g}", kick.alpha), report::shown(kick.peak, r.position_unit),
+                          report::shown(kick.rest, r.position_unit),
+                          report::shown(kick.tolerance, r.position_unit), kick.decays ? "yes" : "no"});
     plot.series.push_back(around_kick(kick));
   }
   table.caption = "Two runs each, one with a pulse on the plant's command.";

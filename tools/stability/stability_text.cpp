@@ -10,11 +10,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string shown(double value, const std::string& unit) {
-  const report::Quantity q = report::engineering(value, unit);
-  return q.unit.empty() ? q.value : q.value + " " + q.unit;
-}
-
 std::string alpha_text(double alpha) { return std::isfinite(alpha) ? fmt::format("{:.4g}", alpha) : "any"; }
 
 std::string certificate_text(const char* name, const Certificate& c, bool has_learned) {
@@ -110,7 +105,7 @@ std::string to_text(const StabilityReport& r) {
                       !r.linear_part_is_stable ? "does not hold, the linear part is unstable"
                       : has_learned
                           ? "bounded for every alpha; the learned block moves the position by at most " +
-                                shown(r.displacement, r.position_unit)
+                                report::shown(r.displacement, r.position_unit)
                           : "bounded, the linear part is stable");
   text += certificate_text("peak to peak", r.peak, has_learned) +
           certificate_text("energy", r.energy, has_learned);
@@ -131,7 +126,7 @@ std::string to_text(const StabilityReport& r) {
   }
   for (const KickTest& kick : r.kicks)
     text += fmt::format("kick at alpha {:.4g}: moves {}, at the end {}: {}\n", kick.alpha,
-                        shown(kick.peak, r.position_unit), shown(kick.rest, r.position_unit),
+                        report::shown(kick.peak, r.position_unit), report::shown(kick.rest, r.position_unit),
                         kick.decays ? "dies out" : "DOES NOT DIE OUT");
   for (const std::string& warning : r.warnings) text += "warning: " + warning + "\n";
   return text;

@@ -10,8 +10,6 @@
 namespace loopwright {
 namespace {
 
-constexpr int most_bins = 12;
-
 /// By nearest rank; sorts the values.
 double quantile(std::vector<double>& values, double share) {
   if (values.empty()) return std::nan("");

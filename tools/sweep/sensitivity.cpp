@@ -7,8 +7,6 @@
 namespace loopwright {
 namespace {
 
-constexpr int most_bins = 12;
-
 /// Sums over runs with a finite metric.
 struct Moments {
   double n = 0, sum = 0, squares = 0;

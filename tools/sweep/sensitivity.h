@@ -5,6 +5,9 @@
 
 namespace loopwright {
 
+/// Groups of the values of an axis that has many.
+inline constexpr int most_bins = 12;
+
 /// Values of an axis grouped together: each value separately, or quantiles of many values.
 struct Bin {
   double from = 0, to = 0;  ///< smallest and largest value, as written in the sweep file

@@ -13,8 +13,6 @@
 namespace loopwright {
 namespace {
 
-constexpr double most_runs = 1e9;
-
 /// Key by key: the permitted contents of a key and the message for invalid contents are in the same place.
 class Loader {
  public:

@@ -34,7 +34,7 @@ double quantile(const std::vector<double>& sorted, double share) {
   return sorted.empty() ? std::nan("")
                         : sorted[whole_index(std::round(share * double(sorted.size() - 1)), sorted.size())];
 }
-std::string text(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : "—"; }
+std::string readable(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : "—"; }
 
 bool is_within(const Metric& metric, double value) { return value >= metric.least && value <= metric.most; }
 
@@ -62,9 +62,9 @@ report::Table metrics_table(const SweepPlan& plan, const Recording& table) {
     const bool is_limited = std::isfinite(metric.least) || std::isfinite(metric.most);
     shown_table.rows.push_back(
         {metric.name, report::readable_unit(unit_of(plan, m)), fmt::format("{}", values.size()),
-         text(values.empty() ? std::nan("") : sum / double(values.size())), text(quantile(values, 0)),
-         text(quantile(values, 0.05)), text(quantile(values, 0.5)), text(quantile(values, 0.95)),
-         text(quantile(values, 1)),
+         readable(values.empty() ? std::nan("") : sum / double(values.size())), readable(quantile(values, 0)),
+         readable(quantile(values, 0.05)), readable(quantile(values, 0.5)), readable(quantile(values, 0.95)),
+         readable(quantile(values, 1)),
          is_limited
              ? fmt::format("{:.2f} %", 100.0 * double(within) / double(std::max<size_t>(1, table.rows())))
              : ""});
@@ -144,8 +144,8 @@ report::Table indices(const SweepPlan& plan, const std::vector<AxisEffect>& effe
                                       : effect.first_order_error;
     table.rows.push_back({effect.axis, index_text(first, error),
                           effect.total ? index_text(*effect.total, effect.total_error) : "",
-                          text(effect.bins.empty() ? std::nan("") : effect.bins.front().mean),
-                          text(effect.bins.empty() ? std::nan("") : effect.bins.back().mean)});
+                          readable(effect.bins.empty() ? std::nan("") : effect.bins.front().mean),
+                          readable(effect.bins.empty() ? std::nan("") : effect.bins.back().mean)});
   }
   table.caption = fmt::format(
       "Share of the variance of {} that each axis explains by itself, and with all interactions{}; ± is "
@@ -176,7 +176,7 @@ report::Section worst_cases(const SweepPlan& plan, const Recording& table, const
     section.items.push_back(worst_in_distribution(plan, table, m, worst, traces));
     for (const size_t row : worst) {
       const int64_t run = int64_t(table.columns[0].values[row]);
-      std::vector<std::string> cells{fmt::format("{}", run), text(metric_column(plan, table, m)[row])};
+      std::vector<std::string> cells{fmt::format("{}", run), readable(metric_column(plan, table, m)[row])};
       for (size_t a = 0; a < axes.size(); ++a)
         cells.push_back(shown(axes[a], table.columns[1 + a].values[row]));
       rows.rows.push_back(std::move(cells));

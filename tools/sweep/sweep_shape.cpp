@@ -6,7 +6,7 @@ using namespace shapes;
 
 namespace {
 
-constexpr double most_values = 1e6, most_runs = 1e9, most_kept = 1e4;
+constexpr double most_values = 1e6, most_kept = 1e4;
 constexpr double largest_seed = 9007199254740992.0;  // 2^53: every integer up to this is a double
 
 FileShape alternatives_of_axis() {

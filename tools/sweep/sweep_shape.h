@@ -5,6 +5,9 @@
 
 namespace loopwright {
 
+/// More runs are a mistake in a file.
+inline constexpr double most_runs = 1e9;
+
 FileShape sweep_shape();
 /// One alternative for each way in which an axis varies.
 FileShape axis_shape();

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include "tests/blocks/frequency_response.h"
 
-namespace loopwright {
+namespace loopwright::derivative_test {
 namespace {
 
 TEST(Derivative, AnswersEveryFrequencyAsItsFormulaSays) {
@@ -25,4 +25,4 @@ TEST(Derivative, OfAJumpIsAPeakThatDecays) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::derivative_test

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::integrator_test {
 namespace {
 
 TEST(Integrator, AddsUpItsInputFromTheInitialValue) {
@@ -86,4 +86,4 @@ TEST(Integrator, RefusesAnInitialValueOutsideItsLimits) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::integrator_test

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include "tests/blocks/frequency_response.h"
 
-namespace loopwright {
+namespace loopwright::low_pass_test {
 namespace {
 
 std::string settings(int order, const char* shape) {
@@ -68,4 +68,4 @@ TEST(LowPass, RefusesOrderZero) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::low_pass_test

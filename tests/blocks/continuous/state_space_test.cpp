@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::state_space_test {
 namespace {
 
 constexpr auto oscillator = R"({"A": [[0, 1], [-4, 0]], "B": [[0, 0], [1, 2]], "C": [[1, 0], [0, 1], [1, 1]],
@@ -55,4 +55,4 @@ TEST(StateSpace, SaysWhichMatrixDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::state_space_test

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include "tests/blocks/frequency_response.h"
 
-namespace loopwright {
+namespace loopwright::transfer_function_test {
 namespace {
 
 Complex ratio(std::vector<double> numerator, std::vector<double> denominator, Complex s) {
@@ -88,4 +88,4 @@ TEST(TransferFunction, RefusesWhatIsNotProper) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::transfer_function_test

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::transport_delay_test {
 namespace {
 
 /// Runs over given steps like a solver: outputs at the end of the step, then its acceptance.
@@ -143,4 +143,4 @@ TEST(TransportDelay, NeedsNoPresentInput) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::transport_delay_test

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include "tests/blocks/frequency_response.h"
 
-namespace loopwright {
+namespace loopwright::compensation_filter_test {
 namespace {
 
 constexpr double T = 0.001;
@@ -40,4 +40,4 @@ TEST(CompensationFilter, NeedsNoPresentInput) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::compensation_filter_test

@@ -2,7 +2,7 @@
 #include "tests/blocks/frequency_response.h"
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::continuous_pi_controller_test {
 namespace {
 
 TEST(ContinuousPiController, HasItsTransferFunction) {
@@ -82,4 +82,4 @@ TEST(ContinuousPiController, RefusesWhatCannotWork) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::continuous_pi_controller_test

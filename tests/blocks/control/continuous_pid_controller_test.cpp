@@ -2,7 +2,7 @@
 #include "tests/blocks/frequency_response.h"
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::continuous_pid_controller_test {
 namespace {
 
 const char* const gains = R"({"Kp": 3, "Ki": 7, "Kd": 0.4, "derivative_pole": 60, "b": 0.5, "c": 0.2})";
@@ -63,4 +63,4 @@ TEST(ContinuousPidController, RefusesWhatCannotWork) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::continuous_pid_controller_test

@@ -2,7 +2,7 @@
 #include <functional>
 #include "tests/blocks/frequency_response.h"
 
-namespace loopwright {
+namespace loopwright::disturbance_observer_test {
 namespace {
 
 constexpr double T = 0.001, mass = 0.2621;
@@ -162,4 +162,4 @@ TEST(ContinuousDisturbanceObserver, AnswersEveryFrequencyAsItsFormulaSays) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::disturbance_observer_test

@@ -2,7 +2,7 @@
 #include <cmath>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::kalman_test {
 namespace {
 
 using testing::HasSubstr;
@@ -87,4 +87,4 @@ TEST(Kalman, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::kalman_test

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/frequency_response.h"
 
-namespace loopwright {
+namespace loopwright::lead_lag_test {
 namespace {
 
 TEST(LeadLag, IsTheTustinImageOfItsFormula) {
@@ -46,4 +46,4 @@ TEST(ContinuousLeadLag, StartsAtRestWithItsInput) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::lead_lag_test

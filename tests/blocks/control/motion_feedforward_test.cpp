@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::motion_feedforward_test {
 namespace {
 
 TEST(MotionFeedforward, IsWhatTheNominalMassNeeds) {
@@ -37,4 +37,4 @@ TEST(MotionFeedforward, HoldsTheDirectionInsideAStepAndCrossesWhereItChanges) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::motion_feedforward_test

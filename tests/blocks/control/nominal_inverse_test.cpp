@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include "tests/blocks/frequency_response.h"
 
-namespace loopwright {
+namespace loopwright::nominal_inverse_test {
 namespace {
 
 constexpr double T = 0.001;
@@ -35,4 +35,4 @@ TEST(NominalInverse, AtRestAtItsInitialPositionGivesNothing) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::nominal_inverse_test

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include "tests/blocks/frequency_response.h"
 
-namespace loopwright {
+namespace loopwright::notch_test {
 namespace {
 
 constexpr double T = 0.001;
@@ -57,4 +57,4 @@ TEST(ContinuousNotch, StartsAtRestWithItsInput) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::notch_test

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include "tests/blocks/frequency_response.h"
 
-namespace loopwright {
+namespace loopwright::pd_controller_test {
 namespace {
 
 constexpr auto settings = R"({"Kp": 2000, "Kd": 30, "derivative_pole": 1000})";
@@ -62,4 +62,4 @@ TEST(ContinuousPdController, AnswersEveryFrequencyAsItsFormulaSays) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::pd_controller_test

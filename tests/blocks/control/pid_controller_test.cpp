@@ -2,7 +2,7 @@
 #include "tests/blocks/frequency_response.h"
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::pid_controller_test {
 namespace {
 
 constexpr double T = 0.01;
@@ -142,4 +142,4 @@ TEST(PidController, RefusesWhatCannotWork) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::pid_controller_test

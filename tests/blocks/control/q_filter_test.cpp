@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include "tests/blocks/frequency_response.h"
 
-namespace loopwright {
+namespace loopwright::q_filter_test {
 namespace {
 
 constexpr double T = 0.001, cutoff = 2 * pi * 40;
@@ -39,4 +39,4 @@ TEST(QFilter, RefusesDegreeFive) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::q_filter_test

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::rate_limiter_test {
 namespace {
 
 TEST(RateLimiter, MovesNoFasterThanItsLimits) {
@@ -22,4 +22,4 @@ TEST(RateLimiter, RefusesNegativeSpeeds) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::rate_limiter_test

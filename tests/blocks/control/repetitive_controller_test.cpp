@@ -3,7 +3,7 @@
 #include <deque>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::repetitive_controller_test {
 namespace {
 
 TEST(RepetitiveController, FollowsItsDifferenceEquation) {
@@ -70,4 +70,4 @@ TEST(RepetitiveController, RefusesALeadOfAPeriod) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::repetitive_controller_test

@@ -2,7 +2,7 @@
 #include <cmath>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::scheduled_pid_controller_test {
 namespace {
 
 constexpr double T = 0.01;
@@ -94,4 +94,4 @@ TEST(ScheduledPidController, RefusesLimitsWithoutRoom) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::scheduled_pid_controller_test

@@ -3,7 +3,7 @@
 #include <vector>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::smith_predictor_test {
 namespace {
 
 TEST(SmithPredictor, SeesThePlantWithoutItsDeadTimeAndWhatDisturbsIt) {
@@ -48,4 +48,4 @@ TEST(SmithPredictor, RefusesAModelThatActsAtOnce) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::smith_predictor_test

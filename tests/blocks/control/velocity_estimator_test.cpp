@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include "tests/blocks/frequency_response.h"
 
-namespace loopwright {
+namespace loopwright::velocity_estimator_test {
 namespace {
 
 constexpr double T = 0.001;
@@ -43,4 +43,4 @@ TEST(VelocityEstimator, RefusesWhatItsMethodDoesNotUse) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::velocity_estimator_test

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::delay_test {
 namespace {
 
 TEST(Delay, ShowsTheSignalThatManySamplesAgo) {
@@ -21,4 +21,4 @@ TEST(Delay, RefusesNoSamples) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::delay_test

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::discrete_derivative_test {
 namespace {
 
 TEST(DiscreteDerivative, IsTheDifferenceOverTheSampleTime) {
@@ -15,4 +15,4 @@ TEST(DiscreteDerivative, IsTheDifferenceOverTheSampleTime) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::discrete_derivative_test

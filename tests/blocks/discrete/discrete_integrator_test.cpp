@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::discrete_integrator_test {
 namespace {
 
 constexpr double sample_time = 0.1;
@@ -77,4 +77,4 @@ TEST(DiscreteIntegrator, RefusesAnInitialValueOutsideItsLimits) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::discrete_integrator_test

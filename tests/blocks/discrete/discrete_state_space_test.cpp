@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::discrete_state_space_test {
 namespace {
 
 TEST(DiscreteStateSpace, UpdatesAllStatesFromTheOldOnes) {
@@ -42,4 +42,4 @@ TEST(DiscreteStateSpace, SaysWhichMatrixDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::discrete_state_space_test

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include "tests/blocks/frequency_response.h"
 
-namespace loopwright {
+namespace loopwright::discrete_transfer_function_test {
 namespace {
 
 TEST(DiscreteTransferFunction, FollowsItsDifferenceEquation) {
@@ -50,4 +50,4 @@ TEST(DiscreteTransferFunction, RefusesEmptyListsAndAMissingOutput) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::discrete_transfer_function_test

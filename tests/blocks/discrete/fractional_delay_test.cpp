@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-using namespace loopwright;
+namespace loopwright::fractional_delay_test {
 
 TEST(FractionalDelay, HoldsTheMeanOfTheLateStaircase) {
   BlockUnderTest late("FractionalDelay", R"({"delay": 0.0225, "initial": -1})", 0.01);
@@ -57,3 +57,5 @@ TEST(FractionalDelay, RefusesADelayThatItHasNoRoomFor) {
   late.sample("u", 1, "y");
   EXPECT_NE(late.fault(), "");
 }
+
+}  // namespace loopwright::fractional_delay_test

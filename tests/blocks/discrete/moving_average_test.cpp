@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::moving_average_test {
 namespace {
 
 TEST(MovingAverage, IsTheMeanOfTheLastSamples) {
@@ -43,4 +43,4 @@ TEST(MovingAverage, DoesNotDriftOverAMillionSamples) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::moving_average_test

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::unit_delay_test {
 namespace {
 
 TEST(UnitDelay, ShowsTheSampleBefore) {
@@ -27,4 +27,4 @@ TEST(UnitDelay, StartsAnewWithItsInitialValue) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::unit_delay_test

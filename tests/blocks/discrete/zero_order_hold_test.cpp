@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::zero_order_hold_test {
 namespace {
 
 TEST(ZeroOrderHold, TakesThePresentSample) {
@@ -14,4 +14,4 @@ TEST(ZeroOrderHold, MustBeGivenASampleTime) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::zero_order_hold_test

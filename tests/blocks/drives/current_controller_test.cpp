@@ -2,7 +2,7 @@
 #include <cmath>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::current_controller_test {
 namespace {
 
 constexpr double R = 0.8, L_d = 0.003, L_q = 0.005, flux = 0.06, bandwidth = 1000, sample_time = 1e-5;
@@ -112,4 +112,4 @@ TEST(CurrentController, AtRestWithoutVoltageItIsFinite) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::current_controller_test

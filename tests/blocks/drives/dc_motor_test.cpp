@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::dc_motor_test {
 namespace {
 
 TEST(DcMotor, FollowsTheEquationOfItsWinding) {
@@ -37,4 +37,4 @@ TEST(DcMotor, NeedsAConstant) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::dc_motor_test

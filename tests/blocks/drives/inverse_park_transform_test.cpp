@@ -2,7 +2,7 @@
 #include <cmath>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::inverse_park_transform_test {
 namespace {
 
 TEST(InverseParkTransform, GivesThreePhasesAThirdOfATurnApart) {
@@ -24,4 +24,4 @@ TEST(InverseParkTransform, GivesThreePhasesAThirdOfATurnApart) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::inverse_park_transform_test

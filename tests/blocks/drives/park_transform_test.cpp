@@ -2,7 +2,7 @@
 #include <cmath>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::park_transform_test {
 namespace {
 
 TEST(ParkTransform, AmplitudesAreKept) {
@@ -21,4 +21,4 @@ TEST(ParkTransform, AmplitudesAreKept) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::park_transform_test

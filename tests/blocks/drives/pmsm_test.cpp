@@ -2,7 +2,7 @@
 #include <cmath>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::pmsm_test {
 namespace {
 
 constexpr const char* motor =
@@ -39,4 +39,4 @@ TEST(Pmsm, PowerAtTheTerminalsIsShaftPowerHeatAndStoredEnergy) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::pmsm_test

@@ -2,7 +2,7 @@
 #include <cmath>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::pwm_test {
 namespace {
 
 constexpr double frequency = 1000, dead_time = 20e-6;
@@ -82,4 +82,4 @@ TEST(Pwm, RefusesWhatCannotWork) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::pwm_test

@@ -2,7 +2,7 @@
 #include <cmath>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::thermal_node_test {
 namespace {
 
 TEST(ThermalNode, WarmsExponentiallyTowardsItsSteadyTemperature) {
@@ -32,4 +32,4 @@ TEST(ThermalNode, CoolsToSurroundingsThatAreNotWired) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::thermal_node_test

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-using namespace loopwright;
+namespace loopwright::external_signal_test {
 
 TEST(ExternalSignal, FollowsTheParabolaThatItIsSet) {
   BlockUnderTest block("ExternalSignal", R"({"value": 3, "slope": -2, "bend": 0.5, "since": 1})");
@@ -19,3 +19,5 @@ TEST(ExternalSignal, IsZeroUntilItIsSet) {
   block.evaluate(3);
   EXPECT_EQ(block.output("y"), 4);
 }
+
+}  // namespace loopwright::external_signal_test

@@ -5,7 +5,7 @@
 #include "tests/blocks/block_under_test.h"
 #include "where.h"
 
-namespace loopwright {
+namespace loopwright::hardware_io_test {
 namespace {
 
 const std::string device = R"("device": ")" LOOPWRIGHT_SOURCE R"(/hw/devices/qpid_e.json")";
@@ -45,4 +45,4 @@ TEST(HardwareIo, NamesTheChannelsThatTheDeviceHas) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::hardware_io_test

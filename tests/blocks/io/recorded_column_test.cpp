@@ -4,7 +4,7 @@
 #include <fstream>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::recorded_column_test {
 
 namespace {
 
@@ -107,4 +107,4 @@ TEST(RecordedColumn, NamesWhatIsWrongWithFileColumnTimeAndUnit) {
   EXPECT_NE(missing.problems().text().find("/no/such.csv"), std::string::npos) << missing.problems().text();
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::recorded_column_test

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::recorded_units_test {
 namespace {
 
 const char* const amperes = "t,i [A],f,w [Hz]\n0,1,2,3\n1,1,2,3\n";
@@ -49,4 +49,4 @@ TEST(RecordedUnits, MillisecondsArePlayedInMilliseconds) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::recorded_units_test

@@ -3,7 +3,7 @@
 #include "tests/blocks/block_under_test.h"
 #include "tests/blocks/learning/trained_model.h"
 
-namespace loopwright {
+namespace loopwright::gpr_test {
 namespace {
 
 std::string settings(const ModelFolder& folder, const std::string& more = "") {
@@ -113,4 +113,4 @@ TEST(GprDeviation, GrowsWhereNothingWasLearned) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::gpr_test

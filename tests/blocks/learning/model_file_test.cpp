@@ -5,7 +5,7 @@
 #include <sstream>
 #include "tests/blocks/learning/trained_model.h"
 
-namespace loopwright {
+namespace loopwright::model_file_test {
 namespace {
 
 using testing::AllOf;
@@ -78,4 +78,4 @@ TEST(ModelFile, WritesTheSameBytesAgain) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::model_file_test

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/learning/trained_model.h"
 
-namespace loopwright {
+namespace loopwright::ready_model_test {
 namespace {
 
 std::shared_ptr<const ReadyModel> ready(const std::string& path) {
@@ -35,4 +35,4 @@ TEST(ReadyModel, IsReadAnewWhenItsFileHasChanged) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::ready_model_test

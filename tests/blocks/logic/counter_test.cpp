@@ -3,7 +3,7 @@
 #include "tests/blocks/block_under_test.h"
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::counter_test {
 namespace {
 
 TEST(Counter, CountsRisesUpAndDown) {
@@ -68,4 +68,4 @@ TEST(Counter, CountsEveryPassageOfAnOscillator) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::counter_test

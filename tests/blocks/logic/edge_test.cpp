@@ -3,7 +3,7 @@
 #include "tests/blocks/block_under_test.h"
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::edge_test {
 namespace {
 
 TEST(Edge, IsTheDifferenceOfTwoSamples) {
@@ -54,4 +54,4 @@ TEST(Edge, SeesEachRiseOnceAtAnyOffset) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::edge_test

@@ -2,7 +2,7 @@
 #include <limits>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::enable_test {
 namespace {
 
 /// The output of an Enable block of this kind for a sequence of values.
@@ -40,4 +40,4 @@ TEST(EnabledOutput, IsZeroWhileTheSubdiagramDoesNotRun) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::enable_test

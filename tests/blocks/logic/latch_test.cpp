@@ -2,7 +2,7 @@
 #include <random>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::latch_test {
 namespace {
 
 TEST(Latch, IsTheFlipFlopOfItsPriority) {
@@ -49,4 +49,4 @@ TEST(Latch, StopsAtNaN) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::latch_test

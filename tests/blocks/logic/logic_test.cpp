@@ -3,7 +3,7 @@
 #include "tests/blocks/block_under_test.h"
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::logic_test {
 namespace {
 
 /// The answer of an operator about a number of true terms among all, as a table in a textbook has it.
@@ -83,4 +83,4 @@ TEST(Logic, SwitchesAtTheExactInstantOfAContinuousTerm) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::logic_test

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::multiport_switch_test {
 namespace {
 
 TEST(MultiportSwitch, ChoosesByNumber) {
@@ -40,4 +40,4 @@ TEST(MultiportSwitch, KeepsItsChoiceInsideASolverStep) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::multiport_switch_test

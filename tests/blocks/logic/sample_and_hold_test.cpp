@@ -3,7 +3,7 @@
 #include "tests/blocks/block_under_test.h"
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::sample_and_hold_test {
 namespace {
 
 TEST(SampleAndHold, HoldsTheValueAtItsEdges) {
@@ -65,4 +65,4 @@ TEST(SampleAndHold, StopsAtATriggerThatIsNaN) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::sample_and_hold_test

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::state_machine_test {
 namespace {
 
 using testing::AllOf;
@@ -152,4 +152,4 @@ TEST(StateMachine, ValuesCanBeSetAndSweptByTheirPaths) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::state_machine_test

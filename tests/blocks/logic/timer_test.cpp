@@ -3,7 +3,7 @@
 #include "tests/blocks/block_under_test.h"
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::timer_test {
 namespace {
 
 /// Samples of 1 ms and a duration of `wait` ms, counted in whole samples: the timers of IEC 61131-3 as a
@@ -101,4 +101,4 @@ TEST(Timer, StopsAtNaN) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::timer_test

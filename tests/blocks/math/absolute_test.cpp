@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::absolute_test {
 
 TEST(Absolute, GivesTheSize) {
   BlockUnderTest absolute("Absolute");
@@ -23,4 +23,4 @@ TEST(Absolute, ItsKinkIsACrossing) {
   EXPECT_GT(absolute.crossing("sign"), 0);
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::absolute_test

@@ -3,7 +3,7 @@
 #include "tests/blocks/block_under_test.h"
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::atan_2_test {
 namespace {
 
 TEST(Atan2, IsTheAngleOfAPoint) {
@@ -41,4 +41,4 @@ TEST(Atan2, StaysWithinHalfATurnInARun) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::atan_2_test

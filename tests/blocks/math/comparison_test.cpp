@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::comparison_test {
 
 TEST(Comparison, AsksWhatItsOperatorSays) {
   const char* operators[] = {"<", "<=", ">", ">=", "==", "!="};
@@ -66,4 +66,4 @@ TEST(Comparison, NamesItsOperatorsWhenOneIsUnknown) {
       << comparison.problems().text();
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::comparison_test

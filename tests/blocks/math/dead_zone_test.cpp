@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::dead_zone_test {
 
 TEST(DeadZone, GivesTheDistanceFromTheZone) {
   BlockUnderTest zone("DeadZone", R"({"low": -1, "high": 2})");
@@ -27,4 +27,4 @@ TEST(DeadZone, RefusesAZoneThatEndsBeforeItBegins) {
       << zone.problems().text();
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::dead_zone_test

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::exponential_test {
 
 TEST(Exponential, IsThatOfTheCLibrary) {
   BlockUnderTest block("Exponential");
@@ -16,4 +16,4 @@ TEST(Exponential, IsThatOfTheCLibrary) {
   EXPECT_EQ(block.fault(), "the exponential is too large for a number");
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::exponential_test

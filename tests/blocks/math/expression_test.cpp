@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::expression_test {
 
 TEST(Expression, EvaluatesItsFormula) {
   BlockUnderTest formula("Expression",
@@ -61,4 +61,4 @@ TEST(Expression, TwoBlocksDoNotShareTheirVariables) {
   EXPECT_EQ(second.output("y"), -2);
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::expression_test

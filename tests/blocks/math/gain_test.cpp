@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::gain_test {
 
 TEST(Gain, MultipliesItsSignal) {
   BlockUnderTest gain("Gain", R"({"gain": -2.5})");
@@ -25,4 +25,4 @@ TEST(Gain, AsksForItsFactor) {
   EXPECT_NE(text.find("did you mean \"gain\"?"), std::string::npos) << text;
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::gain_test

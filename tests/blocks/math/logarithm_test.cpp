@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::logarithm_test {
 namespace {
 
 TEST(Logarithm, IsThatOfTheCLibraryInEveryBase) {
@@ -33,4 +33,4 @@ TEST(Logarithm, StopsAtZeroAndBelow) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::logarithm_test

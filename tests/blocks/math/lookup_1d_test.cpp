@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::lookup_1d_test {
 
 namespace {
 
@@ -105,4 +105,4 @@ TEST(Lookup1D, RefusesTablesThatAreNone) {
             std::string::npos);
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::lookup_1d_test

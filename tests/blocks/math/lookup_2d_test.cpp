@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::lookup_2d_test {
 
 namespace {
 
@@ -70,4 +70,4 @@ TEST(Lookup2D, RefusesATableThatDoesNotFit) {
   EXPECT_NE(text.find("2 rows of 2 1"), std::string::npos) << text;
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::lookup_2d_test

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::matrix_gain_test {
 
 TEST(MatrixGain, MultipliesRowsByTheVector) {
   BlockUnderTest gain("MatrixGain", R"({"matrix": [[1, 2, 3], [0, -1, 0.5]]})");
@@ -29,4 +29,4 @@ TEST(MatrixGain, RefusesEmptyAndRaggedMatrices) {
   EXPECT_NE(ragged.problems().text().find("1 in row 2"), std::string::npos) << ragged.problems().text();
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::matrix_gain_test

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::maximum_test {
 
 TEST(Maximum, GivesTheGreatestOfItsTerms) {
   BlockUnderTest block("Maximum");
@@ -40,4 +40,4 @@ TEST(Maximum, ACrossingTellsWhenAnotherTermTakesOver) {
   EXPECT_EQ(block.crossing("change"), -0.5);
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::maximum_test

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::minimum_test {
 
 TEST(Minimum, GivesTheLeastOfItsTerms) {
   BlockUnderTest block("Minimum");
@@ -40,4 +40,4 @@ TEST(Minimum, ACrossingTellsWhenAnotherTermTakesOver) {
   EXPECT_EQ(block.crossing("change"), -0.5);
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::minimum_test

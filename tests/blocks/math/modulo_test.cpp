@@ -3,7 +3,7 @@
 #include "tests/blocks/block_under_test.h"
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::modulo_test {
 namespace {
 
 TEST(Modulo, IsTheRestOfADivision) {
@@ -52,4 +52,4 @@ TEST(Modulo, StopsAtASignalThatIsTooLarge) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::modulo_test

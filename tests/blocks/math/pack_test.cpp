@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::pack_test {
 
 TEST(Pack, StringsItsElementsTogetherInOrder) {
   BlockUnderTest pack("Pack");
@@ -11,4 +11,4 @@ TEST(Pack, StringsItsElementsTogetherInOrder) {
   EXPECT_THAT(pack.outputs("y"), testing::ElementsAre(3, 1, 2));
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::pack_test

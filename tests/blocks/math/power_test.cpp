@@ -2,7 +2,7 @@
 #include "tests/blocks/block_under_test.h"
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::power_test {
 namespace {
 
 TEST(Power, IsThatOfTheCLibrary) {
@@ -41,4 +41,4 @@ TEST(Power, HasThePowerOfTheUnit) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::power_test

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::product_test {
 
 TEST(Product, MultipliesAnyNumberOfFactors) {
   BlockUnderTest product("Product");
@@ -34,4 +34,4 @@ TEST(Product, RefusesOtherOperations) {
       << product.problems().text();
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::product_test

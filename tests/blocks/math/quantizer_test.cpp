@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::quantizer_test {
 
 TEST(Quantizer, RoundsToTheNearestMultipleAndHalvesToEven) {
   BlockUnderTest quantizer("Quantizer", R"({"resolution": 0.5})");
@@ -54,4 +54,4 @@ TEST(Quantizer, RefusesAResolutionOfZero) {
   EXPECT_TRUE(BlockUnderTest("Quantizer", R"({"resolution": 0})").problems().has_errors());
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::quantizer_test

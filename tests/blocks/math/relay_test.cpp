@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::relay_test {
 
 TEST(Relay, SwitchesWithHysteresis) {
   BlockUnderTest relay("Relay", R"({"switch_on": 1, "switch_off": -1, "on": 5, "off": -5})");
@@ -41,4 +41,4 @@ TEST(Relay, RefusesThresholdsInTheWrongOrder) {
       << relay.problems().text();
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::relay_test

@@ -3,7 +3,7 @@
 #include "tests/blocks/block_under_test.h"
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::rounding_test {
 namespace {
 
 struct Case {
@@ -42,4 +42,4 @@ TEST(Rounding, RefusesLengths) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::rounding_test

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::saturation_test {
 
 TEST(Saturation, HoldsASignalWithinItsLimits) {
   BlockUnderTest limit("Saturation", R"({"low": -1, "high": 2})");
@@ -46,4 +46,4 @@ TEST(Saturation, RefusesLimitsInTheWrongOrder) {
       << limit.problems().text();
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::saturation_test

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::selector_test {
 
 TEST(Selector, TakesElementsInItsOrder) {
   BlockUnderTest selector("Selector", R"({"indices": [2, 0, 2]})");
@@ -23,4 +23,4 @@ TEST(Selector, RefusesAnEmptyChoice) {
               testing::HasSubstr("no element is selected"));
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::selector_test

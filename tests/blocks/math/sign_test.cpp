@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::sign_test {
 
 TEST(Sign, GivesMinusOneZeroOrOne) {
   BlockUnderTest sign("Sign");
@@ -34,4 +34,4 @@ TEST(Sign, LeavingZeroChangesTheSignOfACrossing) {
   EXPECT_EQ(crossings(-1e-250), std::pair(false, true));
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::sign_test

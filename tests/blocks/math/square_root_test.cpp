@@ -2,7 +2,7 @@
 #include "tests/blocks/block_under_test.h"
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::square_root_test {
 namespace {
 
 TEST(SquareRoot, IsTheNearestNumberToTheRoot) {
@@ -25,4 +25,4 @@ TEST(SquareRoot, HasTheRootOfTheUnit) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::square_root_test

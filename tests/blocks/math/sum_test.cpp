@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::sum_test {
 
 TEST(Sum, AddsAnyNumberOfTermsWithoutSigns) {
   BlockUnderTest sum("Sum");
@@ -28,4 +28,4 @@ TEST(Sum, RefusesOtherSigns) {
       << sum.problems().text();
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::sum_test

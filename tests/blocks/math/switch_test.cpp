@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::switch_test {
 
 TEST(Switch, ChoosesTheFirstSignalAboveTheThreshold) {
   BlockUnderTest choice("Switch", R"({"threshold": 2})");
@@ -29,4 +29,4 @@ TEST(Switch, KeepsItsChoiceInsideASolverStepAndTellsWhenItChanges) {
   EXPECT_LT(choice.crossing("control"), 0);
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::switch_test

@@ -3,7 +3,7 @@
 #include "tests/blocks/block_under_test.h"
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::trigonometry_test {
 namespace {
 
 struct Case {
@@ -74,4 +74,4 @@ TEST(Trigonometry, ChecksAngles) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::trigonometry_test

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::unpack_test {
 
 TEST(Unpack, TakesTheElementOfItsIndex) {
   BlockUnderTest unpack("Unpack", R"({"index": 2})");
@@ -22,4 +22,4 @@ TEST(Unpack, RefusesANegativeIndex) {
   EXPECT_TRUE(BlockUnderTest("Unpack", R"({"index": -1})").problems().has_errors());
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::unpack_test

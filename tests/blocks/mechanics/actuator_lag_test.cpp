@@ -2,7 +2,7 @@
 #include <cmath>
 #include "tests/blocks/block_under_test.h"
 
-using namespace loopwright;
+namespace loopwright::actuator_lag_test {
 
 TEST(ActuatorLag, StepResponseIsExponential) {
   BlockUnderTest lag("ActuatorLag", R"({"time_constant": 0.01, "initial": 1})");
@@ -16,3 +16,5 @@ TEST(ActuatorLag, CommandDoesNotFeedThrough) {
   EXPECT_EQ(lag.info().outputs.at(0).group, -1) << "it is a wire to the state";
   EXPECT_EQ(lag.info().outputs.at(0).state, 0);
 }
+
+}  // namespace loopwright::actuator_lag_test

@@ -2,7 +2,7 @@
 #include <cmath>
 #include "tests/blocks/block_under_test.h"
 
-using namespace loopwright;
+namespace loopwright::backlash_coupling_test {
 
 namespace {
 double force_at(BlockUnderTest& coupling, double deflection, double approach) {
@@ -50,3 +50,5 @@ TEST(BacklashCoupling, MotorTakesTheLoadAlongAfterTheGap) {
   EXPECT_NEAR(motor_velocity, 0.0, 2e-3);
   EXPECT_NEAR(load_velocity, 1.0, 2e-3);
 }
+
+}  // namespace loopwright::backlash_coupling_test

@@ -3,7 +3,7 @@
 #include <cmath>
 #include "tests/blocks/block_under_test.h"
 
-using namespace loopwright;
+namespace loopwright::backlash_test {
 
 TEST(Backlash, OutputWaitsUntilTheGapIsCrossed) {
   BlockUnderTest play("Backlash", R"({"gap": 2})");
@@ -44,3 +44,5 @@ TEST(Backlash, StartsAtItsInitialOutputWhereTheInputAllows) {
   play.evaluate();
   EXPECT_EQ(play.output("y"), 0.5);
 }
+
+}  // namespace loopwright::backlash_test

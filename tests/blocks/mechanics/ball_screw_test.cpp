@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::ball_screw_test {
 namespace {
 
 TEST(BallScrew, OneTurnMovesTheNutByTheLead) {
@@ -45,4 +45,4 @@ TEST(BallScrew, RefusesALeadOfZero) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::ball_screw_test

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::belt_drive_test {
 namespace {
 
 TEST(BeltDrive, IsASpringAndADamperBehindAPulley) {
@@ -40,4 +40,4 @@ TEST(BeltDrive, RefusesLossesWithoutAWidth) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::belt_drive_test

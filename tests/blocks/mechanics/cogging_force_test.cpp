@@ -3,7 +3,7 @@
 #include <numbers>
 #include "tests/blocks/block_under_test.h"
 
-using namespace loopwright;
+namespace loopwright::cogging_force_test {
 
 namespace {
 constexpr double pitch = 0.0225, turn = 2 * std::numbers::pi;  // m, rad
@@ -50,3 +50,5 @@ TEST(CoggingForce, PolePitchMustBePositive) {
   BlockUnderTest cogging("CoggingForce", R"({"pole_pitch": 0, "harmonics": []})");
   EXPECT_TRUE(cogging.problems().has_errors());
 }
+
+}  // namespace loopwright::cogging_force_test

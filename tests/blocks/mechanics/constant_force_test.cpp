@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-using namespace loopwright;
+namespace loopwright::constant_force_test {
 
 TEST(ConstantForce, IsAlwaysThere) {
   BlockUnderTest force("ConstantForce", R"({"level": -3.1648})");
@@ -10,3 +10,5 @@ TEST(ConstantForce, IsAlwaysThere) {
     EXPECT_EQ(force.output("force"), -3.1648);
   }
 }
+
+}  // namespace loopwright::constant_force_test

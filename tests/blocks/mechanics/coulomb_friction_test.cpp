@@ -3,7 +3,7 @@
 #include <numbers>
 #include "tests/blocks/mechanics/driven_mass.h"
 
-using namespace loopwright;
+namespace loopwright::coulomb_friction_test {
 
 namespace {
 constexpr double m = 2.0, level = 3.0, breakaway = 4.0;  // kg, N, N
@@ -134,3 +134,5 @@ TEST(CoulombFriction, AStaticLevelBelowTheLevelIsAnError) {
   ASSERT_TRUE(friction.problems().has_errors());
   EXPECT_NE(friction.problems().text().find("static_level >= level"), std::string::npos);
 }
+
+}  // namespace loopwright::coulomb_friction_test

@@ -2,7 +2,7 @@
 #include <cmath>
 #include "tests/blocks/block_under_test.h"
 
-using namespace loopwright;
+namespace loopwright::dahl_friction_test {
 
 TEST(DahlFriction, ApproachesItsLevelExponentiallyInDistance) {
   BlockUnderTest friction("DahlFriction", R"({"level": 20, "transition_distance": 1e-3})");
@@ -26,3 +26,5 @@ TEST(DahlFriction, DependsOnThePathAndNotOnTheSpeed) {
   slow.advance(1.0, 1000), fast.advance(0.01, 1000);
   EXPECT_NEAR(slow.state("fraction"), fast.state("fraction"), 1e-10);
 }
+
+}  // namespace loopwright::dahl_friction_test

@@ -2,7 +2,7 @@
 #include <cmath>
 #include "tests/blocks/mechanics/driven_mass.h"
 
-using namespace loopwright;
+namespace loopwright::direction_dependent_friction_test {
 
 namespace {
 constexpr auto settings =
@@ -63,3 +63,5 @@ TEST(DirectionDependentFriction, DryFrictionWithoutMassIsAnError) {
   ASSERT_TRUE(friction.problems().has_errors());
   EXPECT_NE(friction.problems().text().find("\"mass\""), std::string::npos);
 }
+
+}  // namespace loopwright::direction_dependent_friction_test

@@ -2,7 +2,7 @@
 #include <cmath>
 #include "tests/blocks/block_under_test.h"
 
-using namespace loopwright;
+namespace loopwright::eddy_current_drag_test {
 
 TEST(EddyCurrentDrag, IsViscousAtFirstAndPeaksAtTheCriticalSpeed) {
   BlockUnderTest block("EddyCurrentDrag", R"({"damping": 4, "critical_speed": 0.5})");
@@ -12,3 +12,5 @@ TEST(EddyCurrentDrag, IsViscousAtFirstAndPeaksAtTheCriticalSpeed) {
     EXPECT_NEAR(block.output("force"), force, 1e-12 * std::abs(force)) << velocity;
   }
 }
+
+}  // namespace loopwright::eddy_current_drag_test

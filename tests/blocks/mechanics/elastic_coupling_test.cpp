@@ -2,7 +2,7 @@
 #include "tests/blocks/block_under_test.h"
 #include "tests/engine/written_diagram.h"
 
-using namespace loopwright;
+namespace loopwright::elastic_coupling_test {
 
 TEST(ElasticCoupling, PullsByDeflectionAndItsSpeed) {
   BlockUnderTest coupling("ElasticCoupling", R"({"stiffness": 100, "damping": 2})");
@@ -27,3 +27,5 @@ TEST(ElasticCoupling, TwoMassesOnItMoveAsTheBlockOfTwoMasses) {
   const auto &two = signal(result, "load.position"), &one = signal(result, "one.load_position");
   for (size_t i = 0; i < two.size(); ++i) EXPECT_NEAR(two[i], one[i], 1e-12) << i;
 }
+
+}  // namespace loopwright::elastic_coupling_test

@@ -2,7 +2,7 @@
 #include <cmath>
 #include "tests/blocks/block_under_test.h"
 
-using namespace loopwright;
+namespace loopwright::end_stop_test {
 
 namespace {
 double force_at(BlockUnderTest& stop, double position, double velocity) {
@@ -66,3 +66,5 @@ TEST(EndStop, StopsInTheWrongOrderAreAnError) {
   ASSERT_TRUE(stop.problems().has_errors());
   EXPECT_NE(stop.problems().text().find("low < high"), std::string::npos);
 }
+
+}  // namespace loopwright::end_stop_test

@@ -3,7 +3,7 @@
 #include <numbers>
 #include "tests/blocks/block_under_test.h"
 
-using namespace loopwright;
+namespace loopwright::force_ripple_test {
 
 TEST(ForceRipple, ScalesTheCommandByPosition) {
   BlockUnderTest ripple(
@@ -24,3 +24,5 @@ TEST(ForceRipple, GivesNothingWithoutCommand) {
   ripple.evaluate();
   EXPECT_EQ(ripple.output("force"), 0.0);
 }
+
+}  // namespace loopwright::force_ripple_test

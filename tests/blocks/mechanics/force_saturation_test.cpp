@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-using namespace loopwright;
+namespace loopwright::force_saturation_test {
 
 TEST(ForceSaturation, LosesForceWithTheSquareOfTheCommandUntilItStays) {
   BlockUnderTest motor("ForceSaturation", R"({"droop": 0.05})");
@@ -19,3 +19,5 @@ TEST(ForceSaturation, WithoutDroopItIsAWire) {
   motor.evaluate();
   EXPECT_EQ(motor.output("force"), 1e6);
 }
+
+}  // namespace loopwright::force_saturation_test

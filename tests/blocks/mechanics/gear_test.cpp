@@ -2,7 +2,7 @@
 #include <cmath>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::gear_test {
 namespace {
 
 /// A gear of 50 : 1 whose output is pressed by this angle, moving at this velocity with both ends together.
@@ -62,4 +62,4 @@ TEST(Gear, RefusesWhatNoGearHas) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::gear_test

@@ -2,7 +2,7 @@
 #include <cmath>
 #include "tests/blocks/block_under_test.h"
 
-using namespace loopwright;
+namespace loopwright::hardening_spring_test {
 
 TEST(HardeningSpring, StiffensWithDeflection) {
   BlockUnderTest block("HardeningSpring",
@@ -15,3 +15,5 @@ TEST(HardeningSpring, StiffensWithDeflection) {
     EXPECT_NEAR(block.output("force"), force, 1e-12 * std::abs(force)) << position;
   }
 }
+
+}  // namespace loopwright::hardening_spring_test

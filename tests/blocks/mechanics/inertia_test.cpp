@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-using namespace loopwright;
+namespace loopwright::inertia_test {
 
 TEST(Inertia, GainsSpeedByItsTorque) {
   BlockUnderTest rotor("Inertia", R"({"inertia": 0.002, "initial_angle": 3,
@@ -20,3 +20,5 @@ TEST(Inertia, GainsSpeedByItsTorque) {
 TEST(Inertia, RefusesNone) {
   EXPECT_TRUE(BlockUnderTest("Inertia", R"({"inertia": 0})").problems().has_errors());
 }
+
+}  // namespace loopwright::inertia_test

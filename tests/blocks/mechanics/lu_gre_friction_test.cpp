@@ -3,7 +3,7 @@
 #include <cmath>
 #include "tests/blocks/mechanics/driven_mass.h"
 
-using namespace loopwright;
+namespace loopwright::lu_gre_friction_test {
 
 namespace {
 constexpr auto settings =
@@ -70,3 +70,5 @@ TEST(LuGreFriction, HoldsASlowlyPushedMassWithinItsPresliding) {
   EXPECT_NEAR(x, -1.5e-5 * std::log(1 - 0.7 / 1.5), 1e-8) << "where the bristles carry 0.7 N";
   EXPECT_LT(std::abs(v), 1e-6);
 }
+
+}  // namespace loopwright::lu_gre_friction_test

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-using namespace loopwright;
+namespace loopwright::mass_test {
 
 TEST(Mass, MovesByNewtonsLawWithItsPayload) {
   BlockUnderTest mass("Mass", R"({"mass": 2, "payload": 3, "initial_position": 1, "initial_velocity": -1})");
@@ -17,3 +17,5 @@ TEST(Mass, MustBePositive) {
   BlockUnderTest mass("Mass", R"({"mass": 0})");
   EXPECT_TRUE(mass.problems().has_errors());
 }
+
+}  // namespace loopwright::mass_test

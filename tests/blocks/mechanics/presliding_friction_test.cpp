@@ -3,7 +3,7 @@
 #include "tests/blocks/block_under_test.h"
 #include "tests/engine/written_diagram.h"
 
-using namespace loopwright;
+namespace loopwright::presliding_friction_test {
 
 namespace {
 
@@ -87,3 +87,5 @@ TEST(PreslidingFriction, FixedAndVariableStepsAgree) {
   for (double x : a) largest = std::max(largest, std::abs(x));
   for (size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-4 * largest) << i;
 }
+
+}  // namespace loopwright::presliding_friction_test

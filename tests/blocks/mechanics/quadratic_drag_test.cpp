@@ -2,7 +2,7 @@
 #include <cmath>
 #include "tests/blocks/block_under_test.h"
 
-using namespace loopwright;
+namespace loopwright::quadratic_drag_test {
 
 TEST(QuadraticDrag, GrowsWithTheSquareOfSpeedAndKeepsItsSign) {
   BlockUnderTest block("QuadraticDrag", R"({"drag": 0.3})");
@@ -12,3 +12,5 @@ TEST(QuadraticDrag, GrowsWithTheSquareOfSpeedAndKeepsItsSign) {
     EXPECT_NEAR(block.output("force"), force, 1e-12 * std::abs(force)) << velocity;
   }
 }
+
+}  // namespace loopwright::quadratic_drag_test

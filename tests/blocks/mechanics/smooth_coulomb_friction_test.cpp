@@ -2,7 +2,7 @@
 #include <cmath>
 #include "tests/blocks/block_under_test.h"
 
-using namespace loopwright;
+namespace loopwright::smooth_coulomb_friction_test {
 
 TEST(SmoothCoulombFriction, FollowsTheHyperbolicTangent) {
   BlockUnderTest block("SmoothCoulombFriction", R"({"level": 0.3, "transition_speed": 0.05})");
@@ -18,3 +18,5 @@ TEST(SmoothCoulombFriction, TransitionSpeedMustBePositive) {
   BlockUnderTest block("SmoothCoulombFriction", R"({"level": 0.3, "transition_speed": 0})");
   EXPECT_TRUE(block.problems().has_errors());
 }
+
+}  // namespace loopwright::smooth_coulomb_friction_test

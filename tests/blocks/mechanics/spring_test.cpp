@@ -2,7 +2,7 @@
 #include <cmath>
 #include "tests/blocks/block_under_test.h"
 
-using namespace loopwright;
+namespace loopwright::spring_test {
 
 TEST(Spring, PullsWithItsPreloadAtRest) {
   BlockUnderTest block("Spring", R"({"stiffness": 40, "rest_position": 0.5, "preload": -3})");
@@ -19,3 +19,5 @@ TEST(Spring, PullsBackToItsRestPosition) {
     EXPECT_NEAR(block.output("force"), force, 1e-12 * std::abs(force)) << position;
   }
 }
+
+}  // namespace loopwright::spring_test

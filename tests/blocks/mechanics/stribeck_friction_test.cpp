@@ -2,7 +2,7 @@
 #include <cmath>
 #include "tests/blocks/mechanics/driven_mass.h"
 
-using namespace loopwright;
+namespace loopwright::stribeck_friction_test {
 
 TEST(StribeckFriction, SlidingForceFallsFromStaticToSlidingLevel) {
   for (double exponent : {0.5, 1.0, 2.0}) {
@@ -61,3 +61,5 @@ TEST(StribeckFriction, FrictionThatRisesWithSpeedIsAnError) {
   ASSERT_TRUE(friction.problems().has_errors());
   EXPECT_NE(friction.problems().text().find("static_level >= level"), std::string::npos);
 }
+
+}  // namespace loopwright::stribeck_friction_test

@@ -2,7 +2,7 @@
 #include <cmath>
 #include "tests/blocks/block_under_test.h"
 
-using namespace loopwright;
+namespace loopwright::thermal_drift_test {
 
 TEST(ThermalDrift, GainGoesFromOneToItsWarmValue) {
   BlockUnderTest drift("ThermalDrift", R"({"drift": -0.08, "time_constant": 300})");
@@ -12,3 +12,5 @@ TEST(ThermalDrift, GainGoesFromOneToItsWarmValue) {
     EXPECT_NEAR(drift.output("y"), 10 * (1 - 0.08 * (1 - std::exp(-t / 300))), 1e-13);
   }
 }
+
+}  // namespace loopwright::thermal_drift_test

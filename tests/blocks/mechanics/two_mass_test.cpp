@@ -2,7 +2,7 @@
 #include <cmath>
 #include "tests/blocks/block_under_test.h"
 
-using namespace loopwright;
+namespace loopwright::two_mass_test {
 
 TEST(TwoMass, SwingsAtItsNaturalFrequencyAboutTheCommonMotion) {
   BlockUnderTest axis("TwoMass", R"({"motor_mass": 1, "load_mass": 0.25, "stiffness": 100})");
@@ -35,3 +35,5 @@ TEST(TwoMass, StartsWhereItIsTold) {
                              {"load_velocity", -2.0}})
     EXPECT_EQ(axis.state(port), value) << port;
 }
+
+}  // namespace loopwright::two_mass_test

@@ -2,7 +2,7 @@
 #include <cmath>
 #include "tests/blocks/block_under_test.h"
 
-using namespace loopwright;
+namespace loopwright::viscous_friction_test {
 
 TEST(ViscousFriction, IsPositiveForMotionForward) {
   BlockUnderTest block("ViscousFriction", R"({"damping": 3})");
@@ -17,3 +17,5 @@ TEST(ViscousFriction, NegativeDampingIsAnError) {
   BlockUnderTest block("ViscousFriction", R"({"damping": -1})");
   EXPECT_TRUE(block.problems().has_errors());
 }
+
+}  // namespace loopwright::viscous_friction_test

@@ -3,7 +3,7 @@
 #include "models/motion/cubic_spline.h"
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::cam_table_test {
 namespace {
 
 TEST(CubicSpline, ReproducesWhatItsEndsAllow) {
@@ -84,4 +84,4 @@ TEST(CamTable, RefusesWhatIsNoTable) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::cam_table_test

@@ -2,7 +2,7 @@
 #include <cmath>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::electronic_gear_test {
 namespace {
 
 constexpr double T = 0.001;
@@ -67,4 +67,4 @@ TEST(ElectronicGear, RefusesADenominatorOfZero) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::electronic_gear_test

@@ -2,7 +2,7 @@
 #include "tests/blocks/block_under_test.h"
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::point_to_point_test {
 namespace {
 
 const char* const limits = R"({"velocity": 0.5, "acceleration": 2, "jerk": 20, "initial": 0.1})";
@@ -99,4 +99,4 @@ TEST(PointToPoint, AContinuousTargetNeedsASampleTime) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::point_to_point_test

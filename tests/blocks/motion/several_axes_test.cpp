@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::several_axes_test {
 namespace {
 
 const char* const solver =
@@ -113,4 +113,4 @@ TEST(ViaPoints, ReportsPointsThatDoNotFit) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::several_axes_test

@@ -3,7 +3,7 @@
 #include <numbers>
 #include "tests/blocks/block_under_test.h"
 
-using namespace loopwright;
+namespace loopwright::encoder_test {
 
 namespace {
 double read(BlockUnderTest& encoder, double position) {
@@ -55,3 +55,5 @@ TEST(Encoder, PeriodicErrorNeedsAPitch) {
   ASSERT_TRUE(encoder.problems().has_errors());
   EXPECT_NE(encoder.problems().text().find("pitch"), std::string::npos);
 }
+
+}  // namespace loopwright::encoder_test

@@ -3,7 +3,7 @@
 #include <random>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::incremental_encoder_test {
 namespace {
 
 double read_at(BlockUnderTest& encoder, double position, double reset = 0, double value = 0) {
@@ -72,4 +72,4 @@ TEST(IncrementalEncoder, RefusesMarksThatTouch) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::incremental_encoder_test

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::chirp_test {
 
 namespace {
 
@@ -90,4 +90,4 @@ TEST(Chirp, RefusesALogarithmicSweepFromZero) {
   EXPECT_NE(chirp.problems().text().find("cannot reach 0 Hz"), std::string::npos) << chirp.problems().text();
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::chirp_test

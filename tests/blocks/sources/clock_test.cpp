@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::clock_test {
 
 TEST(Clock, GivesTheTime) {
   BlockUnderTest clock("Clock");
@@ -11,4 +11,4 @@ TEST(Clock, GivesTheTime) {
   }
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::clock_test

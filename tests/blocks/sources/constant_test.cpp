@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::constant_test {
 
 TEST(Constant, GivesItsNumberAtAnyTime) {
   BlockUnderTest constant("Constant", R"({"value": -2.5})");
@@ -11,4 +11,4 @@ TEST(Constant, GivesItsNumberAtAnyTime) {
   }
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::constant_test

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::motion_profile_test {
 
 namespace {
 
@@ -158,4 +158,4 @@ TEST(MotionProfile, RefusesMotionsThatJump) {
   EXPECT_NE(text(R"({"segments": [{"duration": 0, "velocity": 1}]})").find("above 0"), std::string::npos);
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::motion_profile_test

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::multisine_test {
 
 TEST(Multisine, AddsItsComponents) {
   BlockUnderTest sum("Multisine", R"({"bias": 0.5, "components": [
@@ -54,4 +54,4 @@ TEST(Multisine, RefusesToAddNothingAndEmptyBands) {
   EXPECT_NE(band.problems().text().find("the band is empty"), std::string::npos) << band.problems().text();
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::multisine_test

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::noise_test {
 
 namespace {
 
@@ -80,4 +80,4 @@ TEST(Noise, HoldsItsNumberBetweenSamples) {
   EXPECT_NE(noise.output("y"), y);
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::noise_test

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::pulse_train_test {
 
 TEST(PulseTrain, IsHighForTheWidthOfEachPeriod) {
   BlockUnderTest wave("PulseTrain", R"({"period": 1, "width": 0.25, "start": 0.5, "low": -1, "high": 2})");
@@ -70,4 +70,4 @@ TEST(PulseTrain, RefusesPulsesLongerThanThePeriod) {
       << wave.problems().text();
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::pulse_train_test

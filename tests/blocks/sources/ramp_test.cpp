@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::ramp_test {
 
 TEST(Ramp, RisesBetweenItsTwoTimes) {
   BlockUnderTest ramp("Ramp", R"({"slope": -4, "start": 1, "stop": 3, "initial": 10})");
@@ -47,4 +47,4 @@ TEST(Ramp, RefusesToStopBeforeItStarts) {
       << ramp.problems().text();
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::ramp_test

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::sine_test {
 
 TEST(Sine, FollowsTheSineFunction) {
   BlockUnderTest wave("Sine", R"({"amplitude": 2, "frequency": 0.5, "phase": 0.3, "bias": -1})");
@@ -24,4 +24,4 @@ TEST(Sine, RefusesANegativeFrequency) {
   EXPECT_TRUE(BlockUnderTest("Sine", R"({"frequency": -1})").problems().has_errors());
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::sine_test

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/blocks/block_under_test.h"
 
-namespace loopwright {
+namespace loopwright::step_test {
 
 TEST(Step, JumpsAtItsTimeAndNotBefore) {
   BlockUnderTest step("Step", R"({"time": 0.5, "before": -1, "after": 3})");
@@ -34,4 +34,4 @@ TEST(Step, TellsTheSolverWhereItJumps) {
   EXPECT_EQ(step.next_stop(0.5), infinity);
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::step_test

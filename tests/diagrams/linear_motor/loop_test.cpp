@@ -7,7 +7,7 @@
 #include "tools/studies/linear_motor/runs.h"
 #include "where.h"
 
-namespace loopwright::paper {
+namespace loopwright::paper::loop_test {
 namespace {
 
 const std::string folder = LOOPWRIGHT_SOURCE "/diagrams/linear_motor/";
@@ -102,4 +102,4 @@ TEST(LinearMotor, TheHeldOutMotionSharesNoVelocityWithTrainingOrTest) {
 }
 
 }  // namespace
-}  // namespace loopwright::paper
+}  // namespace loopwright::paper::loop_test

@@ -6,7 +6,7 @@
 #include "hw/realtime/deploy.h"
 #include "tests/hw/deployment.h"
 
-namespace loopwright {
+namespace loopwright::homing_test {
 namespace {
 
 const std::string diagram = LOOPWRIGHT_SOURCE "/diagrams/tutorial/homing.json";
@@ -128,4 +128,4 @@ TEST(Homing, OnTheCardAnEncoderThatStandsStillSwitchesTheAxisOff) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::homing_test

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include "tests/engine/diagram/diagram_folder.h"
 
-namespace loopwright {
+namespace loopwright::diagram_test {
 namespace {
 
 const double pi = std::acos(-1.0);
@@ -283,4 +283,4 @@ TEST(Diagram, UnitsAndBlocksMayBeLeftOut) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::diagram_test

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include "tests/engine/diagram/diagram_folder.h"
 
-namespace loopwright {
+namespace loopwright::error_message_test {
 namespace {
 
 std::string problems_in(std::string_view text) { return DiagramFolder().with("top.json", text).problems(); }
@@ -312,4 +312,4 @@ TEST(DiagramErrors, AFewFilesCannotNameEachOtherIntoBillionsOfBlocks) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::error_message_test

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <map>
 
-namespace loopwright {
+namespace loopwright::expression_test {
 namespace {
 
 const std::map<std::string, Quantity> parameters = {
@@ -200,4 +200,4 @@ TEST(Expression, SurvivesNonsense) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::expression_test

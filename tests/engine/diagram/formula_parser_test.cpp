@@ -4,7 +4,7 @@
 #include <set>
 #include "models/real/double_functions.h"
 
-namespace loopwright {
+namespace loopwright::formula_parser_test {
 namespace {
 
 double value_of(const std::string& formula) {
@@ -64,4 +64,4 @@ TEST(FormulaParser, SpeaksOfOperatorsAsTheyWereWritten) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::formula_parser_test

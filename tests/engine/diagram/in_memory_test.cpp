@@ -3,7 +3,7 @@
 #include "engine/json/json.h"
 #include "tests/engine/written_diagram.h"
 
-using namespace loopwright;
+namespace loopwright::in_memory_test {
 
 namespace {
 
@@ -42,3 +42,5 @@ TEST(InlineSubdiagram, ProblemsNameTheirPlace) {
   EXPECT_TRUE(has(text, "/blocks/part/diagram/lgo")) << text;
   EXPECT_TRUE(has(text, "did you mean \"log\"")) << text;
 }
+
+}  // namespace loopwright::in_memory_test

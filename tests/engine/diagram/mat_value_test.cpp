@@ -7,7 +7,7 @@
 #include "engine/plan/plan.h"
 #include "tests/engine/diagram/diagram_folder.h"
 
-namespace loopwright {
+namespace loopwright::mat_value_test {
 namespace {
 
 using testing::AllOf;
@@ -223,4 +223,4 @@ TEST_F(MatValue, IsOneOfTheFilesThatDetermineTheResult) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::mat_value_test

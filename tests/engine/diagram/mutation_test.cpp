@@ -4,7 +4,7 @@
 #include <chrono>
 #include "tests/engine/diagram/diagram_folder.h"
 
-namespace loopwright {
+namespace loopwright::mutation_test {
 namespace {
 
 constexpr std::string_view outer = R"json({
@@ -247,4 +247,4 @@ TEST(Mutants, OfOptionsEndInADiagramOrInErrors) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::mutation_test

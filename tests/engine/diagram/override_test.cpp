@@ -3,7 +3,7 @@
 #include "engine/json/json.h"
 #include "tests/engine/diagram/diagram_folder.h"
 
-namespace loopwright {
+namespace loopwright::override_test {
 namespace {
 
 class Overrides : public testing::Test {
@@ -257,4 +257,4 @@ TEST_F(Overrides, DriveOfWhatIsNotThereIsAProblem) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::override_test

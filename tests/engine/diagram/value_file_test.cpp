@@ -2,7 +2,7 @@
 #include "engine/diagram/diagram.h"
 #include "tests/engine/diagram/diagram_folder.h"
 
-namespace loopwright {
+namespace loopwright::value_file_test {
 namespace {
 
 using testing::HasSubstr;
@@ -64,4 +64,4 @@ TEST_F(ValueFile, SaysWhatIsMissing) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::value_file_test

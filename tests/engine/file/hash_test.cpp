@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace loopwright {
+namespace loopwright::hash_test {
 namespace {
 
 TEST(ContentHash, GivesThePublishedValues) {
@@ -22,4 +22,4 @@ TEST(ContentHash, ReadsBytesAsUnsignedAndZerosAsBytes) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::hash_test

@@ -13,7 +13,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace loopwright {
+namespace loopwright::regular_file_test {
 namespace {
 
 using testing::HasSubstr;
@@ -75,4 +75,4 @@ TEST_F(RegularFile, ThatIsNotThereIsSaidSo) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::regular_file_test

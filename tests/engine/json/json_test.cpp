@@ -2,7 +2,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-namespace loopwright {
+namespace loopwright::json_test {
 namespace {
 
 std::shared_ptr<const SourceFile> source(std::string text) {
@@ -236,4 +236,4 @@ TEST(ToJson, ReadsBackTheSame) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::json_test

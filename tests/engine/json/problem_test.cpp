@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <algorithm>
 
-namespace loopwright {
+namespace loopwright::problem_test {
 namespace {
 
 std::shared_ptr<const SourceFile> source(std::string name, std::string text) {
@@ -130,4 +130,4 @@ TEST(ProblemText, TellsTwoHundredAndCountsTheOthers) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::problem_test

@@ -6,7 +6,7 @@
 #include "tests/engine/lanes/lane_testing.h"
 #include "where.h"
 
-namespace loopwright {
+namespace loopwright::bits_test {
 namespace {
 
 using namespace loopwright::testing;
@@ -143,4 +143,4 @@ TEST_P(EverySet, GivesTheSameBitsWhereNobodyAskedForAParameterOfASource) {
 INSTANTIATE_TEST_SUITE_P(Sets, EverySet, ::testing::ValuesIn(simd_sets), set_name);
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::bits_test

@@ -5,7 +5,7 @@
 #include "tests/engine/lanes/lane_testing.h"
 #include "where.h"
 
-namespace loopwright {
+namespace loopwright::lane_run_test {
 namespace {
 
 /// A block that is in no module, like one from a block library: counts the calls of decide.
@@ -222,4 +222,4 @@ TEST(LanesForbiddenBy, NamesAVariableStepMethodUnlessThereAreNoStates) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::lane_run_test

@@ -13,8 +13,10 @@ std::shared_ptr<const Plan> fixed_step_plan(const std::string& path) {
   Diagram diagram = *loaded;
   SolverSettings& solver = diagram.solver;
   if (const auto method = method_from_name(solver.method.value); method && !is_fixed_step(*method)) {
+    // Of a run that takes hours, a hundred thousand steps suffice. Powers of ten divide the sample times.
+    const double step_of_long_runs = std::pow(10, std::ceil(std::log10(solver.stop.value / 1e5)));
     solver.method.value = "rk4";
-    solver.step.value = 1e-4, solver.step.is_given = true;
+    solver.step.value = std::fmax(1e-4, step_of_long_runs), solver.step.is_given = true;
     solver.relative_tolerance = {}, solver.absolute_tolerance = {}, solver.maximum_step = {};
   }
   auto plan = compile(diagram, problems);

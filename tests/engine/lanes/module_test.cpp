@@ -5,7 +5,7 @@
 #include "tests/engine/lanes/lane_testing.h"
 #include "where.h"
 
-namespace loopwright {
+namespace loopwright::module_test {
 namespace {
 
 using testing::set_name;
@@ -55,4 +55,4 @@ TEST_P(LaneModule, CanBeUsedWhereverTheProcessorHasItsInstructions) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::module_test

@@ -3,7 +3,7 @@
 #include <cmath>
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::algebraic_loop_test {
 namespace {
 
 constexpr std::string_view negative_feedback = R"("source": {"type": "Constant", "value": 3},
@@ -127,4 +127,4 @@ TEST(AlgebraicLoop, OfASwitchingBlockIsRefusedWithTheReason) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::algebraic_loop_test

@@ -4,7 +4,7 @@
 #include "engine/run/run.h"
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::block_settings_test {
 namespace {
 
 using testing::ElementsAre;
@@ -151,4 +151,4 @@ TEST(FormulaParameters, AreTunableInAPlan) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::block_settings_test

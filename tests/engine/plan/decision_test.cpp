@@ -3,7 +3,7 @@
 #include "engine/block.h"
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::decision_test {
 
 /// The ports of the following blocks, whose output is the sign that they decided.
 struct SignBlock {
@@ -97,4 +97,4 @@ TEST(Decision, OfEqualityIsNotReadAsAnExpression) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::decision_test

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::default_log_test {
 namespace {
 
 using testing::ElementsAre;
@@ -47,4 +47,4 @@ TEST(DefaultLog, WhatIsSaidIsAllThatIsRecorded) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::default_log_test

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::flatten_test {
 namespace {
 
 /// A subdiagram whose output is its input, through `inner`.
@@ -189,4 +189,4 @@ TEST(Flatten, OutputsThatLeadRoundInACircleAreAnErrorNotAHang) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::flatten_test

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::gates_test {
 namespace {
 
 using testing::AllOf;
@@ -98,4 +98,4 @@ TEST(Gates, ContentsOfVectorsAreHeldByElement) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::gates_test

@@ -2,7 +2,7 @@
 #include "engine/plan/groups.h"
 #include <gtest/gtest.h>
 
-namespace loopwright {
+namespace loopwright::groups_test {
 namespace {
 
 TEST(Groups, KeepTheOrderInWhichNumbersAreTold) {
@@ -15,4 +15,4 @@ TEST(Groups, KeepTheOrderInWhichNumbersAreTold) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::groups_test

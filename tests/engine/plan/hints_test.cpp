@@ -5,7 +5,7 @@
 #include "engine/json/unit_hint.h"
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::hints_test {
 namespace {
 
 bool method_exists(std::string_view method) {
@@ -160,4 +160,4 @@ TEST(Hints, UnitsWrittenNearlySo) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::hints_test

@@ -6,7 +6,7 @@
 #include "tests/engine/written_diagram.h"
 #include "where.h"
 
-namespace loopwright {
+namespace loopwright::identity_test {
 namespace {
 
 std::string text_of(const std::string& path) {
@@ -199,4 +199,4 @@ TEST(Identity, DescribeShowsOrderRatesAndStates) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::identity_test

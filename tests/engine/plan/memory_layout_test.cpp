@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-namespace loopwright {
+namespace loopwright::memory_layout_test {
 namespace {
 
 using testing::ElementsAre;
@@ -33,4 +33,4 @@ TEST(MemoryLayout, NumbersAreFoundAmongIndicesAndViews) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::memory_layout_test

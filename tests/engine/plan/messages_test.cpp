@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::messages_test {
 namespace {
 
 TEST(Messages, AnUnknownTypeSaysWhatWasMeant) {
@@ -116,4 +116,4 @@ TEST(Messages, OfManyBlocksAreAllTold) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::messages_test

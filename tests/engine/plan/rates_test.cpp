@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::rates_test {
 namespace {
 
 const Plan::Block& block(const Plan& plan, std::string_view path) {
@@ -162,4 +162,4 @@ TEST(Rates, SettingsOfTheOtherKindOfSolverAreRefused) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::rates_test

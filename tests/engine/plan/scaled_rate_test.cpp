@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::scaled_rate_test {
 namespace {
 
 /// A constant n in 1/min, w in rad/s and k in 1/s, and a block that reads two wires.
@@ -104,4 +104,4 @@ TEST(ScaledRate, AsTheSpeedOfAShaftIsQuestioned) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::scaled_rate_test

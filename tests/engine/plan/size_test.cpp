@@ -4,7 +4,7 @@
 #include <ctime>
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::size_test {
 namespace {
 
 TEST(Size, NoBlocksAtAllRunToTheEnd) {
@@ -104,4 +104,4 @@ TEST(Size, AHundredThousandBlocksInALineOfFeedthroughDoNotExhaustTheStack) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::size_test

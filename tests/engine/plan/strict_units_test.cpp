@@ -5,7 +5,7 @@
 #include "tests/engine/written_diagram.h"
 #include "where.h"
 
-namespace loopwright {
+namespace loopwright::strict_units_test {
 namespace {
 
 std::vector<std::string> shipped_diagrams() {
@@ -63,4 +63,4 @@ TEST(StrictUnits, RefuseADiagramWithoutUnits) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::strict_units_test

@@ -5,7 +5,7 @@
 #include <numbers>
 #include "engine/plan/ticks.h"
 
-namespace loopwright {
+namespace loopwright::ticks_test {
 namespace {
 
 TEST(Ticks, ANumberBecomesTheSimplestFractionNearIt) {
@@ -69,4 +69,4 @@ TEST(Ticks, TimeOfATickIsTheNearestNumberHoweverManyTicksHavePassed) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::ticks_test

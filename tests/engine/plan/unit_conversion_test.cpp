@@ -4,7 +4,7 @@
 #include "engine/json/take_unit.h"
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::unit_conversion_test {
 namespace {
 
 using std::numbers::pi;
@@ -274,4 +274,4 @@ TEST(UnitConversion, ShowsInThePlanWhatTheBlockReads) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::unit_conversion_test

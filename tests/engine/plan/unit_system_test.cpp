@@ -3,7 +3,7 @@
 #include <chrono>
 #include <gtest/gtest.h>
 
-namespace loopwright {
+namespace loopwright::unit_system_test {
 namespace {
 
 Unit unit(std::string_view text) { return parse_unit(text).value(); }
@@ -73,4 +73,4 @@ TEST(UnitSystem, SolvesLongChainsInEitherOrder) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::unit_system_test

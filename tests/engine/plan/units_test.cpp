@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::units_test {
 namespace {
 
 std::string unit_of(const Plan& plan, std::string_view port) {
@@ -255,4 +255,4 @@ TEST(Units, OfTheSameDimensionMayMeetWhateverTheirNames) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::units_test

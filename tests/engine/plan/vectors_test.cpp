@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::vectors_test {
 namespace {
 
 constexpr std::string_view three =
@@ -120,4 +120,4 @@ TEST(Vectors, ThatGrowRoundARingAreAnErrorNotAHang) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::vectors_test

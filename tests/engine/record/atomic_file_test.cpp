@@ -15,7 +15,7 @@
 #include "engine/record/mat.h"
 #include "support.h"
 
-namespace loopwright {
+namespace loopwright::atomic_file_test {
 namespace {
 
 using testing::AllOf;
@@ -158,4 +158,4 @@ TEST(AtomicFile, LeavesNothingHalfWrittenOnAFullDisk) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::atomic_file_test

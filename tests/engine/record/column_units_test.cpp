@@ -5,7 +5,7 @@
 #include "engine/record/column_units.h"
 #include "engine/record/csv.h"
 
-namespace loopwright {
+namespace loopwright::column_units_test {
 namespace {
 
 using testing::HasSubstr;
@@ -130,4 +130,4 @@ TEST_F(ColumnUnits, TwoTimesAreOneTooMany) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::column_units_test

@@ -3,7 +3,7 @@
 #include "mutation.h"
 #include "support.h"
 
-namespace loopwright {
+namespace loopwright::csv_mutation_test {
 namespace {
 
 std::vector<std::string> valid_files() {
@@ -52,4 +52,4 @@ TEST(CsvMutation, MemoryStaysInProportionToTheFile) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::csv_mutation_test

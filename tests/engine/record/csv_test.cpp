@@ -9,7 +9,7 @@
 #include "support.h"
 #include "where.h"
 
-namespace loopwright {
+namespace loopwright::csv_test {
 namespace {
 
 using testing::ElementsAre;
@@ -369,4 +369,4 @@ TEST(Text, FindsWhatIsNoUtf8) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::csv_test

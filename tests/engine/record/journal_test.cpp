@@ -14,7 +14,7 @@
 #include "engine/record/mat.h"
 #include "tests/engine/diagram/diagram_folder.h"
 
-namespace loopwright {
+namespace loopwright::journal_test {
 namespace {
 
 using testing::Contains;
@@ -299,4 +299,4 @@ TEST(Crc32c, IsThatOfRfc3720) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::journal_test

@@ -11,7 +11,7 @@
 #include "mutation.h"
 #include "support.h"
 
-namespace loopwright {
+namespace loopwright::mat_test {
 namespace {
 
 using testing::ElementsAre;
@@ -334,4 +334,4 @@ TEST(MatMutation, ReadingEndsWithErrorsOrAWellFormedRecording) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::mat_test

@@ -4,7 +4,7 @@
 
 #include "support.h"
 
-namespace loopwright {
+namespace loopwright::recording_file_test {
 namespace {
 
 using testing::HasSubstr;
@@ -46,4 +46,4 @@ TEST(Recording, FindsColumnsByName) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::recording_file_test

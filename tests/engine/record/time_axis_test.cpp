@@ -6,7 +6,7 @@
 
 #include "support.h"
 
-namespace loopwright {
+namespace loopwright::time_axis_test {
 namespace {
 
 using testing::HasSubstr;
@@ -130,4 +130,4 @@ TEST(TimeAxis, CarriesThePlaceItWasGiven) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::time_axis_test

@@ -5,7 +5,7 @@
 #include "tests/engine/written_diagram.h"
 #include "where.h"
 
-namespace loopwright {
+namespace loopwright::accuracy_test {
 namespace {
 
 /// A mass of 2 kg on a spring of 50 N/m: 5 rad/s, released at 0.1 m.
@@ -199,4 +199,4 @@ TEST(Accuracy, TheContinuousCommonJobEndsWhereTwoOtherProgramsEnded) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::accuracy_test

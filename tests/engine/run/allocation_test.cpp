@@ -7,7 +7,7 @@
 #include "tests/engine/solve/allocations.h"
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::allocation_test {
 namespace {
 
 using testing::allocations;
@@ -94,4 +94,4 @@ TEST_F(Allocation, EventsCostNone) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::allocation_test

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::at_stop_test {
 namespace {
 
 TEST(AtStop, TheRunIsHandedOverAtItsStopTimeWithSignalsComputed) {
@@ -20,4 +20,4 @@ TEST(AtStop, TheRunIsHandedOverAtItsStopTimeWithSignalsComputed) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::at_stop_test

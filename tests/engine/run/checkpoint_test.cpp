@@ -4,7 +4,7 @@
 #include <sstream>
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::checkpoint_test {
 namespace {
 
 /// Every kind of memory: random stream, delay lines, discrete sums, states, modes, events.
@@ -190,4 +190,4 @@ TEST(Checkpoint, ThatCannotBeWrittenIsAnErrorNotASilence) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::checkpoint_test

@@ -4,7 +4,7 @@
 #include <ctime>
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::event_test {
 namespace {
 
 int64_t events(const RunResult& result, std::string_view name) {
@@ -158,4 +158,4 @@ TEST(Events, WhatCannotCrossWithItsParametersIsNotWatched) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::event_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::failure_test {
 namespace {
 
 TEST(Failure, ADivergingRunNamesTheBlockAndKeepsItsRows) {
@@ -130,4 +130,4 @@ TEST(Interruption, KeepsTheRowsSoFar) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::failure_test

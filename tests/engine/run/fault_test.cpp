@@ -3,7 +3,7 @@
 #include "engine/lanes/lane_run.h"
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::fault_test {
 namespace {
 
 constexpr const char* reason = "as the test wants";
@@ -202,4 +202,4 @@ TEST(AlgebraicLoop, ThatIsSingularIsAnErrorWithItsBlocks) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::fault_test

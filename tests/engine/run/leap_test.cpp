@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::leap_test {
 namespace {
 
 /// An integrator of 1 that a sine of 1 Hz resets to 0: it never exceeds 1.
@@ -130,4 +130,4 @@ TEST(LongRuns, RobertsonAgreesWithPublishedValues) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::leap_test

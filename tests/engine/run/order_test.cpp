@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::order_test {
 namespace {
 
 TEST(StepOrder, ASampledChainIsReadInTheTickInWhichItIsComputed) {
@@ -124,4 +124,4 @@ TEST(StepOrder, TheOrderInTheFileDoesNotMatter) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::order_test

@@ -5,7 +5,7 @@
 #include "tests/engine/run/examples.h"
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::recording_test {
 namespace {
 
 /// The value of a signal in the row at a time. Throws if there is no such row.
@@ -193,4 +193,4 @@ TEST(Recording, TheWindowOfChatteringIsTheSolversNotTheRecordings) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::recording_test

@@ -8,7 +8,7 @@
 #include "tests/engine/run/examples.h"
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::snapshot_test {
 namespace {
 
 using ScalarRun = Run<double>;  // the name Run is taken inside a test
@@ -99,4 +99,4 @@ TEST(Repeat, AnotherSeedOrRunNumberIsOtherNoise) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::snapshot_test

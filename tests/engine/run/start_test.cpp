@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::start_test {
 namespace {
 
 TEST(Start, WhatReadsAHeldBlockIsComputedFromItsInitialValue) {
@@ -48,4 +48,4 @@ TEST(Start, ThatIsNoMultipleOfASampleTimeIsTheSame) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::start_test

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::time_test {
 namespace {
 
 TEST(RunTime, TenSecondsAtATenthAreExactly101Rows) {
@@ -69,4 +69,4 @@ TEST(RunTime, ARecordingThatWouldNotFitIsRefusedBeforeTheRun) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::time_test

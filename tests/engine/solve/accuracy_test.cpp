@@ -6,7 +6,7 @@
 
 #include "tests/engine/solve/systems.h"
 
-namespace loopwright::testing {
+namespace loopwright::testing::accuracy_test {
 namespace {
 
 class VariableStepAccuracy : public ::testing::TestWithParam<Method> {};
@@ -209,4 +209,4 @@ TEST(Stiffness, IsNotSeenInAnOscillatorWhereAccuracySetsTheStep) {
 }
 
 }  // namespace
-}  // namespace loopwright::testing
+}  // namespace loopwright::testing::accuracy_test

@@ -7,7 +7,7 @@
 
 #include "tests/engine/solve/systems.h"
 
-namespace loopwright::testing {
+namespace loopwright::testing::events_test {
 namespace {
 
 constexpr double gravity = 9.81;  // m/s²
@@ -277,4 +277,4 @@ TEST_P(Events, AFaultOrNanInACrossingEndsTheAdvance) {
 }
 
 }  // namespace
-}  // namespace loopwright::testing
+}  // namespace loopwright::testing::events_test

@@ -4,7 +4,7 @@
 
 #include <complex>
 
-namespace loopwright {
+namespace loopwright::method_test {
 namespace {
 
 TEST(Method, NamesAreReadBackAsWritten) {
@@ -45,4 +45,4 @@ TEST(Method, StabilityLimitsAreThoseOfTheStabilityFunctions) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::method_test

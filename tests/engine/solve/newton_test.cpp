@@ -8,7 +8,7 @@
 
 #include "tests/engine/solve/allocations.h"
 
-namespace loopwright::testing {
+namespace loopwright::testing::newton_test {
 namespace {
 
 struct Equations {
@@ -175,4 +175,4 @@ TEST(Newton, SenselessOptionsAreRefused) {
 }
 
 }  // namespace
-}  // namespace loopwright::testing
+}  // namespace loopwright::testing::newton_test

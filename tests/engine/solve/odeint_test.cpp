@@ -7,7 +7,7 @@
 
 #include "tests/engine/solve/systems.h"
 
-namespace loopwright {
+namespace loopwright::odeint_test {
 namespace {
 
 namespace odeint = boost::numeric::odeint;
@@ -119,4 +119,4 @@ TEST(Odeint, NeedsNoMoreEvaluationsForTheSameError) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::odeint_test

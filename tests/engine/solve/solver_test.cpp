@@ -12,7 +12,7 @@
 #include "tests/engine/solve/allocations.h"
 #include "tests/engine/solve/systems.h"
 
-namespace loopwright::testing {
+namespace loopwright::testing::solver_test {
 namespace {
 
 class SolverContract : public ::testing::TestWithParam<Method> {
@@ -373,4 +373,4 @@ TEST(SolverStatus, EveryStatusHasAText) {
 }
 
 }  // namespace
-}  // namespace loopwright::testing
+}  // namespace loopwright::testing::solver_test

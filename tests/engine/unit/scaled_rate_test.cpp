@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include "engine/unit/rescaling.h"
 
-namespace loopwright {
+namespace loopwright::scaled_rate_test {
 namespace {
 
 using Kind = Conversion::Kind;
@@ -63,4 +63,4 @@ TEST(ScaledRate, SurvivesInMultiplesAndIsNoRadianInSums) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::scaled_rate_test

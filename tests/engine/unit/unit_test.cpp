@@ -4,7 +4,7 @@
 #include <thread>
 #include <vector>
 
-namespace loopwright {
+namespace loopwright::unit_test {
 namespace {
 
 Unit unit(std::string_view text) {
@@ -214,4 +214,4 @@ TEST(ParseUnit, MayBeCalledFromManyThreads) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::unit_test

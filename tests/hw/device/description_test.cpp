@@ -5,7 +5,7 @@
 #include <numbers>
 #include "tests/hw/device_file.h"
 
-namespace loopwright::hw {
+namespace loopwright::hw::description_test {
 namespace {
 
 using testing::AllOf;
@@ -151,4 +151,4 @@ TEST(DeviceFile, EveryProblemIsToldAtOnce) {
 }
 
 }  // namespace
-}  // namespace loopwright::hw
+}  // namespace loopwright::hw::description_test

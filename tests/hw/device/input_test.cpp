@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-namespace loopwright::hw {
+namespace loopwright::hw::input_test {
 namespace {
 
 constexpr double period = 1e-3;
@@ -125,4 +125,4 @@ TEST(Input, ACounterIsFollowedAcrossItsWrapHoweverItIsRead) {
 }
 
 }  // namespace
-}  // namespace loopwright::hw
+}  // namespace loopwright::hw::input_test

@@ -6,7 +6,7 @@
 #include <limits>
 #include "tests/hw/device_file.h"
 
-namespace loopwright::hw {
+namespace loopwright::hw::io_device_test {
 namespace {
 
 struct Script {
@@ -320,4 +320,4 @@ TEST(IoDevice, CallsBeforeTheirTimeAreRefused) {
 }
 
 }  // namespace
-}  // namespace loopwright::hw
+}  // namespace loopwright::hw::io_device_test

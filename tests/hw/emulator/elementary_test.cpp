@@ -10,6 +10,7 @@ extern "C" {
 #include "hw/emulator/elementary.h"
 }
 
+namespace elementary_test {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -65,3 +66,5 @@ TEST(Elementary, TakesTheEndsOfItsDomains) {
 }
 
 }  // namespace
+
+}  // namespace elementary_test

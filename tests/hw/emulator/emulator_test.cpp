@@ -3,6 +3,7 @@
 #include <cmath>
 #include "tests/hw/emulator/hil.h"
 
+namespace emulator_test {
 namespace {
 
 const uint32_t first = 0;
@@ -219,3 +220,5 @@ TEST_F(Emulator, AFaultComesAtItsCallAndAnUnpluggedCardKeepsItsOutput) {
 }
 
 }  // namespace
+
+}  // namespace emulator_test

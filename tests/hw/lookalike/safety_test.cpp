@@ -7,7 +7,7 @@
 #include "tests/hw/deployment.h"
 #include "tests/hw/lookalike/card.h"
 
-namespace loopwright::hw {
+namespace loopwright::hw::safety_test {
 namespace {
 
 using testing::AllOf;
@@ -178,4 +178,4 @@ TEST_F(Lookalike, AFullBufferIsAFaultOrLosesTheOldest) {
 }
 
 }  // namespace
-}  // namespace loopwright::hw
+}  // namespace loopwright::hw::safety_test

@@ -13,7 +13,7 @@
 #include "tests/hw/emulated_card.h"
 #include "where.h"
 
-namespace loopwright::hw {
+namespace loopwright::hw::driver_test {
 namespace {
 
 using testing::AllOf;
@@ -316,4 +316,4 @@ TEST(QuanserErrors, NamesAreThoseOfTheVendor) {
 }
 
 }  // namespace
-}  // namespace loopwright::hw
+}  // namespace loopwright::hw::driver_test

@@ -7,7 +7,7 @@
 #include "tests/hw/deployment.h"
 #include "where.h"
 
-namespace loopwright::hw {
+namespace loopwright::hw::deploy_test {
 namespace {
 
 using testing::HasSubstr;
@@ -195,4 +195,4 @@ TEST(Deploy, UnitsOfDiagramAndDeviceMustAgree) {
 }
 
 }  // namespace
-}  // namespace loopwright::hw
+}  // namespace loopwright::hw::deploy_test

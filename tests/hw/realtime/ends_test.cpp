@@ -14,7 +14,7 @@
 #include "tests/hw/card_daemon.h"
 #include "tests/hw/deployment.h"
 
-namespace loopwright::hw {
+namespace loopwright::hw::ends_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -318,4 +318,4 @@ TEST_F(Ends, AKillLeavesTheOutputsToTheWatchdogAndTheLogUpToTheLastSecond) {
 }
 
 }  // namespace
-}  // namespace loopwright::hw
+}  // namespace loopwright::hw::ends_test

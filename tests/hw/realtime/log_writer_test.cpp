@@ -8,7 +8,7 @@
 #include <thread>
 #include "tests/engine/diagram/diagram_folder.h"
 
-namespace loopwright::hw {
+namespace loopwright::hw::log_writer_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -128,4 +128,4 @@ TEST(LogWriter, AJournalRepeatsItsHeading) {
 }
 
 }  // namespace
-}  // namespace loopwright::hw
+}  // namespace loopwright::hw::log_writer_test

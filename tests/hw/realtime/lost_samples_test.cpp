@@ -9,7 +9,7 @@
 #include "tests/hw/deployment.h"
 #include "where.h"
 
-namespace loopwright::hw {
+namespace loopwright::hw::lost_samples_test {
 namespace {
 
 using testing::AllOf;
@@ -292,4 +292,4 @@ TEST(BadReading, OneInTheMotionIsAFaultOrHeldAsThePolicySays) {
 }
 
 }  // namespace
-}  // namespace loopwright::hw
+}  // namespace loopwright::hw::lost_samples_test

@@ -12,7 +12,7 @@
 #include "hw/realtime/system.h"
 #include "tests/engine/diagram/diagram_folder.h"
 
-namespace loopwright::hw {
+namespace loopwright::hw::parts_test {
 namespace {
 
 TEST(LogRing, RowsComeOutInOrderAndARowWithoutRoomIsCounted) {
@@ -115,4 +115,4 @@ TEST(CrashMessage, SaysInWhichStateTheDeviceIs) {
 }
 
 }  // namespace
-}  // namespace loopwright::hw
+}  // namespace loopwright::hw::parts_test

@@ -5,7 +5,7 @@
 #include "tests/hw/deployment.h"
 #include "tests/hw/realtime/trap.h"
 
-namespace loopwright::hw {
+namespace loopwright::hw::trap_test {
 namespace {
 
 /// A mass on a driver without any lock: only operations of the loop are counted.
@@ -92,4 +92,4 @@ TEST(Trap, TenMinutesOnTheCardAllocateNothingAndLoseNoRow) {
 }
 
 }  // namespace
-}  // namespace loopwright::hw
+}  // namespace loopwright::hw::trap_test

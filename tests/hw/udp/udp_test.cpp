@@ -14,7 +14,7 @@
 #include "tests/hw/device_file.h"
 #include "where.h"
 
-namespace loopwright::hw {
+namespace loopwright::hw::udp_test {
 namespace {
 
 using namespace udp;
@@ -238,4 +238,4 @@ TEST(Udp, AWrongAddressIsAProblemOfTheFile) {
 }
 
 }  // namespace
-}  // namespace loopwright::hw
+}  // namespace loopwright::hw::udp_test

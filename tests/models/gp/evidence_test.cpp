@@ -5,7 +5,7 @@
 #include "models/gp/structured.h"
 #include "tests/models/gp/disturbance.h"
 
-namespace loopwright::gp {
+namespace loopwright::gp::evidence_test {
 namespace {
 
 struct Case {
@@ -133,4 +133,4 @@ TEST(PeriodicWeights, SumToTheKernelAndItsSlope) {
 }
 
 }  // namespace
-}  // namespace loopwright::gp
+}  // namespace loopwright::gp::evidence_test

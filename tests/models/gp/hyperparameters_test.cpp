@@ -4,7 +4,7 @@
 #include "models/gp/structured.h"
 #include "tests/models/gp/disturbance.h"
 
-namespace loopwright::gp {
+namespace loopwright::gp::hyperparameters_test {
 namespace {
 
 const DataScale scale{0.55, pitch, 0.45, 0.05};
@@ -68,4 +68,4 @@ TEST(DefaultPriors, KeepTheVelocityLengthFromLearningEachVelocityByItself) {
 }
 
 }  // namespace
-}  // namespace loopwright::gp
+}  // namespace loopwright::gp::hyperparameters_test

@@ -10,7 +10,7 @@
 #include "tools/report/child_process.h"
 #include "where.h"
 
-namespace loopwright::gp {
+namespace loopwright::gp::reference_test {
 namespace {
 
 using nlohmann::json;
@@ -65,4 +65,4 @@ TEST(ScikitLearn, FindsTheSameEvidenceGradientMeanAndVariance) {
 }
 
 }  // namespace
-}  // namespace loopwright::gp
+}  // namespace loopwright::gp::reference_test

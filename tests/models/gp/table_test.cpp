@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include "tests/models/gp/disturbance.h"
 
-namespace loopwright::gp {
+namespace loopwright::gp::table_test {
 namespace {
 
 Model model_of(const Kernel& kernel, Velocities velocities, bool structured = true) {
@@ -74,4 +74,4 @@ TEST(SlopeBounds, AreNeverExceededAndNotFarAway) {
 }
 
 }  // namespace
-}  // namespace loopwright::gp
+}  // namespace loopwright::gp::table_test

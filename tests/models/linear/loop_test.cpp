@@ -6,7 +6,7 @@
 #include "models/linear/margins.h"
 #include "models/linear/norms.h"
 
-namespace loopwright {
+namespace loopwright::loop_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -163,4 +163,4 @@ TEST(Norms, UnstableSystemsHaveNone) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::loop_test

@@ -3,7 +3,7 @@
 #include <cmath>
 #include "models/linear/structure.h"
 
-namespace loopwright {
+namespace loopwright::poles_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -100,4 +100,4 @@ TEST(Structure, WhatLiesBehindACutWireIsNoPartOfAChannel) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::poles_test

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <cmath>
 
-namespace loopwright {
+namespace loopwright::riccati_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -113,4 +113,4 @@ TEST(Riccati, AFilterOfARandomWalkHasItsClosedForm) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::riccati_test

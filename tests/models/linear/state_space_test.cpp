@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace loopwright {
+namespace loopwright::state_space_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -75,4 +75,4 @@ TEST(StateSpace, AnApproximateDelayHasGainOneAndThePhaseOfTheDelay) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::state_space_test

@@ -5,7 +5,7 @@
 #include <sstream>
 #include "where.h"
 
-namespace loopwright {
+namespace loopwright::point_to_point_test {
 namespace {
 
 struct Case {
@@ -137,4 +137,4 @@ TEST(PointToPointMotion, StaysWhereItIs) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::point_to_point_test

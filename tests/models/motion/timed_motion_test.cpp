@@ -6,7 +6,7 @@
 #include "models/motion/via_points.h"
 #include "where.h"
 
-namespace loopwright {
+namespace loopwright::timed_motion_test {
 namespace {
 
 struct Axis {
@@ -188,4 +188,4 @@ TEST(ViaPointMotion, PassesItsPointsWithinTheLimits) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::timed_motion_test

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <cmath>
 
-namespace loopwright {
+namespace loopwright::normal_quantile_test {
 
 TEST(NormalQuantile, IsTheInverseOfTheNormalDistribution) {
   for (int i = -3000; i <= 2500; ++i) {
@@ -22,4 +22,4 @@ TEST(NormalQuantile, IsOddAboutOneHalfAndReachesFar) {
   EXPECT_NEAR(normal_quantile(1e-300), -37.0470962994, 1e-9);
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::normal_quantile_test

@@ -1,7 +1,7 @@
 #include "models/random/philox.h"
 #include <gtest/gtest.h>
 
-namespace loopwright {
+namespace loopwright::philox_test {
 
 // The known answers supplied with the authors' Random123 library.
 TEST(Philox, GivesTheKnownAnswers) {
@@ -25,4 +25,4 @@ TEST(Philox, UniformNumbersLieInsideTheOpenInterval) {
   EXPECT_GT(greatest, 1 - 1e-4);
 }
 
-}  // namespace loopwright
+}  // namespace loopwright::philox_test

@@ -5,7 +5,7 @@
 // The reference is libm in long double, which must be more accurate than double for these tests to be valid.
 static_assert(LDBL_MANT_DIG >= 64);
 
-namespace loopwright::test {
+namespace loopwright::test::accuracy_test {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -246,4 +246,4 @@ TEST(ElementaryFunctions, GiveNaNForNaNAndLibmsValuesAtInfinityAndZero) {
 }
 
 }  // namespace
-}  // namespace loopwright::test
+}  // namespace loopwright::test::accuracy_test

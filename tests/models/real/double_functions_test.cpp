@@ -4,7 +4,7 @@
 
 // The reference is libm in long double.
 
-namespace loopwright::test {
+namespace loopwright::test::double_functions_test {
 namespace {
 
 constexpr int samples = 100000;
@@ -111,4 +111,4 @@ TEST(AnyPower, IsThatOfLibmWhereItIsNoNumberOrInfinite) {
 }
 
 }  // namespace
-}  // namespace loopwright::test
+}  // namespace loopwright::test::double_functions_test

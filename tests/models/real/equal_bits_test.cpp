@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/models/real/arguments.h"
 
-namespace loopwright::test {
+namespace loopwright::test::equal_bits_test {
 namespace {
 
 // Builds of this program with -mavx2 and -mavx512f test the same statements for those instruction sets.
@@ -113,4 +113,4 @@ TEST(EqualBitsAnywhere, ResultsAreThoseRecorded) {
 }
 
 }  // namespace
-}  // namespace loopwright::test
+}  // namespace loopwright::test::equal_bits_test

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include "tests/models/real/arguments.h"
 
-namespace loopwright::test {
+namespace loopwright::test::real_test {
 namespace {
 
 template <class Condition>
@@ -136,4 +136,4 @@ TYPED_TEST(RealTest, SignsFlipByBitAndByParity) {
 }
 
 }  // namespace
-}  // namespace loopwright::test
+}  // namespace loopwright::test::real_test

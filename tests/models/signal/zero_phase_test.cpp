@@ -1,7 +1,7 @@
 #include "models/signal/zero_phase.h"
 #include <gtest/gtest.h>
 
-namespace loopwright {
+namespace loopwright::zero_phase_test {
 namespace {
 
 constexpr double step = 1e-3, cutoff = 2 * std::numbers::pi * 20;  // s, rad/s
@@ -43,4 +43,4 @@ TEST(CentralDifference, IsExactForAParabolaInside) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::zero_phase_test

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include "tests/tools/command/program.h"
 
-namespace loopwright {
+namespace loopwright::check_test {
 namespace {
 
 const std::string root = LOOPWRIGHT_SOURCE;
@@ -137,4 +137,4 @@ TEST_F(Check, OptionsThatChangeNothingAreRefused) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::check_test

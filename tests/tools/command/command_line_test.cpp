@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include "tests/tools/command/program.h"
 
-namespace loopwright {
+namespace loopwright::command_line_test {
 namespace {
 
 struct Slip {
@@ -102,4 +102,4 @@ TEST(CommandLine, HelpSaysTheExitCodes) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::command_line_test

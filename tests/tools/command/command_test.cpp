@@ -4,7 +4,7 @@
 #include <thread>
 #include "tests/tools/command/program.h"
 
-namespace loopwright {
+namespace loopwright::command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -230,4 +230,4 @@ TEST_F(Command, AMatFileIsWritten) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::command_test

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include "tests/tools/command/program.h"
 
-namespace loopwright {
+namespace loopwright::completion_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -32,4 +32,4 @@ TEST(Completion, ManualNamesEveryOption) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::completion_test

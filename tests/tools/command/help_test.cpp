@@ -5,7 +5,7 @@
 #include <regex>
 #include "tests/tools/command/program.h"
 
-namespace loopwright {
+namespace loopwright::help_test {
 namespace {
 
 using testing::HasSubstr;
@@ -120,4 +120,4 @@ TEST_F(Colours, NeverPassOnThoseOfAFile) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::help_test

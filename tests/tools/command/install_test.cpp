@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include "tests/tools/command/program.h"
 
-namespace loopwright {
+namespace loopwright::install_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -89,4 +89,4 @@ TEST_F(Installed, WithoutItsDataTheProgramSaysWhatIsMissing) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::install_test

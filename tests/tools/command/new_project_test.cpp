@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include "tests/tools/command/program.h"
 
-namespace loopwright {
+namespace loopwright::new_project_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -96,4 +96,4 @@ TEST(New, RecognizesAMisspeltKindAndLeavesNothingBehind) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::new_project_test

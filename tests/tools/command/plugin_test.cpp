@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include "tests/tools/command/program.h"
 
-namespace loopwright {
+namespace loopwright::plugin_test {
 namespace {
 
 const std::string libraries = LOOPWRIGHT_BINARY "/lib/plugins/";
@@ -74,4 +74,4 @@ TEST_F(Plugin, ALibraryWithoutBlocksOrOfOtherHeadersIsRefused) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::plugin_test

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include "tests/tools/command/program.h"
 
-namespace loopwright {
+namespace loopwright::shared_files_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -136,4 +136,4 @@ TEST_F(SharedFiles, AResultReplacesTheOneBefore) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::shared_files_test

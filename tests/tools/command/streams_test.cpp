@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include "tests/tools/command/program.h"
 
-namespace loopwright {
+namespace loopwright::streams_test {
 namespace {
 
 /// A mass under viscous friction, driven by a recorded force, and the files that belong to it.
@@ -163,4 +163,4 @@ TEST_F(Streams, WrongNamesOfAllKindsAreToldAtOnce) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::streams_test

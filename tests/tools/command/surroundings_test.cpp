@@ -8,7 +8,7 @@
 #include <thread>
 #include "tests/tools/command/program.h"
 
-namespace loopwright {
+namespace loopwright::surroundings_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -190,4 +190,4 @@ TEST_F(Surroundings, WhatAKilledSweepLeftHalfWrittenIsTakenAway) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::surroundings_test

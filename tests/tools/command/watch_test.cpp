@@ -5,7 +5,7 @@
 #include <thread>
 #include "tests/tools/command/program.h"
 
-namespace loopwright {
+namespace loopwright::watch_test {
 namespace {
 
 /// Whether it comes true within a time that a busy computer keeps.
@@ -51,4 +51,4 @@ TEST(Watch, RunsAgainForEveryFileThatIsRead) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::watch_test

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include "tests/tools/experiment/experiment_folder.h"
 
-namespace loopwright {
+namespace loopwright::compare_test {
 namespace {
 
 double four(double) { return 4; }
@@ -125,4 +125,4 @@ TEST(Compare, AFailedRunIsComparedAsFarAsItCameAndSaysSo) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::compare_test

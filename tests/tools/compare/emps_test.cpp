@@ -5,7 +5,7 @@
 #include "tests/tools/experiment/experiment_folder.h"
 #include "where.h"
 
-namespace loopwright {
+namespace loopwright::emps_test {
 namespace {
 
 TEST(Emps, ThePublishedParametersReproduceTheRecordedLoop) {
@@ -28,4 +28,4 @@ TEST(Emps, ThePublishedParametersReproduceTheRecordedLoop) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::emps_test

@@ -6,7 +6,7 @@
 #include "tests/engine/written_diagram.h"
 #include "tools/compare/compare.h"
 
-namespace loopwright {
+namespace loopwright::force_test {
 namespace {
 
 constexpr double mass = 2, damping = 5, dt = 1e-3;
@@ -214,4 +214,4 @@ TEST(ForceResidual, WithoutRolesTheReasonIsGiven) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::force_test

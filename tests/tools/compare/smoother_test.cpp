@@ -4,7 +4,7 @@
 #include <cmath>
 #include "models/random/philox.h"
 
-namespace loopwright {
+namespace loopwright::smoother_test {
 namespace {
 
 /// Strokes of 0.3 m at 0.5 Hz with friction, a ripple of 30 mm and noise of 0.05 N; the position in units of
@@ -33,4 +33,4 @@ TEST(NoiseFloor, DoesNotDependOnTheUnitOfThePosition) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::smoother_test

@@ -9,7 +9,7 @@
 #include "tests/tools/command/program.h"
 #include "where.h"
 
-namespace loopwright {
+namespace loopwright::circle_test {
 namespace {
 
 const std::string root = LOOPWRIGHT_SOURCE;
@@ -116,4 +116,4 @@ TEST_F(Circle, TheLogNamesWhatIsMissingAndTeachesTheCompensation) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::circle_test

@@ -15,7 +15,7 @@
 #include "tests/tools/command/program.h"
 #include "where.h"
 
-namespace loopwright {
+namespace loopwright::ends_test {
 namespace {
 
 using testing::AllOf;
@@ -346,4 +346,4 @@ TEST_F(EndsOfTheProgram, WithoutAWatchdogNothingMovesUnlessItIsAccepted) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::ends_test

@@ -11,7 +11,7 @@
 #include "tests/tools/command/program.h"
 #include "where.h"
 
-namespace loopwright {
+namespace loopwright::program_test {
 namespace {
 
 using testing::AllOf;
@@ -237,4 +237,4 @@ TEST_F(DeployProgram, TheProbeAnswersWhatOnlyTheMachineKnows) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::program_test

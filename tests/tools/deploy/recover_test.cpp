@@ -6,7 +6,7 @@
 #include "engine/record/journal.h"
 #include "tests/tools/command/program.h"
 
-namespace loopwright {
+namespace loopwright::recover_test {
 namespace {
 
 using testing::AllOf;
@@ -65,4 +65,4 @@ TEST_F(Recover, APartThatIsMissingIsAFailureThatIsTold) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::recover_test

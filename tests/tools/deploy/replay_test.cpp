@@ -9,7 +9,7 @@
 #include "tests/hw/deployment.h"
 #include "where.h"
 
-namespace loopwright {
+namespace loopwright::replay_test {
 namespace {
 
 using hw::column;
@@ -269,4 +269,4 @@ TEST(Replay, AMissingColumnIsAProblem) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::replay_test

@@ -6,7 +6,7 @@
 #include "tools/diagnose/verdict/acceptance.h"
 #include "tools/diagnose/verdict/free_run.h"
 
-namespace loopwright {
+namespace loopwright::acceptance_test {
 namespace {
 
 using testing::ElementsAre;
@@ -169,4 +169,4 @@ TEST(Acceptance, PitchesOfARotaryAxisAreWholePartsOfATurn) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::acceptance_test

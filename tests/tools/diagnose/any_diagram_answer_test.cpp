@@ -5,7 +5,7 @@
 #include "tests/tools/diagnose/plants.h"
 #include "tests/tools/diagnose/recorded_axis.h"
 
-namespace loopwright {
+namespace loopwright::any_diagram_answer_test {
 namespace {
 
 using testing::HasSubstr, testing::Not;
@@ -97,4 +97,4 @@ TEST(AnyDiagramAnswer, AnAxisKeepsItsKeys) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::any_diagram_answer_test

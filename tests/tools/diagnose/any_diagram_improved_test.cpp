@@ -7,7 +7,7 @@
 #include "tests/tools/diagnose/plants.h"
 #include "tools/compare/compare.h"
 
-namespace loopwright {
+namespace loopwright::any_diagram_improved_test {
 namespace {
 
 using testing::ElementsAre;
@@ -110,4 +110,4 @@ TEST(AnyDiagramImproved, WithoutAnythingMissingTheDiagramIsTheSame) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::any_diagram_improved_test

@@ -3,7 +3,7 @@
 #include "tests/tools/diagnose/plants.h"
 #include "where.h"
 
-namespace loopwright {
+namespace loopwright::any_diagram_limits_test {
 namespace {
 
 std::string refusal(const Plant& plant, const DiagnoseOptions& options = {}) {
@@ -75,4 +75,4 @@ TEST(AnyDiagramLimits, TheSamplesMayLieAtAnyDistance) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::any_diagram_limits_test

@@ -2,7 +2,7 @@
 #include <memory>
 #include "tests/tools/diagnose/diagnosed_plant.h"
 
-namespace loopwright {
+namespace loopwright::any_diagram_test {
 namespace {
 
 /// "site: effect(variable)" of everything found; parameters that moved by name.
@@ -196,4 +196,4 @@ TEST(AnyDiagram, RecordsOfBothDirectionsTogetherTellDryFrictionFromAConstantTorq
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::any_diagram_test

@@ -5,7 +5,7 @@
 #include "tests/tools/diagnose/recorded_axis.h"
 #include "tools/diagnose/diagnose.h"
 
-namespace loopwright {
+namespace loopwright::bad_record_test {
 namespace {
 
 using testing::Contains;
@@ -75,4 +75,4 @@ TEST(BadRecord, LostSamplesAreCountedAndTakenForNoDeadTime) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::bad_record_test

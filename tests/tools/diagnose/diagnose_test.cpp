@@ -5,7 +5,7 @@
 #include "tests/tools/diagnose/diagnosed.h"
 #include "tests/tools/diagnose/recorded_axis.h"
 
-namespace loopwright {
+namespace loopwright::diagnose_test {
 namespace {
 
 using testing::ElementsAre;
@@ -139,4 +139,4 @@ TEST(Diagnose, WritesNothingWhenItIsInterrupted) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::diagnose_test

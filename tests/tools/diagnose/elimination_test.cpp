@@ -2,7 +2,7 @@
 #include "tools/diagnose/search/elimination.h"
 #include <gtest/gtest.h>
 
-namespace loopwright::diagnosis {
+namespace loopwright::diagnosis::elimination_test {
 namespace {
 
 /// Random columns of very different sizes, of which the last two are nearly alike.
@@ -58,4 +58,4 @@ TEST(Elimination, AColumnThatIsAlreadyThereSavesNothing) {
 }
 
 }  // namespace
-}  // namespace loopwright::diagnosis
+}  // namespace loopwright::diagnosis::elimination_test

@@ -3,7 +3,7 @@
 #include "tests/tools/diagnose/diagnosed.h"
 #include "tests/tools/diagnose/flawed_axis.h"
 
-namespace loopwright {
+namespace loopwright::flawed_record_test {
 namespace {
 
 using testing::ElementsAre;
@@ -197,4 +197,4 @@ TEST(LastBits, DoNotChangeTheAnswer) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::flawed_record_test

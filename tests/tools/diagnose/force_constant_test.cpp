@@ -8,7 +8,7 @@
 #include "tests/tools/diagnose/hidden_axis.h"
 #include "tools/compare/compare.h"
 
-namespace loopwright {
+namespace loopwright::force_constant_test {
 namespace {
 
 using testing::ElementsAre;
@@ -225,4 +225,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& one) { return std::string(one.param.first); });
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::force_constant_test

@@ -133,7 +133,7 @@ class HiddenAxis {
  private:
   void write_data(const std::string& name, const Physics& truth, const WantedMotion& wanted) {
     Random random = random_stream(1, name.c_str());
-    Plant plant = plant_at_rest(&truth, hidden_sample_time, 10);
+    ::Plant plant = plant_at_rest(&truth, hidden_sample_time, 10);
     Controller controller =
         controller_make(PD_WITH_OBSERVER, machine_.mass, machine_.damping, hidden_sample_time);
     const std::vector<double>& x = wanted.position;

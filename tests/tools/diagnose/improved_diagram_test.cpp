@@ -7,7 +7,7 @@
 #include "tests/tools/diagnose/hidden_axis.h"
 #include "tools/compare/compare.h"
 
-namespace loopwright {
+namespace loopwright::improved_diagram_test {
 namespace {
 
 using testing::Contains;
@@ -89,4 +89,4 @@ TEST(ImprovedDiagram, LeavesOptionalEffectsOutUnlessAllAreWanted) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::improved_diagram_test

@@ -8,7 +8,7 @@ extern "C" {
 #include "tests/hidden_effects/random.h"
 }
 
-namespace loopwright {
+namespace loopwright::map_test {
 namespace {
 
 using testing::AnyOf, testing::Contains, testing::ElementsAre, testing::HasSubstr, testing::IsEmpty,
@@ -116,4 +116,4 @@ TEST(Map, IsNotMixedWithMotionAndNotSimulated) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::map_test

@@ -7,7 +7,7 @@
 #include "tools/diagnose/diagnose.h"
 #include "where.h"
 
-namespace loopwright {
+namespace loopwright::measured_axes_test {
 namespace {
 
 using testing::AnyOf, testing::Contains;
@@ -60,4 +60,4 @@ TEST(MeasuredAxes, TheSameMotorHeldStepByStepCogs72TimesAndHasDryFriction) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::measured_axes_test

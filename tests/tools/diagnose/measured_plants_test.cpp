@@ -10,7 +10,7 @@
 #include "tools/diagnose/diagnose.h"
 #include "where.h"
 
-namespace loopwright {
+namespace loopwright::measured_plants_test {
 namespace {
 
 bool has_data(const std::string& file) {
@@ -55,4 +55,4 @@ TEST(MeasuredPlants, AMapOfATurnShowsAllOrdersOfItsCogging) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::measured_plants_test

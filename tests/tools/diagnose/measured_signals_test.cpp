@@ -3,7 +3,7 @@
 #include "tests/tools/diagnose/diagnosed.h"
 #include "tests/tools/diagnose/hidden_axis.h"
 
-namespace loopwright {
+namespace loopwright::measured_signals_test {
 namespace {
 
 using testing::ElementsAre;
@@ -138,4 +138,4 @@ TEST(SampledEncoder, LeavesCoggingInItsPlace) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::measured_signals_test

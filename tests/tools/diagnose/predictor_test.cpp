@@ -3,7 +3,7 @@
 #include <cmath>
 #include "tests/tools/diagnose/recorded_axis.h"
 
-namespace loopwright::diagnosis {
+namespace loopwright::diagnosis::predictor_test {
 namespace {
 
 Noise noise_of_record() {
@@ -91,4 +91,4 @@ TEST(Predictor, OtherGainsNeedNoOtherRun) {
 }
 
 }  // namespace
-}  // namespace loopwright::diagnosis
+}  // namespace loopwright::diagnosis::predictor_test

@@ -4,7 +4,7 @@
 #include "tools/diagnose/search/catalogue.h"
 #include "tools/diagnose/search/prepare.h"
 
-namespace loopwright::diagnosis {
+namespace loopwright::diagnosis::remembered_runs_test {
 namespace {
 
 /// A record, and a constant and a wave along it as members.
@@ -78,4 +78,4 @@ TEST_F(RememberedRunsTest, SensitivitiesAreThoseOfTheFreeParameters) {
 }
 
 }  // namespace
-}  // namespace loopwright::diagnosis
+}  // namespace loopwright::diagnosis::remembered_runs_test

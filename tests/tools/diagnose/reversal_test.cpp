@@ -4,7 +4,7 @@
 #include "tests/tools/diagnose/diagnosed.h"
 #include "tests/tools/diagnose/hidden_axis.h"
 
-namespace loopwright {
+namespace loopwright::reversal_test {
 namespace {
 
 using testing::ElementsAre;
@@ -40,4 +40,4 @@ TEST(Reversal, WithinASampleLeavesStrongDryFrictionAlone) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::reversal_test

@@ -6,7 +6,7 @@
 #include "tools/effects/effect.h"
 #include "where.h"
 
-namespace loopwright {
+namespace loopwright::room_test {
 namespace {
 
 using testing::Contains;
@@ -113,4 +113,4 @@ TEST(UsersCatalogue, ABumpIsNamedOnceItsFileIsThere) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::room_test

@@ -5,7 +5,7 @@
 #include "tools/diagnose/predict/site_filter.h"
 #include "where.h"
 
-namespace loopwright {
+namespace loopwright::second_opinion_test {
 namespace {
 
 using testing::Contains, testing::HasSubstr, testing::IsEmpty;
@@ -80,4 +80,4 @@ TEST(MeasuredTanks, OverflowOfTheUpperTankIsNamedAtIt) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::second_opinion_test

@@ -5,7 +5,7 @@
 #include "tests/tools/diagnose/diagnosed.h"
 #include "tests/tools/diagnose/hidden_axis.h"
 
-namespace loopwright {
+namespace loopwright::sensor_gain_test {
 namespace {
 
 constexpr double counts_per_metre = 5e6;
@@ -66,4 +66,4 @@ TEST_P(SensorGain, IsTakenOutOfTheRecord) {
 INSTANTIATE_TEST_SUITE_P(WithTheRole, SensorGain, testing::Values("mass.position", "counter.y"));
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::sensor_gain_test

@@ -3,7 +3,7 @@
 #include "tests/tools/diagnose/diagnosed.h"
 #include "tests/tools/diagnose/hidden_axis.h"
 
-namespace loopwright {
+namespace loopwright::several_records_test {
 namespace {
 
 using testing::ElementsAre;
@@ -106,4 +106,4 @@ TEST(SeveralRecords, NothingIsMissingWhenNeitherLacksAnything) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::several_records_test

@@ -5,7 +5,7 @@
 #include "engine/diagram/in_memory.h"
 #include "engine/plan/plan.h"
 
-namespace loopwright::diagnosis {
+namespace loopwright::diagnosis::shape_test {
 namespace {
 
 constexpr double reference = 300;
@@ -85,4 +85,4 @@ TEST(Shape, TheFormulaHasTheUnitOfItsSite) {
 }
 
 }  // namespace
-}  // namespace loopwright::diagnosis
+}  // namespace loopwright::diagnosis::shape_test

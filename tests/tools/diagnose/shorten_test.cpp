@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace loopwright::diagnosis {
+namespace loopwright::diagnosis::shorten_test {
 namespace {
 
 /// First order: T y' = u - y, with u held, sampled exactly.
@@ -89,4 +89,4 @@ TEST(Shorten, NoMeanLiesAcrossAGap) {
 }
 
 }  // namespace
-}  // namespace loopwright::diagnosis
+}  // namespace loopwright::diagnosis::shorten_test

@@ -8,7 +8,7 @@
 #include "tools/compare/compare.h"
 #include "tools/diagnose/search/own_shapes.h"
 
-namespace loopwright {
+namespace loopwright::site_effect_file_test {
 namespace {
 
 using testing::ElementsAre;
@@ -75,4 +75,4 @@ TEST(SiteEffectFile, IsOfferedWhereItsKindsOfSiteAndSignalAre) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::site_effect_file_test

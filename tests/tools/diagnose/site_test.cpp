@@ -5,7 +5,7 @@
 #include "tests/tools/diagnose/plants.h"
 #include "tools/diagnose/predict/site_filter.h"
 
-namespace loopwright::diagnosis {
+namespace loopwright::diagnosis::site_test {
 namespace {
 
 /// Without the sensors, which every compared output has.
@@ -163,4 +163,4 @@ TEST(SiteModel, ASettingOfTheDiagramChangesAllBlocksThatReadIt) {
 }
 
 }  // namespace
-}  // namespace loopwright::diagnosis
+}  // namespace loopwright::diagnosis::site_test

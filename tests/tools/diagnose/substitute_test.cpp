@@ -2,7 +2,7 @@
 #include "tests/tools/diagnose/diagnosed.h"
 #include "tests/tools/diagnose/hidden_axis.h"
 
-namespace loopwright {
+namespace loopwright::substitute_test {
 namespace {
 
 using ::testing::Contains;
@@ -34,4 +34,4 @@ TEST(Substitute, MassAndDampingAreSaidRatherThanAGainWhichIsDeclared) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::substitute_test

@@ -5,7 +5,7 @@
 #include "tests/tools/diagnose/hidden_axis.h"
 #include "tools/effects/motion.h"
 
-namespace loopwright {
+namespace loopwright::suggested_experiment_test {
 namespace {
 
 using testing::ElementsAre;
@@ -153,4 +153,4 @@ TEST(SuggestedExperiment, TellsALagFromADelay) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::suggested_experiment_test

@@ -3,7 +3,7 @@
 #include "tests/tools/diagnose/recorded_axis.h"
 #include "tools/diagnose/diagnose.h"
 
-namespace loopwright {
+namespace loopwright::work_test {
 namespace {
 
 Truth with_dry_friction() {
@@ -48,4 +48,4 @@ TEST(Work, AnOrdinaryRecordIsFarFromTheLimit) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::work_test

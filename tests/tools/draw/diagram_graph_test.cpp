@@ -6,7 +6,7 @@
 #include "tools/draw/machine_chart.h"
 #include "where.h"
 
-namespace loopwright {
+namespace loopwright::diagram_graph_test {
 namespace {
 
 using Side = report::GraphEnd::Side;
@@ -94,4 +94,4 @@ TEST(MachineChart, PrioritiesSortTransitions) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::diagram_graph_test

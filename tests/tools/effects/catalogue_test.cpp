@@ -3,7 +3,7 @@
 #include "tests/tools/effects/axis_sizes.h"
 #include "tools/effects/effect_run.h"
 
-using namespace loopwright;
+namespace loopwright::catalogue_test {
 
 TEST(Catalogue, HoldsTheEffectsByTheirNames) {
   std::set<std::string> names;
@@ -43,3 +43,5 @@ TEST(Catalogue, CompilesForLinearAndRotaryMachines) {
       EXPECT_EQ(problems.text(), "") << effect.name << " " << effect.form << " in " << units.force;
     }
 }
+
+}  // namespace loopwright::catalogue_test

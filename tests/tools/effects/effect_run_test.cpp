@@ -5,7 +5,7 @@
 #include "tests/engine/written_diagram.h"
 #include "tests/tools/effects/axis_sizes.h"
 
-using namespace loopwright;
+namespace loopwright::effect_run_test {
 
 namespace {
 
@@ -350,3 +350,5 @@ TEST(EffectRun, ADelayByPartOfASampleHasTheSlopeOfItsLateStaircase) {
     EXPECT_NEAR(double(output.slope[k]), slope, 1e-5) << k;
   }
 }
+
+}  // namespace loopwright::effect_run_test

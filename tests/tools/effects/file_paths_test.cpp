@@ -6,7 +6,7 @@
 #include "tools/effects/nest.h"
 #include "where.h"
 
-namespace loopwright {
+namespace loopwright::file_paths_test {
 namespace {
 
 std::string moved(const DiagramFolder& folder, const std::string& text, const std::string& to) {
@@ -87,4 +87,4 @@ TEST(FilePaths, AShippedDiagramStillLoadsFromElsewhere) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::file_paths_test

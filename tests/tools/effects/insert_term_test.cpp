@@ -5,7 +5,7 @@
 #include "engine/diagram/in_memory.h"
 #include "engine/plan/plan.h"
 
-namespace loopwright {
+namespace loopwright::insert_term_test {
 namespace {
 
 using testing::ElementsAre;
@@ -138,4 +138,4 @@ TEST(InsertTerm, APortThatIsNotThereIsAProblem) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::insert_term_test

@@ -11,7 +11,7 @@
 #include "tests/tools/effects/axis_sizes.h"
 #include "where.h"
 
-using namespace loopwright;
+namespace loopwright::insert_test {
 
 namespace {
 
@@ -331,3 +331,5 @@ TEST(Insertion, AddsToASettingPerRevolution) {
               2 / damping * (1 - std::exp(-damping)), 1e-6)
       << text;
 }
+
+}  // namespace loopwright::insert_test

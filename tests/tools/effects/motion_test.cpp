@@ -3,7 +3,7 @@
 #include <cmath>
 #include "tests/tools/effects/axis_sizes.h"
 
-using namespace loopwright;
+namespace loopwright::motion_test {
 
 TEST(Motion, EveryExperimentOfTheCatalogueCanBeRun) {
   const RecordSizes sizes = axis_sizes();
@@ -38,3 +38,5 @@ TEST(Motion, ReachesItsSpeedsBothWays) {
     EXPECT_GT(samples, 1000) << speed;
   }
 }
+
+}  // namespace loopwright::motion_test

@@ -5,7 +5,7 @@
 #include "tools/effects/site_effect.h"
 #include "where.h"
 
-namespace loopwright {
+namespace loopwright::site_effect_test {
 namespace {
 
 constexpr const char* weir = R"({
@@ -88,4 +88,4 @@ TEST(SiteEffect, ItsFormulaIsReadAndProportionalToItsLinearParameters) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::site_effect_test

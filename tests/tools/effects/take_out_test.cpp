@@ -10,7 +10,7 @@
 #include "tools/effects/insert.h"
 #include "where.h"
 
-using namespace loopwright;
+namespace loopwright::take_out_test {
 
 namespace {
 
@@ -184,3 +184,5 @@ TEST(TakingOut, AnEffectOfADrivenPortIsDrivenAtOnePort) {
     EXPECT_EQ(insertion.input_at[0].to, std::vector<std::string>{std::string(name) + "_input.u"});
   }
 }
+
+}  // namespace loopwright::take_out_test

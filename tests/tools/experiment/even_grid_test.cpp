@@ -5,7 +5,7 @@
 #include <random>
 #include "tools/experiment/even_grid.h"
 
-namespace loopwright {
+namespace loopwright::even_grid_test {
 namespace {
 
 constexpr double dt = 1e-3;
@@ -144,4 +144,4 @@ TEST(EvenGrid, ARecordWithMoreGapsThanRowsIsRefused) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::even_grid_test

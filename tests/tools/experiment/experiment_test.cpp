@@ -4,7 +4,7 @@
 #include <cmath>
 #include "tests/tools/experiment/experiment_folder.h"
 
-namespace loopwright {
+namespace loopwright::experiment_test {
 namespace {
 
 double one(double) { return 1; }
@@ -233,4 +233,4 @@ TEST_F(Experiments, ProblemsOfTheDiagramAreToldTogetherWithThoseOfTheExperiment)
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::experiment_test

@@ -4,7 +4,7 @@
 #include "models/random/philox.h"
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::fit_test {
 namespace {
 
 /// x'' + (b/m) x' = u/m with u = sin(2t), from rest: a record in closed form, with noise.
@@ -326,4 +326,4 @@ TEST_F(Fitted, AnExpressionHasNoNumberToWrite) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::fit_test

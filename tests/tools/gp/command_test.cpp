@@ -4,7 +4,7 @@
 #include "tests/tools/command/program.h"
 #include "tests/tools/gp/stage.h"
 
-namespace loopwright {
+namespace loopwright::command_test {
 namespace {
 
 class GpCommand : public ::testing::Test {
@@ -45,4 +45,4 @@ TEST_F(GpCommand, AnswersTwoAndLeavesNothingBehindWhenTheInputIsWrong) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::command_test

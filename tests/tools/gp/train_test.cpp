@@ -3,7 +3,7 @@
 #include "tests/tools/gp/stage.h"
 #include "tools/gp/gp_page.h"
 
-namespace loopwright {
+namespace loopwright::train_test {
 namespace {
 
 using testing::AllOf;
@@ -331,4 +331,4 @@ TEST(ModelPage, TellsHyperParametersResidualsAndDoubts) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::train_test

@@ -6,7 +6,7 @@
 #include "models/linear/frequency_response.h"
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::analysis_test {
 namespace {
 
 using std::numbers::pi;
@@ -131,4 +131,4 @@ TEST(Analysis, ABreakPointOfSeveralNumbersIsRefused) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::analysis_test

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include "tests/tools/command/program.h"
 
-namespace loopwright {
+namespace loopwright::command_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -84,4 +84,4 @@ TEST_F(LinearizeCommand, AnswersOneWhenTheRunToTheOperatingPointFails) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::command_test

@@ -4,7 +4,7 @@
 #include <cmath>
 #include "tests/engine/written_diagram.h"
 
-namespace loopwright {
+namespace loopwright::linear_diagram_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -109,4 +109,4 @@ TEST(ContinuousPart, PortsThatDoNotExistAreNamedAllAtOnce) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::linear_diagram_test

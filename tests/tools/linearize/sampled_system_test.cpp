@@ -3,7 +3,7 @@
 #include "tests/engine/written_diagram.h"
 #include "tools/linearize/linear_diagram.h"
 
-namespace loopwright {
+namespace loopwright::sampled_system_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -186,4 +186,4 @@ TEST(SampledSystem, ALimiterAtItsLimitPassesNothingAndAReaderIsToldSo) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::sampled_system_test

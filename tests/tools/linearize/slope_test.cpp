@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <cmath>
 
-namespace loopwright {
+namespace loopwright::slope_test {
 namespace {
 
 Slope slope_of(double (*f)(double), double x) {
@@ -59,4 +59,4 @@ TEST(Slope, WhereThereIsNoValueOnOneSideThereIsNoSlope) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::slope_test

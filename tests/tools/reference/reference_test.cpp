@@ -12,7 +12,7 @@
 #include "tools/reference/reference.h"
 #include "where.h"
 
-namespace loopwright {
+namespace loopwright::reference_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -167,4 +167,4 @@ TEST(Reference, EveryUnitCanBeReadAndIsInSi) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::reference_test

@@ -7,7 +7,7 @@
 #include "tools/report/child_process.h"
 #include "where.h"
 
-namespace loopwright::report {
+namespace loopwright::report::browser_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -51,4 +51,4 @@ TEST(ReportPage, ScopesZoomReadOutAndFollowEachOtherInABrowser) {
 }
 
 }  // namespace
-}  // namespace loopwright::report
+}  // namespace loopwright::report::browser_test

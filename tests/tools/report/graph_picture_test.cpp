@@ -5,7 +5,7 @@
 #include "tests/tools/report/well_formed.h"
 #include "tools/report/child_process.h"
 
-namespace loopwright::report {
+namespace loopwright::report::graph_picture_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -153,4 +153,4 @@ TEST(RunProgram, TellsWhatTheProgramComplainedAbout) {
 }
 
 }  // namespace
-}  // namespace loopwright::report
+}  // namespace loopwright::report::graph_picture_test

@@ -11,7 +11,7 @@
 #include "tools/report/assets.h"
 #include "where.h"
 
-namespace loopwright::report {
+namespace loopwright::report::report_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -226,4 +226,4 @@ TEST(ReportText, BreaksLongLinesBetweenWords) {
 }
 
 }  // namespace
-}  // namespace loopwright::report
+}  // namespace loopwright::report::report_test

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-namespace loopwright::report {
+namespace loopwright::report::thin_test {
 namespace {
 
 TEST(Thin, KeepsAllOfAShortSeries) {
@@ -137,4 +137,4 @@ TEST(FairLimit, LetsShortSeriesLiveAndSharesTheRest) {
 }
 
 }  // namespace
-}  // namespace loopwright::report
+}  // namespace loopwright::report::thin_test

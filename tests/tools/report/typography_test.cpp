@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-namespace loopwright::report {
+namespace loopwright::report::typography_test {
 namespace {
 
 TEST(ReadableUnit, WritesPowersDotsAndSymbols) {
@@ -61,4 +61,4 @@ TEST(SignificantDigits, GrowWithTheOffset) {
 TEST(TextWidth, CountsCharacters) { EXPECT_EQ(text_width("µm → ²"), 6u); }
 
 }  // namespace
-}  // namespace loopwright::report
+}  // namespace loopwright::report::typography_test

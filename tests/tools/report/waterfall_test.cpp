@@ -6,7 +6,7 @@
 #include "tests/tools/report/well_formed.h"
 #include "where.h"
 
-namespace loopwright::report {
+namespace loopwright::report::waterfall_test {
 namespace {
 
 Waterfall ripple() {
@@ -76,4 +76,4 @@ TEST(Waterfall, FlatFunctionsHaveAnAxisToo) {
 }
 
 }  // namespace
-}  // namespace loopwright::report
+}  // namespace loopwright::report::waterfall_test

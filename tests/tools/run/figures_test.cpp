@@ -7,7 +7,7 @@
 #include "tests/engine/written_diagram.h"
 #include "tools/run/run_page.h"
 
-namespace loopwright {
+namespace loopwright::figures_test {
 namespace {
 
 using std::numbers::pi;
@@ -165,4 +165,4 @@ TEST(Differences, AreTakenOverTheCommonTimeInTheSameUnit) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::figures_test

@@ -6,7 +6,7 @@
 #include "tools/draw/diagram_graph.h"
 #include "tools/run/run_page.h"
 
-namespace loopwright {
+namespace loopwright::run_page_test {
 namespace {
 
 constexpr std::string_view blocks =
@@ -86,4 +86,4 @@ TEST(RunSummary, OfNoRowsIsNoCrash) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::run_page_test

@@ -8,7 +8,7 @@
 #include "tests/engine/diagram/diagram_folder.h"
 #include "tools/schema/schema.h"
 
-namespace loopwright {
+namespace loopwright::schema_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -61,4 +61,4 @@ TEST(Schema, IsWrittenForEveryKindWithSettingsThatNameIt) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::schema_test

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include "tests/tools/command/program.h"
 
-namespace loopwright {
+namespace loopwright::command_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -89,4 +89,4 @@ TEST_F(StabilityCommand, AnswersOneWhenTheRunFails) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::command_test

@@ -7,7 +7,7 @@
 #include "tools/linearize/analysis.h"
 #include "tools/stability/certificates.h"
 
-namespace loopwright {
+namespace loopwright::stability_test {
 namespace {
 
 using testing::HasSubstr;
@@ -178,4 +178,4 @@ TEST(Stability, ADiagramWithoutALoopIsRefused) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::stability_test

@@ -4,7 +4,7 @@
 #include "tests/tools/sweep/sweep_testing.h"
 #include "tools/sweep/lane_group.h"
 
-namespace loopwright {
+namespace loopwright::combinations_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -108,4 +108,4 @@ TEST(SweepCombinations, AValueThatNeverFitsRefusesTheSweep) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::combinations_test

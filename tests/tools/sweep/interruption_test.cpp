@@ -9,7 +9,7 @@
 #include "models/random/philox.h"
 #include "tests/tools/sweep/sweep_testing.h"
 
-namespace loopwright {
+namespace loopwright::interruption_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -230,4 +230,4 @@ TEST(Interruption, RefusesAFolderThatCannotBeWrittenBeforeItRunsAnything) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::interruption_test

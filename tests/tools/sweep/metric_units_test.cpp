@@ -4,7 +4,7 @@
 #include "tests/engine/written_diagram.h"
 #include "tests/tools/sweep/sweep_testing.h"
 
-namespace loopwright {
+namespace loopwright::metric_units_test {
 namespace {
 
 const std::string loop = diagram(R"("a": {"type": "Constant", "value": {"value": 1, "unit": "mm"}},
@@ -141,4 +141,4 @@ TEST(AxisUnits, AreChecked) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::metric_units_test

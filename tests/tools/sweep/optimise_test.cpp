@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include "tests/tools/sweep/sweep_testing.h"
 
-namespace loopwright {
+namespace loopwright::optimise_test {
 namespace {
 
 // (x - 0.3)² + (ln(y/20))², least at 0.3 and 20, greatest at a corner.
@@ -38,4 +38,4 @@ TEST(Optimise, NamesTheMetricThatWasProbablyMeant) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::optimise_test

@@ -6,7 +6,7 @@
 #include "tests/tools/sweep/sweep_testing.h"
 #include "where.h"
 
-namespace loopwright {
+namespace loopwright::program_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -97,4 +97,4 @@ TEST(SweepProgram, MakesWhatAKilledRankLeftAndGivesTheSameTable) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::program_test

@@ -3,7 +3,7 @@
 #include <cmath>
 #include "tests/tools/sweep/sweep_testing.h"
 
-namespace loopwright {
+namespace loopwright::robustness_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -67,4 +67,4 @@ TEST(Robustness, DrawsAPanelForEveryAxisAndACurveForEveryVariant) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::robustness_test

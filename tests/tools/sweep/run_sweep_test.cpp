@@ -4,7 +4,7 @@
 #include "engine/run/simulation.h"
 #include "tests/tools/sweep/sweep_testing.h"
 
-namespace loopwright {
+namespace loopwright::run_sweep_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -110,4 +110,4 @@ TEST(RunSweep, RunsVariableStepDiagramsOneByOneAndSaysSo) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::run_sweep_test

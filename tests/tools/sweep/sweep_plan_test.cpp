@@ -6,7 +6,7 @@
 #include "tools/sweep/sensitivity.h"
 #include "tools/sweep/tunables.h"
 
-namespace loopwright {
+namespace loopwright::sweep_plan_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -205,4 +205,4 @@ TEST(Sensitivity, FindsTheIndicesOfTheIshigamiFunction) {
 }
 
 }  // namespace
-}  // namespace loopwright
+}  // namespace loopwright::sweep_plan_test

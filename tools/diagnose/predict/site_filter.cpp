@@ -10,12 +10,8 @@ using Map = Eigen::Map<Eigen::VectorXd>;
 using ConstMap = Eigen::Map<const Eigen::VectorXd>;
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
-/// [of the size of a state] Steps of differences: rounding and curvature then matter alike.
-constexpr double difference_step = 1e-6;
 /// [of the size of a state] What is known about it before the first row.
 constexpr double initial_deviation = 10;
-
-double squared(double x) { return x * x; }
 
 }  // namespace
 

@@ -16,6 +16,11 @@
 
 namespace loopwright::diagnosis {
 
+/// [of the size of a state] Steps of differences: rounding and curvature then matter alike.
+inline constexpr double difference_step = 1e-6;
+
+inline double squared(double x) { return x * x; }
+
 /// White noise, as standard deviations, and slow errors of the outputs.
 struct SiteNoise {
   std::vector<int> sites;           ///< where noise acts

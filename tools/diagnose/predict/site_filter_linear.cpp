@@ -7,8 +7,6 @@
 namespace loopwright::diagnosis {
 namespace {
 
-double squared(double x) { return x * x; }
-
 /// f.operator()<N>() with N states, or Eigen::Dynamic if there are many.
 template <class F> auto with_size(size_t states, F&& f) {
   switch (states) {

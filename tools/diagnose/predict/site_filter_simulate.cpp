@@ -8,9 +8,6 @@ namespace {
 
 using ConstMap = Eigen::Map<const Eigen::VectorXd>;
 
-/// [of the size of a state] Steps of differences.
-constexpr double difference_step = 1e-6;
-
 /// One over the spread of each output, so that outputs of different units count alike.
 std::vector<double> weights_of(const SignalRecord& record, size_t from, size_t to) {
   std::vector<double> weights;

@@ -115,7 +115,7 @@ Experiment cut_open(const Experiment& experiment, const Plan& plan, Problems& pr
     cut.drives.back().port = *port;
     cut.drive_is_linear.push_back(linear);
     if (signal.port == *port) return;
-    Column column = *experiment.data.find(signal.port);
+    loopwright::Column column = *experiment.data.find(signal.port);
     column.name = *port;
     if (!cut.data.find(*port)) cut.data.columns.push_back(std::move(column));
   };
@@ -141,7 +141,7 @@ AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Prob
   }
   const EvenGrid grid(experiment);
   record.start = grid.start(), record.sample_time = grid.sample_time(), record.missing = grid.missing();
-  const Column& input = *experiment.data.find(experiment.drives.front().port);
+  const loopwright::Column& input = *experiment.data.find(experiment.drives.front().port);
   record.duration = grid.duration();
   record.input = grid.held(input.values);
   if (experiment.drive_is_linear.front()) interpolate_input(record);
@@ -153,7 +153,7 @@ AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Prob
     for (const RecordedSignal& signal : experiment.compared) {
       const std::vector<Number> numbers = plan.find(signal.port);
       if (numbers.size() != 1 || numbers[0] != wanted || record.find(role)) continue;
-      const Column& column = *experiment.data.find(signal.port);
+      const loopwright::Column& column = *experiment.data.find(signal.port);
       const auto written = parse_unit(signal.unit);  // rad, not 1
       const std::string unit = written && written->scale == 1 ? signal.unit : column.unit;
       record.measured.push_back({role, wanted, unit, signal.resolution, grid.measured(column.values)});

@@ -5,7 +5,8 @@
 namespace loopwright::diagnosis {
 namespace {
 
-constexpr double ridge = 1e-9;
+/// [of a squared column] Keeps columns that others replace from dividing by nothing.
+constexpr double relative_ridge = 1e-9;
 double scale_of(double square) { return 1 / std::sqrt(std::max(square, 1e-300)); }
 
 }  // namespace
@@ -17,7 +18,7 @@ Solved solve(const Products& G, std::vector<int> columns, const Eigen::VectorXd&
   result.scale = Eigen::VectorXd(G.diagonal())(c).unaryExpr(&scale_of);
   result.products = result.scale.asDiagonal() * G(c, Eigen::all);
   Eigen::MatrixXd own = result.products(Eigen::all, c) * result.scale.asDiagonal();
-  own.diagonal().array() += ridge;
+  own.diagonal().array() += relative_ridge;
   const Eigen::LDLT<Eigen::MatrixXd> factor(own);
   const Eigen::VectorXd right = result.scale.cwiseProduct(b(c));
   result.theta = factor.solve(right);
@@ -40,7 +41,7 @@ Added add(const Products& G, const std::vector<int>& columns, const Solved& to, 
       const double shared = is_alone ? 0.0 : to.products.col(column).dot(to.solved.col(other));
       own(i, j) = own(j, i) = scale[i] * scale[j] * (G(column, other) - shared);
     }
-    own(i, i) += ridge;
+    own(i, i) += relative_ridge;
   }
   const Eigen::VectorXd scaled = own.ldlt().solve(right);
   Added result{to.squares - right.dot(scaled), scale.cwiseProduct(scaled), to.theta};

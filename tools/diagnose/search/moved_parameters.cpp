@@ -8,7 +8,7 @@ namespace loopwright::diagnosis {
 namespace {
 
 /// In -2 ln L, and [of the parameter]: smaller changes are none.
-constexpr double least_gain = 25, least_change = 2e-3;
+constexpr double least_gain_of_parameters = 25, least_change = 2e-3;
 constexpr size_t fitted_sets = 4;
 /// More free parameters are taken one at a time.
 constexpr size_t most_for_all_subsets = 12;
@@ -116,7 +116,7 @@ std::vector<MovedParameters> moved_parameters(SiteFitter& fitter, const SiteHypo
         std::vector<int> without = choice.moved();
         std::erase(without, i);
         return other.moved() == without &&
-               other.hypothesis.objective - choice.hypothesis.objective < least_gain;
+               other.hypothesis.objective - choice.hypothesis.objective < least_gain_of_parameters;
       });
     });
   };

@@ -78,7 +78,7 @@ Starts pitches(std::span<const double> signal) {
 double sign_of(double s) { return s < 0 ? -1 : 1; }
 double clipped(double s, double limit) { return std::clamp(s, -std::abs(limit), std::abs(limit)); }
 
-const TermShape shapes[] = {
+const TermShape known_shapes[] = {
     {"constant",
      "A constant",
      "",
@@ -304,7 +304,7 @@ const TermShape unknown{"unknown",    "A function without a name",
 
 }  // namespace
 
-std::span<const TermShape> named_shapes() { return shapes; }
+std::span<const TermShape> named_shapes() { return known_shapes; }
 const TermShape& unknown_function() { return unknown; }
 
 }  // namespace loopwright::diagnosis

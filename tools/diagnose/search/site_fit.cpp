@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include "tools/diagnose/criteria.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -12,8 +13,6 @@ constexpr double widest_factor = 50;
 /// [of the parameter] Standard deviation of the prior while all parameters are free, so that those which the
 /// record does not determine stay where they are.
 constexpr double prior_deviation = 1;
-/// Directions of the fit that are weaker than this are left out.
-constexpr double weakest_direction = 1e-7;
 /// Lengths of a Gauss-Newton step that are tried.
 constexpr double step_lengths[] = {1, 0.4, 0.1, 0.02};
 /// [in -2 ln L] Smaller improvements end a refinement.
@@ -152,7 +151,7 @@ void SiteFitter::refine(SiteHypothesis& h, int steps, bool with_prior) {
     const Eigen::VectorXd right = norm.cwiseInverse().asDiagonal() * (all.transpose() * rest);
     Eigen::VectorXd move = Eigen::VectorXd::Zero(count);
     for (Eigen::Index i = 0; i < count; ++i)
-      if (eigen.eigenvalues()[i] > weakest_direction)
+      if (eigen.eigenvalues()[i] > criteria::weakest_direction)
         move +=
             eigen.eigenvectors().col(i) * (eigen.eigenvectors().col(i).dot(right) / eigen.eigenvalues()[i]);
     move = norm.cwiseInverse().asDiagonal() * move;

@@ -2,13 +2,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include "tools/diagnose/criteria.h"
 
 namespace loopwright::diagnosis {
 namespace {
 
 /// [of its energy] What must be left of a column after projection.
 constexpr double least_energy = 2e-3;
-constexpr double weakest_direction = 1e-7;
 /// In -2 ln L: what the second of two terms that are ranked together must gain.
 constexpr double least_gain_of_second = 40;
 /// Nats, beside those of the shape.
@@ -32,7 +32,7 @@ Eigen::MatrixXd basis_of(const Eigen::MatrixXd& J) {
   Eigen::MatrixXd basis(J.rows(), J.cols());
   Eigen::Index count = 0;
   for (Eigen::Index i = 0; i < J.cols(); ++i)
-    if (eigen.eigenvalues()[i] > weakest_direction)
+    if (eigen.eigenvalues()[i] > criteria::weakest_direction)
       basis.col(count++) = unit * eigen.eigenvectors().col(i) / std::sqrt(eigen.eigenvalues()[i]);
   return basis.leftCols(count);
 }

@@ -14,7 +14,7 @@ constexpr size_t fitted_keys = 5, fitted_pairs = 2;  // candidates that are conf
 constexpr size_t most_terms = 5;
 constexpr int most_first_substeps = 64;
 /// In -2 ln L: what a term must gain, also per reading.
-constexpr double least_gain = 25, least_gain_per_reading = 0.002;
+constexpr double least_gain_of_term = 25, least_gain_per_reading = 0.002;
 /// In the criterion: what an added term and an exchange must gain, and within what a rival is declared.
 constexpr double least_improvement = 10, least_exchange = 3, rival_within = 10;
 /// [of the gain needed, and of the best candidate's] A smaller linearized gain is not worth a real fit.
@@ -83,7 +83,7 @@ class SiteSearch {
     return criterion(h) + cost_of_parameter * double(h.free_parameters());
   }
   SiteModel& model() { return fitter_.model(); }
-  double gain_needed() const { return std::max(least_gain, least_gain_per_reading * readings_); }
+  double gain_needed() const { return std::max(least_gain_of_term, least_gain_per_reading * readings_); }
   void tell(const std::string& what, const SiteHypothesis& at) {
     std::string noise;
     for (double s : at.noise.process) noise += fmt::format(" {:.3g}", s);
@@ -240,7 +240,7 @@ class SiteSearch {
     std::vector<SiteHypothesis> tried = fits(at, ranked);
     if (tried.empty()) return;
     const double needed =
-        std::max(least_gain + least_gain_of_unknown, least_gain_of_unknown_per_reading * readings_);
+        std::max(least_gain_of_term + least_gain_of_unknown, least_gain_of_unknown_per_reading * readings_);
     tell("best unknown: " + describe(model(), tried.front().terms.back()), tried.front());
     if (at.objective - tried.front().objective < needed ||
         criterion(at) - criterion(tried.front()) < least_improvement)

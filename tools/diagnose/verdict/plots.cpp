@@ -50,14 +50,15 @@ Means means_over(const std::vector<double>& variable, const std::vector<double>&
   return result;
 }
 
-struct Variable {
+struct DrawnVariable {
   const char* name;
   std::string unit;
   const std::vector<double>* values;
 };
 
-std::vector<Variable> variables_of(const InverseDynamics& inverse, bool is_map, const MachineUnits& units) {
-  std::vector<Variable> list{{"Position", units.position, &inverse.path.position}};
+std::vector<DrawnVariable> variables_of(const InverseDynamics& inverse, bool is_map,
+                                        const MachineUnits& units) {
+  std::vector<DrawnVariable> list{{"Position", units.position, &inverse.path.position}};
   if (is_map) return list;
   list.push_back({"Velocity", units.position + "/s", &inverse.path.velocity});
   list.push_back({"Acceleration", units.position + "/s^2", &inverse.path.acceleration});
@@ -109,7 +110,7 @@ std::vector<MissingTerm> missing_terms(const Trials& trials, const InverseDynami
     std::vector<double> force(left.size());
     for (size_t k = 0; k < force.size(); ++k) force[k] = term.found[k] - left[k];
     double most = -1;
-    for (const Variable& v : variables_of(inverse, trials.has_map(), units)) {
+    for (const DrawnVariable& v : variables_of(inverse, trials.has_map(), units)) {
       if (v.values == &inverse.motion.time && most > determined_by_motion) continue;
       Means means = means_over(*v.values, force, inverse.motion.counts);
       if (means.explained <= most) continue;

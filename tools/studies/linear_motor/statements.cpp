@@ -8,7 +8,7 @@
 namespace loopwright::paper {
 namespace {
 
-constexpr const char *error = "error.sum", *learned = "compensation.estimate",
+constexpr const char *error = "error.sum", *learned_estimate = "compensation.estimate",
                      *observed = "controller.disturbance", *command = "controller.command";
 constexpr std::array<const char*, 5> section_names{"0-0.2 s", "0.2-1.2 s", "1.2-1.4 s", "1.4-2.4 s",
                                                    "2.4-2.6 s"};
@@ -78,7 +78,7 @@ struct Mean {
 
 /// Standard deviation of the learned estimate about its mean at each of the two velocities.
 template <class Chosen> double ripple(const Rows& rows, const Recording& run, Chosen chosen) {
-  const auto values = column(run, learned);
+  const auto values = column(run, learned_estimate);
   std::array<Mean, 2> at;
   for (size_t i = 0; i < rows.size(); ++i)
     if (rows.in_motion(i) && rows.at_constant_velocity(i) && chosen(i))
@@ -93,7 +93,7 @@ template <class Chosen> double ripple(const Rows& rows, const Recording& run, Ch
 /// Greatest difference between the estimate and that one pole pitch before, outside at constant velocity.
 double change_over_a_pitch(const Rows& rows, const Recording& run) {
   constexpr double pitch = 0.0225;
-  const auto values = column(run, learned), position = column(run, "stage.position");
+  const auto values = column(run, learned_estimate), position = column(run, "stage.position");
   double worst = 0;
   for (size_t i = 0; i < rows.size(); ++i) {
     if (!rows.in_motion(i) || !rows.at_constant_velocity(i) || !rows.outside(i, 0)) continue;
@@ -248,7 +248,7 @@ class Checks {
     double estimate = 0, blend = 0, plateau = 0, command_blend = 1e9;
     for (const auto& [loaded, plain] : {std::pair{&r.ds_loaded, &r.ds}, std::pair{&r.ps_loaded, &r.ps}}) {
       for (size_t s = 0; s < section_names.size(); ++s)
-        estimate = std::max(estimate, peak_in_section(*loaded, plain, learned, s));
+        estimate = std::max(estimate, peak_in_section(*loaded, plain, learned_estimate, s));
       for (const size_t s : plateaus)
         plateau = std::max(plateau, peak_in_section(*loaded, plain, observed, s));
       for (const size_t s : blends)

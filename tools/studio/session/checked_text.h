@@ -1,5 +1,6 @@
 /// A diagram file as far as it can be read, with its problems and their places.
 #pragma once
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include "tools/run/checked_diagram.h"
 #include "tools/studio/session/draft.h"
@@ -8,6 +9,9 @@
 namespace loopwright::studio {
 
 using Json = nlohmann::ordered_json;
+
+/// null in the place of a number that JSON does not have.
+inline Json finite(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
 
 struct CheckedText {
   std::shared_ptr<const ParsedText> parsed;

@@ -11,7 +11,7 @@ namespace loopwright::studio {
 namespace {
 
 using Kind = Value::Kind;
-constexpr std::string_view key = "loopwright_blocks";
+constexpr std::string_view copied_key = "loopwright_blocks";
 
 std::string first_of(const std::string& wire) { return wire.substr(0, wire.find('.')); }
 
@@ -80,12 +80,12 @@ std::string copied_blocks(const Level& level, const std::vector<std::string>& na
   for (const std::string& name : names)
     text += fmt::format("{}\n  {}: {}", text.empty() ? "" : ",", in_quotes(name),
                         source_of(required_block(level, name).value));
-  return fmt::format("{{{}: {{{}\n}}}}", in_quotes(key), text);
+  return fmt::format("{{{}: {{{}\n}}}}", in_quotes(copied_key), text);
 }
 
 std::vector<CopiedBlock> renamed_copies(const std::string& text, const Level& level) {
   const ParsedText parsed("clipboard", text);
-  const Value::Member* blocks = parsed.is_object() ? parsed.root.find(key) : nullptr;
+  const Value::Member* blocks = parsed.is_object() ? parsed.root.find(copied_key) : nullptr;
   if (!blocks || blocks->value.kind != Kind::object) throw Refused("the clipboard has no blocks");
   std::map<std::string, std::string> names;
   std::vector<std::string> taken;

@@ -12,11 +12,6 @@
 namespace loopwright::studio {
 namespace {
 
-std::string quantity(double value, const std::string& unit) {
-  const report::Quantity q = report::engineering(value, unit);
-  return q.unit.empty() ? q.value : q.value + " " + q.unit;
-}
-
 double error_of(const Diagnosis& diagnosis, const DiagnosisStep& step) {
   return diagnosis.holds_out ? step.held_out_force_rmse : step.force_rmse;
 }
@@ -47,8 +42,8 @@ Json card_json(const Diagnosis& diagnosis, const DiagnosedEffect& effect, size_t
                           {"low", p.low},
                           {"high", p.high},
                           {"unit", p.unit},
-                          {"text", quantity(p.value, p.unit)},
-                          {"interval", quantity(p.low, p.unit) + " … " + quantity(p.high, p.unit)},
+                          {"text", report::shown(p.value, p.unit)},
+                          {"interval", report::shown(p.low, p.unit) + " … " + report::shown(p.high, p.unit)},
                           {"at_limit", p.at_limit}});
   const DiagnosisStep* step = step_of(diagnosis, effect.name, count);
   const bool is_addable = std::ranges::find(diagnosis.all_additions.effects, effect.name,

@@ -9,8 +9,7 @@ namespace loopwright::studio {
 namespace {
 
 std::string quantity(double value, const std::string& unit) {
-  const report::Quantity q = report::engineering(value, unit == "1" ? "" : unit);
-  return q.unit.empty() ? q.value : q.value + " " + q.unit;
+  return report::shown(value, unit == "1" ? "" : unit);
 }
 
 Json fit_json(const Fit& fit) {

@@ -15,8 +15,6 @@ namespace {
 
 using Kind = Value::Kind;
 
-Json finite(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
-
 std::string_view name_of(ParameterKind kind) {
   static constexpr std::string_view names[] = {"number", "whole",  "flag", "text",
                                                "file",   "choice", "list", "object"};

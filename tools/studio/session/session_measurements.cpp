@@ -16,8 +16,6 @@
 namespace loopwright::studio {
 namespace {
 
-Json finite(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
-
 std::string experiment_name(const std::string& data) {
   return data.substr(0, data.rfind('.')) + ".experiment.json";
 }

@@ -5,7 +5,7 @@
 #include "tools/studies/linear_motor/frequency_response.h"
 #include "where.h"
 
-namespace loopwright::paper {
+namespace loopwright::paper::runs_test {
 namespace {
 
 const std::string folder = LOOPWRIGHT_SOURCE "/diagrams/linear_motor/";
@@ -70,4 +70,4 @@ TEST(FrequencyResponse, ShowsAnotherMass) {
 }
 
 }  // namespace
-}  // namespace loopwright::paper
+}  // namespace loopwright::paper::runs_test

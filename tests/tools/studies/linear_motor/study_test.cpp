@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include "where.h"
 
-namespace loopwright::paper {
+namespace loopwright::paper::study_test {
 namespace {
 
 const std::string diagrams = LOOPWRIGHT_SOURCE "/diagrams/linear_motor";
@@ -174,4 +174,4 @@ TEST(StudyNumbers, AnUnknownKeyIsAnErrorOfTheProgram) {
 }
 
 }  // namespace
-}  // namespace loopwright::paper
+}  // namespace loopwright::paper::study_test

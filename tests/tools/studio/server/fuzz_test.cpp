@@ -4,7 +4,7 @@
 #include <set>
 #include "tools/studio/server/server.h"
 
-using namespace loopwright::studio;
+namespace loopwright::studio::fuzz_test {
 
 namespace {
 
@@ -102,3 +102,5 @@ TEST(Tokens, AreLongAndCompareWhole) {
   EXPECT_FALSE(are_equal("", "a"));
   EXPECT_FALSE(are_equal("a", ""));
 }
+
+}  // namespace loopwright::studio::fuzz_test

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include "tools/studio/server/server.h"
 
-using namespace loopwright::studio;
+namespace loopwright::studio::hostile_request_test {
 
 namespace {
 
@@ -224,3 +224,5 @@ TEST_F(HostileRequests, ManyConnectionsLeaveTheServerAlive) {
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
   EXPECT_EQ(status(own("GET /", cookie)), 200);
 }
+
+}  // namespace loopwright::studio::hostile_request_test

@@ -11,8 +11,7 @@
 #include "tools/studio/session/followers.h"
 #include "tools/sweep/sweep_plan.h"
 
-using namespace loopwright;
-using namespace loopwright::studio;
+namespace loopwright::studio::followers_property_test {
 
 namespace {
 
@@ -144,3 +143,5 @@ TEST(Renaming, LeavesEverythingLoadableInAllShippedProjects) {
   EXPECT_GT(loaded, 100u);
   EXPECT_GT(followed, 20u) << "files that changed with others";
 }
+
+}  // namespace loopwright::studio::followers_property_test

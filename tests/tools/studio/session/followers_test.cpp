@@ -7,8 +7,7 @@
 #include "tools/studio/session/checked_text.h"
 #include "tools/sweep/sweep_plan.h"
 
-using namespace loopwright;
-using namespace loopwright::studio;
+namespace loopwright::studio::followers_test {
 
 namespace {
 
@@ -263,3 +262,5 @@ TEST_F(Followers, ThatChangedMeanwhileKeepWhatOthersWrote) {
   EXPECT_NE(error["text"].get<std::string>().find("a.sweep.json"), std::string::npos);
   EXPECT_EQ(all(), before);
 }
+
+}  // namespace loopwright::studio::followers_test

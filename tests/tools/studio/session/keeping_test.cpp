@@ -5,8 +5,7 @@
 #include "tests/tools/studio/session/studio_folder.h"
 #include "tools/sweep/lane_group.h"
 
-using namespace loopwright;
-using namespace loopwright::studio;
+namespace loopwright::studio::keeping_test {
 
 namespace {
 
@@ -181,3 +180,5 @@ TEST_F(Keeping, AFitMovesTheChosenNumbersAndIsOneStepOfUndo) {
 }
 
 }  // namespace
+
+}  // namespace loopwright::studio::keeping_test

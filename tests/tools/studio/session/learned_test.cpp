@@ -9,8 +9,7 @@ extern "C" {
 #include "tests/hidden_effects/write.h"
 }
 
-using namespace loopwright;
-using namespace loopwright::studio;
+namespace loopwright::studio::learned_test {
 
 namespace {
 
@@ -86,3 +85,5 @@ TEST(LearnedFunction, IsKeptAsALookupBlockAndUndone) {
   page.ask({{"do", "undo"}, {"path", "nominal.json"}});
   EXPECT_EQ(folder.read("nominal.json"), original);
 }
+
+}  // namespace loopwright::studio::learned_test

@@ -5,7 +5,7 @@
 #include "tests/tools/studio/session/session_page.h"
 #include "tests/tools/studio/session/studio_folder.h"
 
-using namespace loopwright::studio;
+namespace loopwright::studio::left_over_test {
 
 namespace {
 
@@ -83,3 +83,5 @@ TEST_F(LeftOvers, OnlyFilesOfProcessesThatAreGoneAndOnlyThoseThatAreNamed) {
   for (const std::string& file : {mine, foreign, plain, other, std::string("axis.json")})
     EXPECT_TRUE(is_there(file)) << file;
 }
+
+}  // namespace loopwright::studio::left_over_test

@@ -6,8 +6,7 @@
 #include "tests/tools/studio/session/session_page.h"
 #include "tests/tools/studio/session/studio_folder.h"
 
-using namespace loopwright;
-using namespace loopwright::studio;
+namespace loopwright::studio::measurement_test {
 using testing::HasSubstr;
 using testing::Not;
 
@@ -157,3 +156,5 @@ TEST_F(Measurements, PathsLeadToTheFilesFromAnywhere) {
 }
 
 }  // namespace
+
+}  // namespace loopwright::studio::measurement_test

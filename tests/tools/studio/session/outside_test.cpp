@@ -6,8 +6,7 @@
 #include "engine/json/json.h"
 #include "tools/studio/session/document.h"
 
-using namespace loopwright;
-using namespace loopwright::studio;
+namespace loopwright::studio::outside_test {
 
 namespace {
 
@@ -187,3 +186,5 @@ TEST(Outside, NothingIsLostWhileOthersWrite) {
   for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
     EXPECT_EQ(entry.path().filename(), "axis.json") << "nothing is left behind";
 }
+
+}  // namespace loopwright::studio::outside_test

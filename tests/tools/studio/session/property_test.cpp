@@ -7,8 +7,7 @@
 #include "tools/studio/session/document.h"
 #include "tools/studio/session/member_change.h"
 
-using namespace loopwright;
-using namespace loopwright::studio;
+namespace loopwright::studio::property_test {
 
 namespace {
 
@@ -202,3 +201,5 @@ TEST(TextChanges, CountAsBrowsersDo) {
   EXPECT_EQ(places.bytes(5), text.size() - 1);
   for (size_t unit : {0u, 1u, 2u, 3u, 5u, 6u}) EXPECT_EQ(places.units(places.bytes(unit)), unit);
 }
+
+}  // namespace loopwright::studio::property_test

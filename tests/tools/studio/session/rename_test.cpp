@@ -4,8 +4,7 @@
 #include "tools/studio/session/checked_text.h"
 #include "tools/studio/session/document.h"
 
-using namespace loopwright;
-using namespace loopwright::studio;
+namespace loopwright::studio::rename_test {
 
 TEST(RenamedParameter, IsFollowedByTheGuardsAndValuesOfAStateMachine) {
   const StudioFolder folder;
@@ -25,3 +24,5 @@ TEST(RenamedParameter, IsFollowedByTheGuardsAndValuesOfAStateMachine) {
   for (int i = 0; i < 3; ++i) document.undo();
   EXPECT_EQ(document.text(), original);
 }
+
+}  // namespace loopwright::studio::rename_test

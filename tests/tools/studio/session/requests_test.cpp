@@ -5,7 +5,7 @@
 #include "tests/tools/studio/session/session_page.h"
 #include "tests/tools/studio/session/studio_folder.h"
 
-using namespace loopwright::studio;
+namespace loopwright::studio::requests_test {
 
 namespace {
 
@@ -174,3 +174,5 @@ TEST_F(Requests, OneOddFileHidesNoOther) {
   EXPECT_EQ(hello["open"], "loop.json");
   EXPECT_EQ(paths.size(), 3u) << "a link to another place is read, and never written: " << hello;
 }
+
+}  // namespace loopwright::studio::requests_test

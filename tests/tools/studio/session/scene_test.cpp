@@ -7,8 +7,7 @@ extern "C" {
 #include "tests/hidden_effects/write.h"
 }
 
-using namespace loopwright;
-using namespace loopwright::studio;
+namespace loopwright::studio::scene_test {
 
 namespace {
 
@@ -220,3 +219,5 @@ TEST_F(Scene, ASecondPageSeesWhatTheFirstChanges) {
   EXPECT_EQ(page.events()[0]["document"]["view"]["title"], "The loop, by an editor");
   EXPECT_EQ(page.events()[0]["document"]["undo"], "change from outside");
 }
+
+}  // namespace loopwright::studio::scene_test

@@ -3,7 +3,7 @@
 #include "tests/tools/studio/session/session_page.h"
 #include "tests/tools/studio/session/studio_folder.h"
 
-using namespace loopwright::studio;
+namespace loopwright::studio::sent_view_test {
 
 namespace {
 
@@ -93,3 +93,5 @@ TEST(SentView, OfALargeDiagramIsSmallAfterASmallEdit) {
       page.ask(edit_of({{"intent", "set"}, {"block", "b"}, {"setting", "gain"}, {"text", "25"}}));
   EXPECT_LT(answer["document"].dump().size(), whole / 10);
 }
+
+}  // namespace loopwright::studio::sent_view_test

@@ -6,8 +6,7 @@
 #include "tools/studio/session/checked_text.h"
 #include "tools/studio/session/document.h"
 
-using namespace loopwright;
-using namespace loopwright::studio;
+namespace loopwright::studio::wires_test {
 
 namespace {
 
@@ -86,3 +85,5 @@ TEST(Conditions, AreConnectedReplacedAndTakenAwayLikeWires) {
   for (int i = 0; i < 3; ++i) document.undo();
   EXPECT_EQ(document.text(), original);
 }
+
+}  // namespace loopwright::studio::wires_test

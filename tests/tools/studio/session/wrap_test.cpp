@@ -7,8 +7,7 @@
 #include "tools/studio/session/checked_text.h"
 #include "tools/studio/session/document.h"
 
-using namespace loopwright;
-using namespace loopwright::studio;
+namespace loopwright::studio::wrap_test {
 
 namespace {
 
@@ -123,3 +122,5 @@ TEST(Wrap, AnyBlocksOfAnyShippedDiagram) {
   }
   EXPECT_GT(wrapped, 50);
 }
+
+}  // namespace loopwright::studio::wrap_test

@@ -59,7 +59,8 @@ test("a sweep, the slider and the plots follow a new name, and come back with on
   await page.waitForSelector("[data-block=stage]");
   await page.waitForSelector(".note:has-text('axis.sweep.json')");
   assert.equal(read("axis.sweep.json"), SWEEP.replace('"mass.mass"', '"stage.mass"').replace('"mass.position"', '"stage.position"'));
-  assert.match(await page.evaluate(() => decodeURIComponent(location.hash)), /set\.stage\.mass=/, "the moved slider is still that of the block");
+  // The moved slider is still that of the block. The address is written a moment after the page has settled.
+  await page.waitForFunction(() => /set\.stage\.mass=/.test(decodeURIComponent(location.hash)));
   await page.waitForSelector(".legend:has-text('stage.position')");
   assert.equal(await page.locator(".note.error").count(), 0);
   await page.keyboard.press("Escape");
