@@ -38,11 +38,17 @@ FileShape effect_file(bool has_forms) {
 }
 
 /// A kind of signal, or a list of kinds.
-FileShape signal_kinds(std::vector<std::string_view> further) {
-  further.insert(further.end(), site_kinds().begin(), site_kinds().end());
-  further.push_back("any");
-  const FileShape kind = choice(std::move(further));
+FileShape signal_kinds() {
+  std::vector<std::string_view> kinds(site_kinds().begin(), site_kinds().end());
+  kinds.push_back("any");
+  const FileShape kind = choice(std::move(kinds));
   return either({kind, list(kind)});
+}
+
+/// Kinds of other signals, or "site" alone.
+FileShape signals_of_effect() {
+  const FileShape site = choice({"site"});
+  return either({signal_kinds(), site, list(site, 1, 1)});
 }
 
 }  // namespace
@@ -113,8 +119,8 @@ FileShape site_effect_shape() {
   return file({required("effect", text(), "Its name, which is also that of its file"),
                required("title", text(), "One line for people"),
                required("physics", text(), "What happens, for people"),
-               required("site", signal_kinds({}), "Where it may act"),
-               required("of", signal_kinds({"site"}), "On which signals it depends; \"site\": its own"),
+               required("site", signal_kinds(), "Where it may act"),
+               required("of", signals_of_effect(), "On which signals it depends; \"site\": its own"),
                optional("parameters", by_name(site_parameter_shape())),
                required("formula", text(), "Of signal and the parameters")});
 }

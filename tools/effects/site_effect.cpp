@@ -67,6 +67,12 @@ class SiteEffectReader {
     effect_.signals = kinds("of", {"site"});
     effect_.is_distortion = effect_.signals == std::vector<std::string>{"site"};
     if (effect_.is_distortion) effect_.signals.clear();
+    if (const Value::Member* of = file_.find("of");
+        of && of->value.items.size() > 1 &&
+        std::ranges::any_of(of->value.items, [](const Value& kind) { return kind.text == "site"; })) {
+      auto& p = reader_.error(*of, "\"of\" names \"site\" beside other kinds");
+      p.hint = "an effect on its own signal and one on others are two files";
+    }
     if (const Value::Member* list = file_.find("parameters");
         list &&
         reader_.expect(list->value, Kind::object, "\"parameters\"", "an object of parameters by name"))
@@ -213,12 +219,13 @@ class SiteEffectReader {
         const auto linear =
             size_t(std::ranges::count_if(effect_.parameters, &SiteEffectParameter::is_linear));
         values[0] = signal;
+        const double sign = signal < 1 ? 1 : -1;  // negative values, too
         double sum = 0;
         for (size_t c = 0; c < linear; ++c) {
           for (size_t i = 0; i < linear; ++i) values[i + 1] = i == c ? 1.0 : 0.0;
-          sum += (2.0 + double(c)) * parser.Eval();
+          sum += sign * (2.0 + double(c)) * parser.Eval();
         }
-        for (size_t i = 0; i < linear; ++i) values[i + 1] = 2.0 + double(i);
+        for (size_t i = 0; i < linear; ++i) values[i + 1] = sign * (2.0 + double(i));
         const double together = parser.Eval();
         if (linear > 0 && !(std::abs(together - sum) <= 1e-9 * (1 + std::abs(sum)))) {
           problem("the formula is not proportional to its linear parameters").found = effect_.formula;

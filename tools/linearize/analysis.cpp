@@ -1,5 +1,6 @@
 #include "tools/linearize/analysis.h"
 #include <fmt/format.h>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include "models/linear/frequency_response.h"
@@ -32,7 +33,9 @@ LoopAnalysis analyse_loop(const LinearDiagram& diagram, const LinearizeRequest& 
                fmt::format("the loop cannot be cut at \"{}\": it has {} numbers", port, found.size()))
         .hint = "give one of them an index, as in sum.terms[0]";
   if (problems.has_errors()) throw InputError(std::move(problems));
-  Sampling loop = system_between(diagram, {{port}, {port}, {port}}, request);
+  std::vector<std::string> open = request.access.open;  // other loops that the user has cut stay cut
+  if (std::ranges::find(open, port) == open.end()) open.push_back(port);
+  Sampling loop = system_between(diagram, {{port}, {port}, open}, request);
   loop.system.matrices.C *= -1, loop.system.matrices.D *= -1;
   if (!loop.system.matrices.delays.empty()) {  // inputs of the delays keep their sign
     const Index delays = Index(loop.system.matrices.delays.size());

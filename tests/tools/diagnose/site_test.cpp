@@ -131,6 +131,28 @@ TEST(SiteFilter, FrozenGainsGiveTheErrorsOfTheWholePass) {
   ASSERT_TRUE(p.filter.run_frozen(p.pass, errors));
   for (size_t k = 0; k < errors.size(); ++k) ASSERT_NEAR(errors[k], p.pass.error[k], 1e-12);
 }
+/// A flow that is only tried must not switch the relay for the rows behind it.
+TEST(SiteFilter, ARelayIsAsItWasAfterFlowsThatWereOnlyTried) {
+  Plant plant = oscillator({}, 6);
+  const std::string before = R"("net":     {"type": "Sum", "signs": "+--", "in": {"terms": ["shaker.y",)";
+  ASSERT_NE(plant.diagram.find(before), std::string::npos);
+  plant.diagram.replace(plant.diagram.find(before), before.size(), R"(
+    "hand": {"type": "Relay", "switch_on": {"value": 0.02, "unit": "m"}, "switch_off": {"value": -0.02, "unit": "m"},
+             "on": {"value": 4, "unit": "N"}, "in": {"u": "mass.position"}},
+    "net": {"type": "Sum", "signs": "+---", "in": {"terms": ["shaker.y", "hand.y",)");
+  Passed p(plant);
+  std::vector<double> errors(p.pass.error.size());
+  ASSERT_TRUE(p.filter.run_frozen(p.pass, errors));
+  for (size_t k = 0; k < errors.size(); ++k) ASSERT_NEAR(errors[k], p.pass.error[k], 1e-12) << k;
+  constexpr size_t length = 50;
+  for (size_t from = 100; from + length < p.pass.rows; from += 100) {
+    std::vector<double> once(length), again(length), whole(p.pass.rows);
+    ASSERT_TRUE(p.filter.simulate(p.pass, from, from + length, once));
+    ASSERT_TRUE(p.filter.simulate(p.pass, 0, p.pass.rows - from, whole));
+    ASSERT_TRUE(p.filter.simulate(p.pass, from, from + length, again));
+    ASSERT_EQ(once, again) << from;
+  }
+}
 TEST(SiteFilter, TheObjectiveOfAnotherNoiseIsThatOfAPassWithIt) {
   Passed p(oscillator({}, 4));
   EXPECT_NEAR(p.filter.objective_with(p.pass, p.noise), p.pass.objective(),

@@ -66,7 +66,7 @@ TEST(SiteEffect, AllMistakesAreReportedAtOnce) {
 std::string problems_of(const std::string& parameters, const std::string& formula, const std::string& of) {
   DiagramFolder folder;
   folder.with("own.json", R"({"loopwright": 1, "effect": "own", "title": "", "physics": "", "site": "any",
-  "of": ")" + of + R"(", "parameters": {)" +
+  "of": )" + (of.starts_with('[') ? of : '"' + of + '"') + R"(, "parameters": {)" +
                               parameters + R"(}, "formula": ")" + formula + "\"}");
   Problems problems;
   EXPECT_FALSE(load_site_effect(folder.path("own.json"), problems));
@@ -83,8 +83,15 @@ TEST(SiteEffect, ItsFormulaIsReadAndProportionalToItsLinearParameters) {
               testing::HasSubstr("not proportional to its linear parameters"));
   EXPECT_THAT(problems_of(size, "size + signal", "any"),
               testing::HasSubstr("not proportional to its linear parameters"));
+  EXPECT_THAT(problems_of(size, "abs(size)*signal", "any"),
+              testing::HasSubstr("not proportional to its linear parameters"));
   EXPECT_THAT(problems_of(knee, "tanh(signal/knee)", "any"), testing::HasSubstr("no linear parameter"));
   EXPECT_THAT(problems_of(size, "size*signal", "site"), testing::HasSubstr("a distortion has no linear"));
+}
+
+TEST(SiteEffect, DependsOnItsOwnSignalOrOnOthers) {
+  for (const char* of : {R"(["site", "force"])", R"(["any", "site"])", R"(["site", "site"])"})
+    EXPECT_THAT(problems_of(size, "size*signal", of), testing::HasSubstr("\"site\" beside other kinds"));
 }
 
 }  // namespace

@@ -53,6 +53,24 @@ TEST(Analysis, WhereTheLoopIsCutDoesNotMatterForItsMargins) {
   EXPECT_NEAR(at_force.delay, at_sensor.delay, 1e-9);
 }
 
+/// Two loops share an integrator: L = 10/s + 50/s², and 10/s alone once the other one is cut.
+TEST(Analysis, LoopsThatTheUserCutStayCutForTheMargins) {
+  const auto plan = plan_of(diagram(R"(
+  "outer": {"type": "Gain", "gain": 50, "in": {"u": "position.y"}},
+  "inner": {"type": "Gain", "gain": 10, "in": {"u": "speed.y"}},
+  "total": {"type": "Sum", "signs": "--", "in": {"terms": ["outer.y", "inner.y"]}},
+  "speed": {"type": "Integrator", "in": {"u": "total.sum"}},
+  "position": {"type": "Integrator", "in": {"u": "speed.y"}})",
+                                    R"("stop": 1, "step": 0.0005)"));
+  LinearizeRequest request;
+  request.break_point = "speed.u";
+  EXPECT_LT(analyse(*plan, request).loop->margins.phase, 1.3);
+  request.access.open = {"position.u"};
+  EXPECT_NEAR(analyse(*plan, request).loop->margins.phase, std::numbers::pi / 2, 1e-6);
+  request.access.open = {"position.u", "speed.u"};
+  EXPECT_NEAR(analyse(*plan, request).loop->margins.phase, std::numbers::pi / 2, 1e-6);
+}
+
 TEST(Analysis, ADelayPlacedInTheLoopUsesUpTheDelayMargin) {
   LinearizeRequest request;
   request.break_point = "mass.force";

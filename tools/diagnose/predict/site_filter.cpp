@@ -13,6 +13,15 @@ constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 /// [of the size of a state] What is known about it before the first row.
 constexpr double initial_deviation = 10;
 
+/// Of a state to what is added at a site: somewhere along the record a valve is open.
+double largest_response(const SitePass& pass, size_t site, size_t state) {
+  constexpr size_t places = 200;
+  double largest = 0;
+  for (size_t row = 0; row < pass.rows; row += std::max<size_t>(1, pass.rows / places))
+    largest = std::max(largest, std::abs(pass.G[(row * pass.sites + site) * pass.states + state]));
+  return largest;
+}
+
 }  // namespace
 
 double SitePass::scaled_objective() const {
@@ -85,7 +94,7 @@ void SiteFilter::learn_scales(const SitePass& pass) {
   for (size_t s = 0; s < pass.sites; ++s) {  // what moves a state by a hundredth of its size in a sample
     double scale = std::numeric_limits<double>::infinity();
     for (size_t i = 0; i < model_states_; ++i)
-      if (const double g = std::abs(pass.G[s * n + i]); g > 0)
+      if (const double g = largest_response(pass, s, i); g > 0)
         scale = std::min(scale, 0.01 * state_scale_[i] / g);
     if (std::isfinite(scale)) site_scale_[s] = scale;
   }
@@ -99,6 +108,7 @@ void SiteFilter::allocate(size_t rows, bool with_columns, SitePass& pass) {
   for (auto* list : {&pass.error, &pass.variance, &pass.innovation}) list->resize(rows * outputs);
   for (auto* list : {&pass.C, &pass.gain}) list->resize(rows * outputs * n);
   for (auto* list : {&pass.correction, &pass.filtered}) list->resize(rows * n);
+  pass.modes.resize(rows * model_.mode_bytes() + 1), modes_.resize(model_.mode_bytes() + 1);
   pass.A.resize(rows * n * n), pass.G.resize(rows * sites * n);
   P_.resize(Eigen::Index(n), Eigen::Index(n)), product_.resize(Eigen::Index(n), Eigen::Index(n));
   for (Eigen::VectorXd* v : {&x_, &next_, &moved_, &moved_next_, &middle_, &gain_, &delta_, &difference_})
@@ -144,15 +154,20 @@ bool SiteFilter::advance(size_t row, const SiteNoise& noise, double* middle) {
   return true;
 }
 
+bool SiteFilter::try_flow(size_t row, const SitePass& pass, const double* from, double* to) {
+  model_.put_modes_back(&pass.modes[row * model_.mode_bytes()]);
+  return model_.flow(row, from, to);
+}
+
 void SiteFilter::choose_substeps(const SitePass& pass) {
   constexpr size_t places = 40, most = 64;
   constexpr double difference = 1e-6;  // [of the size of a state]
   const auto differs = [&](size_t row) {
     const double* from = &pass.filtered[row * pass.states];
     const int count = model_.substeps();
-    const bool good = model_.flow(row, from, next_.data());
+    const bool good = try_flow(row, pass, from, next_.data());
     model_.set_substeps(2 * count);
-    const bool finer_good = model_.flow(row, from, moved_next_.data());
+    const bool finer_good = try_flow(row, pass, from, moved_next_.data());
     model_.set_substeps(count);
     if (!good || !finer_good) return finer_good;
     for (size_t i = 0; i < model_states_; ++i)
@@ -179,15 +194,18 @@ bool SiteFilter::slopes_of_outputs(size_t row, SitePass& pass) {
   }
   if (are_all_known) return true;
   moved_ = x_;
+  model_.keep_modes(modes_.data());
   for (size_t i = 0; i < model_states_; ++i) {
     const double change = difference_step * state_scale_[i];
     moved_[Eigen::Index(i)] += change;
+    model_.put_modes_back(modes_.data());
     if (!model_.outputs(row, moved_.data(), y_moved_.data())) return false;
     moved_[Eigen::Index(i)] = x_[Eigen::Index(i)];
     for (size_t j = 0; j < pass.outputs; ++j)
       if (model_.measured_state(j) < 0 || model_.is_distorted(j))
         C[j * n + i] = (y_moved_[j] - y_[j]) / change;
   }
+  model_.put_modes_back(modes_.data());
   return true;
 }
 
@@ -208,7 +226,8 @@ bool SiteFilter::correct(size_t row, const SiteNoise& noise, SitePass& pass) {
       continue;
     }
     gain_.noalias() = P_ * C;
-    const double S = C.dot(gain_) + squared(noise.measurement[j]);
+    // Rounding must not make the variance of what a reading before has told already negative.
+    const double S = std::max(0.0, C.dot(gain_)) + squared(noise.measurement[j]);
     const double e = innovation - C.dot(delta_);
     K = gain_ / S;
     P_.noalias() -= gain_ * K.transpose();
@@ -223,7 +242,7 @@ bool SiteFilter::correct(size_t row, const SiteNoise& noise, SitePass& pass) {
   return true;
 }
 
-bool SiteFilter::respond_to(int site, bool ramp, size_t row, std::span<double> to) {
+bool SiteFilter::respond_to(int site, bool ramp, size_t row, SitePass& pass, std::span<double> to) {
   if (model_.output_of_sensor(site) >= 0) {
     std::ranges::fill(to, 0.0);
     return true;
@@ -234,7 +253,7 @@ bool SiteFilter::respond_to(int site, bool ramp, size_t row, std::span<double> t
     signal.ramp = size, signal.begin = record_.time[row], signal.length = record_.step(row);
   else
     signal.held = size;
-  const bool good = model_.flow(row, x_.data(), moved_next_.data());
+  const bool good = try_flow(row, pass, x_.data(), moved_next_.data());
   signal.held = signal.ramp = 0;
   for (size_t i = 0; i < to.size(); ++i)  // the slow errors stay as they are
     to[i] = (moved_next_[Eigen::Index(i)] - next_[Eigen::Index(i)]) / size;
@@ -244,31 +263,37 @@ bool SiteFilter::respond_to(int site, bool ramp, size_t row, std::span<double> t
 bool SiteFilter::linearize(size_t row, const SiteNoise& noise, SitePass& pass) {
   const size_t n = pass.states;
   moved_ = x_, moved_next_ = next_;
+  model_.keep_modes(modes_.data());  // where the next row goes on
   Map(&pass.A[row * n * n], Eigen::Index(n * n)).setZero();
   for (size_t j = 0; j < noise.slow.size(); ++j)
     pass.A[row * n * n + (model_states_ + j) * (n + 1)] = noise.kept(j, record_.step(row));
   for (size_t i = 0; i < model_states_; ++i) {
     const double change = difference_step * state_scale_[i];
     moved_[Eigen::Index(i)] += change;
-    if (!model_.flow(row, moved_.data(), moved_next_.data())) return false;
+    if (!try_flow(row, pass, moved_.data(), moved_next_.data())) return false;
     moved_[Eigen::Index(i)] = x_[Eigen::Index(i)];
     Map(&pass.A[(row * n + i) * n], Eigen::Index(n)) = (moved_next_ - next_) / change;
   }
   const auto G = [&](int site) { return std::span(&pass.G[(row * pass.sites + size_t(site)) * n], n); };
   if (!pass.has_columns) {
     for (int site : noise.sites)
-      if (!respond_to(site, false, row, G(site))) return false;
+      if (!respond_to(site, false, row, pass, G(site))) return false;
+    model_.put_modes_back(modes_.data());
     return true;
   }
   for (int site = 0; site < int(pass.sites); ++site) {
     const std::span ramp(&pass.ramp[(row * pass.sites + size_t(site)) * n], n);
-    if (!respond_to(site, false, row, G(site)) || !respond_to(site, true, row, ramp)) return false;
+    if (!respond_to(site, false, row, pass, G(site)) || !respond_to(site, true, row, pass, ramp))
+      return false;
   }
   const double begin = record_.time[row], step = record_.step(row);
   const auto numbers = [&](size_t k) { return &pass.path[k][row * pass.numbers]; };
-  return model_.look(row, begin, x_.data(), numbers(0)) &&
-         model_.look(row, begin + step / 2, middle_.data(), numbers(1)) &&
-         model_.look(row, begin + step, next_.data(), numbers(2));
+  model_.put_modes_back(modes_at(pass, row));
+  const bool good = model_.look(row, begin, x_.data(), numbers(0)) &&
+                    model_.look(row, begin + step / 2, middle_.data(), numbers(1)) &&
+                    model_.look(row, begin + step, next_.data(), numbers(2));
+  model_.put_modes_back(modes_.data());
+  return good;
 }
 
 void SiteFilter::predict_covariance(const SitePass& pass, size_t row, const SiteNoise& noise) {
@@ -301,6 +326,7 @@ bool SiteFilter::run(size_t rows, const SiteNoise& noise, bool with_columns, Sit
         P_(Eigen::Index(i), Eigen::Index(i)) = initial_variance(noise, i);
     }
     if (!correct(row, noise, pass)) return false;
+    model_.keep_modes(modes_at(pass, row));
     if (!advance(row, noise, with_columns ? middle_.data() : nullptr)) return false;
     if (!linearize(row, noise, pass)) return false;
     predict_covariance(pass, row, noise);

@@ -49,6 +49,7 @@ struct SitePass {
   std::vector<double> G, ramp;              ///< rows × sites × states
   std::vector<double> correction;           ///< rows × states: δ
   std::vector<double> filtered;             ///< rows × states
+  std::vector<char> modes;                  ///< rows × bytes: of the blocks, before each flow
   std::array<std::vector<double>, 3> path;  ///< rows × numbers: at the start, middle and end of each sample
   size_t readings = 0;
   double log_variances = 0, squares = 0;  ///< Σ ln S, Σ e²/S
@@ -107,7 +108,10 @@ class SiteFilter {
   bool correct(size_t row, const SiteNoise& noise, SitePass& pass);
   bool slopes_of_outputs(size_t row, SitePass& pass);
   bool linearize(size_t row, const SiteNoise& noise, SitePass& pass);
-  bool respond_to(int site, bool ramp, size_t row, std::span<double> to);
+  bool respond_to(int site, bool ramp, size_t row, SitePass& pass, std::span<double> to);
+  /// A flow from other states or with other signals, from the modes of this row.
+  bool try_flow(size_t row, const SitePass& pass, const double* from, double* to);
+  char* modes_at(SitePass& pass, size_t row) const { return &pass.modes[row * model_.mode_bytes()]; }
   void predict_covariance(const SitePass& pass, size_t row, const SiteNoise& noise);
   bool simulate_from(const Eigen::VectorXd& initial, size_t from, size_t to, std::span<double> error);
 
@@ -118,6 +122,7 @@ class SiteFilter {
   Eigen::MatrixXd P_, product_;
   Eigen::VectorXd x_, next_, moved_, moved_next_, middle_, gain_, delta_, difference_;
   std::vector<double> y_, y_moved_;
+  std::vector<char> modes_;  // after a flow
 };
 
 }  // namespace loopwright::diagnosis

@@ -33,8 +33,10 @@ Eigen::VectorXd weighted(std::span<const double> error, const std::vector<double
 
 bool SiteFilter::simulate(const SitePass& pass, size_t from, size_t to, std::span<double> error) {
   for (size_t row = from; row < to; ++row) {
-    if (row == from || record_.begins_at(row))
+    if (row == from || record_.begins_at(row)) {
       x_ = ConstMap(&pass.filtered[row * pass.states], Eigen::Index(pass.states));
+      model_.put_modes_back(&pass.modes[row * model_.mode_bytes()]);
+    }
     if (!model_.outputs(row, x_.data(), y_.data())) return false;
     for (size_t j = 0; j < pass.outputs; ++j)
       error[(row - from) * pass.outputs + j] = record_.outputs[j].value[row] - y_[j];
@@ -46,6 +48,7 @@ bool SiteFilter::simulate(const SitePass& pass, size_t from, size_t to, std::spa
 
 bool SiteFilter::simulate_from(const Eigen::VectorXd& initial, size_t from, size_t to,
                                std::span<double> error) {
+  model_.initial_states();  // the modes, too, are those of the start
   x_ = initial, next_.resize(initial.size());
   const size_t outputs = record_.outputs.size();
   for (size_t row = from; row < to; ++row) {

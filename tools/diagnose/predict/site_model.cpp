@@ -214,6 +214,9 @@ void SiteModel::build(const std::string& path, const LoadOptions& options, const
   parameters_ = find_parameters(path, options, *diagram, *plan_, *run_);
   for (auto& slope : slope_) slope.resize(size_t(plan_->states));
   stage_.resize(size_t(plan_->states));
+  for (size_t b = 0; b < plan_->blocks.size(); ++b)
+    if (const size_t bytes = plan_->blocks[b].type->kernels.mode_size; bytes > 0)
+      modes_.emplace_back(static_cast<char*>(run_->call(int(b)).mode), bytes), mode_bytes_ += bytes;
 }
 
 /// Sensors that count or sample are left out: their resolution is noise of the measurement.
@@ -271,6 +274,14 @@ void SiteModel::set_inputs(size_t row) {
     *inputs_[i].value = input.value[row], *inputs_[i].since = record_.time[row];
     *inputs_[i].slope = input.is_linear ? (input.value[next] - input.value[row]) / record_.step(row) : 0;
   }
+}
+
+void SiteModel::keep_modes(char* to) const {
+  for (const std::span<char> mode : modes_) to = std::ranges::copy(mode, to).out;
+}
+
+void SiteModel::put_modes_back(const char* from) {
+  for (const std::span<char> mode : modes_) std::copy_n(from, mode.size(), mode.data()), from += mode.size();
 }
 
 bool SiteModel::flow(size_t row, const double* from, double* to, double* middle) {

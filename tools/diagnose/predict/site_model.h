@@ -109,6 +109,11 @@ class SiteModel {
   /// The states at the next time stamp; false if they become non-finite or a block stops. `middle`: also
   /// those in the middle of the sample.
   bool flow(size_t row, const double* from, double* to, double* middle = nullptr);
+  /// Modes of blocks, such as the state of a relay, change with every flow, look and outputs: who only tries a
+  /// way keeps them before and puts them back. In bytes.
+  size_t mode_bytes() const { return mode_bytes_; }
+  void keep_modes(char* to) const;
+  void put_modes_back(const char* from);
   /// What is added at a site, over every flow until it is set again.
   SiteSignal& at_site(int site) { return signals_[size_t(site)]; }
   /// All numbers at given states, with the inputs of this row.
@@ -150,6 +155,8 @@ class SiteModel {
   bool has_decisions_ = false, all_are_states_ = true;
   int substeps_ = 2;
   std::vector<double> slope_[4], stage_;
+  std::vector<std::span<char>> modes_;
+  size_t mode_bytes_ = 0;
 };
 
 }  // namespace loopwright::diagnosis

@@ -10,6 +10,8 @@ namespace {
 /// In -2 ln L, and [of the parameter]: smaller changes are none.
 constexpr double least_gain_of_parameters = 25, least_change = 2e-3;
 constexpr size_t fitted_sets = 4;
+/// Sets of them are bits of a word.
+constexpr size_t most_free = 31;
 /// More free parameters are taken one at a time.
 constexpr size_t most_for_all_subsets = 12;
 /// [of a parameter] Directions that the record does not determine.
@@ -82,8 +84,18 @@ std::vector<MovedParameters> moved_parameters(SiteFitter& fitter, const SiteHypo
   SitePass pass;
   if (!fitter.pass(start, false, pass)) return {};
   std::vector<int> free;
-  for (size_t i = 0; i < start.is_free.size() && free.size() < 31; ++i)
+  for (size_t i = 0; i < start.is_free.size(); ++i)
     if (start.is_free[i]) free.push_back(int(i));
+  if (free.size() > most_free) {  // those that moved furthest stay; sets are bits
+    std::ranges::stable_sort(free, std::greater{},
+                             [&](int i) { return std::abs(start.factors[size_t(i)] - 1); });
+    for (size_t i = most_free; i < free.size(); ++i)
+      start.is_free[size_t(free[i])] = false, start.factors[size_t(free[i])] = 1;
+    free.resize(most_free);
+    std::ranges::sort(free);
+    fitter.refine(start, 4, true);
+    if (!fitter.pass(start, false, pass)) return {};
+  }
   std::vector<uint32_t> sets{0};
   if (!free.empty()) {
     const Eigen::MatrixXd J = fitter.jacobian(start, pass);
@@ -108,11 +120,12 @@ std::vector<MovedParameters> moved_parameters(SiteFitter& fitter, const SiteHypo
     list.push_back(std::move(choice));
   }
   std::ranges::sort(list, {}, &MovedParameters::criterion);
+  const std::vector<MovedParameters> all = list;
   // A parameter that gains little or hardly moves has not moved.
   const auto is_immaterial = [&](const MovedParameters& choice) {
     return std::ranges::any_of(choice.moved(), [&](int i) {
       if (std::abs(choice.hypothesis.factors[size_t(i)] - 1) < least_change) return true;
-      return std::ranges::any_of(list, [&](const MovedParameters& other) {
+      return std::ranges::any_of(all, [&](const MovedParameters& other) {
         std::vector<int> without = choice.moved();
         std::erase(without, i);
         return other.moved() == without &&
@@ -120,7 +133,6 @@ std::vector<MovedParameters> moved_parameters(SiteFitter& fitter, const SiteHypo
       });
     });
   };
-  const std::vector<MovedParameters> all = list;
   std::erase_if(list, is_immaterial);
   return list.empty() ? all : list;
 }

@@ -86,7 +86,10 @@ std::optional<SiteSearchResult> search_with_second_opinion(
                         named_in(fitter.model(), (is_answer ? first : second)->found)};
   if (const auto& errors = is_answer ? of_second : of_first) opinion.error = errors->judged()[0];
   if (const auto& errors = is_answer ? of_first : of_second) opinion.other_error = errors->judged()[0];
-  opinion.agrees = opinion.other == named_in(fitter.model(), (is_answer ? second : first)->found);
+  std::vector<std::string> other = opinion.other,
+                           own = named_in(fitter.model(), (is_answer ? second : first)->found);
+  std::ranges::sort(other), std::ranges::sort(own);
+  opinion.agrees = other == own;
   SiteSearchResult answer = std::move(is_answer ? *second : *first);
   answer.trail = std::move(trail), answer.second_opinion = std::move(opinion);
   return answer;

@@ -211,6 +211,9 @@ class SiteSearch {
     }
   }
 
+  /// In the criterion: a worse term is no rival.
+  double most_of_rival() const { return std::max(rival_within, least_gain_per_reading * readings_); }
+
   /// Each term is replaced by the best other one in its place.
   void exchange(SiteHypothesis& at) {
     for (size_t t = 0; t < at.terms.size(); ++t) {
@@ -225,9 +228,12 @@ class SiteSearch {
         const double worse = criterion(other) - criterion(at);
         if (worse < -needed) {
           tell("exchanged for " + describe(model(), other.terms.back()), other);
+          result_.rivals.push_back({t, at.terms[t], 0});
+          for (SiteRival& rival : result_.rivals) rival.worse -= worse;
+          std::erase_if(result_.rivals, [&](const SiteRival& r) { return r.worse >= most_of_rival(); });
           at = other;
           std::rotate(at.terms.begin() + std::ptrdiff_t(t), at.terms.end() - 1, at.terms.end());
-        } else if (worse < std::max(rival_within, least_gain_per_reading * readings_)) {
+        } else if (worse < most_of_rival()) {
           result_.rivals.push_back({t, other.terms.back(), worse});
         }
       }

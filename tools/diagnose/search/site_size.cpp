@@ -1,8 +1,12 @@
 #include "tools/diagnose/search/site_size.h"
+#include <algorithm>
 #include <cmath>
 
 namespace loopwright::diagnosis {
 namespace {
+
+/// [of its mean] By which a constant signal counts as moving.
+constexpr double share_of_offset = 1e-3;
 
 template <class Value> double root_mean_square(const SitePass& pass, Value&& value) {
   double square = 0;
@@ -20,7 +24,12 @@ double size_at_site(const SiteModel& model, const SitePass& pass, int site) {
   const bool is_sensor = place.kind == Site::Kind::sensor;
   const std::vector<Number> numbers = model.plan().find(is_sensor ? place.own_signal : place.name);
   if (numbers.size() != 1 || size_t(numbers[0]) >= pass.numbers) return 0;
-  return root_mean_square(pass, [&](const double* at) { return at[numbers[0]]; });
+  const auto signal = [&](const double* at) { return at[numbers[0]]; };
+  double mean = 0;
+  for (size_t k = 0; k < pass.rows; ++k) mean += signal(&pass.path[0][k * pass.numbers]) / double(pass.rows);
+  // Around its mean: 20 degC are no larger than 293 K. Of a signal that stays where it is, rounding alone.
+  const double spread = root_mean_square(pass, [&](const double* at) { return signal(at) - mean; });
+  return std::max(spread, share_of_offset * std::abs(mean));
 }
 
 double size_of_term(const SiteModel& model, const SitePass& pass, const SiteTerm& term) {

@@ -69,7 +69,7 @@ class Writer {
         add(shape_.coefficients[size_t(c)], coefficient(size_t(c)), unit_of_coefficient(model_, term_));
     for (int p = 0; p < shape_.nonlinear_count(); ++p)
       add(shape_.nonlinear[size_t(p)], term_.nonlinear[size_t(p)], unit_of_signal());
-    if (shape_.formula.find("reference") != shape_.formula.npos)
+    if (shape_.name == "radiation")
       add("reference", reference_temperature, unit_of_signal());
     return fmt::format(R"("type": "Expression", "formula": "{}", "names": ["signal"], "constants": [{}])",
                        shape_.formula, constants);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/site_size.h"
 #include "tools/diagnose/verdict/site_opinion_text.h"
@@ -13,20 +14,25 @@
 namespace loopwright::diagnosis {
 namespace {
 
-/// Of all fitted numbers, in the order of fitted_numbers().
+/// Of all fitted numbers, in the order of fitted_numbers(); infinite for those that the record does not tell.
 Eigen::MatrixXd covariance_of(SiteFitter& fitter, SiteHypothesis h) {
   SitePass pass;
   const Eigen::Index count = Eigen::Index(size_of(h));
-  if (count == 0 || !fitter.pass(h, false, pass)) return Eigen::MatrixXd::Zero(count, count);
+  const Eigen::MatrixXd untold =
+      Eigen::VectorXd::Constant(count, std::numeric_limits<double>::infinity()).asDiagonal();
+  if (count == 0 || !fitter.pass(h, false, pass)) return untold;
   const Eigen::MatrixXd J = fitter.jacobian(h, pass);
-  if (J.size() == 0) return Eigen::MatrixXd::Zero(count, count);
+  if (J.size() == 0) return untold;
   Eigen::VectorXd norm = J.colwise().norm().transpose();
   for (double& size : norm)
     if (!(size > 0)) size = 1;
   const Eigen::MatrixXd unit = J * norm.cwiseInverse().asDiagonal();
   const Eigen::MatrixXd inverse = (unit.transpose() * unit).completeOrthogonalDecomposition().pseudoInverse();
-  return norm.cwiseInverse().asDiagonal() * inverse * norm.cwiseInverse().asDiagonal() *
-         (pass.squares / double(pass.readings));
+  Eigen::MatrixXd covariance = norm.cwiseInverse().asDiagonal() * inverse * norm.cwiseInverse().asDiagonal() *
+                               (pass.squares / double(pass.readings));
+  for (Eigen::Index i = 0; i < count; ++i)
+    if (!(J.col(i).norm() > 0)) covariance(i, i) = std::numeric_limits<double>::infinity();
+  return covariance;
 }
 
 class Telling {
@@ -158,7 +164,7 @@ class Telling {
     errors_ = add(found_, {"as answered"});
     result_.holds_out = model_.record().held_out_from < model_.record().rows();
     const bool held = result_.holds_out;
-    result_.error_before = held ? nominal_.held_out[0] : nominal_.predicted[0];
+    if (!nominal_.diverges) result_.error_before = held ? nominal_.held_out[0] : nominal_.predicted[0];
     if (errors_.diverges) return;
     result_.error_after = held ? errors_.held_out[0] : errors_.predicted[0];
     result_.noise_floor = errors_.noise[0];
@@ -197,6 +203,12 @@ class Telling {
     const bool names = !result_.effects.empty() || !result_.moved_parameters.empty();
     const bool worse = names && simulates_worse();
     const bool is_nothing = !names && (is_left_out_ || is_exact());
+    const bool misses_held_out =
+        result_.holds_out && !errors_.diverges &&
+        result_.held_out_mean_square > criteria::most_held_out * std::max(1.0, result_.mean_square);
+    if (misses_held_out && !is_nothing)
+      result_.findings.push_back({"the held-out rows are predicted worse than the rows that were fitted",
+                                  "what was found does not hold everywhere", true, false});
     if (is_left_out_ || (is_nothing && !is_white)) {
       RecordFinding& finding = result_.findings.emplace_back();
       finding.what = "what remains is as small as the errors of the arithmetic";
@@ -208,9 +220,9 @@ class Telling {
            "names and parameters stand for something else", true, false});
     if (is_nothing)
       result_.verdict = Verdict::nothing_missing;
-    else if (worse || (!names && !is_white))
+    else if (worse || (!names && (!is_white || misses_held_out)))
       result_.verdict = Verdict::unexplained;
-    else if (!is_white || has_unknown)
+    else if (!is_white || has_unknown || misses_held_out)
       result_.verdict = Verdict::partly_explained;
     else
       result_.verdict = names ? Verdict::explained : Verdict::nothing_missing;

@@ -14,6 +14,14 @@ namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace http = beast::http;
 namespace websocket = beast::websocket;
+
+/// What fails in a way nobody foresaw ends one message, not the page that sent it.
+template <class Action> void keep_going(Action&& action) {
+  try {
+    action();
+  } catch (const std::exception&) {
+  }
+}
 using Tcp = asio::ip::tcp;
 using Parser = http::request_parser<http::string_body>;
 using Request = http::request<http::string_body>;
@@ -142,7 +150,7 @@ struct Server::Inside : std::enable_shared_from_this<Inside> {
     timer.expires_after(options.tick);
     timer.async_wait([self = shared_from_this()](beast::error_code code) {
       if (code || self->pages.empty()) return;
-      self->handler.tick();
+      keep_going([&] { self->handler.tick(); });
       self->start_ticks();
     });
   }
@@ -192,7 +200,7 @@ class Server::Inside::Page : public std::enable_shared_from_this<Page> {
       }
       const std::string text = beast::buffers_to_string(self->buffer_.data());
       self->buffer_.consume(self->buffer_.size());
-      self->server_->handler.received(self->client_, text);
+      keep_going([&] { self->server_->handler.received(self->client_, text); });
       self->read();
     });
   }

@@ -44,6 +44,7 @@ void Document::take_from_outside(const std::string& theirs) {
   if (was_saved || !base) {
     conflict_.reset();
     step({"change from outside", difference(text_, theirs), {}, {}}, undo_);
+    redo_.clear();  // its places are those of the text before
     return;
   }
   const auto mine = rebased(difference(*base, text_), difference(*base, theirs));
@@ -55,6 +56,7 @@ void Document::take_from_outside(const std::string& theirs) {
   }
   const std::string merged = applied(theirs, *mine);
   step({"change from outside", difference(text_, merged), {}, {}}, undo_);
+  redo_.clear();
   if (is_json(merged)) write(merged);
 }
 

@@ -143,11 +143,12 @@ class NewFile {
   bool is_there_ = false;
 };
 
-mode_t usual_mode() {
+/// Read once, before there are threads: while it is read, there is no mask.
+const mode_t usual_mode = [] {
   const mode_t mask = ::umask(0);
   ::umask(mask);
   return 0666 & ~mask;
-}
+}();
 
 }  // namespace
 
@@ -233,7 +234,7 @@ std::optional<Folder::Found> Folder::replace(const std::string& relative,
     refuse(relative,
            "it cannot be written: it is a link, read-only, or its folder is not below that of the studio");
   if (!expected) {
-    NewFile fresh(folder.number(), name, text, usual_mode());
+    NewFile fresh(folder.number(), name, text, usual_mode);
     if (::renameat2(folder.number(), fresh.name().c_str(), folder.number(), name.c_str(), RENAME_NOREPLACE) ==
         0) {
       fresh.keep();
@@ -323,7 +324,7 @@ void Folder::store_part(const std::string& name, int64_t offset, bool is_last, s
     if (count > 0) at += size_t(count);
   }
   if (!is_last) return;
-  ::fchmod(file.number(), usual_mode());
+  ::fchmod(file.number(), usual_mode);
   ::fsync(file.number());
   if (::renameat2(own.number(), part.c_str(), folder.number(), target.c_str(), RENAME_NOREPLACE) == 0) return;
   const bool is_same = errno == EEXIST && have_same_contents(own.number(), part, folder.number(), target);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cctype>
+#include <set>
 #include "engine/diagram/expression.h"
 #include "engine/json/reader.h"
 #include "tools/studio/session/intent.h"
@@ -59,22 +60,33 @@ class ParameterUses {
   /// The formula of an Expression uses parameters by name; its own names hide them.
   void in_formula(const Value& block, const Value& formula) {
     if (formula.kind != Kind::text) return;
+    std::set<std::string> own;
     if (const Value::Member* names = block.find("names"))
-      for (const Value& own : names->value.items)
-        if (own.text == name_) return;
-    const size_t skip = formula.text.starts_with('=') ? 1 : 0;
+      for (const Value& name : names->value.items) own.insert(name.text);
+    if (const Value::Member* constants = block.find("constants"))
+      for (const Value& constant : constants->value.items) own.insert(std::string(text_in(constant, "name")));
+    if (own.contains(name_)) return;
+    const size_t skip = formula.text.starts_with('=') ? 1 : 0, before = changes_.size();
     in_expression(formula, std::string_view(formula.text).substr(skip), skip);
+    if (changes_.size() > before && own.contains(to_)) refuse_hidden("formula", formula.text);
   }
   /// Values that states set are expressions; guards use parameters by name, which inputs hide.
   void in_states(const Value& machine, const Value& states) {
     in_value(states);
+    bool is_hidden = false;
     if (const Value::Member* inputs = machine.find("inputs"))
-      for (const Value& input : inputs->value.items)
+      for (const Value& input : inputs->value.items) {
         if (input.text == name_) return;
+        is_hidden |= input.text == to_;
+      }
     for (const Value& state : states.items)
       if (const Value::Member* transitions = state.find("transitions"))
         for (const Value& transition : transitions->value.items)
-          if (const Value::Member* guard = transition.find("when")) in_guard(guard->value);
+          if (const Value::Member* guard = transition.find("when")) {
+            const size_t before = changes_.size();
+            in_guard(guard->value);
+            if (changes_.size() > before && is_hidden) refuse_hidden("guard", guard->value.text);
+          }
   }
   void in_guard(const Value& guard) {
     const auto is_part = [](char c) {
@@ -101,6 +113,12 @@ class ParameterUses {
       is_used = true;
     }
     if (is_used) changes_.push_back(replaced(text, in_quotes(changed)));
+  }
+
+  /// Where the block has a name of its own, the parameter could not be read under that name.
+  [[noreturn]] void refuse_hidden(const char* what, const std::string& text) const {
+    throw Refused(fmt::format("the {} \"{}\" has a name \"{}\" of its own, which would hide the parameter",
+                              what, text, to_));
   }
 
   const std::string name_, to_;

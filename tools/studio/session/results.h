@@ -90,7 +90,7 @@ struct Results {
   Store<StoredFit> fits{4};
   /// The last record that was looked at.
   std::mutex record_mutex;
-  std::string record_path;
+  std::string record_version;  ///< path, time and size of the file that was read
   std::shared_ptr<const Signals> record;
 };
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include "engine/diagram/in_memory.h"
 #include "engine/json/reader.h"
 #include "engine/record/recording_file.h"
@@ -180,7 +181,11 @@ std::shared_ptr<const Signals> Session::source_of_signals(const std::string& nam
   } else if (kind == "record") {
     const std::string path = folder_.path_of(rest);
     const std::lock_guard lock(results_.record_mutex);
-    if (results_.record_path == path) return results_.record;
+    std::error_code code;  // a file that is not there is told by its reader
+    const auto written = std::filesystem::last_write_time(path, code).time_since_epoch().count();
+    const std::string version =
+        fmt::format("{} {} {}", path, written, std::filesystem::file_size(path, code));
+    if (results_.record_version == version) return results_.record;
     Problems problems;
     const ColumnError error = [&](std::string message) -> Problem& {
       return problems.error({}, "", "", std::move(message));
@@ -190,7 +195,7 @@ std::shared_ptr<const Signals> Session::source_of_signals(const std::string& nam
     if (!time || problems.has_errors()) throw InputError(std::move(problems));
     std::erase_if(record.columns, [&](const Column& column) { return column.name == time->name; });
     record.columns.insert(record.columns.begin(), *time);
-    results_.record_path = path, results_.record = std::make_shared<Signals>(std::move(record));
+    results_.record_version = version, results_.record = std::make_shared<Signals>(std::move(record));
     return results_.record;
   }
   throw Refused(fmt::format("\"{}\" is not kept any more", name));

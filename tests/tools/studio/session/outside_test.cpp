@@ -66,6 +66,22 @@ TEST(OtherFiles, ThatAStepMadeAreGoneAfterUndo) {
   EXPECT_EQ(folder.read("b.json"), "{}");
 }
 
+TEST(Outside, AChangeEndsWhatCouldBeRedone) {
+  const StudioFolder folder;
+  folder.write("axis.json", axis);
+  const Folder served(folder.path());
+  Document document(served, "axis.json");
+  edit(document, R"({"intent": "set_parameter", "name": "damping", "text": "1234"})");
+  document.undo();
+  const std::string theirs = replaced_in(axis, "{\n", "{\n  \"title\": \"longer than before\",\n");
+  folder.write("axis.json", theirs);
+  ASSERT_TRUE(document.look());
+  EXPECT_THROW(document.redo(), Refused);
+  EXPECT_EQ(folder.read("axis.json"), theirs);
+  document.undo();
+  EXPECT_EQ(folder.read("axis.json"), axis);
+}
+
 TEST(Outside, AChangeIsTakenOverAndEditsApplyToIt) {
   const StudioFolder folder;
   folder.write("axis.json", axis);

@@ -25,4 +25,34 @@ TEST(RenamedParameter, IsFollowedByTheGuardsAndValuesOfAStateMachine) {
   EXPECT_EQ(document.text(), original);
 }
 
+/// Under the new name the formula would read its own signal.
+TEST(RenamedParameter, IsRefusedWhereABlockHasTheNewNameItself) {
+  const StudioFolder folder;
+  for (const char* own : {R"("names": ["u"])", R"("names": ["v"], "constants": [{"name": "u", "value": 7}])"}) {
+    const std::string signal = std::string(own).find("\"v\"") == std::string::npos ? "u" : "v";
+    const std::string text = R"({
+  "loopwright": 1,
+  "parameters": {"k": 3},
+  "solver": {"method": "rk4", "step": 0.01, "stop": 1},
+  "blocks": {
+    "one": {"type": "Constant", "value": 2},
+    "law": {"type": "Expression", "formula": "k*)" + signal +
+                             R"(", )" + own + R"(, "in": {"arguments": ["one.y"]}}
+  }
+}
+)";
+    folder.write("law.json", text);
+    const Folder served(folder.path());
+    Document document(served, "law.json");
+    const auto renamed = [&](const char* to) {
+      return document.edit({json_value(std::string(R"({"intent": "rename_parameter", "name": "k", "to": ")") + to + R"("})")},
+                           {}, {}, document.revision());
+    };
+    EXPECT_THROW(renamed("u"), Refused);
+    EXPECT_EQ(folder.read("law.json"), text);
+    renamed("gain");
+    EXPECT_NE(document.text().find("gain*" + signal), std::string::npos);
+  }
+}
+
 }  // namespace loopwright::studio::rename_test
