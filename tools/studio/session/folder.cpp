@@ -319,7 +319,8 @@ void Folder::store_part(const std::string& name, int64_t offset, bool is_last, s
     refuse(name, "no part of it came before");
   if (status.st_size != offset) refuse(name, "a part of it is missing");
   for (size_t at = 0; at < bytes.size();) {
-    const ssize_t count = ::write(file.number(), bytes.data() + at, bytes.size() - at);
+    const ssize_t count =
+        ::pwrite(file.number(), bytes.data() + at, bytes.size() - at, off_t(offset) + off_t(at));
     if (count < 0 && errno != EINTR) refuse(name, std::strerror(errno));
     if (count > 0) at += size_t(count);
   }

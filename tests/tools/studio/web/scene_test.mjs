@@ -204,6 +204,23 @@ test("a dropped record becomes an experiment after it was confirmed", async () =
   } finally { await studio.stop(); }
 });
 
+test("a record that is sent in several parts arrives as it is", async () => {
+  const rows = ["time_s,position_m"];
+  for (let k = 0; k < 300000; ++k) rows.push(`${(k / 1000).toFixed(3)},${((k * 7919) % 10007) / 1e6}`);
+  const large = join(axis.folder, "large.csv");
+  writeFileSync(large, rows.join("\n") + "\n");  // more than a part of 4 MiB
+  const studio = start_studio(axis.path("nominal.json"));
+  try {
+    const { page, faults, context } = await open_page(browser, await studio.address);
+    await page.waitForSelector(".plot canvas");
+    await drop(page, large, "arrived.csv");
+    await page.waitForSelector("fieldset.column", { timeout: 60000 });
+    assert(readFileSync(axis.path("arrived.csv")).equals(readFileSync(large)));
+    assert.deepEqual(faults, []);
+    await context.close();
+  } finally { await studio.stop(); }
+});
+
 test("a killed program leaves the file whole; the page says so and finds the next one", async () => {
   const file = axis.path("nominal.json"), original = readFileSync(file);
   const studio = start_studio(file);

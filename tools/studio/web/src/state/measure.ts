@@ -23,7 +23,8 @@ export async function drop_record(file: File): Promise<void> {
       const answer = await fetch(`/data/${encodeURIComponent(file.name)}?offset=${offset}&last=${last ? 1 : 0}`,
         { method: "PUT", body: file.slice(offset, offset + PART), headers: { "Content-Type": "application/octet-stream" } });
       if (!answer.ok) {
-        tell("error", answer.status === 409 ? `There is already another file ${file.name} in the folder. Rename one of them.` : (await answer.text()) || `The program refused the file (${answer.status}).`);
+        const reason = await answer.json().then((body: { error?: string }) => body.error, () => "");
+        tell("error", reason || `The program refused ${file.name} (${answer.status}).`);
         return;
       }
       if (last) path = ((await answer.json()) as { path: string }).path;
