@@ -69,7 +69,11 @@ int run(const Arguments& a) {
   options.progress = [&](int iteration, double) { progress.show(iteration, a.iterations); };
   const Fit result = fit(a.diagram.path, a.experiments, a.parameters, a.diagram.options(), options);
   progress.finish();
-  if (!a.output.empty()) {
+  if (result.was_interrupted && result.parameters.empty()) {
+    tell("interrupted before anything was fitted: nothing is written\n");
+    return interrupted;
+  }
+  if (!a.output.empty() && !(result.was_interrupted && result.is_as_at_start())) {
     Problems problems;
     const std::string text = with_fitted_values(a.diagram.path, result, problems);
     if (problems.has_errors()) throw InputError(std::move(problems));

@@ -1,10 +1,12 @@
 #include "tools/fit/fit.h"
 #include <array>
 #include <ceres/ceres.h>
+#include <glog/logging.h>
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include "tools/fit/fit_model.h"
 
 namespace loopwright {
@@ -75,6 +77,7 @@ bool improve(FitModel& model, const FitModel::Weights& weights, int rows, const 
   settings.function_tolerance = 1e-8, settings.parameter_tolerance = 1e-7;
   settings.logging_type = ceres::SILENT;
   settings.num_threads = 1;
+  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres tells of an interruption although it is to be silent
   Watch watch(model, options, rows);
   settings.callbacks.push_back(&watch);
   settings.update_state_every_iteration = false;
@@ -155,6 +158,7 @@ bool fit_in_rounds(FitModel& model, const FitOptions& options, Best& best) {
     if (rows == 0) break;
     const bool converges = improve(model, weights, int(rows), options, values);
     runs = model.simulate(values);
+    if (model.is_interrupted()) break;  // these runs are incomplete
     const double profile = model.profile(runs);
     if (!(profile <= best.profile)) break;
     best = {values, profile, runs}, has_converged = converges;
@@ -242,6 +246,10 @@ void warn_of_limits(const std::vector<FittedParameter*>& parameters, std::vector
 
 }  // namespace
 
+bool Fit::is_as_at_start() const {
+  return std::ranges::all_of(parameters, [](const FittedParameter& p) { return p.value == p.start; });
+}
+
 Fit fit(const std::string& diagram, const std::vector<std::string>& experiments,
         const std::vector<std::string>& parameters, const LoadOptions& options,
         const FitOptions& fit_options) {
@@ -249,16 +257,26 @@ Fit fit(const std::string& diagram, const std::vector<std::string>& experiments,
   Best best{model.start(), 0, {}};
   const std::vector<Comparison> before = best.runs = model.simulate(best.values);
   for (const Comparison& c : before)
-    if (c.run.status != RunStatus::finished)
+    if (c.run.status == RunStatus::interrupted) {
+      Fit nothing;
+      nothing.was_interrupted = true;
+      return nothing;
+    } else if (c.run.status != RunStatus::finished) {
       throw std::runtime_error("the diagram does not run with its present parameters: " + c.run.message);
+    }
   best.profile = model.profile(before);
   const double at_start = best.profile;
 
   Fit result;
   result.has_converged = fit_in_rounds(model, fit_options, best);
   result.was_interrupted = model.is_interrupted();
-  if (best.profile >= at_start && best.values == model.start() && !result.has_converged)
+  if (result.was_interrupted) {
+    result.has_converged = false;
+    result.warnings.push_back(
+        "interrupted: the values are those of the last round that was finished, without intervals");
+  } else if (best.profile >= at_start && best.values == model.start() && !result.has_converged) {
     result.warnings.push_back("no better values were found: the parameters stay as they were");
+  }
   for (size_t r = 0; r < model.records().size(); ++r) {
     const FitModel::Record& record = model.records()[r];
     result.records.push_back({record.experiment->path,
@@ -282,7 +300,10 @@ Fit fit(const std::string& diagram, const std::vector<std::string>& experiments,
     for (FittedRecord& record : result.records)
       for (FittedParameter& p : record.parameters)
         if (p.path == path) all.push_back(&p);
-  if (!result.was_interrupted) add_intervals(model, best, all, result);
+  if (!result.was_interrupted)
+    add_intervals(model, best, all, result);
+  else
+    for (FittedParameter* p : all) p->low = p->high = std::numeric_limits<double>::quiet_NaN();
   warn_of_limits(all, result.warnings);
   for (const Comparison& c : before)
     if (const int64_t missing = c.missing_samples; missing > 0)

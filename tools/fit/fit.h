@@ -56,8 +56,13 @@ struct Fit {
       warnings;  ///< parameters at a limit, combinations that the records cannot distinguish
   FitCorrelations correlations;
   std::vector<Comparison> before, after;  ///< of each record
-  bool has_converged = false, was_interrupted = false;
+  bool has_converged = false;
+  /// The values are those of the last finished round, without intervals (NaN); without parameters if not even
+  /// the first simulation was finished.
+  bool was_interrupted = false;
   int simulations = 0;
+
+  bool is_as_at_start() const;  ///< no shared parameter has another value
 };
 
 /// Maximum likelihood with independent errors of the compared signals, whose sizes are estimated by the fit

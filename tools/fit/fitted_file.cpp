@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include "engine/json/json.h"
 #include "engine/json/reader.h"
@@ -30,8 +31,9 @@ nlohmann::ordered_json json_of(const std::vector<FittedParameter>& parameters,
 std::string lines_of(const std::vector<FittedParameter>& parameters, size_t width) {
   std::string text;
   for (const FittedParameter& p : parameters) {
-    const std::string interval = p.is_determined ? fmt::format("{:.5g} to {:.5g} {}", p.low, p.high, p.unit)
-                                                 : "not determined by these records";
+    const std::string interval = std::isnan(p.low)   ? "–"
+                                 : p.is_determined ? fmt::format("{:.5g} to {:.5g} {}", p.low, p.high, p.unit)
+                                                   : "not determined by these records";
     text += fmt::format("  {:<{}} {:>12.6g} {:>12.6g}   {}\n", p.path, width, p.start, p.value, interval);
   }
   return text;

@@ -1,5 +1,6 @@
 #include "tools/fit/fit.h"
 #include <gtest/gtest.h>
+#include <atomic>
 #include <cmath>
 #include "models/random/philox.h"
 #include "tests/engine/written_diagram.h"
@@ -292,6 +293,32 @@ TEST_F(Fitted, ParametersKeepTheirSignAndStayInTheirRange) {
 }
 
 /// From anywhere, with any number of iterations.
+/// Whenever the interruption comes: no interval, and no value that a cut-off simulation seemed to confirm.
+TEST_F(Fitted, AnInterruptedFitKnowsNoIntervals) {
+  std::atomic<bool> interrupt = true;
+  FitOptions options;
+  options.interrupt = &interrupt;
+  const auto interrupted_fit = [&] {
+    return fit(folder.path("axis.json"), {folder.path("e.json")}, {"mass", "damping"}, {}, options);
+  };
+  const Fit at_once = interrupted_fit();
+  EXPECT_TRUE(at_once.was_interrupted);
+  EXPECT_TRUE(at_once.parameters.empty());
+  interrupt = false;
+  int calls = 0;
+  options.progress = [&](int, double) { interrupt = ++calls >= 2; };
+  const Fit in_the_first_round = interrupted_fit();
+  EXPECT_TRUE(in_the_first_round.was_interrupted);
+  EXPECT_FALSE(in_the_first_round.has_converged);
+  ASSERT_EQ(in_the_first_round.parameters.size(), 2u);
+  for (const FittedParameter& p : in_the_first_round.parameters) {
+    EXPECT_EQ(p.value, p.start);
+    EXPECT_TRUE(std::isnan(p.low) && std::isnan(p.high));
+  }
+  EXPECT_NE(to_text(in_the_first_round).find("interrupted"), std::string::npos);
+  EXPECT_EQ(to_text(in_the_first_round).find("no better values"), std::string::npos);
+}
+
 TEST_F(Fitted, NeverEndsWorseThanItBegan) {
   for (const char* mass : {"0.01 kg", "2 kg", "900 kg"})
     for (const int iterations : {1, 2, 40}) {

@@ -249,7 +249,7 @@ Edited Document::back(std::vector<Step>& from, std::vector<Step>& to) {
 Edited Document::undo() { return back(undo_, redo_); }
 Edited Document::redo() { return back(redo_, undo_); }
 
-Edited Document::resolve(const std::string& text) {
+Edited Document::resolve(std::string text) {
   const std::optional<std::string> conflict = std::exchange(conflict_, std::nullopt);
   try {
     return take("resolve the conflict", text, {}, {});

@@ -51,7 +51,7 @@ class Document {
   Edited undo();
   Edited redo();
   /// Ends a conflict with this text.
-  Edited resolve(const std::string& text);
+  Edited resolve(std::string text);  ///< a copy: it may be that of the conflict, which ends here
 
  private:
   struct Step {
