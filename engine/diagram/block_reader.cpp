@@ -6,6 +6,7 @@
 #include "engine/diagram/run_condition.h"
 #include "engine/diagram/wires.h"
 #include "engine/diagram/solver_settings.h"
+#include "engine/diagram/value_file.h"
 
 namespace loopwright {
 namespace {
@@ -48,7 +49,7 @@ class BlockReader {
                                      "variants", "variant", "description"};
     const bool names_setting = edit.depth < edit.path.size();
     if (names_setting && std::ranges::find(reserved, edit.head()) == reserved.end())
-      return apply_edit(edit, body, reader_);
+      return apply_edit(edit, body, reader_, [&](Value& value) { take_from_file(value, reader_); });
     Problem& problem = reader_.error(edit.value, fmt::format("\"{}\" cannot be set", edit.text()));
     problem.expected = "the path of a parameter, or of a setting of a block";
     if (names_setting && edit.head() == "variant") problem.hint = "--variant chooses a variant";

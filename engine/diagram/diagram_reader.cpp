@@ -6,6 +6,7 @@
 #include "engine/diagram/ports.h"
 #include "engine/json/reader.h"
 #include "engine/diagram/solver_settings.h"
+#include "engine/diagram/value_file.h"
 #include "engine/diagram/wires.h"
 
 namespace loopwright {
@@ -67,7 +68,7 @@ class DiagramReader {
   }
 
   Value edited(Value value, const Edit& edit) const {
-    apply_edit(edit, value, reader_);
+    apply_edit(edit, value, reader_, [&](Value& at) { take_from_file(at, reader_); });
     return value;
   }
 

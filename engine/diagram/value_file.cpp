@@ -20,11 +20,12 @@ const Value* element(const Value& list, std::string_view number) {
 /// Nothing after a problem at the reference.
 const Value* find_named(const Value& file, const Value& name, const std::string& path, const Reader& reader) {
   const Value* value = &file;
+  std::string before;  // the parts so far, with a dot behind each
   for (const std::string& part : split_path(name.text)) {
     const Value::Member* const member = value->find(part);
     const Value* const next = member ? &member->value : element(*value, part);
     if (next) {
-      value = next;
+      value = next, before += part + ".";
       continue;
     }
     auto& problem = reader.error(name, fmt::format("\"{}\" contains no \"{}\"", path, name.text));
@@ -37,8 +38,8 @@ const Value* find_named(const Value& file, const Value& name, const std::string&
     else if (value->kind != Value::Kind::object)
       problem.found = fmt::format("{} before \"{}\"", shown(*value), part);
     KnownNames names;
-    for (const Value::Member& known : value->members) names.add(known.name);
-    names.explain(problem, part);
+    for (const Value::Member& known : value->members) names.add(before + known.name);
+    names.explain(problem, before + part);
     return nullptr;
   }
   return value;
@@ -57,6 +58,7 @@ bool is_plain(const Value& value, const Reader& reader) {
         R"(a number, flag, text or list, or {"value": 5, "unit": "mm"})";
     return false;
   }
+  if (has_unit && !is_plain(value.find("value")->value, reader)) return false;
   for (const Value& item : value.items)
     if (!is_plain(item, reader)) return false;
   return true;
@@ -119,6 +121,10 @@ Value value_from_file(const Value& reference, const Reader& reader) {
   if (!found || !is_usable(*found, reference, reader) || !is_plain(*found, reader))
     return Value::broken(reference);
   return *found;
+}
+
+void take_from_file(Value& value, const Reader& reader) {
+  if (refers_to_file(value)) value = value_from_file(value, reader);
 }
 
 }  // namespace loopwright

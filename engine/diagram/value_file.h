@@ -15,4 +15,7 @@ bool refers_to_file(const Value& value);
 /// result is then broken.
 Value value_from_file(const Value& reference, const Reader& reader);
 
+/// Puts the value of the file in the place of a value that refers to it, and leaves all others.
+void take_from_file(Value& value, const Reader& reader);
+
 }  // namespace loopwright

@@ -66,11 +66,13 @@ std::optional<Edit> read_edit(const std::pair<std::string, std::string>& option,
   return edit;
 }
 
-void apply_edit(const Edit& edit, Value& value, const Reader& reader) {
+void apply_edit(const Edit& edit, Value& value, const Reader& reader,
+                const std::function<void(Value&)>& contents) {
   const std::string what = fmt::format("\"{}\" cannot be set", edit.text());
   Value* at = &value;
   for (size_t i = edit.depth; i < edit.path.size(); ++i) {
     const std::string& step = edit.path[i];
+    if (contents && step != "file" && step != "name") contents(*at);
     if (at->kind == Value::Kind::object) {
       const auto member = std::ranges::find(at->members, step, &Value::Member::name);
       const bool is_new = member == at->members.end();
@@ -95,8 +97,9 @@ void apply_edit(const Edit& edit, Value& value, const Reader& reader) {
       return;
     }
   }
-  Value* const number = number_beside_unit(*at);
   const bool is_bare = edit.value.kind == Value::Kind::number && !edit.value.unit;
+  if (contents && is_bare) contents(*at);
+  Value* const number = number_beside_unit(*at);
   *(number && is_bare ? number : at) = edit.value;
 }
 

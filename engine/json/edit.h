@@ -1,5 +1,6 @@
 /// `--set path=value`: a change to the contents of a diagram file, made before its expressions are evaluated.
 #pragma once
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,7 +25,10 @@ struct Edit {
 std::optional<Edit> read_edit(const std::pair<std::string, std::string>& option, Problems& problems);
 
 /// Sets the member or item of `value` at the remaining path, from `depth` on. A missing member is added, as
-/// it may have a default; an index must exist in the list.
-void apply_edit(const Edit& edit, Value& value, const Reader& reader);
+/// it may have a default; an index must exist in the list. A bare number takes the unit of the number that it
+/// replaces. `contents` is called for every value on the way, so that one that stands in another file is
+/// changed like one that is written here.
+void apply_edit(const Edit& edit, Value& value, const Reader& reader,
+                const std::function<void(Value&)>& contents = nullptr);
 
 }  // namespace loopwright

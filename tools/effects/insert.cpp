@@ -82,7 +82,7 @@ class Inserter {
     const std::string sum_output = sum_->name + ".sum";
     for (const Value::Member& block : sum_level_.diagram->find("blocks")->value.members) {
       const std::string type = type_of(block.value);
-      if (type != "Mass" && type != "TwoMass") continue;
+      if (type != "Mass" && type != "Inertia" && type != "TwoMass") continue;
       each_wire(block.value, [&](const Value& wire) {
         if (wire.text == sum_output) mass_ = &block, mass_prefix_ = type == "TwoMass" ? "motor_" : "";
       });

@@ -133,6 +133,10 @@ class SiteEffectReader {
                     linear->value.boolean;
     read_unit(body, p);
     if (!p.is_linear) read_range(body, p);
+    for (const char* key : {"range", "points", "scale"})
+      if (const Value::Member* member = p.is_linear ? body.find(key) : nullptr)
+        reader_.error(*member, fmt::format("a linear parameter has no \"{}\"", key)).hint =
+            "it is estimated without limits";
     effect_.parameters.push_back(std::move(p));
   }
 
@@ -203,6 +207,52 @@ class SiteEffectReader {
   }
 
   /// The formula can be read, knows its names, and is proportional to the linear parameters.
+  size_t linear_count() const {
+    return size_t(std::ranges::count_if(effect_.parameters, &SiteEffectParameter::is_linear));
+  }
+
+  /// `values` are those of signal and parameters. Where a formula has no value, as a root of a negative
+  /// signal, nothing is compared.
+  bool is_proportional(FormulaParser& parser, std::vector<double>& values) const {
+    const size_t linear = linear_count();
+    for (const double signal : {-0.7, 0.2, 1.3}) {
+      values[0] = signal;
+      for (const double sign : {1.0, -1.0}) {
+        double sum = 0;
+        for (size_t c = 0; c < linear; ++c) {
+          for (size_t i = 0; i < linear; ++i) values[i + 1] = i == c ? 1.0 : 0.0;
+          sum += sign * (2.0 + double(c)) * parser.Eval();
+        }
+        for (size_t i = 0; i < linear; ++i) values[i + 1] = sign * (2.0 + double(i));
+        const double together = parser.Eval();
+        if (linear > 0 && std::isfinite(sum) && !(std::abs(together - sum) <= 1e-9 * (1 + std::abs(sum))))
+          return false;
+      }
+    }
+    return true;
+  }
+
+  /// Signal, other parameters, and for a distortion the value, in a unit that is smaller by a factor; linear
+  /// parameters by its power.
+  bool keeps_its_value(FormulaParser& parser, std::vector<double>& values) const {
+    constexpr double factor = 3;
+    for (const double signal : {-0.7, 0.2, 1.3}) {
+      const auto value_in = [&](double unit) {
+        values[0] = unit * signal;
+        for (size_t i = 0; i < effect_.parameters.size(); ++i) {
+          const SiteEffectParameter& p = effect_.parameters[i];
+          const double number = 0.4 + 0.3 * double(i);
+          values[i + 1] = number * (p.is_linear ? std::pow(unit, -p.power) : unit);
+        }
+        return parser.Eval();
+      };
+      const double expected = value_in(1) * (effect_.is_distortion ? factor : 1), found = value_in(factor);
+      if (std::isfinite(expected) && !(std::abs(found - expected) <= 1e-9 * (1 + std::abs(expected))))
+        return false;
+    }
+    return true;
+  }
+
   void check_formula() {
     std::vector<double> values(effect_.parameters.size() + 1, 1.0);
     FormulaParser parser;
@@ -215,22 +265,13 @@ class SiteEffectReader {
       for (size_t i = 0; i < effect_.parameters.size(); ++i)
         parser.DefineVar(effect_.parameters[i].name, &values[i + 1]);
       parser.set_formula(effect_.formula);
-      for (const double signal : {-0.7, 0.2, 1.3}) {
-        const auto linear =
-            size_t(std::ranges::count_if(effect_.parameters, &SiteEffectParameter::is_linear));
-        values[0] = signal;
-        const double sign = signal < 1 ? 1 : -1;  // negative values, too
-        double sum = 0;
-        for (size_t c = 0; c < linear; ++c) {
-          for (size_t i = 0; i < linear; ++i) values[i + 1] = i == c ? 1.0 : 0.0;
-          sum += sign * (2.0 + double(c)) * parser.Eval();
-        }
-        for (size_t i = 0; i < linear; ++i) values[i + 1] = sign * (2.0 + double(i));
-        const double together = parser.Eval();
-        if (linear > 0 && !(std::abs(together - sum) <= 1e-9 * (1 + std::abs(sum)))) {
-          problem("the formula is not proportional to its linear parameters").found = effect_.formula;
-          return;
-        }
+      if (!is_proportional(parser, values))
+        problem("the formula is not proportional to its linear parameters").found = effect_.formula;
+      else if (!keeps_its_value(parser, values)) {
+        auto& p = problem("the units of the formula do not fit");
+        p.expected = "with its parameters, a value in the unit of the site";
+        p.found = effect_.formula;
+        p.hint = "in another unit of the signal, with its parameters converted, it must have the same value";
       }
     } catch (const mu::ParserError& error) {
       auto& p = problem("the formula cannot be read");

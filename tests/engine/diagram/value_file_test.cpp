@@ -41,6 +41,37 @@ TEST_F(ValueFile, IsAParameterWithTheUnitOfTheDiagramOrItsOwn) {
   EXPECT_NEAR(diagram->blocks[0].settings.find("value")->value.number, 0.5 - 7, 1e-15);
 }
 
+/// Like one that is written in the diagram: a bare number keeps the unit that stands in the file.
+TEST_F(ValueFile, ABareSettingKeepsItsUnit) {
+  folder.with("main.json", R"({"loopwright": 1, "parameters": {"m": {"file": "gains.json", "name": "mass"}},
+    "solver": {"stop": 1}, "blocks": {
+      "own":   {"type": "Constant", "value": {"file": "gains.json", "name": "mass"}},
+      "named": {"type": "Constant", "value": "=m"},
+      "K":     {"type": "MatrixGain", "matrix": {"file": "gains.json", "name": "K"}, "in": {"u": ["own.y", "named.y"]}}}})");
+  const auto value_with = [&](std::vector<std::pair<std::string, std::string>> set, size_t block,
+                              const char* setting) -> Value {
+    Problems found;
+    const auto diagram = load_diagram(folder.path("main.json"), {.set = std::move(set)}, found);
+    EXPECT_FALSE(found.has_errors()) << found.text();
+    return diagram ? diagram->blocks[block].settings.find(setting)->value : Value{};
+  };
+  EXPECT_DOUBLE_EQ(value_with({}, 0, "value").number, 0.25);
+  EXPECT_DOUBLE_EQ(value_with({{"own.value", "500"}}, 0, "value").number, 0.5);
+  EXPECT_DOUBLE_EQ(value_with({{"own.value", "2 kg"}}, 0, "value").number, 2);
+  EXPECT_DOUBLE_EQ(value_with({{"m", "500"}}, 1, "value").number, 0.5);
+  EXPECT_DOUBLE_EQ(value_with({{"m", "2 kg"}}, 1, "value").number, 2);
+  EXPECT_DOUBLE_EQ(value_with({{"K.matrix.0.1", "7"}}, 2, "matrix").items[0].items[1].number, 7);
+}
+
+TEST_F(ValueFile, HoldsNoExpressionsBesideUnitsEither) {
+  folder.with("gains.json", R"({"mass": {"value": "=1+1", "unit": "g"}, "arm": {"mass": 3}})");
+  EXPECT_FALSE(load(R"({"type": "Constant", "value": {"file": "gains.json", "name": "mass"}})") &&
+               !problems.has_errors());
+  EXPECT_THAT(problems.text(), HasSubstr("an expression in a file of values"));
+  load(R"({"type": "Constant", "value": {"file": "gains.json", "name": "arm.mas"}})");
+  EXPECT_THAT(problems.text(), HasSubstr("did you mean \"arm.mass\""));
+}
+
 TEST_F(ValueFile, IsOneOfTheFilesThatDetermineTheResult) {
   const auto diagram = load(R"({"type": "Constant", "value": {"file": "gains.json", "name": "K.0.0"}})");
   ASSERT_TRUE(diagram) << problems.text();

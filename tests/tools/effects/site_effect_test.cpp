@@ -72,6 +72,14 @@ std::string problems_of(const std::string& parameters, const std::string& formul
   EXPECT_FALSE(load_site_effect(folder.path("own.json"), problems));
   return problems.text();
 }
+std::string problems_of_good(const std::string& parameters, const std::string& formula) {
+  DiagramFolder folder;
+  folder.with("own.json", R"({"loopwright": 1, "effect": "own", "title": "T", "physics": "P", "site": "any",
+  "of": "any", "parameters": {)" + parameters + R"(}, "formula": ")" + formula + "\"}");
+  Problems problems;
+  EXPECT_TRUE(load_site_effect(folder.path("own.json"), problems));
+  return problems.text();
+}
 constexpr const char* size = R"("size": {"unit": "$site", "linear": true})";
 constexpr const char* knee = R"("knee": {"unit": "$signal", "range": [0.1, "=largest_signal"]})";
 
@@ -87,6 +95,20 @@ TEST(SiteEffect, ItsFormulaIsReadAndProportionalToItsLinearParameters) {
               testing::HasSubstr("not proportional to its linear parameters"));
   EXPECT_THAT(problems_of(knee, "tanh(signal/knee)", "any"), testing::HasSubstr("no linear parameter"));
   EXPECT_THAT(problems_of(size, "size*signal", "site"), testing::HasSubstr("a distortion has no linear"));
+}
+
+TEST(SiteEffect, ItsFormulaHasTheUnitOfTheSite) {
+  constexpr const char* by_square = R"("size": {"unit": "$site/$signal^2", "linear": true})";
+  EXPECT_THAT(problems_of(size, "size*signal*abs(signal)", "any"), testing::HasSubstr("units of the formula"));
+  EXPECT_THAT(problems_of(size, "size*exp(signal)", "any"), testing::HasSubstr("units of the formula"));
+  EXPECT_THAT(problems_of(by_square, "size*(signal - 0.3)^2", "any"), testing::HasSubstr("units of the formula"));
+  for (const auto& [parameters, formula] :
+       {std::pair<std::string, const char*>{by_square, "size*signal*abs(signal)"},
+        {R"("size": {"unit": "$site/$signal^0.5", "linear": true})", "size*sqrt(signal)"},
+        {std::string(size) + ", " + knee, "size*tanh(signal/knee)"}})
+    EXPECT_EQ(problems_of_good(parameters, formula), "") << formula;
+  EXPECT_THAT(problems_of(R"("size": {"unit": "$site", "linear": true, "range": [0, 1]})", "size*sign(signal)", "any"),
+              testing::HasSubstr("a linear parameter has no \"range\""));
 }
 
 TEST(SiteEffect, DependsOnItsOwnSignalOrOnOthers) {

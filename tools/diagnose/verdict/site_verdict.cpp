@@ -180,7 +180,17 @@ class Telling {
       if (!nominal_.diverges &&
           errors_.simulated[j] > criteria::worse_simulation_of_any_diagram * nominal_.simulated[j])
         return true;
-    return false;
+    return helps_nowhere();
+  }
+
+  /// Neither the predictions of held-out rows nor a simulation of any output are better than those of the
+  /// diagram as it is.
+  bool helps_nowhere() const {
+    if (!result_.holds_out || nominal_.diverges) return false;
+    for (size_t j = 0; j < errors_.simulated.size(); ++j)
+      if (errors_.simulated[j] < nominal_.simulated[j] || errors_.held_out[j] < nominal_.held_out[j])
+        return false;
+    return true;
   }
 
   /// Whether the simulation misses the record by no more than the arithmetic does.
