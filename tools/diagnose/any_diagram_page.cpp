@@ -57,7 +57,7 @@ report::Section what_was_found(const Diagnosis& d) {
 }
 
 report::Section sites_staircase(const Diagnosis& d) {
-  report::Section section{"The sites_staircase of the error", {}};
+  report::Section section{"The staircase of the error", {}};
   report::Table table{{"Diagram", "One sample ahead, fitted", "Simulated"},
                       {},
                       "The simulation begins anew ten times, over the held-out rows if there are any."};

@@ -94,7 +94,9 @@ class Inserter {
     std::string path;
     const bool has_acceleration = mass_prefix_.empty();
     if (mass_ && (role == "position" || role == "velocity" || (role == "acceleration" && has_acceleration))) {
-      path = joined(joined(sum_level_.prefix, mass_->name), mass_prefix_ + std::string(role));
+      const bool is_angle = role == "position" && type_of(mass_->value) == "Inertia";
+      path = joined(joined(sum_level_.prefix, mass_->name),
+                    mass_prefix_ + std::string(is_angle ? "angle" : role));
     } else if (const std::string port = port_of(role); !port.empty()) {
       const auto found = nest_.follow(nest_.top(), port);
       path = found ? found->path() : port;
