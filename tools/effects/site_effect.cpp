@@ -134,8 +134,8 @@ class SiteEffectReader {
     read_unit(body, p);
     if (!p.is_linear) read_range(body, p);
     for (const char* key : {"range", "points", "scale"})
-      if (const Value::Member* member = p.is_linear ? body.find(key) : nullptr)
-        reader_.error(*member, fmt::format("a linear parameter has no \"{}\"", key)).hint =
+      if (const Value::Member* unused = p.is_linear ? body.find(key) : nullptr)
+        reader_.error(*unused, fmt::format("a linear parameter has no \"{}\"", key)).hint =
             "it is estimated without limits";
     effect_.parameters.push_back(std::move(p));
   }

@@ -13,15 +13,6 @@ constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 /// [of the size of a state] What is known about it before the first row.
 constexpr double initial_deviation = 10;
 
-/// Of a state to what is added at a site: somewhere along the record a valve is open.
-double largest_response(const SitePass& pass, size_t site, size_t state) {
-  constexpr size_t places = 200;
-  double largest = 0;
-  for (size_t row = 0; row < pass.rows; row += std::max<size_t>(1, pass.rows / places))
-    largest = std::max(largest, std::abs(pass.G[(row * pass.sites + site) * pass.states + state]));
-  return largest;
-}
-
 }  // namespace
 
 double SitePass::scaled_objective() const {
@@ -94,7 +85,7 @@ void SiteFilter::learn_scales(const SitePass& pass) {
   for (size_t s = 0; s < pass.sites; ++s) {  // what moves a state by a hundredth of its size in a sample
     double scale = std::numeric_limits<double>::infinity();
     for (size_t i = 0; i < model_states_; ++i)
-      if (const double g = largest_response(pass, s, i); g > 0)
+      if (const double g = std::abs(pass.G[s * n + i]); g > 0)
         scale = std::min(scale, 0.01 * state_scale_[i] / g);
     if (std::isfinite(scale)) site_scale_[s] = scale;
   }
@@ -120,6 +111,8 @@ void SiteFilter::allocate(size_t rows, bool with_columns, SitePass& pass) {
 
 std::vector<double> SiteFilter::initial_states(size_t row) {
   std::vector<double> states = model_.initial_states();
+  start_modes_.resize(model_.mode_bytes());
+  model_.keep_modes(start_modes_.data());
   for (size_t j = 0; j < record_.outputs.size(); ++j)
     if (const int state = model_.measured_state(j); state >= 0)
       for (size_t k = row; k < record_.rows() && (k == row || !record_.begins_at(k)); ++k)
@@ -226,8 +219,7 @@ bool SiteFilter::correct(size_t row, const SiteNoise& noise, SitePass& pass) {
       continue;
     }
     gain_.noalias() = P_ * C;
-    // Rounding must not make the variance of what a reading before has told already negative.
-    const double S = std::max(0.0, C.dot(gain_)) + squared(noise.measurement[j]);
+    const double S = C.dot(gain_) + squared(noise.measurement[j]);
     const double e = innovation - C.dot(delta_);
     K = gain_ / S;
     P_.noalias() -= gain_ * K.transpose();

@@ -122,7 +122,7 @@ class SiteFilter {
   Eigen::MatrixXd P_, product_;
   Eigen::VectorXd x_, next_, moved_, moved_next_, middle_, gain_, delta_, difference_;
   std::vector<double> y_, y_moved_;
-  std::vector<char> modes_;  // after a flow
+  std::vector<char> modes_, start_modes_;  // after a flow; at the beginning of a record
 };
 
 }  // namespace loopwright::diagnosis

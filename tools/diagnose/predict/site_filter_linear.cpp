@@ -53,7 +53,7 @@ double SiteFilter::objective_with(const SitePass& pass, const SiteNoise& noise) 
         if (std::isnan(pass.error[at])) continue;
         const MapOf C(&pass.C[at * pass.states], n);
         gain.noalias() = P * C;
-        const double S = std::max(0.0, C.dot(gain)) + squared(noise.measurement[j]);
+        const double S = C.dot(gain) + squared(noise.measurement[j]);
         const double e = pass.innovation[at] - C.dot(difference) - C.dot(delta);
         P.noalias() -= (gain / S) * gain.transpose();
         delta += (e / S) * gain;

@@ -48,7 +48,7 @@ bool SiteFilter::simulate(const SitePass& pass, size_t from, size_t to, std::spa
 
 bool SiteFilter::simulate_from(const Eigen::VectorXd& initial, size_t from, size_t to,
                                std::span<double> error) {
-  model_.initial_states();  // the modes, too, are those of the start
+  model_.put_modes_back(start_modes_.data());
   x_ = initial, next_.resize(initial.size());
   const size_t outputs = record_.outputs.size();
   for (size_t row = from; row < to; ++row) {
