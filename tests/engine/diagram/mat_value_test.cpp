@@ -167,7 +167,7 @@ TEST_F(MatValue, SaysAtTheReferenceWhatIsWrong) {
   EXPECT_THAT(refused_constant("gains.mat", "masse"),
               AllOf(HasSubstr("main.json:2:"), HasSubstr("contains no \"masse\""),
                     HasSubstr("did you mean \"mass\"?")));
-  EXPECT_THAT(refused_constant("gains.mat", "plant.x"), HasSubstr("one of mass, width"));
+  EXPECT_THAT(refused_constant("gains.mat", "plant.x"), HasSubstr("one of plant.mass, plant.width"));
   EXPECT_THAT(refused_constant("gains.mat", "mass.x"), HasSubstr("the number 250 before \"x\""));
   EXPECT_THAT(refused_constant("gains.mat", "row.3"), HasSubstr("a list of 3"));
   EXPECT_THAT(refused_constant("gains.mat", "plant"),
