@@ -5,13 +5,13 @@
 namespace loopwright {
 namespace {
 
-struct Arguments {
+struct CompareArguments {
   DiagramArguments diagram;
   std::vector<std::string> experiments;
   std::string json, report;
 };
 
-int run(const Arguments& a) {
+int run(const CompareArguments& a) {
   require_writable(a.json, "--json");
   require_writable_file(a.report, "--report");
   reject_swapped(a.diagram.path, a.experiments);
@@ -38,7 +38,7 @@ int run(const Arguments& a) {
 
 void add_compare(CLI::App& app, std::function<void(std::function<int()>)> choose) {
   CLI::App* command = app.add_subcommand("compare", "Hold a diagram against a recording");
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<CompareArguments>();
   a->diagram.add_to(*command);
   command->add_option("experiments", a->experiments, "Experiment files (JSON), one or more")->required();
   command->add_option("--json", a->json, "Write the figures as JSON; - for stdout");

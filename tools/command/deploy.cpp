@@ -19,7 +19,7 @@
 namespace loopwright {
 namespace {
 
-struct Arguments {
+struct DeployArguments {
   DiagramArguments diagram;
   std::string output, report, json;
   int priority = 80, processor = -1;
@@ -38,13 +38,13 @@ void reject_pipe(const std::string& path, std::string_view option, Problems& pro
 }
 
 /// Path of the growing journal: beside the file made from it. Empty: no log was requested, and none is kept.
-std::string journal_for(const Arguments& a) {
+std::string journal_for(const DeployArguments& a) {
   const std::string& target = a.output.empty() ? a.report : a.output;
   return target.empty() ? "" : journal_of(target);
 }
 
 /// A result in the place of the journal would replace the log while it is the only copy.
-void reject_journal(const Arguments& a, Problems& problems) {
+void reject_journal(const DeployArguments& a, Problems& problems) {
   const std::string journal = journal_for(a);
   for (const auto& [option, path] : {std::pair{"-o", a.output}, {"--report", a.report}, {"--json", a.json}}) {
     if (journal.empty() || path.empty() || path == "-" || !is_same_file(path, journal)) continue;
@@ -53,7 +53,7 @@ void reject_journal(const Arguments& a, Problems& problems) {
   }
 }
 
-void require_paths(const Arguments& a) {
+void require_paths(const DeployArguments& a) {
   require_writable_file(a.output, "-o");
   require_writable_file(a.report, "--report");
   require_writable(a.json, "--json");
@@ -121,7 +121,7 @@ constexpr int patience_ms = 2000;
 /// Converts the journal on the disk to the requested files; each is tried, even if others fail.
 class Results {
  public:
-  Results(const Arguments& a, const hw::StopSignals& signals) : a_(a), signals_(signals) {}
+  Results(const DeployArguments& a, const hw::StopSignals& signals) : a_(a), signals_(signals) {}
 
   bool write(const Plan& plan, hw::DeployResult& result, const std::string& journal) {
     if (!journal.empty()) attempt([&] { write_log(plan, result, journal); });
@@ -190,13 +190,13 @@ class Results {
       throw std::runtime_error("the figures cannot be written to the standard output");
   }
 
-  const Arguments& a_;
+  const DeployArguments& a_;
   const hw::StopSignals& signals_;
   bool is_good_ = true;
 };
 
 /// Empty if a device in use was not taken over.
-std::optional<hw::DeployResult> move(const Arguments& a, const Plan& plan, const hw::Hardware& hardware,
+std::optional<hw::DeployResult> move(const DeployArguments& a, const Plan& plan, const hw::Hardware& hardware,
                                      const hw::StopSignals& signals, const std::string& journal) {
   Problems problems;
   const hw::DriverType& type = *hw::find_driver(hardware.device->driver);
@@ -219,7 +219,7 @@ std::optional<hw::DeployResult> move(const Arguments& a, const Plan& plan, const
   return result;
 }
 
-int run(const Arguments& a) {
+int run(const DeployArguments& a) {
   require_paths(a);
   const auto plan = load_plan(a.diagram.path, a.diagram.options());
   tell_text(to_text(plan->warnings));
@@ -251,7 +251,7 @@ int run(const Arguments& a) {
 
 void add_deploy(CLI::App& app, std::function<void(std::function<int()>)> choose) {
   CLI::App* command = app.add_subcommand("deploy", "Run a diagram on hardware");
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<DeployArguments>();
   a->diagram.add_to(*command);
   command->add_option("-o,--output", a->output,
                       "Write the log: .csv or .mat. While the loop runs it grows in FILE.journal");

@@ -6,14 +6,14 @@
 namespace loopwright {
 namespace {
 
-struct Arguments {
+struct DesignArguments {
   DiagramArguments diagram;
   DesignRequest request;
   double at = -1;
   std::string output, json;
 };
 
-int run(const Arguments& a) {
+int run(const DesignArguments& a) {
   require_writable(a.json, "--json");
   require_writable_file(a.output, "--output");
   const auto plan = load_plan(a.diagram.path, a.diagram.options());
@@ -35,7 +35,7 @@ void add_kind(CLI::App& design, DesignKind kind, const std::function<void(std::f
       is_filter
           ? design.add_subcommand("kalman", "The Kalman filter that estimates the states from measurements")
           : design.add_subcommand("lqr", "The state feedback that minimizes a sum of weighted squares");
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<DesignArguments>();
   a->request.kind = kind;
   a->diagram.add_to(*command);
   command

@@ -5,14 +5,14 @@
 namespace loopwright {
 namespace {
 
-struct Arguments {
+struct DiagnoseArguments {
   DiagramArguments diagram;
   std::vector<std::string> experiments, catalogues, more_catalogues;
   std::string json, report, improved;
   bool trail = false, all = false;
 };
 
-int run(const Arguments& a) {
+int run(const DiagnoseArguments& a) {
   require_writable(a.json, "--json");
   require_writable_file(a.report, "--report");
   require_writable_file(a.improved, "-o");
@@ -39,7 +39,7 @@ int run(const Arguments& a) {
 
 void add_diagnose(CLI::App& app, std::function<void(std::function<int()>)> choose) {
   CLI::App* command = app.add_subcommand("diagnose", "Find the physical effect that a diagram lacks");
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<DiagnoseArguments>();
   a->diagram.add_to(*command);
   command->add_option("experiments", a->experiments, "Experiment files (JSON), one or more")->required();
   command->add_option("--effects", a->catalogues, "Folders with effect files in the place of the catalogue");

@@ -11,7 +11,7 @@
 namespace loopwright {
 namespace {
 
-struct Arguments {
+struct FitArguments {
   DiagramArguments diagram;
   std::string json, output, report;
   std::vector<std::string> experiments, parameters, of_each, held_out, ranges;
@@ -45,7 +45,7 @@ std::vector<ParameterRange> ranges_of(const std::vector<std::string>& texts) {
 }
 
 /// Writes the fitted text to the requested file; relative paths in it still lead to their files.
-void write_fitted(const Arguments& a, const std::string& text) {
+void write_fitted(const FitArguments& a, const std::string& text) {
   if (a.output == "-") {
     answer_data(text);
     return;
@@ -54,7 +54,7 @@ void write_fitted(const Arguments& a, const std::string& text) {
   write_file(a.output, moved_to_folder({a.diagram.path, text}, folder.empty() ? "." : folder));
 }
 
-int run(const Arguments& a) {
+int run(const FitArguments& a) {
   require_writable(a.json, "--json");
   require_writable(a.output, "--output");
   require_writable_file(a.report, "--report");
@@ -90,7 +90,7 @@ int run(const Arguments& a) {
 
 void add_fit(CLI::App& app, std::function<void(std::function<int()>)> choose) {
   CLI::App* command = app.add_subcommand("fit", "Refine parameters so that the simulation meets a recording");
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<FitArguments>();
   a->diagram.add_to(*command);
   command->add_option("experiments", a->experiments, "Experiment files (JSON), one or more")->required();
   command->add_option("--parameters", a->parameters, "Paths as for --set: mass,axis.friction.level")

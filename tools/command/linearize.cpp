@@ -8,7 +8,7 @@
 namespace loopwright {
 namespace {
 
-struct Arguments {
+struct LinearizeArguments {
   DiagramArguments diagram;
   LinearizeRequest request;
   double at = -1;
@@ -17,7 +17,7 @@ struct Arguments {
 };
 
 /// Sine measurements over two decades, below the highest frequency of the plots that ten rows resolve.
-void measure(const Arguments& a, const LinearSystem& system, LinearAnalysis& analysis,
+void measure(const LinearizeArguments& a, const LinearSystem& system, LinearAnalysis& analysis,
              const RunOptions& options) {
   Problems problems;
   const auto diagram = load_diagram(a.diagram.path, a.diagram.options(), problems);
@@ -40,7 +40,7 @@ void measure(const Arguments& a, const LinearSystem& system, LinearAnalysis& ana
   progress.finish();
 }
 
-int run(const Arguments& a) {
+int run(const LinearizeArguments& a) {
   require_writable(a.json, "--json");
   require_writable(a.csv, "--csv");
   reject_two_on_stdout({{"--json", a.json}, {"--csv", a.csv}});
@@ -74,7 +74,7 @@ int run(const Arguments& a) {
 void add_linearize(CLI::App& app, std::function<void(std::function<int()>)> choose) {
   CLI::App* command =
       app.add_subcommand("linearize", "State space, poles, zeros, responses and margins of a diagram");
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<LinearizeArguments>();
   a->diagram.add_to(*command);
   command->add_option("--from", a->request.access.from, "Ports at which a signal is added")
       ->type_name("PORT");

@@ -4,11 +4,11 @@
 namespace loopwright {
 namespace {
 
-struct Arguments {
+struct LookArguments {
   std::string recording, time, json, report;
 };
 
-int run(const Arguments& a) {
+int run(const LookArguments& a) {
   require_writable(a.json, "--json");
   require_writable_file(a.report, "--report");
   const Look look = look_at(a.recording, a.time);
@@ -23,7 +23,7 @@ int run(const Arguments& a) {
 void add_look(CLI::App& app, std::function<void(std::function<int()>)> choose) {
   CLI::App* command =
       app.add_subcommand("look", "Say what a recording contains: columns, rates, gaps, noise");
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<LookArguments>();
   command->add_option("recording", a->recording, "Recording (.csv, .txt, .tsv, .dat, .mat)")->required();
   command->add_option("--time", a->time, "Column with the time");
   command->add_option("--json", a->json, "Write the figures as JSON; - for stdout");

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct NewProjectArguments {
   std::string folder, kind = "linear_motor";
 };
 
@@ -34,7 +34,7 @@ std::set<std::string> kinds() {
 
 /// The shipped project, and the schemas of its files for editors. The folder appears as a whole or not at
 /// all.
-int create(const Arguments& a) {
+int create(const NewProjectArguments& a) {
   const auto known = kinds();
   if (!known.contains(a.kind)) {
     const std::string near = nearest_name(a.kind, {known.begin(), known.end()});
@@ -70,7 +70,7 @@ int create(const Arguments& a) {
 
 void add_new(CLI::App& app, std::function<void(std::function<int()>)> choose) {
   CLI::App* command = app.add_subcommand("new", "Begin a project: a model, an experiment and a README");
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<NewProjectArguments>();
   command->add_option("folder", a->folder, "Folder to create")->required();
   command->add_option("--from", a->kind, "linear_motor, servo, pendulum or thermal")->capture_default_str();
   command->callback([=] { choose([=] { return create(*a); }); });

@@ -9,13 +9,13 @@
 namespace loopwright {
 namespace {
 
-struct Arguments {
+struct PlanArguments {
   DiagramArguments diagram;
   std::string svg, png;
   std::optional<size_t> depth;
 };
 
-void require_sense(const Arguments& a) {
+void require_sense(const PlanArguments& a) {
   Problems problems;
   if (!a.svg.empty() && a.svg == a.png)
     problems.error({}, "", "", fmt::format("--svg and --png both name {}", a.svg)).expected = "two files";
@@ -33,7 +33,7 @@ bool write_picture(const std::string& path, const report::GraphPicture& picture)
   return !picture.bytes.empty();
 }
 
-int plan(const Arguments& a) {
+int plan(const PlanArguments& a) {
   require_writable_file(a.svg, "--svg");
   require_writable_file(a.png, "--png");
   require_sense(a);
@@ -55,7 +55,7 @@ int plan(const Arguments& a) {
 void add_plan(CLI::App& app, std::function<void(std::function<int()>)> choose) {
   CLI::App* command =
       app.add_subcommand("plan", "Show order, rates, states and algebraic loops of a diagram");
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<PlanArguments>();
   a->diagram.add_to(*command);
   command->add_option("--svg", a->svg, "Draw the diagram into this file (needs node or chromium)");
   command->add_option("--png", a->png, "Draw the diagram into this file (needs chromium)");

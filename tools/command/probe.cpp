@@ -9,7 +9,7 @@
 namespace loopwright {
 namespace {
 
-struct Arguments {
+struct ProbeArguments {
   std::string device;
   bool may_touch = false;
   TakeOver take_over;
@@ -26,7 +26,7 @@ hw::quanser::Settings settings_of(const std::string& path) {
   throw InputError(std::move(problems));
 }
 
-int run(const Arguments& a) {
+int run(const ProbeArguments& a) {
   const auto settings = settings_of(a.device);
   answer("real-time service\n");
   hw::SystemReport system;
@@ -53,7 +53,7 @@ int run(const Arguments& a) {
 
 void add_probe(CLI::App& app, std::function<void(std::function<int()>)> choose) {
   CLI::App* command = app.add_subcommand("probe", "Say what hardware and real-time service there is");
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<ProbeArguments>();
   command->add_option("device", a->device, "Device file (JSON); a QPIDe when left out");
   command->add_flag("--touch", a->may_touch,
                     "Set the card up too: presets encoder 0, puts out 0 V, lets the watchdog expire. "

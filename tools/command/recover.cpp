@@ -6,11 +6,11 @@
 namespace loopwright {
 namespace {
 
-struct Arguments {
+struct RecoverArguments {
   std::string journal, output;
 };
 
-int run(const Arguments& a) {
+int run(const RecoverArguments& a) {
   require_writable(a.output, "-o");
   if (!is_recording_path(a.output)) {
     Problems problems;
@@ -30,7 +30,7 @@ int run(const Arguments& a) {
 void add_recover(CLI::App& app, std::function<void(std::function<int()>)> choose) {
   CLI::App* command =
       app.add_subcommand("recover", "Make a log of the journal that an interrupted deploy left");
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<RecoverArguments>();
   command->add_option("journal", a->journal, "The journal, as in LOG.csv.journal; it stays as it is")
       ->required();
   command->add_option("-o,--output", a->output, "Write the log: .csv or .mat")->required();

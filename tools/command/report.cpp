@@ -36,12 +36,12 @@ void convert_to_units_of(const Recording& first, Recording& other) {
 
 namespace {
 
-struct Arguments {
+struct ReportArguments {
   std::vector<std::string> recordings;
   std::string page;
 };
 
-int report_recordings(const Arguments& a) {
+int report_recordings(const ReportArguments& a) {
   require_writable_file(a.page, "-o");
   Problems problems;
   std::vector<Recording> recordings;
@@ -57,7 +57,7 @@ int report_recordings(const Arguments& a) {
 
 void add_report(CLI::App& app, std::function<void(std::function<int()>)> choose) {
   CLI::App* command = app.add_subcommand("report", "Lay recordings over each other on a page");
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<ReportArguments>();
   command
       ->add_option("recordings", a->recordings,
                    "Recordings, .csv or .mat; the others are held against the first")

@@ -15,7 +15,7 @@
 namespace loopwright {
 namespace {
 
-struct Arguments {
+struct RunArguments {
   DiagramArguments diagram;
   std::string output, report, checkpoint, resume, replay;
   std::vector<std::string> beside;
@@ -24,7 +24,7 @@ struct Arguments {
   bool quiet = false, strict_units = false, watch = false, excel = false;
 };
 
-void require_paths(const Arguments& a) {
+void require_paths(const RunArguments& a) {
   require_writable(a.output, "-o");
   require_writable_file(a.report, "--report");
   require_writable_file(a.checkpoint, "--checkpoint");
@@ -46,7 +46,7 @@ void require_units(const Plan& plan) {
 }
 
 /// Compares the plan with the log of a deployment.
-int replay_log(const Arguments& a, const Plan& plan) {
+int replay_log(const RunArguments& a, const Plan& plan) {
   Problems problems;
   const hw::Hardware hardware = hw::find_hardware(plan, problems);
   if (hardware.axes.empty())
@@ -78,7 +78,7 @@ std::vector<FollowedSignal> pairs_to_judge(const Diagram& diagram, const Plan& p
 
 /// Recordings that a page shows beside the run. They are read before the run, so that a mistake costs no
 /// time.
-std::vector<Recording> read_beside(const Arguments& a) {
+std::vector<Recording> read_beside(const RunArguments& a) {
   Problems problems;
   if (!a.beside.empty() && a.report.empty())
     problems.error({}, "", "", "--beside lays recordings over the run on a page: it needs --report");
@@ -105,7 +105,7 @@ std::set<std::string> files_of(const Diagram& diagram, const Plan& plan) {
   return files;
 }
 
-int run_once(const Arguments& a, Watch* watch = nullptr) {
+int run_once(const RunArguments& a, Watch* watch = nullptr) {
   require_paths(a);
   const auto [diagram, plan] = load_diagram_and_plan(a.diagram.path, a.diagram.options());
   if (watch) watch->files.watch(files_of(*diagram, *plan));
@@ -151,7 +151,7 @@ int run_once(const Arguments& a, Watch* watch = nullptr) {
 }
 
 /// Runs again whenever a file that the run reads is saved, until it is interrupted.
-int run_and_watch(const Arguments& a) {
+int run_and_watch(const RunArguments& a) {
   Watch watch;
   watch.files.watch({a.diagram.path});
   do {
@@ -169,13 +169,13 @@ int run_and_watch(const Arguments& a) {
   return done;
 }
 
-int run(const Arguments& a) { return a.watch ? run_and_watch(a) : run_once(a); }
+int run(const RunArguments& a) { return a.watch ? run_and_watch(a) : run_once(a); }
 
 }  // namespace
 
 void add_run(CLI::App& app, std::function<void(std::function<int()>)> choose) {
   CLI::App* command = app.add_subcommand("run", "Simulate a diagram");
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<RunArguments>();
   a->diagram.add_to(*command);
   command->add_option("-o,--output", a->output,
                       "Write the recording: .csv, .mat, .h5, or - for CSV on stdout");

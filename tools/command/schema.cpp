@@ -7,7 +7,7 @@
 namespace loopwright {
 namespace {
 
-struct Arguments {
+struct SchemaArguments {
   std::string kind = "diagram", folder;
 };
 
@@ -47,7 +47,7 @@ int write_all(const std::string& folder) {
 
 void add_schema(CLI::App& app, std::function<void(std::function<int()>)> choose) {
   CLI::App* command = app.add_subcommand("schema", "Print the JSON Schema of a kind of file, for editors");
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<SchemaArguments>();
   CLI::Option* const kind =
       command->add_option("kind", a->kind, "diagram, experiment, sweep, training, effect, device or model")
           ->capture_default_str();

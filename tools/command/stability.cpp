@@ -4,14 +4,14 @@
 namespace loopwright {
 namespace {
 
-struct Arguments {
+struct StabilityArguments {
   DiagramArguments diagram;
   StabilityRequest request;
   bool no_kicks = false;
   std::string json, report;
 };
 
-int run(const Arguments& a) {
+int run(const StabilityArguments& a) {
   require_writable(a.json, "--json");
   require_writable_file(a.report, "--report");
   StabilityRequest request = a.request;
@@ -33,7 +33,7 @@ int run(const Arguments& a) {
 void add_stability(CLI::App& app, std::function<void(std::function<int()>)> choose) {
   CLI::App* command = app.add_subcommand(
       "stability", "Whether a loop with a learned compensation is stable, and for how much of it");
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<StabilityArguments>();
   a->diagram.add_to(*command);
   command
       ->add_option("--disturbance", a->request.disturbance, "Input port of the plant, where it has several")

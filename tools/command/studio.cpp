@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct StudioArguments {
   std::string path = ".";
   std::vector<std::string> libraries;
   int port = 0;
@@ -35,7 +35,7 @@ void open_in_browser(const std::string& address) {
   if (child > 0) ::waitpid(child, nullptr, 0);
 }
 
-int run(const Arguments& a) {
+int run(const StudioArguments& a) {
   Problems problems;
   for (const std::string& library : a.libraries) load_block_library(library, problems);
   const bool is_folder = fs::is_directory(a.path);
@@ -67,7 +67,7 @@ int run(const Arguments& a) {
 void add_studio(CLI::App& app, std::function<void(std::function<int()>)> choose) {
   CLI::App* command =
       app.add_subcommand("studio", "See, edit and run diagrams in the browser, beside measurements");
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<StudioArguments>();
   command->add_option("path", a->path, "A folder, or a diagram in it; the present folder if left out")
       ->type_name("DIR|FILE");
   command->add_option("--port", a->port, "Port on this machine; any free one if left out")

@@ -18,7 +18,7 @@
 namespace loopwright {
 namespace {
 
-struct Arguments {
+struct SweepArguments {
   std::string file, folder, shard, instruction_set, minimise, maximise;
   DiagramArguments libraries;
   int threads = int(std::max(1u, std::thread::hardware_concurrency())), evaluations = 300;
@@ -107,7 +107,7 @@ int64_t write_tables(const SweepPlan& plan, const std::string& folder) {
   return results.missing;
 }
 
-int optimise(const SweepPlan& plan, const Arguments& a) {
+int optimise(const SweepPlan& plan, const SweepArguments& a) {
   Progress progress("sweep");
   OptimiseOptions options;
   options.maximise = !a.maximise.empty();
@@ -137,7 +137,7 @@ int optimise(const SweepPlan& plan, const Arguments& a) {
   return best.interrupted ? interrupted : done;
 }
 
-int make(const SweepPlan& plan, const Arguments& a, std::pair<int64_t, int64_t> shard) {
+int make(const SweepPlan& plan, const SweepArguments& a, std::pair<int64_t, int64_t> shard) {
   if (a.folder.empty()) refuse("no folder for the results", "-o DIR");
   Ranks ranks;
   SweepOptions options;
@@ -161,7 +161,7 @@ int make(const SweepPlan& plan, const Arguments& a, std::pair<int64_t, int64_t> 
   return interrupted;
 }
 
-int run(const Arguments& a) {
+int run(const SweepArguments& a) {
   const auto shard = shard_of(a.shard);
   if (!a.folder.empty()) reserve_tables(a.folder);
   a.libraries.options();
@@ -188,7 +188,7 @@ int write_report(const std::string& folder, const std::string& page) {
 
 void add_sweep(CLI::App& app, std::function<void(std::function<int()>)> choose) {
   CLI::App* command = app.add_subcommand("sweep", "Run a diagram many times, each with other parameters");
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<SweepArguments>();
   command->add_option("sweep", a->file, "Sweep file (JSON)");
   command->add_option("-o,--output", a->folder, "Folder for the results");
   command->add_option("-j,--threads", a->threads, "Threads")->check(CLI::Range(1, 1024));

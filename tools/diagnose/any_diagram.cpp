@@ -26,7 +26,7 @@ void write_improved(const DiagnoseOptions& options, Diagnosis& result) {
   result.improved = options.improved_diagram;
   result.improved_experiments = write(improved, result.experiments, result.improved);
   result.experiment_ports = improved.moved, result.taken_out_by = improved.taken_out_by;
-  result.improved_notes = notes_of(additions);
+  result.improved_notes = notes_of(additions, result.all_additions);
   std::ranges::copy(improved.left_out, std::back_inserter(result.improved_notes));
 }
 

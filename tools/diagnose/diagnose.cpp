@@ -314,7 +314,8 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
     result.improved = options.improved_diagram;
     result.improved_experiments = write(improved, experiments, result.improved);
     result.experiment_ports = improved.moved, result.taken_out_by = improved.taken_out_by;
-    result.improved_notes = notes_of(options.writes_all ? result.all_additions : result.additions);
+    result.improved_notes = notes_of(options.writes_all ? result.all_additions : result.additions,
+                                     result.all_additions);
   }
   add_plots(trials, inverse.front(), accepted, improver, units, options.load, result);
   result.trail.push_back(fmt::format("work: {:.3g}e9 operations", trials.work->done() / 1e9));

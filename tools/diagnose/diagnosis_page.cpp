@@ -245,7 +245,7 @@ report::Section what_remains(const Diagnosis& d) {
         {"Variable", "Share of the remainder that it explains"}, {}, "On rows left out of the fit."};
     for (const RemainderShare& dependence : d.dependence)
       table.rows.push_back(
-          {words(dependence.variable), fmt::format("{:.0f} %", 100 * std::max(0.0, dependence.share))});
+          {words(dependence.variable), fmt::format("{:.0f} %", 100 * dependence.share)});
     section.items.push_back(std::move(table));
   }
   if (!d.remainder_variables.empty())

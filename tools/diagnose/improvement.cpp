@@ -131,10 +131,21 @@ Improvement improve(const std::shared_ptr<const SourceFile>& diagram,
   return improved;
 }
 
-std::vector<std::string> notes_of(const Additions& additions) {
-  std::vector<std::string> notes = additions.not_stated;
-  for (const AddedEffect& added : additions.effects)
+std::vector<std::string> notes_of(const Additions& written, const Additions& all) {
+  std::vector<std::string> notes = written.not_stated;
+  for (const AddedEffect& added : written.effects)
     if (!added.note.empty()) notes.push_back(added.note);
+  const bool are_all = written.effects.size() >= all.effects.size();
+  const bool differ = std::ranges::any_of(written.effects, [&](const AddedEffect& added) {
+    const auto same = std::ranges::find(all.effects, added.name, &AddedEffect::name);
+    return same != all.effects.end() && same->fitted != added.fitted;
+  });
+  if (!are_all && differ)
+    notes.push_back(
+        "The optional effects are not in it, and its values are those that fit best without them. With --all "
+        "it has all effects, and the values above.");
+  else if (!are_all)
+    notes.push_back("The optional effects are not in it. With --all it has all effects.");
   return notes;
 }
 

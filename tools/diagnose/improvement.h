@@ -22,8 +22,8 @@ Improvement improve(const std::shared_ptr<const SourceFile>& diagram,
                     const std::vector<std::shared_ptr<const Experiment>>& experiments,
                     const LoadOptions& load, const Additions& additions);
 
-/// How functions without a name are written.
-std::vector<std::string> notes_of(const Additions& additions);
+/// How functions without a name are written, and what distinguishes the file from the whole answer.
+std::vector<std::string> notes_of(const Additions& written, const Additions& all);
 
 /// The experiment with the ports that an improved diagram moved.
 Experiment with_moved_ports(const Experiment& experiment, const std::vector<MovedPort>& moved);

@@ -102,6 +102,9 @@ class SiteEffectReader {
     }
     std::vector<Value> items{member->value};
     if (member->value.kind == Kind::list) items = member->value.items;
+    if (items.empty())
+      reader_.error(member->value, fmt::format("\"{}\" names no kind of signal", key)).expected =
+          "\"any\", or at least one kind, such as [\"force\"]";
     std::vector<std::string> list;
     for (const Value& item : items) {
       if (!reader_.expect(item, Kind::text, fmt::format("\"{}\"", key), "a kind of signal in quotes"))

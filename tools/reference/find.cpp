@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <set>
+#include <sstream>
 #include "engine/diagram/names_elsewhere.h"
 #include "tools/reference/reference.h"
 
@@ -23,11 +24,20 @@ std::string words_of(const BlockInfo& info) {
   return in_lower_case(text);
 }
 
-/// Also "anti-windup" for "anti_windup". Short words would be found across the borders of others.
+/// Each of several words, in whatever order.
+bool says_each(const std::string& words, const std::string& lower) {
+  std::istringstream list(lower);
+  for (std::string word; list >> word;)
+    if (words.find(word) == std::string::npos) return false;
+  return true;
+}
+
+/// Also "anti-windup" for "anti_windup", and "inertia torque" where both are said. Short words would be found
+/// across the borders of others.
 bool says(const BlockInfo& info, const std::string& lower, const std::string& plain) {
   constexpr size_t longest_short_word = 4;
   const std::string words = words_of(info);
-  return words.find(lower) != std::string::npos ||
+  return says_each(in_lower_case(info.type) + "\n" + words, lower) ||
          (plain.size() > longest_short_word && plain_name(words).find(plain) != std::string::npos);
 }
 

@@ -83,9 +83,11 @@ TEST(ImprovedDiagram, LeavesOptionalEffectsOutUnlessAllAreWanted) {
   while (few.steps[last].is_optional) --last;
   EXPECT_NEAR(residual_of(few, record), few.steps[last].force_rmse, 0.1 * few.steps[last].force_rmse);
   EXPECT_THAT(few.taken_out_by, Not(Contains("with_cogging")));
+  EXPECT_THAT(to_text(few), HasSubstr("fit best without them")) << "the numbers above are those of all";
   const Diagnosis all = written(axis, record, true);
   EXPECT_NEAR(residual_of(all, record), all.steps.back().force_rmse, 0.1 * all.steps.back().force_rmse);
   EXPECT_THAT(all.taken_out_by, Contains("with_cogging"));
+  EXPECT_THAT(to_text(all), Not(HasSubstr("optional effects are not in it")));
 }
 
 }  // namespace

@@ -114,6 +114,7 @@ TEST(SiteEffect, ItsFormulaHasTheUnitOfTheSite) {
 TEST(SiteEffect, DependsOnItsOwnSignalOrOnOthers) {
   for (const char* of : {R"(["site", "force"])", R"(["any", "site"])", R"(["site", "site"])"})
     EXPECT_THAT(problems_of(size, "size*signal", of), testing::HasSubstr("\"site\" beside other kinds"));
+  EXPECT_THAT(problems_of(size, "size*signal", "[]"), testing::HasSubstr("\"of\" names no kind of signal"));
 }
 
 }  // namespace

@@ -55,6 +55,7 @@ TEST(Reference, BlocksAreFoundByWordsAndByTheirNamesElsewhere) {
   EXPECT_TRUE(finds("resonance", "Notch")) << "by its sentence";
   EXPECT_TRUE(finds("anti-windup", "PidController")) << "anti_windup is one of its parameters";
   EXPECT_TRUE(finds("hysteresis", "Comparison")) << "by a name elsewhere or a parameter";
+  EXPECT_TRUE(finds("torque inertia", "Inertia")) << "each word, in whatever order";
   EXPECT_NE(found_blocks("scope").find("--report"), std::string::npos);
   EXPECT_NE(found_blocks("ode45").find("dopri5"), std::string::npos);
   EXPECT_EQ(found_blocks("xyzzy"), "");

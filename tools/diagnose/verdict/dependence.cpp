@@ -55,8 +55,8 @@ struct Hats {
   }
 };
 
-/// Explained share of the remainder on blocks that the smoother was not fitted to; `side` splits it into two
-/// smoothers.
+/// Explained share of the remainder on blocks that the smoother was not fitted to, 0 where it predicts worse
+/// than nothing; `side` splits it into two smoothers.
 double explained(const std::vector<double>& force, const std::vector<double>& variable, size_t knots,
                  size_t block, const std::vector<double>* side) {
   const Hats hats(variable, knots);
@@ -87,7 +87,7 @@ double explained(const std::vector<double>& force, const std::vector<double>& va
       left += (force[i] - seen) * (force[i] - seen), whole += force[i] * force[i];
     }
   }
-  return whole > 0 ? 1 - left / whole : 0;
+  return whole > 0 ? std::max(0.0, 1 - left / whole) : 0;
 }
 
 }  // namespace
