@@ -14,10 +14,10 @@ struct Word {
 constexpr std::array<Word, 2> severities = {{{"error:", "\033[1;31m"}, {"warning:", "\033[1;33m"}}};
 constexpr std::array<std::string_view, 5> labels = {
     "  block:", "  at:", "  expected:", "  found:", "  hint:"};
-constexpr std::string_view of_label = "\033[36m", bold = "\033[1m", end = "\033[0m";
+constexpr std::string_view of_label = "\033[36m", bold = "\033[1m", as_before = "\033[0m";
 
 void add(std::string& to, std::string_view sequence, std::string_view text) {
-  if (!text.empty()) to.append(sequence).append(text).append(end);
+  if (!text.empty()) to.append(sequence).append(text).append(as_before);
 }
 
 /// "file:3:5: error: what", or "error: what".

@@ -217,12 +217,12 @@ struct NamedFile {
   bool is_output;
 };
 
-bool is_output(const CLI::Option& option) {
+bool names_output(const CLI::Option& option) {
   constexpr std::array<std::string_view, 7> names = {"--output", "--report", "--json",      "--csv",
                                                      "--svg",    "--model",  "--checkpoint"};
   return !option.get_positional() && std::ranges::find(names, name_of(option)) != names.end();
 }
-bool is_input(const CLI::Option& option) {
+bool names_input(const CLI::Option& option) {
   constexpr std::array<std::string_view, 6> names = {"--replay", "--resume",  "--on",
                                                      "--blocks", "--effects", "--more-effects"};
   return option.get_positional() || std::ranges::find(names, name_of(option)) != names.end();
@@ -266,8 +266,8 @@ void check_values(const CLI::App& app) {
               option->get_description();
         else if (is_number(*option) && !is_in_range(*option, value))
           refuse_value(*option, value, problems);
-        else if (value != "-" && (is_output(*option) || is_input(*option)))
-          files.push_back({name_of(*option), value, is_output(*option)});
+        else if (value != "-" && (names_output(*option) || names_input(*option)))
+          files.push_back({name_of(*option), value, names_output(*option)});
       }
     }
   refuse_shared_files(files, problems);

@@ -6,7 +6,7 @@ namespace loopwright {
 namespace {
 
 /// Names and options as text; hidden groups have neither.
-std::vector<const CLI::App*> commands_of(const CLI::App& app) {
+std::vector<const CLI::App*> inner_commands(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App*) { return true; });
 }
 std::string long_options(const CLI::App& command) {
@@ -24,9 +24,9 @@ std::string names_of(const std::vector<const CLI::App*>& commands) {
 /// Options after a dash, files otherwise.
 std::string bash(const CLI::App& app) {
   std::string cases;
-  for (const CLI::App* command : commands_of(app)) {
+  for (const CLI::App* command : inner_commands(app)) {
     std::string words = long_options(*command);
-    const std::string inner = names_of(commands_of(*command));
+    const std::string inner = names_of(inner_commands(*command));
     cases += fmt::format("    {}) options=\"{}\" inner=\"{}\" ;;\n", command->get_name(), words, inner);
   }
   return fmt::format(R"(_loopwright() {{
@@ -44,7 +44,7 @@ std::string bash(const CLI::App& app) {
 }}
 complete -o filenames -F _loopwright loopwright
 )",
-                     names_of(commands_of(app)), cases);
+                     names_of(inner_commands(app)), cases);
 }
 
 std::string zsh(const CLI::App& app) {
@@ -58,7 +58,7 @@ std::string quoted(std::string text) {
 
 std::string fish(const CLI::App& app) {
   std::string text;
-  for (const CLI::App* command : commands_of(app)) {
+  for (const CLI::App* command : inner_commands(app)) {
     text += fmt::format("complete -c loopwright -n __fish_use_subcommand -a {} -d {}\n", command->get_name(),
                         quoted(command->get_description()));
     for (const CLI::Option* option : command->get_options())
@@ -87,7 +87,7 @@ std::string manual(const CLI::App& app) {
       "against measurements\n.SH SYNOPSIS\n.B loopwright\n.I COMMAND\n[OPTIONS]\n.SH DESCRIPTION\n{}\n",
       roff(app.get_description()));
   text += ".SH COMMANDS\n";
-  for (const CLI::App* command : commands_of(app)) {
+  for (const CLI::App* command : inner_commands(app)) {
     text +=
         fmt::format(".SS loopwright {}\n{}\n", roff(command->get_name()), roff(command->get_description()));
     for (const CLI::Option* option : command->get_options())

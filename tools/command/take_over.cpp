@@ -21,7 +21,7 @@ static std::string line_of_terminal(const std::function<bool()>& is_interrupted)
     if (is_interrupted()) return "";
     if (ready <= 0) continue;
     char c = 0;
-    if (read(STDIN_FILENO, &c, 1) != 1) return "";
+    if (::read(STDIN_FILENO, &c, 1) != 1) return "";
     if (c == '\n') return line;
     line.push_back(c);
   }

@@ -36,7 +36,7 @@ uint64_t permuted(uint64_t i, uint64_t n, uint64_t seed, uint64_t stream) {
 
 }  // namespace
 
-Design::Design(const Sweep& sweep, std::vector<bool> changes_plan) : sweep_(sweep) {
+SweepDesign::SweepDesign(const Sweep& sweep, std::vector<bool> changes_plan) : sweep_(sweep) {
   for (const bool slow : {true, false})
     for (size_t a = 0; a < sweep.axes.size(); ++a) {
       const Axis& axis = sweep.axes[a];
@@ -55,7 +55,7 @@ Design::Design(const Sweep& sweep, std::vector<bool> changes_plan) : sweep_(swee
   if (sweep.samples.method == Sampling::saltelli) samples_ *= int64_t(sampled_.size()) + 2;
 }
 
-std::vector<double> Design::point(int64_t run) const {
+std::vector<double> SweepDesign::point(int64_t run) const {
   std::vector<double> values(sweep_.axes.size());
   std::vector<size_t> index(sweep_.axes.size());
   const int64_t sample = run % samples_;
@@ -79,7 +79,7 @@ std::vector<double> Design::point(int64_t run) const {
   return values;
 }
 
-double Design::uniform(int64_t sample, size_t rank) const {
+double SweepDesign::uniform(int64_t sample, size_t rank) const {
   const uint64_t seed = sweep_.seed, n = uint64_t(samples_), s = uint64_t(sample);
   if (sweep_.samples.method == Sampling::random)
     return uniform_pair(seed, Stream::random_samples + rank, s).first;
@@ -90,7 +90,7 @@ double Design::uniform(int64_t sample, size_t rank) const {
 /// Sobol's points without the origin, each digit shifted at random: still a net, but a different one for each
 /// seed. For Saltelli's design the first half of the columns is A, the other B; block k of the samples is A,
 /// B, or A with one column of B. Source: A. Saltelli et al., Comput. Phys. Commun. 181 (2010) 259.
-std::vector<double> Design::sobol(int64_t sample) const {
+std::vector<double> SweepDesign::sobol(int64_t sample) const {
   const bool is_saltelli = sweep_.samples.method == Sampling::saltelli;
   const size_t axes = sampled_.size(), columns = is_saltelli ? 2 * axes : axes;
   const int64_t block = is_saltelli ? sample / sweep_.samples.count : 0;
@@ -113,7 +113,7 @@ std::vector<double> Design::sobol(int64_t sample) const {
   return u;
 }
 
-double Design::quantile(const Axis& axis, double u) {
+double SweepDesign::quantile(const Axis& axis, double u) {
   switch (axis.kind) {
     case Axis::Kind::logarithmic:
       return axis.low * any_power(axis.high / axis.low, u);
@@ -124,7 +124,7 @@ double Design::quantile(const Axis& axis, double u) {
   }
 }
 
-std::pair<std::vector<double>, std::vector<double>> Design::range() const {
+std::pair<std::vector<double>, std::vector<double>> SweepDesign::range() const {
   auto low = point(0), high = low;
   const int64_t steps = runs();
   for (size_t a = 0; a < low.size(); ++a) {

@@ -7,10 +7,10 @@
 
 namespace loopwright {
 
-class Design {
+class SweepDesign {
  public:
   /// `changes_plan`: one flag per axis whose values need separate plans; these axes vary slowest.
-  Design(const Sweep& sweep, std::vector<bool> changes_plan);
+  SweepDesign(const Sweep& sweep, std::vector<bool> changes_plan);
 
   int64_t runs() const { return worlds_ * runs_in_world(); }
   /// Points of the axes that change the plan; runs of one world are consecutive.

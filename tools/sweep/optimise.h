@@ -17,7 +17,7 @@ struct OptimiseOptions {
 struct Optimum {
   bool found = false;  ///< at least one run finished
   bool interrupted = false;
-  std::vector<double> point;  ///< one per axis, as Design::point
+  std::vector<double> point;  ///< one per axis, as SweepDesign::point
   double value = 0;           ///< of the metric, in its unit
   int evaluations = 0, failed = 0;
 };

@@ -40,7 +40,7 @@ std::pair<std::string, Facts> read_sweep_file(const std::string& folder) {
 
 /// Blocks of all worlds, one after the other; a block never spans two worlds.
 struct Blocks {
-  explicit Blocks(const Design& design)
+  explicit Blocks(const SweepDesign& design)
       : in_block(runs_in_block(design)),
         in_world((design.runs_in_world() + in_block - 1) / in_block),
         runs_in_world(design.runs_in_world()),

@@ -15,7 +15,7 @@ namespace loopwright {
 
 /// Runs are assigned in blocks; each block is made by one thread. Alternating between the lanes of two arenas
 /// reduces waiting for results; but with few runs, large blocks would leave threads without work.
-inline int64_t runs_in_block(const Design& design) { return design.runs_in_world() < 1024 ? 32 : 64; }
+inline int64_t runs_in_block(const SweepDesign& design) { return design.runs_in_world() < 1024 ? 32 : 64; }
 
 struct SweepOptions {
   int threads = 1;

@@ -49,7 +49,7 @@ SweepPlan::SweepPlan(std::shared_ptr<const Sweep> sweep) : sweep_(std::move(swee
   Problems problems;
   changes_plan_ = find_axes_that_change_the_plan(problems);
   if (problems.has_errors()) throw InputError(std::move(problems));
-  design_ = std::make_unique<Design>(*sweep_, changes_plan_);
+  design_ = std::make_unique<SweepDesign>(*sweep_, changes_plan_);
   if (design_->worlds() > most_worlds) {
     const auto first = std::find(changes_plan_.begin(), changes_plan_.end(), true);
     const Axis& axis = sweep_->axes[size_t(first - changes_plan_.begin())];
@@ -147,7 +147,7 @@ SweepPlan::Step SweepPlan::find_step(const Runs& runs, const Accepted& start, si
 /// Examines each axis alone, at both ends of its range.
 std::vector<bool> SweepPlan::find_axes_that_change_the_plan(Problems& problems) const {
   std::vector<bool> changes(sweep_->axes.size());
-  const Design design(*sweep_, changes);
+  const SweepDesign design(*sweep_, changes);
   const Runs runs{design, 0, design.runs()};
   const Accepted start = find_accepted(runs, problems);
   if (!start.plan) return changes;

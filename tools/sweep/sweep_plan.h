@@ -33,7 +33,7 @@ class SweepPlan {
   explicit SweepPlan(std::shared_ptr<const Sweep> sweep);
 
   const Sweep& sweep() const { return *sweep_; }
-  const Design& design() const { return *design_; }
+  const SweepDesign& design() const { return *design_; }
   int64_t runs() const { return design_->runs(); }
   /// Whether the values of an axis need separate plans: variants, structural settings.
   bool changes_plan(size_t axis) const { return changes_plan_[axis]; }
@@ -70,7 +70,7 @@ class SweepPlan {
   };
   /// Consecutive runs of a design.
   struct Runs {
-    const Design& design;
+    const SweepDesign& design;
     int64_t first, count;
     std::vector<double> example(int i) const { return design.point(first + (count - 1) * i / examples); }
     static constexpr int examples = 16;
@@ -89,7 +89,7 @@ class SweepPlan {
 
   std::shared_ptr<const Sweep> sweep_;
   std::vector<bool> changes_plan_;  // one per axis
-  std::unique_ptr<Design> design_;
+  std::unique_ptr<SweepDesign> design_;
   std::vector<World> worlds_;
   Identity identity_;
   std::string hash_;  // of the identity

@@ -126,7 +126,7 @@ TEST(SweepPlan, GivesVariantsAndStructuralValuesPlansOfTheirOwn) {
   EXPECT_THAT(plan.command(11), HasSubstr("--variant 'spring=hard'"));
 }
 
-TEST(Design, PairsAxesAndCountsTheLastFastest) {
+TEST(SweepDesign, PairsAxesAndCountsTheLastFastest) {
   const SweepFolder folder(
       R"("mass.mass": {"values": [1, 2]}, "stiffness": {"values": [10, 20, 30]}, "pull.frequency": {"values": [3, 4]})",
       R"(, "paired": [["mass.mass", "pull.frequency"]])");
@@ -136,7 +136,7 @@ TEST(Design, PairsAxesAndCountsTheLastFastest) {
   EXPECT_EQ(plan.design().point(5), (std::vector<double>{2, 30, 4}));
 }
 
-TEST(Design, FillsEveryStratumOfALatinHypercubeOnce) {
+TEST(SweepDesign, FillsEveryStratumOfALatinHypercubeOnce) {
   for (const int count : {1, 2, 7, 64, 1000}) {
     const SweepFolder folder(
         R"("mass.mass": {"uniform": {"from": 1, "to": 2}}, "pull.frequency": {"uniform": {"from": 1, "to": 2}})",
@@ -150,7 +150,7 @@ TEST(Design, FillsEveryStratumOfALatinHypercubeOnce) {
   }
 }
 
-TEST(Design, SamplesEachDistributionAsStated) {
+TEST(SweepDesign, SamplesEachDistributionAsStated) {
   const SweepFolder folder(
       R"("mass.mass": {"normal": {"mean": 5, "deviation": 0.5}}, "stiffness": {"log_uniform": {"from": 1, "to": 10000}})",
       R"(, "samples": {"method": "sobol", "count": 4096})");
