@@ -77,6 +77,10 @@ def make_all(pages):
             make_run(pages, diagram)
     motor, emps = SOURCE / 'diagrams/linear_motor', SOURCE / 'diagrams/emps'
     pages.page('stability', 'stability', motor / 'ps.json', '--no-kicks')
+    recording = SOURCE / 'build/paper/identification_0.csv'  # which the training file names
+    if not recording.exists():
+        recording.parent.mkdir(parents=True, exist_ok=True)
+        pages.command('run', motor / 'identification.json', '--run', '0', '-q', '-o', recording)
     pages.page('gp', 'gp', 'train', motor / 'ps.training.json', '--model', pages.folder / 'ps.model.json')
     sweep = pages.folder / 'sweep'
     pages.command('sweep', motor / 'controllers.sweep.json', '-o', sweep)

@@ -1,4 +1,5 @@
 #include "tools/diagnose/any_diagram.h"
+#include <fmt/format.h>
 #include "engine/diagram/in_memory.h"
 #include "engine/json/json.h"
 #include "tools/diagnose/improvement.h"
@@ -6,6 +7,7 @@
 #include "tools/diagnose/search/site_opinion.h"
 #include "tools/diagnose/verdict/improve.h"
 #include "tools/diagnose/verdict/site_verdict.h"
+#include "tools/diagnose/verdict/verdict.h"
 
 namespace loopwright {
 namespace {
@@ -41,6 +43,7 @@ Diagnosis diagnose_any_diagram(const std::string& diagram, const std::vector<std
   const auto is_interrupted = [&] { return options.interrupt && *options.interrupt; };
   progress("reading the record", 0);
   SiteModel model(diagram, experiments, options.load);
+  model.work() = Work(options.most_work);
   SiteFilter filter(model);
   SiteFitter fitter(filter, model.record().held_out_from, is_interrupted);
   fitter.offer(catalogue.shapes());
@@ -62,6 +65,8 @@ Diagnosis diagnose_any_diagram(const std::string& diagram, const std::vector<std
     return result;
   }
   result.trail = found->trail;
+  result.trail.push_back(fmt::format("work: {:.3g}e9 operations", model.work().done() / 1e9));
+  if (model.work().was_short()) result.findings.push_back(ended_at_limit(options.most_work));
   progress("prediction, simulation and verdict", 0.95);
   tell_sites(filter, *found, result);
   if (!options.improved_diagram.empty()) write_improved(options, result);

@@ -129,7 +129,7 @@ constexpr double most_held_out = 1.5;
 /// [probability] Of an effect that ranks among the certain ones.
 constexpr double sure = 0.9;
 
-// Work: see search/work.h.
+// Work: see predict/work.h.
 
 /// [operations] A record of 56 s with one or two effects needs a twentieth of it, one with a load that flies
 /// half. Half a minute to a minute of processor time.

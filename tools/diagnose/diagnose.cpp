@@ -236,13 +236,6 @@ void tell_errors(const Trials& trials, const Conclusion& conclusion, const Inqui
   result.measurement_noise = noise.measurement;
 }
 
-RecordFinding ended_at_limit(double most_work) {
-  return {
-      fmt::format("the search ended at its limit of {:.3g}e9 operations", most_work / 1e9),
-      "effects that had not been tried are not named, and alternatives may be missing: hold out more, record "
-      "less, or state in the diagram what is known"};
-}
-
 Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std::string>& experiments,
                               const DiagnoseOptions& options) {
   const std::function<void(const char*, double)> progress = [&](const char* stage, double done) {

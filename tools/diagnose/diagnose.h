@@ -20,7 +20,7 @@ struct DiagnoseOptions {
   std::function<void(const char* stage, double done)> progress;
   /// Told of every set of effects that the search accepts, with the force that it leaves in the fitted rows.
   std::function<void(const std::vector<std::string>& effects, double force)> found;
-  double most_work = diagnosis::criteria::most_work;  ///< [operations] of an axis: where its search ends
+  double most_work = diagnosis::criteria::most_work;  ///< [operations] where the search ends
   const std::atomic<bool>* interrupt = nullptr;  ///< once true, the diagnosis ends soon, without a verdict
 };
 

@@ -63,6 +63,15 @@ TEST(AnyDiagramLimits, AFewRowsAreRefused) {
   plant.rows = 150;
   EXPECT_THAT(refusal(plant), testing::HasSubstr("too few rows for a diagnosis"));
 }
+TEST(AnyDiagramLimits, ASearchThatUsesUpItsWorkSaysSoAndCallsNothingComplete) {
+  const RecordedPlant files(with_sites(R"(["balance1.sum"])"));
+  DiagnoseOptions options;
+  options.most_work = 1;
+  const Diagnosis d = diagnose(files.diagram(), {files.experiment()}, options);
+  EXPECT_TRUE(d.effects.empty()) << "parameters are fitted in any case";
+  EXPECT_EQ(d.verdict, Verdict::partly_explained) << to_text(d);
+  EXPECT_THAT(to_text(d), testing::HasSubstr("the search ended at its limit"));
+}
 TEST(AnyDiagramLimits, TheSamplesMayLieAtAnyDistance) {
   Oscillator m;
   m.force = [](double x, double) { return 6000 * x * x * x; };

@@ -48,6 +48,22 @@ TEST(AnyDiagram, AResistanceThatIsNotAsStatedIsAParameterAndNoEffect) {
   expect_moved(d, "resistance", 1.5);
   expect_explained(d);
 }
+/// Beyond 1 the diagram cannot be run: that parameter is looked at from below, and the others stay free.
+TEST(AnyDiagram, AParameterAtTheEdgeOfWhatRunsDoesNotHoldTheOthers) {
+  Motor m;
+  m.resistance = 1.5;
+  Plant plant = motor(m, 2);
+  const auto put = [&](const std::string& before, const std::string& after) {
+    const size_t at = plant.diagram.find(before);
+    ASSERT_NE(at, std::string::npos);
+    plant.diagram.replace(at, before.size(), after);
+  };
+  put(R"("parameters": {)", R"("parameters": {"share": 1, )");
+  put(R"("gain": {"value": 0.05, "unit": "N*m/A"})", R"x("gain": "=constant*(share + 0*sqrt(1 - share))")x");
+  const Diagnosis d = diagnosed(plant);
+  expect_moved(d, "resistance", 1.5);
+  expect_explained(d);
+}
 TEST(AnyDiagram, DryFrictionOfAMotorIsFoundAtItsTorques) {
   Motor m;
   m.torque = [](double speed, double) { return 0.01 * std::tanh(speed / 0.5); };

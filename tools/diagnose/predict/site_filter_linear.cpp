@@ -34,6 +34,7 @@ double mean_of(double start, double middle, double end) { return (start + 4 * mi
 
 double SiteFilter::objective_with(const SitePass& pass, const SiteNoise& noise) const {
   const auto n = Eigen::Index(pass.states);
+  model_.work().add(pass.rows, Work::of_a_product * 2 * double(n * n * n));
   return with_size(pass.states, [&]<int N>() {
     using Vector = Eigen::Matrix<double, N, 1>;
     using Matrix = Eigen::Matrix<double, N, N>;
@@ -94,6 +95,7 @@ void SiteFilter::respond(const SitePass& pass, int site, std::span<const double>
                          std::span<const double> middle, std::span<const double> end,
                          std::span<double> column) const {
   const auto n = Eigen::Index(pass.states);
+  model_.work().add(pass.rows, Work::of_a_response + Work::of_a_product * double(n * n));
   const int sensor = model_.output_of_sensor(site);
   with_size(pass.states, [&]<int N>() {
     using Vector = Eigen::Matrix<double, N, 1>;

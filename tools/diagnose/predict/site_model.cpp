@@ -286,6 +286,7 @@ void SiteModel::put_modes_back(const char* from) {
 
 bool SiteModel::flow(size_t row, const double* from, double* to, double* middle) {
   set_inputs(row);
+  work_.add(size_t(substeps_), 4 * Work::of_a_block * double(plan_->blocks.size()));
   const size_t n = size_t(plan_->states);
   const double begin = record_.time[row], h = record_.step(row) / substeps_;
   std::copy_n(from, n, to);
@@ -330,6 +331,7 @@ bool SiteModel::outputs(size_t row, const double* states, double* to) {
     for (size_t j = 0; j < outputs_.size(); ++j) to[j] = states[outputs_[j] - plan_->signals];
   } else {
     set_inputs(row);
+    work_.add(1, Work::of_a_block * double(plan_->blocks.size()));
     run_->look_at(record_.time[row], states);
     run_->evaluate(0, true);
     good = !run_->failed();

@@ -8,6 +8,7 @@
 #include <vector>
 #include "tools/diagnose/predict/model_parameter.h"
 #include "tools/diagnose/predict/site.h"
+#include "tools/diagnose/predict/work.h"
 #include "tools/diagnose/record/signal_record.h"
 #include "tools/diagnose/search/shape.h"
 
@@ -97,6 +98,9 @@ class SiteModel {
   int output_of_sensor(int site) const;
   /// Whether a term changes what the output measures.
   bool is_distorted(size_t output) const { return !signals_[sensor_sites_[output]].terms.empty(); }
+  /// What was computed along the record.
+  Work& work() { return work_; }
+
   /// Steps of the integration in a sample.
   int substeps() const { return substeps_; }
   void set_substeps(int count) { substeps_ = count; }
@@ -154,6 +158,7 @@ class SiteModel {
   std::vector<int> measured_state_;
   bool has_decisions_ = false, all_are_states_ = true;
   int substeps_ = 2;
+  Work work_;
   std::vector<double> slope_[4], stage_;
   std::vector<std::span<char>> modes_;
   size_t mode_bytes_ = 0;

@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 #include "tools/diagnose/search/candidate.h"
-#include "tools/diagnose/search/work.h"
+#include "tools/diagnose/predict/work.h"
 
 namespace loopwright::diagnosis {
 

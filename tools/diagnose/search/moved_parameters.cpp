@@ -99,7 +99,6 @@ std::vector<MovedParameters> moved_parameters(SiteFitter& fitter, const SiteHypo
   std::vector<uint32_t> sets{0};
   if (!free.empty()) {
     const Eigen::MatrixXd J = fitter.jacobian(start, pass);
-    if (J.size() == 0) return {};
     Eigen::VectorXd deviation(Eigen::Index(free.size()));
     for (size_t i = 0; i < free.size(); ++i) deviation[Eigen::Index(i)] = start.factors[size_t(free[i])] - 1;
     const Eigen::MatrixXd covariance =

@@ -93,17 +93,23 @@ Eigen::MatrixXd SiteFitter::jacobian(const SiteHypothesis& h, const SitePass& ab
   const std::vector<FittedNumber> numbers = fitted_numbers(h);
   Eigen::MatrixXd J(Eigen::Index(about.error.size()), Eigen::Index(numbers.size()));
   SiteHypothesis moved = h;
-  for (size_t i = 0; i < numbers.size(); ++i) {
+  const auto is_run_at = [&](size_t i, double step) {
     double& value = value_of(moved, numbers[i]);
-    const double before = value, step = step_of(h, numbers[i]);
+    const double before = value;
     value += step;
     use(moved);
     value = before;
-    if (!filter_.run_frozen(about, errors_)) return {};
+    return filter_.run_frozen(about, errors_);
+  };
+  for (size_t i = 0; i < numbers.size(); ++i) {
+    double step = step_of(h, numbers[i]);
+    bool is_run = is_run_at(i, step);
+    if (!is_run) is_run = is_run_at(i, step = -step);
     for (size_t k = 0; k < errors_.size(); ++k)
       J(Eigen::Index(k), Eigen::Index(i)) =
-          std::isnan(about.error[k]) ? 0
-                                     : (errors_[k] - about.error[k]) / (step * std::sqrt(about.variance[k]));
+          !is_run || std::isnan(about.error[k])
+              ? 0
+              : (errors_[k] - about.error[k]) / (step * std::sqrt(about.variance[k]));
   }
   return J;
 }
@@ -131,7 +137,6 @@ void SiteFitter::refine(SiteHypothesis& h, int steps, bool with_prior) {
   double best = pass_.scaled_objective() + prior(h);
   for (int step = 0; step < steps && !is_interrupted_(); ++step) {
     const Eigen::MatrixXd J = jacobian(h, pass_);
-    if (J.size() == 0) return;
     const double scale = std::sqrt(pass_.squares / double(pass_.readings));
     const Eigen::Index rows = J.rows(), count = J.cols();
     Eigen::MatrixXd all = Eigen::MatrixXd::Zero(rows + count, count);

@@ -58,7 +58,8 @@ class SiteFitter {
   /// noise are fitted, as long as the likelihood improves.
   void anneal(SiteHypothesis& hypothesis, bool with_prior);
   /// Derivatives of the whitened errors with respect to all fitted numbers, as columns; a missing reading is
-  /// zero. Empty if the model diverges.
+  /// zero. At the edge of what the diagram can be run with, the difference is taken on the other side; zero if
+  /// it cannot be run on either.
   Eigen::MatrixXd jacobian(const SiteHypothesis& hypothesis, const SitePass& about);
   Eigen::VectorXd whitened(const SitePass& pass) const;
   /// Bounds and step of a number for differences.

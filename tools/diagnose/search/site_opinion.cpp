@@ -69,7 +69,7 @@ std::optional<SiteSearchResult> search_with_second_opinion(
   const std::vector<int> unmeasured = unmeasured_states(fitter, first->found);
   if (unmeasured.empty()) return first;
   const std::vector<NoisySite> noisy = noisy_sites(fitter, first->found);
-  if (noisy.empty()) return first;
+  if (noisy.empty() || fitter.model().work().is_spent(criteria::work_of_search)) return first;
   first->trail.push_back("again by simulation: noise in the states could explain anything");
   std::optional<SiteSearchResult> second = search_sites(fitter, progress, ErrorsOf::simulation);
   if (!second || fitter.is_interrupted()) return first;

@@ -43,8 +43,7 @@ class Ranking {
       : fitter_(fitter), at_(std::move(hypothesis)), with_constants_(with_constants) {
     is_good_ = fitter_.pass(at_, true, pass_);
     if (!is_good_) return;
-    const Eigen::MatrixXd J = fitter_.jacobian(at_, pass_);
-    basis_ = basis_of(J.size() ? J : Eigen::MatrixXd(Eigen::Index(pass_.error.size()), 0));
+    basis_ = basis_of(fitter_.jacobian(at_, pass_));
     rest_ = fitter_.whitened(pass_);
     rest_ -= basis_ * (basis_.transpose() * rest_);
     for (auto& list : phi_) list.resize(pass_.rows);

@@ -37,7 +37,7 @@ class SiteSearch {
     result_.parameters = with_free_parameters(nominal);
     tell("parameters free", result_.parameters);
     SiteSearchResult first = searched_from(result_.parameters, 0.2);
-    if (!is_doubtful(first.found)) return first;
+    if (!is_doubtful(first.found) || is_spent(criteria::work_of_search / 2)) return first;
     result_.trail = std::move(first.trail);
     result_.trail.push_back("again, from the parameters as they are stated");
     SiteSearchResult second = searched_from(nominal, 0.6);
@@ -83,6 +83,7 @@ class SiteSearch {
     return criterion(h) + cost_of_parameter * double(h.free_parameters());
   }
   SiteModel& model() { return fitter_.model(); }
+  bool is_spent(double share) { return model().work().is_spent(share); }
   double gain_needed() const { return std::max(least_gain_of_term, least_gain_per_reading * readings_); }
   void tell(const std::string& what, const SiteHypothesis& at) {
     std::string noise;
@@ -138,7 +139,7 @@ class SiteSearch {
     const Eigen::MatrixXd J = fitter_.jacobian(h, pass_);
     constexpr double least_response = 1e-3;  // in whitened errors, for a change by all of the parameter
     for (size_t i = 0; i < h.is_free.size(); ++i)
-      h.is_free[i] = J.size() && J.col(Eigen::Index(i)).norm() > least_response;
+      h.is_free[i] = J.col(Eigen::Index(i)).norm() > least_response;
     fitter_.refine(h, 8, true);
     fitter_.anneal(h, true);
     return h;
@@ -194,7 +195,7 @@ class SiteSearch {
   }
 
   void add_terms(SiteHypothesis& at) {
-    while (at.terms.size() < most_terms) {
+    while (at.terms.size() < most_terms && !is_spent(criteria::work_of_search)) {
       progress_("searching", begin_ + 0.05 * double(at.terms.size()));
       std::vector<SiteHypothesis> tried = fits(at, candidates(at));
       if (tried.empty()) return;
@@ -216,7 +217,7 @@ class SiteSearch {
 
   /// Each term is replaced by the best other one in its place.
   void exchange(SiteHypothesis& at) {
-    for (size_t t = 0; t < at.terms.size(); ++t) {
+    for (size_t t = 0; t < at.terms.size() && !is_spent(criteria::work_with_rivals); ++t) {
       SiteHypothesis without = at;
       const SiteTerm term = at.terms[t];
       without.terms.erase(without.terms.begin() + std::ptrdiff_t(t));
@@ -241,6 +242,7 @@ class SiteSearch {
   }
 
   void add_unknown(SiteHypothesis& at) {
+    if (is_spent(criteria::work_with_rivals)) return;
     std::vector<SiteCandidate> ranked = rank_terms(fitter_, at, {&unknown_function(), 1});
     ranked.resize(std::min<size_t>(2, ranked.size()));
     std::vector<SiteHypothesis> tried = fits(at, ranked);
@@ -286,7 +288,7 @@ class SiteSearch {
 
   /// A single term with the diagram's own parameters against moved parameters without a term.
   void compare_with_single_terms(SiteHypothesis& at) {
-    if (!at.terms.empty() || at.free_parameters() == 0) return;
+    if (!at.terms.empty() || at.free_parameters() == 0 || is_spent(criteria::work_with_rivals)) return;
     std::vector<SiteCandidate> ranked = rank_terms(fitter_, result_.nominal, fitter_.shapes());
     std::erase_if(ranked,
                   [](const SiteCandidate& c) { return c.term.shape->name == "linear"; });  // a parameter

@@ -19,6 +19,13 @@ std::optional<RecordFinding> too_few_rows(const Trials& trials) {
       true};
 }
 
+RecordFinding ended_at_limit(double most_work) {
+  return {
+      fmt::format("the search ended at its limit of {:.3g}e9 operations", most_work / 1e9),
+      "effects that had not been tried are not named, and alternatives may be missing: hold out more, record "
+      "less, or state in the diagram what is known"};
+}
+
 namespace {
 
 /// A short time is enough for a fast motion.

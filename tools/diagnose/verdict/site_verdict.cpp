@@ -22,7 +22,6 @@ Eigen::MatrixXd covariance_of(SiteFitter& fitter, SiteHypothesis h) {
       Eigen::VectorXd::Constant(count, std::numeric_limits<double>::infinity()).asDiagonal();
   if (count == 0 || !fitter.pass(h, false, pass)) return untold;
   const Eigen::MatrixXd J = fitter.jacobian(h, pass);
-  if (J.size() == 0) return untold;
   Eigen::VectorXd norm = J.colwise().norm().transpose();
   for (double& size : norm)
     if (!(size > 0)) size = 1;

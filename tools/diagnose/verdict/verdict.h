@@ -12,6 +12,9 @@ std::vector<RecordFinding> look_at_records(const Trials& trials, const std::vect
 /// Fatal: fewer fitted rows than a verdict needs.
 std::optional<RecordFinding> too_few_rows(const Trials& trials);
 
+/// The search used up its operations.
+RecordFinding ended_at_limit(double most_work);
+
 /// Verdict, remainder and its variables, the latter along `motion`. `tight` is the noise of the search: with
 /// the final noise, the slow force has absorbed the remainder. Nothing is explained as long as the residual
 /// force of `inverse` dynamics exceeds the noise that repeats of the motion show, or as the diagram with the
