@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include "engine/diagram/in_memory.h"
 #include "engine/json/json.h"
+#include "tools/diagnose/criteria.h"
 #include "tools/diagnose/improvement.h"
 #include "tools/diagnose/search/own_shapes.h"
 #include "tools/diagnose/search/site_opinion.h"
@@ -43,7 +44,8 @@ Diagnosis diagnose_any_diagram(const std::string& diagram, const std::vector<std
   const auto is_interrupted = [&] { return options.interrupt && *options.interrupt; };
   progress("reading the record", 0);
   SiteModel model(diagram, experiments, options.load);
-  model.work() = Work(options.most_work);
+  const double most_work = options.most_work.value_or(criteria::most_work_at_sites);
+  model.work() = Work(most_work);
   SiteFilter filter(model);
   SiteFitter fitter(filter, model.record().held_out_from, is_interrupted);
   fitter.offer(catalogue.shapes());
@@ -66,7 +68,7 @@ Diagnosis diagnose_any_diagram(const std::string& diagram, const std::vector<std
   }
   result.trail = found->trail;
   result.trail.push_back(fmt::format("work: {:.3g}e9 operations", model.work().done() / 1e9));
-  if (model.work().was_short()) result.findings.push_back(ended_at_limit(options.most_work));
+  if (model.work().was_short()) result.findings.push_back(ended_at_limit(most_work));
   progress("prediction, simulation and verdict", 0.95);
   tell_sites(filter, *found, result);
   if (!options.improved_diagram.empty()) write_improved(options, result);

@@ -245,7 +245,8 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   Motion motion;
   Trials trials = prepare(diagram, experiments, options.load, motion);
   trials.interrupt = options.interrupt;
-  *trials.work = Work(options.most_work);
+  const double most_work = options.most_work.value_or(criteria::most_work);
+  *trials.work = Work(most_work);
   std::vector<const AxisModel*> models;
   for (const Trial& trial : trials.list) models.push_back(trial.model.get());
   const MachineUnits units = units_of(*models.front());
@@ -279,7 +280,7 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
       accept(conclusion_from(inquiry, result.findings), trials, inverse, improver, options.load,
              catalogue.candidates.size(),
              [&](const Conclusion& c, size_t member) { return inquiry.without(c, member); });
-  if (trials.work->was_short()) result.findings.push_back(ended_at_limit(options.most_work));
+  if (trials.work->was_short()) result.findings.push_back(ended_at_limit(most_work));
   const Conclusion& conclusion = accepted.conclusion;
   const Staircase& staircase = accepted.staircase;
   result.refused = std::move(accepted.refused);

@@ -2,10 +2,10 @@
 #pragma once
 #include <atomic>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 #include "engine/diagram/diagram.h"
-#include "tools/diagnose/criteria.h"
 #include "tools/diagnose/diagnosis.h"
 
 namespace loopwright {
@@ -20,7 +20,7 @@ struct DiagnoseOptions {
   std::function<void(const char* stage, double done)> progress;
   /// Told of every set of effects that the search accepts, with the force that it leaves in the fitted rows.
   std::function<void(const std::vector<std::string>& effects, double force)> found;
-  double most_work = diagnosis::criteria::most_work;  ///< [operations] where the search ends
+  std::optional<double> most_work;  ///< [operations] where the search ends, if not as in criteria.h
   const std::atomic<bool>* interrupt = nullptr;  ///< once true, the diagnosis ends soon, without a verdict
 };
 

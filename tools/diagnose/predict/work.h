@@ -10,7 +10,7 @@ class Work {
  public:
   /// [operations] For a row: a sample of a diagram or of an effect, of a column through the error filter, a
   /// product of two numbers, and a block evaluated once. An operation takes about a nanosecond.
-  static constexpr double of_a_sample = 250, of_a_response = 4, of_a_product = 0.25, of_a_block = 8;
+  static constexpr double of_a_sample = 250, of_a_response = 4, of_a_product = 0.25, of_a_block = 4;
 
   Work() = default;
   explicit Work(double most) : most_(most) {}

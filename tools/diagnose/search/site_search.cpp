@@ -37,7 +37,7 @@ class SiteSearch {
     result_.parameters = with_free_parameters(nominal);
     tell("parameters free", result_.parameters);
     SiteSearchResult first = searched_from(result_.parameters, 0.2);
-    if (!is_doubtful(first.found) || is_spent(criteria::work_of_search / 2)) return first;
+    if (!is_doubtful(first.found) || is_spent(criteria::work_of_first_search)) return first;
     result_.trail = std::move(first.trail);
     result_.trail.push_back("again, from the parameters as they are stated");
     SiteSearchResult second = searched_from(nominal, 0.6);
