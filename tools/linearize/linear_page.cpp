@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 #include "tools/linearize/analysis.h"
+#include "tools/linearize/nyquist.h"
 
 namespace loopwright {
 namespace {
@@ -128,15 +129,10 @@ report::Section loop_section(const LoopAnalysis& loop) {
     nyquist.equal_axes = true;
     nyquist.title = "Nyquist";
     nyquist.x = {"Re L", "", false}, nyquist.y = {"Im L", "", false};
-    Series curve{"L", {}, {}, Series::Shape::line}, point{"-1", {-1}, {0}, Series::Shape::points},
-        circle{"Ms", {}, {}, Series::Shape::line};
-    for (const Complex& value : loop.response) {
-      const bool is_near = std::abs(value) < 5;  // far away the curve contains nothing about margins
-      curve.x.push_back(is_near ? value.real() : std::nan("")),
-          curve.y.push_back(is_near ? value.imag() : std::nan(""));
-    }
-    for (int i = 0; i <= 90; ++i)
-      circle.x.push_back(-1 + std::cos(i * pi / 45) / m.Ms), circle.y.push_back(std::sin(i * pi / 45) / m.Ms);
+    NyquistCurves curves = nyquist_curves(loop);
+    Series curve{"L", std::move(curves.real), std::move(curves.imaginary), Series::Shape::line},
+        circle{"Ms", std::move(curves.circle_real), std::move(curves.circle_imaginary), Series::Shape::line},
+        point{"-1", {-1}, {0}, Series::Shape::points};
     nyquist.series = {std::move(curve), std::move(circle), std::move(point)};
     nyquist.caption = "Where |L| < 5. The circle around -1 that the curve touches has the radius 1/Ms.";
     return nyquist;
@@ -179,6 +175,7 @@ report::Plot pole_plot(const LinearAnalysis& analysis) {
     plot.series.push_back(std::move(zeros));
   }
   if (analysis.is_sampled()) {
+    plot.equal_axes = true;
     Series circle{"unit circle", {}, {}, Series::Shape::line};
     for (int i = 0; i <= 180; ++i)
       circle.x.push_back(std::cos(i * pi / 90)), circle.y.push_back(std::sin(i * pi / 90));

@@ -5,6 +5,7 @@
 #include <numbers>
 #include "models/linear/frequency_response.h"
 #include "tests/engine/written_diagram.h"
+#include "tools/linearize/nyquist.h"
 
 namespace loopwright::analysis_test {
 namespace {
@@ -135,6 +136,27 @@ TEST(Analysis, JsonHoldsWhatWasFound) {
   EXPECT_NEAR(json["loop"]["Ms"].get<double>(), analysis.loop->margins.Ms, 1e-12);
   EXPECT_EQ(to_recording(analysis).columns.size(), 5u);
   EXPECT_NO_THROW(report::to_html(linear_page(analysis)));
+}
+
+/// The distance of the curve from -1 is at least 1/Ms, and reaches it; far away there is a gap.
+TEST(Analysis, TheNyquistCurveTouchesTheCircleOfMs) {
+  LinearizeRequest request;
+  request.access = {{"mass.force"}, {"mass.position"}, {}};
+  request.break_point = "mass.force";
+  const LinearAnalysis analysis = analyse_servo(request);
+  const NyquistCurves curves = nyquist_curves(*analysis.loop);
+  ASSERT_EQ(curves.real.size(), analysis.loop->response.size());
+  double nearest = 1e300;
+  size_t gaps = 0;
+  for (size_t i = 0; i < curves.real.size(); ++i) {
+    gaps += std::isnan(curves.real[i]);
+    EXPECT_EQ(std::isnan(curves.real[i]), !(std::abs(analysis.loop->response[i]) < 5));
+    if (!std::isnan(curves.real[i]))
+      nearest = std::min(nearest, std::hypot(curves.real[i] + 1, curves.imaginary[i]));
+  }
+  EXPECT_GT(gaps, 0u) << "two integrators";
+  for (size_t i = 0; i < curves.circle_real.size(); ++i)
+    EXPECT_NEAR(std::hypot(curves.circle_real[i] + 1, curves.circle_imaginary[i]), nearest, 0.02 * nearest);
 }
 
 TEST(Analysis, ABreakPointOfSeveralNumbersIsRefused) {

@@ -4,6 +4,7 @@
 #include <numbers>
 #include "engine/diagram/in_memory.h"
 #include "tools/linearize/analysis.h"
+#include "tools/linearize/nyquist.h"
 #include "tools/studio/session/session.h"
 
 namespace loopwright::studio {
@@ -48,6 +49,20 @@ Json margins_json(const LoopAnalysis& loop) {
           {"Ms", m.Ms}};
 }
 
+/// Of a loop gain near -1, with the circle that it touches; of another response all of it.
+Json nyquist_json(const LoopAnalysis* loop, const std::vector<std::complex<double>>& response) {
+  if (loop) {
+    const NyquistCurves curves = nyquist_curves(*loop);
+    return {{"re", curves.real},
+            {"im", curves.imaginary},
+            {"circle", {{"re", curves.circle_real}, {"im", curves.circle_imaginary}}}};
+  }
+  Json json{{"re", Json::array()}, {"im", Json::array()}, {"circle", nullptr}};
+  for (const std::complex<double>& value : response)
+    json["re"].push_back(value.real()), json["im"].push_back(value.imag());
+  return json;
+}
+
 }  // namespace
 
 Json Session::linearize(const Request& request) {
@@ -76,15 +91,13 @@ Json Session::linearize(const Request& request) {
               {"frequency", is_loop_gain ? analysis.loop->frequency : analysis.frequency},
               {"magnitude_db", Json::array()},
               {"phase_deg", unwrapped_degrees(response)},
-              {"nyquist", {{"re", Json::array()}, {"im", Json::array()}}},
+              {"nyquist", nyquist_json(is_loop_gain ? &*analysis.loop : nullptr, response)},
               {"poles", poles_json(analysis)},
               {"zeros", Json::array()},
               {"margins", analysis.loop ? margins_json(*analysis.loop) : Json(nullptr)},
               {"text", to_text(analysis)}};
-    for (const std::complex<double>& value : response) {
+    for (const std::complex<double>& value : response)
       json["magnitude_db"].push_back(20 * std::log10(std::abs(value)));
-      json["nyquist"]["re"].push_back(value.real()), json["nyquist"]["im"].push_back(value.imag());
-    }
     if (analysis.zeros)
       for (const std::complex<double>& zero : *analysis.zeros)
         json["zeros"].push_back({zero.real(), zero.imag()});

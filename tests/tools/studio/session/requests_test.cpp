@@ -58,6 +58,9 @@ TEST_F(Requests, ALoopIsAnalysedCutWithMarginsAndClosedWithoutThem) {
   ASSERT_TRUE(open["margins"].is_object());
   EXPECT_TRUE(open["margins"]["stable"]);
   EXPECT_GT(open["margins"]["phase_deg"], 10);
+  EXPECT_GT(open["nyquist"]["circle"]["re"].size(), 10u);
+  EXPECT_TRUE(open["nyquist"]["re"][0].is_null()) << "far from -1, where the mass is an integrator";
+  EXPECT_TRUE(closed["nyquist"]["circle"].is_null());
   // Both poles of the cut mass are integrators.
   int at_boundary = 0;
   for (const Json& pole : open["poles"]) at_boundary += pole["stability"] == "boundary";

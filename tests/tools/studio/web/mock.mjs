@@ -159,7 +159,7 @@ const answers = {
   add_effects: ({ effects, inside }) => { const names = effects.length ? effects : ["cogging", "coulomb_friction"]; const made = change(`add ${names.join(" and ")}`, () => { state.added = [...new Set([...state.added, ...names])]; }); return { edits: made, document: document(inside, false), blocks: inside ? names : ["axis"], others: [] }; },
   linearize: ({ from, to, break: cut }) => {
     const frequency = Array.from({ length: 200 }, (_, i) => 10 ** (i / 50));
-    return { is_loop_gain: Boolean(cut) && to === from, sampled: true, sample_time: 0.001, frequency, magnitude_db: frequency.map((w) => -20 * Math.log10(w)), phase_deg: frequency.map((w) => -90 - Math.atan(w / 100) * 57.3), nyquist: { re: [0], im: [0] },
+    return { is_loop_gain: Boolean(cut) && to === from, sampled: true, sample_time: 0.001, frequency, magnitude_db: frequency.map((w) => -20 * Math.log10(w)), phase_deg: frequency.map((w) => -90 - Math.atan(w / 100) * 57.3), nyquist: { re: [0], im: [0], circle: null },
       poles: [{ re: 0.9, im: 0.1, frequency: 23, damping: 0.7, stability: "stable" }, { re: 1.2, im: 0, frequency: 29, damping: -1, stability: "unstable" }], zeros: [],
       margins: cut ? { port: cut, stable: true, gain_db: 12, lower_gain_db: null, phase_deg: 60, crossover: 10, delay: null, Ms: 1.4 } : null, text: "" };
   },

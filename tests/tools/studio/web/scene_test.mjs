@@ -117,6 +117,7 @@ test("every analysis is with the numbers of the sliders; a loop is cut or closed
     await page.waitForSelector(".margins:has-text('Phase margin')");
     assert.match(await page.locator(".outcome").textContent(), /Open loop, cut at axis\.force/);
     assert.match(await page.locator(".lists h3").first().textContent(), /in z, sampled every/);
+    assert.equal(await page.locator(".legend li:has-text('circle of radius 1/Ms')").count(), 1);
     await take(page, "11_open_loop");
     const open_loop = sent.filter((message) => message.do === "linearize").at(-1);
     assert.equal(open_loop.break, "axis.force");

@@ -81,7 +81,7 @@ export interface Margins {
 export interface Linear {
   is_loop_gain: boolean; sampled: boolean; sample_time: number;
   frequency: number[]; magnitude_db: (number | null)[]; phase_deg: (number | null)[];
-  nyquist: { re: (number | null)[]; im: (number | null)[] };
+  nyquist: { re: (number | null)[]; im: (number | null)[]; circle: { re: number[]; im: number[] } | null };  // of a loop gain near −1; around −1, of radius 1/Ms
   poles: PoleEntry[]; zeros: [number, number][];
   margins: Margins | null; text: string;                 // margins: of the loop that was cut; null: none was
 }

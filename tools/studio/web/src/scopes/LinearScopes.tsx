@@ -52,7 +52,12 @@ export function LinearScopes() {
   const curves = useMemo((): Record<"magnitude" | "phase" | "nyquist", Curve[]> | null => linear && {
     magnitude: [{ name: "magnitude", label: linear.is_loop_gain ? "L" : `${linear.to_name} per ${linear.from}`, unit: "dB", x: linear.frequency, y: linear.magnitude_db, colour: 0, style: "line" }],
     phase: [{ name: "phase", label: "phase", unit: "deg", x: linear.frequency, y: linear.phase_deg, colour: 1, style: "line" }],
-    nyquist: [{ name: "nyquist", label: "Nyquist", unit: "", x: linear.nyquist.re, y: linear.nyquist.im, colour: 2, style: "points" }],
+    nyquist: [
+      { name: "nyquist", label: linear.is_loop_gain ? "L, where |L| < 5" : "Nyquist", unit: "", x: linear.nyquist.re, y: linear.nyquist.im, colour: 2, style: "points" },
+      ...(linear.nyquist.circle ? [
+        { name: "circle", label: "circle of radius 1/Ms", unit: "", x: linear.nyquist.circle.re, y: linear.nyquist.circle.im, colour: 0, style: "points" as const },
+        { name: "critical", label: "−1", unit: "", x: [-1], y: [0], colour: 1, style: "points" as const }] : []),
+    ],
   }, [linear]);
   if (!linear || !curves) return <p className="empty">Select a wire of the diagram: the panel on the right offers its linear analysis.</p>;
   const plane = linear.sampled ? `in z, sampled every ${quantity(linear.sample_time, "s", 3)}` : "in s (rad/s)";
@@ -64,7 +69,7 @@ export function LinearScopes() {
       <Plot title="Magnitude" curves={curves.magnitude} group="bode" logarithmic x_label="" x_unit="rad/s" y_label="magnitude" y_unit="dB" height={HEIGHT} show_x={false} />
       <Plot title="Phase" curves={curves.phase} group="bode" logarithmic x_label="frequency" x_unit="rad/s" y_label="phase" y_unit="°" height={HEIGHT} show_x />
       <div className="residuals">
-        <Plot title="Nyquist" curves={curves.nyquist} group="" x_label="real" x_unit="" y_label="imaginary" y_unit="" height={HEIGHT + 40} show_x />
+        <Plot title="Nyquist" curves={curves.nyquist} group="" x_label="real" x_unit="" y_label="imaginary" y_unit="" height={HEIGHT + 110} show_x equal />
         <div className="lists">
           <h3>Poles {plane}{linear.cut && ", with the loop cut"}</h3><Poles poles={linear.poles} sampled={linear.sampled} />
           <h3>Zeros {plane}</h3><ul>{linear.zeros.length ? linear.zeros.map(([re, im], i) => <li key={i}>{complex(re, im)}</li>) : <li>none</li>}</ul>

@@ -115,8 +115,8 @@ export class ScopePlot {
       width: Math.max(120, target.clientWidth), height: options.height,
       padding: [6, 10, 0, 0],
       scales: {
-        x: { time: false, distr: options.logarithmic ? 3 : 1, range: (u, min, max) => this.x_range(u, min, max) },
-        y: { range: (_u, min, max) => this.y_range(min, max) },
+        x: { time: false, distr: options.logarithmic ? 3 : 1, range: (u, min, max) => (options.equal ? this.equal_ranges(u).x : this.x_range(u, min, max)) },
+        y: { range: (u, min, max) => (options.equal ? this.equal_ranges(u).y : this.y_range(min, max)) },
       },
       legend: { show: false },
       cursor: {
@@ -132,6 +132,7 @@ export class ScopePlot {
     }, table(curves), target);
     this.flags = { a: this.flag("a"), b: this.flag("b") };
     this.listen();
+    if (options.equal) queueMicrotask(() => this.update(this.curves));  // the size of the axes is known only after the first drawing
   }
 
   /** New numbers of the same curves. */
@@ -147,7 +148,9 @@ export class ScopePlot {
     if (changed) this.plot.setData(this.plot.data, true); else this.place_flags();
   }
   resize(width: number, height: number) {
-    if (width > 100 && (width !== this.plot.width || height !== this.plot.height)) this.plot.setSize({ width, height });
+    if (width <= 100 || (width === this.plot.width && height === this.plot.height)) return;
+    this.plot.setSize({ width, height });
+    if (this.options.equal) this.update(this.curves);
   }
   /** Colours and fonts follow the theme. */
   repaint() { this.plot.redraw(false, true); }
@@ -166,6 +169,19 @@ export class ScopePlot {
     const least = Math.max(Math.abs(min), Math.abs(max)) * 1e-6 || 1;
     const margin = max - min < least ? least : 0.07 * (max - min);
     return [min - margin, max + margin];
+  }
+
+  /** Everything that is drawn, with a unit as long on the one axis as on the other. */
+  private equal_ranges(u: uPlot): { x: uPlot.Range.MinMax; y: uPlot.Range.MinMax } {
+    const middle_and_size = (values: (number | null)[]) => {
+      let low = Infinity, high = -Infinity;
+      for (const value of values) if (value !== null) { low = Math.min(low, value); high = Math.max(high, value); }
+      return low <= high ? { middle: (low + high) / 2, size: high - low } : { middle: 0, size: 0 };
+    };
+    const x = middle_and_size(this.curves.flatMap((curve) => [...curve.x])), y = middle_and_size(this.curves.flatMap((curve) => [...curve.y]));
+    const { width, height } = u.bbox;
+    const half = 0.54 * Math.max(x.size / (width || 1), y.size / (height || 1)) || 1 / (width || 1);  // of a pixel, with a margin
+    return { x: [x.middle - half * (width || 1), x.middle + half * (width || 1)], y: [y.middle - half * (height || 1), y.middle + half * (height || 1)] };
   }
 
   private selected(u: uPlot) {
