@@ -19,7 +19,7 @@ namespace loopwright {
 namespace {
 
 /// The summary of a file without errors; empty after an error.
-using WhatItIs = std::optional<std::string>;
+using FileSummary = std::optional<std::string>;
 
 /// A line about code that deploy and probe would load and run; here nothing is loaded.
 std::string foreign_code(const hw::DeviceDescription* device) {
@@ -38,7 +38,7 @@ std::string look_at_units(const WiresWithoutUnit& wires, const CheckOptions& opt
   return wires.count ? "; " + to_string(wires) : "";
 }
 
-WhatItIs check_diagram(const std::string& path, const CheckOptions& options, Problems& problems) {
+FileSummary check_diagram(const std::string& path, const CheckOptions& options, Problems& problems) {
   const CheckedDiagram checked = check_diagram(load_diagram(path, options.load, problems), problems);
   if (checked.summary().empty()) return {};
   std::string verdict = checked.summary() + look_at_units(checked.without_unit, options, problems);
@@ -47,14 +47,14 @@ WhatItIs check_diagram(const std::string& path, const CheckOptions& options, Pro
   return verdict + foreign_code(hw::find_hardware(*checked.plan, of_deploy).device.get());
 }
 
-WhatItIs check_experiment(const std::string& path, Problems& problems) {
+FileSummary check_experiment(const std::string& path, Problems& problems) {
   const auto experiment = load_experiment(path, problems);
   if (!experiment) return {};
   return fmt::format("an experiment of {} rows, {} driven and {} compared", experiment->data.rows(),
                      experiment->drives.size(), experiment->compared.size());
 }
 
-WhatItIs check_sweep(const std::string& path, Problems& problems) {
+FileSummary check_sweep(const std::string& path, Problems& problems) {
   const auto sweep = load_sweep(path, problems);
   if (!sweep) return {};
   const SweepPlan plan(sweep);
@@ -62,31 +62,31 @@ WhatItIs check_sweep(const std::string& path, Problems& problems) {
   return fmt::format("a sweep of {} runs over {} axes", plan.runs(), sweep->axes.size());
 }
 
-WhatItIs check_training(const std::string& path, const LoadOptions& options, Problems& problems) {
+FileSummary check_training(const std::string& path, const LoadOptions& options, Problems& problems) {
   const auto training = load_training(path, options.set, problems);
   const auto samples = training ? collect_samples(*training, problems) : nullptr;
   if (!samples) return {};
   return fmt::format("a training file of {} samples", samples->samples.labels.size());
 }
 
-WhatItIs check_effect(const std::string& path, Problems& problems) {
+FileSummary check_effect(const std::string& path, Problems& problems) {
   const std::vector<Effect> forms = load_effect(path, problems);
   if (forms.empty()) {
     const auto at_site = problems.has_errors() ? std::nullopt : load_site_effect(path, problems);
-    return at_site ? "an effect at a site of any diagram" : WhatItIs{};
+    return at_site ? "an effect at a site of any diagram" : FileSummary{};
   }
   for (const Effect& form : forms) check_blocks(form, problems);
   return fmt::format("an effect in {} form{}", forms.size(), forms.size() == 1 ? "" : "s");
 }
 
-WhatItIs check_device(const std::string& path, Problems& problems) {
+FileSummary check_device(const std::string& path, Problems& problems) {
   const auto device = hw::load_device(path, {}, problems);
   if (!device) return {};
   return fmt::format("a device of the driver {}, {} inputs and {} outputs{}", device->driver,
                      device->inputs.size(), device->outputs.size(), foreign_code(device.get()));
 }
 
-WhatItIs check_model(const std::string& path, Problems& problems) {
+FileSummary check_model(const std::string& path, Problems& problems) {
   const LearnedModel learned = read_model(path, {}, problems);
   return fmt::format("a learned model of {} samples", learned.sample_count);
 }
@@ -103,7 +103,7 @@ void reject_options(FileKind kind, const std::string& path, const CheckOptions& 
   if (kind != FileKind::diagram && options.strict_units) reject("--strict-units");
 }
 
-WhatItIs check_file(const std::string& path, const CheckOptions& options, Problems& problems) {
+FileSummary check_file(const std::string& path, const CheckOptions& options, Problems& problems) {
   const FileKind kind = kind_of_file(path, problems);
   if (problems.has_errors()) return {};
   if (kind != FileKind::unknown) reject_options(kind, path, options, problems);
@@ -133,17 +133,17 @@ int check(const std::vector<std::string>& paths, const CheckOptions& options) {
   name_changed_readings(true);
   for (const std::string& path : paths) {
     Problems problems;
-    WhatItIs verdict;
+    FileSummary summary;
     try {
-      verdict = check_file(path, options, problems);
+      summary = check_file(path, options, problems);
     } catch (const InputError& error) {
       problems.add(error.problems);
     }
     if (!problems.list().empty()) tell("{}\n", problems.text());
-    if (problems.has_errors() || !verdict)
+    if (problems.has_errors() || !summary)
       ++wrong;
     else
-      answer("{}: fine, {}\n", path, *verdict);
+      answer("{}: fine, {}\n", path, *summary);
   }
   return wrong ? input_wrong : done;
 }

@@ -1,5 +1,4 @@
 #include "tools/diagnose/any_diagram.h"
-#include <fmt/format.h>
 #include "engine/diagram/in_memory.h"
 #include "engine/json/json.h"
 #include "tools/diagnose/criteria.h"
@@ -67,7 +66,7 @@ Diagnosis diagnose_any_diagram(const std::string& diagram, const std::vector<std
     return result;
   }
   result.trail = found->trail;
-  result.trail.push_back(fmt::format("work: {:.3g}e9 operations", model.work().done() / 1e9));
+  result.trail.push_back("work: " + told_operations(model.work().done()));
   if (model.work().was_short()) result.findings.push_back(ended_at_limit(most_work));
   progress("prediction, simulation and verdict", 0.95);
   tell_sites(filter, *found, result);

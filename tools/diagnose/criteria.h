@@ -134,7 +134,8 @@ constexpr double sure = 0.9;
 /// [operations] A record of 56 s with one or two effects needs a twentieth of it, one with a load that flies
 /// half. Half a minute to a minute of processor time.
 constexpr double most_work = 50e9;
-/// [operations] The same without roles: some two minutes. Three records of a stiff machine need half of it.
+/// [operations] The same without roles: some two minutes. Two records of a motor, 3000 rows together,
+/// need half of it.
 constexpr double most_work_at_sites = 120e9;
 /// [most_work] Used up, the search accepts no further effect; and no further rival is compared. What was
 /// found is fitted, weighed and simulated in any case.

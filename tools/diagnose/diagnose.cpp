@@ -312,7 +312,7 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
                                      result.all_additions);
   }
   add_plots(trials, inverse.front(), accepted, improver, units, options.load, result);
-  result.trail.push_back(fmt::format("work: {:.3g}e9 operations", trials.work->done() / 1e9));
+  result.trail.push_back("work: " + told_operations(trials.work->done()));
   return result;
 }
 

@@ -1,10 +1,14 @@
 /// The work of a search, counted and not timed: where it ends at its limit, it ends there on every machine,
 /// and the answer is the same.
 #pragma once
+#include <fmt/format.h>
 #include <cstddef>
 #include <limits>
+#include <string>
 
 namespace loopwright::diagnosis {
+
+inline std::string told_operations(double count) { return fmt::format("{:.3g}e9 operations", count / 1e9); }
 
 class Work {
  public:

@@ -21,7 +21,7 @@ std::optional<RecordFinding> too_few_rows(const Trials& trials) {
 
 RecordFinding ended_at_limit(double most_work) {
   return {
-      fmt::format("the search ended at its limit of {:.3g}e9 operations", most_work / 1e9),
+      "the search ended at its limit of " + told_operations(most_work),
       "effects that had not been tried are not named, and alternatives may be missing: hold out more, record "
       "less, or state in the diagram what is known"};
 }

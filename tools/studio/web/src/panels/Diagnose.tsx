@@ -62,11 +62,11 @@ function OtherRecords() {
 const NUMBERS: Record<number, string> = { 2: "Two", 3: "Three", 4: "Four", 5: "Five", 6: "Six" };
 function headline(diagnosis: Diagnosis): string {
   const count = diagnosis.cards.filter((card) => !card.optional).length;
-  const effects = count === 1 ? "One effect is missing" : `${NUMBERS[count] ?? count} effects are missing`, them = count === 1 ? "it" : "them";
+  const one = count === 1, effects = one ? "One effect is missing" : `${NUMBERS[count] ?? count} effects are missing`;
   switch (diagnosis.verdict) {
     case "nothing_missing": return "Nothing is missing: the diagram explains the record down to its noise";
-    case "explained": return count ? `${effects}; with ${them} the record is explained down to its noise` : "Only effects that are not necessary were found";
-    case "partly_explained": return count ? `${effects}, but something is left that ${them === "it" ? "it does" : "they do"} not explain` : "Something is missing that is only partly explained";
+    case "explained": return count ? `${effects}; with ${one ? "it" : "them"} the record is explained down to its noise` : "Only effects that are not necessary were found";
+    case "partly_explained": return count ? `${effects}, but something is left that ${one ? "it does" : "they do"} not explain` : "Something is missing that is only partly explained";
     default: return "Something is missing that no effect of the catalogue explains";
   }
 }

@@ -179,9 +179,9 @@ export class ScopePlot {
       return low <= high ? { middle: (low + high) / 2, size: high - low } : { middle: 0, size: 0 };
     };
     const x = middle_and_size(this.curves.flatMap((curve) => [...curve.x])), y = middle_and_size(this.curves.flatMap((curve) => [...curve.y]));
-    const { width, height } = u.bbox;
-    const half = 0.54 * Math.max(x.size / (width || 1), y.size / (height || 1)) || 1 / (width || 1);  // of a pixel, with a margin
-    return { x: [x.middle - half * (width || 1), x.middle + half * (width || 1)], y: [y.middle - half * (height || 1), y.middle + half * (height || 1)] };
+    const width = u.bbox.width || 1, height = u.bbox.height || 1;
+    const half = 0.54 * Math.max(x.size / width, y.size / height) || 1 / width;  // of a pixel, with a margin
+    return { x: [x.middle - half * width, x.middle + half * width], y: [y.middle - half * height, y.middle + half * height] };
   }
 
   private selected(u: uPlot) {
