@@ -9,6 +9,7 @@
 
 #include "engine/record/csv.h"
 #include "engine/record/csv_syntax.h"
+#include "engine/record/decimal_commas.h"
 #include "engine/record/recorded_bytes.h"
 #include "engine/json/problem_limit.h"
 #include "engine/record/text.h"
@@ -55,6 +56,7 @@ class CsvReader {
   void explain_length(std::string_view line, const std::vector<csv::Field>& fields);
   bool read_cell(const csv::Field& field, size_t column);
   void explain_text(const csv::Field& field, const std::string& where);
+  void check_decimal_commas();
 
   Place at(std::string_view part) const {
     return {source_, static_cast<uint32_t>(part.data() - text_.data())};
@@ -73,7 +75,8 @@ class CsvReader {
   std::string_view comment_above_;
   std::string_view empty_line_;  ///< the last one within the table; an error if rows follow
   bool header_was_last_ = false;
-  bool told_decimal_comma_ = false;
+  csv::DecimalCommas decimal_commas_;
+  std::string_view decimal_point_;  ///< the first one in a row
   std::vector<double> row_;
   Recording recording_;
 };
@@ -100,6 +103,7 @@ Recording CsvReader::read() {
   } else if (recording_.rows() == 0 && !problems_.has_errors()) {
     problems_.error(start(), "the table has no rows", "rows of numbers below the header");
   }
+  check_decimal_commas();
   return problems_.has_errors() ? Recording{} : std::move(recording_);
 }
 
@@ -265,6 +269,7 @@ void CsvReader::read_row(std::string_view line) {
                     "a lost row, or a second table in the same file?");
     empty_line_ = {};
   }
+  if (decimal_point_.empty() && line.find('.') != line.npos) decimal_point_ = line.substr(line.find('.'));
   if (read_numbers(line) || read_fields(line))
     for (size_t i = 0; i < row_.size(); ++i) recording_.columns[i].values.push_back(row_[i]);
   header_was_last_ = false;
@@ -336,7 +341,8 @@ bool CsvReader::read_cell(const csv::Field& field, size_t column) {
                     "leave out rows with holes, or fill them before");
     return false;
   }
-  const std::optional<double> number = csv::parse_number(field.text);
+  std::optional<double> number = csv::parse_number(field.text);
+  if (!number) number = decimal_commas_.read(field.text);
   if (!number || field.open_quote) {
     explain_text(field, where);
     return false;
@@ -351,14 +357,6 @@ bool CsvReader::read_cell(const csv::Field& field, size_t column) {
 }
 
 void CsvReader::explain_text(const csv::Field& field, const std::string& where) {
-  if (csv::has_decimal_comma(field.text)) {
-    // Such a file has them everywhere: one report is enough.
-    if (told_decimal_comma_) return problems_.count(at(field.text));
-    told_decimal_comma_ = true;
-    problems_.error(at(field.text), where + "a decimal comma", "a decimal point, such as 1.5",
-                    excerpt(field.text), "export the file with English number format, or replace the commas");
-    return;
-  }
   double number = 0;
   const auto [next, error] =
       std::from_chars(field.text.data(), field.text.data() + field.text.size(), number);
@@ -368,6 +366,22 @@ void CsvReader::explain_text(const csv::Field& field, const std::string& where) 
       at(field.text),
       where + (out_of_range ? "a number beyond the range of a double" : "text where a number should be"),
       out_of_range ? "magnitudes from 4.9e-324 to 1.8e308" : "a number such as -1.5e-3", excerpt(field.text));
+}
+
+/// Refuses a table that leaves open whether its commas are decimal commas or separate thousands.
+void CsvReader::check_decimal_commas() {
+  const std::string_view comma = decimal_commas_.first();
+  if (comma.empty()) return;
+  if (!decimal_point_.empty())
+    problems_.error(
+        at(comma), "numbers with commas and with points in one table",
+        "only decimal commas, or only decimal points",
+        fmt::format("{}, and a point in line {}", excerpt(comma), line_column(at(decimal_point_)).line),
+        "do the commas separate thousands? export the file without them");
+  else if (!decimal_commas_.are_certain())
+    problems_.error(at(comma), "a comma that may be a decimal comma or separate thousands",
+                    "a decimal point, such as 1.5", excerpt(comma),
+                    "every comma of the file stands before three digits: write points instead, or nothing");
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <limits>
 
+#include "engine/record/csv_excel.h"
 #include "engine/record/text.h"
 #include "support.h"
 #include "where.h"
@@ -267,13 +268,38 @@ TEST(CsvProblems, AreCappedAndTheRestCounted) {
   EXPECT_EQ(few.list().size(), 4u);
 }
 
-TEST(CsvProblems, ExplainDecimalCommasOnce) {
-  const std::string semicolons = problems_of("t;x\n0,0;1,5\n0,1;2,5\n");
-  EXPECT_THAT(semicolons, HasSubstr("data.csv:2:1: error: column \"t\": a decimal comma"));
-  EXPECT_THAT(semicolons, HasSubstr("3 more problems"));
-  EXPECT_THAT(problems_of("t x\n0,0 1,5\n"), HasSubstr("a decimal comma"));
-  EXPECT_THAT(problems_of("t\tx\n0,0\t1,5\n"), HasSubstr("a decimal comma"));
-  EXPECT_THAT(problems_of("0,0;1,5\n0,1;2,5\n"), HasSubstr("a decimal comma"));
+TEST(CsvRead, ReadsDecimalCommasWhereAnotherCharacterSeparatesCells) {
+  const std::vector<double> expected{1.5, -2.5e-3};
+  for (const std::string text : {"t;x\n0,0;1,5\n1;-2,5e-3\n", "t x\n0,0 1,5\n1 -2,5e-3\n",
+                                 "t\tx\n0,0\t1,5\n1\t-2,5e-3\n", "t,x\n\"0,0\",\"1,5\"\n1,\"-2,5e-3\"\n"})
+    EXPECT_EQ(parse_right(text).columns[1].values, expected) << text;
+  // One number that does not begin with a group of thousands decides for the whole file.
+  EXPECT_EQ(parse_right("t;x\n0,000;1,234\n0,001;12,345\n").columns[1].values,
+            (std::vector<double>{1.234, 12.345}));
+}
+
+TEST(CsvRoundTrip, ReadsTablesForSpreadsheets) {
+  Recording recording;
+  recording.columns = {{"t", "s", {0, 0.5, 1}}, {"x", "mm", {1234.567, -1e-7, 3}}};
+  const std::string path = testing::TempDir() + "spreadsheet.csv";
+  write_excel_csv(path, recording);
+  Problems problems;
+  const Recording read = read_csv(path, problems);
+  ASSERT_FALSE(problems.has_errors());
+  for (size_t i = 0; i < recording.columns.size(); ++i) {
+    EXPECT_EQ(read.columns[i].name, recording.columns[i].name);
+    EXPECT_EQ(read.columns[i].unit, recording.columns[i].unit);
+    EXPECT_EQ(read.columns[i].values, recording.columns[i].values);
+  }
+}
+
+TEST(CsvProblems, CommasThatMaySeparateThousandsAreRefused) {
+  const std::string open = problems_of("t;x\n0;1,234\n1;12,345\n");
+  EXPECT_THAT(open,
+              HasSubstr("data.csv:2:3: error: a comma that may be a decimal comma or separate thousands"));
+  EXPECT_THAT(problems_of("t;x\n0.5;1,25\n"), HasSubstr("2:5: error: numbers with commas and with points"));
+  EXPECT_THAT(problems_of("t;x\n0,5;1,25\n1;2\n2;.5\n"), HasSubstr("0,5, and a point in line 4"));
+  EXPECT_THAT(problems_of("t;x\n0;1,234,567\n"), HasSubstr("text where a number should be"));
   EXPECT_THAT(problems_of("t,x\n0,001,1,5\n"), HasSubstr("decimal commas?"));
   EXPECT_THAT(problems_of("x\n1,5\n"), HasSubstr("decimal commas?"));
 }
