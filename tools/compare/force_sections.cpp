@@ -90,7 +90,9 @@ report::Section residual_section(const Comparison& c) {
 
 report::Section where_section(const ForceAnalysis& f) {
   report::Section section{"Where it lies, and on what it depends", {}};
-  report::Table parts{{"Part of the motion", "Share of the squared residual", "Share of the time"}, {}, ""};
+  report::Table parts{{"Part of the motion", "Share of the squared residual", "Share of the time"},
+                      {},
+                      "The residual in the parts of the motion."};
   for (const ResidualShare& s : f.where)
     if (!s.label.empty())
       parts.rows.push_back(
@@ -124,7 +126,9 @@ report::Section excitation_section(const ForceAnalysis& f) {
                   "of the same motion.",
                   c.sizes.duration, c.directions, c.directions == 1 ? "" : "s", c.speeds,
                   c.speeds == 1 ? "" : "s", c.reversals, c.passes, c.passes == 1 ? "" : "es")});
-  report::Table table{{"Effect", "Can be identified", "What is missing"}, {}, ""};
+  report::Table table{{"Effect", "Can be identified", "What is missing"},
+                      {},
+                      "Effects that the motion of this record would show."};
   for (const Identifiability& entry : f.identifiable) {
     std::string name = entry.effect;
     std::ranges::replace(name, '_', ' ');

@@ -171,14 +171,16 @@ report::Page deployment_page(const Plan& plan, const hw::DeployResult& result) {
   report::Section signals{"Signals", {}};
   for (report::Plot& plot : scopes(result.recording)) signals.items.push_back(std::move(plot));
   page.sections.push_back(std::move(signals));
-  report::Table accounts{{"Account", "Value"}, {}, ""};
+  report::Table accounts{{"Account", "Value"}, {}, "What was counted during the deployment."};
   for (const auto& [key, title, value] : counts(s)) accounts.rows.push_back({title, value.dump()});
-  report::Table blocks{{"Block", "mean (us)", "longest (us)"}, {}, "Slowest first."};
+  report::Table blocks{
+      {"Block", "mean (µs)", "longest (µs)"}, {}, "Time of each block in a sample, slowest first."};
   for (const hw::BlockTime& block : s.blocks)
     blocks.rows.push_back(
         {block.path, fmt::format("{:.3f}", block.mean_us), fmt::format("{:.2f}", block.longest_us)});
   page.sections.push_back({"Timing", {histogram_plot(s), table_of_times(s), accounts, blocks}});
-  report::Table system{{"Asked of the system", "Granted", "Answer"}, {}, ""};
+  report::Table system{
+      {"Asked of the system", "Granted", "Answer"}, {}, "What the operating system granted to the loop."};
   for (const hw::Granted& item : result.system.items)
     system.rows.push_back({item.what, item.is_granted ? "yes" : "no", item.answer});
   report::Paragraph device;

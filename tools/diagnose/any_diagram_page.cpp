@@ -36,14 +36,15 @@ report::Section what_was_found(const Diagnosis& d) {
     for (const std::string& other : effect.alternatives)
       text += fmt::format(" It might as well be {}: this record cannot tell.", other);
     section.items.push_back(report::Paragraph{std::move(text)});
-    report::Table table{{effect.name, "Value", "95 % interval"}, {}, ""};
+    report::Table table{{"Parameter", "Value", "95 % interval"}, {}, "Parameters of " + effect.name + "."};
     for (const DiagnosedParameter& p : effect.parameters)
       table.rows.push_back(
           {p.name, shown(p.value, p.unit), shown(p.low, p.unit) + " … " + shown(p.high, p.unit)});
     section.items.push_back(std::move(table));
   }
   if (!d.moved_parameters.empty()) {
-    report::Table table{{"Parameter", "Stated", "Found", "95 % interval"}, {}, ""};
+    report::Table table{
+        {"Parameter", "Stated", "Found", "95 % interval"}, {}, "Parameters of the diagram that moved."};
     for (const MovedParameter& p : d.moved_parameters)
       table.rows.push_back({p.name, shown(p.stated, p.unit), shown(p.value, p.unit),
                             shown(p.low, p.unit) + " … " + shown(p.high, p.unit)});

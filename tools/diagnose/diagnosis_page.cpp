@@ -114,7 +114,8 @@ report::Section what_is_missing(const Diagnosis& d) {
       text += fmt::format(" It might as well be {}: these two cannot be told apart by this record.",
                           words(other));
     section.items.push_back(report::Paragraph{std::move(text)});
-    report::Table table{{words(effect.name), "Value", "95 % interval", ""}, {}, ""};
+    report::Table table{
+        {"Parameter", "Value", "95 % interval", ""}, {}, "Parameters of " + words(effect.name) + "."};
     for (const DiagnosedParameter& p : told_parameters(effect))
       table.rows.push_back({words(p.name), shown(p.value, p.unit),
                             p.times_a_turn > 0 ? fmt::format("{:.0f} times a turn", p.times_a_turn)
@@ -244,8 +245,7 @@ report::Section what_remains(const Diagnosis& d) {
     report::Table table{
         {"Variable", "Share of the remainder that it explains"}, {}, "On rows left out of the fit."};
     for (const RemainderShare& dependence : d.dependence)
-      table.rows.push_back(
-          {words(dependence.variable), fmt::format("{:.0f} %", 100 * dependence.share)});
+      table.rows.push_back({words(dependence.variable), fmt::format("{:.0f} %", 100 * dependence.share)});
     section.items.push_back(std::move(table));
   }
   if (!d.remainder_variables.empty())

@@ -140,7 +140,8 @@ report::Table velocity_table(const LearnedModel& learned, const ShownSamples& sh
     Sums& s = by_velocity[shown.samples.inputs[i][1]];
     ++s.count, s.sum += shown.score.residuals[i], s.squares += std::pow(shown.score.residuals[i], 2);
   }
-  report::Table table{{"Velocity (m/s)", "Samples", "Residual, RMS", "Residual, mean"}, {}, ""};
+  report::Table table{
+      {"Velocity (m/s)", "Samples", "Residual, RMS", "Residual, mean"}, {}, "Residuals by velocity."};
   if (by_velocity.size() > gp::most_levels) return table;
   for (const auto& [v, s] : by_velocity)
     table.rows.push_back({fmt::format("{:.4g}", v), report::grouped(s.count),

@@ -73,9 +73,11 @@ std::string loop_text(const LoopAnalysis& loop) {
   const auto line = [&](const char* name, const std::string& value, double frequency) {
     text += fmt::format("  {:<18} {:>12}  at {}\n", name, value, hertz(frequency));
   };
-  if (std::isfinite(m.gain)) line("gain margin", fmt::format("{:.4g}", m.gain), m.gain_frequency);
+  if (std::isfinite(m.gain))
+    line("gain margin", fmt::format("{:.3g} dB", 20 * std::log10(m.gain)), m.gain_frequency);
   if (m.lower_gain > 0)
-    line("lower gain margin", fmt::format("{:.4g}", m.lower_gain), m.lower_gain_frequency);
+    line("lower gain margin", fmt::format("{:.3g} dB", 20 * std::log10(m.lower_gain)),
+         m.lower_gain_frequency);
   if (std::isfinite(m.phase))
     line("phase margin", fmt::format("{:.2f}°", m.phase * 180 / std::numbers::pi), m.phase_frequency);
   if (std::isfinite(m.delay))

@@ -68,6 +68,8 @@ report::Section responses(const LinearAnalysis& analysis) {
   return section;
 }
 
+std::string decibels(double gain) { return fmt::format("{:.3g}", 20 * std::log10(gain)); }
+
 /// Crossovers and margins as lines: where |L| is 0 dB the phase margin is read, where the phase is -180° the
 /// gain margin.
 void mark_margins(const Margins& m, Bode& bode) {
@@ -83,10 +85,10 @@ void mark_margins(const Margins& m, Bode& bode) {
     add(m.phase_frequency, fmt::format("crossover {:.4g} Hz", m.phase_frequency / (2 * pi)),
         fmt::format("phase margin {:.1f}°", m.phase * 180 / pi));
   if (std::isfinite(m.gain))
-    add(m.gain_frequency, fmt::format("gain margin {:.3g} dB", 20 * std::log10(m.gain)),
+    add(m.gain_frequency, "gain margin " + decibels(m.gain) + " dB",
         fmt::format("−180° at {:.4g} Hz", m.gain_frequency / (2 * pi)));
   if (m.lower_gain > 0)
-    add(m.lower_gain_frequency, fmt::format("lower gain margin {:.3g} dB", 20 * std::log10(m.lower_gain)),
+    add(m.lower_gain_frequency, "lower gain margin " + decibels(m.lower_gain) + " dB",
         fmt::format("−180° at {:.4g} Hz", m.lower_gain_frequency / (2 * pi)));
 }
 
@@ -100,10 +102,10 @@ report::Section loop_section(const LoopAnalysis& loop) {
   const auto at = [](double frequency) { return fmt::format("at {:.4g} Hz", frequency / (2 * pi)); };
   report::KeyNumbers numbers;
   if (std::isfinite(m.gain))
-    numbers.numbers.push_back({"Gain margin", fmt::format("{:.3g}", m.gain), "", at(m.gain_frequency)});
+    numbers.numbers.push_back({"Gain margin", decibels(m.gain), "dB", at(m.gain_frequency)});
   if (m.lower_gain > 0)
     numbers.numbers.push_back(
-        {"Lower gain margin", fmt::format("{:.3g}", m.lower_gain), "", at(m.lower_gain_frequency)});
+        {"Lower gain margin", decibels(m.lower_gain), "dB", at(m.lower_gain_frequency)});
   if (std::isfinite(m.phase))
     numbers.numbers.push_back(
         {"Phase margin", fmt::format("{:.1f}", m.phase * 180 / pi), "°", at(m.phase_frequency)});
