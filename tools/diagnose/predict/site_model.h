@@ -47,6 +47,7 @@ struct SiteTerm {
 
   void columns(double signal, double* to) const { shape->evaluate(signal, nonlinear.data(), to); }
   double value(double signal) const {
+    if (shape->value) return shape->value(signal, nonlinear.data(), coefficient.data());
     double column[most_columns], sum = 0;
     columns(signal, column);
     for (int i = 0; i < shape->columns; ++i) sum += coefficient[size_t(i)] * column[i];

@@ -285,26 +285,47 @@ const TermShape known_shapes[] = {
      knees},
 };
 
-/// Hats over the range [p0, p1]: one column for each of nine nodes.
-void hats(double s, const double* p, double* c) {
-  const double x = std::clamp((s - p[0]) / (p[1] - p[0]), 0.0, 1.0) * (most_columns - 1);
-  for (int i = 0; i < most_columns; ++i) c[i] = std::max(0.0, 1 - std::abs(x - i));
+/// A signal between two nodes of a grid over the range [p0, p1].
+struct Between {
+  int left = 0;
+  double share = 0;  ///< of the right node; NaN if the signal or the range is none
+  Between(int nodes, double s, const double* p) {
+    share = std::clamp((s - p[0]) / (p[1] - p[0]), 0.0, 1.0) * (nodes - 1);
+    if (!std::isfinite(share)) return;
+    left = std::min(int(share), nodes - 2), share -= left;
+  }
+};
+/// Hats: one column for each node.
+void hats(int nodes, double s, const double* p, double* c) {
+  const Between at(nodes, s, p);
+  std::fill(c, c + nodes, 0.0);
+  c[at.left] = 1 - at.share, c[at.left + 1] = at.share;
 }
 Starts range(std::span<const double> signal) {
   const auto [low, high] = std::ranges::minmax(signal);
   return {{low, high}};
 }
 
-const TermShape unknown{"unknown",    "A function without a name",
-                        "",           TermShape::Of::signal,
-                        most_columns, 6,
-                        {},           0,
-                        hats,         {},
-                        everywhere,   range};
+TermShape unknown_of(int nodes) {
+  constexpr double cost = 6;  // nats
+  TermShape shape{"unknown", "A function without a name", ""};
+  shape.columns = nodes, shape.cost = cost, shape.fits = everywhere, shape.starts = range;
+  shape.evaluate = [nodes](double s, const double* p, double* c) { hats(nodes, s, p, c); };
+  shape.value = [nodes](double s, const double* p, const double* c) {
+    const Between at(nodes, s, p);
+    return c[at.left] + at.share * (c[at.left + 1] - c[at.left]);
+  };
+  return shape;
+}
+
+const TermShape unknown_shapes[] = {unknown_of(9), unknown_of(17), unknown_of(most_columns)};
 
 }  // namespace
 
 std::span<const TermShape> named_shapes() { return known_shapes; }
-const TermShape& unknown_function() { return unknown; }
+std::span<const TermShape> unknown_functions() { return unknown_shapes; }
+bool is_unknown_function(const TermShape& shape) {
+  return std::ranges::any_of(unknown_shapes, [&](const TermShape& known) { return &known == &shape; });
+}
 
 }  // namespace loopwright::diagnosis

@@ -9,7 +9,7 @@
 
 namespace loopwright::diagnosis {
 
-inline constexpr int most_columns = 9, most_nonlinear = 2;
+inline constexpr int most_columns = 33, most_nonlinear = 2;
 
 /// term = Σ coefficient · column(signal; p), p being the shape's own parameters.
 struct TermShape {
@@ -41,12 +41,16 @@ struct TermShape {
     std::array<double, most_nonlinear> low{}, high{};
   };
   std::function<Ranges(std::span<const double> signal)> ranges = nullptr;
+  /// Σ coefficient · column where most columns are zero; null: by `evaluate`.
+  std::function<double(double signal, const double* p, const double* coefficient)> value = nullptr;
 
   int nonlinear_count() const { return int(nonlinear[0] != "") + int(nonlinear[1] != ""); }
 };
 
 std::span<const TermShape> named_shapes();
-/// A function without a name: straight lines between nine nodes over the range of the signal.
-const TermShape& unknown_function();
+/// Functions without a name: straight lines between 9, 17 and 33 nodes over the range of the signal. The
+/// coefficients are the values at the nodes.
+std::span<const TermShape> unknown_functions();
+bool is_unknown_function(const TermShape& shape);
 
 }  // namespace loopwright::diagnosis

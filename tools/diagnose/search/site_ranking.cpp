@@ -71,6 +71,13 @@ class Ranking {
     return list;
   }
 
+  std::vector<SiteCandidate> run_at(std::span<const TermShape> shapes, int site, int variable) {
+    std::vector<SiteCandidate> list;
+    if (is_good_)
+      for (const TermShape& shape : shapes) rank(shape, site, variable, list);
+    return list;
+  }
+
  private:
   /// An output that is only a multiple of a state, as of a Gain, is no variable of its own.
   void find_multiples() {
@@ -123,9 +130,14 @@ class Ranking {
     return kind == Site::Kind::input || kind == Site::Kind::block || kind == Site::Kind::sensor;
   }
   bool is_sensor(int site) const { return fitter_.model().sites()[size_t(site)].kind == Site::Kind::sensor; }
+  /// A second law of dry friction would only mend how the first one turns around rest.
+  static bool is_dry_friction(const TermShape& shape) {
+    return shape.name == "sign" || shape.name == "stribeck";
+  }
   bool is_there(const TermShape& shape, int site, int variable) const {
     return std::ranges::any_of(at_.terms, [&](const SiteTerm& t) {
-      return t.shape == &shape && t.site == site && t.variable == variable && shape.name != "periodic";
+      const bool is_same = t.shape == &shape || (is_dry_friction(*t.shape) && is_dry_friction(shape));
+      return is_same && t.site == site && t.variable == variable && shape.name != "periodic";
     });
   }
   bool is_admissible(const TermShape& shape, int site, int variable) const {
@@ -152,7 +164,7 @@ class Ranking {
     term.shape = &shape, term.site = site, term.variable = variable, term.nonlinear = start;
     const auto [low, high] = std::ranges::minmax(values);
     const double largest = std::max(std::abs(low), std::abs(high));
-    const bool is_level = shape.nonlinear[0] == "level" || &shape == &unknown_function();
+    const bool is_level = shape.nonlinear[0] == "level" || is_unknown_function(shape);
     for (size_t p = 0; p < most_nonlinear; ++p) {
       term.low[p] = is_level ? low : 1e-4 * std::min(largest, high - low);
       term.high[p] = is_level ? high : 3 * std::max(largest, high - low);
@@ -317,6 +329,11 @@ double cost_of(const SiteModel& model, const SiteTerm& term) {
 std::vector<SiteCandidate> rank_terms(SiteFitter& fitter, SiteHypothesis hypothesis,
                                       std::span<const TermShape> shapes, bool with_constants) {
   return Ranking(fitter, std::move(hypothesis), with_constants).run(shapes);
+}
+
+std::vector<SiteCandidate> rank_terms_at(SiteFitter& fitter, SiteHypothesis hypothesis,
+                                         std::span<const TermShape> shapes, int site, int variable) {
+  return Ranking(fitter, std::move(hypothesis), false).run_at(shapes, site, variable);
 }
 
 }  // namespace loopwright::diagnosis

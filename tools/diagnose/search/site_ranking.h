@@ -28,4 +28,8 @@ double cost_of(const SiteModel& model, const SiteTerm& term);
 std::vector<SiteCandidate> rank_terms(SiteFitter& fitter, SiteHypothesis hypothesis,
                                       std::span<const TermShape> shapes, bool with_constants = false);
 
+/// The same for one variable at one site, in the order of the shapes.
+std::vector<SiteCandidate> rank_terms_at(SiteFitter& fitter, SiteHypothesis hypothesis,
+                                         std::span<const TermShape> shapes, int site, int variable);
+
 }  // namespace loopwright::diagnosis

@@ -6,6 +6,7 @@
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/moved_parameters.h"
 #include "tools/diagnose/search/site_whiteness.h"
+#include "tools/diagnose/search/stacked_names.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -21,6 +22,8 @@ constexpr double least_improvement = 10, least_exchange = 3, rival_within = 10;
 constexpr double promising = 0.4, promising_beside_best = 0.2;
 /// In -2 ln L, a function without a name against a named term.
 constexpr double least_gain_of_unknown = 60, least_gain_of_unknown_per_reading = 0.005;
+/// [of what unusual names gain] A function without a name that gains this much is what they stand for.
+constexpr double least_share_of_function = 0.95;
 
 class SiteSearch {
  public:
@@ -59,6 +62,7 @@ class SiteSearch {
       add_terms(at);
     }
     exchange(at);
+    if (leaves_something(at)) merge_stacked_names(at, 1);
     add_unknown(at);
     remove_idle(at);
     progress_("deciding which parameters moved", begin_ + 0.3);
@@ -73,8 +77,10 @@ class SiteSearch {
   bool is_doubtful(const SiteHypothesis& found) {
     const size_t changes = found.terms.size() + found.free_parameters();
     if (changes > 1) return true;
-    if (!found.terms.empty() && found.terms.front().shape == &unknown_function()) return true;
-    SiteHypothesis h = found;
+    if (!found.terms.empty() && is_unknown_function(*found.terms.front().shape)) return true;
+    return leaves_something(found);
+  }
+  bool leaves_something(SiteHypothesis h) {
     return !fitter_.pass(h, false, pass_) ||
            portmanteau_of(pass_) > criteria::most_portmanteau_of_any_diagram;
   }
@@ -208,8 +214,39 @@ class SiteSearch {
       tell("  annealed", best);
       at = std::move(best);
       remove_idle(at);
+      merge_stacked_names(at, 2);
       result_.steps.push_back(at);
     }
+  }
+
+  /// Names that pile up at one site for one signal may stand for a function without a name.
+  void merge_stacked_names(SiteHypothesis& at, size_t fewest) {
+    for (const StackedNames& names : stacked_names(at, fewest)) {
+      const auto function = with_function(fitter_, at, names, [&](const auto& h) { return criterion(h); });
+      if (!function) continue;
+      tell("in the place of " + std::to_string(names.terms.size()) +
+               " names: " + describe(model(), function->terms.back()),
+           *function);
+      if (!stands_for(names, at, *function)) continue;
+      at = *function;
+      result_.rivals.clear();
+      return merge_stacked_names(at, fewest);
+    }
+  }
+  /// Whether the function is better than the names, or explains nearly as much as names that are unusual
+  /// together.
+  bool stands_for(const StackedNames& names, const SiteHypothesis& at, const SiteHypothesis& function) {
+    const double needed = std::max(least_gain_of_unknown, least_gain_of_unknown_per_reading * readings_);
+    if (criterion(function) < criterion(at) - needed) return true;
+    const auto& range = function.terms.back().nonlinear;
+    if (names.terms.size() < 2 || are_usual_together(at, names, range[1] - range[0])) return false;
+    SiteHypothesis nothing = at;
+    for (size_t i = names.terms.size(); i-- > 0;)
+      nothing.terms.erase(nothing.terms.begin() + std::ptrdiff_t(names.terms[i]));
+    fitter_.refine(nothing, 6, true);
+    fitter_.fit_noise(nothing);
+    const double gained = nothing.objective - at.objective;
+    return nothing.objective - function.objective > least_share_of_function * gained;
   }
 
   /// In the criterion: a worse term is no rival.
@@ -243,7 +280,7 @@ class SiteSearch {
 
   void add_unknown(SiteHypothesis& at) {
     if (is_spent(criteria::work_with_rivals)) return;
-    std::vector<SiteCandidate> ranked = rank_terms(fitter_, at, {&unknown_function(), 1});
+    std::vector<SiteCandidate> ranked = rank_terms(fitter_, at, unknown_functions().first(1));
     ranked.resize(std::min<size_t>(2, ranked.size()));
     std::vector<SiteHypothesis> tried = fits(at, ranked);
     if (tried.empty()) return;

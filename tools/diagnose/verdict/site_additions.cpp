@@ -37,7 +37,7 @@ class Writer {
     if (shape_.of == TermShape::Of::nothing)
       term.settings =
           fmt::format(R"("type": "Constant", "value": {})", quantity(coefficient(0), unit_of_site()));
-    else if (&shape_ == &unknown_function())
+    else if (is_unknown_function(shape_))
       term.settings = table(), added.note = range_of_table();
     else if (shape_.formula.empty())
       term.settings = fmt::format(R"("type": "Gain", "gain": {})",
@@ -77,8 +77,8 @@ class Writer {
 
   std::string table() const {
     std::string at, value;
-    for (int i = 0; i < most_columns; ++i) {
-      const double part = double(i) / (most_columns - 1);
+    for (int i = 0; i < shape_.columns; ++i) {
+      const double part = double(i) / (shape_.columns - 1);
       at += (i ? ", " : "") +
             readable_number(term_.nonlinear[0] + part * (term_.nonlinear[1] - term_.nonlinear[0]));
       value += (i ? ", " : "") + readable_number(coefficient(size_t(i)));

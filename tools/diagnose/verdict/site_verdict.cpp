@@ -86,7 +86,7 @@ class Telling {
         if (numbers[i].kind == FittedNumber::Kind::nonlinear)
           effect.parameters.push_back(
               number(numbers, i, std::string(term.shape->nonlinear[index]), signal_unit));
-        else if (term.shape != &unknown_function())
+        else if (!is_unknown_function(*term.shape))
           effect.parameters.push_back(number(numbers, i, std::string(term.shape->coefficients[index]),
                                              unit_of_coefficient(model_, term)));
       }
@@ -97,7 +97,7 @@ class Telling {
         effect.is_optional =
             effect.force_rms < criteria::material_share_of_site * size_at_site(model_, pass, term.site);
       }
-      if (term.shape == &unknown_function())
+      if (is_unknown_function(*term.shape))
         for (const std::string& v : effect.variables) result_.remainder_variables.push_back(v);
       result_.effects.push_back(std::move(effect));
     }

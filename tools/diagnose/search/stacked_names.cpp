@@ -1,0 +1,77 @@
+#include "tools/diagnose/search/stacked_names.h"
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include "tools/diagnose/search/site_ranking.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+/// A period that repeats less often within the range of its signal is no pattern yet.
+constexpr double fewest_repeats = 3;
+constexpr int refinements = 4;
+
+enum class LawOfFriction { dry, viscous, drag, none };
+LawOfFriction law_of(const TermShape& shape) {
+  using enum LawOfFriction;
+  if (shape.name == "sign" || shape.name == "stribeck" || shape.name == "soft_sign") return dry;
+  if (shape.name == "linear") return viscous;
+  return shape.name == "signed_square" || shape.name == "cube" ? drag : none;
+}
+
+SiteHypothesis without(const SiteHypothesis& at, const StackedNames& names) {
+  SiteHypothesis rest = at;
+  for (size_t i = names.terms.size(); i-- > 0;)
+    rest.terms.erase(rest.terms.begin() + std::ptrdiff_t(names.terms[i]));
+  return rest;
+}
+
+}  // namespace
+
+std::vector<StackedNames> stacked_names(const SiteHypothesis& at, size_t fewest) {
+  std::vector<StackedNames> list;
+  for (size_t t = 0; t < at.terms.size(); ++t) {
+    const SiteTerm& term = at.terms[t];
+    if (term.variable < 0 || term.shape->of == TermShape::Of::own || is_unknown_function(*term.shape))
+      continue;
+    auto same = std::ranges::find_if(
+        list, [&](const StackedNames& s) { return s.site == term.site && s.variable == term.variable; });
+    if (same == list.end()) same = list.insert(same, {term.site, term.variable, {}});
+    same->terms.push_back(t);
+  }
+  std::erase_if(list, [&](const StackedNames& s) { return s.terms.size() < fewest; });
+  return list;
+}
+
+bool are_usual_together(const SiteHypothesis& at, const StackedNames& names, double range) {
+  std::set<LawOfFriction> laws;
+  bool are_periods = true, are_friction = true;
+  for (size_t t : names.terms) {
+    const SiteTerm& term = at.terms[t];
+    const LawOfFriction law = law_of(*term.shape);
+    are_periods &= term.shape->name == "periodic" && fewest_repeats * term.nonlinear[0] < range;
+    are_friction &= law != LawOfFriction::none && laws.insert(law).second;
+  }
+  return are_periods || are_friction;
+}
+
+std::optional<SiteHypothesis> with_function(SiteFitter& fitter, const SiteHypothesis& at,
+                                            const StackedNames& names,
+                                            const std::function<double(const SiteHypothesis&)>& criterion) {
+  const SiteHypothesis rest = without(at, names);
+  std::optional<SiteHypothesis> best;
+  for (const SiteCandidate& candidate :
+       rank_terms_at(fitter, rest, unknown_functions(), names.site, names.variable)) {
+    SiteHypothesis trial = rest;
+    trial.terms.push_back(candidate.term);
+    fitter.refine(trial, refinements, true);
+    fitter.fit_noise(trial);
+    fitter.refine(trial, refinements, true);
+    if (!std::isfinite(trial.objective)) continue;
+    if (best && criterion(*best) <= criterion(trial)) break;  // finer ones cost more still
+    best = std::move(trial);
+  }
+  return best;
+}
+
+}  // namespace loopwright::diagnosis

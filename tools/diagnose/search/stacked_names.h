@@ -1,0 +1,30 @@
+/// Several names of one signal at one site, against one function without a name.
+#pragma once
+#include <functional>
+#include <optional>
+#include <utility>
+#include <vector>
+#include "tools/diagnose/search/site_fit.h"
+
+namespace loopwright::diagnosis {
+
+/// Terms of a hypothesis that depend on one variable at one site.
+struct StackedNames {
+  int site, variable;
+  std::vector<size_t> terms;  ///< places in the hypothesis
+};
+/// Those with a name, distortions excluded, of sites and variables with at least `fewest` of them.
+std::vector<StackedNames> stacked_names(const SiteHypothesis& at, size_t fewest);
+
+/// Whether such names occur together in machines: the laws of friction, one of each kind, or several periods
+/// that each repeat often within the range of the signal. Other sums of laws resemble any function, as a
+/// series of sines does.
+bool are_usual_together(const SiteHypothesis& at, const StackedNames& names, double range);
+
+/// The hypothesis with a function without a name in their place, of as many nodes as the criterion prefers.
+/// Nothing if it cannot be fitted.
+std::optional<SiteHypothesis> with_function(SiteFitter& fitter, const SiteHypothesis& at,
+                                            const StackedNames& names,
+                                            const std::function<double(const SiteHypothesis&)>& criterion);
+
+}  // namespace loopwright::diagnosis
