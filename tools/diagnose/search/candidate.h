@@ -65,4 +65,20 @@ struct Member {
   bool is_free(size_t nonlinear_index) const { return !is_part_of_turn || nonlinear_index > 0; }
 };
 
+/// Whether it makes a part of the mass move by itself.
+inline bool is_own_load(const Member& member) {
+  const Candidate& candidate = *member.candidate;
+  return !candidate.nonlinear.empty() && candidate.added_inertia && candidate.added_inertia(member) < 0;
+}
+
+/// Whether a parameter is at an end of its range.
+inline bool is_at_limit(const Member& member) {
+  const Candidate& candidate = *member.candidate;
+  for (size_t i = 0; i < member.linear.size() && !candidate.amplitude_is_one; ++i)
+    if (candidate.linear[i].ends_at(member.linear[i])) return true;
+  for (size_t i = 0; i < member.nonlinear.size(); ++i)
+    if (candidate.nonlinear[i].ends_at(member.nonlinear[i])) return true;
+  return false;
+}
+
 }  // namespace loopwright::diagnosis

@@ -22,15 +22,6 @@ void maximise(Trials& trials, Estimate& estimate) {
   }
 }
 
-bool is_at_limit(const Member& member) {
-  const Candidate& candidate = *member.candidate;
-  for (size_t i = 0; i < member.linear.size() && !candidate.amplitude_is_one; ++i)
-    if (candidate.linear[i].ends_at(member.linear[i])) return true;
-  for (size_t i = 0; i < member.nonlinear.size(); ++i)
-    if (candidate.nonlinear[i].ends_at(member.nonlinear[i])) return true;
-  return false;
-}
-
 /// The result, and the sets that explain the records as well.
 class Rivals {
  public:
@@ -213,10 +204,11 @@ void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
     }
     const Weight& weight = result.weights[weakest];
     result.trail.push_back(
-        fmt::format("{}: {}, χ² {:.0f}, force {:.3g}, unique {:.3g} beside a driving force of {:.3g} and "
+        fmt::format("{}: {}, χ² {:.0f} (of counts {:.0f}), force {:.3g}, unique {:.3g} beside a driving "
+                    "force of {:.3g} and "
                     "noise of {:.3g} and {:.3g}",
                     *least < 1 ? "not material" : "other noise does as well",
-                    estimate.members[weakest].candidate->name, weight.wald, weight.force_rms,
+                    estimate.members[weakest].candidate->name, weight.wald, weight.counts, weight.force_rms,
                     weight.unique_force, trials.force_rms, estimate.noise.white, estimate.noise.slow()));
     estimate = std::move(without);
   }
@@ -266,9 +258,18 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
     leave_out_doubtful(trials, estimate);
     keep_material(trials, result, candidates.size());
   }
+  for (size_t m = 0; m < estimate.members.size(); ++m)
+    result.trail.push_back(fmt::format("kept: {}, χ² {:.0f} (of counts {:.0f})",
+                                       estimate.members[m].candidate->name, result.weights[m].wald,
+                                       result.weights[m].counts));
   result.portmanteau = portmanteau(trials, *estimate.fitted);
-  if (result.portmanteau > criteria::most_portmanteau)
-    result.counts_portmanteau = portmanteau_of_counts(trials, estimate);
+  if (result.portmanteau > criteria::most_portmanteau_of_counted)
+    if (const WhitenedErrors errors = errors_of_counts(trials, estimate); !errors.empty()) {
+      result.most_portmanteau = criteria::most_portmanteau_of_counted;
+      result.counts_portmanteau = portmanteau_of_counts(trials, errors);
+    }
+  result.trail.push_back(fmt::format("portmanteau {:.0f}, of counts alone {:.0f}", result.portmanteau,
+                                     result.counts_portmanteau));
   result.is_negligible = is_negligible(trials, estimate.members);
   const double n = double(fitted_numbers(trials));
   const std::vector<Shape> periodic = periodic_shapes(trials, estimate, candidates, 1);
@@ -277,15 +278,14 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
     for (const Shape& shape : *list) all.push_back(&shape);
   Evidence evidence(trials, estimate, all, candidates.size());
   const std::vector<Proposal> exchanges = evidence.exchanges();
-  Rivals rivals(trials, estimate, candidates.size(),
-                std::max({least_gain, least_gain_per_row * n,
-                          unexplained(result.portmanteau - result.counts_portmanteau)}));
+  Rivals rivals(
+      trials, estimate, candidates.size(),
+      std::max({least_gain, least_gain_per_row * n, unexplained(result.portmanteau_beside_counts())}));
   std::optional<Estimate> instead;
   if (!stays) instead = simplified(rivals, estimate.members, exchanges);
   if (!instead) {
     ask_rivals(trials, result, evidence, exchanges, candidates, *trials.list.front().model, rivals, n);
-    if (!stays && rounds > 0 &&
-        (instead = rivals.better(unexplained(result.portmanteau - result.counts_portmanteau))))
+    if (!stays && rounds > 0 && (instead = rivals.better(unexplained(result.portmanteau_beside_counts()))))
       result.trail.push_back("with noise of its own another set does better");
   }
   if (instead) {

@@ -25,15 +25,19 @@ struct Conclusion {
   std::vector<double> inclusion;                     ///< probability that the effect is there, calibrated
   bool is_remainder_noise = true;                    ///< otherwise a slow force exceeds the noise
   double turn = 0;                                   ///< see Trials::turn
-  double portmanteau = 0;          ///< n Σ ρ², 40 lags of the whitened errors; 40 when white
+  double portmanteau = 0;  ///< n Σ ρ², 40 lags of the whitened errors; 40 when white
+  double most_portmanteau = criteria::most_portmanteau;  ///< of errors that pass for white
   double counts_portmanteau = 0;   ///< what the counts of the sensor add to it, along this motion
   bool is_negligible = false;      ///< the force that remains is not material, whatever its color
   std::vector<std::string> trail;  ///< what was removed, and why
 
+  double portmanteau_beside_counts() const {
+    return std::max(double(criteria::portmanteau_lags),
+                    portmanteau - criteria::reach_of_counts * counts_portmanteau);
+  }
   /// Whether the errors contain nothing more.
   bool is_white() const {
-    return is_negligible ||
-           (is_remainder_noise && portmanteau - counts_portmanteau <= criteria::most_portmanteau);
+    return is_negligible || (is_remainder_noise && portmanteau_beside_counts() <= most_portmanteau);
   }
 };
 

@@ -13,13 +13,9 @@ namespace {
 
 using criteria::same_motion;
 
-struct NormalEquations {
-  Eigen::MatrixXd G;
-  Eigen::VectorXd b;
-};
-
-/// Jᵀ J and Jᵀ e over the fitted rows of all records.
-NormalEquations normal_equations(const Trials& trials, const Estimate& estimate) {
+/// Jᵀ J and Jᵀ e over the fitted rows of all records; `error`: whitened, of a record.
+template <class Error>
+NormalEquations normal_equations_of(const Trials& trials, const Estimate& estimate, Error&& error) {
   const Eigen::Index n = Eigen::Index(free_parameters(estimate.members).size());
   NormalEquations equations{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
   const size_t ports = trials.ports();
@@ -28,7 +24,7 @@ NormalEquations normal_equations(const Trials& trials, const Estimate& estimate)
   for (size_t t = 0; t < trials.list.size(); ++t) {
     const Trial& trial = trials.list[t];
     const Sensitivity& s = (*sensitivities)[t];
-    const std::vector<double>& white = (*estimate.fitted)[t].white;
+    const std::vector<double>& white = error(t);
     trials.work->add(white.size(), double(n * n) * Work::of_a_product);
     constexpr size_t chunk = 1024;
     Eigen::MatrixXd rows(Eigen::Index(chunk * ports), n + 1);
@@ -46,6 +42,11 @@ NormalEquations normal_equations(const Trials& trials, const Estimate& estimate)
     }
   }
   return equations;
+}
+
+NormalEquations normal_equations(const Trials& trials, const Estimate& estimate) {
+  return normal_equations_of(
+      trials, estimate, [&](size_t t) -> const std::vector<double>& { return (*estimate.fitted)[t].white; });
 }
 
 /// Solves with columns scaled to one and a ridge that affects only dependent columns.
@@ -221,6 +222,12 @@ void refer_to_zero(Estimate& estimate) {
             free[j].index == 0 ? rate * member.linear[1] : -rate * member.linear[0];
   }
   estimate.covariance = to_zero * estimate.covariance * to_zero.transpose();
+}
+
+NormalEquations normal_equations(const Trials& trials, const Estimate& estimate,
+                                 const std::vector<std::vector<double>>& errors) {
+  return normal_equations_of(trials, estimate,
+                             [&](size_t t) -> const std::vector<double>& { return errors[t]; });
 }
 
 void work_out_covariance(Trials& trials, Estimate& estimate) {

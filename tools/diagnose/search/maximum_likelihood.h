@@ -49,6 +49,15 @@ Noise fit_noise_alone(const Trials& trials, const std::vector<Fitted>& fitted, c
 /// the sandwich estimator by blocks (Liang and Zeger 1986), a factor for each parameter, never less than one.
 void widen_by_blocks(const Trials& trials, Estimate& estimate);
 
+/// Jᵀ J and Jᵀ e for changes of the free parameters, over the fitted rows.
+struct NormalEquations {
+  Eigen::MatrixXd G;
+  Eigen::VectorXd b;
+};
+/// With other whitened errors of each record than those of the estimate.
+NormalEquations normal_equations(const Trials& trials, const Estimate& estimate,
+                                 const std::vector<std::vector<double>>& errors);
+
 /// Fills Estimate::covariance; sine and cosine of a pattern with the phase at the middle of the record.
 void work_out_covariance(Trials& trials, Estimate& estimate);
 /// The same with the phase at zero.

@@ -43,16 +43,19 @@ std::vector<StackedNames> stacked_names(const SiteHypothesis& at, size_t fewest)
   return list;
 }
 
-bool are_usual_together(const SiteHypothesis& at, const StackedNames& names, double range) {
+bool are_laws_of_friction(const SiteHypothesis& at, const StackedNames& names) {
   std::set<LawOfFriction> laws;
-  bool are_periods = true, are_friction = true;
-  for (size_t t : names.terms) {
+  return std::ranges::all_of(names.terms, [&](size_t t) {
+    const LawOfFriction law = law_of(*at.terms[t].shape);
+    return law != LawOfFriction::none && laws.insert(law).second;
+  });
+}
+
+bool are_periods(const SiteHypothesis& at, const StackedNames& names, double range) {
+  return std::ranges::all_of(names.terms, [&](size_t t) {
     const SiteTerm& term = at.terms[t];
-    const LawOfFriction law = law_of(*term.shape);
-    are_periods &= term.shape->name == "periodic" && fewest_repeats * term.nonlinear[0] < range;
-    are_friction &= law != LawOfFriction::none && laws.insert(law).second;
-  }
-  return are_periods || are_friction;
+    return term.shape->name == "periodic" && fewest_repeats * term.nonlinear[0] < range;
+  });
 }
 
 std::optional<SiteHypothesis> with_function(SiteFitter& fitter, const SiteHypothesis& at,

@@ -16,10 +16,11 @@ struct StackedNames {
 /// Those with a name, distortions excluded, of sites and variables with at least `fewest` of them.
 std::vector<StackedNames> stacked_names(const SiteHypothesis& at, size_t fewest);
 
-/// Whether such names occur together in machines: the laws of friction, one of each kind, or several periods
-/// that each repeat often within the range of the signal. Other sums of laws resemble any function, as a
-/// series of sines does.
-bool are_usual_together(const SiteHypothesis& at, const StackedNames& names, double range);
+/// Names that occur together in machines. Other sums of laws resemble any function, as a series of sines
+/// does. Laws of friction, at most one of each kind.
+bool are_laws_of_friction(const SiteHypothesis& at, const StackedNames& names);
+/// Periods that each repeat often within the range of the signal.
+bool are_periods(const SiteHypothesis& at, const StackedNames& names, double range);
 
 /// The hypothesis with a function without a name in their place, of as many nodes as the criterion prefers.
 /// Nothing if it cannot be fitted.

@@ -67,6 +67,29 @@ Wald wald(Estimate& estimate, size_t member) {
           chi_square(information, theta, places, {}), places.size()};
 }
 
+/// Gain in the squared errors by the parameters at these places, as Jᵀ J and Jᵀ e tell.
+double gain_of(const NormalEquations& e, const std::vector<Eigen::Index>& places) {
+  if (places.empty()) return 0;
+  const Eigen::VectorXd scale = e.G.diagonal()(places).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  Eigen::MatrixXd G = scale.asDiagonal() * e.G(places, places).eval() * scale.asDiagonal();
+  G.diagonal().array() += 1e-9;
+  const Eigen::VectorXd b = scale.cwiseProduct(e.b(places).eval());
+  return b.dot(G.ldlt().solve(b));
+}
+
+/// χ² of a member as wald() has it, in errors without it: its shape known, the other members fitted beside
+/// it.
+double gain_of_member(const NormalEquations& e, const std::vector<Member>& members, size_t member) {
+  const std::vector<FreeParameter> free = free_parameters(members);
+  const std::vector<Eigen::Index> places = existence(members, member);
+  std::vector<Eigen::Index> others;
+  for (size_t i = 0; i < free.size(); ++i)
+    if (free[i].member != member) others.push_back(Eigen::Index(i));
+  std::vector<Eigen::Index> all = others;
+  all.insert(all.end(), places.begin(), places.end());
+  return std::max(0.0, gain_of(e, all) - gain_of(e, others));
+}
+
 /// Root mean square of the force that a member consumes over the fitted rows.
 double force_rms(const Trials& trials, const Estimate& estimate, size_t index) {
   const Member& member = estimate.members[index];
@@ -117,8 +140,9 @@ double material(const Trials& trials, const Estimate& estimate, const Weight& we
   const double least_force_now = std::max(least_force * trials.force_rms, least_force_to_noise * white);
   // A delay acts only for moments, but is clearly visible.
   const double size = std::max(weight.force_rms / least_force_now, weight.wald / (plain_wald_per_row * n));
-  return std::min({weight.wald / std::max(least_wald, least_wald_per_row * n), size,
-                   weight.unique_force / (least_unique_force * trials.force_rms)});
+  return std::min(
+      {weight.wald / std::max({least_wald, least_wald_per_row * n, clear_of_counts * weight.counts}), size,
+       weight.unique_force / (least_unique_force * trials.force_rms)});
 }
 
 std::vector<Weight> weigh_all(Trials& trials, Estimate& estimate) {
@@ -127,6 +151,12 @@ std::vector<Weight> weigh_all(Trials& trials, Estimate& estimate) {
   refer_to_zero(estimate);
   std::vector<Weight> weights;
   for (size_t m = 0; m < estimate.members.size(); ++m) weights.push_back(weigh(trials, estimate, m));
+  if (weights.empty()) return weights;
+  if (const WhitenedErrors errors = errors_of_counts(trials, estimate); !errors.empty()) {
+    const NormalEquations of_counts = normal_equations(trials, estimate, errors);
+    for (size_t m = 0; m < weights.size(); ++m)
+      weights[m].counts = gain_of_member(of_counts, estimate.members, m);
+  }
   return weights;
 }
 

@@ -18,9 +18,10 @@ double portmanteau(const LaggedProducts& products) {
   return squares[0] > 0 ? products.rows * sum / (squares[0] * squares[0]) : 0;
 }
 
-/// A normal random number; the same for the same row.
-double normal(size_t record, size_t row) {
-  const UniformPair u = uniform_pair(1, record, row);
+/// A normal random number; the same for the same row and source of noise.
+double normal(size_t record, size_t source, size_t row) {
+  constexpr size_t most_sources = 64;
+  const UniformPair u = uniform_pair(1, record * most_sources + source, row);
   return std::sqrt(-2 * std::log(u.first)) * std::cos(2 * std::numbers::pi * u.second);
 }
 
@@ -38,6 +39,45 @@ std::vector<double> smoothed(const Fitted& fitted, const MeasuredPort& sensor, s
         motion[k] = sensor.value[k] - fitted.prediction.error[k * ports] + per_error.dot(before);
       });
   return motion;
+}
+
+/// What is measured minus what is, at the first port: the motion counted anew, and the other noise of the
+/// sensor. `dithers`: the noise comes before the counting, and covers its pattern.
+std::vector<double> errors_of_counting(const Trials& trials, const Noise& noise, const Fitted& fitted,
+                                       const MeasuredPort& sensor, bool dithers, size_t record) {
+  const std::vector<double> motion = smoothed(fitted, sensor, trials.ports());
+  const double count = sensor.resolution;
+  const double other = std::sqrt(std::max(0.0, std::pow(noise.measurement[0], 2) - count * count / 12));
+  std::vector<double> error(motion.size());
+  for (size_t k = 0; k < error.size(); ++k) {
+    const double shaken = other * normal(record, 0, k), seen = motion[k] + (dithers ? shaken : 0.0);
+    error[k] = std::round(seen / count) * count - motion[k] + (dithers ? 0.0 : shaken);
+  }
+  return error;
+}
+
+/// The whitened errors of the predictor for these errors of the first port and for white noise of all other
+/// kinds. `scale`: of the noise forces.
+std::vector<double> filtered(const Fitted& fitted, const Noise& noise, double scale,
+                             const std::vector<double>& first_port, size_t record) {
+  const ErrorSystem system(fitted, false);
+  const Path& path = fitted.prediction.path;
+  const Eigen::Index states = system.enter.size() - 1, ports = system.C.rows();
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(states + 1), e(ports);
+  std::vector<double> white(first_port.size() * size_t(ports));
+  for (size_t k = 0; k < first_port.size(); ++k) {
+    e = system.C * x;
+    e[0] += first_port[k];
+    for (Eigen::Index p = 1; p < ports; ++p)
+      e[p] += noise.measurement[size_t(p)] * normal(record, size_t(p), k);
+    Eigen::Map<Eigen::VectorXd>(&white[k * size_t(ports)], ports) = fitted.gains.whiten * e;
+    x -= system.correct * e;
+    if (path.forgets(k)) x[states] = 0;
+    x = system.onward * x;
+    x.head(states) += fitted.axis.noise_push * (scale * noise.white * normal(record, size_t(ports), k));
+    x[states] += scale * noise.step * normal(record, size_t(ports) + 1, k);
+  }
+  return white;
 }
 
 }  // namespace
@@ -81,30 +121,31 @@ double portmanteau(const Trials& trials, const std::vector<Fitted>& fitted) {
   return most;
 }
 
-double portmanteau_of_counts(const Trials& trials, const Estimate& estimate) {
-  std::vector<Fitted> feigned(trials.list.size());
-  for (size_t t = 0; t < feigned.size(); ++t) {
-    const MeasuredPort& sensor = trials.list[t].model->record().measured.front();
-    if (!(sensor.resolution > 0) || trials.has_map()) return 0;
-    const Fitted& fitted = (*estimate.fitted)[t];
-    const Path& path = fitted.prediction.path;
-    const std::vector<double> motion = smoothed(fitted, sensor, trials.ports());
-    const double other = std::sqrt(
-        std::max(0.0, std::pow(estimate.noise.measurement[0], 2) - std::pow(sensor.resolution, 2) / 12));
-    std::vector<float> error(motion.size());
-    for (size_t k = 0; k < error.size(); ++k) {
-      const double seen = motion[k] + other * normal(2 * t, k);
-      error[k] = float(std::round(seen / sensor.resolution) * sensor.resolution - motion[k]);
+WhitenedErrors errors_of_counts(const Trials& trials, const Estimate& estimate) {
+  WhitenedErrors most;
+  double greatest = -1;
+  for (const bool dithers : {true, false}) {
+    WhitenedErrors all;
+    for (size_t t = 0; t < trials.list.size(); ++t) {
+      const AxisModel& model = *trials.list[t].model;
+      const MeasuredPort& sensor = model.record().measured.front();
+      if (!(sensor.resolution > 0) || trials.has_map()) return {};
+      const Fitted& fitted = (*estimate.fitted)[t];
+      const std::vector<double> counted =
+          errors_of_counting(trials, estimate.noise, fitted, sensor, dithers, t);
+      const double scale = fitted.axis.inertia / model.nominal_inertia();
+      all.push_back(filtered(fitted, estimate.noise, scale, counted, t));
     }
-    const Column counted(std::move(error));
-    const Column* const one = &counted;
-    std::vector<double>& white = feigned[t].white;
-    white = responses(fitted.axis, fitted.gains, path, Acts::sensor, {&one, 1}).front();
-    double square = 0;
-    for (double e : white) square += e * e / double(white.size());
-    for (size_t k = 0; k < white.size(); ++k)
-      white[k] += std::sqrt(std::max(0.0, 1 - square)) * normal(2 * t + 1, k);
+    if (const double size = portmanteau_of_counts(trials, all); size > greatest)
+      greatest = size, most = std::move(all);
   }
+  return most;
+}
+
+double portmanteau_of_counts(const Trials& trials, const WhitenedErrors& errors) {
+  if (errors.empty()) return 0;
+  std::vector<Fitted> feigned(errors.size());
+  for (size_t t = 0; t < errors.size(); ++t) feigned[t].white = errors[t];
   return std::max(0.0, portmanteau(trials, feigned) - double(criteria::portmanteau_lags));
 }
 

@@ -19,9 +19,15 @@ size_t rows_in_a_lag(const Trials& trials);
 /// millisecond. Near 40 when the errors are white.
 double portmanteau(const Trials& trials, const std::vector<Fitted>& fitted);
 
-/// What the counts of the first sensor add to the portmanteau: at slow speeds their errors are not white. The
-/// smoothed motion is counted anew, and the errors of that count are filtered as the predictor filters them,
-/// beside white noise.
-double portmanteau_of_counts(const Trials& trials, const Estimate& estimate);
+/// Whitened errors of each record, samples × ports.
+using WhitenedErrors = std::vector<std::vector<double>>;
+/// Those that the counts of the first sensor and the noise of this estimate would give if nothing were
+/// missing. At slow or steady speeds counts are not white, and resemble a pattern or a mode: the smoothed
+/// motion is counted anew, and goes through the predictor with random noise of every other kind. Noise of the
+/// sensor may cover the pattern of the counts or not, whichever leaves more of it. Empty if the sensor states
+/// no resolution.
+WhitenedErrors errors_of_counts(const Trials& trials, const Estimate& estimate);
+/// What they add to the portmanteau.
+double portmanteau_of_counts(const Trials& trials, const WhitenedErrors& errors);
 
 }  // namespace loopwright::diagnosis

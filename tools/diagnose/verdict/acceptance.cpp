@@ -15,12 +15,10 @@ struct Refusal {
 };
 
 /// Whether a part of the mass moves by itself. Its motion is not measured, and swings on from window to
-/// window; where it is at the beginning of one decides more than whether it exists.
+/// window; where it is at the beginning of one decides more than whether it exists. This is no excuse for a
+/// load with a parameter at the end of its range, which stands for something else.
 bool has_own_load(const std::vector<Member>& members) {
-  return std::ranges::any_of(members, [](const Member& member) {
-    const Candidate& candidate = *member.candidate;
-    return !candidate.nonlinear.empty() && candidate.added_inertia && candidate.added_inertia(member) < 0;
-  });
+  return std::ranges::any_of(members, [](const Member& m) { return is_own_load(m) && !is_at_limit(m); });
 }
 
 class Judge {
@@ -108,6 +106,16 @@ class Judge {
 
 }  // namespace
 
+void need_what_simulates_better(std::vector<DiagnosisStep>& steps) {
+  for (size_t i = steps.size(); i-- > 1;) {
+    if (!steps[i].is_optional) return;
+    if (!(steps[i].simulation_rmse < criteria::much_better_simulation * steps[i - 1].simulation_rmse))
+      continue;
+    for (size_t k = 1; k <= i; ++k) steps[k].is_optional = false;
+    return;
+  }
+}
+
 bool are_larger(const Errors& before, const Errors& after) {
   const auto is_larger = [](double was, double is) {
     return is * is > (1 + criteria::least_worsening) * was * was;
@@ -137,6 +145,7 @@ Acceptance accept(Conclusion conclusion, Trials& trials, const std::vector<Inver
   }
   for (size_t i = 0; i < state.runs.size(); ++i)
     state.staircase.steps[i].simulation_rmse = state.runs[i].rmse();
+  if (!has_own_load(state.conclusion.estimate.members)) need_what_simulates_better(state.staircase.steps);
   if (!state.runs.empty() && !has_own_load(state.staircase.members.back())) {
     state.is_worse = is_worse(state.runs.front(), state.runs.back());
     state.diverges = state.runs.back().diverged;

@@ -26,6 +26,9 @@ struct Errors {
 /// delay.
 bool are_larger(const Errors& before, const Errors& after);
 
+/// An optional step with which the simulation is much better is needed, and so are those before it.
+void need_what_simulates_better(std::vector<DiagnosisStep>& steps);
+
 /// Removes effects one by one as long as the diagram with one of them simulates worse than without it (unless
 /// a load moves by itself: where it is at the beginning of a window is not known), as all errors are larger
 /// with one, or as the interval of one contains zero while the diagram simulates no worse without it.

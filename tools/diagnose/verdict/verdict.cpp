@@ -69,6 +69,12 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
     diagnosis.contradictions.push_back("the diagram with these effects diverges when it is simulated");
   else if (diagnosis.simulation_is_worse)
     diagnosis.contradictions.push_back("the diagram simulates worse with these effects than without them");
+  for (const Member& member : e.members)
+    if (is_own_load(member) && is_at_limit(member))
+      diagnosis.contradictions.push_back("a parameter of " + member.candidate->name +
+                                         " is at the limit of its range, where it stands for something else");
+  if (is_not_white && diagnosis.contradictions.empty() && !conclusion.is_remainder_noise)
+    diagnosis.contradictions.push_back("a slow force remains that is more than noise");
   is_not_white |= !diagnosis.contradictions.empty();
   if (is_not_white || has_unknown) {
     std::vector<Member> named;
