@@ -102,6 +102,8 @@ constexpr double independent_block_s = 0.5;
 /// [χ²] Five standard deviations; and shares of the rows, below which a model is not exact enough to tell: of
 /// certainty, and of a size that needs no large force, because a delay acts only for moments.
 constexpr double least_wald = 25, least_wald_per_row = 0.001, plain_wald_per_row = 0.01;
+/// [simulation error without the effect] By which it must fall with each effect where counts color the errors.
+constexpr double least_help_beside_counts = 0.02;
 /// [χ²] That errors of counts alone would give the effect: one that stands out less may be a beat of the counts with the
 /// samples. Twice in amplitude.
 constexpr double clear_of_counts = 4;

@@ -31,7 +31,7 @@ void need_what_simulates_better(std::vector<DiagnosisStep>& steps);
 
 /// Removes effects one by one as long as the diagram with one of them simulates worse than without it (unless
 /// a load moves by itself: where it is at the beginning of a window is not known), as all errors are larger
-/// with one, or as the interval of one contains zero while the diagram simulates no worse without it.
+/// with one, as counts of the sensor are not white and the diagram simulates no better with one, or as the interval of one contains zero while the diagram simulates no worse without it.
 /// `without(conclusion, member)` is the conclusion from the others.
 Acceptance accept(Conclusion conclusion, Trials& trials, const std::vector<InverseDynamics>& inverse,
                   const Improver& improver, const LoadOptions& load, size_t catalogue,
