@@ -22,6 +22,7 @@ struct FlawedMachine {
   double coulomb = 0, cogging = 0, pitch = 0.012, added_damping = 0, added_mass = 0;  ///< hidden
   double sample_time = 1e-3, duration = 20;
   double stroke = 0.2, top_speed = 0.3;
+  std::vector<double> steady_speeds;  ///< instead of strokes: each one held, forward and back
   double oscillation_hz = 0;  ///< instead of strokes: a sine of this frequency and of the stroke's amplitude
   double force_noise = 0.01, sensor_noise = 5e-8, resolution = 2e-7;  ///< standard deviations, and a count
   double velocity_noise = 0;  ///< of a velocity sensor, which then replaces the position
@@ -77,7 +78,23 @@ class FlawedAxis {
   struct Wanted {
     double x = 0, v = 0, a = 0;
   };
-  /// Strokes there and back at seven peak speeds, with short rests; or a sine.
+  /// From each steady speed to the next within a fifth of a second, and held for a second.
+  Wanted steady(double t) const {
+    constexpr double ramp = 0.2, held = 1;
+    double x = 0, from = 0;
+    for (size_t i = 0; i < 10000; ++i, t -= ramp + held) {
+      const double speed = machine_.steady_speeds[i / 2 % machine_.steady_speeds.size()] * (i % 2 ? -1 : 1);
+      const double change = speed - from, w = std::numbers::pi / ramp;
+      if (t < ramp)
+        return {x + from * t + change * (t - std::sin(w * t) / w) / 2,
+                from + change * (1 - std::cos(w * t)) / 2, change * w * std::sin(w * t) / 2};
+      x += (from + speed) / 2 * ramp;
+      if (t < ramp + held) return {x + speed * (t - ramp), speed, 0};
+      x += speed * held, from = speed;
+    }
+    return {};
+  }
+  /// Strokes there and back at seven peak speeds, with short rests; or a sine; or steady speeds.
   Wanted wanted(double t) const {
     constexpr double pi = std::numbers::pi, shares[] = {1, 0.25, 0.6, 0.12, 0.85, 0.4, 0.5};
     if (machine_.oscillation_hz > 0) {
@@ -88,6 +105,7 @@ class FlawedAxis {
       return {rise * a * std::sin(w * t), rise * a * w * std::cos(w * t),
               -rise * a * w * w * std::sin(w * t)};
     }
+    if (!machine_.steady_speeds.empty()) return steady(t);
     double begin = 0.2, from = 0;
     for (int i = 0; i < 10000; ++i) {
       const double speed = machine_.top_speed * shares[i % 7], time = 2 * machine_.stroke / speed;

@@ -184,6 +184,24 @@ TEST(Counts, CoarseOnesAreNoMissingEffect) {
   }
 }
 
+/// At 0.978 counts a sample the counts beat with the samples, at 44 Hz or every 44 counts: no cogging, and no mode.
+TEST(Counts, SteadySpeedsFeignNoEffect) {
+  FlawedMachine machine;
+  machine.sample_time = 5e-4, machine.resolution = 1e-4, machine.sensor_noise = 7e-6;
+  const double count_a_sample = machine.resolution / machine.sample_time;
+  machine.steady_speeds = {0.978 * count_a_sample, 3.26 * count_a_sample, 8.15 * count_a_sample};
+  machine.duration = 15;
+  for (const uint64_t seed : {1, 2, 3}) {
+    machine.seed = seed;
+    const Diagnosis d = diagnosis_of(machine);
+    EXPECT_THAT(names(d), IsEmpty()) << to_text(d);
+    EXPECT_NE(d.verdict, Verdict::explained);
+  }
+  machine.coulomb = 1;
+  const Diagnosis d = diagnosis_of(machine);
+  EXPECT_THAT(names(d), ElementsAre("coulomb_friction")) << to_text(d);
+}
+
 // Last bits.
 
 TEST(LastBits, DoNotChangeTheAnswer) {

@@ -134,10 +134,13 @@ class Ranking {
   static bool is_dry_friction(const TermShape& shape) {
     return shape.name == "sign" || shape.name == "stribeck";
   }
+  /// A function without a name contains all laws of its signal.
   bool is_there(const TermShape& shape, int site, int variable) const {
     return std::ranges::any_of(at_.terms, [&](const SiteTerm& t) {
+      if (t.site != site || t.variable != variable) return false;
+      if (is_unknown_function(*t.shape)) return true;
       const bool is_same = t.shape == &shape || (is_dry_friction(*t.shape) && is_dry_friction(shape));
-      return is_same && t.site == site && t.variable == variable && shape.name != "periodic";
+      return is_same && shape.name != "periodic";
     });
   }
   bool is_admissible(const TermShape& shape, int site, int variable) const {
