@@ -119,10 +119,11 @@ class Judge {
 }  // namespace
 
 void need_what_simulates_better(std::vector<DiagnosisStep>& steps) {
+  const double whole = steps.front().simulation_rmse - steps.back().simulation_rmse;
   for (size_t i = steps.size(); i-- > 1;) {
     if (!steps[i].is_optional) return;
-    if (!(steps[i].simulation_rmse < criteria::much_better_simulation * steps[i - 1].simulation_rmse))
-      continue;
+    const double gained = steps[i - 1].simulation_rmse - steps[i].simulation_rmse;
+    if (!(gained > criteria::most_optional_simulation * whole)) continue;
     for (size_t k = 1; k <= i; ++k) steps[k].is_optional = false;
     return;
   }

@@ -26,7 +26,7 @@ struct Errors {
 /// delay.
 bool are_larger(const Errors& before, const Errors& after);
 
-/// An optional step with which the simulation is much better is needed, and so are those before it.
+/// An optional step that brings most of what the simulation gains is needed, and so are those before it.
 void need_what_simulates_better(std::vector<DiagnosisStep>& steps);
 
 /// Removes effects one by one as long as the diagram with one of them simulates worse than without it (unless
