@@ -53,6 +53,7 @@ Diagnosis diagnose_any_diagram(const std::string& diagram, const std::vector<std
   result.diagram = diagram, result.experiments = experiments, result.title = model.plan().title;
   result.force_unit = result.measured_unit = model.record().outputs.front().unit;
   result.measured_port = model.record().outputs.front().port;
+  result.rows = model.record().held_out_from;
   if (model.record().shortened) result.findings.push_back(*model.record().shortened);
   const auto found = search_with_second_opinion(fitter, progress);
   if (is_interrupted()) {

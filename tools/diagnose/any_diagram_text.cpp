@@ -59,6 +59,7 @@ std::string any_diagram_text(const Diagnosis& d) {
                      shown(step.force_rmse, d.measured_unit),
                      held_out(shown(step.held_out_force_rmse, d.measured_unit)),
                      shown(step.simulation_rmse, d.measured_unit)));
+  line(fmt::format("This rests on {} rows of the record.", d.rows));
   for (const RecordFinding& f : d.findings) line(fmt::format("The record: {}; {}.", f.what, f.cost));
   for (const std::string& sentence : d.not_observable) line("Not told apart: " + sentence + ".");
   return text + words_of_improvement(d);

@@ -30,9 +30,11 @@ void expect_moved(const Diagnosis& d, const std::string& name, double truth) {
 }
 
 TEST(AnyDiagram, ACleanMotorLacksNothing) {
-  const Diagnosis d = diagnosed(motor({}, 1));
+  const Plant plant = motor({}, 1);
+  const Diagnosis d = diagnosed(plant);
   EXPECT_EQ(d.verdict, Verdict::nothing_missing) << to_text(d);
   EXPECT_TRUE(answer(d).empty());
+  EXPECT_EQ(d.rows, plant.rows - plant.rows / 4) << "a quarter is held out";
 }
 TEST(AnyDiagram, ACleanMotorLacksNothingWithoutNoiseEither) {
   Plant plant = motor({}, 1);

@@ -179,6 +179,16 @@ std::optional<Estimate> simplified(Rivals& rivals, const std::vector<Member>& me
   return {};
 }
 
+/// How far each member is above all thresholds.
+std::vector<double> sizes_of_members(const Trials& trials, const Conclusion& result) {
+  std::vector<double> sizes;
+  for (size_t m = 0; m < result.weights.size(); ++m)
+    sizes.push_back(spoils_balance(trials, result.estimate, m)
+                        ? 0
+                        : material(trials, result.estimate, result.weights[m]));
+  return sizes;
+}
+
 /// Fits all parameters and the noise together, and removes the members that are not material, one by one, the
 /// weakest first. The search judged them with noise that it knew only partly; a barely material member must
 /// explain more than noise that is fitted without it.
@@ -188,10 +198,11 @@ void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
     maximise(trials, estimate);
     result.weights = weigh_all(trials, estimate);
     if (estimate.members.empty()) return;
-    std::vector<double> sizes;
-    for (size_t m = 0; m < estimate.members.size(); ++m)
-      sizes.push_back(spoils_balance(trials, estimate, m) ? 0
-                                                          : material(trials, estimate, result.weights[m]));
+    std::vector<double> sizes = sizes_of_members(trials, result);
+    if (std::ranges::min(sizes) >= 1) {  // an effect may have taken all of the beat of the counts
+      weigh_counts(trials, estimate, result.weights);
+      sizes = sizes_of_members(trials, result);
+    }
     const auto least = std::ranges::min_element(sizes);
     if (*least >= barely_material) return;
     const size_t weakest = size_t(least - sizes.begin());

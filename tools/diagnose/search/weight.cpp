@@ -147,17 +147,22 @@ double material(const Trials& trials, const Estimate& estimate, const Weight& we
 
 std::vector<Weight> weigh_all(Trials& trials, Estimate& estimate) {
   work_out_covariance(trials, estimate);
-  if (portmanteau(trials, *estimate.fitted) > most_portmanteau) widen_by_blocks(trials, estimate);
+  const double color = portmanteau(trials, *estimate.fitted);
+  if (color > most_portmanteau) widen_by_blocks(trials, estimate);
   refer_to_zero(estimate);
   std::vector<Weight> weights;
   for (size_t m = 0; m < estimate.members.size(); ++m) weights.push_back(weigh(trials, estimate, m));
-  if (weights.empty()) return weights;
-  if (const WhitenedErrors errors = errors_of_counts(trials, estimate); !errors.empty()) {
-    const NormalEquations of_counts = normal_equations(trials, estimate, errors);
-    for (size_t m = 0; m < weights.size(); ++m)
-      weights[m].counts = gain_of_member(of_counts, estimate.members, m);
-  }
+  if (color > most_portmanteau_of_counted) weigh_counts(trials, estimate, weights);
   return weights;
+}
+
+void weigh_counts(const Trials& trials, const Estimate& estimate, std::vector<Weight>& weights) {
+  if (weights.empty()) return;
+  const WhitenedErrors errors = errors_of_counts(trials, estimate);
+  if (errors.empty()) return;
+  const NormalEquations of_counts = normal_equations(trials, estimate, errors);
+  for (size_t m = 0; m < weights.size(); ++m)
+    weights[m].counts = gain_of_member(of_counts, estimate.members, m);
 }
 
 }  // namespace loopwright::diagnosis

@@ -7,7 +7,7 @@ namespace loopwright::diagnosis {
 /// The evidence for one member, and its size.
 struct Weight {
   double wald = 0;    ///< χ²: squared distance from zero in standard deviations, its shape known
-  double counts = 0;  ///< χ² that noise and counts of the first sensor alone would give it, see whiteness.h
+  double counts = 0;  ///< χ² that noise and counts of the first sensor alone would give it; 0: not asked
   double certainty = 0;     ///< the same with its shape estimated too, over the 95 % quantile; below 1 its
                             ///< interval contains zero
   double force_rms = 0;     ///< of the force it consumes, over the fitted rows; sensor: the equivalent force
@@ -17,6 +17,8 @@ struct Weight {
 
 /// Computes the covariance of an estimate with the given noise, and the weight of every member.
 std::vector<Weight> weigh_all(Trials& trials, Estimate& estimate);
+/// Fills Weight::counts, as weigh_all() does where the errors are not white.
+void weigh_counts(const Trials& trials, const Estimate& estimate, std::vector<Weight>& weights);
 
 /// Number of fitted rows × ports; rows at a higher rate than once in criteria::judged_row_s count as parts.
 double judged_numbers(const Trials& trials);

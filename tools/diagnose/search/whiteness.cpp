@@ -61,22 +61,33 @@ std::vector<double> errors_of_counting(const Trials& trials, const Noise& noise,
 std::vector<double> filtered(const Fitted& fitted, const Noise& noise, double scale,
                              const std::vector<double>& first_port, size_t record) {
   const ErrorSystem system(fitted, false);
-  const Path& path = fitted.prediction.path;
-  const Eigen::Index states = system.enter.size() - 1, ports = system.C.rows();
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(states + 1), e(ports);
-  std::vector<double> white(first_port.size() * size_t(ports));
-  for (size_t k = 0; k < first_port.size(); ++k) {
-    e = system.C * x;
-    e[0] += first_port[k];
-    for (Eigen::Index p = 1; p < ports; ++p)
-      e[p] += noise.measurement[size_t(p)] * normal(record, size_t(p), k);
-    Eigen::Map<Eigen::VectorXd>(&white[k * size_t(ports)], ports) = fitted.gains.whiten * e;
-    x -= system.correct * e;
-    if (path.forgets(k)) x[states] = 0;
-    x = system.onward * x;
-    x.head(states) += fitted.axis.noise_push * (scale * noise.white * normal(record, size_t(ports), k));
-    x[states] += scale * noise.step * normal(record, size_t(ports) + 1, k);
-  }
+  const size_t ports = size_t(system.C.rows());
+  std::vector<double> white(first_port.size() * ports);
+  with_sizes(fitted.axis, [&]<int States, int Ports>() {
+    constexpr int states = States ? States + 1 : Eigen::Dynamic, outputs = Ports ? Ports : Eigen::Dynamic;
+    using State = Eigen::Matrix<double, states, 1>;
+    using Port = Eigen::Matrix<double, outputs, 1>;
+    const Eigen::Matrix<double, states, states> onward = system.onward;
+    const Eigen::Matrix<double, states, outputs> correct = system.correct;
+    const Eigen::Matrix<double, outputs, states> seen = system.C;
+    const Eigen::Matrix<double, outputs, outputs> whiten = fitted.gains.whiten;
+    const Eigen::Index slow = system.enter.size() - 1, p = Eigen::Index(ports);
+    State push = State::Zero(slow + 1), x = push, next(slow + 1);
+    push.head(slow) = scale * noise.white * fitted.axis.noise_push;
+    Port e(p);
+    for (size_t k = 0; k < first_port.size(); ++k) {
+      e.noalias() = seen * x;
+      e[0] += first_port[k];
+      for (size_t port = 1; port < ports; ++port)
+        e[Eigen::Index(port)] += noise.measurement[port] * normal(record, port, k);
+      Eigen::Map<Port>(&white[k * ports], p).noalias() = whiten * e;
+      x.noalias() -= correct * e;
+      if (fitted.prediction.path.forgets(k)) x[slow] = 0;
+      next.noalias() = onward * x;
+      x = next + push * normal(record, ports, k);
+      x[slow] += scale * noise.step * normal(record, ports + 1, k);
+    }
+  });
   return white;
 }
 
