@@ -277,7 +277,8 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
   if (result.portmanteau > criteria::most_portmanteau_of_counted)
     if (const WhitenedErrors errors = errors_of_counts(trials, estimate); !errors.empty()) {
       const bool is_noisy = estimate.noise.white > 2 * criteria::least_white_noise * trials.force_rms;
-      if (is_noisy) result.most_portmanteau = criteria::most_portmanteau_of_counted;
+      if (is_noisy && estimate.members.empty())
+        result.most_portmanteau = criteria::most_portmanteau_of_counted;
       result.counts_portmanteau = portmanteau_of_counts(trials, errors);
     }
   result.trail.push_back(fmt::format("portmanteau {:.0f}, of counts alone {:.0f}", result.portmanteau,
