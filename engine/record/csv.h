@@ -29,8 +29,8 @@ namespace loopwright {
 ///
 /// Errors, with line and column: a file that cannot be read, is not UTF-8 text, has no rows or has a line
 /// that is too long; empty or repeated names; rows whose length differs from the header, a truncated last
-/// row; empty cells, text, decimal commas beside decimal points, numbers beyond the range of a double, NaN and infinity. After any
-/// of them the recording is empty.
+/// row; empty cells, text, decimal commas beside decimal points, numbers beyond the range of a double, NaN and
+/// infinity. After any of them the recording is empty.
 Recording read_csv(const std::string& path, Problems& problems, const ReadOptions& options = {});
 
 /// The same for text in memory.
