@@ -28,13 +28,13 @@ std::optional<double> parse_number(std::string_view text) {
   return number;
 }
 
-bool looks_like_number(std::string_view text) { return parse_number(text) || has_decimal_comma(text); }
+bool looks_like_number(std::string_view text) { return parse_number(text) || parse_decimal_comma(text); }
 
-bool has_decimal_comma(std::string_view text) {
-  if (std::ranges::count(text, ',') != 1) return false;
+std::optional<double> parse_decimal_comma(std::string_view text) {
+  if (std::ranges::count(text, ',') != 1) return std::nullopt;
   std::string with_point(text);
   std::ranges::replace(with_point, ',', '.');
-  return parse_number(with_point).has_value();
+  return parse_number(with_point);
 }
 
 namespace {

@@ -29,8 +29,8 @@ std::optional<double> parse_number(std::string_view text);
 
 /// A number, possibly with a decimal comma.
 bool looks_like_number(std::string_view text);
-/// True if replacing its single comma by a point gives a number.
-bool has_decimal_comma(std::string_view text);
+/// The number that replacing its single comma by a point gives; nothing if that is none.
+std::optional<double> parse_decimal_comma(std::string_view text);
 
 struct Field {
   std::string_view text;    ///< without surrounding blanks and without its quotes

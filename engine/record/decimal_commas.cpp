@@ -1,7 +1,6 @@
 #include "engine/record/decimal_commas.h"
 
 #include <algorithm>
-#include <string>
 
 #include "engine/record/csv_syntax.h"
 
@@ -24,12 +23,11 @@ bool may_separate_thousands(std::string_view cell) {
 }  // namespace
 
 std::optional<double> DecimalCommas::read(std::string_view cell) {
-  if (!has_decimal_comma(cell)) return std::nullopt;
-  std::string with_point(cell);
-  std::ranges::replace(with_point, ',', '.');
-  if (first_.data() == nullptr) first_ = cell;
+  const std::optional<double> number = parse_decimal_comma(cell);
+  if (!number) return number;
+  if (first_.empty()) first_ = cell;
   are_certain_ = are_certain_ || !may_separate_thousands(cell);
-  return parse_number(with_point);
+  return number;
 }
 
 }  // namespace loopwright::csv

@@ -324,6 +324,7 @@ const TermShape unknown_shapes[] = {unknown_of(9), unknown_of(17), unknown_of(mo
 
 std::span<const TermShape> named_shapes() { return known_shapes; }
 std::span<const TermShape> unknown_functions() { return unknown_shapes; }
+bool is_dry_friction(const TermShape& shape) { return shape.name == "sign" || shape.name == "stribeck"; }
 bool is_unknown_function(const TermShape& shape) {
   return std::ranges::any_of(unknown_shapes, [&](const TermShape& known) { return &known == &shape; });
 }

@@ -52,5 +52,7 @@ std::span<const TermShape> named_shapes();
 /// coefficients are the values at the nodes.
 std::span<const TermShape> unknown_functions();
 bool is_unknown_function(const TermShape& shape);
+/// A force that keeps its size at rest, of whatever shape beyond.
+bool is_dry_friction(const TermShape& shape);
 
 }  // namespace loopwright::diagnosis

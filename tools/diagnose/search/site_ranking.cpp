@@ -130,11 +130,8 @@ class Ranking {
     return kind == Site::Kind::input || kind == Site::Kind::block || kind == Site::Kind::sensor;
   }
   bool is_sensor(int site) const { return fitter_.model().sites()[size_t(site)].kind == Site::Kind::sensor; }
-  /// A second law of dry friction would only mend how the first one turns around rest.
-  static bool is_dry_friction(const TermShape& shape) {
-    return shape.name == "sign" || shape.name == "stribeck";
-  }
-  /// A function without a name contains all laws of its signal.
+  /// A function without a name contains all laws of its signal. A second law of dry friction would only mend
+  /// how the first one turns around rest.
   bool is_there(const TermShape& shape, int site, int variable) const {
     return std::ranges::any_of(at_.terms, [&](const SiteTerm& t) {
       if (t.site != site || t.variable != variable) return false;

@@ -243,9 +243,7 @@ class SiteSearch {
     if (names.terms.size() < 2 || are_laws_of_friction(at, names) ||
         are_periods(at, names, range[1] - range[0]))
       return false;
-    SiteHypothesis nothing = at;
-    for (size_t i = names.terms.size(); i-- > 0;)
-      nothing.terms.erase(nothing.terms.begin() + std::ptrdiff_t(names.terms[i]));
+    SiteHypothesis nothing = without(at, names);
     fitter_.refine(nothing, 6, true);
     fitter_.fit_noise(nothing);
     const double gained = nothing.objective - at.objective;

@@ -14,16 +14,9 @@ constexpr int refinements = 4;
 enum class LawOfFriction { dry, viscous, drag, none };
 LawOfFriction law_of(const TermShape& shape) {
   using enum LawOfFriction;
-  if (shape.name == "sign" || shape.name == "stribeck" || shape.name == "soft_sign") return dry;
+  if (is_dry_friction(shape) || shape.name == "soft_sign") return dry;
   if (shape.name == "linear") return viscous;
   return shape.name == "signed_square" || shape.name == "cube" ? drag : none;
-}
-
-SiteHypothesis without(const SiteHypothesis& at, const StackedNames& names) {
-  SiteHypothesis rest = at;
-  for (size_t i = names.terms.size(); i-- > 0;)
-    rest.terms.erase(rest.terms.begin() + std::ptrdiff_t(names.terms[i]));
-  return rest;
 }
 
 }  // namespace
@@ -41,6 +34,13 @@ std::vector<StackedNames> stacked_names(const SiteHypothesis& at, size_t fewest)
   }
   std::erase_if(list, [&](const StackedNames& s) { return s.terms.size() < fewest; });
   return list;
+}
+
+SiteHypothesis without(const SiteHypothesis& at, const StackedNames& names) {
+  SiteHypothesis rest = at;
+  for (size_t i = names.terms.size(); i-- > 0;)
+    rest.terms.erase(rest.terms.begin() + std::ptrdiff_t(names.terms[i]));
+  return rest;
 }
 
 bool are_laws_of_friction(const SiteHypothesis& at, const StackedNames& names) {

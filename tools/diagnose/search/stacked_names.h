@@ -16,6 +16,9 @@ struct StackedNames {
 /// Those with a name, distortions excluded, of sites and variables with at least `fewest` of them.
 std::vector<StackedNames> stacked_names(const SiteHypothesis& at, size_t fewest);
 
+/// The hypothesis without them, not fitted again.
+SiteHypothesis without(const SiteHypothesis& at, const StackedNames& names);
+
 /// Names that occur together in machines. Other sums of laws resemble any function, as a series of sines
 /// does. Laws of friction, at most one of each kind.
 bool are_laws_of_friction(const SiteHypothesis& at, const StackedNames& names);

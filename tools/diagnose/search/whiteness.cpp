@@ -41,13 +41,11 @@ std::vector<double> smoothed(const Fitted& fitted, const MeasuredPort& sensor, s
   return motion;
 }
 
-/// What is measured minus what is, at the first port: the motion counted anew, and the other noise of the
+/// What is measured minus what is, at the first port: a motion counted anew, and the other noise of the
 /// sensor. `dithers`: the noise comes before the counting, and covers its pattern.
-std::vector<double> errors_of_counting(const Trials& trials, const Noise& noise, const Fitted& fitted,
-                                       const MeasuredPort& sensor, bool dithers, size_t record) {
-  const std::vector<double> motion = smoothed(fitted, sensor, trials.ports());
-  const double count = sensor.resolution;
-  const double other = std::sqrt(std::max(0.0, std::pow(noise.measurement[0], 2) - count * count / 12));
+std::vector<double> errors_of_counting(const std::vector<double>& motion, double count, double noise,
+                                       bool dithers, size_t record) {
+  const double other = std::sqrt(std::max(0.0, noise * noise - count * count / 12));
   std::vector<double> error(motion.size());
   for (size_t k = 0; k < error.size(); ++k) {
     const double shaken = other * normal(record, 0, k), seen = motion[k] + (dithers ? shaken : 0.0);
@@ -133,24 +131,22 @@ double portmanteau(const Trials& trials, const std::vector<Fitted>& fitted) {
 }
 
 WhitenedErrors errors_of_counts(const Trials& trials, const Estimate& estimate) {
-  WhitenedErrors most;
-  double greatest = -1;
-  for (const bool dithers : {true, false}) {
-    WhitenedErrors all;
-    for (size_t t = 0; t < trials.list.size(); ++t) {
-      const AxisModel& model = *trials.list[t].model;
-      const MeasuredPort& sensor = model.record().measured.front();
-      if (!(sensor.resolution > 0) || trials.has_map()) return {};
-      const Fitted& fitted = (*estimate.fitted)[t];
-      const std::vector<double> counted =
-          errors_of_counting(trials, estimate.noise, fitted, sensor, dithers, t);
-      const double scale = fitted.axis.inertia / model.nominal_inertia();
-      all.push_back(filtered(fitted, estimate.noise, scale, counted, t));
-    }
-    if (const double size = portmanteau_of_counts(trials, all); size > greatest)
-      greatest = size, most = std::move(all);
+  WhitenedErrors covered, bare;
+  for (size_t t = 0; t < trials.list.size(); ++t) {
+    const AxisModel& model = *trials.list[t].model;
+    const MeasuredPort& sensor = model.record().measured.front();
+    if (!(sensor.resolution > 0) || trials.has_map()) return {};
+    const Fitted& fitted = (*estimate.fitted)[t];
+    const std::vector<double> motion = smoothed(fitted, sensor, trials.ports());
+    const double scale = fitted.axis.inertia / model.nominal_inertia();
+    const auto errors = [&](bool dithers) {
+      return filtered(
+          fitted, estimate.noise, scale,
+          errors_of_counting(motion, sensor.resolution, estimate.noise.measurement[0], dithers, t), t);
+    };
+    covered.push_back(errors(true)), bare.push_back(errors(false));
   }
-  return most;
+  return portmanteau_of_counts(trials, bare) > portmanteau_of_counts(trials, covered) ? bare : covered;
 }
 
 double portmanteau_of_counts(const Trials& trials, const WhitenedErrors& errors) {
