@@ -164,7 +164,7 @@ report::Plot steps_of_the_error(const Diagnosis& d) {
                                               held_out ? ", held-out rows" : "", d.simulation_horizon_s)
                : held_out       ? "Residual force, held-out rows"
                                 : "Residual force";
-  plot.x = {"Row of the table below", ""};
+  plot.x = {.label = "Row of the table below", .unit = "", .counts = true};
   plot.y = {d.is_simulated() ? "Simulation error" : "Residual force",
             d.is_simulated() ? d.measured_unit : d.force_unit};
   report::Series series{"the diagram so far", {}, {}, report::Series::Shape::steps};

@@ -82,7 +82,7 @@ std::string loop_text(const LoopAnalysis& loop) {
     line("phase margin", fmt::format("{:.2f}°", m.phase * 180 / std::numbers::pi), m.phase_frequency);
   if (std::isfinite(m.delay))
     line("delay margin", fmt::format("{:.4g} ms", 1e3 * m.delay), m.delay_frequency);
-  line("Ms", fmt::format("{:.4g}", m.Ms), m.Ms_frequency);
+  if (std::isfinite(m.Ms)) line("Ms", fmt::format("{:.4g}", m.Ms), m.Ms_frequency);
   return text;
 }
 

@@ -112,7 +112,8 @@ report::Section loop_section(const LoopAnalysis& loop) {
   if (std::isfinite(m.delay))
     numbers.numbers.push_back(
         {"Delay margin", fmt::format("{:.3g}", 1e3 * m.delay), "ms", at(m.delay_frequency)});
-  numbers.numbers.push_back({"Ms", fmt::format("{:.3g}", m.Ms), "", at(m.Ms_frequency)});
+  if (std::isfinite(m.Ms))
+    numbers.numbers.push_back({"Ms", fmt::format("{:.3g}", m.Ms), "", at(m.Ms_frequency)});
   section.items.push_back(std::move(numbers));
   Bode bode("");
   bode.gain.title = "Loop gain L";
@@ -132,11 +133,15 @@ report::Section loop_section(const LoopAnalysis& loop) {
     nyquist.title = "Nyquist";
     nyquist.x = {"Re L", "", false}, nyquist.y = {"Im L", "", false};
     NyquistCurves curves = nyquist_curves(loop);
-    Series curve{"L", std::move(curves.real), std::move(curves.imaginary), Series::Shape::line},
-        circle{"Ms", std::move(curves.circle_real), std::move(curves.circle_imaginary), Series::Shape::line},
-        point{"-1", {-1}, {0}, Series::Shape::points};
-    nyquist.series = {std::move(curve), std::move(circle), std::move(point)};
-    nyquist.caption = "Where |L| < 5. The circle around -1 that the curve touches has the radius 1/Ms.";
+    nyquist.caption = "Where |L| < 5.";
+    nyquist.series.push_back(
+        {"L", std::move(curves.real), std::move(curves.imaginary), Series::Shape::line});
+    if (!curves.circle_real.empty()) {
+      nyquist.series.push_back(
+          {"Ms", std::move(curves.circle_real), std::move(curves.circle_imaginary), Series::Shape::line});
+      nyquist.caption += " The circle around -1 that the curve touches has the radius 1/Ms.";
+    }
+    nyquist.series.push_back({"-1", {-1}, {0}, Series::Shape::points});
     return nyquist;
   }());
   return section;

@@ -30,6 +30,7 @@ struct Axis {
   std::string label;  ///< "Tracking error"
   std::string unit;   ///< "m", "N*s/m"; empty or "1": none. The page chooses mm, µm … by the visible range
   bool logarithmic = false;  ///< base 10
+  bool counts = false;       ///< whole numbers only: no ticks between them
 };
 
 /// A line across a plot at a value of one axis: a crossover, a margin, a limit.

@@ -61,8 +61,8 @@ std::size_t HtmlWriter::point_limit(const Page& page) {
 }
 
 std::string axis_json(const Axis& axis) {
-  return fmt::format(R"({{"label":{},"unit":{},"logarithmic":{}}})", json_string(axis.label),
-                     json_string(readable_unit(axis.unit)), axis.logarithmic);
+  return fmt::format(R"({{"label":{},"unit":{},"logarithmic":{},"counts":{}}})", json_string(axis.label),
+                     json_string(readable_unit(axis.unit)), axis.logarithmic, axis.counts);
 }
 
 /// The step of x if it increases uniformly, as sampled time does; 0 otherwise. Tolerates the rounding of x

@@ -35,6 +35,7 @@ export function axis(key, description, plot) {
     size: isX ? (hidden ? 8 : 30)
               : (u, values) => Math.max(AXIS_WIDTH - 20, 14 + 7 * Math.max(0, ...(values || []).map((v) => (v || "").length))),
     gap: 5, space: isX ? 70 : 32,
+    ...(description.counts ? { incrs: [1, 2, 5, 10, 20, 50, 100, 1000] } : {}),
     values: hidden ? (u, splits) => splits.map(() => "") : description.logarithmic ? logarithmic : linear,
     grid: { stroke: () => variable("--grid"), width: 1 },
     ticks: { show: !hidden, stroke: () => variable("--rule"), width: 1, size: 5 },

@@ -94,12 +94,17 @@ bool is_final(const Handle& file) {
   return false;
 }
 
+/// A name that no other file beside the target has.
+std::string hidden_name(const std::string& target) {
+  static std::atomic<unsigned> counter{0};
+  return fmt::format(".{}.studio-{}-{}", target.substr(0, 200), ::getpid(), counter++);
+}
+
 /// A hidden file beside the target, with the new text on the disk.
 class NewFile {
  public:
-  NewFile(int folder, const std::string& target, std::string_view text, mode_t mode) : folder_(folder) {
-    static std::atomic<unsigned> counter{0};
-    name_ = fmt::format(".{}.studio-{}-{}", target.substr(0, 200), ::getpid(), counter++);
+  NewFile(int folder, const std::string& target, std::string_view text, mode_t mode)
+      : folder_(folder), name_(hidden_name(target)) {
     Handle file(::openat(folder, name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600));
     if (!file) refuse(target, std::strerror(errno));
     is_there_ = true;
@@ -139,7 +144,7 @@ class NewFile {
   }
 
   const int folder_;
-  std::string name_;
+  const std::string name_;
   bool is_there_ = false;
 };
 
@@ -270,7 +275,18 @@ std::optional<Folder::Found> Folder::replace(const std::string& relative,
 void Folder::remove(const std::string& relative, std::string_view expected) const {
   std::string name;
   const Handle folder = folder_of(relative, name);
-  if (folder && read(relative) == expected) ::unlinkat(folder.number(), name.c_str(), 0);
+  if (!folder || read(relative) != expected) return;
+  // It is moved aside before it is compared for good: what another program writes in between goes back, and is lost at no time.
+  const std::string aside = hidden_name(name);
+  const auto move = [&](const std::string& from, const std::string& to) {
+    return ::renameat2(folder.number(), from.c_str(), folder.number(), to.c_str(), RENAME_NOREPLACE) == 0;
+  };
+  if (!move(name, aside)) return;
+  const Handle file = open_in(folder.number(), aside);
+  if (file && is_final(file) && contents_of(file.number()) == expected)
+    ::unlinkat(folder.number(), aside.c_str(), 0);
+  else if (!move(aside, name))
+    refuse(relative, "it was replaced while it was removed; its former contents are in " + aside);
 }
 
 void Folder::make_own_folder(const std::string& name) const {
