@@ -1,5 +1,5 @@
 /// dy/dt = u, held inside its limits, set to `initial` when `reset` rises through zero
-#include "engine/block.h"
+#include "blocks/math/sides.h"
 
 namespace loopwright::blocks {
 
@@ -37,12 +37,13 @@ template <class Real> struct Integrator {
     p.expected = "low < high and low <= initial <= high";
   }
   void start(State& state) const { state.y = initial; }
-  void decide(const In& in, const State& state, Mode& mode) const {
+  Fault decide(const In& in, const State& state, Mode& mode) const {
     const Real is_high = select(in.reset > 0.0, Real(1.0), Real(0.0));
     mode.fires = select((is_high > 0.0) & (mode.trigger_is_high < 0.5), Real(1.0), Real(0.0));
     mode.trigger_is_high = is_high;
     mode.at_low = select((state.y <= low) & (in.u < 0.0), Real(1.0), Real(0.0));
     mode.at_high = select((state.y >= high) & (in.u > 0.0), Real(1.0), Real(0.0));
+    return fault_if_nan(in.reset);
   }
   void start(Mode& mode) const {
     mode.trigger_is_high = Real(1.0);
@@ -55,9 +56,9 @@ template <class Real> struct Integrator {
     rate.y = select((mode.at_low > 0.5) | (mode.at_high > 0.5), Real(0.0), in.u);
   }
   void crossings(const In& in, const State& state, const Mode& mode, Crossings& value) const {
-    value.reset = in.reset;
-    value.low = select(mode.at_low > 0.5, Real(1.0), state.y - low);
-    value.high = select(mode.at_high > 0.5, Real(-1.0), state.y - high);
+    value.reset = above_zero(in.reset);
+    value.low = select(mode.at_low > 0.5, Real(1.0), not_below_zero(Real(state.y - low)));
+    value.high = select(mode.at_high > 0.5, Real(-1.0), above_zero(Real(state.y - high)));
     value.release = select((mode.at_low > 0.5) | (mode.at_high > 0.5), in.u, Real(1.0));
   }
 };

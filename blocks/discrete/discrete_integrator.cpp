@@ -4,7 +4,7 @@
 /// In a loop, connect `before`, which does not depend on the present input; with "forward" it equals `y`. The
 /// signal is taken as zero before the start. A reset sets y at its sample (with "forward" at the next sample,
 /// like all inputs).
-#include "engine/block.h"
+#include "blocks/math/sides.h"
 
 namespace loopwright::blocks {
 
@@ -66,11 +66,12 @@ template <class Real> struct DiscreteIntegrator {
     out.before = limited(memory.integral);
     out.y = integral(in, memory);
   }
-  void update(const In& in, Memory& memory) const {
+  Fault update(const In& in, Memory& memory) const {
     const Real next = integral(in, memory) + past * in.u;
     const bool is_late = method == IntegrationRule::forward;
     memory.integral = is_late ? select(fires(in, memory), in.reset_value, next) : next;
     memory.trigger_was_high = select(in.reset > 0.0, Real(1.0), Real(0.0));
+    return fault_if_nan(in.reset);
   }
 };
 LOOPWRIGHT_BLOCK(DiscreteIntegrator)

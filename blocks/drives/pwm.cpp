@@ -69,13 +69,14 @@ struct Pwm {
     double* const all[] = {&halves.start, &halves.period};
     halves.units = to_counts<double>(all);
   }
-  void decide(const Instant& now, const In& in, Mode& mode) const {
-    if (kind == PwmKind::averaged) return;
+  Fault decide(const Instant& now, const In& in, Mode& mode) const {
+    if (kind == PwmKind::averaged) return {};
     const double side = above_zero(excess(now.time, in)) > 0 ? 1 : -1;
     if (mode.has_begun > 0.5 && side != mode.side) mode.since = now.time, mode.is_blank = 1;
     if (mode.is_blank > 0.5 && !(above_zero(mode.since + dead_time - now.time) > 0)) mode.is_blank = 0;
     mode.side = side, mode.has_begun = 1;
     mode.outwards = above_zero(in.current) > 0 ? 1 : above_zero(-in.current) > 0 ? -1 : 0;
+    return fault_if_nan(in.command, in.current);
   }
   void outputs(const In& in, const Mode& mode, Out& out) const {
     if (kind == PwmKind::averaged) {

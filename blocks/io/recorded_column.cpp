@@ -11,6 +11,7 @@
 #include "engine/record/excerpt.h"
 #include "engine/unit/scaled_rate.h"
 #include "engine/record/recording_file.h"
+#include "engine/record/time_axis.h"
 
 namespace loopwright::blocks {
 
@@ -85,6 +86,14 @@ struct RecordedColumn {
   }
 };
 
+/// Samples whose stamps were only rounded are played at their even instants, with which the readers of
+/// experiments compare.
+void put_on_grid(std::vector<double>& times) {
+  Problems ignored;  // uneven times are played as they are, and those that do not rise are reported below
+  const TimeAxis axis = check_time({"time", "s", times}, ignored);
+  if (std::vector<double> instants = unrounded(times, axis); !instants.empty()) times = std::move(instants);
+}
+
 /// The same columns and rows as for the readers of the experiment.
 void RecordedColumn::take_excerpt(const Checker& checker, Recording& recording) const {
   const Reader reader{checker.problems(), checker.block()};
@@ -103,7 +112,7 @@ void RecordedColumn::check(const Checker& checker) {
       if (problems.list()[i].severity == Problem::Severity::error) return true;
     return false;
   };
-  Recording recording = read_recording(checker.resolve_file("file", file), problems);
+  Recording recording = read_recording(checker.resolve_file("file", file), problems, {.allow_holes = true});
   if (!experiment.empty() && !failed()) take_excerpt(checker, recording);
   if (failed()) {
     checker.error("file", "the recording cannot be used").found = file;
@@ -118,6 +127,8 @@ void RecordedColumn::check(const Checker& checker) {
   const Column* values = find_column(recording, column, error_at("column"));
   const auto times = time_in_seconds(recording, time_column, error_at(names_time));
   const auto scale = values ? unit_of(*values, unit, error_at("unit")) : std::nullopt;
+  // Its holes are told at their places in the recording; this is the place in the diagram.
+  if (!values && recording.find(column)) checker.error("column", "the recording cannot be used").found = file;
   if (!times || !scale) return;
   if (!unit.empty() || !values->unit.empty()) known_unit = kept_in_si(*scale);
   auto loaded = std::make_shared<Table>();
@@ -126,6 +137,7 @@ void RecordedColumn::check(const Checker& checker) {
     const bool repeats = i > 0 && times->values[i] == times->values[i - 1] && all[i] == all[i - 1];
     if (!repeats) loaded->time.push_back(times->values[i]), loaded->value.push_back(all[i]);
   }
+  put_on_grid(loaded->time);
   loaded->begin = loaded->time;
   for (size_t i = 1; i < loaded->time.size(); ++i) {
     const double step = loaded->time[i] - loaded->time[i - 1];

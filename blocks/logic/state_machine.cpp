@@ -6,7 +6,8 @@
 /// A transition leaves the active states up to its source, which is left too, and enters its target. With a
 /// state the states that contain it are entered before it, unless they stay active, and its initial state
 /// after it. Entering a state sets outputs, the outer before the inner ones. An output that is not set keeps
-/// its value; before it is set it is 0. Outputs and `state` change in the sample of the transition.
+/// its value; before it is set it is 0. Outputs and `state` change in the sample of the transition. Numbers
+/// for an output whose unit is not one of SI, such as mm, need a unit of their own.
 ///
 /// after(0.5 s) is true from the first sample at which the state with the transition has been active for that
 /// time. In a subdiagram that does not always run, only the samples at which it runs count.

@@ -91,6 +91,21 @@ class MachineCheck {
         error(item.find("unit")->value, "there is no such unit").found = fmt::format("\"{}\"", unit);
       }
   }
+  /// A number without unit is in SI, as it is wherever the run reads it. For an output in mm it would be
+  /// taken for millimetres and be metres: 0 alone is the same in both.
+  void check_unit(const std::string& output, const Value& number) {
+    const auto declared = std::ranges::find(machine_.declared_outputs, output, &MachineOutput::name);
+    if (declared == machine_.declared_outputs.end() || number.unit) return;
+    const auto unit = parse_unit(declared->unit);
+    if (!unit || unit->to_si(number.number) == number.number) return;
+    Problem& problem = error(
+        number,
+        fmt::format("a number for the output \"{}\" needs a unit, as it is in {}", output, declared->unit));
+    problem.expected = fmt::format("{{\"value\": {}, \"unit\": \"{}\"}}", reading::number_text(number.number),
+                                   declared->unit);
+    problem.found = reading::number_text(number.number) + (number.text.empty() ? "" : " from " + number.text);
+    problem.hint = fmt::format("or give the output the unit {}", to_string(unit->in_si()));
+  }
   /// Reports a name of a state that does not exist.
   bool is_state(const std::string& name, const Value& at) {
     if (std::ranges::find(states_, name) != states_.end()) return true;
@@ -129,15 +144,18 @@ class MachineCheck {
         std::ranges::any_of(machine_.states, [](const MachineState& s) { return s.inside.empty(); });
     if (!has_outermost) error(value_of(0), "every state is inside another");
   }
+  void check_set(size_t s) {
+    for (const auto& [output, value] : machine_.states[s].set.entries) {
+      const Value& at = value_of(s, "set").find(output)->value;
+      check_unit(output, at);
+      if (std::ranges::find(outputs_, output) == outputs_.end())
+        KnownNames(outputs_).explain(error(at, fmt::format("the state machine has no output \"{}\"", output)),
+                                     output);
+    }
+  }
   void check_state(size_t s) {
     const MachineState& state = machine_.states[s];
-    for (const auto& [output, value] : state.set.entries)
-      if (std::ranges::find(outputs_, output) == outputs_.end()) {
-        const Value& at = value_of(s, "set");
-        KnownNames(outputs_).explain(
-            error(at.find(output)->value, fmt::format("the state machine has no output \"{}\"", output)),
-            output);
-      }
+    check_set(s);
     std::vector<Place> places;
     for (size_t t = 0; t < state.transitions.size(); ++t) {
       is_state(state.transitions[t].to, value_of(s, t, "to"));

@@ -41,8 +41,9 @@ template <class Real> struct Comparison {
     if (hysteresis > 0.0 && (relation == Relation::equal || relation == Relation::not_equal))
       checker.error("hysteresis", "only an inequality can have hysteresis").expected = "<, <=, > or >=";
   }
-  void decide(const In& in, Mode& mode) const {
+  Fault decide(const In& in, Mode& mode) const {
     mode.holds = select(holds(helped(in.a, mode), in.b), Real(1.0), Real(0.0));
+    return fault_if_nan(in.a, in.b);
   }
   void outputs(const Mode& mode, Out& out) const { out.y = mode.holds; }
   void crossings(const In& in, const Mode& mode, Crossings& value) const {

@@ -34,8 +34,9 @@ template <class Real> struct Relay {
         "switch_off <= switch_on";
   }
   void start(Mode& mode) const { mode.is_on = starts_on ? 1.0 : 0.0; }
-  void decide(const In& in, Mode& mode) const {
+  Fault decide(const In& in, Mode& mode) const {
     mode.is_on = select(in.u > switch_on, Real(1.0), select(in.u < switch_off, Real(0.0), mode.is_on));
+    return fault_if_nan(in.u);
   }
   void outputs(const Mode& mode, Out& out) const { out.y = select(mode.is_on > 0.5, on, off); }
   void crossings(const In& in, const Mode& mode, Crossings& value) const {

@@ -24,8 +24,9 @@ template <class Real> struct Sign {
                  output(&Out::y, "y", "", "1, -1 or 0"), crossing(&Crossings::above, "above"),
                  crossing(&Crossings::below, "below"));
   }
-  void decide(const In& in, Mode& mode) const {
+  Fault decide(const In& in, Mode& mode) const {
     mode.sign = select(in.u > 0.0, Real(1.0), select(in.u < 0.0, Real(-1.0), Real(0.0)));
+    return fault_if_nan(in.u);
   }
   void outputs(const Mode& mode, Out& out) const { out.y = mode.sign; }
   void crossings(const In& in, Crossings& value) const {

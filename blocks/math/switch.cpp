@@ -26,8 +26,9 @@ template <class Real> struct Switch {
         input(&In::second, "second", "$y", "Signal otherwise"),
         output(&Out::y, "y", "$y", "The chosen signal"), crossing(&Crossings::control, "control"));
   }
-  void decide(const In& in, Mode& mode) const {
+  Fault decide(const In& in, Mode& mode) const {
     mode.is_first = select(in.control > threshold, Real(1.0), Real(0.0));
+    return fault_if_nan(in.control);
   }
   void outputs(const In& in, const Mode& mode, Out& out) const {
     out.y = select(mode.is_first > 0.5, in.first, in.second);

@@ -1,5 +1,5 @@
 /// d = x_motor - x_load;  F = k (d ∓ gap/2) + c d' beyond the gap, pushing only; 0 inside
-#include "engine/block.h"
+#include "blocks/math/sides.h"
 #include "models/contact/gap_contact.h"
 
 namespace loopwright::blocks {
@@ -40,13 +40,16 @@ template <class Real> struct BacklashCoupling {
         crossing(&Crossings::backward, "backward contact"), crossing(&Crossings::forward, "forward contact"));
   }
   void prepare(double) { contact = {-0.5 * gap, 0.5 * gap, stiffness, damping, 1.0 / stiffness}; }
-  void decide(const In& in, Mode& mode) const { mode.side = contact.side(deflection(in), approach(in)); }
+  Fault decide(const In& in, Mode& mode) const {
+    mode.side = contact.side(deflection(in), approach(in));
+    return fault_if_nan(deflection(in), approach(in));
+  }
   void outputs(const In& in, const Mode& mode, Out& out) const {
     out.force = contact.force(mode.side, deflection(in), approach(in));
   }
   void crossings(const In& in, Crossings& value) const {
-    value.backward = contact.low_pressing(deflection(in), approach(in));
-    value.forward = contact.high_pressing(deflection(in), approach(in));
+    value.backward = not_below_zero(contact.low_pressing(deflection(in), approach(in)));
+    value.forward = not_below_zero(contact.high_pressing(deflection(in), approach(in)));
   }
   static Real deflection(const In& in) { return in.motor_position - in.load_position; }
   static Real approach(const In& in) { return in.motor_velocity - in.load_velocity; }

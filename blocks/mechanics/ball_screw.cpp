@@ -4,6 +4,7 @@
 /// M = F lead / (2π η) while the screw drives, F η' lead / 2π while the nut drives, joined by
 /// tanh(v / transition) around rest. The screw's inertia is an `Inertia`, the table a `Mass`. The efficiency
 /// backwards of a screw is near 2 - 1/η. Contact and separation are events for variable-step solvers.
+#include "blocks/math/sides.h"
 #include "blocks/mechanics/transmission_check.h"
 #include "models/contact/transmission.h"
 
@@ -62,14 +63,17 @@ template <class Real> struct BallScrew {
     transmission =
         Transmission<Real>::of(lead * (0.5 / pi), efficiency, backwards, transition, gap, stiffness, damping);
   }
-  void decide(const In& in, Mode& mode) const { mode.side = transmission.side(deflection(in), approach(in)); }
+  Fault decide(const In& in, Mode& mode) const {
+    mode.side = transmission.side(deflection(in), approach(in));
+    return fault_if_nan(deflection(in), approach(in));
+  }
   void outputs(const In& in, const Mode& mode, Out& out) const {
     out.force = transmission.force(mode.side, deflection(in), approach(in));
     out.torque = transmission.at_input(out.force, in.velocity);
   }
   void crossings(const In& in, Crossings& value) const {
-    value.backward = transmission.contact.low_pressing(deflection(in), approach(in));
-    value.forward = transmission.contact.high_pressing(deflection(in), approach(in));
+    value.backward = not_below_zero(transmission.contact.low_pressing(deflection(in), approach(in)));
+    value.forward = not_below_zero(transmission.contact.high_pressing(deflection(in), approach(in)));
   }
 
  private:

@@ -1,5 +1,5 @@
 /// F = ±Fc while sliding; F = applied + (m/T) v, at most ±Fs, while stuck
-#include "engine/block.h"
+#include "blocks/math/sides.h"
 #include "models/friction/stiction.h"
 
 namespace loopwright::blocks {
@@ -52,15 +52,16 @@ template <class Real> struct CoulombFriction {
     const Real breakaway = maximum(static_level, level);
     stiction = {breakaway, breakaway, mass / settling_time};
   }
-  void decide(const In& in, Mode& mode) const {
+  Fault decide(const In& in, Mode& mode) const {
     mode.direction = stiction.next_direction(mode.direction, in.velocity, in.applied);
+    return fault_if_nan(in.velocity, in.applied);
   }
   void outputs(const In& in, const Mode& mode, Out& out) const {
     out.force = select(mode.direction == 0.0, stiction.holding_force(in.velocity, in.applied),
                        mode.direction * level);
   }
   void crossings(const In& in, const Mode& mode, Crossings& value) const {
-    value.margin = stiction.margin(mode.direction, in.velocity, in.applied);
+    value.margin = not_below_zero(stiction.margin(mode.direction, in.velocity, in.applied));
   }
 };
 LOOPWRIGHT_BLOCK(CoulombFriction)

@@ -1,6 +1,6 @@
 /// F = F₊ + B₊ v while sliding forward, -F₋ + B₋ v backward; F = applied + (m/T) v, within -F₋ … F₊, while
 /// stuck
-#include "engine/block.h"
+#include "blocks/math/sides.h"
 #include "models/friction/stiction.h"
 
 namespace loopwright::blocks {
@@ -56,8 +56,9 @@ template <class Real> struct DirectionDependentFriction {
     p.expected = "a parameter \"mass\"";
   }
   void prepare(double) { stiction = {level_forward, level_backward, mass / settling_time}; }
-  void decide(const In& in, Mode& mode) const {
+  Fault decide(const In& in, Mode& mode) const {
     mode.direction = stiction.next_direction(mode.direction, in.velocity, in.applied);
+    return fault_if_nan(in.velocity, in.applied);
   }
   void outputs(const In& in, const Mode& mode, Out& out) const {
     const Real viscous = select(in.velocity > 0.0, damping_forward, damping_backward) * in.velocity;
@@ -66,7 +67,7 @@ template <class Real> struct DirectionDependentFriction {
         viscous + select(mode.direction == 0.0, stiction.holding_force(in.velocity, in.applied), sliding);
   }
   void crossings(const In& in, const Mode& mode, Crossings& value) const {
-    value.margin = stiction.margin(mode.direction, in.velocity, in.applied);
+    value.margin = not_below_zero(stiction.margin(mode.direction, in.velocity, in.applied));
   }
 };
 LOOPWRIGHT_BLOCK(DirectionDependentFriction)

@@ -1,5 +1,5 @@
 /// F = max(0, k (x - high) + c v) at the high stop, min(0, k (x - low) + c v) at the low one, else 0
-#include "engine/block.h"
+#include "blocks/math/sides.h"
 #include "models/contact/gap_contact.h"
 
 namespace loopwright::blocks {
@@ -40,13 +40,16 @@ template <class Real> struct EndStop {
     checker.error("low", "there is no travel between the stops").expected = "low < high";
   }
   void prepare(double) { contact = {low, high, stiffness, damping, 1.0 / stiffness}; }
-  void decide(const In& in, Mode& mode) const { mode.side = contact.side(in.position, in.velocity); }
+  Fault decide(const In& in, Mode& mode) const {
+    mode.side = contact.side(in.position, in.velocity);
+    return fault_if_nan(in.position, in.velocity);
+  }
   void outputs(const In& in, const Mode& mode, Out& out) const {
     out.force = contact.force(mode.side, in.position, in.velocity);
   }
   void crossings(const In& in, Crossings& value) const {
-    value.low = contact.low_pressing(in.position, in.velocity);
-    value.high = contact.high_pressing(in.position, in.velocity);
+    value.low = not_below_zero(contact.low_pressing(in.position, in.velocity));
+    value.high = not_below_zero(contact.high_pressing(in.position, in.velocity));
   }
 };
 LOOPWRIGHT_BLOCK(EndStop)

@@ -5,6 +5,7 @@
 /// tanh(ω_out / transition) around rest. A part of the ends, of inertia J, is an `Inertia` of its own.
 /// Contact and separation are events for variable-step solvers. Losses that do not depend on the load are a
 /// CoulombFriction or ViscousFriction of either shaft.
+#include "blocks/math/sides.h"
 #include "blocks/mechanics/transmission_check.h"
 #include "models/contact/transmission.h"
 
@@ -65,14 +66,17 @@ template <class Real> struct Gear {
     transmission =
         Transmission<Real>::of(1.0 / ratio, efficiency, backwards, transition, gap, stiffness, damping);
   }
-  void decide(const In& in, Mode& mode) const { mode.side = transmission.side(deflection(in), approach(in)); }
+  Fault decide(const In& in, Mode& mode) const {
+    mode.side = transmission.side(deflection(in), approach(in));
+    return fault_if_nan(deflection(in), approach(in));
+  }
   void outputs(const In& in, const Mode& mode, Out& out) const {
     out.output_torque = transmission.force(mode.side, deflection(in), approach(in));
     out.input_torque = transmission.at_input(out.output_torque, in.output_velocity);
   }
   void crossings(const In& in, Crossings& value) const {
-    value.backward = transmission.contact.low_pressing(deflection(in), approach(in));
-    value.forward = transmission.contact.high_pressing(deflection(in), approach(in));
+    value.backward = not_below_zero(transmission.contact.low_pressing(deflection(in), approach(in)));
+    value.forward = not_below_zero(transmission.contact.high_pressing(deflection(in), approach(in)));
   }
 
  private:

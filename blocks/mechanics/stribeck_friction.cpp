@@ -1,5 +1,5 @@
 /// F = ±(Fc + (Fs - Fc) exp(-(|v|/v_s)^δ)) while sliding; F = applied + (m/T) v, at most ±Fs, while stuck
-#include "engine/block.h"
+#include "blocks/math/sides.h"
 #include "models/friction/stiction.h"
 
 namespace loopwright::blocks {
@@ -54,8 +54,9 @@ template <class Real> struct StribeckFriction {
     per_speed = 1.0 / stribeck_speed;
     stiction = {static_level, static_level, mass / settling_time};
   }
-  void decide(const In& in, Mode& mode) const {
+  Fault decide(const In& in, Mode& mode) const {
     mode.direction = stiction.next_direction(mode.direction, in.velocity, in.applied);
+    return fault_if_nan(in.velocity, in.applied);
   }
   void outputs(const In& in, const Mode& mode, Out& out) const {
     const Real fallen = exponential(-power(absolute(in.velocity) * per_speed, exponent));
@@ -63,7 +64,7 @@ template <class Real> struct StribeckFriction {
     out.force = select(mode.direction == 0.0, stiction.holding_force(in.velocity, in.applied), sliding);
   }
   void crossings(const In& in, const Mode& mode, Crossings& value) const {
-    value.margin = stiction.margin(mode.direction, in.velocity, in.applied);
+    value.margin = not_below_zero(stiction.margin(mode.direction, in.velocity, in.applied));
   }
 };
 LOOPWRIGHT_BLOCK(StribeckFriction)

@@ -7,9 +7,10 @@
 /// "cyclic" repeats the table for ever, in both directions: each cycle of the master begins where the last
 /// one ended, the last point takes the place of the first. A cam that comes back has equal first and last
 /// values; one that does not, such as a feeder, adds the difference at every cycle. Without "cyclic" the ends
-/// are held.
+/// are held. Where the table ends or begins again is an event for a variable-step solver, unless it is
+/// periodic.
 #include <algorithm>
-#include "engine/block.h"
+#include "blocks/math/sides.h"
 #include "models/motion/cubic_spline.h"
 
 namespace loopwright::blocks {
@@ -25,6 +26,9 @@ struct CamTable {
   struct Out {
     double position, velocity, acceleration;
   };
+  struct Crossings {
+    double first, last;
+  };
   static constexpr auto describe() {
     return block(
         "Moves a slave axis by a table over the position of a master, smoothly.",
@@ -39,7 +43,8 @@ struct CamTable {
             .from(&In::master),
         output(&Out::velocity, "slave_velocity", "$position/s", "Its velocity")
             .from(&In::master, &In::master_velocity),
-        output(&Out::acceleration, "slave_acceleration", "$position/s^2", "Its acceleration"));
+        output(&Out::acceleration, "slave_acceleration", "$position/s^2", "Its acceleration"),
+        crossing(&Crossings::first, "first"), crossing(&Crossings::last, "last"));
   }
   void check(const Checker& checker) const {
     if (master.size() < 2) checker.error("master", "a cam needs two points or more");
@@ -57,11 +62,10 @@ struct CamTable {
   }
   void prepare(double) { spline = CubicSpline(master, slave, ends); }
   Fault outputs(const In& in, Out& out) const {
-    const double period = master.back() - master.front();
     double x = in.master, cycles = 0, moves = 1;
     if (cyclic) {
-      cycles = std::floor((x - master.front()) / period);
-      x -= cycles * period;
+      cycles = std::floor(turns(x));
+      x -= cycles * period();
     } else if (x < master.front() || x > master.back()) {
       x = std::clamp(x, master.front(), master.back()), moves = 0;
     }
@@ -71,6 +75,20 @@ struct CamTable {
     out.velocity = at.slope * v;
     out.acceleration = at.bend * v * v + at.slope * a;
     return fault_if(!std::isfinite(in.master), "the position of the master is not a number");
+  }
+  bool may_cross() const { return ends != SplineEnds::periodic; }
+  void crossings(const In& in, Crossings& value) const {
+    value.first = cyclic ? around_whole(turns(in.master)) : not_below_zero(in.master - master.front());
+    value.last = cyclic ? 1.0 : above_zero(in.master - master.back());
+  }
+
+ private:
+  double period() const { return master.back() - master.front(); }
+  double turns(double x) const { return (x - master.front()) / period(); }
+  /// A triangular wave that changes sign where the greatest whole number below u changes, and nowhere else.
+  static double around_whole(double u) {
+    const double nearest = round_even(u), beyond = not_below_zero(u - nearest);
+    return std::fmod(nearest, 2) == 0 ? beyond : -beyond;
   }
 };
 LOOPWRIGHT_BLOCK(CamTable)

@@ -68,6 +68,7 @@ template <class Real> struct IncrementalEncoder {
     mode.zero = select(is_set | begins, select(resolution > 0.0, mode.count, in.position), mode.zero);
     mode.last_reset = as_number<Real>(resets);
     mode.is_at_index = as_number<Real>(inside_mark(in.position) > 0.0);
+    if (const Fault fault = fault_if_nan(in.position); fault.lanes) return fault;
     return fault_unless_logic(in.reset);
   }
   void outputs(const In& in, const Mode& mode, Out& out) const {

@@ -78,15 +78,30 @@ void Layout::add_outputs(const FlatBlock& flat, int element, Plan::Block& block)
   block.output_lengths = std::span(lists_.output_lengths).last(ports.size());
 }
 
-/// Optional inputs without a wire read constants, one signal for each distinct value.
+/// The numbers that an optional input without a wire reads: a vector has its declared length.
+static int unwired_length(const FlatBlock& flat, size_t port) {
+  const BlockInfo& info = flat.type->info;
+  if (info.inputs[port].shape != PortInfo::Shape::vector) return 1;
+  return std::max(1, info.input_length(flat.value.get(), int(port)));
+}
+
+/// Optional inputs without a wire read constants. Those of equal value are in a row, as many as the longest
+/// input needs.
 void Layout::number_constants() {
+  std::vector<std::pair<double, int>> lengths;  // of each distinct value
   for (const FlatBlock& flat : flat_.blocks)
     for (size_t i = 0; i < flat.inputs.size(); ++i) {
       if (!flat.inputs[i].empty()) continue;
       const double value = flat.type->info.inputs[i].otherwise_value;
-      if (std::ranges::none_of(plan_.unwired, [&](const auto& u) { return u.second == value; }))
-        plan_.unwired.emplace_back(plan_.signals++, value);
+      const int length = unwired_length(flat, i);
+      const auto found = std::ranges::find(lengths, value, &std::pair<double, int>::first);
+      if (found == lengths.end())
+        lengths.emplace_back(value, length);
+      else
+        found->second = std::max(found->second, length);
     }
+  for (const auto& [value, length] : lengths)
+    for (int i = 0; i < length; ++i) plan_.unwired.emplace_back(plan_.signals++, value);
 }
 
 void Layout::list_scalars() {
@@ -142,8 +157,9 @@ void Layout::wire_inputs() {
 void Layout::wire_port(const FlatBlock& flat, size_t port, int element) {
   const PortInfo& info = flat.type->info.inputs[port];
   if (flat.inputs[port].empty()) {
-    for (const auto& [number, value] : plan_.unwired)
-      if (value == info.otherwise_value) lists_.inputs.push_back(number);
+    const auto first =
+        std::ranges::find(plan_.unwired, info.otherwise_value, &std::pair<Number, double>::second);
+    for (int i = 0; i < unwired_length(flat, port); ++i) lists_.inputs.push_back(first->first + i);
     return;
   }
   const bool takes_all = info.shape == PortInfo::Shape::vector || info.joins_vectors;

@@ -154,12 +154,14 @@ class Order {
     const Number trigger = block.inputs[0][0];
     return trigger < plan_.signals ? rate_of_number(trigger) : Rate{Rate::Kind::continuous, 0, 0};
   }
+  /// An Enable block asks for the time only to tell one instant from the next.
+  bool depends_on_time(int block) const { return info(block).uses_time && info(block).type != "Enable"; }
   Rate own_rate(int v) const {
     const Vertex& vertex = vertices_[size_t(v)];
     const Plan::Block& block = plan_.blocks[size_t(vertex.block)];
     if (block.period > 0) return {Rate::Kind::sampled, block.period, block.offset};
     if (const auto rate = rate_by_trigger(v)) return *rate;
-    if (info(vertex.block).uses_time || info(vertex.block).is_continuous)
+    if (depends_on_time(vertex.block) || info(vertex.block).is_continuous)
       return {Rate::Kind::continuous, 0, 0};
     Rate rate;
     for_each_need(v, [&](int, Number n) {

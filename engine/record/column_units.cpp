@@ -32,8 +32,10 @@ const Column* find_time(const Recording& recording, const std::string& name, con
   for (const Column& column : recording.columns)
     if (is_called_time(recording.is_ordered ? std::string_view(column.name) : last_part(column.name)))
       called.push_back(&column);
-  if (called.size() == 1) return called.front();
-  if (called.empty() && recording.is_ordered) return &recording.columns.front();
+  const Column* const found = called.size() == 1                       ? called.front()
+                              : called.empty() && recording.is_ordered ? &recording.columns.front()
+                                                                       : nullptr;
+  if (found) return is_without_holes(*found, error) ? found : nullptr;
   auto& p = error(called.empty() ? "it cannot be told which column is the time"
                                  : fmt::format("\"{}\" and \"{}\" may both be the time", called[0]->name,
                                                called[1]->name));
@@ -49,19 +51,21 @@ bool says_seconds(const Column& time, const ColumnError& error) {
   if (words.is_counted) {
     auto& p = error(fmt::format("the time \"{}\" has no unit, and its name says that it counts", time.name));
     p.expected = "a column with the time, such as \"t [ms]\"";
-    p.hint = fmt::format("an experiment multiplies by the duration of one count: \"columns\": {{\"t\": {{\"column\": "
-                         "\"{}\", \"scale\": 0.5, \"unit\": \"ms\"}}}}",
-                         time.name);
+    p.hint = fmt::format(
+        "an experiment multiplies by the duration of one count: \"columns\": {{\"t\": {{\"column\": "
+        "\"{}\", \"scale\": 0.5, \"unit\": \"ms\"}}}}",
+        time.name);
     if (!time.origin.empty()) p.found = time.origin;
     return false;
   }
-  auto& p = error(fmt::format("the time \"{}\" has no unit, and its name says another one than s", time.name));
+  auto& p =
+      error(fmt::format("the time \"{}\" has no unit, and its name says another one than s", time.name));
   const std::string ending = "_" + words.unit;
-  const std::string name = time.name.ends_with(ending) ? time.name.substr(0, time.name.size() - ending.size())
-                                                       : time.name;
+  const std::string name =
+      time.name.ends_with(ending) ? time.name.substr(0, time.name.size() - ending.size()) : time.name;
   p.expected = fmt::format("\"{} [{}]\" as the heading of the column", name, words.unit);
-  p.hint = fmt::format("or state it in the experiment: \"columns\": {{\"{}\": {{\"unit\": \"{}\"}}}}", time.name,
-                       words.unit);
+  p.hint = fmt::format("or state it in the experiment: \"columns\": {{\"{}\": {{\"unit\": \"{}\"}}}}",
+                       time.name, words.unit);
   if (!time.origin.empty()) p.found = time.origin;
   return false;
 }
@@ -103,8 +107,22 @@ Column in_si(const Column& column, const Unit& unit) {
   return result;
 }
 
+bool is_without_holes(const Column& column, const ColumnError& error) {
+  for (const Problem& hole : column.holes.first) {
+    auto& p = error(hole.message);
+    p.place = hole.place, p.pointer.clear();
+    p.expected = hole.expected, p.found = hole.found, p.hint = hole.hint;
+  }
+  if (column.holes.count > column.holes.first.size()) {
+    auto& p = error(fmt::format("column \"{}\": {} more cells without a number", column.name,
+                                column.holes.count - column.holes.first.size()));
+    p.place = column.holes.first.back().place, p.pointer.clear();
+  }
+  return column.holes.count == 0;
+}
+
 const Column* find_column(const Recording& recording, const std::string& name, const ColumnError& error) {
-  if (const Column* found = recording.find(name)) return found;
+  if (const Column* found = recording.find(name)) return is_without_holes(*found, error) ? found : nullptr;
   auto& p = error(fmt::format("the data have no column \"{}\"", name));
   std::vector<std::string> names;
   for (const Column& column : recording.columns) names.push_back(column.name);
@@ -132,6 +150,16 @@ std::optional<Column> time_in_seconds(const Recording& recording, const std::str
   }
   scale_time(time.values, unit->scale);
   return time;
+}
+
+bool put_time_first(Recording& recording, const ColumnError& error) {
+  if (recording.columns.empty()) return false;
+  const std::string& first = recording.columns.front().name;
+  auto time = time_in_seconds(recording, recording.is_ordered && is_called_time(first) ? first : "", error);
+  if (!time) return false;
+  std::erase_if(recording.columns, [&](const Column& column) { return column.name == time->name; });
+  recording.columns.insert(recording.columns.begin(), *std::move(time));
+  return true;
 }
 
 }  // namespace loopwright

@@ -23,14 +23,16 @@ namespace loopwright {
 /// Names may be quoted; without a header they are c1, c2, …. A unit follows its name in square brackets
 /// ("force[2]" is an index, not a unit). Lines that begin with # become facts, under the name "comment" if
 /// they have no "key: value". A comment directly above unnamed columns becomes the header if it has as many
-/// names. CRLF and a byte order mark are accepted, and decimal commas if another character separates the cells
-/// and at least one comma cannot separate thousands. In a file with the first line above, names and facts are
-/// unescaped (see text.h); otherwise they are literal.
+/// names. CRLF and a byte order mark are accepted, and decimal commas if another character separates the
+/// cells and at least one comma cannot separate thousands. In a file with the first line above, names and
+/// facts are unescaped (see text.h); otherwise they are literal.
 ///
 /// Errors, with line and column: a file that cannot be read, is not UTF-8 text, has no rows or has a line
 /// that is too long; empty or repeated names; rows whose length differs from the header, a truncated last
-/// row; empty cells, text, decimal commas beside decimal points, numbers beyond the range of a double, NaN and
-/// infinity. After any of them the recording is empty.
+/// row; empty cells, text, decimal commas beside decimal points, numbers beyond the range of a double, NaN
+/// and infinity. After any of them the recording is empty. With ReadOptions::allow_holes, cells without a
+/// number are holes of their columns instead, and a last column without name and contents is left out. A
+/// first line "sep=;" states the separator.
 Recording read_csv(const std::string& path, Problems& problems, const ReadOptions& options = {});
 
 /// The same for text in memory.

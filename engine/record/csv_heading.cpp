@@ -20,8 +20,6 @@ bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) || (
 /// Other single letters are rather names: udunits also knows b (barn), a (are), u and e.
 constexpr std::string_view usual_letters = "mgsAVNWJKCFHTth%";
 
-/// A product that is written without a sign, such as Nm, is taken as a unit too: its use is then refused with
-/// the right spelling. Words such as "raw" are no units, and neither are pure numbers.
 bool is_unit(std::string_view text) {
   if (text.empty() || !(is_letter(text.front()) || text == "%" || text.starts_with("1/"))) return false;
   if (std::ranges::count(text, '(') != std::ranges::count(text, ')')) return false;
@@ -35,10 +33,13 @@ bool ends_with_time(std::string_view name) {
   return lower == "t" || lower.ends_with("time") || lower.ends_with(" t") || lower.ends_with("_t");
 }
 
-/// "min" is the minimum unless it belongs to a time.
+}  // namespace
+
 bool is_unit_of(std::string_view name, std::string_view unit) {
   return is_unit(unit) && (unit != "min" || ends_with_time(name));
 }
+
+namespace {
 
 /// "F (N)", "F(N)". Without a blank, functions such as x(t) and max(F) remain names.
 Heading in_parentheses(std::string_view text) {
@@ -65,10 +66,12 @@ Heading behind_slash(std::string_view text) {
   const bool has_parentheses = unit.starts_with('(') && unit.ends_with(')');
   if (has_parentheses) unit = trim(unit.substr(1, unit.size() - 2));
   if (!has_parentheses && unit.find('/') != unit.npos) return {text, {}};
-  if (name.empty() || name.find('(') != name.npos || !is_unit_of(name, unit) || unit == "t") return {text, {}};
+  if (name.empty() || name.find('(') != name.npos || !is_unit_of(name, unit) || unit == "t")
+    return {text, {}};
   if (is_one_of(name, symbols) || (name.size() > 1 && parse_unit(name))) return {text, {}};
   if (name.starts_with('d') && unit.starts_with('d')) return {text, {}};
-  if (const auto known = parse_unit(unit); name == "m" && !(known && known->same_dimension(*parse_unit("kg"))))
+  if (const auto known = parse_unit(unit);
+      name == "m" && !(known && known->same_dimension(*parse_unit("kg"))))
     return {text, {}};
   return {name, unit};
 }
@@ -84,7 +87,10 @@ Heading behind_comma(std::string_view text) {
 }  // namespace
 
 Heading read_heading(std::string_view text) {
-  if (text.ends_with(']')) return split_heading(text);
+  if (text.ends_with(']')) {
+    const Heading heading = split_heading(text);
+    return heading.unit == "-" ? Heading{heading.name, "1"} : heading;
+  }
   for (const auto notation : {behind_slash, in_parentheses, behind_comma})
     if (const Heading heading = notation(text); !heading.unit.empty()) return heading;
   return {text, {}};

@@ -1,6 +1,4 @@
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <fmt/format.h>
 #include <map>
 #include <ranges>
@@ -8,82 +6,21 @@
 #include <utility>
 
 #include "engine/record/csv.h"
-#include "engine/record/csv_syntax.h"
-#include "engine/record/decimal_commas.h"
+#include "engine/record/csv_reader.h"
 #include "engine/record/recorded_bytes.h"
-#include "engine/json/problem_limit.h"
 #include "engine/record/text.h"
 
 namespace loopwright {
 namespace {
 
-std::string counted(size_t count, std::string_view noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
-}
-
 bool is_comment(std::string_view line) { return trim(line).starts_with('#'); }
 
-/// One pass over the text, line by line. Rows of plain numbers use the fast path read_numbers(). Any other
-/// row is split into fields, each of which is checked separately.
-class CsvReader {
- public:
-  CsvReader(std::shared_ptr<const SourceFile> source, Problems& problems, const ReadOptions& options)
-      : source_(std::move(source)),
-        text_(source_->text),
-        options_(options),
-        problems_(problems, options.most_problems) {}
-
-  Recording read();
-
- private:
-  bool check_text();
-  void take_signature();
-  bool next_line(std::string_view& line);
-  bool check_line(std::string_view line);
-
-  void read_comment(std::string_view comment);
-  void begin_table(std::string_view line);
-  std::string_view next_table_line() const;
-  bool is_header(const std::vector<csv::Field>& fields) const;
-  bool take_header_from_comment();
-  void name_columns(const std::vector<csv::Field>& fields);
-  void distinguish_columns(const std::vector<csv::Field>& fields);
-  void reserve_rows();
-
-  void read_row(std::string_view line);
-  bool read_numbers(std::string_view line);
-  bool read_fields(std::string_view line);
-  void explain_length(std::string_view line, const std::vector<csv::Field>& fields);
-  bool read_cell(const csv::Field& field, size_t column);
-  void explain_text(const csv::Field& field, const std::string& where);
-  void check_decimal_commas();
-
-  Place at(std::string_view part) const {
-    return {source_, static_cast<uint32_t>(part.data() - text_.data())};
-  }
-  Place start() const { return {source_, 0}; }
-
-  std::shared_ptr<const SourceFile> source_;
-  std::string_view text_;
-  const ReadOptions& options_;
-  ProblemLimit problems_;
-
-  size_t cursor_ = 0;  ///< [bytes] of the next line
-  char line_end_ = '\n';
-  char separator_ = ',';
-  bool signed_ = false;  ///< begins with csv::signature: names and facts are escaped
-  std::string_view comment_above_;
-  std::string_view empty_line_;  ///< the last one within the table; an error if rows follow
-  bool header_was_last_ = false;
-  csv::DecimalCommas decimal_commas_;
-  std::string_view decimal_point_;  ///< the first one in a row
-  std::vector<double> row_;
-  Recording recording_;
-};
+}  // namespace
 
 Recording CsvReader::read() {
   if (!check_text()) return {};
   take_signature();
+  take_separator();
   std::string_view line;
   while (next_line(line)) {
     if (!check_line(line)) return {};
@@ -104,6 +41,7 @@ Recording CsvReader::read() {
     problems_.error(start(), "the table has no rows", "rows of numbers below the header");
   }
   check_decimal_commas();
+  leave_out_nameless_column();
   return problems_.has_errors() ? Recording{} : std::move(recording_);
 }
 
@@ -133,6 +71,14 @@ void CsvReader::take_signature() {
   std::string_view line;
   signed_ = next_line(line) && line == csv::signature;
   if (!signed_) cursor_ = start_of_line;
+}
+
+/// "sep=;", which Excel writes and obeys.
+void CsvReader::take_separator() {
+  const size_t start_of_line = cursor_;
+  std::string_view line;
+  if (!signed_ && next_line(line)) stated_separator_ = csv::stated_separator(line);
+  if (!stated_separator_) cursor_ = start_of_line;
 }
 
 /// The next line without its line end; false at the end of the text.
@@ -171,7 +117,9 @@ void CsvReader::read_comment(std::string_view comment) {
 
 /// The first line of the table: the names, or already the first row.
 void CsvReader::begin_table(std::string_view line) {
-  separator_ = signed_ ? ',' : csv::find_separator(line, next_table_line());
+  separator_ = signed_             ? ','
+               : stated_separator_ ? *stated_separator_
+                                   : csv::find_separator(line, next_table_line());
   const std::vector<csv::Field> fields = csv::split(line, separator_);
   row_.resize(fields.size());
   if (is_header(fields)) {
@@ -246,6 +194,8 @@ void CsvReader::name_columns(const std::vector<csv::Field>& fields) {
     const Column& column = recording_.columns[size_t(&field - fields.data())];
     if (field.open_quote) {
       problems_.error(at(field.text), "the quote before this column name is not closed");
+    } else if (column.name.empty() && may_be_left_out(field, fields)) {
+      nameless_heading_ = field.text;
     } else if (column.name.empty()) {
       problems_.error(at(field.text), fmt::format("column {} has no name", names.size() + 1), {}, {},
                       &field == &fields.back() ? "a separator too many at the end of the line?" : "");
@@ -255,136 +205,27 @@ void CsvReader::name_columns(const std::vector<csv::Field>& fields) {
   }
 }
 
-/// Every cell needs at least two bytes of text: the reserved memory is proportional to the file.
+/// Lines that end with a separator have a last column without a name and, as its cells will show, without
+/// contents.
+bool CsvReader::may_be_left_out(const csv::Field& field, const std::vector<csv::Field>& fields) {
+  return options_.allow_holes && !signed_ && fields.size() > 1 && &field == &fields.back() && !field.quoted;
+}
+
+void CsvReader::leave_out_nameless_column() {
+  if (!nameless_heading_) return;
+  const Column& nameless = recording_.columns.back();
+  if (nameless_is_used_ || nameless.holes.count < nameless.values.size())
+    problems_.error(at(*nameless_heading_), fmt::format("column {} has no name", recording_.columns.size()));
+  recording_.columns.pop_back();
+}
+
+/// Every number needs at least two bytes of text: the reserved memory is proportional to the file.
 void CsvReader::reserve_rows() {
   const std::string_view rest = text_.substr(std::min(cursor_, text_.size()));
   const size_t lines = static_cast<size_t>(std::ranges::count(rest, line_end_)) + 2;
   const size_t most = rest.size() / (2 * row_.size()) + 2;
   for (Column& column : recording_.columns) column.values.reserve(std::min(lines, most));
 }
-
-void CsvReader::read_row(std::string_view line) {
-  if (empty_line_.data()) {
-    problems_.error(at(empty_line_), "an empty line within the table", {}, {},
-                    "a lost row, or a second table in the same file?");
-    empty_line_ = {};
-  }
-  if (decimal_point_.empty() && line.find('.') != line.npos) decimal_point_ = line.substr(line.find('.'));
-  if (read_numbers(line) || read_fields(line))
-    for (size_t i = 0; i < row_.size(); ++i) recording_.columns[i].values.push_back(row_[i]);
-  header_was_last_ = false;
-}
-
-/// The fast path: true if the line has only finite numbers, one for each column.
-bool CsvReader::read_numbers(std::string_view line) {
-  const char* at = line.data();
-  const char* const end = at + line.size();
-  const auto skip_blanks = [&] {
-    while (at != end && (*at == ' ' || (*at == '\t' && separator_ != '\t'))) ++at;
-  };
-  for (size_t column = 0; column < row_.size(); ++column) {
-    if (column > 0 && separator_ != ' ') {
-      if (at == end || *at != separator_) return false;
-      ++at;
-    }
-    skip_blanks();
-    const auto [next, error] = std::from_chars(at, end, row_[column]);
-    if (error != std::errc() || !std::isfinite(row_[column])) return false;
-    const bool ends_like_a_number = next == end || *next == separator_ || *next == ' ' || *next == '\t';
-    if (!ends_like_a_number) return false;
-    at = next;
-    skip_blanks();
-  }
-  return at == end;
-}
-
-/// Field by field: true if the row is valid after all (quoted numbers, a leading plus); otherwise reports the
-/// mistake.
-bool CsvReader::read_fields(std::string_view line) {
-  const std::vector<csv::Field> fields = csv::split(line, separator_);
-  if (fields.size() != row_.size()) {
-    explain_length(line, fields);
-    return false;
-  }
-  const bool second_header = header_was_last_ && std::ranges::none_of(fields, [](const csv::Field& field) {
-                               return field.text.empty() || csv::looks_like_number(field.text);
-                             });
-  if (second_header) {
-    problems_.error(at(line), "text where the first row of numbers should be", {}, excerpt(line),
-                    "a second header line? write units behind the names: position [m]");
-    return false;
-  }
-  bool right = true;
-  for (size_t i = 0; i < fields.size(); ++i) right &= read_cell(fields[i], i);
-  return right;
-}
-
-void CsvReader::explain_length(std::string_view line, const std::vector<csv::Field>& fields) {
-  const bool at_end_of_text = line.data() + line.size() == text_.data() + text_.size();
-  std::string message = "a row of another length than the first line of the table", hint;
-  if (fields.size() == 2 * row_.size() && separator_ == ',') {
-    hint = "decimal commas? write 1.5 for 1,5 or separate the cells by semicolons and the decimals by points";
-  } else if (fields.size() < row_.size() && at_end_of_text) {
-    message = "the last row is cut off";
-    hint = "was the writing of this file interrupted? remove the row to use the rest";
-  } else if (fields.size() == row_.size() + 1 && fields.back().text.empty()) {
-    hint = "a separator too many at the end of the line?";
-  }
-  problems_.error(at(line), message, counted(row_.size(), "cell"), counted(fields.size(), "cell"), hint);
-}
-
-/// Stores the number of a cell in the row; false if there is none, after reporting the reason.
-bool CsvReader::read_cell(const csv::Field& field, size_t column) {
-  const std::string where = fmt::format("column \"{}\": ", excerpt(recording_.columns[column].name));
-  if (field.text.empty()) {
-    problems_.error(at(field.text), where + "an empty cell", "a number", {},
-                    "leave out rows with holes, or fill them before");
-    return false;
-  }
-  std::optional<double> number = csv::parse_number(field.text);
-  if (!number) number = decimal_commas_.read(field.text);
-  if (!number || field.open_quote) {
-    explain_text(field, where);
-    return false;
-  }
-  if (!std::isfinite(*number) && !options_.allow_not_finite) {
-    problems_.error(at(field.text), where + "not a finite number", "a number", excerpt(field.text),
-                    "leave out rows with holes, or fill them before");
-    return false;
-  }
-  row_[column] = *number;
-  return true;
-}
-
-void CsvReader::explain_text(const csv::Field& field, const std::string& where) {
-  double number = 0;
-  const auto [next, error] =
-      std::from_chars(field.text.data(), field.text.data() + field.text.size(), number);
-  const bool out_of_range =
-      error == std::errc::result_out_of_range && next == field.text.data() + field.text.size();
-  problems_.error(
-      at(field.text),
-      where + (out_of_range ? "a number beyond the range of a double" : "text where a number should be"),
-      out_of_range ? "magnitudes from 4.9e-324 to 1.8e308" : "a number such as -1.5e-3", excerpt(field.text));
-}
-
-/// Refuses a table that leaves open whether its commas are decimal commas or separate thousands.
-void CsvReader::check_decimal_commas() {
-  const std::string_view comma = decimal_commas_.first();
-  if (comma.empty()) return;
-  if (!decimal_point_.empty())
-    problems_.error(
-        at(comma), "numbers with commas and with points in one table",
-        "only decimal commas, or only decimal points",
-        fmt::format("{}, and a point in line {}", excerpt(comma), line_column(at(decimal_point_)).line),
-        "do the commas separate thousands? export the file without them");
-  else if (!decimal_commas_.are_certain())
-    problems_.error(at(comma), "a comma that may be a decimal comma or separate thousands",
-                    "a decimal point, such as 1.5", excerpt(comma),
-                    "every comma of the file stands before three digits: write points instead, or nothing");
-}
-
-}  // namespace
 
 Recording parse_csv(std::shared_ptr<const SourceFile> source, Problems& problems,
                     const ReadOptions& options) {

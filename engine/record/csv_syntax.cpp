@@ -1,6 +1,7 @@
 #include "engine/record/csv_syntax.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 
 #include "engine/record/text.h"
@@ -91,6 +92,17 @@ char find_separator(std::string_view header, std::string_view first_row) {
   for (const char separator : {'\t', ';', ','})
     if (header.find(separator) != header.npos) return separator;
   return ',';
+}
+
+std::optional<char> stated_separator(std::string_view line) {
+  constexpr std::string_view separators = ";,\t|", word = "sep=";
+  if (line.size() == word.size() + 3 && line.starts_with('"') && line.ends_with('"'))
+    line = line.substr(1, line.size() - 2);
+  if (line.size() != word.size() + 1 || separators.find(line.back()) == separators.npos) return {};
+  const bool is_word = std::ranges::equal(line.substr(0, word.size()), word, [](char a, char b) {
+    return std::tolower(static_cast<unsigned char>(a)) == b;
+  });
+  return is_word ? std::optional(line.back()) : std::nullopt;
 }
 
 }  // namespace loopwright::csv

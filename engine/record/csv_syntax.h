@@ -18,10 +18,16 @@ struct Heading {
 };
 Heading split_heading(std::string_view text);
 
-/// The same for files of other programs, which also write "x (mm)", "x/mm", "v/(m/s)" and "x, mm". Only a unit
-/// that can be read is taken as one, and only where the heading has no other reading: x(t), max(F), u/2, km/h
-/// and "y (raw)" are names without unit.
+/// The same for files of other programs, which also write "x (mm)", "x/mm", "v/(m/s)" and "x, mm". Only a
+/// unit that can be read is taken as one, and only where the heading has no other reading: x(t), max(F), u/2,
+/// km/h and "y (raw)" are names without unit. "[-]" is the unit 1.
 Heading read_heading(std::string_view text);
+
+/// Whether the last word of a name is probably its unit. A product that is written without a sign, such as
+/// Nm, is one, too: its use is then refused with the right spelling. Words such as "raw" are no units, and
+/// neither are pure numbers, nor single letters such as d and a, which are rather names than days and ares.
+/// "min" is the minimum unless it belongs to a time.
+bool is_unit_of(std::string_view name, std::string_view unit);
 
 /// The number that makes up the whole of `text`, except for surrounding blanks and a leading +; nothing if
 /// the text is not a number or is beyond the range of a double.
@@ -47,5 +53,7 @@ std::string content(const Field& field);
 /// semicolon, comma, blanks. If none does, the first of them (except blanks) in the header; otherwise a
 /// comma.
 char find_separator(std::string_view header, std::string_view first_row);
+/// The separator that a first line such as "sep=;" states; nothing if the line is another.
+std::optional<char> stated_separator(std::string_view line);
 
 }  // namespace loopwright::csv

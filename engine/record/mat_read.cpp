@@ -40,7 +40,7 @@ class Assembly {
   void add_log_of_matrices(Variable& variable);
   void add_matrix(const Variable& variable, bool upright);
   void misfit(const Variable& variable, const std::string& what);
-  void check(const Column& column);
+  void check(Column& column);
 
   Place place_;
   ProblemLimit& problems_;
@@ -65,7 +65,7 @@ Recording Assembly::assemble(std::vector<Variable>& variables) {
   recording.is_ordered = others_.empty();
   recording.facts = std::move(facts_);
   std::unordered_set<std::string_view> names;
-  for (const Column& column : recording.columns) {
+  for (Column& column : recording.columns) {
     check(column);
     if (!names.insert(column.name).second)
       problems_.error(place_, fmt::format("two columns are named \"{}\"", excerpt(column.name)));
@@ -178,17 +178,23 @@ void Assembly::misfit(const Variable& variable, const std::string& what) {
   }
 }
 
-void Assembly::check(const Column& column) {
+void Assembly::check(Column& column) {
   if (column.name.empty()) problems_.error(place_, "a variable has no name");
   if (options_.allow_not_finite) return;
   const auto is_not_finite = [](double value) { return !std::isfinite(value); };
   const auto first = std::ranges::find_if(column.values, is_not_finite);
   if (first == column.values.end()) return;
-  problems_.error(place_,
-                  fmt::format("column \"{}\": {} not finite, the first in row {}", excerpt(column.name),
-                              count_of(std::ranges::count_if(column.values, is_not_finite), "value"),
-                              first - column.values.begin() + 1),
-                  "numbers", fmt::format("{}", *first), "leave out rows with holes, or fill them before");
+  Problem problem;
+  problem.place = place_;
+  problem.message = fmt::format("column \"{}\": {} not finite, the first in row {}", excerpt(column.name),
+                                count_of(std::ranges::count_if(column.values, is_not_finite), "value"),
+                                first - column.values.begin() + 1);
+  problem.expected = "numbers", problem.found = fmt::format("{}", *first);
+  problem.hint = "leave out rows with holes, or fill them before";
+  if (options_.allow_holes)
+    column.holes = {1, {std::move(problem)}};  // told together: rows of a MAT file have no places
+  else
+    problems_.error(place_, problem.message, problem.expected, problem.found, problem.hint);
 }
 
 }  // namespace

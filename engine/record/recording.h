@@ -6,13 +6,22 @@
 #include <utility>
 #include <vector>
 
+#include "engine/json/problem.h"
+
 namespace loopwright {
+
+/// The cells of a column that hold no number; their values are NaN.
+struct Holes {
+  size_t count = 0;            ///< of what is to be told: cells of a CSV file
+  std::vector<Problem> first;  ///< what is wrong with the first of them, each at its place in the file
+};
 
 struct Column {
   std::string name;  ///< "stage.position", "motor.force[2]"
   std::string unit;  ///< SI unit; empty: not known
   std::vector<double> values;
   std::string origin;  ///< file:line:column of its heading, or its file; empty: not from a file
+  Holes holes{};       ///< only with ReadOptions::allow_holes; whoever uses the column refuses them
 };
 
 /// All columns have the same length and distinct names. The first column of a run is "time" in s.
@@ -35,7 +44,10 @@ void check_recording(const Recording& recording);
 
 /// How strictly a recording is read. Every default rejects data that could mislead later.
 struct ReadOptions {
-  bool allow_not_finite = false;   ///< a NaN is a gap in a measurement and spoils every sum
+  bool allow_not_finite = false;  ///< a NaN is a gap in a measurement and spoils every sum
+  /// A cell without a number is no error of the file but one of the Holes of its column, so that a column of
+  /// remarks does no harm to the others. Every user must refuse the columns that it uses: find_column().
+  bool allow_holes = false;
   int most_problems = 20;          ///< enough for one screen; the rest is counted
   size_t longest_line = 1 << 20;   ///< [bytes] CSV: about 50,000 columns; longer is not a table
   bool leave_out_misfits = false;  ///< MAT: otherwise a variable that fits no column is an error

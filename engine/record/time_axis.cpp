@@ -80,17 +80,35 @@ double plain_step(double mean, double median, double steps) {
   return std::abs(decimal - mean) * steps <= least_told * mean ? decimal : mean;
 }
 
+/// The slope of the line through all times; the first and the last are rounded as much as the others.
+template <class SampleOf> double slope_of(std::span<const double> times, SampleOf&& sample_of) {
+  const double rows = double(times.size());
+  double mean = 0, middle = 0, product = 0, squares = 0;
+  for (size_t i = 0; i < times.size(); ++i)
+    mean += (times[i] - times.front()) / rows, middle += double(sample_of(i)) / rows;
+  for (size_t i = 0; i < times.size(); ++i) {
+    const double k = double(sample_of(i)) - middle;
+    product += k * (times[i] - times.front() - mean), squares += k * k;
+  }
+  return product / squares;
+}
+
 /// The shortest decimal, or else the simplest fraction of a second, that the digits of the times cannot
-/// distinguish from the mean step: 1/750 for stamps that were rounded to microseconds.
-double simplest_step(double mean, double digit, double steps) {
-  constexpr int most_digits = 4;
+/// distinguish from the mean step: 1/750 for stamps that were rounded to microseconds. Where a decimal of
+/// several digits and a whole number of samples a second are both possible, as 0.003334 and 1/300 for
+/// milliseconds during a second, it is the one nearer to the slope.
+double simplest_step(double mean, double slope, double digit, double steps) {
+  constexpr int most_digits = 4, plain_digits = 2;
   if (digit == 0 || steps == 0) return mean;
+  const double per_second = 1 / std::round(1 / mean);
+  const bool is_rate = std::abs(per_second - mean) * steps <= digit;
   for (int digits = 1; digits <= most_digits; ++digits) {
     const double decimal = csv::parse_number(fmt::format("{:.{}g}", mean, digits)).value_or(mean);
-    if (std::abs(decimal - mean) * steps <= digit) return decimal;
+    if (std::abs(decimal - mean) * steps > digit) continue;
+    const bool is_nearer = std::abs(decimal - slope) <= std::abs(per_second - slope);
+    return digits <= plain_digits || !is_rate || is_nearer ? decimal : per_second;
   }
-  const double per_second = 1 / std::round(1 / mean);
-  if (std::abs(per_second - mean) * steps <= digit) return per_second;
+  if (is_rate) return per_second;
   const auto fraction = to_fraction(mean, digit / (steps * mean));
   return fraction && fraction->numerator > 0 ? fraction->value() : mean;
 }
@@ -121,7 +139,8 @@ TimeAxis even_but_for_gaps(std::span<const double> times, double median, double 
     sample = std::move(by_mean), even = median = mean;
   const double steps = double(sample.back());
   axis.missing = sample.back() - int64_t(times.size() - 1);
-  const double simple = simplest_step(even, digit, steps), apart = spread(times, sample, simple);
+  const double slope = slope_of(times, [&](size_t i) { return sample[i]; });
+  const double simple = simplest_step(even, slope, digit, steps), apart = spread(times, sample, simple);
   const bool is_rounded = apart * simple <= 1.001 * digit;
   axis.on_grid = is_rounded || worst_deviation(times, even, [&](size_t i) { return sample[i]; }) <= tolerance;
   axis.sample_time = axis.on_grid ? simple : plain_step(even, median, steps);
@@ -154,7 +173,8 @@ TimeAxis check_time(const Column& time, Problems& problems, const TimeOptions& o
   const double even = mean_step(times, double(times.size() - 1));
   const double deviation = worst_deviation(times, even, [](size_t i) { return i; });
   const double digit = last_digit(times), all_steps = double(times.size() - 1);
-  const double simple = simplest_step(even, digit, all_steps);
+  const double slope = slope_of(times, [](size_t i) { return i; });
+  const double simple = simplest_step(even, slope, digit, all_steps);
   if (deviation <= options.tolerance) return {times.front(), simple, true, true};
   const auto by_row = [](size_t i) { return i; };
   if (digit < 0.5 * simple && worst_deviation(times, simple, by_row) * simple <= 1.001 * digit)
@@ -198,6 +218,19 @@ std::vector<int64_t> sample_numbers(std::span<const double> times, double sample
     expected += followed * std::clamp(late, -0.5, 0.5) * sample_time;
   }
   return sample;
+}
+
+std::vector<double> unrounded(std::span<const double> times, const TimeAxis& axis) {
+  constexpr size_t least_rows = 50;  // so many steps of whole digits follow no line by chance
+  constexpr double least_digit = 1e-3, on_grid = 1e-6;  // of the sample time
+  const double digit = last_digit(times);
+  if (!axis.on_grid || times.size() < least_rows || digit < least_digit * axis.sample_time) return {};
+  const std::vector<int64_t> sample = sample_numbers(times, axis.sample_time);
+  const double apart = spread(times, sample, axis.sample_time);
+  if (apart <= on_grid || apart * axis.sample_time > 1.001 * digit) return {};
+  std::vector<double> instants;
+  for (const int64_t count : sample) instants.push_back(times.front() + double(count) * axis.sample_time);
+  return instants;
 }
 
 }  // namespace loopwright

@@ -40,4 +40,10 @@ TimeAxis check_time(const Column& time, Problems& problems, const TimeOptions& o
 /// skipped.
 std::vector<int64_t> sample_numbers(std::span<const double> times, double sample_time);
 
+/// [s] The instants start + k · sample_time of rows whose stamps lie beside them by no more than their last
+/// digit: the samples were even, and the clock was read coarsely. Empty where the stamps are to be used: on
+/// the grid already, off it by more than their rounding, written so finely that it does not matter, or too
+/// few to tell a grid from a table that was written by hand. `axis`: of these times, by check_time().
+std::vector<double> unrounded(std::span<const double> times, const TimeAxis& axis);
+
 }  // namespace loopwright

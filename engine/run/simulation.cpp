@@ -256,7 +256,9 @@ class Simulation {
     next_row_ += plan_.record_ticks;
     return check_finite();
   }
-  static bool is_same_instant(double a, double b) { return std::fabs(a - b) <= 0x1p-50 * std::fabs(b); }
+  static bool is_same_instant(double row, double event) {
+    return std::fabs(row - event) <= EventFinder::width(event);
+  }
   void copy_states() { x_.assign(run_.states().begin(), run_.states().end()); }
 
   // ---- common ----

@@ -34,6 +34,8 @@ EventFinder::EventFinder(const OdeSystem& system, int samples_per_step)
   }
 }
 
+double EventFinder::width(double t) { return (bracket_width + simultaneous_width) * rounding(t, t); }
+
 void EventFinder::forget() {
   std::fill(sign_.begin(), sign_.end(), int8_t{0});
   std::fill(zero_band_.begin(), zero_band_.end(), 0.0);

@@ -36,6 +36,8 @@ class EventFinder {
   /// rounding units of t wide, and fired() lists every crossing that changed sign in the bracket.
   Found scan(Stepper& stepper, double from, double to, const Crossing* wanted);
   double time() const { return right_.t; }
+  /// How far from its zero an event at t may be reported, s: that far the times are one instant.
+  static double width(double t);
   const double* state() const { return right_.x.data(); }
 
   /// Clears the record of fired crossings.

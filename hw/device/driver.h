@@ -20,6 +20,7 @@ struct Capabilities {
   /// emergency_stop() works while another thread hangs anywhere in the driver, with any lock held. False: it
   /// is tried with a time limit, and only the watchdog is certain.
   bool is_reentrant = false;
+  double longest_wait = 0;  ///< s that a call waits for a device that does not answer
 };
 
 /// Facts that accompany a sample.
@@ -55,10 +56,10 @@ class Driver {
   virtual Status kick() noexcept = 0;
   /// Ends a blocked read. Called from another thread; async-signal-safe.
   virtual void request_stop() noexcept = 0;
-  /// After a crash of the process: outputs `safe` (raw, one number per output) at once, using only what is
-  /// already open and resolved. Called in any state, from a thread other than the loop's thread, which may be
-  /// anywhere in this driver or dead; in the worst case from a signal handler. So it allocates nothing, takes
-  /// no lock and waits for nothing of its own.
+  /// After a crash of the process, or while a call hangs: outputs `safe` (raw, one number per output) at
+  /// once, using only what is already open and resolved. Called in any state, from a thread other than the
+  /// loop's thread, which may be anywhere in this driver or dead; in the worst case from a signal handler. So
+  /// it allocates nothing, takes no lock and waits for nothing of its own.
   virtual void emergency_stop(std::span<const double> safe) noexcept = 0;
 
   // The end: every step is attempted, even after earlier failures. May be called in any state and repeatedly.

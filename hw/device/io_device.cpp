@@ -85,6 +85,8 @@ Status IoDevice::start(double period_s) {
   has_begun_ = false, last_sequence_ = -1, incident_ = {};
   if (const Status status = driver_->start(period_s); !status.ok()) return latch(status);
   stage_ = Stage::running;
+  // The first command is limited in its rate from here, not from where an earlier run ended.
+  for (size_t i = 0; i < applied_.size(); ++i) applied_[i] = description_->outputs[i].initial;
   Status status = driver_->kick();  // from here on the watchdog guards whatever is put out
   if (status.ok() && raw_initial_ != raw_safe_) status = send(raw_initial_);
   return latch(status);
@@ -206,6 +208,14 @@ void IoDevice::emergency_stop() noexcept {
   driver_->emergency_stop(raw_safe_);
 }
 
+std::function<void()> IoDevice::call_of_emergency_stop() const {
+  return [driver = driver_, safe = raw_safe_] { driver->emergency_stop(safe); };
+}
+
+std::function<void()> IoDevice::call_of_request_stop() const {
+  return [driver = driver_] { driver->request_stop(); };
+}
+
 Status IoDevice::kick() noexcept {
   if (stage_ != Stage::running) return {Code::not_open};
   if (latches(fault_.code)) return fault_;  // the watchdog is to expire
@@ -216,13 +226,6 @@ bool IoDevice::send_safe() noexcept {
   if (raw_safe_.empty()) return true;
   for (size_t i = 0; i < applied_.size(); ++i) applied_[i] = description_->outputs[i].safe;
   return driver_->write(raw_safe_).ok();
-}
-
-Status IoDevice::safe_outputs() noexcept {
-  if (stage_ == Stage::closed) return {Code::not_open};
-  const bool sent = send_safe();
-  outputs_safe_ = sent ? OutputsSafe::confirmed : OutputsSafe::unknown;
-  return sent ? Status{} : Status{Code::device_fault};
 }
 
 OutputsSafe IoDevice::stop() noexcept {

@@ -12,6 +12,7 @@
 ///    number of samples. Nothing begins before two samples have agreed.
 #pragma once
 #include <atomic>
+#include <functional>
 #include "hw/device/driver.h"
 #include "hw/device/explain.h"
 #include "hw/device/input.h"
@@ -58,9 +59,12 @@ class IoDevice {
   /// After a crash, from a thread that does not use the device otherwise: sends the safe values. After that
   /// nothing else is sent, whatever the loop writes.
   void emergency_stop() noexcept;
+  /// The same in two parts, for who must not wait in a driver that may hang: first only the safe values are
+  /// let through, then another thread makes the call.
+  void allow_only_safe_values() noexcept { is_emergency_ = true; }
+  std::function<void()> call_of_emergency_stop() const;
+  std::function<void()> call_of_request_stop() const;
 
-  /// Sends the safe values now; the device continues to sample.
-  Status safe_outputs() noexcept;
   /// Safe values, end of sampling, safe values again. The watchdog stays armed unless they were confirmed.
   OutputsSafe stop() noexcept;
   void close() noexcept;
@@ -89,7 +93,7 @@ class IoDevice {
   bool send_safe() noexcept;
 
   std::shared_ptr<const DeviceDescription> description_;
-  std::unique_ptr<Driver> driver_;
+  std::shared_ptr<Driver> driver_;  // also of calls that hang, and outlive the device
   Stage stage_ = Stage::closed;
   Status fault_;
   std::atomic<bool> is_emergency_ = false;

@@ -186,18 +186,32 @@ static void expire(struct world* w) {
 
 static int64_t next_sample(const struct task* t) { return t->start_ns + (t->samples + 1) * t->period_ns; }
 
+/* The task whose sample comes next; NULL: none takes one until then. */
+static struct task* first_due(struct world* w, int64_t until) {
+  struct task* due = NULL;
+  for (struct task* t = w->tasks; t < w->tasks + CLOCK_TASKS; ++t)
+    if (t->is_running && next_sample(t) <= (due ? next_sample(due) - 1 : until)) due = t;
+  return due;
+}
+
+/* Every event up to `to` takes place, also several at one instant: a reader waits for a sample that is due, and one
+ * that were left out would never come. At one instant samples come before the end of the watchdog's time. */
 void world_advance(struct world* w, int64_t to) {
-  while (w->now < to) {
-    struct task* due = NULL;
-    int64_t next = to;
-    for (struct task* t = w->tasks; t < w->tasks + CLOCK_TASKS; ++t)
-      if (t->is_running && next_sample(t) <= next) next = next_sample(t), due = t;
-    const int expires = w->card.is_watched && w->card.expires_at <= next;
-    if (expires) next = w->card.expires_at, due = NULL;
-    plant_advance(&w->plant, w->card.volts[0], 1e-9 * (double)w->now, 1e-9 * (double)(next - w->now));
-    w->now = next;
-    if (expires) expire(w);
-    if (due) sample_task(w, due);
+  for (;;) {
+    struct task* due = first_due(w, to);
+    int64_t next = due ? next_sample(due) : to;
+    const int expires = w->card.is_watched && (due ? w->card.expires_at < next : w->card.expires_at <= next);
+    if (expires) next = w->card.expires_at;
+    if (next > w->now) {
+      plant_advance(&w->plant, w->card.volts[0], 1e-9 * (double)w->now, 1e-9 * (double)(next - w->now));
+      w->now = next;
+    }
+    if (expires)
+      expire(w);
+    else if (due)
+      sample_task(w, due);
+    else
+      return;
   }
 }
 

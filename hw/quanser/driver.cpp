@@ -53,9 +53,10 @@ class QuanserDriver final : public Driver {
   ~QuanserDriver() override { close(); }
 
   Capabilities capabilities() const override {
-    return {device_->clock.source == ClockSource::device, device_->watchdog.timeout > 0,
-            device_->clock.source == ClockSource::device, true,
-            false};  // the vendor does not document which calls may run concurrently
+    const bool is_clock = device_->clock.source == ClockSource::device;
+    const double watchdog = device_->watchdog.timeout;
+    // Not re-entrant: the vendor does not document which calls may run concurrently.
+    return {is_clock, watchdog > 0, is_clock, true, false, watchdog};
   }
 
   Status open() override {
@@ -242,8 +243,7 @@ Status QuanserDriver::set_watchdog(std::span<const double> safe) {
   std::vector<uint32_t> channels;
   std::vector<double> states(size_t(settings_.analog_outputs), 0.0);
   for (int i = 0; i < settings_.analog_outputs; ++i) channels.push_back(uint32_t(i));
-  for (size_t i = 0; i < outputs_.size(); ++i)
-    if (outputs_[i] < states.size()) states[outputs_[i]] = safe[i];
+  for (size_t i = 0; i < outputs_.size(); ++i) states[outputs_[i]] = safe[i];  // in it: see read_settings
   const auto count = uint32_t(channels.size());
   if (device_->watchdog.timeout > 0) {
     for (const auto& [name, function] : {std::pair{"hil_watchdog_start", (void*)call().hil_watchdog_start},

@@ -56,6 +56,22 @@ void check_channels(const std::vector<Channel>& channels, int most, const Settin
     }
 }
 
+/// The card's watchdog puts out safe values on as many channels as `analog_outputs` says. A command on
+/// another channel would stay there after a crash of this program, although the watchdog is armed.
+void check_watched(const DeviceDescription& device, const Settings& settings, const Value& section,
+                   Problems& problems) {
+  const Value::Member* member = section.find("analog_outputs");
+  const Value& at = member ? member->value : section;
+  for (const OutputChannel& output : device.outputs)
+    if (output.channel >= settings.analog_outputs) {
+      auto& p = problems.error(at.place, at.place.pointer(), output.name,
+                               "the card's watchdog would not put out the safe value of this output");
+      p.found =
+          fmt::format("channel {}, and \"analog_outputs\": {}", output.channel, settings.analog_outputs);
+      p.expected = "the number of analog outputs that the card has, above the channel of every output";
+    }
+}
+
 }  // namespace
 
 Settings read_settings(const DeviceDescription& device, Problems& problems) {
@@ -69,6 +85,7 @@ Settings read_settings(const DeviceDescription& device, Problems& problems) {
     check_channels(device.inputs, 8, settings, section, problems);
     check_channels(device.outputs, 8, settings, section, problems);
   }
+  check_watched(device, settings, section, problems);
   if (settings.clock == 1 && settings.board == "qpid_e")
     problems
         .error(section.place, section.place.pointer(), "", "hardware clock 1 of the QPIDe is its watchdog")

@@ -42,6 +42,29 @@ void check_shared(const Plan& plan, const Hardware& hardware, const Axis& axis, 
       error(fmt::format("\"{}\" commands the same output of the device", other.path));
 }
 
+/// The loop steps from one sample to the next, from the start on. Between samples the blocks of the axes
+/// would not be due, and every measurement would be used a period too late.
+void check_start(const Plan& plan, const Hardware& hardware, Problems& problems) {
+  if (plan.start_tick % hardware.period_ticks == 0) return;
+  auto& p = problems.error(plan.solver_place, plan.solver_place.pointer(), "",
+                           "a loop on hardware begins with a sample");
+  p.expected = fmt::format("a start that is a multiple of the sample_time of {:g} s", hardware.period_s);
+  p.found = fmt::format("{:g} s", plan.clock.time(plan.start_tick));
+}
+
+/// The watchdog is reloaded once a sample: with less than two periods a sample that is a little late lets it
+/// expire.
+void check_watchdog(const Hardware& hardware, Problems& problems) {
+  const DeviceDescription& device = *hardware.device;
+  const double timeout = device.watchdog.timeout;
+  if (timeout == 0 || timeout >= 2 * hardware.period_s) return;
+  auto& p =
+      problems.error(device.place, "/watchdog/timeout", "", "the watchdog would expire between two commands");
+  p.expected =
+      fmt::format("at least two periods of {:g} s; ten leave room for late samples", hardware.period_s);
+  p.found = fmt::format("{:g} s", timeout);
+}
+
 }  // namespace
 
 Hardware find_hardware(const Plan& plan, Problems& problems) {
@@ -58,6 +81,7 @@ Hardware find_hardware(const Plan& plan, Problems& problems) {
     check_units(plan, axis, problems);
     hardware.axes.push_back(axis);
   }
+  if (!hardware.axes.empty()) check_start(plan, hardware, problems), check_watchdog(hardware, problems);
   if (!hardware.axes.empty() && plan.states > 0 && !is_fixed_step(plan.method)) {
     auto& p = problems.error(plan.solver_place, plan.solver_place.pointer(), "",
                              "a loop on hardware needs steps whose length is known beforehand");

@@ -21,7 +21,8 @@ struct Hardware {
 };
 
 /// Empty `axes`: the plan has no hardware. Problems: several devices or periods, a channel used twice, units
-/// that differ from the device's, a solver whose step is not known in advance.
+/// that differ from the device's, a start between two samples, a watchdog shorter than two periods, a solver
+/// whose step is not known in advance.
 Hardware find_hardware(const Plan& plan, Problems& problems);
 
 }  // namespace loopwright::hw

@@ -36,8 +36,18 @@ void ControlLoop::warm_up() {
   end_ = {};
 }
 
+Status ControlLoop::start() {
+  struct Leaving {
+    ControlLoop& loop;
+    ~Leaving() { loop.leave(); }
+  } const at_the_end{*this};  // also if the driver throws
+  enter(LoopPart::start, wall_ns());
+  return device_.start(hardware_.period_s);
+}
+
 void ControlLoop::run() noexcept {
   while (cycle()) stepper_.finish();
+  leave();
 }
 
 bool ControlLoop::cycle() noexcept {
@@ -48,6 +58,7 @@ bool ControlLoop::cycle() noexcept {
   if (is_asked_to_stop_.load(std::memory_order_relaxed)) return end_with(LoopEnd::Why::asked);
   const int64_t lateness_ns = lateness_of(sample);
   const int64_t was_read = wall_ns();
+  enter(LoopPart::step, was_read);
   if (!count_missing(sample)) return false;
   for (size_t a = 0; a < hardware_.axes.size(); ++a) {
     const blocks::HardwareIo& io = *hardware_.axes[a].io;
@@ -56,8 +67,10 @@ bool ControlLoop::cycle() noexcept {
   }
   if (!step()) return end_with(LoopEnd::Why::step_failed);
   const int64_t stepped = wall_ns();
+  enter(LoopPart::write, stepped);
   const Status written = write();
   const int64_t done = wall_ns();
+  enter(LoopPart::step, done);  // the rest of it, up to the next sample
   statistics_.read.add(was_read - begin, statistics_.cycles);
   statistics_.step.add(stepped - was_read, statistics_.cycles);
   statistics_.write.add(done - stepped, statistics_.cycles);
@@ -68,12 +81,12 @@ bool ControlLoop::cycle() noexcept {
 }
 
 Status ControlLoop::read(Sample& sample) noexcept {
-  if (!device_is_clock_ && statistics_.cycles > 0)
+  if (!device_is_clock_ && statistics_.cycles > 0) {
+    leave();
     clock_.sleep_until(origin_ns_ + (instant_ + 1) * period_ns_);
-  reading_since_.store(wall_ns(), std::memory_order_relaxed);
-  const Status status = device_.read(sample, inputs_);
-  reading_since_.store(0, std::memory_order_relaxed);
-  return status;
+  }
+  enter(LoopPart::read, wall_ns());
+  return device_.read(sample, inputs_);
 }
 
 /// Time since the instant at which the sample was due. The clocks drift: the origin follows early samples at
@@ -118,6 +131,7 @@ bool ControlLoop::step() noexcept {
   int64_t before = wall_ns();
   stepper_.compute(missing_, [&](int block) {
     const int64_t now = wall_ns();
+    part_since_.store(now, std::memory_order_relaxed);
     BlockSum& sum = block_sums_[size_t(block)];
     sum.total_ns += now - before;
     sum.longest_ns = std::max(sum.longest_ns, now - before);
@@ -163,9 +177,12 @@ bool ControlLoop::account_for(int64_t lateness_ns, int64_t step_ns) noexcept {
 }
 
 /// In simulated time there are no deadlines, and a minute of model time would overrun any log.
-void ControlLoop::wait_for_log() const noexcept {
+void ControlLoop::wait_for_log() noexcept {
   const timespec moment = {0, 100'000};
+  if (log_.has_room()) return;
+  leave();  // the disk, not the device, is waited for
   while (!log_.has_room() && !is_asked_to_stop_.load(std::memory_order_relaxed)) nanosleep(&moment, nullptr);
+  enter(LoopPart::step, wall_ns());
 }
 
 LiveValues ControlLoop::live() const noexcept {

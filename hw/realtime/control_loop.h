@@ -7,6 +7,9 @@
 
 namespace loopwright::hw {
 
+/// Where the loop is: each part has to end within a time.
+enum class LoopPart : uint8_t { none, start, read, step, write };
+
 /// How the loop ended.
 struct LoopEnd {
   enum class Why : uint8_t { running, finished, asked, status, step_failed, overruns, lost, skipped };
@@ -23,15 +26,19 @@ class ControlLoop {
   void warm_up();
   /// Runs cycles until the plan's stop, a fault, or request_stop(). The outputs keep their values.
   void run() noexcept;
-  /// From any thread.
-  void request_stop() noexcept {
-    is_asked_to_stop_.store(true, std::memory_order_relaxed);
-    device_.request_stop();
-  }
-  /// How long the current read has been waiting; 0: no read is waiting.
-  int64_t waiting_ns() const noexcept {
-    const int64_t since = reading_since_.load(std::memory_order_relaxed);
-    return since ? wall_ns() - since : 0;
+  /// Starts the device, as a part of the loop: it sends the initial values.
+  Status start();
+  /// The present cycle is the last one. From any thread; a read that waits is not woken.
+  void request_stop() noexcept { is_asked_to_stop_.store(true, std::memory_order_relaxed); }
+  /// The part in which the loop is, and for how long; of a step, how long its present block takes.
+  struct Progress {
+    LoopPart part = LoopPart::none;
+    int64_t for_ns = 0;
+  };
+  Progress progress() const noexcept {
+    const LoopPart part = part_.load(std::memory_order_acquire);
+    if (part == LoopPart::none) return {};
+    return {part, wall_ns() - part_since_.load(std::memory_order_relaxed)};
   }
   LiveValues live() const noexcept;
 
@@ -43,6 +50,13 @@ class ControlLoop {
   struct BlockSum {
     int64_t total_ns = 0, longest_ns = 0;
   };
+  /// In this order: who sees the new part does not see an older time with it.
+  void enter(LoopPart part, int64_t now) noexcept {
+    part_since_.store(now, std::memory_order_relaxed);
+    part_.store(part, std::memory_order_release);
+  }
+  /// In no part that is watched.
+  void leave() noexcept { part_.store(LoopPart::none, std::memory_order_release); }
   bool cycle() noexcept;
   Status read(Sample& sample) noexcept;
   int64_t lateness_of(const Sample& sample) noexcept;
@@ -51,7 +65,7 @@ class ControlLoop {
   bool step() noexcept;
   Status write() noexcept;
   bool account_for(int64_t lateness_ns, int64_t step_ns) noexcept;
-  void wait_for_log() const noexcept;
+  void wait_for_log() noexcept;
   bool end_with(LoopEnd::Why why, Status status = {}) noexcept {
     end_ = {why, status};
     return false;
@@ -77,7 +91,8 @@ class ControlLoop {
   int64_t missing_ = 0;  ///< instants before this sample without one
   int64_t overruns_in_row_ = 0;
   std::atomic<bool> is_asked_to_stop_ = false;
-  std::atomic<int64_t> reading_since_ = 0;
+  std::atomic<LoopPart> part_ = LoopPart::none;
+  std::atomic<int64_t> part_since_ = 0;
   std::atomic<double> live_time_ = 0, live_error_ = 0, live_command_ = 0, live_lateness_ = 0;
 };
 

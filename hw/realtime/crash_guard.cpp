@@ -35,14 +35,7 @@ void say(const char* text) {
 /// If the guardian itself crashes, no thread is left to stop the machine: the call is made here, and the
 /// process ends a second later if it hangs.
 void stop_alone() {
-  struct sigaction action = {};
-  action.sa_handler = SIG_DFL;
-  sigaction(SIGALRM, &action, nullptr);
-  sigset_t set;
-  sigemptyset(&set);
-  sigaddset(&set, SIGALRM);
-  pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
-  alarm(1);
+  end_within(1);
   if (const auto stop = last_resort.load()) last_words = stop(last_resort_object);
   alarm(0);
 }
@@ -63,13 +56,9 @@ void stop_machine(const char* what) {
     (void)!write(wake, &one, sizeof one);
     for (int i = 0; i < CrashGuard::patience_ms && !last_words.load(); ++i) poll(nullptr, 0, 1);
   }
-  say("loopwright: ");
-  say(what);
-  say(": ");
   const char* words = last_words.load();
   if (!words) words = guardian == 0 ? "the device is not open" : words_of_a_hanging_stop.load();
-  say(words ? words : "the stop did not come to its end");
-  say("\n");
+  CrashGuard::say_at_end(what, words);
 }
 
 void on_fatal(int signal) {
@@ -119,6 +108,12 @@ void CrashGuard::end_guardian() noexcept { guardian = 0, last_resort = nullptr; 
 int CrashGuard::descriptor() const noexcept { return wake; }
 int CrashGuard::crashed_thread() noexcept { return crashed; }
 void CrashGuard::expect(const char* words) noexcept { words_of_a_hanging_stop = words; }
+const char* CrashGuard::expected() noexcept { return words_of_a_hanging_stop; }
+void CrashGuard::say_at_end(const char* what, const char* words) noexcept {
+  for (const char* text :
+       {"loopwright: ", what, ": ", words ? words : "the stop did not come to its end", "\n"})
+    say(text);
+}
 void CrashGuard::release(const char* words) noexcept { last_words = words; }
 
 HandlerStack::HandlerStack() : memory_(64 * 1024) {

@@ -36,6 +36,9 @@ class CrashGuard {
   /// The final message if the stop does not come to its end, of static lifetime. It changes with the state of
   /// the device. Without a guardian the device is not open, and the message says so.
   static void expect(const char* words) noexcept;
+  static const char* expected() noexcept;
+  /// "loopwright: what: words" on standard error; waits for no reader.
+  static void say_at_end(const char* what, const char* words) noexcept;
   /// The guardian has finished.
   void release(const char* last_words) noexcept;
 };

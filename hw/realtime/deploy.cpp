@@ -1,14 +1,16 @@
 #include "hw/realtime/deploy.h"
 #include <fmt/format.h>
-#include <pthread.h>
 #include <unistd.h>
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <optional>
 #include <semaphore>
 #include "hw/realtime/control_loop.h"
 #include "hw/realtime/last_words.h"
 #include "hw/realtime/log_writer.h"
+#include "hw/realtime/loop_end_text.h"
+#include "hw/realtime/rescue.h"
 #include "hw/realtime/stop_signals.h"
 #include "hw/realtime/threads.h"
 
@@ -17,7 +19,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Time that the loop has to end after a stop request; then the next signal ends the process.
+/// Time that a run has to end after a signal; then the next signal ends the process.
 constexpr int64_t longest_stop_ns = 2'000'000'000;
 /// Time that the disk has to write the end of the log, unless a second request comes.
 constexpr int64_t longest_wait_for_disk_ns = 60'000'000'000;
@@ -63,7 +65,9 @@ class Deployment {
     make_log();
     CrashGuard guard;
     guard.expect(has_sent_ ? LastWords::before_sampling() : LastWords::before_anything_is_sent());
-    const GuardedThread watcher([&] { watch(signals, guard, request.priority); }, [&] { is_over_ = true; });
+    const int above = request.priority > 0 ? request.priority + 1 : 0;
+    rescue_.emplace(device_, loop_, options_, hardware_.period_s, above);
+    const GuardedThread watcher([&] { watch(signals, guard, above); }, [&] { is_over_ = true; });
     is_guarded_.acquire();  // a crash before that would leave the device open
     try {
       const GuardedThread loop([&] { run_loop(request); }, [&] { call_off(); });
@@ -75,6 +79,7 @@ class Deployment {
     } catch (...) {
       fail(fmt::format("stopped by an exception: {}", text_of_exception()));
     }
+    rescue_->begin_stop();
     {
       const DeviceUser::Use use(device_user_);
       device_.close();
@@ -109,7 +114,7 @@ class Deployment {
   /// Ends the loop's thread in whatever state it is.
   void call_off() {
     tell_to(Begin::called_off);
-    if (!has_ended_) loop_.request_stop();
+    if (!has_ended_) rescue_->request_stop();
   }
 
   /// The real-time thread, from its scheduling to the safe outputs.
@@ -127,7 +132,7 @@ class Deployment {
     {
       const DeviceUser::Use use(device_user_);
       try {
-        started_ = device_.start(hardware_.period_s);
+        started_ = loop_.start();
         CrashGuard::expect(last_words_.while_sampling());
         if (started_.ok()) {
           if (options_.loop_begins) options_.loop_begins();
@@ -137,6 +142,7 @@ class Deployment {
       } catch (...) {
         exception_in_loop_ = text_of_exception();
       }
+      rescue_->begin_stop();
       device_.stop();
       CrashGuard::expect(LastWords::after_the_stop());
     }
@@ -167,7 +173,9 @@ class Deployment {
     }
     if (status.ok()) return true;
     const std::string what = device_.describe(status);
+    rescue_->begin_stop();
     device_.stop();
+    has_ended_ = true;
     return fail(fmt::format("{} cannot be set up: {}", device_.description().path, what), status);
   }
 
@@ -192,27 +200,26 @@ class Deployment {
                        watchdog);
   }
 
-  // ---- the watcher: signals, reads that do not return, log failures, crashes ----
+  // ---- the watcher: signals, calls that do not return, log failures, crashes ----
+  // It calls no driver, unless the process crashes: whoever watches must not hang.
 
-  void watch(const StopSignals& signals, CrashGuard& guard, int priority) noexcept {
+  void watch(const StopSignals& signals, CrashGuard& guard, int above) noexcept {
     const HandlerStack stack;
-    // Priority above the loop's, so that a busy loop cannot block it, where that is permitted.
-    const sched_param above{std::min(priority + 1, 99)};
-    if (priority > 0) pthread_setschedparam(pthread_self(), SCHED_FIFO, &above);
+    // Above the loop, and above a thread of the rescue that hangs busily.
+    raise_priority(above > 0 ? above + 1 : 0);
     guard.begin_guardian([](void* self) { return static_cast<Deployment*>(self)->stop_in_emergency(); },
                          this);
     is_guarded_.release();
-    const double usual = is_simulated_ ? 5 : std::max(0.25, 10 * hardware_.period_s);
-    const double longest = options_.read_timeout > 0 ? options_.read_timeout : usual;
     while (!is_over_) {
       if (const int signal = signals.wait(5, guard.descriptor())) take_signal(signal);
       if (CrashGuard::crashed_thread()) {
         guard.release(stop_in_emergency());
         for (;;) pause();  // the process ends
       }
-      if (!has_timed_out_ && 1e-9 * double(loop_.waiting_ns()) > longest)
-        has_timed_out_ = true, loop_.request_stop();
-      if (!has_ended_ && log_failure_ == 0 && (log_failure_ = writer_->failure()) != 0) loop_.request_stop();
+      if (!has_ended_ && log_failure_ == 0 && (log_failure_ = writer_->failure()) != 0)
+        rescue_->request_stop();
+      rescue_->look(has_sent_ && !has_ended_);
+      if (rescue_->is_overdue() && device_user_.is_used()) end_process(stop_signal_);
     }
     guard.end_guardian();
   }
@@ -221,32 +228,29 @@ class Deployment {
     ++signals_;
     if (int none = 0; stop_signal_.compare_exchange_strong(none, signal)) {
       asked_ns_ = wall_ns();
-      loop_.request_stop();
+      rescue_->request_stop();
     } else if (!is_closed_ && wall_ns() - asked_ns_ > longest_stop_ns) {
-      end_by_signal(signal);
+      end_process(signal);
     }
   }
 
-  /// Driver or callback hang and ignore the request: safe values from here, within a second, then the end.
-  [[noreturn]] void end_by_signal(int signal) noexcept {
-    for (const int by_default : {SIGALRM, signal}) {
-      std::signal(by_default, SIG_DFL);
-      sigset_t set;
-      sigemptyset(&set);
-      sigaddset(&set, by_default);
-      pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
-    }
-    alarm(1);
-    device_.emergency_stop();
+  /// Driver or callback hang and ignore the request: safe values within a second, unless the driver does not
+  /// let them through, then the end; by the signal, if one asked for it.
+  [[noreturn]] void end_process(int signal) noexcept {
+    end_within(3);
+    const bool is_in_motion = has_sent_ && !has_ended_;
+    if (is_in_motion) rescue_->send_safe_values();
+    const bool is_sent = is_in_motion && rescue_->have_been_sent(1000);
     writer_->wait_for_pass(200);
-    raise(signal);
-    _exit(128 + signal);  // in case the signal is ignored
+    CrashGuard::say_at_end("the run does not come to its end",
+                           is_sent ? last_words_.of(OutputsSafe::unknown) : CrashGuard::expected());
+    end_by(signal);
   }
 
   /// A thread has crashed and waits in its handler, or it is the caller itself, in the handler.
   const char* stop_in_emergency() noexcept {
     device_.emergency_stop();
-    loop_.request_stop();  // a loop that still runs stops the device itself
+    rescue_->request_stop();  // a loop that still runs stops the device itself
     OutputsSafe safe = has_sent_ ? OutputsSafe::unknown : OutputsSafe::untouched;
     if (device_user_.take_over(CrashGuard::crashed_thread(), CrashGuard::patience_ms / 2)) {
       device_.stop();
@@ -323,8 +327,8 @@ class Deployment {
       fail(fmt::format("an exception in the loop's thread: {}, {}", exception_in_loop_, at));
     } else if (!started_.ok()) {
       fail(fmt::format("the device does not start: {}", device_.describe(started_)), started_);
-    } else if (has_timed_out_) {
-      fail(fmt::format("a read of the device did not return, {}", at), {Code::device_fault});
+    } else if (const LoopPart hung = rescue_->hung(); hung != LoopPart::none) {
+      fail(fmt::format("{}, {}", sentence_of(hung), at), {Code::device_fault});
     } else if (log_failure_ != 0 && end.why == Why::asked) {
       fail(fmt::format("the log cannot be written: {}; stopped {}", std::strerror(log_failure_), at));
     } else if (end.why == Why::asked) {
@@ -336,31 +340,10 @@ class Deployment {
       fail(fmt::format("{}, {}", device_.describe(end.status), at), end.status);
     } else if (end.why == Why::step_failed) {
       fail(loop_.stepper().fault());
-    } else if (end.why == Why::lost) {
-      fail(fmt::format(
-               "the device lost {} samples in a row {}; {} end a run (\"on_lost\", \"most_lost\" in the "
-               "device file's policy)",
-               result_.statistics.longest_gap, at, device_.description().policy.lost_that_end()),
-           end.status);
-    } else if (end.why == Why::skipped) {
-      fail(fmt::format(
-               "this computer left out {} periods in a row {}; {} end a run (\"most_skipped\" in the device "
-               "file's policy)",
-               result_.statistics.longest_gap, at, device_.description().policy.most_skipped),
-           end.status);
-    } else if (end.why == Why::overruns) {
-      std::string slowest;
-      for (size_t i = 0; i < std::min<size_t>(3, result_.statistics.blocks.size()); ++i)
-        slowest += fmt::format("{}{} {:.1f} us", i ? ", " : "", result_.statistics.blocks[i].path,
-                               result_.statistics.blocks[i].longest_us);
-      fail(fmt::format("{} commands in a row came too late, {}; longest read {:.0f} us, step {:.0f} us, "
-                       "write {:.0f} us; "
-                       "the slowest blocks: {}",
-                       result_.statistics.most_overruns_in_row, at,
-                       1e-3 * double(result_.statistics.read.longest_ns()),
-                       1e-3 * double(result_.statistics.step.longest_ns()),
-                       1e-3 * double(result_.statistics.write.longest_ns()), slowest),
-           end.status);
+    } else if (const std::string why =
+                   policy_that_ended(end.why, result_.statistics, device_.description().policy, at);
+               !why.empty()) {
+      fail(why, end.status);
     }
   }
 
@@ -377,6 +360,7 @@ class Deployment {
   std::shared_ptr<MemorySink> memory_;  // the same, if there is no journal
   std::unique_ptr<LogWriter> writer_;
   ControlLoop loop_;
+  std::optional<Rescue> rescue_;  // its threads begin when signals are blocked
   DeployResult result_;
   Status started_;
   std::string exception_in_loop_;
@@ -385,7 +369,7 @@ class Deployment {
   DeviceUser device_user_;
   std::binary_semaphore is_prepared_{0}, is_done_{0}, is_guarded_{0};
   std::atomic<Begin> begin_ = Begin::waits;
-  std::atomic<bool> has_ended_ = false, is_closed_ = false, is_over_ = false, has_timed_out_ = false;
+  std::atomic<bool> has_ended_ = false, is_closed_ = false, is_over_ = false;
   std::atomic<int> stop_signal_ = 0, signals_ = 0, log_failure_ = 0;
   std::atomic<int64_t> asked_ns_ = 0;
 };

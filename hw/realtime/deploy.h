@@ -26,10 +26,11 @@ struct DeployOptions {
   bool keeps_log = true;  ///< false: without a journal no row is kept
   size_t ring_bytes =
       32u << 20;  ///< at most, between loop and log; rows that do not fit are dropped and counted
-  size_t memory_bytes =
-      256u << 20;  ///< at most, for a log in memory; later rows are dropped and counted
-  double read_timeout =
-      0;  ///< s; 0: ten periods, at least 0.25 s; 5 s in simulated time. A longer read is requested to stop
+  size_t memory_bytes = 256u << 20;  ///< at most, for a log in memory; later rows are dropped and counted
+  /// s; 0: ten periods, at least 0.25 s; 5 s in simulated time. A longer read, write or block ends the run.
+  double read_timeout = 0;
+  /// s, beside the time that the driver may wait for its device: if a stop lasts longer, the process ends.
+  double end_timeout = 10;
   Clock* clock = nullptr;  ///< null: the computer's clock, or the simulated one if the device asks for it
   std::function<void(const LiveValues&)> progress;  ///< called a few times a second, not in the loop
   /// Lines about device and system, when the device is open and nothing has been output yet.
@@ -52,10 +53,9 @@ struct LoopStatistics {
   int64_t longest_gap = 0;      ///< consecutive instants without a sample
   int64_t longest_backlog = 0;  ///< periods that a sample waited
   int64_t glitches = 0, clamped = 0, rate_limited = 0;
-  int64_t dropped_rows = 0;        ///< of the log, because the disk was too slow
-  double longest_log_delay_s = 0;  ///< that a row waited before it was passed to the system
-  double least_watchdog_margin_s =
-      0;  ///< timeout minus the longest time between reloads; 0: no watchdog
+  int64_t dropped_rows = 0;            ///< of the log, because the disk was too slow
+  double longest_log_delay_s = 0;      ///< that a row waited before it was passed to the system
+  double least_watchdog_margin_s = 0;  ///< timeout minus the longest time between reloads; 0: no watchdog
   Histogram lateness, read, step, write, total;
   std::vector<BlockTime> blocks;  ///< slowest first
 };
@@ -86,10 +86,12 @@ struct DeployResult {
 ///
 /// In every case safe values are sent and the device is closed: at the plan's end, at a fault, at any signal
 /// that requests the end (stop_signals.h), when a callback throws, when the log cannot be written, and when
-/// the process crashes (crash_guard.h). At a second signal 2 s after the first, while the loop still hangs in
-/// the driver, another thread sends the safe values and ends the process. After SIGKILL or a power failure,
-/// which no process survives, only the device's watchdog acts. Throws only before the device is opened: when
-/// threads or the journal cannot be created.
+/// the process crashes (crash_guard.h). While the loop hangs in a call of the driver or in a block, another
+/// thread sends the safe values (rescue.h). If the call never returns, the process ends, with exit code 1 or
+/// by the signal that requested the end: after `end_timeout`, or at a second signal 2 s after the first.
+/// After SIGKILL or a power failure, which no process survives, and if the driver lets no other call through,
+/// only the device's watchdog acts. Throws only before the device is opened: when threads or the journal
+/// cannot be created.
 DeployResult deploy(const Plan& plan, const Hardware& hardware, IoDevice& device,
                     const DeployOptions& options = {});
 

@@ -20,6 +20,17 @@ std::atomic<int> stray = 0;  // a signal that reached the handler
 static_assert(std::atomic<int>::is_always_lock_free);
 void note(int signal) { stray = signal; }
 
+/// In the calling thread the signal has its default action again.
+void restore(int signal) noexcept {
+  struct sigaction action = {};
+  action.sa_handler = SIG_DFL;
+  sigaction(signal, &action, nullptr);
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, signal);
+  pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+}
+
 }  // namespace
 
 StopSignals::StopSignals() {
@@ -53,6 +64,19 @@ int StopSignals::wait(int milliseconds, int also) const noexcept {
   signalfd_siginfo info;
   if (read(queue_, &info, sizeof info) == ssize_t(sizeof info)) return int(info.ssi_signo);
   return stray.exchange(0);
+}
+
+void end_within(unsigned seconds) noexcept {
+  restore(SIGALRM);
+  alarm(seconds);
+}
+
+void end_by(int signal) noexcept {
+  if (signal == 0) _exit(1);
+  if (signal == SIGTSTP) _exit(128 + signal);  // its default action would only halt the process
+  restore(signal);
+  raise(signal);
+  _exit(128 + signal);  // in case the signal is ignored
 }
 
 const char* name_of_signal(int signal) noexcept {

@@ -35,6 +35,13 @@ class StopSignals {
   int queue_ = -1;  // of the blocked ones
 };
 
+/// The process ends after this time at the latest, by SIGALRM, unless alarm(0) comes before.
+void end_within(unsigned seconds) noexcept;
+
+/// Ends the process at once by the default action of the signal, or with exit code 1 if it is 0. Nothing else
+/// is done: threads may hang.
+[[noreturn]] void end_by(int signal) noexcept;
+
 /// "SIGINT"; "a signal" for an unusual one.
 const char* name_of_signal(int signal) noexcept;
 

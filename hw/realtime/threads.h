@@ -1,5 +1,7 @@
 /// Threads of a deployment: every one is joined, and one thread at a time uses the device.
 #pragma once
+#include <pthread.h>
+#include <algorithm>
 #include <atomic>
 #include <ctime>
 #include <functional>
@@ -19,6 +21,12 @@ inline std::string text_of_exception() {
   } catch (...) {
     return "an unknown exception";
   }
+}
+
+/// For the calling thread, where it is permitted. 0: it keeps the usual scheduling.
+inline void raise_priority(int of_fifo) noexcept {
+  const sched_param priority{std::min(of_fifo, 99)};
+  if (of_fifo > 0) pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
 }
 
 /// A thread that is requested to end and joined, also when an exception is thrown.
@@ -56,6 +64,8 @@ class DeviceUser {
    private:
     DeviceUser& user_;
   };
+  /// Whether a thread uses the device: it may hang in the driver.
+  bool is_used() const noexcept { return thread_ != 0; }
   /// For the guardian: waits at most this long until the device is free, or until its user is the crashed
   /// thread.
   bool take_over(int crashed, int milliseconds) noexcept {

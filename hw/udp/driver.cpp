@@ -31,7 +31,7 @@ class UdpDriver final : public Driver {
   }
 
   Capabilities capabilities() const override {
-    return {true, device_->watchdog.timeout > 0, true, true, true};
+    return {true, device_->watchdog.timeout > 0, true, true, true, attempts_to_reach * settings_.patience};
   }
 
   Status open() override {
@@ -119,6 +119,8 @@ class UdpDriver final : public Driver {
   Status rearm() override { return exchange(Request::clear, {}); }
 
  private:
+  static constexpr int attempts_to_reach = 3;
+
   static Status status_of(const FromDevice& packet) noexcept {
     if (packet.state == DeviceState::watchdog_expired) return {Code::watchdog};
     return packet.state == DeviceState::fine ? Status{} : Status{Code::device_fault};
@@ -165,7 +167,7 @@ class UdpDriver final : public Driver {
   /// has a deadline: a device that lost the packet may go on sending samples.
   Status exchange(Request request, std::span<const double> raw) noexcept {
     Status status;
-    const int attempts = is_silent_ ? 1 : 3;
+    const int attempts = is_silent_ ? 1 : attempts_to_reach;
     for (int attempt = 0; attempt < attempts; ++attempt) {
       status = send(request, raw);
       const int64_t deadline = wall_ns() + patience_ns();

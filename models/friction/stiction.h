@@ -29,11 +29,15 @@ template <Scalar Real> struct Stiction {
     const Real at_rest = select(carried == 0.0, breaks_away(applied), carried);
     return select(direction * velocity > 0.0, direction, at_rest);
   }
-  /// Positive inside a mode; falls through zero at its end.
+  /// Positive inside a mode; falls through zero at its end. Parts that have just broken away slide by
+  /// `next_direction` for as long as they are pushed hard enough: their velocity says nothing yet.
   LW_INLINE Real margin(const Real& direction, const Real& velocity, const Real& applied) const {
     const Real carried = settling * velocity;
     const Real held = minimum(forward - maximum(applied, carried), backward + minimum(applied, carried));
-    return select(direction == 0.0, held, direction * velocity);
+    const Real pushed = direction * applied - select(direction > 0.0, forward, backward);
+    const Real way = direction * velocity;
+    const auto is_pushed = (way <= 0.0) & (next_direction(direction, velocity, applied) == direction);
+    return select(direction == 0.0, held, select(is_pushed, pushed, way));
   }
 
  private:

@@ -1,6 +1,5 @@
 #include "models/linear/frequency_response.h"
 #include <Eigen/LU>
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -12,10 +11,6 @@ namespace loopwright {
 using Eigen::Index;
 using Eigen::MatrixXcd;
 using Complex = std::complex<double>;
-
-namespace {
-double largest_entry(const Eigen::MatrixXd& A) { return A.size() ? A.cwiseAbs().maxCoeff() : 0.0; }
-}  // namespace
 
 FrequencyResponse::FrequencyResponse(const StateSpace& system, int lifted)
     : system_(balanced(system)), lifted_(lifted) {
@@ -56,40 +51,6 @@ MatrixXcd FrequencyResponse::at(double frequency) const {
   return all.topLeftCorner(outputs, inputs) +
          all.topRightCorner(outputs, delays) *
              around.partialPivLu().solve(lag * all.bottomLeftCorner(delays, inputs));
-}
-
-std::vector<double> interesting_frequencies(const StateSpace& system, int count, int lifted) {
-  const bool is_sampled = system.sample_time > 0;
-  double nyquist = std::numeric_limits<double>::infinity();
-  if (is_sampled) nyquist = std::numbers::pi * lifted / system.sample_time;
-  const std::vector<Pole> all = poles(system);
-  double slowest = std::numeric_limits<double>::infinity(), fastest = 0;
-  std::vector<double> frequencies;
-  const auto is_seen = [&](const Pole& pole) {
-    return pole.frequency < nyquist && std::isfinite(pole.frequency);
-  };
-  // The poles of integrators are at 0 except for rounding. Several integrators in series give a root of the
-  // rounding error. Their loop crosses over above it.
-  const double rounding =
-      1e-5 * (is_sampled ? lifted / system.sample_time : largest_entry(balanced(system).A));
-  for (const Pole& pole : all)
-    if (is_seen(pole) && pole.frequency > rounding) fastest = std::max(fastest, pole.frequency);
-  for (const Pole& pole : all) {
-    if (!is_seen(pole)) continue;
-    const bool integrates = pole.frequency <= rounding;
-    slowest = std::min(slowest, integrates ? 1e-3 * fastest : pole.frequency);
-    if (integrates || pole.damping > 0.3 || pole.value.imag() <= 0) continue;
-    const double width = std::max(std::abs(pole.damping), 1e-6);
-    for (int i = -20; i <= 20; ++i)
-      frequencies.push_back(pole.frequency * (1 + width * std::pow(i / 8.0, 3)));
-  }
-  if (!(fastest > 0)) fastest = is_sampled ? nyquist / 10 : 100, slowest = 1e-3 * fastest;
-  for (double delay : system.delays) fastest = std::max(fastest, 10 / delay);
-  const double low = slowest / 10, high = is_sampled ? nyquist : fastest * 10;
-  for (int i = 0; i < count; ++i) frequencies.push_back(low * std::pow(high / low, double(i) / (count - 1)));
-  std::erase_if(frequencies, [&](double f) { return !(f > 0) || f > high; });
-  std::ranges::sort(frequencies);
-  return frequencies;
 }
 
 }  // namespace loopwright

@@ -24,8 +24,4 @@ class FrequencyResponse {
   Eigen::MatrixXcd T_, B_, C_;
 };
 
-/// `count` frequencies (rad/s), spaced logarithmically from a decade below the slowest pole to a decade above
-/// the fastest, or to the Nyquist frequency, and more of them around every lightly damped pole.
-std::vector<double> interesting_frequencies(const StateSpace& system, int count, int lifted = 1);
-
 }  // namespace loopwright

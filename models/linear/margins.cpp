@@ -1,9 +1,10 @@
 #include "models/linear/margins.h"
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include "models/linear/frequency_range.h"
 #include "models/linear/frequency_response.h"
-#include "models/linear/poles.h"
 
 namespace loopwright {
 namespace {
@@ -38,7 +39,7 @@ template <class F> double summit(F&& f, double a, double b) {
 class MarginSearch {
  public:
   MarginSearch(const StateSpace& loop, int lifted)
-      : response_(loop, lifted), frequencies_(interesting_frequencies(loop, 3000, lifted)) {}
+      : response_(loop, lifted), frequencies_(loop_frequencies(loop, 3000, lifted)) {}
 
   void search(Margins& m) {
     for (double frequency : frequencies_) values_.push_back(L(frequency));
@@ -98,8 +99,8 @@ StateSpace closed_loop(const StateSpace& loop_gain) {
 
 Margins margins(const StateSpace& loop_gain, int lifted) {
   Margins m;
-  const StateSpace closed = closed_loop(loop_gain);
-  m.is_stable = is_stable(closed), m.largest_pole = outermost_pole(closed);
+  Modes modes = modes_between(closed_loop(loop_gain));
+  m.stability = modes.stability, m.largest_pole = modes.outermost, m.outside = std::move(modes.outside);
   MarginSearch(loop_gain, lifted).search(m);
   return m;
 }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 #include "models/linear/decompositions.h"
+#include "models/linear/frequency_range.h"
 #include "models/linear/frequency_response.h"
 #include "models/linear/poles.h"
 

@@ -86,6 +86,25 @@ std::vector<Pole> poles(const StateSpace& system) {
   return result;
 }
 
+std::string_view name_of(Stability stability) {
+  constexpr std::string_view names[] = {"stable", "boundary", "unstable"};
+  return names[size_t(stability)];
+}
+
+Stability stability_of(const Pole& pole, double sample_time, double fastest) {
+  constexpr double boundary = 1e-7;
+  const double outside =
+      sample_time > 0 ? std::abs(pole.value) - 1 : pole.value.real() / std::max(fastest, 1e-300);
+  if (outside < -boundary) return Stability::stable;
+  return outside <= boundary ? Stability::boundary : Stability::unstable;
+}
+
+double fastest_of(const std::vector<Pole>& poles) {
+  double fastest = 0;
+  for (const Pole& pole : poles) fastest = std::max(fastest, std::abs(pole.value));
+  return fastest;
+}
+
 double outermost_pole(const StateSpace& system) {
   double largest = system.sample_time > 0 ? 0 : -std::numeric_limits<double>::infinity();
   for (const Pole& pole : poles(system))

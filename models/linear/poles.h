@@ -1,5 +1,6 @@
 /// Poles and zeros of linear systems.
 #pragma once
+#include <string_view>
 #include "models/linear/state_space.h"
 
 namespace loopwright {
@@ -19,6 +20,16 @@ struct Pole {
     return sample_time > 0 ? std::abs(value) < 1 : value.real() < 0;
   }
 };
+
+/// Eigenvalues of integrators are found to about the square root of the rounding error. Within that distance
+/// a pole is on the boundary of stability: it neither decays nor grows.
+enum class Stability { stable, boundary, unstable };
+
+/// "stable", "boundary", "unstable"
+std::string_view name_of(Stability stability);
+/// `fastest`: the largest |pole| of the system, the scale of rounding errors in a continuous one.
+Stability stability_of(const Pole& pole, double sample_time, double fastest);
+double fastest_of(const std::vector<Pole>& poles);
 
 /// Eigenvalues of A after balancing, slowest first. Delays of the system are ignored.
 std::vector<Pole> poles(const StateSpace& system);

@@ -44,6 +44,15 @@ LoadOptions DiagramArguments::options() const {
   return options;
 }
 
+void DiagramArguments::warn_of_settings_left_out(std::string_view output) const {
+  std::string settings;
+  for (const std::string& text : set) settings += " --set " + text;
+  for (const std::string& text : variants) settings += " --variant " + text;
+  if (!output.empty() && !settings.empty())
+    tell("warning: {} was written from {} and does not contain{}: give it again with that file\n",
+         output == "-" ? "the diagram" : output, path, settings);
+}
+
 void reject_swapped(const std::string& diagram, const std::vector<std::string>& experiments) {
   Problems unheard;  // problems of the files themselves are reported when they are loaded
   if (kind_of_file(diagram, unheard) != FileKind::experiment) return;

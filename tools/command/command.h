@@ -21,6 +21,8 @@ struct DiagramArguments {
   void add_to(CLI::App& command);
   /// Loads block libraries. Throws InputError for malformed --set and --variant.
   LoadOptions options() const;
+  /// Names the settings of the command line that a diagram written from the file at `path` does not have.
+  void warn_of_settings_left_out(std::string_view output) const;
 };
 
 /// Adds a subcommand; `action` receives the exit code.

@@ -218,12 +218,12 @@ struct NamedFile {
 };
 
 bool names_output(const CLI::Option& option) {
-  constexpr std::array<std::string_view, 7> names = {"--output", "--report", "--json",      "--csv",
-                                                     "--svg",    "--model",  "--checkpoint"};
+  constexpr std::array<std::string_view, 8> names = {"--output", "--report", "--json",  "--csv",
+                                                     "--svg",    "--png",    "--model", "--checkpoint"};
   return !option.get_positional() && std::ranges::find(names, name_of(option)) != names.end();
 }
 bool names_input(const CLI::Option& option) {
-  constexpr std::array<std::string_view, 6> names = {"--replay", "--resume",  "--on",
+  constexpr std::array<std::string_view, 8> names = {"--replay", "--resume", "--on", "--beside", "--hold-out",
                                                      "--blocks", "--effects", "--more-effects"};
   return option.get_positional() || std::ranges::find(names, name_of(option)) != names.end();
 }

@@ -7,6 +7,7 @@
 #include "engine/record/atomic_file.h"
 #include "engine/record/recording_file.h"
 #include "hw/drivers.h"
+#include "hw/realtime/detached_call.h"
 #include "hw/realtime/stop_signals.h"
 #include "tools/command/command.h"
 #include "tools/command/interruption.h"
@@ -90,17 +91,33 @@ void show(const hw::LiveValues& now) {
   say(text, 0);
 }
 
-/// Opens a device in use if a person agrees; false: nobody agreed. All other problems are reported by
-/// deploy().
+/// The answer of a driver that may hang, while signals wait in their queue: a second one 2 s after the first
+/// ends the program. Empty: a signal came.
+std::optional<hw::Status> answer_of(const std::function<hw::Status()>& call, const hw::StopSignals& signals) {
+  hw::Status status;
+  hw::DetachedCall detached([&] { status = call(); }, 0);
+  detached.run();
+  int64_t asked_ns = 0;
+  while (!detached.wait(20)) {
+    const int signal = signals.wait(0);
+    if (signal != 0 && asked_ns != 0 && hw::wall_ns() - asked_ns > 2'000'000'000) hw::end_by(signal);
+    if (signal != 0 && asked_ns == 0) asked_ns = hw::wall_ns();
+  }
+  if (asked_ns != 0) return {};
+  return status;
+}
+
+/// Opens a device in use if a person agrees; false: nobody agreed, or a signal came. All other problems are
+/// reported by deploy().
 bool take_over(hw::IoDevice& device, const hw::DriverType& driver, const TakeOver& options,
                const hw::StopSignals& signals) {
   if (!options.is_wanted || !driver.taking_over) return true;
-  const hw::Status status = device.open();
-  if (status.code != hw::Code::busy) return true;
-  if (!agrees(options, device.describe(status), driver.taking_over, [&] { return signals.wait(0) != 0; }))
+  const auto status = answer_of([&] { return device.open(); }, signals);
+  if (!status) return false;
+  if (status->code != hw::Code::busy) return true;
+  if (!agrees(options, device.describe(*status), driver.taking_over, [&] { return signals.wait(0) != 0; }))
     return false;
-  device.take_over();
-  return true;
+  return answer_of([&] { return device.take_over(); }, signals).has_value();
 }
 
 /// Without a watchdog a motor stays driven when this process is killed or the computer fails.
@@ -203,7 +220,10 @@ std::optional<hw::DeployResult> move(const DeployArguments& a, const Plan& plan,
   auto driver = type.make(hardware.device, problems);
   if (!driver) throw InputError(std::move(problems));
   hw::IoDevice device(hardware.device, std::move(driver));
-  if (!take_over(device, type, a.take_over, signals)) return {};
+  if (!take_over(device, type, a.take_over, signals)) {
+    answer_of([&] { return device.close(), hw::Status{}; }, signals);
+    return {};
+  }
   hw::DeployOptions options;
   options.system.priority = a.priority, options.system.processor = a.processor;
   options.require_real_time = a.require_real_time;

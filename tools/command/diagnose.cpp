@@ -29,6 +29,7 @@ int run(const DiagnoseArguments& a) {
   if (diagnosis.was_interrupted) return interrupted;
   if (a.trail)
     for (const std::string& line : diagnosis.trail) tell("{}\n", line);
+  a.diagram.warn_of_settings_left_out(diagnosis.improved);
   if (!a.report.empty()) report::write_html(a.report, diagnosis_page(diagnosis));
   give_answer(
       to_text(diagnosis), a.json, [&] { return to_json(diagnosis); }, a.report);

@@ -2,6 +2,8 @@
 #include <cmath>
 #include <numbers>
 #include "engine/record/csv.h"
+#include "engine/run/require_finished.h"
+#include "models/linear/structure.h"
 #include "tools/command/command.h"
 #include "tools/linearize/analysis.h"
 
@@ -11,31 +13,95 @@ namespace {
 struct LinearizeArguments {
   DiagramArguments diagram;
   LinearizeRequest request;
-  double at = -1;
   std::string json, csv, report;
   double measure = 0, settle = 0.5;
 };
 
-/// Sine measurements over two decades, below the highest frequency of the plots that ten rows resolve.
-void measure(const LinearizeArguments& a, const LinearSystem& system, LinearAnalysis& analysis,
-             const RunOptions& options) {
+/// Sines run the whole diagram, and need an end of the response to each of them.
+void refuse_other_system(const LinearizeArguments& a, const Plan& plan) {
+  if (!a.request.continuous || plan.rates.empty()) return;
+  Problems problems;
+  auto& p = problems.error({}, "", "", "--measure and --continuous show different systems");
+  p.expected = "one of them: sines run the diagram with its sampled parts, --continuous leaves these out";
+  p.found =
+      fmt::format("{} sample time{} in the diagram", plan.rates.size(), plan.rates.size() > 1 ? "s" : "");
+  p.hint = "without --continuous both show the whole diagram";
+  throw InputError(std::move(problems));
+}
+
+[[noreturn]] void refuse_unsettled(const std::string& mode) {
+  Problems problems;
+  auto& p = problems.error({}, "", "", "--measure: the response to a sine does not settle");
+  p.expected = "modes that decay, beside two integrators at most";
+  p.found = "the mode at " + mode;
+  p.hint = "close a loop around it (without --open), or leave --measure out";
+  throw InputError(std::move(problems));
+}
+
+/// A sine can be measured where the response to its beginning decays, or ends as a constant or a drift, which
+/// one or two integrators leave. Warns where it decays too slowly for `settle`.
+void judge_settling(const LinearSystem& system, double settle) {
+  constexpr double noticed = 0.01;
+  const StateSpace part = connected_part(with_approximate_delays(system.matrices, 6));
+  const std::vector<Pole> all = poles(part);
+  const double fastest = fastest_of(all), T = part.sample_time;
+  const double at_zero = 1e-5 * (T > 0 ? 1 / T : fastest);  // the poles of integrators, with their rounding
+  int integrators = 0;
+  double slowest = std::numeric_limits<double>::infinity();
+  for (const Pole& pole : all) {
+    const Stability stability = stability_of(pole, T, fastest);
+    const bool integrates = stability == Stability::boundary && pole.frequency <= at_zero;
+    integrators += integrates;
+    if (stability == Stability::stable)
+      slowest = std::min(slowest, -pole.continuous.real());
+    else if (!integrates || integrators > 2)
+      refuse_unsettled(text_of(pole, T, {}));
+  }
+  if (const double left = std::exp(-slowest * settle); left > noticed)
+    tell(
+        "warning: after --settle {:g} s, {:.0f} % of the slowest mode is still in what is measured; --settle "
+        "{:.2g} leaves 1 %\n",
+        settle, 100 * left, -std::log(noticed) / slowest);
+}
+
+/// Of the first channel, which is measured.
+LinearSystem measured_system(const LinearizeArguments& a, const Plan& plan, const LinearAnalysis& analysis,
+                             const RunOptions& options) {
+  const Access& access = a.request.access;
+  if (access.from.size() == 1 && access.to.size() == 1) return analysis.system;
+  LinearizeRequest one = a.request;
+  one.access.from.resize(1), one.access.to.resize(1);
+  one.break_point.clear();
+  return analyse(plan, one, options).system;
+}
+
+/// Sine measurements over two decades, below the highest frequency of the plots that ten rows resolve. An
+/// interruption leaves the sines that were measured.
+void measure(const LinearizeArguments& a, LinearAnalysis& analysis, const RunOptions& options) {
   Problems problems;
   const auto diagram = load_diagram(a.diagram.path, a.diagram.options(), problems);
   if (!diagram) throw InputError(std::move(problems));
+  const StateSpace& matrices = analysis.system.matrices;
   SineTest test;
   test.from = a.request.access.from.at(0), test.to = a.request.access.to.at(0);
+  test.open = a.request.access.open, test.at = a.request.at;
   test.amplitude = a.measure, test.settle = a.settle;
-  test.sample_time = system.matrices.sample_time > 0 ? system.matrices.sample_time / analysis.lifted
-                                                     : std::numbers::pi / (10 * analysis.frequency.back());
-  test.holds = system.matrices.sample_time > 0;
+  test.holds = matrices.sample_time > 0;
+  test.sample_time = test.holds ? matrices.sample_time / analysis.lifted
+                                : std::numbers::pi / (10 * analysis.frequency.back());
   const double highest = std::numbers::pi / (2.5 * test.sample_time);
   for (int i = 12; i >= 0; --i) test.frequencies.push_back(highest * std::pow(10.0, -i / 6.0));
+  analysis.sines = test.frequencies.size();
   Progress progress("measure");
-  for (size_t i = 0; i < test.frequencies.size() && !*options.interrupt; ++i) {
-    SineTest one = test;
-    one.frequencies = {test.frequencies[i]};
-    analysis.measured.push_back(measure_response(*diagram, one, options)[0]);
-    progress.show(double(i + 1), double(test.frequencies.size()));
+  try {
+    for (double frequency : test.frequencies) {
+      SineTest one = test;
+      one.frequencies = {frequency};
+      analysis.measured.push_back(measure_response(*diagram, one, options)[0]);
+      progress.show(double(analysis.measured.size()), double(analysis.sines));
+    }
+  } catch (const Interrupted&) {
+    take_time_after_interruption();
   }
   progress.finish();
 }
@@ -55,10 +121,12 @@ int run(const LinearizeArguments& a) {
   tell_text(to_text(plan->warnings));
   RunOptions options;
   options.interrupt = &interruption();
-  LinearizeRequest request = a.request;
-  if (a.at >= 0) request.at = a.at;
-  LinearAnalysis analysis = analyse(*plan, request, options);
-  if (a.measure > 0) measure(a, analysis.system, analysis, options);
+  if (a.measure > 0) refuse_other_system(a, *plan);
+  LinearAnalysis analysis = analyse(*plan, a.request, options);
+  if (a.measure > 0) {
+    judge_settling(measured_system(a, *plan, analysis, options), a.settle);
+    measure(a, analysis, options);
+  }
   if (a.csv == "-")
     print_csv(stdout, to_recording(analysis));
   else if (!a.csv.empty())
@@ -66,7 +134,7 @@ int run(const LinearizeArguments& a) {
   if (!a.report.empty()) report::write_html(a.report, linear_page(analysis));
   write_json(a.json, [&] { return to_json(analysis); });
   give_summary(to_text(analysis), {a.json, a.csv, a.report});
-  return done;
+  return analysis.measured.size() < analysis.sines ? interrupted : done;
 }
 
 }  // namespace
@@ -84,7 +152,7 @@ void add_linearize(CLI::App& app, std::function<void(std::function<int()>)> choo
       ->type_name("PORT");
   command->add_option("--break", a->request.break_point, "Port at which the loop is cut for its margins")
       ->type_name("PORT");
-  command->add_option("--at", a->at, "Time of the operating point in s; the start when left out")
+  command->add_option("--at", a->request.at, "Time of the operating point in s; the start when left out")
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--continuous", a->request.continuous,
                     "The continuous part alone, discrete signals held");

@@ -3,6 +3,7 @@
 #include <exception>
 #include <new>
 #include <thread>
+#include "engine/run/require_finished.h"
 #include "tools/command/command.h"
 #include "tools/command/command_line.h"
 #include "tools/command/examples.h"
@@ -55,6 +56,9 @@ int run_program(int count, char** arguments) {
   } catch (const InputError& e) {
     tell("{}\n", e.what());
     return input_wrong;
+  } catch (const Interrupted& e) {
+    tell("{}\n", e.what());
+    return interrupted;
   } catch (const std::bad_alloc&) {
     tell("error: this needs more memory than there is\n");
     return run_failed;

@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <cerrno>
 #include <filesystem>
 #include <set>
 #include "engine/json/problem.h"
@@ -32,6 +35,32 @@ std::set<std::string> kinds() {
   throw InputError(std::move(problems));
 }
 
+/// A new folder beside another, which is removed with its contents unless it gets that one's name.
+class PartOf {
+ public:
+  explicit PartOf(const fs::path& folder)
+      : folder_(folder), path_(fmt::format("{}.part-{}", folder.string(), ::getpid())) {
+    if (::mkdir(path_.c_str(), 0777) != 0)  // what is there already is not ours
+      throw fs::filesystem_error("", std::error_code(errno, std::generic_category()));
+  }
+  ~PartOf() {
+    std::error_code ignored;
+    if (!is_complete_) fs::remove_all(path_, ignored);
+  }
+  PartOf(const PartOf&) = delete;
+  PartOf& operator=(const PartOf&) = delete;
+
+  const fs::path& path() const { return path_; }
+  void complete() {
+    fs::rename(path_, folder_);
+    is_complete_ = true;
+  }
+
+ private:
+  const fs::path folder_, path_;
+  bool is_complete_ = false;
+};
+
 /// The shipped project, and the schemas of its files for editors. The folder appears as a whole or not at
 /// all.
 int create(const NewProjectArguments& a) {
@@ -46,16 +75,14 @@ int create(const NewProjectArguments& a) {
   if (!folder.has_filename()) folder = folder.parent_path();  // "name/"
   if (fs::symlink_status(folder).type() != fs::file_type::not_found)
     refuse(fmt::format("\"{}\" exists already", a.folder), "the name of a new folder");
-  const fs::path part = fs::path(folder.string() + ".part");
   try {
-    fs::copy(shared_file("diagrams/projects/" + a.kind), part, fs::copy_options::recursive);
-    write_schemas((part / "schemas").string());
-    fs::create_directory(part / ".vscode");
-    write_file((part / ".vscode/settings.json").string(), editor_settings("schemas"));
-    fs::rename(part, folder);
+    PartOf part(folder);
+    fs::copy(shared_file("diagrams/projects/" + a.kind), part.path(), fs::copy_options::recursive);
+    write_schemas((part.path() / "schemas").string());
+    fs::create_directory(part.path() / ".vscode");
+    write_file((part.path() / ".vscode/settings.json").string(), editor_settings("schemas"));
+    part.complete();
   } catch (const fs::filesystem_error& error) {
-    std::error_code ignored;
-    fs::remove_all(part, ignored);
     refuse(fmt::format("\"{}\" cannot be created: {}", a.folder, error.code().message()),
            "a folder that can be written");
   }

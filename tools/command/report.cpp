@@ -1,6 +1,9 @@
 #include <filesystem>
+#include <fmt/format.h>
 #include <set>
+#include "engine/record/column_units.h"
 #include "engine/record/recording_file.h"
+#include "engine/record/time_names.h"
 #include "tools/command/command.h"
 #include "tools/command/named_recordings.h"
 #include "tools/run/run_page.h"
@@ -19,7 +22,46 @@ std::vector<NamedRecording> named(const std::vector<std::string>& paths,
   return list;
 }
 
+namespace {
+
+/// Pages plot everything over the first column in s: a time in ms, or one behind another column, must not be
+/// taken as it stands.
+void require_time_first(Recording& recording, const std::string& path, Problems& problems) {
+  Problems own;
+  const bool has_time = put_time_first(recording, [&](std::string message) -> Problem& {
+    return own.error({std::make_shared<SourceFile>(SourceFile{path, {}}), 0}, "", "", std::move(message));
+  });
+  problems.add(own);
+  if (!has_time || is_called_time(last_part(recording.columns.front().name))) return;
+  auto& p =
+      problems.warning({std::make_shared<SourceFile>(SourceFile{path, {}}), 0}, "", "",
+                       fmt::format("no column is called time: the first, \"{}\", is taken as the time in s",
+                                   recording.columns.front().name));
+  p.hint = "if it is none, call the right column \"time [s]\" in the heading";
+}
+
+}  // namespace
+
+std::vector<Recording> read_for_page(const std::vector<std::string>& paths) {
+  Problems problems;
+  std::vector<Recording> recordings;
+  for (const std::string& path : paths) {
+    const size_t before = problems.list().size();
+    Recording recording = read_recording(path, problems, {.allow_not_finite = true, .allow_holes = true});
+    if (problems.list().size() == before) require_time_first(recording, path, problems);
+    recordings.push_back(std::move(recording));
+  }
+  if (problems.has_errors()) throw InputError(std::move(problems));
+  tell_text(problems.text());
+  return recordings;
+}
+
 void convert_to_units_of(const Recording& first, Recording& other) {
+  Problems problems;
+  if (!put_time_first(other, [&](std::string message) -> Problem& {
+        return problems.error({}, "", "", std::move(message));
+      }))
+    throw InputError(std::move(problems));
   for (Column& column : other.columns) {
     const Column* const wanted =
         &column == &other.columns.front() ? &first.columns.front() : first.find(column.name);
@@ -43,11 +85,7 @@ struct ReportArguments {
 
 int report_recordings(const ReportArguments& a) {
   require_writable_file(a.page, "-o");
-  Problems problems;
-  std::vector<Recording> recordings;
-  for (const std::string& path : a.recordings)
-    recordings.push_back(read_recording(path, problems, {.allow_not_finite = true}));
-  if (problems.has_errors()) throw InputError(std::move(problems));
+  std::vector<Recording> recordings = read_for_page(a.recordings);
   for (size_t i = 1; i < recordings.size(); ++i) convert_to_units_of(recordings[0], recordings[i]);
   report::write_html(a.page, recordings_page(named(a.recordings, recordings)));
   return done;

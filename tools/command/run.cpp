@@ -8,6 +8,7 @@
 #include "engine/record/recording_file.h"
 #include "tools/command/command.h"
 #include "tools/deploy/replay.h"
+#include "tools/run/judged_run.h"
 #include "tools/run/run_page.h"
 #include "tools/command/named_recordings.h"
 #include "tools/command/watched_files.h"
@@ -68,14 +69,6 @@ void warn_of_hardware(const Plan& plan) {
            block.path);
 }
 
-/// Known before the run, so that a mistake in "figures" costs no time.
-std::vector<FollowedSignal> pairs_to_judge(const Diagram& diagram, const Plan& plan) {
-  Problems problems;
-  std::vector<FollowedSignal> followed = followed_signals(diagram, plan, problems);
-  if (problems.has_errors()) throw InputError(std::move(problems));
-  return followed;
-}
-
 /// Recordings that a page shows beside the run. They are read before the run, so that a mistake costs no
 /// time.
 std::vector<Recording> read_beside(const RunArguments& a) {
@@ -114,7 +107,6 @@ int run_once(const RunArguments& a, Watch* watch = nullptr) {
   if (!a.replay.empty()) return replay_log(a, *plan);
   warn_of_hardware(*plan);
   std::vector<Recording> others = read_beside(a);
-  const std::vector<FollowedSignal> followed = pairs_to_judge(*diagram, *plan);
   Progress progress("run");
   take_time_after_interruption();  // the computed results are written
   RunOptions options;
@@ -123,13 +115,8 @@ int run_once(const RunArguments& a, Watch* watch = nullptr) {
   options.resume_file = a.resume;
   options.interrupt = &interruption();
   if (!a.quiet) options.progress = [&](double time, double stop) { progress.show(time, stop); };
-  // A checkpoint has the columns of the log and no others.
-  const bool is_watched = a.checkpoint.empty() && a.resume.empty();
-  const WatchedLimits watched(*plan);
-  RunResult result = simulate(is_watched ? watched.plan() : *plan, options);
+  const auto [result, figures] = run_and_judge(diagram.get(), *plan, options);
   progress.finish();
-  const RunFigures figures = run_figures(
-      followed, result.recording, is_watched ? watched.take(result.recording) : std::vector<TimeAtLimit>());
   for (const std::string& warning : result.warnings) tell("{}: warning: {}\n", a.diagram.path, warning);
   if (a.output == "-")
     (a.excel ? print_excel_csv : print_csv)(stdout, result.recording);

@@ -11,6 +11,7 @@
 #include "tools/sweep/optimise.h"
 #include "tools/sweep/ranks.h"
 #include "tools/sweep/run_sweep.h"
+#include "tools/run/judged_run.h"
 #include "tools/run/run_page.h"
 #include "tools/sweep/sweep_page.h"
 #include "models/real/whole.h"
@@ -78,10 +79,10 @@ void write_traces(const SweepPlan& plan, const std::string& folder, const SweepR
     RunOptions options;
     options.run = runs[i];
     const auto run = plan.plan_of(runs[i]);
-    const RunResult result = simulate(*run, options);
+    const auto [result, figures] = run_and_judge(nullptr, *run, options);
     write_recording(trace_of(folder, runs[i], "csv"), result.recording);
     if (i < most_trace_pages)
-      report::write_html(trace_of(folder, runs[i], "html"), run_page(nullptr, *run, result, run_figures(guessed_signals(*run), result.recording, {})));
+      report::write_html(trace_of(folder, runs[i], "html"), run_page(nullptr, *run, result, figures));
   }
   remark("{} traces in {}/traces\n", runs.size(), folder);
 }

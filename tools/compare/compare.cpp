@@ -45,7 +45,7 @@ double rms(std::span<const double> values) {
 }
 
 void measure(ComparedSignal& signal, double hold_out_fraction) {
-  const size_t n = signal.simulated.size();
+  const size_t n = signal.simulated.size(), rows = signal.measured.size();
   signal.measured.resize(n);
   double mean = 0;
   for (double y : signal.measured) mean += y / double(n);
@@ -60,7 +60,8 @@ void measure(ComparedSignal& signal, double hold_out_fraction) {
   const double size = rms(signal.measured), spread = rms(around_mean);
   signal.relative_percent = size > 0 ? 100 * signal.rmse / size : 0;
   signal.fit_percent = spread > 0 ? 100 * (1 - signal.rmse / spread) : 0;
-  if (hold_out_fraction > 0)
+  // The rows of the record, which a run that ended early did not reach.
+  if (hold_out_fraction > 0 && n == rows)
     signal.held_out_rmse =
         rms(std::span(signal.error).last(whole_between<size_t>(double(n) * hold_out_fraction, 0, n)));
 }
@@ -177,7 +178,9 @@ Comparison compare_signals_of(const std::string& diagram_path, const Experiment&
     measure(signal, experiment.hold_out_fraction);
     comparison.signals.push_back(std::move(signal));
   }
-  comparison.time.resize(comparison.signals.front().simulated.size());
+  const size_t reached = comparison.signals.front().simulated.size();
+  comparison.lacks_held_out = experiment.hold_out_fraction > 0 && reached < comparison.time.size();
+  comparison.time.resize(reached);
   add_axes(comparison, experiment);
   return comparison;
 }

@@ -15,7 +15,7 @@ struct ComparedSignal {
   double rmse = 0, max_abs = 0, mean = 0;
   double relative_percent = 0;  ///< 100 · rms(error) / rms(measured)
   double fit_percent = 0;       ///< 100 · (1 - ‖y - ŷ‖ / ‖y - mean y‖)
-  double held_out_rmse = 0;     ///< over the held-out rows; 0 without
+  double held_out_rmse = 0;  ///< over the held-out rows of the record; 0 without, or if not all were reached
   double resolution = 0;
 };
 
@@ -49,6 +49,7 @@ struct Comparison {
   std::shared_ptr<const Plan> plan;  ///< compiled from it
   std::optional<ForceAnalysis> force;
   std::string why_no_force;     ///< what the experiment lacks for it
+  bool lacks_held_out = false;  ///< rows are held out, and the run ended before the last of them
   bool is_closed_loop = false;  ///< the signals above are those of the whole loop: its input was not driven
   std::vector<std::string> warnings;
 };
@@ -64,6 +65,10 @@ Comparison compare_signals(const std::string& diagram, const Experiment& experim
 /// The same for a diagram file whose text is in memory.
 Comparison compare_signals(const std::shared_ptr<const SourceFile>& diagram, const Experiment& experiment,
                            const LoadOptions& options = {}, const RunOptions& run_options = {});
+
+/// Why a comparison with lacks_held_out has no figure for the rows that were held out.
+inline constexpr std::string_view no_held_out =
+    "the run ended before the rows that are held out did: no error of theirs is given";
 
 /// Stable keys: signals.<name>.{rmse,max_abs,mean,relative_percent,fit_percent,unit},
 /// force_residual.{rmse,relative_percent,noise_floor,unit}, where[].{axis,from,to,share},

@@ -46,6 +46,7 @@ std::vector<report::Notice> verdict(const Comparison& c) {
   if (c.run.status != RunStatus::finished)
     notices.push_back(
         {Severity::error, "The simulation did not reach the end of the record: " + c.run.message});
+  if (c.lacks_held_out) notices.push_back({Severity::warning, fmt::format("Held out: {}.", no_held_out)});
   for (const ComparedSignal& s : c.signals) {
     // Below half a step of the sensor nothing can be told from the model.
     const bool below_resolution = s.resolution > 0 && s.max_abs <= 0.5 * s.resolution;

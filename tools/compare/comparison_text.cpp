@@ -106,6 +106,7 @@ std::string to_json(const Comparison& comparison) {
   json["rows"] = comparison.time.size();
   if (comparison.missing_samples > 0) json["missing_samples"] = comparison.missing_samples;
   json["finished"] = comparison.run.status == RunStatus::finished;
+  if (comparison.lacks_held_out) json["held_out_reached"] = false;
   if (!comparison.run.message.empty()) json["message"] = comparison.run.message;
   for (const ComparedSignal& s : comparison.signals) {
     auto& entry = json["signals"][s.name];
@@ -125,15 +126,31 @@ std::string to_json(const Comparison& comparison) {
   return json.dump(2) + "\n";
 }
 
-std::string to_text(const Comparison& comparison) {
+namespace {
+
+/// A line for each signal; a column for the rows that are held out, if there are any.
+std::string signals_text(const Comparison& comparison) {
   size_t width = 6;
   for (const ComparedSignal& s : comparison.signals) width = std::max(width, s.name.size());
-  std::string text = fmt::format("  {:<{}} {:>12} {:>12} {:>12} {:>10} {:>9}\n", "signal", width,
-                                 "error, rms", "greatest", "mean", "relative", "fit");
-  for (const ComparedSignal& s : comparison.signals)
-    text += fmt::format("  {:<{}} {:>12} {:>12} {:>12} {:>8.2f} % {:>7.2f} %\n", s.name, width,
+  const bool holds_out =
+      std::ranges::any_of(comparison.signals, [](const auto& s) { return s.held_out_rmse > 0; });
+  std::string text =
+      fmt::format("  {:<{}} {:>12} {:>12} {:>12} {:>10} {:>9}{}\n", "signal", width, "error, rms", "greatest",
+                  "mean", "relative", "fit", holds_out ? fmt::format(" {:>13}", "held out, rms") : "");
+  for (const ComparedSignal& s : comparison.signals) {
+    text += fmt::format("  {:<{}} {:>12} {:>12} {:>12} {:>8.2f} % {:>7.2f} %", s.name, width,
                         report::shown(s.rmse, s.unit), report::shown(s.max_abs, s.unit),
                         report::shown(s.mean, s.unit), s.relative_percent, s.fit_percent);
+    text += (holds_out ? fmt::format(" {:>13}", report::shown(s.held_out_rmse, s.unit)) : "") + "\n";
+  }
+  if (comparison.lacks_held_out) text += fmt::format("  {}\n", no_held_out);
+  return text;
+}
+
+}  // namespace
+
+std::string to_text(const Comparison& comparison) {
+  std::string text = signals_text(comparison);
   if (const int64_t missing = comparison.missing_samples; missing > 0)
     text += fmt::format("  {} sample{} between the {} rows of the recording {} missing\n", missing,
                         missing == 1 ? "" : "s", comparison.time.size(), missing == 1 ? "is" : "are");

@@ -289,17 +289,13 @@ class Designer {
          poles({A, MatrixXd::Zero(A.rows(), 0), {}, {}, system_.matrices.sample_time, {}})) {
       if (pole.is_stable(system_.matrices.sample_time) || pole.value.imag() < 0) continue;
       error(fmt::format("{} depends on the mode {}, which does not decay by itself",
-                        is_filter_ ? "nothing measured" : "nothing weighted", text_of(pole, names)))
+                        is_filter_ ? "nothing measured" : "nothing weighted", at(pole, names)))
           .hint = is_filter_ ? "measure it with --to, or leave its states out with --without"
                              : "weigh it with --Q, or leave its states out with --without";
     }
   }
-  std::string text_of(const Pole& pole, const std::vector<std::string>& states) const {
-    const std::string value = pole.value.imag() != 0
-                                  ? fmt::format("{:.6g} ± {:.6g}j", pole.value.real(), pole.value.imag())
-                                  : fmt::format("{:.6g}", pole.value.real());
-    return fmt::format("at {} = {} ({})", system_.matrices.sample_time > 0 ? "z" : "s", value,
-                       owners(pole, states));
+  std::string at(const Pole& pole, const std::vector<std::string>& states) const {
+    return "at " + text_of(pole, system_.matrices.sample_time, states);
   }
 
   void solve() {
@@ -316,7 +312,7 @@ class Designer {
   void tell(const Obstacle& obstacle) {
     std::vector<std::string> names;
     for (const DesignSignal& state : result_.states) names.push_back(state.name);
-    const std::string mode = text_of(obstacle.mode, names);
+    const std::string mode = at(obstacle.mode, names);
     switch (obstacle.kind) {
       case Obstacle::Kind::uncontrollable:
         error(is_filter_ ? fmt::format("undetectable: the measurements do not show the mode {}", mode)

@@ -146,18 +146,12 @@ class Loader {
       reader_.error(file, "the experiment names no data").expected = "\"data\": \"measured.csv\"";
       return;
     }
-    std::vector<std::string> tried;
-    result_->data_path = find_data_file(result_->path, name, tried);
-    if (result_->data_path.empty()) {
-      auto& p = reader_.error(*member, fmt::format("the data file \"{}\" is not there", name));
-      p.expected = tried.front() + (tried.size() > 1 ? ", or below $LOOPWRIGHT_DATA" : "");
-      p.hint = nearest_file_hint(tried.front());
-      if (p.hint.empty() && tried.size() == 1)
-        p.hint = "the environment variable LOOPWRIGHT_DATA may name a folder of measurements";
-      return;
-    }
+    result_->data_path = find_data_file(result_->path, name, [&](std::string message) -> Problem& {
+      return reader_.error(*member, std::move(message));
+    });
+    if (result_->data_path.empty()) return;
     const size_t before = problems_.list().size();
-    Recording data = read_recording(result_->data_path, problems_);
+    Recording data = read_recording(result_->data_path, problems_, {.allow_holes = true});
     if (data.columns.empty() || has_errors_from(before)) return;
     excerpt_.apply(data, reader_.text(file, "time"), reader_);
     if (has_errors_from(before)) return;
@@ -218,12 +212,15 @@ class Loader {
       check_start(*time, names_data);
       check_lost(data, place);
     }
-    result_->data.columns.push_back({"time", "s", time->values});
+    // Compared and driven where the samples were taken, not where a coarse clock put them: RecordedColumn,
+    // too.
+    std::vector<double> instants = unrounded(time->values, result_->time);
+    result_->data.columns.push_back({"time", "s", instants.empty() ? time->values : std::move(instants)});
   }
   /// A log counts the samples that its device lost: its times must be consistent with that.
   void check_lost(const Recording& data, const Place& place) {
     const Column* lost = data.find(hw::lost_column);
-    if (!lost || lost->values.empty()) return;
+    if (!lost || lost->values.empty() || !is_without_holes(*lost, error_at(place, "/data"))) return;
     const double counted = std::accumulate(lost->values.begin() + 1, lost->values.end(), 0.0);
     if (!(counted > double(result_->time.missing))) return;
     auto& p = problems_.error(place, "/data", "",

@@ -3,6 +3,7 @@
 #include <ceres/ceres.h>
 #include <glog/logging.h>
 #include <Eigen/Dense>
+#include <boost/math/distributions/students_t.hpp>
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -87,19 +88,30 @@ bool improve(FitModel& model, const FitModel::Weights& weights, int rows, const 
   return summary.termination_type == ceres::CONVERGENCE;
 }
 
+/// How sure the parameters are.
+struct Certainty {
+  Eigen::MatrixXd covariance;
+  double degrees_of_freedom;
+  /// The half width of a two-sided interval of 95 % is this many standard deviations: Student's distribution.
+  double width() const { return boost::math::quantile(boost::math::students_t(degrees_of_freedom), 0.975); }
+};
+
 /// Covariance from the scatter of gradients between blocks of the records, because errors of adjacent rows
-/// are correlated.
-Eigen::MatrixXd covariance(const Eigen::MatrixXd& j, const std::vector<double>& errors,
-                           const std::vector<size_t>& row_of) {
+/// are correlated. Each parameter takes a degree of freedom from the blocks: there are at least twice as
+/// many.
+Certainty certainty(const Eigen::MatrixXd& j, const std::vector<double>& errors,
+                    const std::vector<size_t>& row_of) {
+  constexpr size_t rows_a_block = 50, most_blocks = 24;
   const Eigen::Index p = j.cols();
-  const size_t rows = 1 + *std::ranges::max_element(row_of);
-  const size_t blocks = std::min<size_t>(24, std::max<size_t>(size_t(p) + 2, rows / 50));
+  const size_t rows = 1 + *std::ranges::max_element(row_of), least_blocks = 2 * size_t(p) + 2;
+  const size_t blocks = std::clamp(rows / rows_a_block, least_blocks, std::max(least_blocks, most_blocks));
   Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(Eigen::Index(blocks), p);
   for (size_t k = 0; k < errors.size(); ++k)
     scores.row(Eigen::Index(row_of[k] * blocks / rows)) += errors[k] * j.row(Eigen::Index(k));
   const Eigen::MatrixXd inverse = (j.transpose() * j).completeOrthogonalDecomposition().pseudoInverse();
-  const double correction = double(blocks) / std::max(1.0, double(blocks) - double(p));
-  return correction * inverse * (scores.transpose() * scores) * inverse;
+  const double degrees_of_freedom = double(blocks) - double(p);
+  return {double(blocks) / degrees_of_freedom * inverse * (scores.transpose() * scores) * inverse,
+          degrees_of_freedom};
 }
 
 /// Names what the record does not determine: parameters without effect, and combinations.
@@ -227,11 +239,11 @@ void add_intervals(FitModel& model, const Best& best, const std::vector<FittedPa
   const Eigen::MatrixXd j = model.jacobian(best.values, weights, errors);
   if (j.rows() == 0) return;
   warn_of_what_is_open(j, parameters, result.warnings);
-  const Eigen::MatrixXd c = covariance(j, errors, model.rows_of_errors());
+  const Certainty sure = certainty(j, errors, model.rows_of_errors());
+  const Eigen::MatrixXd& c = sure.covariance;
   result.correlations = correlations_of(c, parameters);
-  constexpr double t = 2.07;  // two-sided 95 % of Student's distribution with some 22 degrees of freedom
   for (size_t i = 0; i < parameters.size(); ++i) {
-    const double half = t * std::sqrt(std::max(0.0, c(Eigen::Index(i), Eigen::Index(i))));
+    const double half = sure.width() * std::sqrt(std::max(0.0, c(Eigen::Index(i), Eigen::Index(i))));
     parameters[i]->low -= half, parameters[i]->high += half;
   }
 }

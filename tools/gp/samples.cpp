@@ -72,14 +72,10 @@ class Collector {
 
   Rows read(const std::string& name) {
     Rows rows;
-    std::vector<std::string> tried;
-    const std::string path = find_data_file(training_.path, name, tried);
-    if (path.empty()) {
-      problem(fmt::format("the recording \"{}\" is not there", name)).expected =
-          tried.front() + (tried.size() > 1 ? ", or below $LOOPWRIGHT_DATA" : "");
-      return rows;
-    }
-    const Recording recording = read_recording(path, problems_);
+    const std::string path = find_data_file(
+        training_.path, name, [this](std::string message) -> Problem& { return problem(std::move(message)); });
+    if (path.empty()) return rows;
+    const Recording recording = read_recording(path, problems_, {.allow_holes = true});
     if (problems_.has_errors()) return rows;
     result_->files.push_back(name);
     const auto time = time_in_seconds(recording, training_.time, error_in(name));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include "models/linear/frequency_range.h"
 #include "models/linear/frequency_response.h"
 #include "tools/linearize/ports.h"
 
@@ -44,7 +45,8 @@ LoopAnalysis analyse_loop(const LinearDiagram& diagram, const LinearizeRequest& 
   LoopAnalysis result;
   result.port = port;
   result.margins = margins(loop.system.matrices, loop.lifted);
-  result.frequency = interesting_frequencies(loop.system.matrices, request.frequencies, loop.lifted);
+  result.outside = texts_of(result.margins.outside, loop.system.matrices.sample_time, loop.system.states);
+  result.frequency = loop_frequencies(loop.system.matrices, request.frequencies, loop.lifted);
   const FrequencyResponse response(loop.system.matrices, loop.lifted);
   for (double frequency : result.frequency) result.response.push_back(response.at(frequency)(0, 0));
   return result;
@@ -72,6 +74,10 @@ LinearAnalysis analyse(const Plan& plan, const LinearizeRequest& request, const 
   }
   if (!request.break_point.empty()) analysis.loop = analyse_loop(diagram, request);
   return analysis;
+}
+
+bool LoopAnalysis::is_loop() const {
+  return std::ranges::any_of(response, [](const Complex& value) { return value != 0.0; });
 }
 
 std::vector<Complex> channel_response(const LinearAnalysis& analysis, Index input, Index output) {

@@ -24,6 +24,10 @@ struct LoopAnalysis {
   Margins margins;
   std::vector<double> frequency;               ///< rad/s
   std::vector<std::complex<double>> response;  ///< loop gain L
+  std::vector<std::string> outside;            ///< Margins::outside in words
+
+  /// Whether a signal returns to the port. Otherwise there is nothing to judge.
+  bool is_loop() const;
 };
 
 struct LinearAnalysis {
@@ -37,17 +41,18 @@ struct LinearAnalysis {
   std::vector<Eigen::MatrixXcd> response;                  ///< outputs by inputs, one matrix per frequency
   std::optional<LoopAnalysis> loop;
   std::vector<MeasuredPoint> measured;  ///< of the first channel, by simulation
+  size_t sines = 0;                     ///< that were to be measured; more than `measured`: interrupted
   std::vector<LinearizationNote> notes;
 
   bool is_sampled() const { return system.matrices.sample_time > 0; }
 };
 
-/// Throws InputError for ports that do not exist or a break point of several numbers, std::runtime_error when
-/// the run up to the operating point fails.
+/// Throws InputError for ports that do not exist or a break point of several numbers, Interrupted, and
+/// std::runtime_error when the run up to the operating point fails.
 LinearAnalysis analyse(const Plan& plan, const LinearizeRequest& request, const RunOptions& options = {});
 
 /// Stable keys: time, sample_time, lifted, states, inputs, outputs, A, B, C, D, delays, poles[], zeros[],
-/// response.{frequency,channels[]}, loop.{port,margins…}, measured[], notes[].
+/// response.{frequency,channels[]}, loop.{port,margins…,outside[]}, measured[], sines, notes[].
 std::string to_json(const LinearAnalysis& analysis);
 /// One row per frequency: gain, phase of every channel.
 Recording to_recording(const LinearAnalysis& analysis);
@@ -61,5 +66,12 @@ std::vector<std::complex<double>> channel_response(const LinearAnalysis& analysi
                                                    Eigen::Index output);
 /// "feedback.command 62 %, stage.mass.velocity 30 %": participation of the states in a pole.
 std::string owners(const Pole& pole, const std::vector<std::string>& states);
+/// "z = 0.98 ± 0.1j (stage.mass.velocity 92 %)"
+std::string text_of(const Pole& pole, double sample_time, const std::vector<std::string>& states);
+/// One sentence for each mode that is not judged, with its states; a pair of poles is one mode.
+std::vector<std::string> texts_of(const std::vector<Modes::Outside>& modes, double sample_time,
+                                  const std::vector<std::string>& states);
+/// "stable", "at the boundary of stability", "UNSTABLE"
+std::string_view text_of(Stability stability);
 
 }  // namespace loopwright

@@ -49,7 +49,10 @@ void put(Json& json, const char* key, double value) {
 
 Json loop_json(const LoopAnalysis& loop) {
   const Margins& m = loop.margins;
-  Json json = {{"port", loop.port}, {"is_stable", m.is_stable}};
+  Json json = {{"port", loop.port},
+               {"is_stable", m.is_stable()},
+               {"stability", name_of(m.stability)},
+               {"outside", loop.outside}};
   put(json, "gain_margin", m.gain), put(json, "gain_margin_frequency", m.gain_frequency);
   put(json, "lower_gain_margin", m.lower_gain),
       put(json, "lower_gain_margin_frequency", m.lower_gain_frequency);
@@ -68,8 +71,10 @@ constexpr const char* kind_names[] = {"held", "flat", "staircase", "corner", "in
 
 std::string loop_text(const LoopAnalysis& loop) {
   const Margins& m = loop.margins;
-  std::string text =
-      fmt::format("loop cut at {}: closed it is {}\n", loop.port, m.is_stable ? "stable" : "UNSTABLE");
+  std::string text = fmt::format("loop cut at {}: {}\n", loop.port,
+                                 loop.is_loop() ? fmt::format("closed it is {}", text_of(m.stability))
+                                                : "no signal returns to this port, it is in no loop");
+  for (const std::string& mode : loop.outside) text += fmt::format("  {}\n", mode);
   const auto line = [&](const char* name, const std::string& value, double frequency) {
     text += fmt::format("  {:<18} {:>12}  at {}\n", name, value, hertz(frequency));
   };
@@ -96,6 +101,29 @@ std::string owners(const Pole& pole, const std::vector<std::string>& states) {
   for (size_t i = 0; i < order.size() && i < 3 && pole.participation[order[i]] > 0.05; ++i)
     text += fmt::format("{}{} {:.0f} %", i ? ", " : "", states[order[i]], 100 * pole.participation[order[i]]);
   return text;
+}
+
+std::string text_of(const Pole& pole, double sample_time, const std::vector<std::string>& states) {
+  const std::string who = owners(pole, states);
+  return fmt::format("{} = {:.6g}{}{}", sample_time > 0 ? "z" : "s", pole.value.real(),
+                     pole.value.imag() != 0 ? fmt::format(" ± {:.6g}j", std::abs(pole.value.imag())) : "",
+                     who.empty() ? "" : fmt::format(" ({})", who));
+}
+
+std::vector<std::string> texts_of(const std::vector<Modes::Outside>& modes, double sample_time,
+                                  const std::vector<std::string>& states) {
+  std::vector<std::string> texts;
+  for (const Modes::Outside& mode : modes)
+    if (mode.pole.value.imag() >= 0)
+      texts.push_back(fmt::format("outside this loop and not judged: the mode at {} {}",
+                                  text_of(mode.pole, sample_time, states),
+                                  mode.stability == Stability::unstable ? "GROWS" : "does not decay"));
+  return texts;
+}
+
+std::string_view text_of(Stability stability) {
+  constexpr std::string_view texts[] = {"stable", "at the boundary of stability", "UNSTABLE"};
+  return texts[size_t(stability)];
 }
 
 std::string to_json(const LinearAnalysis& analysis) {
@@ -134,6 +162,7 @@ std::string to_json(const LinearAnalysis& analysis) {
     json["measured"].push_back({{"frequency", point.frequency},
                                 {"gain", std::abs(point.response)},
                                 {"phase_deg", std::arg(point.response) * 180 / std::numbers::pi}});
+  if (analysis.sines > 0) json["sines"] = analysis.sines;
   json["notes"] = Json::array();
   for (const LinearizationNote& note : analysis.notes)
     json["notes"].push_back(
@@ -184,6 +213,9 @@ std::string to_text(const LinearAnalysis& analysis) {
     text += analysis.zeros->empty() ? " none\n" : "\n";
   }
   if (analysis.loop) text += loop_text(*analysis.loop);
+  if (analysis.measured.size() < analysis.sines)
+    text +=
+        fmt::format("interrupted: {} of {} sines were measured\n", analysis.measured.size(), analysis.sines);
   for (const LinearizationNote& note : analysis.notes)
     text += fmt::format("note: {}: {}\n", note.block, note.text);
   return text;

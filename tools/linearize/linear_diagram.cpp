@@ -1,4 +1,5 @@
 #include "tools/linearize/linear_diagram.h"
+#include "engine/run/require_finished.h"
 #include "models/real/whole.h"
 #include <cmath>
 #include <fmt/format.h>
@@ -48,11 +49,28 @@ LinearDiagram linearize_at(const Plan& plan, double time, const RunOptions& opti
   RunOptions with_stop = options;
   with_stop.at_stop = [&](Run<double>& run) { diagram = linearize(run); };
   const RunResult result = simulate(until, with_stop);
-  if (result.status != RunStatus::finished) throw std::runtime_error(result.message);
+  require_finished(result);
   diagram.plan = &plan;
   return diagram;
 }
 
 bool has_samples(const LinearDiagram& diagram) { return !diagram.plan->rates.empty(); }
+
+void refuse_other_sample_time(const LinearDiagram& diagram, double sample_time) {
+  constexpr double rounding = 1e-9;  // of decimal fractions of a second
+  std::string rates;
+  for (const Rate& rate : diagram.plan->rates) {
+    const double period = diagram.plan->clock.time(rate.period);
+    if (std::abs(sample_time - period) <= rounding * period) return;
+    rates += fmt::format("{}{:g} s", rates.empty() ? "" : ", ", period);
+  }
+  if (rates.empty() || sample_time == 0) return;
+  Problems problems;
+  auto& p = problems.error({}, "", "",
+                           "the diagram has sample times of its own, which --sample-time cannot change");
+  p.expected = rates, p.found = fmt::format("{:g} s", sample_time);
+  p.hint = "--continuous leaves the sampled parts out; --set changes the sample time of a block";
+  throw InputError(std::move(problems));
+}
 
 }  // namespace loopwright

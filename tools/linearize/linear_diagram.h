@@ -23,7 +23,8 @@ struct LinearDiagram {
 LinearDiagram linearize(const Run<double>& run);
 /// Before the first step.
 LinearDiagram linearize_at_start(const Plan& plan);
-/// After simulating up to a time, rounded to a tick. Throws std::runtime_error when the run fails before.
+/// After simulating up to a time, rounded to a tick. Throws Interrupted, or std::runtime_error when the run
+/// fails before.
 LinearDiagram linearize_at(const Plan& plan, double time, const RunOptions& options = {});
 
 /// The signals between which the system is computed. A port is named as in the diagram: "stage.position",
@@ -62,12 +63,15 @@ struct SampledSystem : LinearSystem {
 /// exactly. States are those just before the sample.
 ///
 /// The sample time is the greatest common divisor of all rates; `sample_time` sets it for a diagram without
-/// any. A transport delay of a signal that is held between samples is exact; of any other signal it is a Padé
-/// approximation of order 6. With `subdivisions`, inputs may change and outputs are read that many times in
-/// each sample, lifted: this shows the continuous parts between samples. Throws InputError for ports that do
-/// not exist.
+/// any, and must otherwise be one of them. A transport delay of a signal that is held between samples is
+/// exact; of any other signal it is a Padé approximation of order 6. With `subdivisions`, inputs may change
+/// and outputs are read that many times in each sample, lifted: this shows the continuous parts between
+/// samples. Throws InputError for ports that do not exist.
 SampledSystem sampled_system(const LinearDiagram& diagram, const Access& access, double sample_time = 0,
                              int subdivisions = 1);
+
+/// Throws InputError if the diagram has rates and none of them is this sample time [s]; 0: none is asked for.
+void refuse_other_sample_time(const LinearDiagram& diagram, double sample_time);
 
 /// Whether anything in the diagram is sampled.
 bool has_samples(const LinearDiagram& diagram);

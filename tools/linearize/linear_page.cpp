@@ -49,6 +49,10 @@ std::string gain_unit(const LinearAnalysis& a, size_t input, size_t output) {
 
 report::Section responses(const LinearAnalysis& analysis) {
   report::Section section{"Frequency response", {}};
+  if (analysis.measured.size() < analysis.sines)
+    section.items.push_back(report::Notice{
+        report::Notice::Severity::warning,
+        fmt::format("Interrupted: {} of {} sines were measured.", analysis.measured.size(), analysis.sines)});
   for (size_t i = 0; i < analysis.system.inputs.size(); ++i)
     for (size_t o = 0; o < analysis.system.outputs.size(); ++o) {
       const std::string name = fmt::format("{} → {}", analysis.system.inputs[i], analysis.system.outputs[o]);
@@ -92,13 +96,27 @@ void mark_margins(const Margins& m, Bode& bode) {
         fmt::format("−180° at {:.4g} Hz", m.lower_gain_frequency / (2 * pi)));
 }
 
+report::Notice verdict(const LoopAnalysis& loop) {
+  using Severity = report::Notice::Severity;
+  if (!loop.is_loop()) return {Severity::warning, "No signal returns to this port: it is in no loop."};
+  switch (loop.margins.stability) {
+    case Stability::stable:
+      return {Severity::good, "The closed loop is stable."};
+    case Stability::boundary:
+      return {Severity::error,
+              "The closed loop is at the boundary of stability: one of its modes does not decay."};
+    case Stability::unstable:
+      break;
+  }
+  return {Severity::error, "The closed loop is unstable."};
+}
+
 report::Section loop_section(const LoopAnalysis& loop) {
   const Margins& m = loop.margins;
   report::Section section{fmt::format("Loop cut at {}", loop.port), {}};
-  using Severity = report::Notice::Severity;
-  section.items.push_back(
-      report::Notice{m.is_stable ? Severity::good : Severity::error,
-                     m.is_stable ? "The closed loop is stable." : "The closed loop is unstable."});
+  section.items.push_back(verdict(loop));
+  for (const std::string& mode : loop.outside)
+    section.items.push_back(report::Notice{report::Notice::Severity::warning, mode});
   const auto at = [](double frequency) { return fmt::format("at {:.4g} Hz", frequency / (2 * pi)); };
   report::KeyNumbers numbers;
   if (std::isfinite(m.gain))
@@ -134,8 +152,7 @@ report::Section loop_section(const LoopAnalysis& loop) {
     nyquist.x = {"Re L", "", false}, nyquist.y = {"Im L", "", false};
     NyquistCurves curves = nyquist_curves(loop);
     nyquist.caption = "Where |L| < 5.";
-    nyquist.series.push_back(
-        {"L", std::move(curves.real), std::move(curves.imaginary), Series::Shape::line});
+    nyquist.series.push_back({"L", std::move(curves.real), std::move(curves.imaginary), Series::Shape::line});
     if (!curves.circle_real.empty()) {
       nyquist.series.push_back(
           {"Ms", std::move(curves.circle_real), std::move(curves.circle_imaginary), Series::Shape::line});

@@ -385,6 +385,7 @@ LinearSystem continuous_part(const LinearDiagram& diagram, const Access& access)
 
 SampledSystem sampled_system(const LinearDiagram& diagram, const Access& access, double sample_time,
                              int subdivisions) {
+  refuse_other_sample_time(diagram, sample_time);
   return Sampler(diagram, access, sample_time, subdivisions).sample();
 }
 

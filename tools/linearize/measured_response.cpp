@@ -4,43 +4,43 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
-#include "engine/json/reader.h"
+#include "engine/run/require_finished.h"
 #include "models/real/whole.h"
+#include "tools/linearize/changed_diagram.h"
+#include "tools/linearize/linear_diagram.h"
+#include "tools/linearize/ports.h"
 
 namespace loopwright {
 namespace {
 
 using std::numbers::pi;
 
-Value number(double x) {
-  Value value;
-  value.kind = Value::Kind::number;
-  value.number = x;
-  return value;
-}
-
-std::string unused_name(std::string name, const Diagram& diagram) {
-  while (std::ranges::find(diagram.blocks, name, &BlockEntry::name) != diagram.blocks.end()) name += '_';
-  return name;
-}
-
-/// The wire of a port such as "sum.terms[1]"; null after a problem.
-Wire* find_wire(Diagram& diagram, const std::string& port, Problems& problems) {
-  const size_t dot = port.find('.'), bracket = port.find('[');
-  KnownNames known;
-  for (BlockEntry& block : diagram.blocks)
-    for (PortWires& wires : block.in) {
-      const std::string name = block.name + "." + wires.port;
-      for (size_t i = 0; i < wires.wires.size(); ++i)
-        if ((wires.wires.size() == 1 && name == port) || fmt::format("{}[{}]", name, i) == port)
-          return &wires.wires[i];
-      known.add(name);
-    }
-  Problem& problem = problems.error({}, "", "", fmt::format("no signal can be added to \"{}\"", port));
-  problem.expected = "an input port of an outermost block that is wired, with [i] where it has several wires";
-  known.explain(problem, dot == port.npos ? port : port.substr(0, bracket));
-  return nullptr;
+/// The number that an input port of an outermost block reads, as in the linear system; -1 after a problem. A
+/// wire may carry several numbers, and an output may have the name of an input: a sine would be added
+/// elsewhere.
+Number number_read(const Plan& plan, const Diagram& diagram, const std::string& port, Problems& problems) {
+  const auto found = find_port(plan, port, problems);
+  if (found.empty()) return -1;
+  const std::string whole = port.substr(0, port.find('['));
+  const PortWires* const wires = wires_into(diagram, whole);
+  if (found[0].is_output && wires) {
+    auto& p = problems.error({}, "", "", fmt::format("\"{}\" is an output here", port));
+    p.expected = "an input port of an outermost block";
+    p.hint =
+        fmt::format("the input of this name is \"{}.in.{}\"", whole.substr(0, whole.find('.')), wires->port);
+    return -1;
+  }
+  const size_t numbers = wires ? find_port(plan, whole, problems).size() : 1;
+  if (found.size() == 1 && (!wires || numbers == wires->wires.size())) return found[0].number;
+  auto& p =
+      problems.error({}, "", "", fmt::format("a simulated measurement needs one number at \"{}\"", port));
+  p.expected = "a port with one number on each of its wires";
+  p.found =
+      fmt::format("{} numbers on {} {}", wires ? numbers : found.size(), wires ? wires->wires.size() : 1,
+                  wires && wires->wires.size() != 1 ? "wires" : "wire");
+  p.hint =
+      "an index chooses one of several wires, as in sum.terms[0]; of a vector no single number can be driven";
+  return -1;
 }
 
 /// Amplitude of the component of `y` at e^(jωt), after subtracting mean and linear drift.
@@ -56,10 +56,41 @@ std::complex<double> amplitude_at(double frequency, const std::vector<double>& t
   return {fit[0], -fit[1]};  // a cos ωt + b sin ωt = Re (a - jb) e^(jωt)
 }
 
+/// The diagram with the ports of `open` cut at the operating point.
+class OperatingPoint {
+ public:
+  OperatingPoint(const Diagram& diagram, const SineTest& test, const RunOptions& options)
+      : diagram_(diagram) {
+    Problems problems;
+    const auto plan = compile(diagram, problems);
+    if (!plan) throw InputError(std::move(problems));
+    std::vector<Number> cut;
+    number_read(*plan, diagram, test.from, problems);
+    for (const std::string& port : test.open) cut.push_back(number_read(*plan, diagram, port, problems));
+    if (problems.has_errors()) throw InputError(std::move(problems));
+    start_ = plan->clock.time(plan->start_tick);
+    if (!test.at && test.open.empty()) return;
+    const LinearDiagram linear = test.at ? linearize_at(*plan, *test.at, options) : linearize_at_start(*plan);
+    if (test.at) time_ = start_ = linear.time;
+    for (size_t i = 0; i < cut.size(); ++i)
+      diagram_ =
+          with_cut_port(diagram_, test.open[i], linear.operating_point[size_t(cut[i])], time_, problems);
+    if (problems.has_errors()) throw InputError(std::move(problems));
+  }
+  const Diagram& diagram() const { return diagram_; }
+  std::optional<double> time() const { return time_; }  ///< s; none: the start
+  double start() const { return start_; }               ///< s, of the sine
+
+ private:
+  Diagram diagram_;
+  std::optional<double> time_;
+  double start_ = 0;
+};
+
 class SineExperiment {
  public:
   SineExperiment(const Diagram& diagram, const SineTest& test, const RunOptions& options)
-      : diagram_(diagram), test_(test), options_(options) {}
+      : point_(diagram, test, options), test_(test), options_(options) {}
 
   MeasuredPoint at(double wanted) {
     const double shortest = test_.periods * 2 * pi / wanted;
@@ -76,23 +107,24 @@ class SineExperiment {
 
  private:
   std::vector<double> output(double frequency, double amplitude, double window, std::vector<double>& time) {
-    BlockEntry source;
-    source.name = "added_sine";
-    source.type = "Sine";
-    if (test_.holds) source.sample_time = number(test_.sample_time);
-    source.settings.kind = Value::Kind::object;
-    source.settings.members = {{"amplitude", {}, number(amplitude)},
-                               {"frequency", {}, number(frequency / (2 * pi))}};
+    BlockEntry source =
+        block_with("added_sine", "Sine", {{"amplitude", amplitude}, {"frequency", frequency / (2 * pi)}});
+    if (test_.holds) {
+      Value period;
+      period.kind = Value::Kind::number, period.number = test_.sample_time;
+      source.sample_time = period;
+    }
     Problems problems;
-    Diagram tested = with_added_signal(diagram_, test_.from, source, problems);
-    const double stop = std::ceil(test_.settle / test_.sample_time) * test_.sample_time + window;
+    Diagram tested = with_added_signal(point_.diagram(), test_.from, source, problems, point_.time());
+    const double T = test_.sample_time, first_row = tested.solver.start.value;
+    const double stop = first_row + std::ceil((point_.start() - first_row + test_.settle) / T) * T + window;
     tested.solver.stop.value = stop, tested.solver.stop.is_given = true;
     tested.solver.record_step.value = test_.sample_time, tested.solver.record_step.is_given = true;
     tested.log = {{test_.to, {}}};
     const auto plan = problems.has_errors() ? nullptr : compile(tested, problems);
     if (!plan) throw InputError(std::move(problems));
     const RunResult result = simulate(*plan, options_);
-    if (result.status != RunStatus::finished) throw std::runtime_error(result.message);
+    require_finished(result);
     const auto& columns = result.recording.columns;
     const auto rows = whole_between<std::ptrdiff_t>(std::round(window / test_.sample_time), 0,
                                                     std::ptrdiff_t(columns[0].values.size()) - 1);
@@ -103,31 +135,12 @@ class SineExperiment {
     return last(columns[1]);
   }
 
-  const Diagram& diagram_;
+  const OperatingPoint point_;
   const SineTest& test_;
   const RunOptions& options_;
 };
 
 }  // namespace
-
-Diagram with_added_signal(const Diagram& diagram, const std::string& port, const BlockEntry& source,
-                          Problems& problems) {
-  Diagram result = diagram;
-  Wire* wire = find_wire(result, port, problems);
-  if (!wire) return result;
-  BlockEntry added = source, sum;
-  added.name = unused_name(source.name, result);
-  added.place = added.type_place = wire->place;
-  sum.name = unused_name(added.name + "_sum", result);
-  sum.type = "Sum";
-  sum.place = sum.type_place = wire->place;
-  sum.settings.kind = Value::Kind::object;
-  sum.in = {{"terms", wire->place, true, {*wire, {added.name + ".y", wire->place}}}};
-  wire->source = sum.name + ".sum";
-  result.blocks.push_back(std::move(added));
-  result.blocks.push_back(std::move(sum));
-  return result;
-}
 
 std::vector<MeasuredPoint> measure_response(const Diagram& diagram, const SineTest& test,
                                             const RunOptions& options) {

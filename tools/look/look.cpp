@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include "engine/json/problem.h"
+#include "engine/json/unit_hint.h"
 #include "engine/record/column_units.h"
 #include "engine/record/recording_file.h"
 #include "engine/record/time_axis.h"
@@ -16,6 +17,21 @@ namespace {
 
 std::string counted(size_t count, std::string_view noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+/// "data.csv:3:5".
+std::string place_of(const Problem& problem) {
+  const LineColumn place = line_column(problem.place);
+  return fmt::format("{}:{}:{}", problem.place.file->name, place.line, place.column);
+}
+
+/// "an empty cell in data.csv:3:5", "text where a number should be (ok) in data.csv:4:5".
+std::string hole_text(const Column& column) {
+  if (column.holes.first.empty()) return "";
+  const Problem& hole = column.holes.first.front();
+  const size_t colon = hole.message.rfind("\": ");  // behind the name of the column
+  return hole.message.substr(colon == hole.message.npos ? 0 : colon + 3) +
+         (hole.found.empty() ? "" : fmt::format(" ({})", hole.found)) + " in " + place_of(hole);
 }
 
 class Looker {
@@ -50,9 +66,10 @@ void Looker::look_at_time(const std::string& name) {
   const bool grows = found && question_growth(*found);
   for (const Problem& problem : own.list()) {
     if (problem.severity != Problem::Severity::error) continue;
+    const std::string place = problem.place.file ? " in " + place_of(problem) : "";
     std::string advice = problem.expected.empty() ? "" : "expected: " + problem.expected;
     if (!problem.hint.empty()) advice += (advice.empty() ? "" : "; ") + problem.hint;
-    find("time_not_usable", problem.message, advice);
+    find("time_not_usable", problem.message + place, advice);
   }
   if (!found) return;
   const Column& raw = *look_.recording.find(found->name);
@@ -128,7 +145,7 @@ void Looker::measure_grid(LookedTime& time) {
   Problems own;
   const TimeAxis axis = check_time({time.column, "s", time.at, ""}, own);
   time.sample_time = axis.sample_time, time.is_even = axis.on_grid, time.missing = axis.missing;
-  time.digit = last_digit(time.at);
+  time.digit = last_digit(time.at), time.is_rounded = !unrounded(time.at, axis).empty();
   const std::vector<int64_t> sample = sample_numbers(time.at, time.sample_time);
   for (size_t i = 1; i < time.at.size(); ++i)
     if (sample[i] > sample[i - 1] + 1) time.gaps.push_back({time.at[i - 1], sample[i] - sample[i - 1] - 1});
@@ -164,11 +181,14 @@ void Looker::question_grid(const LookedTime& time) {
          "late stamps of even samples, or samples at these times: readers decide by which of the two the "
          "signals "
          "are smooth");
-  else if (time.digit > 0.1 * time.sample_time && time.jitter > 0)
+  else if (time.is_rounded || (time.digit > 0.1 * time.sample_time && time.jitter > 0))
     find("rounded_stamps",
          fmt::format("the stamps are rounded to {:g} s, the rows lie {:.6g} s apart", time.digit,
                      time.sample_time),
-         "the grid is used, not the stamps");
+         time.is_rounded
+             ? "the grid is used, not the stamps: compared and driven at its instants"
+             : "compared and driven at the stamps: too few rows for a grid, or off it by more than a "
+               "digit");
 }
 
 LookedColumn Looker::figures(const Column& column) const {
@@ -177,7 +197,7 @@ LookedColumn Looker::figures(const Column& column) const {
   std::vector<double> value;
   for (double v : column.values)
     if (std::isfinite(v)) value.push_back(v);
-  look.not_finite = column.values.size() - value.size();
+  look.not_finite = column.values.size() - value.size(), look.first_hole = hole_text(column);
   if (value.empty()) return look;
   const auto [low, high] = std::ranges::minmax(value);
   look.least = low, look.greatest = high;
@@ -212,14 +232,17 @@ void Looker::look_at_columns() {
 void Looker::question(const LookedColumn& column) {
   if (column.not_finite > 0)
     find("not_finite",
-         fmt::format("\"{}\" has no number in {}", column.name, counted(column.not_finite, "row")),
-         "readers refuse such a file: leave out the rows, or fill them");
+         fmt::format("\"{}\" has no number in {}{}", column.name, counted(column.not_finite, "row"),
+                     column.first_hole.empty() ? "" : ", first " + column.first_hole),
+         "readers refuse this column where it is used: leave out the rows, or fill them");
   else if (column.is_constant())
     find("constant", fmt::format("\"{}\" is {:g} in all rows", column.name, column.least),
          "a channel that was not connected?");
-  if (!column.unit.empty() && !parse_unit(column.unit))
+  if (!column.unit.empty() && !parse_unit(column.unit)) {
+    const std::string hint = unit_hint(column.unit);
     find("unit_not_known", fmt::format("the unit \"{}\" of \"{}\" cannot be read", column.unit, column.name),
-         "mend the heading: a unit such as N, mm/s, rpm or degC");
+         "mend the heading: " + (hint.empty() ? "a unit such as N, mm/s, rpm or degC" : hint));
+  }
   if (column.every > 1 && look_.time)
     find("slower",
          fmt::format("\"{}\" has a new value in every {}. row only: every {:.4g} s", column.name,
@@ -240,7 +263,7 @@ void Looker::compare_columns() {
   std::string without;
   size_t count = 0;
   for (const LookedColumn& column : look_.columns)
-    if (column.unit.empty()) without += (count++ ? ", " : "") + column.name;
+    if (column.unit.empty() && column.not_finite < look_.rows) without += (count++ ? ", " : "") + column.name;
   if (count > 0)
     find("no_unit", fmt::format("no unit: {}", without),
          "state it where the column is used (\"unit\" in an experiment), or in the heading: position [m]");
@@ -265,10 +288,10 @@ Look look_at(const std::string& path, const std::string& time) {
   Problems problems;
   Look look;
   look.path = path;
-  look.recording = read_recording(path, problems, {.allow_not_finite = true});
+  look.recording = read_recording(path, problems, {.allow_not_finite = true, .allow_holes = true});
   if (problems.has_errors()) throw InputError(std::move(problems));
   look.rows = look.recording.rows();
-  if (!time.empty()) {
+  if (!time.empty() && !look.recording.find(time)) {
     find_column(look.recording, time, [&](std::string message) -> Problem& {
       return problems.error({}, "", "", std::move(message));
     });

@@ -12,6 +12,7 @@ namespace loopwright {
 struct LookedColumn {
   std::string name, unit;  ///< as in the file; all numbers are in this unit
   size_t not_finite = 0;   ///< rows that hold no number
+  std::string first_hole;  ///< the first cell that is no number at all, with its place; empty: there is none
   double least = 0, greatest = 0, mean = 0, deviation = 0;
   double resolution = 0;  ///< height of the steps in which it changes; 0: it has none
   double noise = 0;  ///< standard deviation, at most: fast changes of the signal count as noise; 0: not known
@@ -33,7 +34,8 @@ struct LookedTime {
     int64_t samples = 0;  ///< that are missing
   };
   std::vector<Gap> gaps;
-  int64_t missing = 0;  ///< samples
+  int64_t missing = 0;      ///< samples
+  bool is_rounded = false;  ///< readers use the instants of the grid, not the stamps: unrounded()
 };
 
 /// A question that the recording raises.
@@ -53,7 +55,7 @@ struct Look {
 };
 
 /// `time`: the name of the column with the time; empty: as every reader of recordings finds it. Throws
-/// InputError if the file cannot be read. NaN are counted, not refused.
+/// InputError if the file cannot be read. Cells without a number are counted, not refused.
 Look look_at(const std::string& path, const std::string& time);
 
 std::string to_text(const Look& look);

@@ -95,6 +95,7 @@ std::string to_json(const Look& look) {
                                {"rows_between_changes", c.every},
                                {"repeats_after_s", c.repeats_after},
                                {"not_finite", c.not_finite},
+                               {"first_hole", c.first_hole},
                                {"outlier_rows", rows}});
   }
   json["findings"] = Json::array();

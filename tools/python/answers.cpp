@@ -1,5 +1,6 @@
 /// Comparisons, fits, diagnoses, sweeps and linear systems: each as its text, JSON and page.
 #include <pybind11/eigen.h>
+#include <filesystem>
 #include "tools/compare/several.h"
 #include "tools/diagnose/diagnose.h"
 #include "tools/fit/fit.h"
@@ -38,11 +39,14 @@ std::pair<Answer, std::string> fit_to(const LoadedDiagram& diagram,
                                       const std::vector<std::string>& parameters, FitOptions options) {
   return interruptible([&](const std::atomic<bool>& interrupt) {
     options.interrupt = &interrupt;
-    const Fit found = fit(diagram.path, experiments, parameters, diagram.options, options);
+    auto found = std::make_shared<Fit>(fit(diagram.path, experiments, parameters, diagram.options, options));
     Problems problems;
-    std::string text = with_fitted_values(diagram.path, found, problems);
+    std::string text = with_fitted_values(diagram.path, *found, problems);
     if (problems.has_errors()) text.clear();  // values in other files or expressions: there is no such text
-    return std::pair(Answer{to_text(found), to_json(found), {}}, std::move(text));
+    const std::string title = std::filesystem::path(diagram.path).filename().string();
+    return std::pair(Answer{to_text(*found), to_json(*found),
+                            [found, title] { return report::to_html(fit_page(*found, title)); }},
+                     std::move(text));
   });
 }
 

@@ -1,8 +1,8 @@
 #include "tools/python/diagram.h"
-#include "engine/run/simulation.h"
 #include "tools/python/interruptible.h"
 #include "tools/draw/diagram_graph.h"
 #include "tools/python/module.h"
+#include "tools/run/judged_run.h"
 #include "tools/run/run_page.h"
 
 namespace loopwright::python {
@@ -14,32 +14,31 @@ namespace py = pybind11;
 struct FinishedRun {
   std::shared_ptr<const Diagram> diagram;
   std::shared_ptr<const Plan> plan;
-  std::shared_ptr<RunResult> result;
-  RunFigures figures;
+  std::shared_ptr<JudgedRun> judged;
+
+  const RunResult& result() const { return judged->result; }
 };
 
 FinishedRun run(const LoadedDiagram& diagram, int64_t number, const std::optional<py::function>& progress) {
   if (number < 0) throw py::value_error("the number of a run is not negative");
-  auto result = std::make_shared<RunResult>(interruptible([&](const std::atomic<bool>& interrupt) {
+  auto judged = std::make_shared<JudgedRun>(interruptible([&](const std::atomic<bool>& interrupt) {
     RunOptions options;
     options.run = number;
     options.interrupt = &interrupt;
     if (progress) options.progress = progress_to(*progress);
-    return simulate(*diagram.plan, options);
+    return run_and_judge(diagram.diagram.get(), *diagram.plan, options);
   }));
-  Problems problems;
-  const std::vector<FollowedSignal> followed = followed_signals(*diagram.diagram, *diagram.plan, problems);
-  if (problems.has_errors()) throw InputError(std::move(problems));
-  RunFigures figures = run_figures(followed, result->recording, {});
-  return {diagram.diagram, diagram.plan, std::move(result), std::move(figures)};
+  return {diagram.diagram, diagram.plan, std::move(judged)};
 }
 
-std::string page_of(const FinishedRun& run) {
-  return report::to_html(run_page(run.diagram.get(), *run.plan, *run.result, run.figures));
+report::Page page_of(const FinishedRun& run) {
+  return run_page(run.diagram.get(), *run.plan, run.result(), run.judged->figures);
 }
 
 /// The columns live in the result and keep it alive.
-std::shared_ptr<Recording> columns(const FinishedRun& run) { return {run.result, &run.result->recording}; }
+std::shared_ptr<Recording> columns(const FinishedRun& run) {
+  return {run.judged, &run.judged->result.recording};
+}
 
 std::string_view to_name(RunStatus status) {
   switch (status) {
@@ -54,7 +53,7 @@ std::string_view to_name(RunStatus status) {
 }
 
 py::dict statistics(const FinishedRun& run) {
-  const RunStatistics& s = run.result->statistics;
+  const RunStatistics& s = run.result().statistics;
   py::dict events;
   for (const CrossingCount& count : s.events) events[py::str(count.name)] = count.events;
   using py::literals::operator""_a;
@@ -82,17 +81,17 @@ LoadedDiagram load(const std::string& path, LoadOptions options) {
 
 void add_diagram(py::module_& module) {
   py::class_<FinishedRun>(module, "FinishedRun")
-      .def_property_readonly("status", [](const FinishedRun& r) { return to_name(r.result->status); })
-      .def_property_readonly("message", [](const FinishedRun& r) { return r.result->message; })
-      .def_property_readonly("time", [](const FinishedRun& r) { return r.result->time; })
-      .def_property_readonly("warnings", [](const FinishedRun& r) { return r.result->warnings; })
+      .def_property_readonly("status", [](const FinishedRun& r) { return to_name(r.result().status); })
+      .def_property_readonly("message", [](const FinishedRun& r) { return r.result().message; })
+      .def_property_readonly("time", [](const FinishedRun& r) { return r.result().time; })
+      .def_property_readonly("warnings", [](const FinishedRun& r) { return r.result().warnings; })
       .def_property_readonly("columns", &columns)
       .def("statistics", &statistics)
-      .def("summary", [](const FinishedRun& r) { return run_summary(*r.plan, *r.result, r.figures); })
-      .def("html", &page_of)
-      .def("report", [](const FinishedRun& r, const std::string& path) {
-        report::write_html(path, run_page(r.diagram.get(), *r.plan, *r.result, r.figures));
-      });
+      .def("summary",
+           [](const FinishedRun& r) { return run_summary(*r.plan, r.result(), r.judged->figures); })
+      .def("html", [](const FinishedRun& r) { return report::to_html(page_of(r)); })
+      .def("report",
+           [](const FinishedRun& r, const std::string& path) { report::write_html(path, page_of(r)); });
   py::class_<LoadedDiagram>(module, "LoadedDiagram")
       .def_readonly("path", &LoadedDiagram::path)
       .def_property_readonly("set", [](const LoadedDiagram& d) { return d.options.set; })

@@ -177,8 +177,11 @@ Quantity engineering(double value, std::string_view unit, int digits) {
   const bool fits = !is_power && std::ranges::find(takes_prefix, head) != takes_prefix.end();
   if (!fits || value == 0 || !std::isfinite(value))
     return {fmt::format("{:.{}g}", value, digits), readable_unit(unit)};
-  const int step = whole_between(std::floor(std::log10(std::abs(value)) / 3), -4, head == "s" ? 0 : 4);
-  return {fmt::format("{:.{}g}", value / std::pow(1000.0, step), digits),
+  // The prefix of the rounded number: 0.9998 with three digits is 1, not a thousand thousandths.
+  const std::string rounded = fmt::format("{:.{}e}", value, digits - 1);
+  const double exponent = std::strtod(rounded.c_str() + rounded.find('e') + 1, nullptr);
+  const int step = whole_between(std::floor(exponent / 3), -4, head == "s" ? 0 : 4);
+  return {fmt::format("{:.{}g}", std::strtod(rounded.c_str(), nullptr) / std::pow(1000.0, step), digits),
           std::string(prefixes[size_t(step + 4)]) + readable_unit(unit)};
 }
 

@@ -73,12 +73,17 @@ double greatest(const std::vector<double>& values, size_t begin, size_t end) {
   return most;
 }
 
+/// Differences up to this are rounding.
+double still(const std::vector<double>& values) {
+  const auto [low, high] = std::ranges::minmax(values);
+  return 1e-9 * std::max(high - low, std::abs(high));
+}
+
 /// The first row from which on the reference rests.
 size_t start_of_rest(const std::vector<double>& reference) {
-  const auto [low, high] = std::ranges::minmax(reference);
-  const double still = 1e-9 * std::max(high - low, std::abs(high));
+  const double rounding = still(reference);
   size_t row = reference.size() - 1;
-  while (row > 0 && std::abs(reference[row - 1] - reference.back()) <= still) --row;
+  while (row > 0 && std::abs(reference[row - 1] - reference.back()) <= rounding) --row;
   return row;
 }
 
@@ -90,24 +95,80 @@ double start_of_move(const std::vector<double>& reference, size_t end) {
   return reference[row];
 }
 
-TrackingFigures::Move last_move(const FollowedSignal& followed, const std::vector<double>& time,
-                                const std::vector<double>& reference, const std::vector<double>& signal,
-                                size_t end) {
-  TrackingFigures::Move move;
-  const double from = start_of_move(reference, end), target = reference.back();
-  move.end = time[end], move.size = target - from;
-  move.is_jump = reference[end - 1] == from;
+using Move = TrackingFigures::Move;
+
+/// Kind and size of the move that ends in the row `end`; nothing: there is none.
+std::optional<Move> move_before(size_t end, const FollowedSignal& followed,
+                                const std::vector<double>& reference, const std::vector<double>& signal) {
+  Move move;
+  const double target = reference.back();
+  if (end > 0) {
+    const double from = start_of_move(reference, end);
+    move.kind = reference[end - 1] == from ? Move::Kind::jump : Move::Kind::stop;
+    move.size = target - from;
+    return move;
+  }
+  // A signal that begins much closer to the target than it is later has not moved there: it was disturbed.
+  const auto distance = [&](double value) { return std::abs(value - target); };
+  const double most = distance(std::ranges::max(signal, {}, distance)), size = target - signal.front();
+  if (std::abs(size) > std::max({usual_band * most, still(reference), still(signal)})) {
+    move.kind = Move::Kind::start, move.size = size;
+    return move;
+  }
+  move.kind = Move::Kind::stay;
+  return followed.band > 0 ? std::optional(move) : std::nullopt;
+}
+
+/// s after the row `end`. A signal that passes through the band when the run ends has not settled.
+std::optional<double> settling_time(const Move& move, size_t end, const std::vector<double>& time,
+                                    const std::vector<double>& signal, double target) {
+  constexpr double least_stay = 0.1;  // of the time after the move
+  size_t row = time.size();
+  while (row > end && std::abs(signal[row - 1] - target) <= move.band) --row;
+  if (row + 2 > time.size() || time.back() - time[row] < least_stay * (time.back() - time[end])) return {};
+  return time[row] - time[end];
+}
+
+std::optional<Move> last_move(const FollowedSignal& followed, const std::vector<double>& time,
+                              const std::vector<double>& reference, const std::vector<double>& signal,
+                              size_t end) {
+  std::optional<Move> found = move_before(end, followed, reference, signal);
+  if (!found) return found;
+  Move& move = *found;
+  const double target = reference.back(), sign = move.size < 0 ? -1 : 1;
+  move.end = time[end];
   move.band = followed.band > 0 ? followed.band : usual_band * std::abs(move.size);
-  const double sign = move.size < 0 ? -1 : 1;
-  size_t settled = time.size();
-  for (size_t i = end; i < time.size(); ++i)
+  for (size_t i = end; i < time.size() && move.size != 0; ++i)
     move.overshoot = std::max(move.overshoot, sign * (signal[i] - target));
-  while (settled > end && std::abs(signal[settled - 1] - target) <= move.band) --settled;
-  if (settled < time.size()) move.settling = time[settled] - move.end;
+  move.settling = settling_time(move, end, time, signal, target);
   const size_t tail = std::max(end, time.size() - std::max<size_t>(2, (time.size() - end) / 10));
   const auto [low, high] = std::minmax_element(signal.begin() + ptrdiff_t(tail), signal.end());
   move.ripple = 0.5 * (*high - *low);
-  return move;
+  return found;
+}
+
+/// Whether |e| grows by this factor from part to part of the rows from `begin` on.
+bool grows_by_parts(const std::vector<double>& error, size_t begin, size_t parts, double growth) {
+  const size_t rows = error.size() - begin;
+  if (rows < 10 * parts) return false;
+  double before = 0;
+  for (size_t part = 0; part < parts; ++part) {
+    const double now = greatest(error, begin + part * rows / parts, begin + (part + 1) * rows / parts);
+    if (part > 0 && !(now > growth * before)) return false;
+    before = now;
+  }
+  return true;
+}
+
+/// Growth counts where the reference does not excite the error.
+bool grows_at_rest(const TrackingFigures& figures, const std::vector<double>& error, size_t rest) {
+  const auto& move = figures.move;
+  if (move && move->kind != Move::Kind::stay)
+    return greatest(error, rest + 2 * (error.size() - rest) / 3, error.size()) > move->band &&
+           grows_by_parts(error, rest, 3, 1.5);
+  // Without a move only a disturbance excites the error. One that rises, or comes in steps, makes it grow,
+  // but not by so much from twelfth to twelfth throughout.
+  return figures.is_constant && grows_by_parts(error, 0, 12, 1.25);
 }
 
 }  // namespace
@@ -177,18 +238,10 @@ std::optional<TrackingFigures> tracking_figures(const FollowedSignal& followed, 
   figures.greatest = std::abs(*peak), figures.at = time[size_t(peak - error.begin())];
   figures.last = error.back();
   const size_t rest = start_of_rest(reference->values);
-  if (rest > 0 && rest + 1 < time.size())
+  figures.is_constant = rest == 0;
+  if (rest + 1 < time.size())
     figures.move = last_move(followed, time, reference->values, signal->values, rest);
-  // Growth counts where the reference does not excite the error.
-  const size_t begin = figures.move ? rest : 0, rows = time.size() - begin;
-  const double band = figures.move ? figures.move->band : 0;
-  constexpr double growth = 1.5;
-  const double thirds[] = {greatest(error, begin, begin + rows / 3),
-                           greatest(error, begin + rows / 3, begin + 2 * rows / 3),
-                           greatest(error, begin + 2 * rows / 3, time.size())};
-  figures.grows = figures.move && rows >= 30 && thirds[2] > band && thirds[1] > growth * thirds[0] &&
-                  thirds[2] > growth * thirds[1];
-  figures.grows = figures.grows || swings_up(error);
+  figures.grows = grows_at_rest(figures, error, rest) || swings_up(error);
   return figures;
 }
 

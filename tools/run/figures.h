@@ -32,18 +32,27 @@ struct TrackingFigures {
   double at = 0;        ///< s, of the greatest
   double last = 0;      ///< e at the end
 
-  /// The last move of the reference, if it comes to rest before the end of the run.
+  /// What the signal is to do once the reference rests.
   struct Move {
+    enum class Kind {
+      stop,   ///< the reference stops after it moved through several rows
+      jump,   ///< within a row: overshoot counts from the jump
+      start,  ///< the reference is constant, and the signal moves to it from its own first value
+      stay    ///< the reference is constant, and the signal begins there, to stay within a stated band
+    };
+    Kind kind = Kind::stop;
     double end = 0;                  ///< s, when the reference stops
-    double size = 0;                 ///< of the reference, signed
-    bool is_jump = false;            ///< within a row: overshoot counts from the jump
+    double size = 0;                 ///< signed; 0 for `stay`
     double band = 0;                 ///< around the target
     double overshoot = 0;            ///< beyond the target in the direction of the move; at least 0
-    std::optional<double> settling;  ///< s from `end` until |e| stays within the band; nothing: it does not
+    std::optional<double> settling;  ///< s from `end` until |e| stays within the band; nothing: it has not
+                                     ///< been there for a tenth of the time after `end`, and two rows
     double ripple = 0;  ///< half of the range of e over the last tenth of the time after the move
   };
+  /// Nothing: the reference does not come to rest, or it is constant, and there is no move and no band.
   std::optional<Move> move;
-  /// |e| grows from third to third of the time after the move, or of the run: oscillations that build up.
+  bool is_constant = false;  ///< the reference, throughout
+  /// |e| grows throughout the time after the move, or the run: oscillations that build up, or a divergence.
   bool grows = false;
 };
 

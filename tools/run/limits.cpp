@@ -1,65 +1,91 @@
 #include "tools/run/limits.h"
 #include <algorithm>
-#include <charconv>
+#include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 
 namespace loopwright {
 namespace {
 
-/// The number at the start of an effective value, "10 V"; infinity if it is none.
-double bound(const std::map<std::string_view, std::string_view>& settings, const std::string& name) {
-  double value = std::numeric_limits<double>::infinity();
-  const auto found = settings.find(name);
-  if (found != settings.end())
-    std::from_chars(found->second.data(), found->second.data() + found->second.size(), value);
-  return value;
+constexpr std::array<std::pair<std::string_view, std::string_view>, 7> limited_outputs{
+    {{"ContinuousPidController", "command"},
+     {"ContinuousPiController", "command"},
+     {"DiscreteIntegrator", "y"},
+     {"Integrator", "y"},
+     {"PidController", "command"},
+     {"Saturation", "y"},
+     {"ScheduledPidController", "command"}}};
+
+/// As the block has it, in SI: each element of a vector may have its own.
+double bound(const Plan::Block& block, std::string_view name) {
+  return *block.type->kernels.tunable(const_cast<void*>(block.value.get()),
+                                      name);  // finds it, changes nothing
 }
 
-bool has_limits(const BlockInfo& info) {
-  const auto has = [&](std::string_view name) {
-    return std::ranges::find(info.parameters, name, &ParameterInfo::name) != info.parameters.end();
-  };
-  return has("low") && has("high") && info.type != "DeadZone" && !info.outputs.empty();
+Number output_of(const Plan::Block& block, std::string_view name) {
+  const auto& outputs = block.type->info.outputs;
+  return block.outputs[size_t(std::ranges::find(outputs, name, &PortInfo::name) - outputs.begin())];
+}
+
+/// How many columns may be recorded in addition to the log.
+size_t most_columns(const Plan& plan) {
+  constexpr double most_bytes = 256e6;
+  const double rows =
+      double(plan.stop_tick - plan.start_tick) / double(std::max<int64_t>(plan.record_ticks, 1));
+  return size_t(most_bytes / double(sizeof(double)) / (rows + 2));
 }
 
 }  // namespace
 
-WatchedLimits::WatchedLimits(const Plan& plan) : plan_(plan) {
-  constexpr size_t most = 32;
-  const std::map<std::string_view, std::string_view> settings(plan.parameters.begin(), plan.parameters.end());
+std::string_view limited_output(std::string_view type) {
+  for (const auto& [name, output] : limited_outputs)
+    if (name == type) return output;
+  return {};
+}
+
+WatchedLimits::WatchedLimits(const Plan& plan) : plan_(plan), columns_(plan.log.size() + 1) {
+  const size_t most = most_columns(plan);
+  std::map<Number, size_t> recorded;  // the time is column 0
+  for (size_t i = 0; i < plan.log.size(); ++i) recorded.try_emplace(plan.log[i].number, i + 1);
   for (const Plan::Block& block : plan.blocks) {
-    if (!has_limits(block.type->info) || limits_.size() == most || block.output_lengths[0] != 1) continue;
-    const Limit limit{block.path, bound(settings, block.path + ".low"),
-                      bound(settings, block.path + ".high")};
-    if (!std::isfinite(limit.low) && !std::isfinite(limit.high)) continue;
+    const std::string_view output = limited_output(block.type->info.type);
+    if (output.empty()) continue;
+    const double low = bound(block, "low"), high = bound(block, "high");
+    if (!std::isfinite(low) && !std::isfinite(high)) continue;
+    const Number number = output_of(block, output);
+    if (!recorded.contains(number) && plan_.log.size() + 1 - columns_ == most) {
+      ++left_out_;
+      continue;
+    }
+    const auto [column, is_new] = recorded.try_emplace(number, plan_.log.size() + 1);
+    limits_.push_back({block.path, low, high, column->second});
+    if (!is_new) continue;
     Plan::Logged watched;
-    watched.name = "at a limit: " + block.path;
-    watched.number = block.outputs[0];
+    watched.name = plan.name_of(number);  // what a run that diverges there is told to have
+    watched.number = number;
     plan_.log.push_back(std::move(watched));
-    limits_.push_back(limit);
   }
 }
 
 std::vector<TimeAtLimit> WatchedLimits::take(Recording& recording) const {
   std::vector<TimeAtLimit> shares;
-  const size_t first = recording.columns.size() - limits_.size(), rows = recording.rows();
-  for (size_t k = 0; k < limits_.size() && rows > 1; ++k) {
-    const std::vector<double>&time = recording.columns[0].values,
-          &values = recording.columns[first + k].values;
-    TimeAtLimit share{limits_[k].block};
+  const std::vector<double>& time = recording.columns[0].values;
+  const bool has_duration = time.size() > 1 && time.back() > time.front();
+  for (const Limit& limit : limits_) {
+    if (!has_duration) break;
+    const std::vector<double>& values = recording.columns[limit.column].values;
+    TimeAtLimit share{limit.block};
     // A row holds until the next one.
-    for (size_t i = 0; i + 1 < rows; ++i) {
+    for (size_t i = 0; i + 1 < time.size(); ++i) {
       const double part = (time[i + 1] - time[i]) / (time.back() - time.front());
-      if (values[i] >= limits_[k].high)
+      if (values[i] >= limit.high)
         share.high += part;
-      else if (std::isfinite(limits_[k].low) && values[i] <= limits_[k].low)
+      else if (values[i] <= limit.low)
         share.low += part;
     }
-    shares.push_back(share);
+    shares.push_back(std::move(share));
   }
-  recording.columns.resize(first);
+  recording.columns.resize(columns_);
   return shares;
 }
 

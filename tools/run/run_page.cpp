@@ -103,9 +103,12 @@ std::string run_summary(const Plan& plan, const RunResult& result, const RunFigu
   for (size_t c = 1; c < result.recording.columns.size() && c <= 40; ++c) {
     const Column& column = result.recording.columns[c];
     if (column.values.empty()) continue;
-    const auto [low, high] = std::ranges::minmax(column.values);
-    text += fmt::format("  {:<{}}  {:>13.6g} {:>13.6g} {:>13.6g}  {}\n", column.name, width, low, high,
-                        column.values.back(), column.unit);
+    const SignalRange range(column.values);
+    text += fmt::format("  {:<{}}  {:>13.6g} {:>13.6g} {:>13.6g}  {}{}\n", column.name, width, range.least,
+                        range.greatest, range.last, column.unit,
+                        range.not_finite ? fmt::format(", {} of {} rows without a number", range.not_finite,
+                                                       column.values.size())
+                                         : "");
   }
   if (result.recording.columns.size() > 41)
     text += fmt::format("  … and {} more\n", result.recording.columns.size() - 41);

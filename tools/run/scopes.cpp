@@ -37,6 +37,7 @@ std::vector<Scope> grouped(const std::vector<NamedRecording>& runs) {
   const Recording& first = *runs.front().recording;
   for (size_t c = 1; c < first.columns.size(); ++c) {
     const Column& column = first.columns[c];
+    if (SignalRange(column.values).not_finite == column.values.size()) continue;  // remarks have no curve
     const double peak = peak_of(column);
     auto scope =
         std::ranges::find_if(scopes, [&](const Scope& s) { return s.takes(column, peak, most_signals); });
@@ -97,6 +98,23 @@ struct RowUnit {
   std::string operator()(double value) const { return fmt::format("{:.5g}", value * factor + 0.0); }
 };
 
+/// In rows that hold a number; "–" where a signal has none.
+std::vector<std::string> figures_of(const Column& column, const SignalRange& range) {
+  const RowUnit shown(peak_of(column), unit_text(column));
+  std::vector<std::string> cells{shown.unit};
+  for (const double figure : {range.least, range.greatest, range.mean, range.rms, range.last})
+    cells.push_back(std::isnan(figure) ? "–" : shown(figure));
+  return cells;
+}
+
+bool has_gaps(const std::vector<NamedRecording>& runs) {
+  return std::ranges::any_of(runs, [](const NamedRecording& run) {
+    return std::ranges::any_of(run.recording->columns, [](const Column& column) {
+      return !std::ranges::all_of(column.values, [](double v) { return std::isfinite(v); });
+    });
+  });
+}
+
 double even_step(const std::vector<double>& time) {
   if (time.size() < 8) return 0;
   const double step = (time.back() - time.front()) / double(time.size() - 1);
@@ -106,6 +124,23 @@ double even_step(const std::vector<double>& time) {
 }
 
 }  // namespace
+
+SignalRange::SignalRange(const std::vector<double>& values) {
+  double sum = 0, squares = 0;
+  least = INFINITY, greatest = -INFINITY;
+  for (const double v : values) {
+    if (!std::isfinite(v)) {
+      ++not_finite;
+      continue;
+    }
+    least = std::min(least, v), greatest = std::max(greatest, v);
+    sum += v, squares += v * v;
+  }
+  const double count = double(values.size() - not_finite);
+  mean = sum / count, rms = std::sqrt(squares / count);
+  last = values.empty() ? NAN : values.back();
+  if (count == 0) least = greatest = mean = rms = NAN;
+}
 
 std::vector<report::Plot> scopes(const std::vector<NamedRecording>& runs,
                                  const std::function<bool(const std::string&)>& is_held) {
@@ -161,20 +196,17 @@ report::Table signal_table(const std::vector<NamedRecording>& runs) {
   report::Table table{{"Signal"}, {}, "Range, mean and last value of the signals"};
   if (runs.size() > 1) table.head.push_back("Run");
   for (const char* word : {"Unit", "Least", "Greatest", "Mean", "RMS", "Last"}) table.head.push_back(word);
+  const bool counts_gaps = has_gaps(runs);
+  if (counts_gaps) table.head.push_back("Rows without a number");
   for (const Column& first : runs.front().recording->columns)
     for (const NamedRecording& run : runs) {
       const Column* column = run.recording->find(first.name);
       if (&first == &runs.front().recording->columns.front() || !column || column->values.empty()) continue;
-      const auto [low, high] = std::ranges::minmax(column->values);
-      double sum = 0, squares = 0;
-      for (const double v : column->values) sum += v, squares += v * v;
-      const double count = double(column->values.size());
-      const RowUnit shown(peak_of(*column), unit_text(*column));
+      const SignalRange range(column->values);
       std::vector<std::string> row{column->name};
       if (runs.size() > 1) row.push_back(run.name);
-      for (std::string cell : {shown.unit, shown(low), shown(high), shown(sum / count),
-                               shown(std::sqrt(squares / count)), shown(column->values.back())})
-        row.push_back(std::move(cell));
+      for (std::string& cell : figures_of(*column, range)) row.push_back(std::move(cell));
+      if (counts_gaps) row.push_back(fmt::format("{}", range.not_finite));
       table.rows.push_back(std::move(row));
     }
   return table;

@@ -8,6 +8,14 @@
 
 namespace loopwright {
 
+/// Figures of the finite values of a signal; NaN if there are none.
+struct SignalRange {
+  double least = 0, greatest = 0, mean = 0, rms = 0;
+  double last = 0;        ///< of all values, finite or not
+  size_t not_finite = 0;  ///< values that are none
+  explicit SignalRange(const std::vector<double>& values);
+};
+
 struct NamedRecording {
   std::string name;            ///< "stage.csv"; names are not repeated among those of one page
   const Recording* recording;  ///< its first column is the time
@@ -22,7 +30,8 @@ std::vector<report::Plot> scopes(const std::vector<NamedRecording>& runs,
 /// Amplitudes over frequency of the same signals in the same groups; empty if the rows are not even.
 std::vector<report::Plot> spectra(const std::vector<NamedRecording>& runs);
 
-/// Least, greatest, mean, rms and last value of each signal, in the unit that the plots use.
+/// Least, greatest, mean, rms and last value of each signal, in the unit that the plots use, and how many
+/// rows hold no number where some do not.
 report::Table signal_table(const std::vector<NamedRecording>& runs);
 
 /// What the others have that the first has not: a table of the differences of common signals over the common

@@ -13,26 +13,45 @@ using Severity = Notice::Severity;
 std::string shown(double value, const std::string& unit) { return report::shown(value, unit, 3); }
 std::string percent(double share) { return fmt::format("{:.3g} %", 100 * share); }
 
+using Move = TrackingFigures::Move;
+
 /// "stage.position follows reference.position (guessed …)": named once, in front of what is said about it.
 std::string subject(const TrackingFigures& t) { return t.followed.signal; }
 
-std::string tracking_sentence(const TrackingFigures& t) {
-  const std::string& unit = t.followed.unit;
+std::string event(Move::Kind kind) {
+  return kind == Move::Kind::jump   ? "the reference jumps"
+         : kind == Move::Kind::stop ? "the reference stops"
+                                    : "the start";
+}
+
+std::string stay_sentence(const Move& move, const std::string& band) {
+  if (!move.settling) return "; it is not within ±" + band + " at the end of the run.";
+  if (*move.settling > 0)
+    return fmt::format("; it is within ±{} from {} on.", band, shown(move.end + *move.settling, "s"));
+  return "; it stays within ±" + band + " throughout.";
+}
+
+std::string move_sentence(const Move& move, const std::string& unit) {
+  const std::string band = shown(move.band, unit), after = event(move.kind);
+  if (move.kind == Move::Kind::stay) return stay_sentence(move, band);
   std::string text =
-      fmt::format("{} follows {} with an error of {} rms, at most {} at {}", subject(t), t.followed.reference,
-                  shown(t.rms, unit), shown(t.greatest, unit), shown(t.at, "s"));
-  if (!t.move) return text + "; the reference never comes to rest.";
-  const auto& move = *t.move;
-  text += move.settling
-              ? fmt::format("; it settles within ±{} {} after the reference {}", shown(move.band, unit),
-                            *move.settling > 0 ? shown(*move.settling, "s") : "at once",
-                            move.is_jump ? "jumps" : "stops")
-              : fmt::format("; it does not settle within ±{} after the reference {} at {}",
-                            shown(move.band, unit), move.is_jump ? "jumps" : "stops", shown(move.end, "s"));
+      move.settling ? fmt::format("; it settles within ±{} {} after {}", band,
+                                  *move.settling > 0 ? shown(*move.settling, "s") : "at once", after)
+                    : fmt::format("; it has not settled within ±{} by the end of the run, after {}{}", band,
+                                  after, move.kind == Move::Kind::start ? "" : " at " + shown(move.end, "s"));
   text += move.overshoot > 0 ? fmt::format(", overshoot {} ({} of the move)", shown(move.overshoot, unit),
                                            percent(move.overshoot / std::abs(move.size)))
                              : ", without overshoot";
   return text + ".";
+}
+
+std::string tracking_sentence(const TrackingFigures& t) {
+  const std::string& unit = t.followed.unit;
+  std::string text = fmt::format("{} follows {}{} with an error of {} rms, at most {} at {}", subject(t),
+                                 t.followed.reference, t.is_constant ? ", which is constant," : "",
+                                 shown(t.rms, unit), shown(t.greatest, unit), shown(t.at, "s"));
+  if (t.move) return text + move_sentence(*t.move, unit);
+  return text + (t.is_constant ? "." : "; the reference never comes to rest.");
 }
 
 Severity severity(const TrackingFigures& t) {
@@ -71,7 +90,37 @@ std::string guess_sentence(const RunFigures& figures) {
 
 std::string limit_sentence(const TimeAtLimit& share) {
   return fmt::format("{} is at its limits for {} of the time ({} at the upper, {} at the lower one).",
-                     share.block, percent(share.low + share.high), percent(share.high), percent(share.low));
+                     share.block, percent(share.share()), percent(share.high), percent(share.low));
+}
+
+/// What stands at its limits longest comes first.
+std::vector<TimeAtLimit> longest_first(const RunFigures& figures, double worth_telling) {
+  std::vector<TimeAtLimit> told;
+  for (const TimeAtLimit& share : figures.limits)
+    if (share.share() > worth_telling) told.push_back(share);
+  std::ranges::stable_sort(told, std::greater(), &TimeAtLimit::share);
+  return told;
+}
+
+/// One sentence for each; of a long list, what the last ones have in common.
+std::vector<std::string> limit_sentences(const RunFigures& figures, double worth_telling) {
+  constexpr size_t most = 8;
+  std::vector<std::string> sentences;
+  const std::vector<TimeAtLimit> told = longest_first(figures, worth_telling);
+  for (size_t i = 0; i < std::min(most, told.size()); ++i) sentences.push_back(limit_sentence(told[i]));
+  if (told.size() > most)
+    sentences.push_back(
+        fmt::format("{} further blocks are at their limits, each for no more than {} of the time.",
+                    told.size() - most, percent(told[most].share())));
+  return sentences;
+}
+
+/// Empty if all were watched.
+std::string not_watched_sentence(const RunFigures& figures) {
+  if (figures.limits_not_watched == 0) return "";
+  return fmt::format(
+      "Blocks with limits that were not watched: {}. Whether they were at a limit is not known.",
+      figures.limits_not_watched);
 }
 
 }  // namespace
@@ -105,9 +154,10 @@ std::vector<Notice> verdict(const Plan& plan, const RunResult& result, const Run
                                               " grow from quarter to quarter of the run, and do not end."});
   }
   constexpr double worth_a_warning = 0.01;  // of the time
-  for (const TimeAtLimit& share : figures.limits)
-    if (share.low + share.high > worth_a_warning)
-      notices.push_back({Severity::warning, limit_sentence(share)});
+  for (std::string& sentence : limit_sentences(figures, worth_a_warning))
+    notices.push_back({Severity::warning, std::move(sentence)});
+  if (std::string sentence = not_watched_sentence(figures); !sentence.empty())
+    notices.push_back({Severity::note, std::move(sentence)});
   if (figures.tracking.empty() && result.status == RunStatus::finished)
     notices.push_back(
         {Severity::note,
@@ -129,16 +179,17 @@ report::KeyNumbers key_numbers(const RunFigures& figures) {
     add("Error, rms", t.rms, t.followed.unit, t.followed.signal);
     add("Greatest error", t.greatest, t.followed.unit, "at " + shown(t.at, "s"));
     if (!t.move) continue;
+    const std::string band = "within ±" + shown(t.move->band, t.followed.unit);
     if (t.move->settling)
-      add("Settling", *t.move->settling, "s", "within ±" + shown(t.move->band, t.followed.unit));
+      add("Settling", *t.move->settling, "s", band);
     else
-      key.numbers.push_back({"Settling", "never", "", "within ±" + shown(t.move->band, t.followed.unit)});
-    add("Overshoot", 100 * t.move->overshoot / std::abs(t.move->size), "%",
-        shown(t.move->overshoot, t.followed.unit));
+      key.numbers.push_back({"Settling", "not by the end", "", band});
+    if (t.move->kind != Move::Kind::stay)
+      add("Overshoot", 100 * t.move->overshoot / std::abs(t.move->size), "%",
+          shown(t.move->overshoot, t.followed.unit));
   }
-  for (const TimeAtLimit& share : figures.limits)
-    if (key.numbers.size() < 8)
-      add("At a limit", 100 * (share.low + share.high), "%", share.block + ", of the time");
+  for (const TimeAtLimit& share : longest_first(figures, -1))
+    if (key.numbers.size() < 8) add("At a limit", 100 * share.share(), "%", share.block + ", of the time");
   return key;
 }
 
@@ -149,8 +200,9 @@ std::string figures_text(const RunFigures& figures) {
                         t.followed.is_guess ? " (a guess from the wires)" : "");
   for (const std::string& name : figures.swinging)
     text += fmt::format("  {} swings more and more: perhaps unstable\n", name);
-  for (const TimeAtLimit& share : figures.limits)
-    if (share.low + share.high > 0) text += "  " + limit_sentence(share) + "\n";
+  for (const std::string& sentence : limit_sentences(figures, 0)) text += "  " + sentence + "\n";
+  if (const std::string sentence = not_watched_sentence(figures); !sentence.empty())
+    text += "  " + sentence + "\n";
   return text;
 }
 

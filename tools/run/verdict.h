@@ -11,10 +11,12 @@ namespace loopwright {
 struct RunFigures {
   std::vector<TrackingFigures> tracking;
   std::vector<TimeAtLimit> limits;
+  size_t limits_not_watched = 0;      ///< outputs with limits of which nothing is known
   std::vector<std::string> swinging;  ///< logged signals that build up, where no reference is known
 };
 
-/// Computes the figures of the pairs from followed_signals; `limits` comes from WatchedLimits.
+/// Computes the figures of the pairs from followed_signals; `limits` comes from WatchedLimits. For a run as a
+/// whole: run_and_judge().
 RunFigures run_figures(const std::vector<FollowedSignal>& followed, const Recording& recording,
                        std::vector<TimeAtLimit> limits);
 

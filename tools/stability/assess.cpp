@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include "models/linear/poles.h"
+#include "models/linear/structure.h"
+#include "tools/linearize/analysis.h"
 #include "tools/linearize/ports.h"
 #include "tools/stability/certificates.h"
 #include "tools/stability/kick.h"
@@ -105,10 +106,15 @@ class Assessment {
   }
 
   void judge_linear_part() {
-    const SampledSystem loop = sampled_system(linear_, {}, sample_time_);
+    // What the plant's input moves, and what shows at this input or in the position. An integral that is only
+    // recorded is outside.
+    const SampledSystem loop = sampled_system(
+        linear_, {{roles_.disturbance}, {roles_.disturbance, roles_.position}, {}}, sample_time_);
+    const Modes modes = modes_between(loop.matrices);
     report_.sample_time = loop.matrices.sample_time / loop.lifted;
-    report_.largest_pole = outermost_pole(loop.matrices);
-    report_.linear_part_is_stable = report_.largest_pole < 1;
+    report_.linear_part = modes.stability, report_.largest_pole = modes.outermost;
+    for (std::string& mode : texts_of(modes.outside, loop.matrices.sample_time, loop.states))
+      report_.warnings.push_back(std::move(mode));
     SampledSystem cut = sampled_system(
         linear_, {{roles_.disturbance}, {roles_.disturbance}, {roles_.disturbance}}, sample_time_);
     cut.matrices.C *= -1, cut.matrices.D *= -1;
@@ -130,7 +136,7 @@ class Assessment {
         function.inputs[0].ports.push_back({n.inputs[1].port, learned_.lead});
       functions.push_back(std::move(function));
     }
-    if (!report_.linear_part_is_stable) return;
+    if (!report_.linear_part_is_stable()) return;
     if (unit_ == 0) return;
     const auto certificate = [&](GainOf gain, int parts) {
       return certify(small_gain_matrix(linear_, functions, unit_, sample_time_, parts, gain), functions,

@@ -1,18 +1,11 @@
 #include "tools/stability/kick.h"
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-#include "tools/linearize/measured_response.h"
+#include "engine/run/require_finished.h"
+#include "tools/linearize/changed_diagram.h"
 
 namespace loopwright {
 namespace {
-
-Value number(double x) {
-  Value value;
-  value.kind = Value::Kind::number;
-  value.number = x;
-  return value;
-}
 
 std::vector<double> positions(Diagram diagram, const std::string& position, const RunOptions& options,
                               Problems& problems, std::vector<double>& time) {
@@ -20,7 +13,7 @@ std::vector<double> positions(Diagram diagram, const std::string& position, cons
   const auto plan = problems.has_errors() ? nullptr : compile(diagram, problems);
   if (!plan) throw InputError(std::move(problems));
   RunResult result = simulate(*plan, options);
-  if (result.status != RunStatus::finished) throw std::runtime_error(result.message);
+  require_finished(result);
   time = result.recording.columns[0].values;
   return std::move(result.recording.columns[1].values);
 }
@@ -32,13 +25,8 @@ KickTest kick(const Diagram& diagram, const std::string& port, const std::string
   const double start = diagram.solver.start.value, stop = diagram.solver.stop.value;
   const double step = diagram.solver.step.is_given ? diagram.solver.step.value : 1e-3;
   const double at = std::round(0.5 * (start + stop) / step) * step;
-  BlockEntry pulse;
-  pulse.name = "kick", pulse.type = "PulseTrain";
-  pulse.settings.kind = Value::Kind::object;
-  pulse.settings.members = {{"period", {}, number(2 * (stop + 1))},
-                            {"width", {}, number(duration)},
-                            {"start", {}, number(at)},
-                            {"high", {}, number(size)}};
+  const BlockEntry pulse = block_with(
+      "kick", "PulseTrain", {{"period", 2 * (stop + 1)}, {"width", duration}, {"start", at}, {"high", size}});
   Problems problems;
   KickTest test;
   const Diagram kicked = with_added_signal(diagram, port, pulse, problems);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include "engine/run/require_finished.h"
 #include "tools/linearize/block_bench.h"
 #include "tools/linearize/slope.h"
 
@@ -119,7 +120,7 @@ VisitedRanges visit(const Plan& plan, const RunOptions& options,
   RunOptions with_stop = options;
   with_stop.at_stop = at_stop;
   const RunResult result = simulate(recorded, with_stop);
-  if (result.status != RunStatus::finished) throw std::runtime_error(result.message);
+  require_finished(result);
   VisitedRanges visited;
   for (size_t c = 1; c < result.recording.columns.size(); ++c) {
     const auto [low, high] = std::ranges::minmax(result.recording.columns[c].values);

@@ -9,7 +9,8 @@ struct VisitedRanges {
   std::vector<double> low, high;  ///< one for each number of the plan
 };
 
-/// Runs the plan and calls `at_stop` with the run at its end. Throws std::runtime_error when it fails.
+/// Runs the plan and calls `at_stop` with the run at its end. Throws Interrupted, or std::runtime_error
+/// when it fails.
 VisitedRanges visit(const Plan& plan, const RunOptions& options,
                     const std::function<void(Run<double>&)>& at_stop);
 

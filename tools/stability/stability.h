@@ -85,7 +85,9 @@ struct StabilityReport {
   double alpha = 0;         ///< of the diagram; 0 without a learned block
   double lead = 0;          ///< s, of the learned block
   double largest_pole = 0;  ///< |z| of the linear part
-  bool linear_part_is_stable = false;
+  /// Of the linear part between the disturbance and the position; warnings name modes outside that do not
+  /// decay.
+  Stability linear_part = Stability::unstable;
   Margins margins;  ///< at the plant's input, learned block cut
   std::vector<Nonlinearity> nonlinearities;
   double displacement = 0;              ///< A: the most that the learned block can add to the position
@@ -95,11 +97,12 @@ struct StabilityReport {
   std::vector<LinearizationNote> notes;
   std::vector<std::string> warnings;
 
-  bool is_certified() const { return linear_part_is_stable && peak.holds; }
+  bool linear_part_is_stable() const { return linear_part == Stability::stable; }
+  bool is_certified() const { return linear_part_is_stable() && peak.holds; }
 };
 
-/// Runs the diagram once for the ranges of its signals, and twice for each kick. Throws InputError, or
-/// std::runtime_error when a run fails.
+/// Runs the diagram once for the ranges of its signals, and twice for each kick. Throws InputError,
+/// Interrupted, and std::runtime_error when a run fails.
 StabilityReport assess_stability(const std::string& path, const LoadOptions& load,
                                  const StabilityRequest& request, const RunOptions& options = {});
 

@@ -11,7 +11,10 @@ namespace {
 using Severity = report::Notice::Severity;
 
 report::Notice verdict(const StabilityReport& r) {
-  if (!r.linear_part_is_stable)
+  if (r.linear_part == Stability::boundary)
+    return {Severity::error,
+            "The linear part of the loop is at the boundary of stability: no certificate can hold."};
+  if (!r.linear_part_is_stable())
     return {Severity::error, "The linear part of the loop is unstable: no certificate can hold."};
   if (r.peak.holds)
     return {Severity::good, "Certified: every signal stays bounded, and a perturbation dies out."};

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include "tools/linearize/analysis.h"
 #include "tools/report/typography.h"
 #include "tools/stability/stability.h"
 
@@ -59,15 +60,18 @@ std::string to_json(const StabilityReport& r) {
                {"disturbance", r.disturbance},
                {"position", r.position},
                {"learned", r.learned},
-               {"linear_part", {{"is_stable", r.linear_part_is_stable}, {"largest_pole", r.largest_pole}}},
-               {"margins", {{"is_stable", r.margins.is_stable}, {"Ms", r.margins.Ms}}}};
+               {"linear_part",
+                {{"is_stable", r.linear_part_is_stable()},
+                 {"stability", name_of(r.linear_part)},
+                 {"largest_pole", r.largest_pole}}},
+               {"margins", {{"is_stable", r.margins.is_stable()}, {"Ms", r.margins.Ms}}}};
   const auto put = [&](const char* key, double value) {
     if (std::isfinite(value)) json["margins"][key] = value;
   };
   put("gain_margin", r.margins.gain), put("phase_margin_deg", r.margins.phase * 180 / std::numbers::pi);
   put("delay_margin_s", r.margins.delay);
   json["A"] = {
-      {"holds", r.linear_part_is_stable}, {"displacement", r.displacement}, {"unit", r.position_unit}};
+      {"holds", r.linear_part_is_stable()}, {"displacement", r.displacement}, {"unit", r.position_unit}};
   json["B"] = {{"peak", certificate_json(r.peak)}, {"energy", certificate_json(r.energy)}};
   if (r.paper) json["paper"] = paper_json(*r.paper);
   json["nonlinearities"] = Json::array();
@@ -95,14 +99,13 @@ std::string to_text(const StabilityReport& r) {
       fmt::format("plant at {}, position at {}{}\n", r.disturbance, r.position,
                   has_learned ? fmt::format(", learned block {} with alpha {:.4g}", r.learned, r.alpha) : "");
   text += fmt::format("linear part, sampled every {:g} s: {}, largest |z| {:.6g}; at the plant Ms {:.3g}\n",
-                      r.sample_time, r.linear_part_is_stable ? "stable" : "UNSTABLE", r.largest_pole,
-                      r.margins.Ms);
+                      r.sample_time, text_of(r.linear_part), r.largest_pole, r.margins.Ms);
   for (const Nonlinearity& n : r.nonlinearities)
     for (const Nonlinearity::Input& input : n.inputs)
       text += fmt::format("  {}: slope within {:.4g} ± {:.4g} by {}\n", n.block, input.slope, input.deviation,
                           input.port);
   text += fmt::format("certificates\n  A: {}\n",
-                      !r.linear_part_is_stable ? "does not hold, the linear part is unstable"
+                      !r.linear_part_is_stable() ? "does not hold, the linear part is not stable"
                       : has_learned
                           ? "bounded for every alpha; the learned block moves the position by at most " +
                                 report::shown(r.displacement, r.position_unit)

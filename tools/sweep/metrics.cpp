@@ -128,7 +128,8 @@ struct MetricBank::Accumulator {
         break;
       case Metric::Kind::settling_time:
         each(is_first, [&](size_t l) {
-          if (!(std::fabs(x[l] - metric.target) <= metric.band)) a[l] = time - metric.from;
+          b[l] = !(std::fabs(x[l] - metric.target) <= metric.band);
+          if (b[l] != 0) a[l] = time - metric.from;
         });
         break;
       case Metric::Kind::overshoot:
@@ -151,7 +152,8 @@ struct MetricBank::Accumulator {
   }
 
   double result(size_t l) {
-    if (rows == 0) return std::nan("");
+    const bool never_settles = metric.kind == Metric::Kind::settling_time && b[l] != 0;
+    if (rows == 0 || never_settles) return std::nan("");
     double value = a[l];
     if (metric.kind == Metric::Kind::rms) value = std::sqrt(a[l] / double(rows));
     if (metric.kind == Metric::Kind::mean) value = a[l] / double(rows);

@@ -4,6 +4,7 @@
 #include <nlopt.hpp>
 #include "engine/json/reader.h"
 #include "models/real/double_functions.h"
+#include "models/real/whole.h"
 #include "tools/sweep/lane_group.h"
 
 namespace loopwright {
@@ -27,8 +28,10 @@ class Search {
       if (axes[a].is_sampled()) from = axes[a].low, to = axes[a].high;
       if (axes[a].kind == Axis::Kind::normal)
         from = axes[a].low - 3 * axes[a].high, to = axes[a].low + 3 * axes[a].high;
-      if (plan.changes_plan(a) || from == to) continue;
-      free_.push_back({a, from, to, axes[a].kind == Axis::Kind::logarithmic});
+      if (plan.changes_plan(a) || from == to || axes[a].pair >= 0) continue;
+      free_.push_back({a, from, to, axes[a].kind == Axis::Kind::logarithmic, {}});
+      for (size_t other = a + 1; other < axes.size(); ++other)
+        if (axes[other].pair == int(a)) free_.back().together.push_back(other);
     }
   }
 
@@ -47,10 +50,24 @@ class Search {
     size_t axis;
     double from, to;
     bool is_logarithmic;
+    std::vector<size_t> together;  ///< axes paired with it
     double at(double u) const {
       return is_logarithmic ? from * any_power(to / from, u) : from + (to - from) * u;
     }
   };
+
+  /// Paired axes go along straight lines from one pair of their lists to the next.
+  void move(const Free& free, double u) {
+    if (free.together.empty()) return void(point_[free.axis] = free.at(u));
+    const auto along_list = [&](size_t axis) {
+      const std::vector<double>& values = plan_.sweep().axes[axis].values;
+      const double place = u * double(values.size() - 1);
+      const size_t left = std::min(whole_index(place, values.size()), values.size() - 2);
+      point_[axis] = values[left] + (place - double(left)) * (values[left + 1] - values[left]);
+    };
+    along_list(free.axis);
+    for (const size_t axis : free.together) along_list(axis);
+  }
 
   void search(nlopt::opt& method, std::vector<double> u, int evaluations) {
     method.set_lower_bounds(0.0), method.set_upper_bounds(1.0);
@@ -72,7 +89,7 @@ class Search {
       best_.interrupted = true;
       throw nlopt::forced_stop();
     }
-    for (size_t i = 0; i < u.size(); ++i) point_[free_[i].axis] = free_[i].at(u[i]);
+    for (size_t i = 0; i < u.size(); ++i) move(free_[i], u[i]);
     const RunRecord record = make_alone(plan_, plan_.options_at(point_), 0);
     ++used_, ++best_.evaluations;
     if (options_.progress) options_.progress(best_.evaluations, total_);

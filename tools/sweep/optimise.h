@@ -23,8 +23,8 @@ struct Optimum {
 };
 
 /// Searches between the smallest and largest value of each axis (for a normal axis: three standard
-/// deviations), on a logarithmic scale if the axis has one; variants and structural values are tried one
-/// after the other. First NLopt's DIRECT-L (Gablonsky & Kelley, J. Global Optim. 21 (2001) 27), then Sbplx.
+/// deviations), on a logarithmic scale if the axis has one; paired axes move together, on straight lines between
+/// the pairs of their lists. Variants and structural values are tried one after the other. First NLopt's DIRECT-L (Gablonsky & Kelley, J. Global Optim. 21 (2001) 27), then Sbplx.
 /// The same sweep gives the same result. Throws InputError when there is no such metric.
 Optimum optimise(const SweepPlan& plan, const OptimiseOptions& options);
 

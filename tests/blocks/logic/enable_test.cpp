@@ -9,9 +9,10 @@ namespace {
 std::vector<double> enabled(const char* settings, const std::vector<double>& values) {
   BlockUnderTest enable("Enable", settings);
   std::vector<double> on;
+  double time = 0;
   for (const double value : values) {
     enable.input("u") = value;
-    enable.evaluate();
+    enable.evaluate(time += 0.1);
     on.push_back(enable.output("on"));
   }
   return on;
@@ -25,6 +26,20 @@ TEST(Enable, FollowsTheLevelOrTheEdges) {
       << "the first value is no edge";
   EXPECT_EQ(enabled(R"({"kind": "falling"})", values), (Outputs{0, 0, 1, 0, 1, 0, 0}));
   EXPECT_EQ(enabled(R"({"kind": "either"})", values), (Outputs{0, 0, 1, 1, 1, 0, 1}));
+}
+
+TEST(Enable, AnEdgeLastsForItsInstant) {
+  BlockUnderTest enable("Enable", R"({"kind": "rising"})");
+  const auto on_at = [&](double time, double u) {
+    enable.input("u") = u;
+    enable.evaluate(time);
+    return enable.output("on");
+  };
+  EXPECT_EQ(on_at(0, 0), 0);
+  EXPECT_EQ(on_at(1, 1), 1);
+  EXPECT_EQ(on_at(1, 1), 1) << "decided again after a jump";
+  EXPECT_EQ(on_at(1, 0), 1) << "also if the jump takes the signal back";
+  EXPECT_EQ(on_at(2, 0), 0);
 }
 
 TEST(EnabledOutput, IsZeroWhileTheSubdiagramDoesNotRun) {

@@ -135,6 +135,23 @@ TEST(StateMachine, StopsTheRunAtAGuardThatIsNotANumber) {
   EXPECT_THAT(result.message, AllOf(HasSubstr("machine"), HasSubstr("an input or a guard is not a number")));
 }
 
+TEST(StateMachine, ANumberForAnOutputThatIsNotInSiNeedsAUnit) {
+  const auto machine = [](const char* unit, const char* value) {
+    return fmt::format(R"({{"loopwright": 1, "solver": {{"stop": 1, "step": 0.1}}, "blocks": {{
+      "machine": {{"type": "StateMachine", "sample_time": 0.1, "outputs": [{{"name": "x", "unit": "{}"}}],
+        "states": [{{"name": "a", "set": {{"x": {}}}}}]}}}}}})",
+                       unit, value);
+  };
+  EXPECT_THAT(problems_of(machine("mm", "5")),
+              AllOf(HasSubstr("needs a unit, as it is in mm"), HasSubstr(R"({"value": 5, "unit": "mm"})")));
+  EXPECT_THAT(problems_of(machine("rpm", "60")), HasSubstr("needs a unit, as it is in rpm"));
+  EXPECT_THAT(problems_of(machine("degC", "0")), HasSubstr("needs a unit, as it is in degC"));
+  for (const char* value : {"0", R"({"value": 5, "unit": "mm"})"})
+    EXPECT_EQ(problems_of(machine("mm", value)), "");
+  EXPECT_EQ(problems_of(machine("m", "5")), "");
+  EXPECT_DOUBLE_EQ(signal(run_of(machine("mm", R"({"value": 5, "unit": "mm"})")), "machine.x").back(), 0.005);
+}
+
 TEST(StateMachine, ValuesCanBeSetAndSweptByTheirPaths) {
   DiagramFolder folder;
   folder.with("top.json", with_states(two_states));

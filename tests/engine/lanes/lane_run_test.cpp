@@ -122,6 +122,26 @@ TEST_P(LaneRunTest, LetsALaneJumpWithoutTouchingTheDecisionsOfOthers) {
   EXPECT_GT(counts.size(), 1u);
 }
 
+// The lanes jump at different instants, at some of which there is an edge of the trigger too.
+TEST_P(LaneRunTest, KeepsATriggerWhereALaneJumps) {
+  const auto plan = plan_of(R"({
+    "loopwright": 1, "solver": {"method": "rk4", "step": 0.1, "stop": 10},
+    "blocks": {
+      "t":     {"type": "PulseTrain", "period": 2, "width": 1, "start": 1, "sample_time": 0.1},
+      "half":  {"type": "Constant", "value": {"value": 0.5, "unit": "s"}},
+      "place": {"type": "Integrator", "in": {"u": "t.y", "reset": "t.y", "reset_value": "half.y"}},
+      "count": {"diagram": {"inputs": {"u": "1"}, "outputs": {"y": "d.y"}, "blocks": {
+                 "d": {"type": "DiscreteIntegrator", "method": "backward", "sample_time": 0.1, "in": {"u": "u"}}}},
+                "triggered_by": "t.y", "in": {"u": "t.y"}}
+    },
+    "log": ["place.y", "count.y"]})");
+  EXPECT_NEAR(scalar_rows(*plan, {}, 0).values.back(), 0.5, 1e-12) << "five edges, each a sample of 0.1 s";
+  const auto parameters = tunable_parameters(*plan);
+  const auto lanes = lane_rows(*plan, parameters, GetParam(), 2);
+  for (int lane = 0; lane < int(lanes.size()); ++lane)
+    EXPECT_EQ(difference(*plan, scalar_rows(*plan, parameters, lane), lanes[size_t(lane)]), "") << lane;
+}
+
 // Each lane needs a different number of Newton steps.
 TEST_P(LaneRunTest, SolvesRingsLaneByLane) {
   const auto plan = plan_of(diagram(R"(

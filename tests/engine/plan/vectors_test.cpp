@@ -92,6 +92,22 @@ TEST(Vectors, AnIndexBeyondTheEndIsAnError) {
         << wrong;
 }
 
+TEST(Vectors, AnInputWithoutAWireReadsItsNumberForEveryElement) {
+  // After the reset at 0.5 s both axes are at 0, the default of `reset_value`.
+  const auto plan = plan_of(with_three(R"("r": {"type": "Step", "time": 0.5, "sample_time": 0.1},
+    "g": {"type": "Gain", "gain": 1, "in": {"u": "v.y"}},
+    "m": {"type": "SynchronizedMotion", "sample_time": 0.1, "velocity": [10, 10, 10], "acceleration": [100, 100, 100], "in": {"target": "g.y", "reset": "r.y"}})"));
+  for (const Plan::Block& block : plan->blocks)
+    if (block.path == "m") {
+      EXPECT_EQ(block.inputs[2].size(), 3u);
+    }
+  const RunResult result = simulate(*plan);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(signal(result, fmt::format("m.position[{}]", i))[4], i + 1, 1e-9) << "at its target before";
+    EXPECT_EQ(signal(result, fmt::format("m.position[{}]", i))[5], 0) << i;
+  }
+}
+
 TEST(Vectors, UnpackBeyondTheEndStopsTheRun) {
   const RunResult result = run_of(with_three(R"("u": {"type": "Unpack", "index": 3, "in": {"u": "v.y"}})"));
   EXPECT_EQ(result.status, RunStatus::failed);

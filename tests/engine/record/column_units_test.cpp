@@ -67,6 +67,39 @@ TEST_F(ColumnUnits, TimeIsTakenInItsOwnUnit) {
   EXPECT_EQ(text(), "");
 }
 
+TEST_F(ColumnUnits, AColumnWithHolesIsRefusedWhereItIsUsedAtTheCell) {
+  Problems none;
+  const Recording r =
+      parse_csv(std::make_shared<SourceFile>(SourceFile{"data.csv", "t,x,note\n0,1,start\n1,2,\n,3,\n"}),
+                none, {.allow_holes = true});
+  ASSERT_EQ(none.text(), "");
+  EXPECT_NE(find_column(r, "x", error()), nullptr);
+  EXPECT_EQ(text(), "");
+  EXPECT_EQ(find_column(r, "note", error()), nullptr);
+  EXPECT_THAT(text(), HasSubstr("data.csv:2:5: error: column \"note\": text where a number should be"));
+  EXPECT_THAT(text(), HasSubstr("data.csv:3:5: error: column \"note\": an empty cell"));
+  EXPECT_TRUE(time(r).empty());
+  EXPECT_THAT(text(), HasSubstr("data.csv:4:1: error: column \"t\": an empty cell"));
+}
+
+TEST_F(ColumnUnits, TheTimeComesFirstForAPage) {
+  Recording r = csv("pos [mm],t [ms],force [N]\n5,0,1\n6,9,2\n");
+  ASSERT_TRUE(put_time_first(r, error()));
+  ASSERT_EQ(r.columns.size(), 3u);
+  EXPECT_EQ(r.columns[0].name, "t");
+  EXPECT_EQ(r.columns[0].unit, "s");
+  EXPECT_EQ(r.columns[0].values, (std::vector<double>{0, 0.009}));
+  EXPECT_EQ(r.columns[1].name, "pos");
+  ASSERT_TRUE(put_time_first(r, error())) << "again";
+  EXPECT_EQ(r.columns[0].values, (std::vector<double>{0, 0.009}));
+  Recording two = csv("time [s],t [degC]\n0,20\n1,21\n");
+  ASSERT_TRUE(put_time_first(two, error())) << "the first of two that may be the time";
+  EXPECT_EQ(two.columns[0].name, "time");
+  EXPECT_EQ(text(), "");
+  Recording unordered = variables({{"pos", "m", {1, 2}}, {"speed", "m/s", {1, 2}}});
+  EXPECT_FALSE(put_time_first(unordered, error()));
+}
+
 TEST_F(ColumnUnits, WhatIsNoTimeIsRefused) {
   EXPECT_TRUE(time(csv("x [mm],y\n0,1\n1,2\n")).empty());
   EXPECT_THAT(text(), HasSubstr("the column \"x\" is no time"));
@@ -89,23 +122,34 @@ TEST_F(ColumnUnits, TimeInMillisecondsIsTakenInEveryNotation) {
 }
 
 TEST_F(ColumnUnits, NamesThatSayAnotherUnitAreNotTakenForSeconds) {
-  for (const auto& [name, unit] : std::vector<std::pair<std::string, std::string>>{
-           {"timestamp_millis", "ms"}, {"time_msec", "ms"}, {"timeMs", "ms"},      {"TIME_MS", "ms"},
-           {"Timems", "ms"},           {"millis", "ms"},    {"milliseconds", "ms"}, {"t_usec", "us"},
-           {"micros", "us"},           {"time_us_32", "us"}, {"t µs", "us"},        {"time_ns", "ns"},
-           {"elapsed_min", "min"},     {"t_h", "h"}}) {
+  for (const auto& [name, unit] : std::vector<std::pair<std::string, std::string>>{{"timestamp_millis", "ms"},
+                                                                                   {"time_msec", "ms"},
+                                                                                   {"timeMs", "ms"},
+                                                                                   {"TIME_MS", "ms"},
+                                                                                   {"Timems", "ms"},
+                                                                                   {"millis", "ms"},
+                                                                                   {"milliseconds", "ms"},
+                                                                                   {"t_usec", "us"},
+                                                                                   {"micros", "us"},
+                                                                                   {"time_us_32", "us"},
+                                                                                   {"t µs", "us"},
+                                                                                   {"time_ns", "ns"},
+                                                                                   {"elapsed_min", "min"},
+                                                                                   {"t_h", "h"}}) {
     problems_ = {};
     EXPECT_TRUE(time(csv(name + ",y\n0,1\n1,2\n")).empty()) << name;
     EXPECT_THAT(text(), HasSubstr("its name says another one than s")) << name;
     EXPECT_THAT(text(), HasSubstr(" [" + unit + "]\" as the heading")) << name;
   }
-  for (const char* name : {"ticks", "sample", "Samples", "frames", "tick_count", "sampleIndex", "Time (ticks)"}) {
+  for (const char* name :
+       {"ticks", "sample", "Samples", "frames", "tick_count", "sampleIndex", "Time (ticks)"}) {
     problems_ = {};
     EXPECT_TRUE(time(csv(std::string(name) + ",y\n0,1\n1,2\n")).empty()) << name;
     EXPECT_THAT(text(), HasSubstr("its name says that it counts")) << name;
   }
   problems_ = {};
-  for (const char* name : {"sample_time", "timestamp", "time_s", "t_sec", "seconds", "clock", "min_time", "k"})
+  for (const char* name :
+       {"sample_time", "timestamp", "time_s", "t_sec", "seconds", "clock", "min_time", "k"})
     EXPECT_FALSE(time(csv(std::string(name) + ",y\n0,1\n1,2\n")).empty()) << name;
   EXPECT_FALSE(time(csv("time_ms [s],y\n0,1\n1,2\n")).empty()) << "the unit that is stated counts";
   EXPECT_EQ(text(), "");

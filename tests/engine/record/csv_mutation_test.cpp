@@ -27,7 +27,8 @@ TEST(CsvMutation, ReadingEndsWithErrorsOrAWellFormedRecording) {
   for (int i = 0; i < 20'000; ++i) {
     const std::string damaged = mutate(files[random() % files.size()], random);
     Problems problems;
-    const ReadOptions options{.allow_not_finite = random() % 2 == 0};
+    const bool allows = random() % 2 == 0;
+    const ReadOptions options{.allow_not_finite = allows, .allow_holes = allows};
     const auto source = std::make_shared<SourceFile>(SourceFile{"damaged.csv", damaged});
     const Recording recording = parse_csv(source, problems, options);
     ASSERT_TRUE(is_refused_or_well_formed(recording, problems, options)) << damaged;

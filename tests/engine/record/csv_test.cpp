@@ -191,13 +191,22 @@ TEST(CsvRead, TakesUnitsFromBrackets) {
 }
 
 TEST(CsvRead, TakesUnitsInTheNotationsOfOtherPrograms) {
-  const std::vector<std::array<const char*, 3>> cases = {
-      {"Time (ms)", "Time", "ms"},       {"time(ms)", "time", "ms"},      {"t/ms", "t", "ms"},
-      {"Time, ms", "Time", "ms"},        {"F(N)", "F", "N"},              {"F/N", "F", "N"},
-      {"v/(m/s)", "v", "m/s"},           {"v (mm/s)", "v", "mm/s"},       {"x / mm", "x", "mm"},
-      {"Time (min)", "Time", "min"},     {"torque (Nm)", "torque", "Nm"}, {"duty (%)", "duty", "%"},
-      {"load (t)", "load", "t"},         {"s/mm", "s", "mm"},             {"m/kg", "m", "kg"},
-      {"drive.pos (mm)", "drive.pos", "mm"}};
+  const std::vector<std::array<const char*, 3>> cases = {{"Time (ms)", "Time", "ms"},
+                                                         {"time(ms)", "time", "ms"},
+                                                         {"t/ms", "t", "ms"},
+                                                         {"Time, ms", "Time", "ms"},
+                                                         {"F(N)", "F", "N"},
+                                                         {"F/N", "F", "N"},
+                                                         {"v/(m/s)", "v", "m/s"},
+                                                         {"v (mm/s)", "v", "mm/s"},
+                                                         {"x / mm", "x", "mm"},
+                                                         {"Time (min)", "Time", "min"},
+                                                         {"torque (Nm)", "torque", "Nm"},
+                                                         {"duty (%)", "duty", "%"},
+                                                         {"load (t)", "load", "t"},
+                                                         {"s/mm", "s", "mm"},
+                                                         {"m/kg", "m", "kg"},
+                                                         {"drive.pos (mm)", "drive.pos", "mm"}};
   for (const auto& [heading, name, unit] : cases) {
     const Recording recording = parse_right(fmt::format("y;\"{}\"\n1;2\n", heading));
     EXPECT_EQ(recording.columns[1].name, name) << heading;
@@ -208,9 +217,11 @@ TEST(CsvRead, TakesUnitsInTheNotationsOfOtherPrograms) {
 }
 
 TEST(CsvRead, LeavesNamesThatAreNoUnits) {
-  for (const char* heading : {"f(x)", "x(t)", "max(F)", "u/2", "x (1)", "km/h", "m/s", "N/A", "dx/dt", "y (raw)",
-                              "x (min)", "force (max)", "x (-)", "motor.force[2]", "a, b", "pos (actual)", "w/o",
-                              "on/off", "I/O", "x/y", "(mm)", "t(x)", "Channel (1)", "u(k)", "y(k+1)"}) {
+  for (const char* heading :
+       {"f(x)", "x(t)",         "max(F)",  "u/2",     "x (1)",       "km/h",  "m/s",
+        "N/A",  "dx/dt",        "y (raw)", "x (min)", "force (max)", "x (-)", "motor.force[2]",
+        "a, b", "pos (actual)", "w/o",     "on/off",  "I/O",         "x/y",   "(mm)",
+        "t(x)", "Channel (1)",  "u(k)",    "y(k+1)"}) {
     const Recording recording = parse_right(fmt::format("z;\"{}\"\n1;2\n", heading));
     EXPECT_EQ(recording.columns[1].name, heading);
     EXPECT_EQ(recording.columns[1].unit, "") << heading;
@@ -226,7 +237,8 @@ TEST(CsvRead, KeepsHeadingsThatOnlyUnitsDistinguish) {
 
 TEST(CsvRoundTrip, RestoresNamesThatLookLikeHeadingsWithUnits) {
   Recording recording;
-  for (const char* name : {"x (mm)", "x/mm", "x, mm", "v/(m/s)"}) recording.columns.push_back({name, "", {1, 2}});
+  for (const char* name : {"x (mm)", "x/mm", "x, mm", "v/(m/s)"})
+    recording.columns.push_back({name, "", {1, 2}});
   recording.columns[1].unit = "N";
   expect_round_trip(recording);
 }
@@ -302,6 +314,75 @@ TEST(CsvProblems, CommasThatMaySeparateThousandsAreRefused) {
   EXPECT_THAT(problems_of("t;x\n0;1,234,567\n"), HasSubstr("text where a number should be"));
   EXPECT_THAT(problems_of("t,x\n0,001,1,5\n"), HasSubstr("decimal commas?"));
   EXPECT_THAT(problems_of("x\n1,5\n"), HasSubstr("decimal commas?"));
+}
+
+TEST(CsvHoles, BelongToTheirColumnAndHarmNoOther) {
+  const Recording r = parse_right("t;x;note\n0;1;start\n1;;\n2;3;1e999\n3;nan;5\n", {.allow_holes = true});
+  ASSERT_THAT(names(r), ElementsAre("t", "x", "note"));
+  EXPECT_THAT(r.columns[0].values, ElementsAre(0, 1, 2, 3));
+  EXPECT_EQ(r.columns[0].holes.count, 0u);
+  EXPECT_THAT(r.columns[1].values, ElementsAre(1, testing::IsNan(), 3, testing::IsNan()));
+  ASSERT_EQ(r.columns[1].holes.count, 2u);
+  EXPECT_THAT(to_string(r.columns[1].holes.first[0]),
+              HasSubstr("data.csv:3:3: error: column \"x\": an empty cell"));
+  EXPECT_THAT(to_string(r.columns[1].holes.first[1]),
+              HasSubstr("data.csv:5:3: error: column \"x\": not a finite"));
+  EXPECT_THAT(r.columns[2].values, ElementsAre(testing::IsNan(), testing::IsNan(), testing::IsNan(), 5));
+  EXPECT_EQ(r.columns[2].holes.count, 3u);
+  EXPECT_THAT(to_string(r.columns[2].holes.first[0]), HasSubstr("data.csv:2:5"));
+  EXPECT_THAT(to_string(r.columns[2].holes.first[0]), HasSubstr("found: start"));
+}
+
+TEST(CsvHoles, AreRefusedUnlessTheyAreAllowed) {
+  EXPECT_THAT(problems_of("t;note\n0;start\n1;2\n"), HasSubstr("data.csv:2:3: error: column \"note\": text"));
+  EXPECT_THAT(problems_of("t;note\n0;\n1;2\n", {.allow_not_finite = true}), HasSubstr("an empty cell"));
+  // Mistakes of the table are no holes.
+  EXPECT_THAT(problems_of("t;x\n0;1\n1\n", {.allow_holes = true}), HasSubstr("a row of another length"));
+  EXPECT_THAT(problems_of("t;x\n0;\"a\n1;2\n", {.allow_holes = true}), HasSubstr("text where a number"));
+}
+
+TEST(CsvHoles, AreCountedBeyondTheFirst) {
+  std::string text = "t,x\n";
+  for (int i = 0; i < 100; ++i) text += "1,?\n";
+  const Recording r = parse_right(text, {.allow_holes = true});
+  EXPECT_EQ(r.columns[1].holes.count, 100u);
+  EXPECT_EQ(r.columns[1].holes.first.size(), 20u);
+}
+
+TEST(CsvHoles, ALastColumnOfNothingIsLeftOut) {
+  const Recording r = parse_right("t;x;\n0;1;\n1;2;\n", {.allow_holes = true});
+  EXPECT_THAT(names(r), ElementsAre("t", "x"));
+  for (const char* text : {"t;x;\n0;1;\n1;2;3\n", "t;x;\n0;1;\n1;2;a\n", "t;x;\n0;1;4\n1;2;3\n"})
+    EXPECT_THAT(problems_of(text, {.allow_holes = true}),
+                HasSubstr("data.csv:1:5: error: column 3 has no name"))
+        << text;
+}
+
+TEST(CsvHoles, PointsInRemarksAreNoDecimalPoints) {
+  const Recording r = parse_right("t;x;note\n0;1,5;z. B.\n1;2,25;\n", {.allow_holes = true});
+  EXPECT_THAT(r.columns[1].values, ElementsAre(1.5, 2.25));
+}
+
+TEST(CsvRead, ObeysTheSeparatorThatExcelStates) {
+  for (const std::string text : {"sep=;\nt;x\n0;1.5\n1;2\n", "SEP=;\r\nt;x\r\n0;1,5\r\n1;2\r\n",
+                                 "\xEF\xBB\xBFsep=,\nt,x\n0,1.5\n1,2\n", "\"sep=|\"\nt|x\n0|1.5\n1|2\n",
+                                 "sep=\t\nt\tx\n0\t1.5\n1\t2\n"}) {
+    const Recording r = parse_right(text);
+    ASSERT_THAT(names(r), ElementsAre("t", "x")) << text;
+    EXPECT_THAT(r.columns[1].values, ElementsAre(1.5, 2)) << text;
+  }
+}
+
+TEST(CsvRead, ADashInBracketsIsTheUnitOne) {
+  const Recording r = parse_right("t [s],slip [-],\"gain[-]\"\n0,1,2\n");
+  EXPECT_EQ(r.columns[1].name, "slip");
+  EXPECT_EQ(r.columns[1].unit, "1");
+  EXPECT_EQ(r.columns[2].unit, "1");
+  EXPECT_EQ(r.find("slip [-]"), &r.columns[1]);
+  Recording own;
+  own.columns = {{"x", "-", {1}}, {"a, b", "-", {1}}};
+  own.facts = {{"title", "escaped"}};
+  expect_round_trip(own);
 }
 
 TEST(CsvProblems, TellAFileThatIsNoTable) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <limits>
+#include <random>
 
 #include "support.h"
 
@@ -67,6 +68,45 @@ TEST(TimeAxis, RecognizesRoundedStamps) {
       EXPECT_EQ(with_gap.missing, 1);
       EXPECT_EQ(with_gap.sample_time, 1 / rate);
     }
+}
+
+TEST(TimeAxis, ShortRecordsOfWholeRatesAreNoOddDecimals) {
+  for (const double rate : {300.0, 350.0, 70.0})
+    for (const int rows : {150, 200, 300, 1000}) {
+      Column stamps{"t", "s", {}};
+      for (int k = 0; k < rows; ++k) stamps.values.push_back(std::round(1e3 * k / rate) / 1e3);
+      Problems problems;
+      EXPECT_EQ(check_time(stamps, problems).sample_time, 1 / rate) << rate << " Hz, " << rows << " rows";
+    }
+}
+
+TEST(TimeAxis, RoundedStampsGiveTheInstantsOfTheSamples) {
+  for (const int lost : {0, 3}) {
+    std::vector<double> stamps, instants;
+    for (int k = 0; k < 1000; ++k) {
+      if (k >= 400 && k < 400 + lost) continue;
+      stamps.push_back(std::round(1000 * (2 + k / 300.0)) / 1000), instants.push_back(2 + k / 300.0);
+    }
+    Problems problems;
+    const std::vector<double> found = unrounded(stamps, check_time({"t", "s", stamps}, problems));
+    ASSERT_EQ(found.size(), instants.size());
+    for (size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], instants[i], 1e-12) << i;
+  }
+}
+
+TEST(TimeAxis, OtherStampsAreUsedAsTheyAre) {
+  const auto is_used = [](const std::vector<double>& stamps) {
+    Problems problems;
+    return unrounded(stamps, check_time({"t", "s", stamps}, problems)).empty();
+  };
+  EXPECT_TRUE(is_used(grid(0, 0.001, 1000).values)) << "exact";
+  EXPECT_TRUE(is_used(grid(0.3, 1.0 / 3000, 5000).values)) << "exact";
+  EXPECT_TRUE(is_used({0, 0.3, 0.7, 1, 1.3, 1.7, 2})) << "written by hand";
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> late(0, 3e-4);
+  std::vector<double> jitter;
+  for (int k = 0; k < 2000; ++k) jitter.push_back(0.01 * k + std::abs(late(random)));
+  EXPECT_TRUE(is_used(jitter)) << "off the grid by more than their digits";
 }
 
 TEST(TimeAxis, NamesGapsWithRowAndTime) {

@@ -43,6 +43,19 @@ TEST(DeviceFile, ValuesBeyondTheRangeAreErrors) {
               HasSubstr("no such channel"));
 }
 
+TEST(DeviceFile, AnOutputThatTheWatchdogDoesNotCoverIsAnError) {
+  EXPECT_THAT(problems_of_device(
+                  device_text(R"({"quanser": {"analog_outputs": 2}, "outputs": {"drive": {"channel": 5}}})")),
+              AllOf(HasSubstr("/quanser/analog_outputs"), HasSubstr("drive"),
+                    HasSubstr("the card's watchdog would not put out the safe value of this output"),
+                    HasSubstr("channel 5, and \"analog_outputs\": 2")));
+  EXPECT_THAT(problems_of_device(device_text(R"({"quanser": {"board": "other", "analog_outputs": 0}})")),
+              HasSubstr("channel 0, and \"analog_outputs\": 0"));
+  EXPECT_EQ(problems_of_device(
+                device_text(R"({"quanser": {"analog_outputs": 6}, "outputs": {"drive": {"channel": 5}}})")),
+            "");
+}
+
 TEST(DeviceFile, UnknownNamesAreErrorsWithWhatWasMeant) {
   EXPECT_THAT(problems_of_device(device_text(R"({"quanser": {"options": "enc0_fliter=1;latch_on_adc=1"}})")),
               AllOf(HasSubstr("enc0_fliter"), HasSubstr("did you mean \"enc0_filter\"")));

@@ -240,6 +240,18 @@ TEST(IoDevice, OutputsMoveNoFasterThanTheirRate) {
   EXPECT_EQ(bench.device.rate_limited(), 3);
 }
 
+TEST(IoDevice, AfterAStopTheFirstCommandIsLimitedFromTheInitialValue) {
+  Bench bench(R"({"outputs": {"drive": {"maximum_rate": 1000, "initial": 4}}})");
+  bench.write(5);
+  EXPECT_DOUBLE_EQ(bench.script.written.back(), 5);
+  bench.device.stop();
+  ASSERT_TRUE(bench.device.preset().ok() && bench.device.start(0.001).ok());
+  EXPECT_EQ(bench.script.written.back(), 4);
+  EXPECT_EQ(bench.device.applied()[0], 4);
+  bench.write(5);
+  EXPECT_DOUBLE_EQ(bench.script.written.back(), 5) << "a volt a period, from 4 V";
+}
+
 TEST(IoDevice, AValueThatIsNoNumberIsNeverSentAndLatches) {
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     Bench bench;

@@ -161,6 +161,30 @@ TEST_F(Emulator, TheWatchdogExpiresAtItsInstantAndProtectsUntilCleared) {
   EXPECT_EQ(hil_watchdog_start(card_, 1.0), -151);
 }
 
+TEST_F(Emulator, ASampleIsTakenAtTheInstantAtWhichTheWatchdogExpires) {
+  const double safe = 0;
+  ASSERT_EQ(hil_watchdog_set_analog_expiration_state(card_, &first, 1, &safe), 0);
+  tag_task* task = reader(2);
+  ASSERT_EQ(hil_watchdog_start(card_, 0.001), 0);
+  write(5);
+  EXPECT_EQ(read(task), 1);
+  EXPECT_EQ(hil_watchdog_reload(card_), 0) << "it has expired";
+  EXPECT_EQ(hil_emu_get("dac.0"), 0);
+  EXPECT_EQ(hil_emu_get("watchdog.expired_at"), 0.001);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(read(task), 1) << "the card samples all the same";
+}
+
+TEST_F(Emulator, TwoTasksSampleAtTheSameInstant) {
+  tag_task *one = reader(2), *two = nullptr;
+  ASSERT_EQ(hil_task_create_reader(card_, 2, nullptr, 0, &first, 1, nullptr, 0, nullptr, 0, &two), 0);
+  ASSERT_EQ(hil_task_start(two, 2, 1000, uint32_t(-1)), 0);
+  for (int i = 1; i <= 3; ++i) {
+    EXPECT_EQ(read(one), 1);
+    EXPECT_EQ(read(two), 1);
+    EXPECT_NEAR(hil_emu_get("time"), 1e-3 * i, 1e-12);
+  }
+}
+
 TEST_F(Emulator, ExpiryValuesCanBeRestrictedAsSomeCardsDo) {
   const double one = 1;
   hil_emu_set("watchdog.zero_only", 1);

@@ -35,6 +35,48 @@ std::vector<std::vector<std::string>> all_commands(const std::vector<std::string
   return all;
 }
 
+/// The options of a command whose --help says that they write a file, and its required arguments.
+struct Writers {
+  std::vector<std::string> options;
+  int arguments = 0;
+};
+Writers writers_in(const std::string& help) {
+  Writers writers;
+  std::istringstream lines(help);
+  const std::regex option("  (?:-., ?)?(--[a-z0-9-]+) [^ ].*  +(Write|Draw) .*"),
+      argument("  [a-z]+ .*REQUIRED.*");
+  std::smatch match;
+  for (std::string line; std::getline(lines, line);)
+    if (std::regex_match(line, match, option))
+      writers.options.push_back(match[1]);
+    else if (std::regex_match(line, argument))
+      ++writers.arguments;
+  return writers;
+}
+
+TEST(Help, EveryOptionThatWritesAFileRefusesTheFileThatIsRead) {
+  DiagramFolder folder;
+  folder.with("same.json", "{}");
+  size_t options = 0;
+  for (const std::vector<std::string>& command : all_commands()) {
+    std::vector<std::string> asks = command;
+    asks.push_back("--help");
+    const Writers writers = writers_in(loopwright_program(asks).out);
+    if (writers.arguments == 0) continue;
+    for (const std::string& option : writers.options) {
+      std::vector<std::string> arguments = command;
+      for (int i = 0; i < writers.arguments; ++i) arguments.push_back("same.json");
+      arguments.insert(arguments.end(), {option, "./same.json"});
+      const Outcome outcome = loopwright_program(arguments, folder.path(""));
+      EXPECT_EQ(outcome.code, 2) << testing::PrintToString(arguments);
+      EXPECT_THAT(outcome.err, HasSubstr("name the same file")) << testing::PrintToString(arguments);
+      EXPECT_EQ(text_of(folder.path("same.json")), "{}") << testing::PrintToString(arguments);
+      ++options;
+    }
+  }
+  EXPECT_GE(options, 25u);
+}
+
 TEST(Help, OfEveryCommandHasExamplesThatItUnderstands) {
   DiagramFolder empty;
   setenv("HOME", empty.path("").c_str(), 1);

@@ -84,6 +84,16 @@ TEST(New, RefusesAFolderThatExists) {
   EXPECT_FALSE(fs::exists(folder.path("axis/nominal.json")));
 }
 
+TEST(New, TouchesNoOtherFolder) {
+  DiagramFolder folder;
+  folder.with("axis.part/notes.txt", "mine").with("axis.part/nominal.json", "mine too");
+  const Outcome outcome = loopwright_program({"new", "axis"}, folder.path(""));
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(text_of(folder.path("axis.part/notes.txt")), "mine");
+  EXPECT_EQ(text_of(folder.path("axis.part/nominal.json")), "mine too");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path("")), {}), 2);
+}
+
 TEST(New, RecognizesAMisspeltKindAndLeavesNothingBehind) {
   DiagramFolder folder;
   const Outcome outcome = loopwright_program({"new", "axis/", "--from", "pendulm"}, folder.path(""));

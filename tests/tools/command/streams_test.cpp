@@ -96,6 +96,18 @@ TEST_F(Streams, WhereAResultTakesStdoutTheSummaryGoesToStderr) {
   EXPECT_NE(csv.err, "");
 }
 
+TEST_F(Streams, SettingsThatAWrittenDiagramDoesNotContainAreNamed) {
+  const std::vector<std::string> fit{"fit", "axis.json", "e.json", "--parameters", "mass", "-o", "f.json"};
+  EXPECT_FALSE(contains(run(fit).err, "warning")) << run(fit).err;
+  std::vector<std::string> changed = fit;
+  changed.insert(changed.end(), {"--set", "solver.stop=0.9"});
+  const Outcome outcome = run(changed);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(
+      contains(outcome.err, "f.json was written from axis.json and does not contain --set solver.stop=0.9"))
+      << outcome.err;
+}
+
 TEST_F(Streams, TwoResultsOnStdoutAndFilesThatAreNoneAreRefused) {
   for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
            {"linearize", "axis.json", "--from", "motor.u", "--to", "mass.position", "--csv", "-", "--json",

@@ -108,6 +108,90 @@ TEST(Compare, JsonHasItsStableKeys) {
   EXPECT_EQ(json.at("rows"), 41);
 }
 
+/// Rows k / 400 s, written as `stamp_of` says; a force that is held from row to row pushes 2 kg.
+std::string four_hundred_rows_a_second(const std::function<double(int)>& stamp_of) {
+  std::string text = "t,F,x_mm\n";
+  double x = 0, v = 0;
+  constexpr double h = 1.0 / 400;
+  for (int k = 0; k < 600; ++k) {
+    const double force = 10 * std::sin(0.1 * k);
+    text += fmt::format("{:.9g},{:.17g},{:.17g}\n", stamp_of(k), force, 1000 * x);
+    x += v * h + force / 2 * h * h / 2, v += force / 2 * h;
+  }
+  return text;
+}
+
+/// The mass of the folder with a step of one row: a held force changes at the beginning of a step only.
+ExperimentFolder& with_a_step_a_row(ExperimentFolder& folder) {
+  folder.with("stage.json", diagram(R"("push": {"type": "Constant", "value": {"value": 0, "unit": "N"}},
+    "stage": {"type": "Mass", "mass": {"value": 2, "unit": "kg"}, "initial_position": {"value": 0, "unit": "m"}, "in": {"force": "push.y"}})",
+                                    R"("method": "rk4", "step": 0.0025, "stop": 1)"));
+  return folder;
+}
+
+TEST(Compare, RoundedStampsAreComparedAndDrivenWhereTheSamplesWereTaken) {
+  ExperimentFolder folder;
+  with_a_step_a_row(folder).with("data.csv",
+                                 four_hundred_rows_a_second([](int k) { return std::round(2.5 * k) / 1e3; }));
+  const Comparison c = folder.compared();
+  ASSERT_EQ(c.time.size(), 600u);
+  EXPECT_NEAR(c.time[501], 1.2525, 1e-12) << "1.253 in the file";
+  EXPECT_LT(c.signals[0].max_abs, 1e-9);
+}
+
+TEST(Compare, StampsThatAreNotOnlyRoundedAreUsedAsTheyAre) {
+  ExperimentFolder folder;  // every 7th stamp is 1 ms late: with its rounding more than a digit
+  const auto stamp = [](int k) { return std::round(2.5 * k + (k % 7 == 6 ? 1 : 0)) / 1e3; };
+  with_a_step_a_row(folder).with("data.csv", four_hundred_rows_a_second(stamp));
+  const Comparison c = folder.compared();
+  EXPECT_EQ(c.time[6], 0.016);
+  EXPECT_EQ(c.time[501], 1.253);
+}
+
+TEST(Compare, ColumnsThatNobodyUsesMayHoldText) {
+  ExperimentFolder folder;
+  std::string text = "t;F;x_mm;note;\n", used = "t;F;x_mm;note;\n";
+  for (int k = 0; k < 21; ++k) {
+    const double t = 0.05 * k;
+    text += fmt::format("{:.17g};4;{:.17g};{};\n", t, 1000 * t * t, k == 0 ? "start" : "");
+    used += fmt::format("{:.17g};{};{:.17g};;\n", t, k == 4 ? "off" : "4", 1000 * t * t);
+  }
+  folder.with("data.csv", text);
+  EXPECT_LT(folder.compared().signals[0].max_abs, 1e-12);
+  folder.with("data.csv", used);
+  EXPECT_NE(folder.refusal().find("data.csv:6:21: error: column \"F\": text where a number should be"),
+            std::string::npos)
+      << folder.refusal();
+}
+
+TEST(Compare, HeldOutRowsThatTheRunDidNotReachHaveNoError) {
+  ExperimentFolder folder;
+  folder.experiment(R"("stage.force": {"column": "F", "unit": "N"})",
+                    R"("stage.position": {"column": "x_mm", "unit": "mm"})",
+                    R"(, "hold_out": {"fraction": 0.3})");
+  // The figure of all rows stands in the text, too.
+  folder.data(every(0.05, 40), four, [](double t) { return t * t + (t > 1.38 ? 0.005 : 0); });
+  const std::string text = to_text(folder.compared());
+  EXPECT_NE(text.find("held out, rms\n"), std::string::npos) << text;
+  EXPECT_NE(text.find(" 5 mm\n"), std::string::npos) << text;
+  folder.with(
+      "stage.json",
+      diagram(R"("push": {"type": "Constant", "value": {"value": 0, "unit": "N"}}, "t": {"type": "Clock"},
+    "stage": {"type": "Mass", "mass": {"value": 2, "unit": "kg"}, "initial_position": {"value": 0, "unit": "m"}, "in": {"force": "push.y"}},
+    "end": {"type": "Constant", "value": {"value": 1.02, "unit": "s"}},
+    "bad": {"type": "Expression", "formula": "sqrt(end-t) * 1", "names": ["end", "t"], "in": {"arguments": ["end.y", "t.time"]}})",
+              R"("step": 0.05, "stop": 1)"));
+  folder.data(every(0.05, 41), four, [](double t) { return t * t + 0.005; });
+  const Comparison c = folder.compared();
+  EXPECT_EQ(c.run.status, RunStatus::failed);
+  EXPECT_GT(c.signals[0].rmse, 0);
+  EXPECT_EQ(c.signals[0].held_out_rmse, 0) << "rows from 1.4 s are held out, and it ended at 1 s";
+  EXPECT_TRUE(c.lacks_held_out);
+  EXPECT_NE(to_text(c).find("no error of theirs is given"), std::string::npos);
+  EXPECT_FALSE(
+      nlohmann::json::parse(to_json(c)).at("signals").at("stage.position").contains("held_out_rmse"));
+}
+
 TEST(Compare, AFailedRunIsComparedAsFarAsItCameAndSaysSo) {
   ExperimentFolder folder;
   folder.with(

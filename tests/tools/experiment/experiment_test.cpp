@@ -2,6 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
 #include "tests/tools/experiment/experiment_folder.h"
 
 namespace loopwright::experiment_test {
@@ -197,6 +200,25 @@ TEST_F(Experiments, TimesBeforeZeroAreAnErrorWithAdvice) {
 TEST_F(Experiments, AMissingDataFileSaysWhereItWasLookedFor) {
   std::filesystem::remove(folder.path("data.csv"));
   expect_refusal({"the data file \"data.csv\" is not there", "data.csv", "LOOPWRIGHT_DATA"});
+}
+
+TEST_F(Experiments, ADataFileIsNotTakenFromAPlaceThatNobodyNamed) {
+  namespace fs = std::filesystem;
+  std::stringstream file;
+  file << std::ifstream(folder.path("data.csv")).rdbuf();
+  const std::string rows = file.str();
+  fs::remove(folder.path("data.csv"));
+  folder.with("shared/data/one/data.csv", rows).with("work/notes.txt", "");
+  const fs::path before = fs::current_path();
+  fs::current_path(folder.path("work"));
+  unsetenv("LOOPWRIGHT_DATA");
+  expect_refusal({"the data file \"data.csv\" is not there"});
+  setenv("LOOPWRIGHT_DATA", folder.path("shared/data").c_str(), 1);
+  EXPECT_NO_THROW(compare(folder.path("stage.json"), folder.path("e.json")));
+  folder.with("shared/data/other/data.csv", rows);
+  expect_refusal({"in several folders", "one/data.csv", "other/data.csv"});
+  unsetenv("LOOPWRIGHT_DATA");
+  fs::current_path(before);
 }
 
 TEST_F(Experiments, AMissingExperimentOrDiagramIsAnError) {

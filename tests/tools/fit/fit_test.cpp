@@ -53,7 +53,7 @@ class Fitted : public testing::Test {
     const double m = 2, b = 3, w = 2;
     // v' = (u - b v)/m: v = A sin wt + B (e^{-bt/m} - cos wt) with these factors.
     const double d = b * b + m * m * w * w, sine = b / d, cosine = m * w / d;
-    for (int k = 0; k <= 800; ++k) {
+    for (int k = 0; k <= last_row; ++k) {
       const double t = k * 0.01;
       const double x = sine / w * (1 - std::cos(w * t)) - cosine / w * std::sin(w * t) +
                        (cosine + speed) * m / b * (1 - std::exp(-b * t / m)) + offset;
@@ -72,6 +72,7 @@ class Fitted : public testing::Test {
   double time_unit = 1;  ///< s
   double first_time = 0;
   int loses_every = 0;  ///< rows; 0: none
+  int last_row = 800;
 };
 
 TEST_F(Fitted, LostRowsChangeNoParameterAndAreCounted) {
@@ -184,6 +185,21 @@ TEST_F(Fitted, ParametersComeBackWithinTheirIntervals) {
   }
   EXPECT_GE(inside, 2 * records * 85 / 100);
   EXPECT_LT(inside, 2 * records);
+}
+
+/// Few rows give few blocks of errors, whose scatter is itself uncertain.
+TEST_F(Fitted, IntervalsOfShortRecordsCoverAsOftenAsTheySay) {
+  last_row = 133;  // 100 are fitted
+  int inside = 0;
+  const int records = 200;
+  for (int seed = 1; seed <= records; ++seed) {
+    record(uint64_t(1000 + seed));
+    const Fit result = fitted({"mass", "damping"});
+    const FittedParameter &mass = result.parameters[0], &damping = result.parameters[1];
+    inside += (mass.low < 2 && 2 < mass.high) + (damping.low < 3 && 3 < damping.high);
+  }
+  EXPECT_GE(inside, 2 * records * 92 / 100);  // 95 %, less three standard deviations
+  EXPECT_LE(inside, 2 * records * 98 / 100);
 }
 
 TEST_F(Fitted, TheFileGetsNewNumbersInItsOwnUnitsAndNothingElse) {

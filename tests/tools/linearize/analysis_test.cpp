@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include "engine/run/require_finished.h"
 #include "models/linear/frequency_response.h"
 #include "tests/engine/written_diagram.h"
 #include "tools/linearize/nyquist.h"
@@ -40,7 +41,7 @@ TEST(Analysis, TheLoopAtABreakPointIsControllerTimesPlant) {
     const std::complex<double> wanted = pd / z * plant;
     EXPECT_NEAR(std::abs(analysis.loop->response[i] / wanted - 1.0), 0, 1e-8) << analysis.loop->frequency[i];
   }
-  EXPECT_TRUE(analysis.loop->margins.is_stable);
+  EXPECT_TRUE(analysis.loop->margins.is_stable());
 }
 
 TEST(Analysis, WhereTheLoopIsCutDoesNotMatterForItsMargins) {
@@ -107,6 +108,133 @@ TEST(Analysis, SimulatedSinesMeasureTheLinearResponse) {
   for (const MeasuredPoint& point : measure_response(*loaded, test))
     EXPECT_NEAR(std::abs(point.response / linear.at(point.frequency)(0, 0) - 1.0), 0, 2e-3)
         << point.frequency;
+}
+
+/// What sines measure at the only frequency of the test, in rad/s.
+std::complex<double> measured(const std::string& text, SineTest test, double frequency) {
+  DiagramFolder folder;
+  Problems problems;
+  const auto loaded = load_diagram(folder.with("top.json", text).path("top.json"), {}, problems);
+  test.sample_time = 0.01, test.holds = false, test.periods = 3;
+  test.frequencies = {frequency};
+  const MeasuredPoint point = measure_response(*loaded, test).at(0);
+  EXPECT_NEAR(point.frequency, frequency, 0.05 * frequency);
+  return point.response;
+}
+
+/// A speed loop: a mass of 1 kg with a drag of 1 N·s/m, gain 20, wanted 1 m/s. At rest, the force is 20 N.
+const std::string speed_loop = diagram(R"(
+  "wanted": {"type": "Constant", "value": {"value": 1, "unit": "m/s"}},
+  "error": {"type": "Sum", "signs": "+-", "in": {"terms": ["wanted.y", "mass.velocity"]}},
+  "gain": {"type": "Gain", "gain": {"value": 20, "unit": "N*s/m"}, "in": {"u": "error.sum"}},
+  "net": {"type": "Sum", "signs": "+-", "in": {"terms": ["gain.y", "drag.force"]}},
+  "mass": {"type": "Mass", "mass": {"value": 1, "unit": "kg"}, "in": {"force": "net.sum"}},
+  "drag": {"type": "ViscousFriction", "damping": {"value": 1, "unit": "N*s/m"}, "in": {"velocity": "mass.velocity"}})",
+                                       R"("stop": 1, "step": 0.001)");
+
+TEST(Analysis, SinesMeasureALoopThatIsCut) {
+  SineTest test;
+  test.from = "net.terms[0]", test.to = "mass.velocity", test.settle = 12;
+  const double w = 2 * pi;  // whole periods in rows
+  EXPECT_NEAR(std::abs(measured(speed_loop, test, w) - 1.0 / std::complex<double>(21, w)), 0, 1e-6);
+  test.open = {"net.terms[0]"};
+  EXPECT_NEAR(std::abs(measured(speed_loop, test, w) - 1.0 / std::complex<double>(1, w)), 0, 1e-5);
+  test.from = "mass.force", test.open = {"error.terms[1]"};
+  EXPECT_NEAR(std::abs(measured(speed_loop, test, w) - 1.0 / std::complex<double>(1, w)), 0, 1e-5);
+}
+
+TEST(Analysis, SinesMeasureTheOperatingPointOfItsTime) {
+  const std::string text = diagram(R"(
+  "u": {"type": "Constant", "value": 0}, "k": {"type": "Step", "time": 1, "before": 1, "after": 11},
+  "p": {"type": "Product", "in": {"factors": ["u.y", "k.y"]}},
+  "lag": {"type": "StrictlyProperTransferFunction", "numerator": [1], "denominator": [0.1, 1], "in": {"u": "p.product"}})",
+                                   R"("stop": 3, "step": 0.001)");
+  SineTest test;
+  test.from = "p.factors[0]", test.to = "lag.y", test.settle = 2;
+  const double w = 4 * pi;
+  test.at = 2;
+  EXPECT_NEAR(std::abs(measured(text, test, w) - 11.0 / std::complex<double>(1, 0.1 * w)), 0, 1e-4);
+}
+
+/// v' = 2 (1 - v) - v²: at rest v = √3 - 1. Cut there, the slope of v² remains: 1/(s + 2 v).
+TEST(Analysis, ACutHoldsWhatTheLoopReadAtTheOperatingPoint) {
+  const std::string text = diagram(R"(
+  "wanted": {"type": "Constant", "value": 1},
+  "error": {"type": "Sum", "signs": "+-", "in": {"terms": ["wanted.y", "v.y"]}},
+  "gain": {"type": "Gain", "gain": 2, "in": {"u": "error.sum"}},
+  "square": {"type": "Product", "in": {"factors": ["v.y", "v.y"]}},
+  "net": {"type": "Sum", "signs": "+-", "in": {"terms": ["gain.y", "square.product"]}},
+  "v": {"type": "Integrator", "in": {"u": "net.sum"}})",
+                                   R"("stop": 1, "step": 0.001)");
+  SineTest test;
+  test.from = "net.terms[0]", test.to = "v.y", test.settle = 12, test.amplitude = 1e-4;
+  test.open = {"net.terms[0]"}, test.at = 10;
+  const double w = 2 * pi, rest = std::sqrt(3.0) - 1;
+  EXPECT_NEAR(std::abs(measured(text, test, w) - 1.0 / std::complex<double>(2 * rest, w)), 0, 1e-5);
+}
+
+TEST(Analysis, SinesAreRefusedWhereTheyWouldDriveSomethingElse) {
+  const auto refusal = [](const std::string& text, const std::string& from, const std::string& open) {
+    SineTest test;
+    test.from = from, test.to = "out.y";
+    if (!open.empty()) test.open = {open};
+    try {
+      measured(text, test, 6);
+    } catch (const InputError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  const std::string text = diagram(R"(
+  "a": {"type": "Constant", "value": [1, 2]},
+  "sum": {"type": "Sum", "in": {"terms": ["a.y", "one.y"]}},
+  "one": {"type": "Constant", "value": 0}, "out": {"type": "Gain", "gain": 1, "in": {"u": "one.y"}})");
+  EXPECT_THAT(refusal(text, "sum.terms[1]", ""), HasSubstr("one number"));
+  EXPECT_THAT(refusal(text, "out.u", "one.y"), HasSubstr("no cut can be simulated at"));
+  EXPECT_EQ(refusal(text, "out.u", ""), "");
+}
+
+TEST(Analysis, AnInterruptionIsNoFailure) {
+  const std::atomic<bool> interrupt = true;
+  RunOptions options;
+  options.interrupt = &interrupt;
+  const auto plan = plan_of(speed_loop);
+  EXPECT_THROW(linearize_at(*plan, 0.5, options), Interrupted);
+  DiagramFolder folder;
+  Problems problems;
+  const auto loaded = load_diagram(folder.with("top.json", speed_loop).path("top.json"), {}, problems);
+  SineTest test;
+  test.from = "mass.force", test.to = "mass.velocity", test.frequencies = {10};
+  EXPECT_THROW(measure_response(*loaded, test, options), Interrupted);
+}
+
+TEST(Analysis, WhatIsOutsideOfALoopIsSaid) {
+  const auto plan = plan_of(speed_loop);
+  LinearizeRequest request;
+  request.break_point = "gain.u";
+  const LinearAnalysis analysis = analyse(*plan, request);
+  EXPECT_TRUE(analysis.loop->margins.is_stable()) << "the position is behind the speed loop";
+  EXPECT_THAT(to_text(analysis), HasSubstr("closed it is stable"));
+  EXPECT_THAT(to_text(analysis), HasSubstr("the mode at s = 0 (mass.position 100 %) does not decay"));
+  EXPECT_EQ(nlohmann::json::parse(to_json(analysis))["loop"]["outside"].size(), 1u);
+  EXPECT_NO_THROW(report::to_html(linear_page(analysis)));
+  request.break_point = "wanted.y";
+  EXPECT_THAT(to_text(analyse(*plan, request)), HasSubstr("in no loop"));
+}
+
+/// 1e4/(s (s + 1)) crosses 1 at 100 rad/s, far above its poles: the plots of the loop reach that far.
+TEST(Analysis, PlotsOfALoopReachItsCrossover) {
+  const auto plan = plan_of(diagram(R"(
+  "gain": {"type": "Gain", "gain": -10000, "in": {"u": "x.y"}},
+  "net": {"type": "Sum", "signs": "+-", "in": {"terms": ["gain.y", "v.y"]}},
+  "v": {"type": "Integrator", "in": {"u": "net.sum"}},
+  "x": {"type": "Integrator", "in": {"u": "v.y"}})",
+                                    R"("stop": 1, "step": 0.0005)"));
+  LinearizeRequest request;
+  request.break_point = "gain.u";
+  const LoopAnalysis loop = *analyse(*plan, request).loop;
+  EXPECT_GT(loop.frequency.back(), 900);
+  EXPECT_NEAR(loop.margins.phase * 180 / pi, 0.573, 1e-3);
 }
 
 TEST(Analysis, ASignalCannotBeAddedWhereThereIsNoWire) {

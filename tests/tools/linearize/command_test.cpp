@@ -83,5 +83,60 @@ TEST_F(LinearizeCommand, AnswersOneWhenTheRunToTheOperatingPointFails) {
   EXPECT_EQ(files(), before);
 }
 
+/// A mass whose speed a sampled controller holds.
+constexpr const char* sampled =
+    R"({"loopwright": 1, "solver": {"stop": 1, "step": 0.001}, "blocks": {
+  "gain": {"type": "Gain", "gain": -20, "in": {"u": "hold.y"}},
+  "hold": {"type": "ZeroOrderHold", "sample_time": 0.01, "in": {"u": "v.y"}},
+  "v":    {"type": "Integrator", "in": {"u": "gain.y"}}}})";
+
+TEST_F(LinearizeCommand, MeasuresTheSystemThatItDraws) {
+  folder.with("sampled.json", sampled);
+  const Outcome held =
+      linearize({"sampled.json", "--from", "v.u", "--to", "v.y", "--continuous", "--measure", "1"});
+  EXPECT_EQ(held.code, 2);
+  EXPECT_THAT(held.err, HasSubstr("--measure and --continuous show different systems"));
+  // Without the loop around it the drag alone remains: 1/(jω + 2).
+  const Outcome open = linearize({"loop.json", "--from", "net.terms[0]", "--to", "v.y", "--open",
+                                  "net.terms[0]", "--measure", "1", "--settle", "5", "--json", "open.json"});
+  ASSERT_EQ(open.code, 0) << open.err;
+  const auto json = nlohmann::json::parse(text_of(folder.path("open.json")));
+  ASSERT_EQ(json["measured"].size(), json["sines"].get<size_t>());
+  const double w = json["measured"][0]["frequency"].get<double>();
+  EXPECT_NEAR(json["measured"][0]["gain"].get<double>(), 1 / std::hypot(w, 2), 1e-3);
+}
+
+TEST_F(LinearizeCommand, RefusesSinesThatDoNotSettle) {
+  folder.with("open.json", R"({"loopwright": 1, "solver": {"stop": 1, "step": 0.001}, "blocks": {
+  "zero": {"type": "Constant", "value": 0},
+  "net": {"type": "Sum", "in": {"terms": ["zero.y", "v.y"]}},
+  "v": {"type": "Integrator", "in": {"u": "net.sum"}}}})");
+  const Outcome outcome = linearize({"open.json", "--from", "net.terms[0]", "--to", "v.y", "--measure", "1"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("s = 1"));
+}
+
+/// Sends Ctrl-C when the program is at work.
+Outcome interrupted_outcome(std::vector<std::string> arguments, const std::string& folder) {
+  Program program(std::move(arguments), folder);
+  usleep(1'500'000);
+  program.send(SIGINT);
+  return program.wait();
+}
+
+TEST_F(LinearizeCommand, AnswersAnInterruptionWith130) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"linearize", "loop.json", "--at", "1000000"},
+        {"linearize", "loop.json", "--from", "gain.u", "--to", "x.y", "--measure", "1", "--settle", "1000000",
+         "--json", "out.json"}}) {
+    const Outcome outcome = interrupted_outcome(arguments, folder.path(""));
+    EXPECT_EQ(outcome.code, 130) << outcome.err;
+    EXPECT_THAT(outcome.err + outcome.out, HasSubstr("interrupted"));
+    EXPECT_THAT(outcome.err, ::testing::Not(HasSubstr("error")));
+  }
+  const auto json = nlohmann::json::parse(text_of(folder.path("out.json")));
+  EXPECT_GT(json["sines"].get<size_t>(), json.value("measured", nlohmann::json::array()).size());
+}
+
 }  // namespace
 }  // namespace loopwright::command_test

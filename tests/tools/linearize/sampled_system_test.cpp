@@ -185,5 +185,18 @@ TEST(SampledSystem, ALimiterAtItsLimitPassesNothingAndAReaderIsToldSo) {
   EXPECT_EQ(linear.notes[0].text, "limit.y does not follow limit.u here");
 }
 
+TEST(SampledSystem, HasTheRatesOfTheDiagramAndNoOther) {
+  const std::string text = diagram(
+      R"("u": {"type": "Constant", "value": 0.3}, "b": {"type": "UnitDelay", "sample_time": 0.1, "in": {"u": "u.y"}})");
+  EXPECT_NEAR(sampled(text, {{"u.y"}, {"b.y"}, {}}, 0.1).matrices.sample_time, 0.1, 1e-15);
+  try {
+    sampled(text, {{"u.y"}, {"b.y"}, {}}, 0.01);
+    FAIL() << "another sample time is taken";
+  } catch (const InputError& error) {
+    for (const char* part : {"0.1 s", "0.01 s", "--continuous"})
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace loopwright::sampled_system_test

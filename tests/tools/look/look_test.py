@@ -102,6 +102,26 @@ class Look(InFolder):
         self.assertAlmostEqual(look["time"]["sample_time_s"], 1 / 1500, places=12)
         self.assertEqual(look["time"]["written_to_s"], 1e-4)
         self.assertIn("rounded_stamps", finding_names(look))
+        # What a diagram plays is held from the instant of the sample on, not from its stamp.
+        even = [k / 300 for k in range(100)]
+        self.table("played.csv", "t [s],x [1]", np.round(even, 3), np.arange(100.0))
+        self.assertIn("rounded_stamps", finding_names(self.look("played.csv")))
+        played = self.played("played.csv", "x", interpolation="linear")
+        np.testing.assert_allclose(played, [0, 0.3, 0.6, 0.9, 1.2], rtol=0, atol=1e-12)
+
+        few = even[:30]
+        self.table("few.csv", "t [s],x [1]", np.round(few, 3), np.arange(30.0))
+        advice = [f["advice"] for f in self.look("few.csv")["findings"] if f["name"] == "rounded_stamps"]
+        self.assertEqual([text.split(":")[0] for text in advice], ["compared and driven at the stamps"])
+
+    def test_units_that_are_written_wrongly_get_a_hint(self):
+        self.write("u.csv", "t [s],torque [Nm],speed [RPM],slip [-]\n0,1,2,3\n1,2,3,4\n2,3,4,6\n")
+        look = self.look("u.csv")
+        advice = {f["text"].split('"')[1]: f["advice"] for f in look["findings"] if f["name"] == "unit_not_known"}
+        self.assertEqual(set(advice), {"Nm", "RPM"})
+        self.assertIn('did you mean "N*m"?', advice["Nm"])
+        self.assertIn('did you mean "rpm"?', advice["RPM"])
+        self.assertEqual(column(look, "slip")["unit"], "1")
 
     def test_questions_about_the_time(self):
         self.table("ms.csv", "t,x [mm]", np.arange(200), np.arange(200) ** 2)
@@ -133,6 +153,18 @@ class Look(InFolder):
     def test_holes_are_counted_and_tables_on_their_side_questioned(self):
         self.write("a.csv", "t,x [m],y [m]\n0,1,1\n0.1,nan,2\n0.2,3,3\n")
         self.assertIn("not_finite", finding_names(self.look("a.csv")))
+        self.write("c.csv", "t [s];x [m];note;\n0;1;start;\n0.1;;;\n0.2;3;;\n")
+        look = self.look("c.csv")
+        self.assertEqual([c["name"] for c in look["columns"]], ["x", "note"])
+        self.assertEqual([c["not_finite"] for c in look["columns"]], [1, 3])
+        self.assertRegex(column(look, "x")["first_hole"], "^an empty cell in .*c.csv:3:5$")
+        self.assertRegex(column(look, "note")["first_hole"], r"^text where a number should be \(start\) in .*c.csv:2:5$")
+        self.assertEqual((column(look, "x")["least"], column(look, "x")["greatest"]), (1, 3))
+        self.assertEqual(finding_names(look), ["not_finite", "not_finite"])
+        self.write("d.csv", "t [s];x [m]\n0;1\n;2\n0.2;3\n")
+        look = self.look("d.csv")
+        self.assertIsNone(look["time"])
+        self.assertIn("d.csv:3:1", next(f["text"] for f in look["findings"] if f["name"] == "time_not_usable"))
         self.write("b.csv", "0,0.1,0.2,0.3\n1,2,3,4\n")
         self.assertIn("on_its_side", finding_names(self.look("b.csv")))
 

@@ -1,5 +1,6 @@
 """Comparisons, fits, diagnoses, sweeps and linear systems: the same answers as the commands."""
 import json
+import re
 
 import loopwright as lw
 import numpy as np
@@ -63,6 +64,20 @@ def test_fit_finds_a_parameter_as_the_command_does(axis, program):
     found = lw.fit(*paths, ["axis.damping"])
     assert found.data == expected
     assert found.text == ""  # the value is in the file of the subdiagram
+
+
+def test_fit_writes_the_page_of_the_command(axis, program, tmp_path):
+    paths = [axis / "nominal.json", axis / "train.experiment.json"]
+    program("fit", *paths, "--parameters", "axis.damping", "--report", tmp_path / "command.html")
+    found = lw.fit(*paths, ["axis.damping"])
+    found.report(tmp_path / "python.html")
+    assert "<iframe" in found._repr_html_()
+
+    def words(name):
+        """Without what names the build and the day."""
+        text = (tmp_path / name).read_text()
+        return [part for part in re.findall(r">([^<>]+)<", text[text.index("<body"):]) if "axis.damping" in part]
+    assert words("python.html") == words("command.html") != []
 
 
 def test_fit_gives_the_text_of_the_fitted_diagram(common_job, tmp_path):

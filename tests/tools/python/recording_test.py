@@ -30,6 +30,21 @@ def test_pandas_round_trip_with_units(recording):
     assert same(lw.Recording.from_pandas(frame), recording)
 
 
+def test_a_selection_of_pandas_columns_leaves_the_other_units_behind(recording):
+    pytest.importorskip("pandas")
+    frame = recording.to_pandas()
+    some = lw.Recording.from_pandas(frame[["plain"]])
+    assert list(some) == ["time", "plain"] and some.units == {"time": "s", "plain": ""}
+    kept = lw.Recording.from_pandas(frame.drop(columns="plain"))
+    assert kept.units == {"time": "s", "axis.position": "mm"}
+
+
+def test_a_recording_keeps_the_units_of_its_file(tmp_path):
+    (tmp_path / "foreign.csv").write_text("t [ms],x [mm]\n0,1\n1,2\n2,4\n")
+    read = lw.read(tmp_path / "foreign.csv")
+    assert read.units == {"t": "ms", "x": "mm"} and list(read["x"]) == [1, 2, 4]
+
+
 def test_xarray_round_trip_with_units(recording):
     pytest.importorskip("xarray")
     dataset = recording.to_xarray()

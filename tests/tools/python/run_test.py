@@ -21,6 +21,34 @@ def test_a_run_has_the_bits_of_the_command(common_job, program, tmp_path):
     assert result.facts["parameter stage.payload"] == expected.facts["parameter stage.payload"] == "0.2"
 
 
+LIMITED = """{"loopwright": 1, "solver": {"method": "rk4", "step": 0.001, "stop": 2}, "log": ["s.y", "limit.y"],
+ "blocks": {"s": {"type": "Sine", "amplitude": 1, "frequency": 1},
+  "limit": {"type": "Saturation", "low": -0.5, "high": 0.5, "in": {"u": "s.y"}}}}
+"""
+
+
+def test_a_run_is_judged_as_by_the_command(tmp_path, program):
+    (tmp_path / "limited.json").write_text(LIMITED)
+    result = lw.load(tmp_path / "limited.json").run()
+
+    def about_limits(text):
+        return [line for line in text.splitlines() if "limits for" in line]
+    assert list(result) == ["time", "s.y", "limit.y"]
+    assert about_limits(str(result)) == about_limits(program("run", tmp_path / "limited.json", "-o", tmp_path / "a.csv"))
+    assert len(about_limits(str(result))) == 1
+    result.report(tmp_path / "page.html")
+    assert "limit is at its limits for" in (tmp_path / "page.html").read_text()
+
+
+def test_a_mistake_in_the_figures_costs_no_run(tmp_path):
+    file = tmp_path / "limited.json"
+    file.write_text(LIMITED.replace('"log"', '"figures": [{"signal": "limit.y", "reference": "wanted.y"}], "log"'))
+    calls = []
+    with pytest.raises(lw.InputError, match="wanted.y"):
+        lw.load(file).run(progress=lambda at, stop: calls.append(at))
+    assert not calls
+
+
 def test_settings_take_numbers_texts_and_numpy(common_job):
     values = [0.2, "0.2 kg", "200 g", np.float64(0.2)]
     ends = {lw.load(common_job, set={"stage.payload": v}).run()["stage.position"][-1] for v in values}

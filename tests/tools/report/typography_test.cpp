@@ -60,5 +60,19 @@ TEST(SignificantDigits, GrowWithTheOffset) {
 
 TEST(TextWidth, CountsCharacters) { EXPECT_EQ(text_width("µm → ²"), 6u); }
 
+TEST(Typography, ThePrefixIsThatOfTheRoundedNumber) {
+  const auto text = [](double value, std::string_view unit, int digits) {
+    return shown(value, unit, digits);
+  };
+  EXPECT_EQ(text(0.9998, "m", 3), "1 m");
+  EXPECT_EQ(text(0.9997, "s", 3), "1 s");
+  EXPECT_EQ(text(-999.96, "N", 4), "-1 kN");
+  EXPECT_EQ(text(0.9994, "m", 3), "999 mm");
+  EXPECT_EQ(text(999.4, "um", 3), "999 µm") << "no prefix before a prefix";
+  EXPECT_EQ(text(1e-6, "m", 4), "1 µm");
+  EXPECT_EQ(text(1e3, "V", 4), "1 kV");
+  EXPECT_EQ(text(1.789e-6, "m", 4), "1.789 µm");
+}
+
 }  // namespace
 }  // namespace loopwright::report::typography_test

@@ -4,6 +4,7 @@
 #include "tests/tools/report/well_formed.h"
 #include "engine/plan/load.h"
 #include "tools/draw/diagram_graph.h"
+#include "tools/run/judged_run.h"
 #include "tools/run/run_page.h"
 
 namespace loopwright::run_page_test {
@@ -18,11 +19,7 @@ constexpr std::string_view dopri = R"("stop": 3, "method": "dopri5", "record_ste
 
 /// The page of a run as the command makes it.
 std::string page_of(const LoadedDiagram& loaded) {
-  Problems problems;
-  const auto followed = followed_signals(*loaded.diagram, *loaded.plan, problems);
-  const WatchedLimits watched(*loaded.plan);
-  RunResult result = simulate(watched.plan());
-  const RunFigures figures = run_figures(followed, result.recording, watched.take(result.recording));
+  const auto [result, figures] = run_and_judge(loaded.diagram.get(), *loaded.plan);
   return report::to_html(run_page(loaded.diagram.get(), *loaded.plan, result, figures));
 }
 

@@ -88,5 +88,16 @@ TEST_F(StabilityCommand, AnswersOneWhenTheRunFails) {
   EXPECT_EQ(files(), before);
 }
 
+TEST_F(StabilityCommand, AnswersAnInterruptionWith130) {
+  Program program({"stability", "servo.json", "--set", "solver.stop=1000000", "--json", "out.json"},
+                  folder.path(""));
+  usleep(1'500'000);
+  program.send(SIGINT);
+  const Outcome outcome = program.wait();
+  EXPECT_EQ(outcome.code, 130) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("interrupted at t ="));
+  EXPECT_THAT(outcome.err, ::testing::Not(HasSubstr("error")));
+}
+
 }  // namespace
 }  // namespace loopwright::command_test

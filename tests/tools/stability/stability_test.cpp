@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include "engine/run/require_finished.h"
 #include "tests/blocks/learning/trained_model.h"
 #include "tests/engine/written_diagram.h"
 #include "tools/linearize/analysis.h"
@@ -159,7 +160,7 @@ TEST(Stability, AnUndampedLoopIsNeverCertified) {
   StabilityRequest request;
   request.kicks = false;
   const StabilityReport report = assess(sampled_loop(folder.path(), -20), request);
-  EXPECT_FALSE(report.linear_part_is_stable);
+  EXPECT_FALSE(report.linear_part_is_stable());
   EXPECT_FALSE(report.is_certified());
   EXPECT_THAT(to_text(report), HasSubstr("UNSTABLE"));
 }
@@ -170,6 +171,42 @@ TEST(Stability, FrictionThatJumpsIsLeftOutAndSaidSo) {
   request.kicks = false;
   EXPECT_THAT(assess(sampled_loop(folder.path(), 62.21, "0.3"), request).warnings,
               testing::Contains(HasSubstr("stiction jumps")));
+}
+
+/// A loop beside an integral of its error, which nothing reads.
+std::string with_recorded_error(const std::string& more) {
+  return diagram(fmt::format(R"(
+  "wanted": {{"type": "Step", "time": 0.1, "after": 0.001}},
+  "pd": {{"type": "PdController", "sample_time": 0.001, "Kp": 1000, "Kd": 40, "derivative_pole": 1500,
+         "in": {{"reference": "wanted.y", "measured": "mass.position"}}}},
+  "mass": {{"type": "Mass", "mass": 1, "in": {{"force": "pd.command"}}}},
+  "e": {{"type": "Sum", "signs": "+-", "in": {{"terms": ["wanted.y", "mass.position"]}}}}{})",
+                             more),
+                 R"("stop": 1, "step": 0.0005)");
+}
+
+TEST(Stability, AnIntegralThatNothingReadsIsNamedAndNotJudged) {
+  StabilityRequest request;
+  request.kicks = false;
+  const StabilityReport alone = assess(with_recorded_error(""), request);
+  const StabilityReport report =
+      assess(with_recorded_error(R"(, "iae": {"type": "Integrator", "in": {"u": "e.sum"}})"), request);
+  EXPECT_TRUE(alone.is_certified()) << to_text(alone);
+  EXPECT_TRUE(report.is_certified()) << to_text(report);
+  EXPECT_NEAR(report.largest_pole, alone.largest_pole, 1e-9);
+  EXPECT_TRUE(alone.warnings.empty());
+  ASSERT_EQ(report.warnings.size(), 1u);
+  EXPECT_THAT(report.warnings[0], HasSubstr("(iae"));
+  EXPECT_THAT(report.warnings[0], HasSubstr("does not decay"));
+}
+
+TEST(Stability, AnInterruptionIsNoFailure) {
+  const std::atomic<bool> interrupt = true;
+  RunOptions options;
+  options.interrupt = &interrupt;
+  DiagramFolder folder;
+  folder.with("top.json", with_recorded_error(""));
+  EXPECT_THROW(assess_stability(folder.path("top.json"), {}, {}, options), Interrupted);
 }
 
 TEST(Stability, ADiagramWithoutALoopIsRefused) {

@@ -31,6 +31,21 @@ TEST(Optimise, FindsTheWorstCaseAtACorner) {
   EXPECT_EQ(worst.value, optimise(sweep.plan(), {.metric = "z", .maximise = true}).value);
 }
 
+TEST(Optimise, PairedAxesMoveTogether) {
+  // (x - y + 1)² is 1 at all pairs with x = y; unpaired axes would reach 0.
+  const char* const gap = R"({"loopwright": 1, "solver": {"stop": 0.1, "step": 0.1}, "blocks": {
+    "x": {"type": "Constant", "value": 0}, "y": {"type": "Constant", "value": 1},
+    "z": {"type": "Expression", "formula": "(a - b + 1)^2 + (a - 3)^2", "names": ["a", "b"],
+          "in": {"arguments": ["x.y", "y.y"]}}}, "log": ["z.y"]})";
+  const SweepFolder sweep(R"("x.value": {"values": [0, 1, 4]}, "y.value": {"values": [0, 1, 4]})",
+                          R"(, "paired": [["x.value", "y.value"]])", R"("z": {"final": "z.y"})", gap);
+  const Optimum best = optimise(sweep.plan(), {.metric = "z"});
+  ASSERT_TRUE(best.found);
+  EXPECT_NEAR(best.value, 1, 1e-5);
+  EXPECT_NEAR(best.point[0], 3, 1e-2);
+  EXPECT_NEAR(best.point[1], best.point[0], 1e-12);
+}
+
 TEST(Optimise, NamesTheMetricThatWasProbablyMeant) {
   const SweepFolder sweep(R"("mass.mass": {"values": [1, 2]})", "",
                           R"("tracking": {"rms": "mass.position"})");

@@ -48,6 +48,20 @@ TEST(RunSweep, GivesWhatEachRunGivesByItself) {
   }
 }
 
+/// x = 5 exp(-t/T) is below 0.1 after T ln 50: with T = 0.05 s before the end of the run, with 1 s not.
+TEST(RunSweep, ASettlingTimeOfARunThatNeverSettlesIsNoNumber) {
+  const SweepFolder folder(
+      R"("decay.gain": {"values": [-20, -1]})", "",
+      R"("settled": {"settling_time": "x.y", "target": 0, "band": 0.1})",
+      R"({"loopwright": 1, "solver": {"method": "rk4", "step": 0.001, "stop": 0.5}, "blocks": {
+    "decay": {"type": "Gain", "gain": -1, "in": {"u": "x.y"}},
+    "x": {"type": "Integrator", "initial": 5, "in": {"u": "decay.y"}}}})");
+  const std::vector<RunRecord> made = make_runs(folder.plan(), 0, 2);
+  EXPECT_NEAR(made[0].metrics[0], 0.05 * std::log(50), 1.1e-3);
+  EXPECT_TRUE(std::isnan(made[1].metrics[0])) << made[1].metrics[0];
+  EXPECT_FALSE(made[1].failed);
+}
+
 TEST(RunSweep, PutsShardsTogetherToTheSameTable) {
   const SweepFolder folder(four_axis_values, forty_samples);
   const SweepPlan plan = folder.plan();

@@ -131,6 +131,7 @@ SiteModel::SiteModel(const std::string& diagram, const std::vector<std::string>&
   Problems ignored;  // a diagram whose inputs only the record provides
   const auto stated = load_diagram(diagram, options, ignored);
   if (const auto plan = stated ? compile(*stated, ignored) : nullptr) complete_units(*plan);
+  find_differences();
   find_nearness();
 }
 
@@ -143,8 +144,7 @@ void SiteModel::complete_units(const Plan& stated) {
     if (quantity == Quantity::other) quantity = quantity_of(unit);
   };
   for (Site& site : sites_) complete(site.name, site.unit, site.quantity);
-  for (SiteVariable& variable : variables_)
-    if (variable.minus < 0) complete(variable.name, variable.unit, variable.quantity);
+  for (SiteVariable& variable : variables_) complete(variable.name, variable.unit, variable.quantity);
 }
 
 void SiteModel::add_sensors(const Plan& plan) {

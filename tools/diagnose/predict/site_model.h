@@ -135,6 +135,7 @@ class SiteModel {
   void complete_units(const Plan& stated);
   void find_inputs_and_outputs(Problems& problems);
   void find_variables();
+  void find_differences();
   void find_nearness();
   void find_variable_of_sensor(size_t output);
   void set_inputs(size_t row);

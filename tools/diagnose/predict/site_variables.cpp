@@ -109,6 +109,10 @@ void SiteModel::find_variables() {
     }
   }
   for (size_t j = 0; j < outputs_.size(); ++j) find_variable_of_sensor(j);
+}
+
+/// Of states of the same unit, once all units are known.
+void SiteModel::find_differences() {
   const size_t plain = variables_.size();
   for (size_t a = 0; a < plain; ++a)
     for (size_t b = a + 1; b < plain; ++b) {

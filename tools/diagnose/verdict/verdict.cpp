@@ -69,10 +69,17 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
     diagnosis.contradictions.push_back("the diagram with these effects diverges when it is simulated");
   else if (diagnosis.simulation_is_worse)
     diagnosis.contradictions.push_back("the diagram simulates worse with these effects than without them");
-  for (const Member& member : e.members)
-    if (is_own_load(member) && is_at_limit(member))
-      diagnosis.contradictions.push_back("a parameter of " + member.candidate->name +
+  for (const Member& member : e.members) {
+    if (!is_own_load(member)) continue;
+    const std::string& name = member.candidate->name;
+    if (is_at_limit(member))
+      diagnosis.contradictions.push_back("a parameter of " + name +
                                          " is at the limit of its range, where it stands for something else");
+    // What the counts excuse may also be a load that moves otherwise: neither whiteness nor simulation can tell.
+    if (conclusion.counts_portmanteau > criteria::most_portmanteau_of_counted)
+      diagnosis.contradictions.push_back("the counts of the sensor are too coarse to show how the load of " +
+                                         name + " moves: its parameters are not certain");
+  }
   if (is_not_white && diagnosis.contradictions.empty() && !conclusion.is_remainder_noise)
     diagnosis.contradictions.push_back("a slow force remains that is more than noise");
   is_not_white |= !diagnosis.contradictions.empty();

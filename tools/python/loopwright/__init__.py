@@ -1,7 +1,8 @@
 """Loopwright in Python: load, run, step, sweep, compare, fit, diagnose and linearize block diagrams.
 
 The names are those of the command line, and so are the numbers: the module calls the functions that the commands
-call. All values are in SI units. docs/python.md is the guide.
+call. Runs and answers are in SI units; a recording that was read has the units of its file, which `units` names.
+docs/python.md is the guide.
 """
 
 import html as _html
@@ -179,7 +180,7 @@ class Fit(Answer):
     """Fitted parameters. `text` is the diagram file with them; empty if its author wrote one as an expression."""
 
     def __init__(self, answer, text):
-        super().__init__(answer.text, answer.json)
+        super().__init__(answer.text, answer.json, answer.html)
         self.text = text
 
 

@@ -25,7 +25,9 @@ class Recording:
         """From a DataFrame as `to_pandas` makes it: the index is the time, units are in `frame.attrs["units"]`."""
         columns = {frame.index.name or "time": frame.index.to_numpy(dtype=float)}
         columns.update({str(name): frame[name].to_numpy(dtype=float) for name in frame.columns})
-        return cls.from_columns(columns, frame.attrs.get("units"))
+        # The attrs of a frame outlive the selection and the removal of its columns.
+        units = {name: unit for name, unit in frame.attrs.get("units", {}).items() if name in columns}
+        return cls.from_columns(columns, units)
 
     @classmethod
     def from_xarray(cls, dataset):

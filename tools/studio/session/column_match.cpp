@@ -7,7 +7,9 @@
 #include <map>
 #include <set>
 #include "engine/json/reader.h"
+#include "engine/record/csv_syntax.h"
 #include "engine/record/time_words.h"
+#include "tools/run/scopes.h"
 
 namespace loopwright::studio {
 namespace {
@@ -85,13 +87,16 @@ double score(const ColumnGuess& column, const PortOfDiagram& port, const std::ve
   return points < 2 ? 0 : points - 0.2 * double(depth_of(port.path));
 }
 
-/// "force_N" → force and N. A last word that is no unit stays.
+/// "force_N" → force and N. A last word that is no unit stays; so do "in" and "t", which are rather
+/// an input and the time than inches and tonnes.
 void split_unit(ColumnGuess& column) {
   const size_t cut = column.name.rfind('_');
   if (!column.unit.empty() || cut == column.name.npos || cut == 0) return;
   const std::string unit = column.name.substr(cut + 1);
   const bool is_word = meanings_of({unit}) != std::array<bool, 5>{};
-  if (unit.empty() || (is_word && unit.size() > 1) || !parse_unit(unit)) return;
+  if ((is_word && unit.size() > 1) || unit == "in" || unit == "t" ||
+      !csv::is_unit_of(column.name.substr(0, cut), unit) || !parse_unit(unit))
+    return;
   const std::string of_time = time_words(column.name).unit;  // ms for "millis"
   column.unit = of_time.empty() ? unit : of_time, column.unit_is_stated = false;
   column.name.resize(cut);
@@ -122,7 +127,7 @@ double resolution_of(const std::vector<double>& values) {
   for (size_t i = 1; i < values.size(); ++i) {
     const double step = std::abs(values[i] - values[i - 1]);
     range = std::max(range, std::abs(values[i]));
-    if (step == 0) continue;
+    if (!(step > 0)) continue;  // also beside a row without a number
     ++steps;
     multiples += std::abs(step / least - std::round(step / least)) < 0.02;
   }
@@ -285,10 +290,8 @@ std::vector<ColumnGuess> guess_columns(const Recording& record, const std::vecto
     ColumnGuess guess;
     guess.column = guess.name = column.name, guess.unit = column.unit;
     guess.unit_is_stated = !column.unit.empty();
-    if (!column.values.empty()) {
-      const auto [low, high] = std::ranges::minmax(column.values);
-      guess.low = low, guess.high = high;
-    }
+    const SignalRange range(column.values);
+    if (range.not_finite < column.values.size()) guess.low = range.least, guess.high = range.greatest;
     split_unit(guess);
     if (!has_time && is_time(guess)) {
       guess.use = Use::time, guess.why = "name and unit";

@@ -276,7 +276,8 @@ void Folder::remove(const std::string& relative, std::string_view expected) cons
   std::string name;
   const Handle folder = folder_of(relative, name);
   if (!folder || read(relative) != expected) return;
-  // It is moved aside before it is compared for good: what another program writes in between goes back, and is lost at no time.
+  // It is moved aside before it is compared for good: what another program writes in between goes back, and
+  // is lost at no time.
   const std::string aside = hidden_name(name);
   const auto move = [&](const std::string& from, const std::string& to) {
     return ::renameat2(folder.number(), from.c_str(), folder.number(), to.c_str(), RENAME_NOREPLACE) == 0;

@@ -12,26 +12,16 @@ namespace {
 
 constexpr double degrees = 180 / std::numbers::pi;
 
-/// Eigenvalues of integrators are found to about the square root of the rounding error: within it, a pole is
-/// on the boundary of stability.
-constexpr double boundary = 1e-7;
-
-std::string_view stability_of(const Pole& pole, double sample_time, double fastest) {
-  const double outside =
-      sample_time > 0 ? std::abs(pole.value) - 1 : pole.value.real() / std::max(fastest, 1e-300);
-  return outside < -boundary ? "stable" : outside <= boundary ? "boundary" : "unstable";
-}
-
 Json poles_json(const LinearAnalysis& analysis) {
-  double fastest = 0;
-  for (const Pole& pole : analysis.poles) fastest = std::max(fastest, std::abs(pole.value));
+  const double fastest = fastest_of(analysis.poles);
   Json list = Json::array();
   for (const Pole& pole : analysis.poles)
-    list.push_back({{"re", pole.value.real()},
-                    {"im", pole.value.imag()},
-                    {"frequency", pole.frequency / (2 * std::numbers::pi)},
-                    {"damping", pole.damping},
-                    {"stability", stability_of(pole, analysis.system.matrices.sample_time, fastest)}});
+    list.push_back(
+        {{"re", pole.value.real()},
+         {"im", pole.value.imag()},
+         {"frequency", pole.frequency / (2 * std::numbers::pi)},
+         {"damping", pole.damping},
+         {"stability", name_of(stability_of(pole, analysis.system.matrices.sample_time, fastest))}});
   return list;
 }
 
@@ -40,7 +30,7 @@ Json margins_json(const LoopAnalysis& loop) {
   const Margins& m = loop.margins;
   const auto decibels = [](double factor) { return 20 * std::log10(factor); };
   return {{"port", loop.port},
-          {"stable", m.is_stable},
+          {"stable", m.is_stable()},
           {"gain_db", decibels(m.gain)},
           {"lower_gain_db", m.lower_gain > 0 ? Json(decibels(m.lower_gain)) : Json(nullptr)},
           {"phase_deg", m.phase * degrees},

@@ -220,7 +220,7 @@ Json Session::columns(const Request& request) {
   const LoadOptions options = request.options();
   return start(request, [=](Work&) -> Json {
     Problems problems;
-    const Recording record = read_recording(path, problems, {.allow_not_finite = true});
+    const Recording record = read_recording(path, problems, {.allow_not_finite = true, .allow_holes = true});
     const auto diagram = load_diagram_text(file, options, problems);
     const auto plan = diagram ? compile(*diagram, problems) : nullptr;
     if (!plan || record.columns.empty()) throw InputError(std::move(problems));

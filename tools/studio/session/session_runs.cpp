@@ -8,8 +8,8 @@
 #include "engine/record/recording_file.h"
 #include "engine/record/column_units.h"
 #include "tools/experiment/experiment.h"
+#include "tools/run/judged_run.h"
 #include "tools/run/run_page.h"
-#include "tools/run/verdict.h"
 #include "tools/studio/session/member_change.h"
 #include "tools/studio/session/kept_runs.h"
 #include "tools/studio/session/session.h"
@@ -85,6 +85,56 @@ Json verdict_json(const std::vector<report::Notice>& notices) {
   return list;
 }
 
+/// A diagram as an experiment or the studio asks for it.
+struct Runnable {
+  std::shared_ptr<const Diagram> diagram;
+  std::shared_ptr<const Plan> plan;
+  LoadOptions load;
+};
+
+/// Throws InputError. `experiment`: what it drives is followed; empty: none.
+Runnable runnable(const std::shared_ptr<const SourceFile>& file, LoadOptions load,
+                  const std::string& experiment) {
+  Problems problems;
+  if (!experiment.empty()) {
+    const auto recorded = load_experiment(experiment, problems);
+    if (!recorded) throw InputError(std::move(problems));
+    load = follow(*recorded, load);
+  }
+  const auto diagram = load_diagram_text(file, load, problems);
+  const auto plan = diagram ? compile(*diagram, problems) : nullptr;
+  if (!plan || problems.has_errors()) throw InputError(std::move(problems));
+  return {diagram, plan, std::move(load)};
+}
+
+/// What is told of a run beside its signals, and where it came from.
+Json facts_of(const Plan& plan, const JudgedRun& run) {
+  return {{"run", 0},
+          {"name", ""},
+          {"note", ""},
+          {"when", now_text()},
+          {"status", name_of(run.result.status)},
+          {"message", printable(run.result.message)},
+          {"time", run.result.time},
+          {"wall", run.result.statistics.wall_seconds},
+          {"hash", plan.hash},
+          {"warnings", run.result.warnings},
+          {"summary", run_summary(plan, run.result, run.figures)},
+          {"verdict", verdict_json(verdict(plan, run.result, run.figures))}};
+}
+
+/// Figures of each signal, for a table of runs.
+Json merit_of(const Json& signals) {
+  Json merit = Json::array();
+  for (const Json& signal : signals)
+    merit.push_back(
+        {{"name", signal["name"]},
+         {"unit", signal["unit"]},
+         {"rms", signal["rms"]},
+         {"max", std::max(std::abs(signal["min"].get<double>()), std::abs(signal["max"].get<double>()))}});
+  return merit;
+}
+
 Window window_of(size_t points, std::vector<std::string> names) {
   return {std::move(names), -INFINITY, INFINITY, points};
 }
@@ -107,60 +157,26 @@ Json Session::run(const Request& request) {
   const std::string experiment = experiment_path.empty() ? "" : folder_.path_of(experiment_path);
   const std::map<std::string, std::string> set = request.text_map("set");
   return start(request, [=, this](Work& work) {
-    Problems problems;
-    LoadOptions load = options;
-    if (!experiment.empty()) {
-      const auto recorded = load_experiment(experiment, problems);
-      if (!recorded) throw InputError(std::move(problems));
-      load = follow(*recorded, load);
-    }
-    const auto diagram = load_diagram_text(file, load, problems);
-    const auto compiled = diagram ? compile(*diagram, problems) : nullptr;
-    if (!compiled || problems.has_errors()) throw InputError(std::move(problems));
+    const auto [diagram, compiled, load] = runnable(file, options, experiment);
     const Plan plan = recording(*compiled, signals);
     RunOptions run_options;
     run_options.interrupt = &work.job.interrupt();
-    double told = 0;
-    run_options.progress = [&](double time, double stop) {
+    run_options.progress = [&work, told = 0.0](double time, double stop) mutable {
       if (time - told < 0.05 * stop) return;
       told = time;
       work.progress("run", stop > 0 ? time / stop : 0);
     };
-    const std::vector<FollowedSignal> followed = followed_signals(*diagram, plan, problems);
-    if (problems.has_errors()) throw InputError(std::move(problems));
-    const WatchedLimits watched(plan);
-    RunResult result = simulate(watched.plan(), run_options);
+    JudgedRun run = run_and_judge(diagram.get(), plan, run_options);
     if (work.job.is_cancelled()) return Json::object();
-    std::vector<TimeAtLimit> limits = watched.take(result.recording);
-    const RunFigures figures = run_figures(followed, result.recording, std::move(limits));
     auto stored = std::make_shared<StoredRun>();
     stored->path = path, stored->load = load, stored->held = held_signals(plan);
-    stored->facts = {{"run", 0},
-                     {"path", path},
-                     {"name", ""},
-                     {"note", ""},
-                     {"when", now_text()},
-                     {"status", name_of(result.status)},
-                     {"message", printable(result.message)},
-                     {"time", result.time},
-                     {"wall", result.statistics.wall_seconds},
-                     {"hash", plan.hash},
-                     {"command", command_of(folder_.path_of(path), options)},
-                     {"warnings", result.warnings},
-                     {"summary", run_summary(plan, result, figures)},
-                     {"verdict", verdict_json(verdict(plan, result, figures))},
-                     {"set", set}};
-    stored->signals = std::make_shared<Signals>(std::move(result.recording));
+    stored->facts = facts_of(plan, run);
+    stored->facts.update(
+        {{"path", path}, {"command", command_of(folder_.path_of(path), options)}, {"set", set}});
+    stored->signals = std::make_shared<Signals>(std::move(run.result.recording));
     Json answer = stored->facts;
     answer["signals"] = signals_json(*stored->signals, window_of(points, {}), stored->held);
-    Json merit = Json::array();
-    for (const Json& signal : answer["signals"])
-      merit.push_back(
-          {{"name", signal["name"]},
-           {"unit", signal["unit"]},
-           {"rms", signal["rms"]},
-           {"max", std::max(std::abs(signal["min"].get<double>()), std::abs(signal["max"].get<double>()))}});
-    stored->facts["merit"] = std::move(merit);
+    stored->facts["merit"] = merit_of(answer["signals"]);
     const int64_t number = results_.runs.add(stored);
     answer["run"] = number;
     return answer;
@@ -190,11 +206,8 @@ std::shared_ptr<const Signals> Session::source_of_signals(const std::string& nam
     const ColumnError error = [&](std::string message) -> Problem& {
       return problems.error({}, "", "", std::move(message));
     };
-    Recording record = read_recording(path, problems, {.allow_not_finite = true});
-    const auto time = time_in_seconds(record, "", error);
-    if (!time || problems.has_errors()) throw InputError(std::move(problems));
-    std::erase_if(record.columns, [&](const Column& column) { return column.name == time->name; });
-    record.columns.insert(record.columns.begin(), *time);
+    Recording record = read_recording(path, problems, {.allow_not_finite = true, .allow_holes = true});
+    if (problems.has_errors() || !put_time_first(record, error)) throw InputError(std::move(problems));
     results_.record_version = version, results_.record = std::make_shared<Signals>(std::move(record));
     return results_.record;
   }
