@@ -13,15 +13,15 @@
 namespace loopwright {
 namespace {
 
-void append_number(std::string& to, uint64_t number) {
+void append_little_endian(std::string& to, uint64_t number) {
   to.append(reinterpret_cast<const char*>(&number), sizeof number);
 }
 void append_text(std::string& to, std::string_view text) {
-  append_number(to, text.size());
+  append_little_endian(to, text.size());
   to += text;
 }
 void append_facts(std::string& to, const Facts& facts) {
-  append_number(to, facts.size());
+  append_little_endian(to, facts.size());
   for (const auto& [key, value] : facts) append_text(to, key), append_text(to, value);
 }
 
@@ -40,7 +40,7 @@ void sync_folder_of(const std::string& path) {
 JournalWriter::JournalWriter(std::string path, const Recording& heading)
     : path_(std::move(path)), columns_(heading.columns.size()) {
   check_recording(heading);
-  append_number(heading_, columns_);
+  append_little_endian(heading_, columns_);
   for (const Column& column : heading.columns)
     append_text(heading_, column.name), append_text(heading_, column.unit);
   append_facts(heading_, heading.facts);

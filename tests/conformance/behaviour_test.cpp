@@ -217,6 +217,7 @@ std::vector<double> visible(BlockUnderTest& block, double time) {
 /// Blocks whose mode also stores values that a solver sees only later, so that some changes need no event.
 bool remembers(std::string_view type) {
   return type == "Backlash" ||           // the last output, which the present one follows in any case
+         type == "Enable" ||             // the time of the last decision
          type == "Encoder" ||            // zero with its sign
          type == "Integrator" ||         // that the reset fired at the last event, and no more
          type == "MotionFeedforward" ||  // the direction, also where there is no Coulomb friction
@@ -225,6 +226,9 @@ bool remembers(std::string_view type) {
 
 /// Blocks whose mode only stores when they started.
 bool decides_once(std::string_view type) { return type == "ContinuousPidController"; }
+
+/// Blocks whose output is a pulse of one instant, which ends without an event.
+bool pulses(std::string_view type) { return type == "Enable"; }
 
 /// Random walk of the inputs and states of a continuous block. Counts the changes of its mode, and fails if
 /// one occurred without a crossing.
@@ -235,6 +239,7 @@ int walk(const Specimen& specimen, double stride, std::mt19937_64& random) {
   const auto settle = [&](double time, int step) {
     block->evaluate(time, step);
     for (int i = 0; i < 3 && block->jump(); ++i) block->evaluate(time, step);
+    if (pulses(info.type)) block->evaluate(std::nextafter(time, 1e9), step);
     block->accept();
     block->crossings();
     block->derivatives();

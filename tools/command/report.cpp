@@ -31,7 +31,11 @@ void require_time_first(Recording& recording, const std::string& path, Problems&
   const bool has_time = put_time_first(recording, [&](std::string message) -> Problem& {
     return own.error({std::make_shared<SourceFile>(SourceFile{path, {}}), 0}, "", "", std::move(message));
   });
-  problems.add(own);
+  for (Problem problem : own.list()) {  // those without a cell have hints for experiments
+    if (problem.place.file->text.empty())
+      problem.hint = "the heading says which column is the time, and in which unit: \"time [ms]\"";
+    problems.add(std::move(problem));
+  }
   if (!has_time || is_called_time(last_part(recording.columns.front().name))) return;
   auto& p =
       problems.warning({std::make_shared<SourceFile>(SourceFile{path, {}}), 0}, "", "",
@@ -52,7 +56,7 @@ std::vector<Recording> read_for_page(const std::vector<std::string>& paths) {
     recordings.push_back(std::move(recording));
   }
   if (problems.has_errors()) throw InputError(std::move(problems));
-  tell_text(problems.text());
+  tell_text(to_text(problems.list()));
   return recordings;
 }
 

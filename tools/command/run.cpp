@@ -72,14 +72,10 @@ void warn_of_hardware(const Plan& plan) {
 /// Recordings that a page shows beside the run. They are read before the run, so that a mistake costs no
 /// time.
 std::vector<Recording> read_beside(const RunArguments& a) {
+  if (a.beside.empty() || !a.report.empty()) return read_for_page(a.beside);
   Problems problems;
-  if (!a.beside.empty() && a.report.empty())
-    problems.error({}, "", "", "--beside lays recordings over the run on a page: it needs --report");
-  std::vector<Recording> recordings;
-  for (const std::string& path : a.beside)
-    recordings.push_back(read_recording(path, problems, {.allow_not_finite = true}));
-  if (problems.has_errors()) throw InputError(std::move(problems));
-  return recordings;
+  problems.error({}, "", "", "--beside lays recordings over the run on a page: it needs --report");
+  throw InputError(std::move(problems));
 }
 
 /// What --watch keeps from run to run.

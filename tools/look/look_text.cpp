@@ -46,11 +46,14 @@ std::string to_text(const Look& look) {
   text += fmt::format("  {}  {} {:>12} {:>12} {:>12} {:>12} {:>11} {:>11}  {}\n", padded("column", width),
                       padded("unit", unit), "least", "greatest", "mean", "deviation", "resolution", "noise",
                       "repeats");
+  const auto figure = [&](const LookedColumn& column, double value) {
+    return column.not_finite == look.rows ? "-" : number(value);  // remarks have no figures
+  };
   for (const LookedColumn& column : look.columns)
     text += fmt::format("  {}  {} {:>12} {:>12} {:>12} {:>12} {:>11} {:>11}  {}\n",
-                        padded(column.name, width), padded(column.unit, unit), number(column.least),
-                        number(column.greatest), number(column.mean), number(column.deviation),
-                        some_resolution(column), some_noise(column),
+                        padded(column.name, width), padded(column.unit, unit), figure(column, column.least),
+                        figure(column, column.greatest), figure(column, column.mean),
+                        figure(column, column.deviation), some_resolution(column), some_noise(column),
                         column.repeats_after > 0 ? fmt::format("after {:.4g} s", column.repeats_after) : "-");
   for (const Finding& finding : look.findings)
     text +=

@@ -37,20 +37,20 @@ std::vector<std::vector<std::string>> all_commands(const std::vector<std::string
 
 /// The options of a command whose --help says that they write a file, and its required arguments.
 struct Writers {
-  std::vector<std::string> options;
+  std::vector<std::string> options, required;
   int arguments = 0;
 };
 Writers writers_in(const std::string& help) {
   Writers writers;
   std::istringstream lines(help);
   const std::regex option("  (?:-., ?)?(--[a-z0-9-]+) [^ ].*  +(Write|Draw) .*"),
-      argument("  [a-z]+ .*REQUIRED.*");
+      argument("  [a-z]+ .*REQUIRED.*"), required("  (?:-., ?)?(--[a-z0-9-]+) .*REQUIRED.*");
   std::smatch match;
-  for (std::string line; std::getline(lines, line);)
-    if (std::regex_match(line, match, option))
-      writers.options.push_back(match[1]);
-    else if (std::regex_match(line, argument))
-      ++writers.arguments;
+  for (std::string line; std::getline(lines, line);) {
+    if (std::regex_match(line, match, option)) writers.options.push_back(match[1]);
+    if (std::regex_match(line, match, required)) writers.required.push_back(match[1]);
+    writers.arguments += std::regex_match(line, argument);
+  }
   return writers;
 }
 
@@ -67,6 +67,8 @@ TEST(Help, EveryOptionThatWritesAFileRefusesTheFileThatIsRead) {
       std::vector<std::string> arguments = command;
       for (int i = 0; i < writers.arguments; ++i) arguments.push_back("same.json");
       arguments.insert(arguments.end(), {option, "./same.json"});
+      for (const std::string& other : writers.required)
+        if (other != option) arguments.insert(arguments.end(), {other, "other"});
       const Outcome outcome = loopwright_program(arguments, folder.path(""));
       EXPECT_EQ(outcome.code, 2) << testing::PrintToString(arguments);
       EXPECT_THAT(outcome.err, HasSubstr("name the same file")) << testing::PrintToString(arguments);

@@ -161,9 +161,10 @@ TEST(Analysis, ACutHoldsWhatTheLoopReadAtTheOperatingPoint) {
   const std::string text = diagram(R"(
   "wanted": {"type": "Constant", "value": 1},
   "error": {"type": "Sum", "signs": "+-", "in": {"terms": ["wanted.y", "v.y"]}},
-  "gain": {"type": "Gain", "gain": 2, "in": {"u": "error.sum"}},
+  "gain": {"type": "Gain", "gain": {"value": 2, "unit": "1/s"}, "in": {"u": "error.sum"}},
   "square": {"type": "Product", "in": {"factors": ["v.y", "v.y"]}},
-  "net": {"type": "Sum", "signs": "+-", "in": {"terms": ["gain.y", "square.product"]}},
+  "rate": {"type": "Gain", "gain": {"value": 1, "unit": "1/s"}, "in": {"u": "square.product"}},
+  "net": {"type": "Sum", "signs": "+-", "in": {"terms": ["gain.y", "rate.y"]}},
   "v": {"type": "Integrator", "in": {"u": "net.sum"}})",
                                    R"("stop": 1, "step": 0.001)");
   SineTest test;

@@ -126,8 +126,9 @@ Outcome interrupted_outcome(std::vector<std::string> arguments, const std::strin
 
 TEST_F(LinearizeCommand, AnswersAnInterruptionWith130) {
   for (const std::vector<std::string>& arguments :
-       {std::vector<std::string>{"linearize", "loop.json", "--at", "1000000"},
-        {"linearize", "loop.json", "--from", "gain.u", "--to", "x.y", "--measure", "1", "--settle", "1000000",
+       {std::vector<std::string>{"linearize", "loop.json", "--at", "1000000", "--set",
+                                 "solver.record_step=1"},
+        {"linearize", "loop.json", "--from", "gain.u", "--to", "x.y", "--measure", "1", "--settle", "100000",
          "--json", "out.json"}}) {
     const Outcome outcome = interrupted_outcome(arguments, folder.path(""));
     EXPECT_EQ(outcome.code, 130) << outcome.err;

@@ -89,7 +89,8 @@ TEST_F(StabilityCommand, AnswersOneWhenTheRunFails) {
 }
 
 TEST_F(StabilityCommand, AnswersAnInterruptionWith130) {
-  Program program({"stability", "servo.json", "--set", "solver.stop=1000000", "--json", "out.json"},
+  Program program({"stability", "servo.json", "--set", "solver.stop=1000000", "--set", "solver.record_step=1",
+                   "--json", "out.json"},
                   folder.path(""));
   usleep(1'500'000);
   program.send(SIGINT);
