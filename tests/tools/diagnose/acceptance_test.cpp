@@ -115,6 +115,22 @@ TEST(Acceptance, ThePlotsShowEachTermAtItsSite) {
   EXPECT_THAT(report::to_html(diagnosis_page(d)), testing::HasSubstr("over position"));
 }
 
+/// Each of the many periods of a short pitch has its crest: wider ranges would draw a beat.
+TEST(Acceptance, ThePlotOfCoggingShowsEveryPeriod) {
+  HiddenAxis axis;
+  Physics truth = axis.nominal();
+  truth.cogging = {0.15, 0.006, 0.3};
+  const Diagnosis d = diagnose(axis.diagram(), {axis.record("record", truth, there_and_back(0.2, 0.4))});
+  ASSERT_EQ(d.terms.size(), 1u) << to_text(d);
+  const MissingTerm& term = d.terms.front();
+  ASSERT_EQ(term.variable, "Position");
+  const auto [low, high] = std::ranges::minmax(term.shape_at);
+  int crests = 0;
+  for (size_t i = 1; i + 1 < term.shape.size(); ++i)
+    crests += term.shape[i] > 0.14 && term.shape[i] > term.shape[i - 1] && term.shape[i] >= term.shape[i + 1];
+  EXPECT_NEAR(crests, (high - low) / 0.006, 1.1);
+}
+
 /// No effect that is named has an interval with zero in it.
 TEST(Acceptance, NoIntervalContainsZero) {
   HiddenAxis axis;

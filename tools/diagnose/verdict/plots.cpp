@@ -3,14 +3,16 @@
 #include <cmath>
 #include "engine/diagram/in_memory.h"
 #include "engine/json/json.h"
+#include "models/real/whole.h"
 #include "tools/diagnose/search/whiteness.h"
 #include "tools/draw/diagram_graph.h"
 
 namespace loopwright::diagnosis {
 namespace {
 
-constexpr size_t ranges = 120;    // of a variable, in each of which the shape is one mean
-constexpr double least_rows = 3;  // of such a mean
+constexpr size_t usual_ranges = 120;   // of a variable, in each of which the shape is one mean
+constexpr size_t ranges_a_pitch = 16;  // of a shape that repeats: fewer would draw a beat in its place
+constexpr double least_rows = 3;       // of such a mean
 /// [share] Of a force that is determined by the motion so far: over the time of a short record any force
 /// would be determined.
 constexpr double determined_by_motion = 0.8;
@@ -21,8 +23,10 @@ struct Means {
   double explained = 0;  ///< share of the values' squares
 };
 
+/// `pitch`: with which the values repeat along the variable; 0: they do not. Where the rows are too few to
+/// show each period, there are as many ranges as they fill.
 Means means_over(const std::vector<double>& variable, const std::vector<double>& values,
-                 const std::vector<char>& counts) {
+                 const std::vector<char>& counts, double pitch) {
   double low = INFINITY, high = -INFINITY;
   for (size_t k = 0; k < variable.size(); ++k)
     if (counts[k]) low = std::min(low, variable[k]), high = std::max(high, variable[k]);
@@ -31,6 +35,11 @@ Means means_over(const std::vector<double>& variable, const std::vector<double>&
   struct Range {
     double at = 0, sum = 0, n = 0;
   };
+  size_t ranges = usual_ranges;
+  if (pitch > 0) {
+    const size_t most = std::max(usual_ranges, size_t(double(variable.size()) / least_rows));
+    ranges = std::clamp(whole_count(double(ranges_a_pitch) * (high - low) / pitch), usual_ranges, most);
+  }
   std::vector<Range> list(ranges);
   double squares = 0;
   for (size_t k = 0; k < variable.size(); ++k) {
@@ -112,7 +121,9 @@ std::vector<MissingTerm> missing_terms(const Trials& trials, const InverseDynami
     double most = -1;
     for (const DrawnVariable& v : variables_of(inverse, trials.has_map(), units)) {
       if (v.values == &inverse.motion.time && most > determined_by_motion) continue;
-      Means means = means_over(*v.values, force, inverse.motion.counts);
+      const bool repeats = candidate.is_periodic && v.values == &inverse.path.position;
+      Means means =
+          means_over(*v.values, force, inverse.motion.counts, repeats ? members[m].nonlinear.front() : 0);
       if (means.explained <= most) continue;
       most = means.explained, term.variable = v.name, term.unit = v.unit, term.at = *v.values;
       term.shape_at = std::move(means.at), term.shape = std::move(means.mean);
