@@ -20,9 +20,7 @@ inline volatile int* volatile nowhere = nullptr;
   return frame[0] + endless(n + 1) + frame[1];
 }
 inline void access_beyond_the_end_of_a_file() {
-  char name[] = "/tmp/loopwright_short_XXXXXX";
-  const int file = mkstemp(name);
-  unlink(name);
+  const int file = memfd_create("short", 0);
   if (ftruncate(file, 1) != 0) abort();
   auto* page = static_cast<volatile char*>(mmap(nullptr, 8192, PROT_READ, MAP_SHARED, file, 0));
   zero = page[4096];

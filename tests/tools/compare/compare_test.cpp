@@ -164,6 +164,15 @@ TEST(Compare, ColumnsThatNobodyUsesMayHoldText) {
       << folder.refusal();
 }
 
+/// The square root of a negative time ends the run.
+std::string stage_that_fails_after_one_second() {
+  return diagram(R"("push": {"type": "Constant", "value": {"value": 0, "unit": "N"}}, "t": {"type": "Clock"},
+    "stage": {"type": "Mass", "mass": {"value": 2, "unit": "kg"}, "initial_position": {"value": 0, "unit": "m"}, "in": {"force": "push.y"}},
+    "end": {"type": "Constant", "value": {"value": 1.02, "unit": "s"}},
+    "bad": {"type": "Expression", "formula": "sqrt(end-t) * 1", "names": ["end", "t"], "in": {"arguments": ["end.y", "t.time"]}})",
+                 R"("step": 0.05, "stop": 1)");
+}
+
 TEST(Compare, HeldOutRowsThatTheRunDidNotReachHaveNoError) {
   ExperimentFolder folder;
   folder.experiment(R"("stage.force": {"column": "F", "unit": "N"})",
@@ -174,13 +183,7 @@ TEST(Compare, HeldOutRowsThatTheRunDidNotReachHaveNoError) {
   const std::string text = to_text(folder.compared());
   EXPECT_NE(text.find("held out, rms\n"), std::string::npos) << text;
   EXPECT_NE(text.find(" 5 mm\n"), std::string::npos) << text;
-  folder.with(
-      "stage.json",
-      diagram(R"("push": {"type": "Constant", "value": {"value": 0, "unit": "N"}}, "t": {"type": "Clock"},
-    "stage": {"type": "Mass", "mass": {"value": 2, "unit": "kg"}, "initial_position": {"value": 0, "unit": "m"}, "in": {"force": "push.y"}},
-    "end": {"type": "Constant", "value": {"value": 1.02, "unit": "s"}},
-    "bad": {"type": "Expression", "formula": "sqrt(end-t) * 1", "names": ["end", "t"], "in": {"arguments": ["end.y", "t.time"]}})",
-              R"("step": 0.05, "stop": 1)"));
+  folder.with("stage.json", stage_that_fails_after_one_second());
   folder.data(every(0.05, 41), four, [](double t) { return t * t + 0.005; });
   const Comparison c = folder.compared();
   EXPECT_EQ(c.run.status, RunStatus::failed);
@@ -194,13 +197,7 @@ TEST(Compare, HeldOutRowsThatTheRunDidNotReachHaveNoError) {
 
 TEST(Compare, AFailedRunIsComparedAsFarAsItCameAndSaysSo) {
   ExperimentFolder folder;
-  folder.with(
-      "stage.json",
-      diagram(R"("push": {"type": "Constant", "value": {"value": 0, "unit": "N"}}, "t": {"type": "Clock"},
-    "stage": {"type": "Mass", "mass": {"value": 2, "unit": "kg"}, "initial_position": {"value": 0, "unit": "m"}, "in": {"force": "push.y"}},
-    "end": {"type": "Constant", "value": {"value": 1.02, "unit": "s"}},
-    "bad": {"type": "Expression", "formula": "sqrt(end-t) * 1", "names": ["end", "t"], "in": {"arguments": ["end.y", "t.time"]}})",
-              R"("step": 0.05, "stop": 1)"));
+  folder.with("stage.json", stage_that_fails_after_one_second());
   const Comparison c = folder.data(every(0.05, 41), four, parabola).compared();
   EXPECT_EQ(c.run.status, RunStatus::failed);
   EXPECT_GE(c.time.size(), 20u);
