@@ -38,6 +38,14 @@ Id text_type() {
   return {type, H5Tclose};
 }
 
+/// The properties of an object to create, without the time of its creation: equal recordings give
+/// equal files.
+Id without_times(hid_t kind) {
+  const hid_t properties = H5Pcreate(kind);
+  if (properties >= 0) require(H5Pset_obj_track_times(properties, 0));
+  return {properties, H5Pclose};
+}
+
 void write_unit(hid_t dataset, const std::string& unit) {
   const Id type = text_type(), space(H5Screate(H5S_SCALAR), H5Sclose);
   const Id attribute(H5Acreate2(dataset, "unit", type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
@@ -52,7 +60,8 @@ void write_column(hid_t file, const Column& column) {
   const hsize_t rows = column.values.size();
   const Id space(H5Screate_simple(1, &rows, nullptr), H5Sclose), link(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   require(H5Pset_char_encoding(link, H5T_CSET_UTF8));
-  const Id dataset(H5Dcreate2(file, name.c_str(), H5T_IEEE_F64LE, space, link, H5P_DEFAULT, H5P_DEFAULT),
+  const Id creation = without_times(H5P_DATASET_CREATE);
+  const Id dataset(H5Dcreate2(file, name.c_str(), H5T_IEEE_F64LE, space, link, creation, H5P_DEFAULT),
                    H5Dclose);
   if (rows > 0)
     require(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, column.values.data()));
@@ -66,7 +75,8 @@ void write_facts(hid_t file, const Recording& recording) {
     texts.push_back(key.c_str()), texts.push_back(value.c_str());
   const hsize_t size[2] = {recording.facts.size(), 2};
   const Id type = text_type(), space(H5Screate_simple(2, size, nullptr), H5Sclose);
-  const Id dataset(H5Dcreate2(file, "loopwright_facts", type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+  const Id creation = without_times(H5P_DATASET_CREATE);
+  const Id dataset(H5Dcreate2(file, "loopwright_facts", type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
                    H5Dclose);
   require(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, texts.data()));
 }
@@ -74,10 +84,9 @@ void write_facts(hid_t file, const Recording& recording) {
 /// The bytes of the file, which the library keeps in memory: it would not detect a full disk.
 std::string file_image(const Recording& recording) {
   constexpr size_t growth = 1 << 20;  // [bytes]
-  const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose), creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose), creation = without_times(H5P_FILE_CREATE);
   require(H5Pset_fapl_core(access, growth, 0));
   require(H5Pset_link_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED));
-  require(H5Pset_obj_track_times(creation, 0));  // equal recordings give equal files
   const Id file(H5Fcreate("recording", H5F_ACC_TRUNC, creation, access), H5Fclose);
   for (const Column& column : recording.columns) write_column(file, column);
   write_facts(file, recording);

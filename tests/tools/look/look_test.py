@@ -8,6 +8,7 @@ import os
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 import h5py
@@ -349,6 +350,7 @@ class Results(InFolder):
             self.assertIn("plan", facts)
         with open(self.path("x.h5"), "rb") as file:
             first = file.read()
+        time.sleep(1.1)  # [s], the library states times in whole seconds
         self.run_program("run", "d.json", "-q", "-o", "x.h5")
         with open(self.path("x.h5"), "rb") as file:
             self.assertEqual(file.read(), first)
