@@ -17,6 +17,7 @@ CLASSES = ("clean", "one", "parameter", "two", "one", "clean", "outside", "one",
 HELD_OUT = 0.25
 LEAST_GAIN = 50  # in -2 ln L, of a draw that counts
 LEAST_SHARE, MOST_SHARE = 0.05, 0.5  # [rms of the site]
+FASTEST, SLOWEST = 20, 300  # [samples] time constants of disturbances
 
 
 def chosen_places(plant, kind, draw):
@@ -66,7 +67,15 @@ def displacement(speeds):
     return rms([s - mean for s in path])
 
 
-def attempt(seed, retry):
+def disturbances(seed, noise, nominal, share):
+    """A slow one at a site of noise, of this share of the signal there."""
+    draw = random.Random(f"disturbance {seed}")
+    site = draw.choice(sorted(noise))
+    time = FASTEST * (SLOWEST / FASTEST) ** draw.random()
+    return {site: simulate.Slow(share * rms(nominal.sites[site]), math.exp(-1 / time))}
+
+
+def attempt(seed, retry, disturbance):
     draw = random.Random(f"any diagram {seed} {retry}")
     plant = PLANTS[seed % len(PLANTS)]()
     kind = CLASSES[seed // len(PLANTS) % len(CLASSES)]
@@ -85,8 +94,9 @@ def attempt(seed, retry):
         hidden.append(sized(place, nominal, memory, draw))
     noise = {site: size * rms(nominal.sites[site]) for site, size in plant.noise.items()}
     sensor = [size * rms([x[i] - plant.initial[i] for x in nominal.x]) for size, (_, _, i) in zip(plant.sensor, plant.outputs)]
-    record = simulate.run(plant, p, hidden, plant.drive(random.Random(inputs)), draw, noise, sensor)
-    return record and (plant, kind, p, stated, hidden, noise, sensor, record)
+    slow = disturbances(seed, noise, nominal, disturbance) if disturbance else {}
+    record = simulate.run(plant, p, hidden, plant.drive(random.Random(inputs)), draw, noise, sensor, slow)
+    return record and (plant, kind, p, stated, hidden, noise, sensor, slow, record)
 
 
 def diagram(plant, stated):
@@ -102,10 +112,10 @@ def experiment(plant):
             "hold_out": {"fraction": HELD_OUT}}
 
 
-def truth_of(seed, plant, kind, p, stated, hidden, noise, sensor, record):
+def truth_of(seed, plant, kind, p, stated, hidden, noise, sensor, slow, record):
     fitted = int(round(plant.rows * (1 - HELD_OUT)))
     moved = {name: stated[name] / p[name] - 1 for name in p if stated[name] != p[name]}
-    filter_ = simulate.Filter(plant, p, hidden, record, noise, sensor)
+    filter_ = simulate.Filter(plant, p, hidden, record, noise, sensor, slow)
     gained = simulate.gains(filter_, p, hidden, moved, [n for n in p if n not in plant.fixed + plant.anchor], fitted) if hidden or moved else []
     site_rms = {e.place.site: rms(record.sites[e.place.site]) for e in hidden}
     return {"seed": seed, "plant": plant.kind, "class": kind,
@@ -114,6 +124,7 @@ def truth_of(seed, plant, kind, p, stated, hidden, noise, sensor, record):
                         for e, g in zip(hidden, gained)],
             "parameters": [{"name": n, "stated": stated[n], "true": p[n], "gain": g, "counts": g >= LEAST_GAIN}
                            for n, g in zip(moved, gained[len(hidden):])],
+            "disturbances": {site: {"size": d.size, "kept": d.kept} for site, d in slow.items()},
             "simulation": filter_.simulation_error(fitted), "outputs": [port for port, _, _ in plant.outputs]}
 
 
@@ -125,10 +136,11 @@ def write_record(path, plant, record):
             rows.writerow([f"{v:.12g}" for v in (k * plant.sample_time, *u, *y)])
 
 
-def generate(seed, folder):
+def generate(seed, folder, disturbance=0.0):
+    """`disturbance` is the size of a slow one, as a share of the signal where it acts."""
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    drawn = next(d for d in (attempt(seed, retry) for retry in range(20)) if d)
+    drawn = next(d for d in (attempt(seed, retry, disturbance) for retry in range(20)) if d)
     plant, _, _, stated, *_, record = drawn
     truth = truth_of(seed, *drawn)
     write_record(folder / "record.csv", plant, record)

@@ -76,6 +76,17 @@ class Motion:
 
 
 @dataclasses.dataclass
+class Slow:
+    """A disturbance at a port that is alike for many rows: d ← kept d + white noise, with the standard deviation `size`."""
+    size: float
+    kept: float
+
+    @property
+    def step(self):
+        return self.size * math.sqrt(1 - self.kept**2)
+
+
+@dataclasses.dataclass
 class Record:
     u: list
     y: list
@@ -83,9 +94,10 @@ class Record:
     sites: dict  # values at the ports, at the rows
 
 
-def run(plant, p, hidden, drive, random, process=None, sensor=None):
-    """`process` and `sensor` are absolute; without them there is no noise."""
+def run(plant, p, hidden, drive, random, process=None, sensor=None, slow=None):
+    """`process` and `sensor` are absolute; without them there is no noise. `slow` are disturbances, by port."""
     motion = Motion(plant, p, hidden, plant.substeps)
+    disturbed = {site: random.gauss(0, s.size) for site, s in (slow or {}).items()}
     x, record = motion.initial(), Record([], [], [], {})
     for k in range(plant.rows):
         y = [x[i] + (random.gauss(0, sensor[j]) if sensor else 0.0) for j, (_, _, i) in enumerate(plant.outputs)]
@@ -96,6 +108,9 @@ def run(plant, p, hidden, drive, random, process=None, sensor=None):
         motion.ports.seen = None
         if process:
             motion.ports.noise = {site: random.gauss(0, size) for site, size in process.items()}
+        for site, d in disturbed.items():
+            motion.ports.noise[site] = motion.ports.noise.get(site, 0.0) + d
+            disturbed[site] = slow[site].kept * d + random.gauss(0, slow[site].step)
         x = motion.flow(x, u)
         if not all(math.isfinite(s) and abs(s) < 1e9 for s in x):
             return None
@@ -103,10 +118,10 @@ def run(plant, p, hidden, drive, random, process=None, sensor=None):
 
 
 class Filter:
-    """An extended Kalman filter with the true equations; its gains serve all responses."""
+    """An extended Kalman filter with the true equations, whose last states are the slow disturbances; its gains serve all responses."""
 
-    def __init__(self, plant, p, hidden, record, process, sensor):
-        self.plant, self.record, self.sensor = plant, record, np.array(sensor)
+    def __init__(self, plant, p, hidden, record, process, sensor, slow=None):
+        self.plant, self.record, self.sensor, self.slow = plant, record, np.array(sensor), slow or {}
         self.process, self.index = process, [i for _, _, i in plant.outputs]
         self.substeps = max(2, plant.substeps // 2)
         self.motion = Motion(plant, p, hidden, self.substeps)
@@ -114,8 +129,9 @@ class Filter:
 
     def run(self):
         motion, record = self.motion, self.record
-        n, scale = len(motion.initial()), np.std(np.array(record.x), axis=0) + 1e-12
-        P, x = np.diag((0.1 * scale) ** 2), np.array(motion.initial())
+        scale, sizes = np.std(np.array(record.x), axis=0) + 1e-12, [s.size for s in self.slow.values()]
+        P, x = np.diag(np.concatenate([(0.1 * scale) ** 2, np.square(sizes)])), self.beginning(motion)
+        n = len(x)
         C = np.zeros((len(self.index), n))
         for j, i in enumerate(self.index):
             C[j, i] = 1
@@ -132,30 +148,43 @@ class Filter:
             self.filtered.append(x)
             P, x = self.predicted(P, x, u, scale)
 
+    def beginning(self, motion):
+        return np.array([*motion.initial(), *(0.0 for _ in self.slow)])
+
+    def flow(self, motion, x, u, more=None):
+        """The next states; `more` is the noise within this sample, by port."""
+        own = len(x) - len(self.slow)
+        motion.ports.noise = dict(zip(self.slow, x[own:]))
+        for site, size in (more or {}).items():
+            motion.ports.noise[site] = motion.ports.noise.get(site, 0.0) + size
+        there = motion.flow(list(map(float, x[:own])), u)
+        motion.ports.noise = {}
+        return np.array([*there, *(s.kept * d for s, d in zip(self.slow.values(), x[own:]))])
+
     def predicted(self, P, x, u, scale):
-        motion, at = self.motion, list(map(float, x))
-        there = np.array(motion.flow(at, u))
+        motion = self.motion
+        there = self.flow(motion, x, u)
         A = np.empty((len(x), len(x)))
-        for i in range(len(x)):
-            moved, step = list(at), 1e-6 * scale[i]
+        steps = [*(1e-6 * scale), *(s.size for s in self.slow.values())]
+        for i, step in enumerate(steps):
+            moved = x.copy()
             moved[i] += step
-            A[:, i] = (np.array(motion.flow(moved, u)) - there) / step
+            A[:, i] = (self.flow(motion, moved, u) - there) / step
         P = A @ P @ A.T
         for site, size in self.process.items():
-            motion.ports.noise = {site: size}
-            G = np.array(motion.flow(at, u)) - there
-            motion.ports.noise = {}
+            G = self.flow(motion, x, u, {site: size}) - there
             P = P + np.outer(G, G)
+        P = P + np.diag([*(0.0 for _ in scale), *(s.step**2 for s in self.slow.values())])
         return (P + P.T) / 2, there
 
     def whitened(self, p, hidden, rows):
         """The errors of another model with these gains."""
         motion = Motion(self.plant, p, hidden, self.substeps)
-        x, list_ = np.array(motion.initial()), []
+        x, list_ = self.beginning(motion), []
         for k in range(rows):
             e = np.array(self.record.y[k]) - x[self.index]
             list_.append(self.roots[k] @ e)
-            x = np.array(motion.flow(list(map(float, x + self.gains[k] @ e)), self.record.u[k]))
+            x = self.flow(motion, x + self.gains[k] @ e, self.record.u[k])
         return np.concatenate(list_)
 
     def simulation_error(self, first, parts=10):
@@ -163,7 +192,7 @@ class Filter:
         rows, squares = len(self.record.y), []
         length = (rows - first) // parts + 1
         for begin in range(first, rows, length):
-            x = list(map(float, self.filtered[begin]))
+            x = list(map(float, self.filtered[begin][:len(self.motion.initial())]))
             for k in range(begin, min(rows, begin + length)):
                 squares.append([(self.record.y[k][j] - x[i]) ** 2 for j, i in enumerate(self.index)])
                 x = self.motion.flow(x, self.record.u[k])

@@ -274,6 +274,12 @@ constexpr size_t settling_part = 20;
 /// [signal at its site, rms] Noise held over a sample, as the best predictions ask for. More of it may stand
 /// for a missing effect. Machines, heat and tanks have a hundredth.
 constexpr double most_process_noise = 0.05;
+/// [signal at its site, rms] Slow disturbance that is taken for noise. More of it may stand for a missing
+/// effect: those that matter begin at a twentieth.
+constexpr double most_slow_disturbance = 0.03;
+/// [sites] Of slow disturbances beside what was found; and beside nothing but parameters, where a missing
+/// effect would be taken for several of them.
+constexpr size_t most_slow_disturbances = 3, most_first_disturbances = 1;
 /// [rms error of simulation] An answer by simulation stands only if it leaves at most this of the other's,
 /// also over the held-out rows; without them chance has a larger part.
 constexpr double better_simulation_held_out = 0.9, better_simulation_without_hold_out = 0.8;

@@ -68,8 +68,16 @@ SiteNoise SiteFilter::noise_of_simulation() const {
   SiteNoise noise = guess_noise();
   noise.is_of_simulation = true;
   for (double& sigma : noise.process) sigma *= little;
-  for (double sigma : noise.measurement)
-    noise.slow.push_back(first_size * sigma), noise.slow_time.push_back(first_time * record_.sample_time);
+  for (size_t j = 0; j < noise.measurement.size(); ++j)
+    noise.slow.push_back({int(j), -1, first_size * noise.measurement[j], first_time * record_.sample_time});
+  return noise;
+}
+
+SiteNoise SiteFilter::with_disturbance(SiteNoise noise, int site) const {
+  constexpr double first_size = 3;   // [of the white noise]
+  constexpr double first_time = 50;  // [samples]
+  const size_t at = size_t(std::ranges::find(noise.sites, site) - noise.sites.begin());
+  noise.slow.push_back({-1, site, first_size * noise.process[at], first_time * record_.sample_time});
   return noise;
 }
 
@@ -130,21 +138,36 @@ void SiteFilter::begin_at(size_t row) {
 }
 
 double SiteFilter::initial_variance(const SiteNoise& noise, size_t state) const {
-  if (state >= model_states_) return squared(noise.slow[state - model_states_]);
+  if (state >= model_states_) return squared(noise.slow[state - model_states_].size);
   return squared(initial_deviation * state_scale_[state]);
 }
 
 void SiteFilter::add_slow_errors(const SiteNoise& noise) {
-  for (size_t j = 0; j < noise.slow.size(); ++j) y_[j] += x_[Eigen::Index(model_states_ + j)];
+  for (size_t j = 0; j < noise.slow.size(); ++j)
+    if (const int output = noise.slow[j].output; output >= 0)
+      y_[size_t(output)] += x_[Eigen::Index(model_states_ + j)];
+}
+
+void SiteFilter::hold_disturbances(const SiteNoise& noise) {
+  for (size_t j = 0; j < noise.slow.size(); ++j)
+    if (const int site = noise.slow[j].site; site >= 0)
+      model_.at_site(site).held = x_[Eigen::Index(model_states_ + j)];
+}
+
+void SiteFilter::release_disturbances(const SiteNoise& noise) {
+  for (const SlowNoise& slow : noise.slow)
+    if (slow.site >= 0) model_.at_site(slow.site).held = 0;
 }
 
 bool SiteFilter::advance(size_t row, const SiteNoise& noise, double* middle) {
-  if (!model_.flow(row, x_.data(), next_.data(), middle)) return false;
+  hold_disturbances(noise);
+  const bool good = model_.flow(row, x_.data(), next_.data(), middle);
+  release_disturbances(noise);
   for (size_t j = 0; j < noise.slow.size(); ++j) {
     const auto i = Eigen::Index(model_states_ + j);
-    next_[i] = noise.kept(j, record_.step(row)) * x_[i];
+    next_[i] = noise.slow[j].kept(record_.step(row)) * x_[i];
   }
-  return true;
+  return good;
 }
 
 bool SiteFilter::try_flow(size_t row, const SitePass& pass, const double* from, double* to) {
@@ -183,7 +206,8 @@ bool SiteFilter::slopes_of_outputs(size_t row, SitePass& pass) {
       C[j * n + size_t(state)] = 1;
     else
       are_all_known = false;
-    if (!pass.noise.slow.empty()) C[j * n + model_states_ + j] = 1;
+    for (size_t s = 0; s < pass.noise.slow.size(); ++s)
+      if (pass.noise.slow[s].output == int(j)) C[j * n + model_states_ + s] = 1;
   }
   if (are_all_known) return true;
   moved_ = x_;
@@ -240,25 +264,37 @@ bool SiteFilter::respond_to(int site, bool ramp, size_t row, SitePass& pass, std
     return true;
   }
   SiteSignal& signal = model_.at_site(site);
-  const double size = site_scale_[size_t(site)];
+  const double size = site_scale_[size_t(site)], held = signal.held;
   if (ramp)
     signal.ramp = size, signal.begin = record_.time[row], signal.length = record_.step(row);
   else
-    signal.held = size;
+    signal.held += size;
   const bool good = try_flow(row, pass, x_.data(), moved_next_.data());
-  signal.held = signal.ramp = 0;
-  for (size_t i = 0; i < to.size(); ++i)  // the slow errors stay as they are
+  signal.held = held, signal.ramp = 0;
+  for (size_t i = 0; i < to.size(); ++i)  // slow noise stays as it is
     to[i] = (moved_next_[Eigen::Index(i)] - next_[Eigen::Index(i)]) / size;
   return good;
 }
 
 bool SiteFilter::linearize(size_t row, const SiteNoise& noise, SitePass& pass) {
+  hold_disturbances(noise);
+  const bool good = differences(row, noise, pass);
+  release_disturbances(noise);
+  for (size_t j = 0; good && j < noise.slow.size(); ++j) {
+    const size_t n = pass.states, state = model_states_ + j;
+    double* const column = &pass.A[(row * n + state) * n];
+    if (const int site = noise.slow[j].site; site >= 0)
+      std::copy_n(&pass.G[(row * pass.sites + size_t(site)) * n], model_states_, column);
+    column[state] = noise.slow[j].kept(record_.step(row));
+  }
+  return good;
+}
+
+bool SiteFilter::differences(size_t row, const SiteNoise& noise, SitePass& pass) {
   const size_t n = pass.states;
   moved_ = x_, moved_next_ = next_;
   model_.keep_modes(modes_.data());  // where the next row goes on
   Map(&pass.A[row * n * n], Eigen::Index(n * n)).setZero();
-  for (size_t j = 0; j < noise.slow.size(); ++j)
-    pass.A[row * n * n + (model_states_ + j) * (n + 1)] = noise.kept(j, record_.step(row));
   for (size_t i = 0; i < model_states_; ++i) {
     const double change = difference_step * state_scale_[i];
     moved_[Eigen::Index(i)] += change;
@@ -300,7 +336,7 @@ void SiteFilter::predict_covariance(const SitePass& pass, size_t row, const Site
   }
   for (size_t j = 0; j < noise.slow.size(); ++j) {
     const auto i = Eigen::Index(model_states_ + j);
-    P_(i, i) += squared(noise.slow[j]) * (1 - squared(noise.kept(j, record_.step(row))));
+    P_(i, i) += squared(noise.slow[j].size) * (1 - squared(noise.slow[j].kept(record_.step(row))));
   }
   product_ = P_.transpose();
   P_ = 0.5 * (P_ + product_);

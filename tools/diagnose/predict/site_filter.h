@@ -21,25 +21,30 @@ inline constexpr double difference_step = 1e-6;
 
 inline double squared(double x) { return x * x; }
 
-/// White noise, as standard deviations, and slow errors of the outputs.
+/// Noise that is alike for a while: a state of its own, s ← exp(-step / time) s + white noise.
+struct SlowNoise {
+  int output = -1;  ///< an error of this output, which a simulation misses; -1: a disturbance
+  int site = -1;    ///< where the disturbance acts, held over each sample
+  double size = 0;  ///< [unit of the output or site] standard deviation
+  double time = 1;  ///< [s]
+
+  /// Share that is left after a step in s.
+  double kept(double step) const { return std::exp(-step / time); }
+};
+
+/// White noise, as standard deviations, and slow noise.
 struct SiteNoise {
   std::vector<int> sites;           ///< where noise acts
   std::vector<double> process;      ///< [unit of the site] held over a typical sample; shorter ones have more
   std::vector<double> measurement;  ///< [unit of the output]
-  /// [unit of the output] What a simulation misses, as a state of its own that decays: empty, or for each
-  /// output.
-  std::vector<double> slow;
-  std::vector<double> slow_time;  ///< [s]
+  std::vector<SlowNoise> slow;
   bool is_of_simulation = false;  ///< the process noise is as good as none, and is not fitted
-
-  /// Share of the slow error of an output that is left after a time in s.
-  double kept(size_t output, double time) const { return std::exp(-time / slow_time[output]); }
 };
 
 /// Everything along one pass, row after row.
 struct SitePass {
   size_t rows = 0, outputs = 0, sites = 0, numbers = 0;
-  size_t states = 0;  ///< of the model, then the slow errors of the outputs
+  size_t states = 0;  ///< of the model, then slow noise
   SiteNoise noise;
   bool has_columns = false;                 ///< G of all sites, ramps and the path
   std::vector<double> error, variance;      ///< rows × outputs; NaN: no reading
@@ -70,6 +75,8 @@ class SiteFilter {
   /// With so little noise in the states that predictions are a simulation from estimated initial states,
   /// whose errors may be slow. Noise in a state that is not measured could otherwise explain anything.
   SiteNoise noise_of_simulation() const;
+  /// With a slow disturbance at one of its sites, for a fit to begin with.
+  SiteNoise with_disturbance(SiteNoise noise, int site) const;
   /// Sizes of states and sites from a pass; differences are taken in proportion to them.
   void learn_scales(const SitePass& pass);
 
@@ -103,11 +110,17 @@ class SiteFilter {
   double initial_variance(const SiteNoise& noise, size_t state) const;
   /// Of x_, to y_.
   void add_slow_errors(const SiteNoise& noise);
+  /// Lets the disturbances of x_ act over the flows that follow, or none.
+  void hold_disturbances(const SiteNoise& noise);
+  void release_disturbances(const SiteNoise& noise);
   /// next_ from x_.
   bool advance(size_t row, const SiteNoise& noise, double* middle);
   bool correct(size_t row, const SiteNoise& noise, SitePass& pass);
   bool slopes_of_outputs(size_t row, SitePass& pass);
+  /// A, G, ramps and the path at the row, from x_ and next_.
   bool linearize(size_t row, const SiteNoise& noise, SitePass& pass);
+  /// Those of the model's own states, with the disturbances that act.
+  bool differences(size_t row, const SiteNoise& noise, SitePass& pass);
   bool respond_to(int site, bool ramp, size_t row, SitePass& pass, std::span<double> to);
   /// A flow from other states or with other signals, from the modes of this row.
   bool try_flow(size_t row, const SitePass& pass, const double* from, double* to);

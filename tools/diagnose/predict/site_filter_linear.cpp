@@ -22,6 +22,10 @@ template <class F> auto with_size(size_t states, F&& f) {
       return f.template operator()<5>();
     case 6:
       return f.template operator()<6>();
+    case 7:
+      return f.template operator()<7>();
+    case 8:
+      return f.template operator()<8>();
     default:
       return f.template operator()<Eigen::Dynamic>();
   }
@@ -63,7 +67,7 @@ double SiteFilter::objective_with(const SitePass& pass, const SiteNoise& noise) 
       A = Eigen::Map<const Matrix>(&pass.A[row * pass.states * pass.states], n, n);
       for (size_t j = 0; j < noise.slow.size(); ++j) {
         const auto i = Eigen::Index(model_states_ + j);
-        A(i, i) = noise.kept(j, record_.step(row));
+        A(i, i) = noise.slow[j].kept(record_.step(row));
       }
       change = difference + delta - MapOf(&pass.correction[row * pass.states], n);
       difference.noalias() = A * change;
@@ -82,7 +86,7 @@ double SiteFilter::objective_with(const SitePass& pass, const SiteNoise& noise) 
       }
       for (size_t j = 0; j < noise.slow.size(); ++j) {
         const auto i = Eigen::Index(model_states_ + j);
-        P(i, i) += squared(noise.slow[j]) * (1 - A(i, i) * A(i, i));
+        P(i, i) += squared(noise.slow[j].size) * (1 - A(i, i) * A(i, i));
       }
       product = P.transpose();
       P = 0.5 * (P + product);

@@ -26,7 +26,8 @@ std::vector<double*> fitted_numbers(SiteNoise& noise) {
     for (double& value : values) list.push_back(&value);
   };
   if (!noise.is_of_simulation) add(noise.process);
-  add(noise.measurement), add(noise.slow), add(noise.slow_time);
+  add(noise.measurement);
+  for (SlowNoise& slow : noise.slow) list.push_back(&slow.size), list.push_back(&slow.time);
   return list;
 }
 
@@ -194,7 +195,8 @@ SiteNoise SiteFitter::best_noise(const SitePass& pass, const SiteNoise& from) co
     for (size_t i = 0; i < count; ++i) *numbers[i] = first[i] * std::exp(at[i]);
     for (size_t j = 0; j < noise.measurement.size(); ++j)
       noise.measurement[j] = std::max(noise.measurement[j], 1e-4 * guess.measurement[j]);
-    for (double& time : noise.slow_time) time = std::clamp(time, shortest_slow_time(), longest_slow_time());
+    for (SlowNoise& slow : noise.slow)
+      slow.time = std::clamp(slow.time, shortest_slow_time(), longest_slow_time());
     return noise;
   };
   using Objective = std::function<double(const std::vector<double>&)>;

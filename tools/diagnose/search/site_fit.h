@@ -58,8 +58,8 @@ class SiteFitter {
   /// noise are fitted, as long as the likelihood improves.
   void anneal(SiteHypothesis& hypothesis, bool with_prior);
   /// Derivatives of the whitened errors with respect to all fitted numbers, as columns; a missing reading is
-  /// zero. At the edge of what the diagram can be run with, the difference is taken on the other side; zero if
-  /// it cannot be run on either.
+  /// zero. At the edge of what the diagram can be run with, the difference is taken on the other side; zero
+  /// if it cannot be run on either.
   Eigen::MatrixXd jacobian(const SiteHypothesis& hypothesis, const SitePass& about);
   Eigen::VectorXd whitened(const SitePass& pass) const;
   /// Bounds and step of a number for differences.
@@ -69,8 +69,8 @@ class SiteFitter {
   void use(const SiteHypothesis& hypothesis);
   SiteNoise best_noise(const SitePass& pass, const SiteNoise& from) const;
   std::optional<SiteNoise> evened(const SiteNoise& noise) const;
-  /// [s] Slow errors of a simulation: faster ones are noise of the measurement, slower ones take out what
-  /// offsets and drifts would explain.
+  /// [s] Of slow noise: what is faster is white noise, what is slower takes out what offsets and drifts would
+  /// explain.
   double shortest_slow_time() const { return 2 * filter_.model().record().sample_time; }
   double longest_slow_time() const { return 0.1 * double(rows_) * filter_.model().record().sample_time; }
   void keep_within_limits(SiteHypothesis& hypothesis, const FittedNumber& number, double before) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/site_disturbance.h"
 #include "tools/diagnose/search/site_simulation.h"
 #include "tools/diagnose/search/site_size.h"
 
@@ -60,12 +61,50 @@ std::vector<std::string> named_in(const SiteModel& model, const SiteHypothesis& 
   return list;
 }
 
+/// -2 ln L with the price of every number, those of the slow noise included.
+double criterion_with_noise(SiteFitter& fitter, SiteHypothesis h) {
+  SitePass pass;
+  if (!fitter.pass(h, false, pass)) return std::numeric_limits<double>::infinity();
+  double sum = h.objective + double(size_of(h) + 2 * h.noise.slow.size()) * std::log(double(pass.readings));
+  for (const SiteTerm& term : h.terms) sum += 2 * cost_of(fitter.model(), term);
+  return sum;
+}
+
+/// Where the first answer leaves errors that slow disturbances make white, the search is made again beside
+/// them. What is found there is the answer if it is better with the price of its numbers. How much of the
+/// signal such noise may be is left to the verdict.
+SiteSearchResult beside_disturbances(SiteFitter& fitter, SiteSearchResult first,
+                                     const std::function<void(const char*, double)>& progress) {
+  const bool is_done = !first.found.noise.slow.empty() || leaves_white_errors(fitter, first.found);
+  if (is_done || fitter.is_interrupted() || fitter.model().work().is_spent(criteria::work_of_first_search))
+    return first;
+  const SiteHypothesis disturbed = with_disturbances(fitter, first.found, criteria::most_slow_disturbances);
+  if (disturbed.noise.slow.empty() || !leaves_white_errors(fitter, disturbed)) {
+    first.trail.push_back("slow disturbances do not explain what remains");
+    return first;
+  }
+  first.trail.push_back("again, beside slow disturbances");
+  auto second = search_sites(fitter, progress, ErrorsOf::predictions, disturbed.noise.slow);
+  if (!second || fitter.is_interrupted()) return first;
+  const double before = criterion_with_noise(fitter, first.found),
+               after = criterion_with_noise(fitter, second->found);
+  const bool is_answer = after < before && leaves_white_errors(fitter, second->found);
+  std::vector<std::string> trail = std::move(first.trail);
+  std::ranges::move(second->trail, std::back_inserter(trail));
+  trail.push_back(
+      fmt::format("criterion {:.1f} without slow disturbances, {:.1f} beside them", before, after));
+  SiteSearchResult answer = std::move(is_answer ? *second : first);
+  answer.trail = std::move(trail);
+  return answer;
+}
+
 }  // namespace
 
 std::optional<SiteSearchResult> search_with_second_opinion(
     SiteFitter& fitter, const std::function<void(const char*, double)>& progress) {
   std::optional<SiteSearchResult> first = search_sites(fitter, progress);
   if (!first || fitter.is_interrupted()) return first;
+  first = beside_disturbances(fitter, std::move(*first), progress);
   const std::vector<int> unmeasured = unmeasured_states(fitter, first->found);
   if (unmeasured.empty()) return first;
   const std::vector<NoisySite> noisy = noisy_sites(fitter, first->found);

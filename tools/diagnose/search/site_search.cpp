@@ -5,7 +5,7 @@
 #include <utility>
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/moved_parameters.h"
-#include "tools/diagnose/search/site_whiteness.h"
+#include "tools/diagnose/search/site_disturbance.h"
 #include "tools/diagnose/search/stacked_names.h"
 
 namespace loopwright::diagnosis {
@@ -27,8 +27,9 @@ constexpr double least_share_of_function = 0.95;
 
 class SiteSearch {
  public:
-  SiteSearch(SiteFitter& fitter, const std::function<void(const char*, double)>& progress, ErrorsOf errors)
-      : fitter_(fitter), progress_(progress), errors_(errors) {}
+  SiteSearch(SiteFitter& fitter, const std::function<void(const char*, double)>& progress, ErrorsOf errors,
+             const std::vector<SlowNoise>& disturbances)
+      : fitter_(fitter), progress_(progress), errors_(errors), disturbances_(disturbances) {}
 
   std::optional<SiteSearchResult> run() {
     SiteHypothesis& nominal = result_.nominal;
@@ -39,6 +40,7 @@ class SiteSearch {
     progress_("fitting parameters", 0.1);
     result_.parameters = with_free_parameters(nominal);
     tell("parameters free", result_.parameters);
+    if (errors_ == ErrorsOf::predictions && disturbances_.empty()) begin_beside_small_disturbances();
     SiteSearchResult first = searched_from(result_.parameters, 0.2);
     if (!is_doubtful(first.found) || is_spent(criteria::work_of_first_search)) return first;
     result_.trail = std::move(first.trail);
@@ -51,6 +53,18 @@ class SiteSearch {
   }
 
  private:
+  /// A small disturbance that explains all there is would otherwise cost a long search that follows it by
+  /// terms.
+  void begin_beside_small_disturbances() {
+    if (!leaves_something(result_.parameters)) return;
+    SiteHypothesis disturbed =
+        with_disturbances(fitter_, result_.parameters, criteria::most_first_disturbances);
+    if (disturbed.noise.slow.empty() || !is_explained_by_small_disturbances(fitter_, disturbed)) return;
+    result_.nominal.noise.slow = disturbed.noise.slow;
+    fitter_.fit_noise(result_.nominal);
+    result_.parameters = std::move(disturbed);
+    tell("beside a slow disturbance", result_.parameters);
+  }
   /// Terms are added with the parameters of this hypothesis, which may be free.
   SiteSearchResult searched_from(SiteHypothesis at, double progress) {
     SiteSearchResult before = result_;
@@ -80,10 +94,7 @@ class SiteSearch {
     if (!found.terms.empty() && is_unknown_function(*found.terms.front().shape)) return true;
     return leaves_something(found);
   }
-  bool leaves_something(SiteHypothesis h) {
-    return !fitter_.pass(h, false, pass_) ||
-           portmanteau_of(pass_) > criteria::most_portmanteau_of_any_diagram;
-  }
+  bool leaves_something(const SiteHypothesis& h) { return !leaves_white_errors(fitter_, h); }
   /// With the cost of parameters that moved.
   double whole_criterion(const SiteHypothesis& h) {
     return criterion(h) + cost_of_parameter * double(h.free_parameters());
@@ -96,8 +107,8 @@ class SiteSearch {
     for (double s : at.noise.process) noise += fmt::format(" {:.3g}", s);
     noise += " |";
     for (double r : at.noise.measurement) noise += fmt::format(" {:.3g}", r);
-    for (size_t j = 0; j < at.noise.slow.size(); ++j)
-      noise += fmt::format(" | slow {:.3g} {:.3g} s", at.noise.slow[j], at.noise.slow_time[j]);
+    for (const SlowNoise& slow : at.noise.slow)
+      noise += fmt::format(" | slow {:.3g} {:.3g} s", slow.size, slow.time);
     result_.trail.push_back(fmt::format("{}: -2 ln L {:.1f}, criterion {:.1f}, noise{}", what, at.objective,
                                         criterion(at), noise));
   }
@@ -122,6 +133,7 @@ class SiteSearch {
       fitter_.filter().choose_substeps(pass_);
     }
     h.noise = fitter_.filter().guess_noise();
+    h.noise.slow = disturbances_;
     readings_ = double(pass_.readings);
     fitter_.fit_noise(h);
     tell("the diagram as it is", h);
@@ -346,6 +358,7 @@ class SiteSearch {
   double readings_ = 0, begin_ = 0.2;
   size_t keys_ = 10;
   const ErrorsOf errors_;
+  const std::vector<SlowNoise> disturbances_;
 };
 
 }  // namespace
@@ -358,8 +371,8 @@ std::string describe(const SiteModel& model, const SiteTerm& term) {
 
 std::optional<SiteSearchResult> search_sites(SiteFitter& fitter,
                                              const std::function<void(const char*, double)>& progress,
-                                             ErrorsOf errors) {
-  return SiteSearch(fitter, progress, errors).run();
+                                             ErrorsOf errors, const std::vector<SlowNoise>& disturbances) {
+  return SiteSearch(fitter, progress, errors, disturbances).run();
 }
 
 }  // namespace loopwright::diagnosis

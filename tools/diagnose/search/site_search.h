@@ -53,10 +53,12 @@ struct SiteSearchResult {
 /// Errors by which a search judges.
 enum class ErrorsOf { predictions, simulation };
 
-/// Null when the model diverges along the record, whatever its noise.
+/// Null when the model diverges along the record, whatever its noise. Predictions may be beside slow
+/// disturbances, given as a first guess.
 std::optional<SiteSearchResult> search_sites(SiteFitter& fitter,
                                              const std::function<void(const char*, double)>& progress,
-                                             ErrorsOf errors = ErrorsOf::predictions);
+                                             ErrorsOf errors = ErrorsOf::predictions,
+                                             const std::vector<SlowNoise>& disturbances = {});
 
 std::string describe(const SiteModel& model, const SiteTerm& term);
 

@@ -27,8 +27,8 @@ void use_simulation(SiteFitter& fitter, const SiteHypothesis& h, SiteErrors& err
   errors.predicted = simulation->fitted, errors.simulated = simulation->judged();
   errors.held_out = simulation->held_out.empty() ? errors.held_out : simulation->held_out;
   errors.noise = h.noise.measurement;
-  for (size_t j = 0; j < h.noise.slow.size(); ++j)
-    errors.leaves_slow_error |= h.noise.slow[j] > h.noise.measurement[j];
+  for (const SlowNoise& slow : h.noise.slow)
+    errors.leaves_slow_error |= slow.size > h.noise.measurement[size_t(slow.output)];
 }
 
 }  // namespace

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <limits>
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/site_disturbance.h"
 #include "tools/diagnose/search/site_size.h"
 #include "tools/diagnose/verdict/site_opinion_text.h"
+#include "tools/diagnose/wording.h"
 #include "tools/diagnose/verdict/alike_sites.h"
 #include "tools/diagnose/verdict/site_additions.h"
 #include "tools/diagnose/verdict/site_errors.h"
@@ -205,9 +207,24 @@ class Telling {
     return true;
   }
 
+  /// Tells the slow disturbances of the answer. Whether they are small enough to be noise.
+  bool are_disturbances_small() {
+    const std::vector<Disturbance> list = disturbances_of(fitted_, found_);
+    for (const Disturbance& d : list) {
+      const Site& site = model_.sites()[size_t(d.site)];
+      result_.findings.push_back(
+          {fmt::format("a slow disturbance at {}: {}, {:.1f} % of the signal, alike for {:.2g} s", site.name,
+                       shown(d.size, unit_text(site.unit)), 100 * d.share, d.time),
+           d.is_small() ? "it is taken for noise"
+                        : "so much of it may stand for an effect that nothing here names",
+           !d.is_small(), false});
+    }
+    return std::ranges::all_of(list, &Disturbance::is_small);
+  }
+
   void judge() {
     const bool has_unknown = !result_.remainder_variables.empty();
-    const bool is_white = !errors_.diverges && !errors_.leaves_slow_error &&
+    const bool is_white = !errors_.diverges && !errors_.leaves_slow_error && are_disturbances_small() &&
                           errors_.portmanteau < criteria::most_portmanteau_of_any_diagram;
     const bool names = !result_.effects.empty() || !result_.moved_parameters.empty();
     const bool worse = names && simulates_worse();

@@ -1,0 +1,64 @@
+#include "tools/diagnose/search/site_disturbance.h"
+#include <algorithm>
+#include <cmath>
+#include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/site_size.h"
+#include "tools/diagnose/search/site_whiteness.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+/// Along the rows in which the filter has settled.
+double root_mean_square(const SitePass& pass, size_t state) {
+  const size_t first = pass.rows / criteria::settling_part;
+  double square = 0;
+  for (size_t k = first; k < pass.rows; ++k) square += squared(pass.filtered[k * pass.states + state]);
+  return std::sqrt(square / double(pass.rows - first));
+}
+
+}  // namespace
+
+bool leaves_white_errors(SiteFitter& fitter, SiteHypothesis h) {
+  SitePass pass;
+  return fitter.pass(h, false, pass) && portmanteau_of(pass) < criteria::most_portmanteau_of_any_diagram;
+}
+
+SiteHypothesis with_disturbances(SiteFitter& fitter, SiteHypothesis h, size_t most) {
+  constexpr double least_help = 20;  // in -2 ln L, of two numbers
+  while (h.noise.slow.size() < most && !fitter.is_interrupted() && !leaves_white_errors(fitter, h)) {
+    SiteHypothesis best = h;
+    for (int site : h.noise.sites) {
+      if (std::ranges::find(h.noise.slow, site, &SlowNoise::site) != h.noise.slow.end()) continue;
+      SiteHypothesis trial = h;
+      trial.noise = fitter.filter().with_disturbance(h.noise, site);
+      fitter.fit_noise(trial);
+      if (trial.objective < best.objective) best = std::move(trial);
+    }
+    if (!(best.objective < h.objective - least_help)) break;
+    h = std::move(best);
+    fitter.refine(h, 4, true);
+    fitter.fit_noise(h);
+  }
+  return h;
+}
+
+bool Disturbance::is_small() const { return share <= criteria::most_slow_disturbance; }
+
+std::vector<Disturbance> disturbances_of(SiteFitter& fitter, SiteHypothesis h) {
+  std::vector<Disturbance> list;
+  SitePass pass;
+  if (h.noise.slow.empty() || h.noise.is_of_simulation || !fitter.pass(h, true, pass)) return list;
+  for (size_t j = 0; j < h.noise.slow.size(); ++j) {
+    const SlowNoise& slow = h.noise.slow[j];
+    const double size = root_mean_square(pass, size_t(fitter.model().states()) + j);
+    list.push_back({slow.site, size, size / size_at_site(fitter.model(), pass, slow.site), slow.time});
+  }
+  return list;
+}
+
+bool is_explained_by_small_disturbances(SiteFitter& fitter, const SiteHypothesis& h) {
+  return leaves_white_errors(fitter, h) &&
+         std::ranges::all_of(disturbances_of(fitter, h), &Disturbance::is_small);
+}
+
+}  // namespace loopwright::diagnosis
