@@ -25,6 +25,8 @@ struct Plant {
   std::function<Numbers(const Numbers& x)> outputs;
   std::function<double(double time)> input;
   Numbers initial, process_noise, measurement_noise;
+  Numbers slow_noise;  ///< beside the process noise, alike for slow_samples; or empty
+  double slow_samples = 60;
   double sample_time = 0.01;
   double jitter = 0;  ///< [samples] of the time stamps, at which everything truly happens
   size_t rows = 2500;
@@ -69,6 +71,9 @@ class RecordedPlant {
     std::string text = "t_s,u";
     for (size_t j = 0; j < plant.measurement_noise.size(); ++j) text += fmt::format(",y{}", j);
     std::uniform_real_distribution<double> uniform(-0.5, 0.5);
+    const double kept = std::exp(-1 / plant.slow_samples);
+    Numbers slow;
+    for (double size : plant.slow_noise) slow.push_back(size * normal(random));
     double t = 0;
     for (size_t k = 0; k < plant.rows; ++k) {
       const double u = plant.input(t);
@@ -78,6 +83,10 @@ class RecordedPlant {
         text += fmt::format(",{:.12g}", y[j] + plant.measurement_noise[j] * normal(random));
       Numbers w;
       for (double size : plant.process_noise) w.push_back(size * normal(random));
+      for (size_t i = 0; i < slow.size(); ++i) {
+        w[i] += slow[i];
+        slow[i] = kept * slow[i] + std::sqrt(1 - kept * kept) * plant.slow_noise[i] * normal(random);
+      }
       const double next = (double(k + 1) + plant.jitter * uniform(random)) * plant.sample_time;
       const double h = (next - t) / substeps;
       for (int i = 0; i < substeps; ++i) {

@@ -8,6 +8,9 @@
 namespace loopwright::diagnosis {
 namespace {
 
+/// [in -2 ln L] Of a disturbance, which has two numbers.
+constexpr double least_help = 20;
+
 /// Along the rows in which the filter has settled.
 double root_mean_square(const SitePass& pass, size_t state) {
   const size_t first = pass.rows / criteria::settling_part;
@@ -24,7 +27,6 @@ bool leaves_white_errors(SiteFitter& fitter, SiteHypothesis h) {
 }
 
 SiteHypothesis with_disturbances(SiteFitter& fitter, SiteHypothesis h, size_t most) {
-  constexpr double least_help = 20;  // in -2 ln L, of two numbers
   while (h.noise.slow.size() < most && !fitter.is_interrupted() && !leaves_white_errors(fitter, h)) {
     SiteHypothesis best = h;
     for (int site : h.noise.sites) {
@@ -38,6 +40,17 @@ SiteHypothesis with_disturbances(SiteFitter& fitter, SiteHypothesis h, size_t mo
     h = std::move(best);
     fitter.refine(h, 4, true);
     fitter.fit_noise(h);
+  }
+  return h;
+}
+
+SiteHypothesis without_idle_disturbances(SiteFitter& fitter, SiteHypothesis h) {
+  for (size_t j = h.noise.slow.size(); j-- > 0;) {
+    SiteHypothesis without = h;
+    without.noise.slow.erase(without.noise.slow.begin() + std::ptrdiff_t(j));
+    fitter.refine(without, 4, false);
+    fitter.fit_noise(without);
+    if (without.objective - h.objective < least_help) h = std::move(without);
   }
   return h;
 }

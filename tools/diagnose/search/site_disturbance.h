@@ -12,6 +12,9 @@ bool leaves_white_errors(SiteFitter& fitter, SiteHypothesis h);
 /// white or no further one helps.
 SiteHypothesis with_disturbances(SiteFitter& fitter, SiteHypothesis h, size_t most);
 
+/// The hypothesis without those that its terms made unnecessary.
+SiteHypothesis without_idle_disturbances(SiteFitter& fitter, SiteHypothesis h);
+
 /// A disturbance as it was along the record.
 struct Disturbance {
   int site;

@@ -70,21 +70,31 @@ double criterion_with_noise(SiteFitter& fitter, SiteHypothesis h) {
   return sum;
 }
 
-/// Where the first answer leaves errors that slow disturbances make white, the search is made again beside
-/// them. What is found there is the answer if it is better with the price of its numbers. How much of the
-/// signal such noise may be is left to the verdict.
+/// The answer with slow disturbances in the place of what has no name; nothing if they do not explain it. A
+/// function that follows a disturbance is told from one of the machine by its size.
+std::optional<SiteHypothesis> disturbed_instead(SiteFitter& fitter, SiteHypothesis h) {
+  const size_t functions =
+      std::erase_if(h.terms, [](const SiteTerm& term) { return is_unknown_function(*term.shape); });
+  if (functions == 0 && leaves_white_errors(fitter, h)) return {};
+  if (functions > 0) fitter.refine(h, 6, true), fitter.fit_noise(h);
+  h = with_disturbances(fitter, std::move(h), criteria::most_slow_disturbances);
+  const bool explain =
+      functions > 0 ? is_explained_by_small_disturbances(fitter, h) : leaves_white_errors(fitter, h);
+  return explain && !h.noise.slow.empty() ? std::optional(h) : std::nullopt;
+}
+
+/// Where the first answer leaves something, or has a function without a name, and slow disturbances explain
+/// it, the search is made again beside them. What is found there is the answer if it is better with the price
+/// of its numbers. How much of the signal such noise may be is left to the verdict.
 SiteSearchResult beside_disturbances(SiteFitter& fitter, SiteSearchResult first,
                                      const std::function<void(const char*, double)>& progress) {
-  const bool is_done = !first.found.noise.slow.empty() || leaves_white_errors(fitter, first.found);
-  if (is_done || fitter.is_interrupted() || fitter.model().work().is_spent(criteria::work_of_first_search))
+  if (!first.found.noise.slow.empty() || fitter.is_interrupted() ||
+      fitter.model().work().is_spent(criteria::work_of_first_search))
     return first;
-  const SiteHypothesis disturbed = with_disturbances(fitter, first.found, criteria::most_slow_disturbances);
-  if (disturbed.noise.slow.empty() || !leaves_white_errors(fitter, disturbed)) {
-    first.trail.push_back("slow disturbances do not explain what remains");
-    return first;
-  }
+  const std::optional<SiteHypothesis> disturbed = disturbed_instead(fitter, first.found);
+  if (!disturbed) return first;
   first.trail.push_back("again, beside slow disturbances");
-  auto second = search_sites(fitter, progress, ErrorsOf::predictions, disturbed.noise.slow);
+  auto second = search_sites(fitter, progress, ErrorsOf::predictions, disturbed->noise.slow);
   if (!second || fitter.is_interrupted()) return first;
   const double before = criterion_with_noise(fitter, first.found),
                after = criterion_with_noise(fitter, second->found);

@@ -83,6 +83,7 @@ class SiteSearch {
     decide_parameters(at);
     if (remove_idle(at)) decide_parameters(at);
     compare_with_single_terms(at);
+    if (errors_ == ErrorsOf::predictions) at = without_idle_disturbances(fitter_, std::move(at));
     result_.found = std::move(at);
     return std::exchange(result_, std::move(before));
   }
