@@ -91,22 +91,29 @@ FileSummary check_model(const std::string& path, Problems& problems) {
   return fmt::format("a learned model of {} samples", learned.sample_count);
 }
 
-/// Options that change a diagram have no effect on other files: this is reported rather than ignored.
-void reject_options(FileKind kind, const std::string& path, const CheckOptions& options, Problems& problems) {
-  const bool takes_set = kind == FileKind::diagram || kind == FileKind::training;
-  const auto reject = [&](std::string_view option) {
-    problems.error({}, "", "", fmt::format("{} changes nothing in {}", option, path)).found =
-        with_article(kind);
+/// Options that change a diagram have no effect on other files: where no file takes one, this is reported
+/// rather than ignored.
+Problems unused_options(const std::vector<std::string>& paths, const CheckOptions& options) {
+  Problems problems, ignored;
+  std::vector<FileKind> kinds;
+  for (const std::string& path : paths) kinds.push_back(kind_of_file(path, ignored));
+  const auto is_there = [&](auto... wanted) {
+    return std::ranges::any_of(
+        kinds, [&](FileKind kind) { return kind == FileKind::unknown || ((kind == wanted) || ...); });
   };
-  if (!takes_set && !options.load.set.empty()) reject("--set");
-  if (kind != FileKind::diagram && !options.load.variants.empty()) reject("--variant");
-  if (kind != FileKind::diagram && options.strict_units) reject("--strict-units");
+  const auto reject = [&](std::string_view option) {
+    problems.error({}, "", "", fmt::format("{} changes nothing in {}", option, paths.front())).found =
+        with_article(kinds.front());
+  };
+  if (!options.load.set.empty() && !is_there(FileKind::diagram, FileKind::training)) reject("--set");
+  if (!options.load.variants.empty() && !is_there(FileKind::diagram)) reject("--variant");
+  if (options.strict_units && !is_there(FileKind::diagram)) reject("--strict-units");
+  return problems;
 }
 
 FileSummary check_file(const std::string& path, const CheckOptions& options, Problems& problems) {
   const FileKind kind = kind_of_file(path, problems);
   if (problems.has_errors()) return {};
-  if (kind != FileKind::unknown) reject_options(kind, path, options, problems);
   switch (kind) {
     case FileKind::experiment:
       return check_experiment(path, problems);
@@ -131,6 +138,10 @@ FileSummary check_file(const std::string& path, const CheckOptions& options, Pro
 int check(const std::vector<std::string>& paths, const CheckOptions& options) {
   int wrong = 0;
   name_changed_readings(true);
+  if (const Problems unused = unused_options(paths, options); unused.has_errors()) {
+    tell("{}\n", unused.text());
+    ++wrong;
+  }
   for (const std::string& path : paths) {
     Problems problems;
     FileSummary summary;

@@ -136,5 +136,14 @@ TEST_F(Check, OptionsThatChangeNothingAreRefused) {
       << outcome.err;
 }
 
+/// All files of a folder are checked at once: an option needs one that takes it.
+TEST_F(Check, AnOptionForTheDiagramIsNoErrorInTheOtherFiles) {
+  const std::string servo = root + "/diagrams/projects/servo/";
+  const Outcome outcome =
+      run({"check", "--strict-units", root + "/hw/devices/qpid_e.json", servo + "servo.json"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(run({"check", "--strict-units", root + "/hw/devices/qpid_e.json"}).code, 2);
+}
+
 }  // namespace
 }  // namespace loopwright::check_test

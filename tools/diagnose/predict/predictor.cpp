@@ -1,4 +1,5 @@
 #include "tools/diagnose/predict/predictor.h"
+#include "tools/diagnose/predict/in_parallel.h"
 #include "tools/diagnose/predict/sizes.h"
 #include <algorithm>
 #include <array>
@@ -190,14 +191,14 @@ void responses(const LinearAxis& axis, const Gains& gains, const Path& path, Act
                std::span<const Column* const> columns, std::span<const size_t> rows,
                std::span<double* const> to) {
   const bool is_input = acts == Acts::input;
-  for (size_t first = 0; first < columns.size(); first += side_by_side) {
-    const size_t count = std::min<size_t>(side_by_side, columns.size() - first);
+  in_parallel((columns.size() + side_by_side - 1) / side_by_side, [&](size_t part) {
+    const size_t first = part * side_by_side, count = std::min<size_t>(side_by_side, columns.size() - first);
     const auto some = columns.subspan(first, count);
     const Rows wanted{rows, to.subspan(first, count)};
     with_sizes(axis, [&]<int States, int Ports>() {
       run_on_this_machine(ErrorFilter<States, Ports>(axis, gains, is_input), path, acts, some, wanted);
     });
-  }
+  });
 }
 
 std::vector<std::vector<double>> responses(const LinearAxis& axis, const Gains& gains, const Path& path,

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/predict/in_parallel.h"
 #include "tools/diagnose/search/remembered_runs.h"
 
 namespace loopwright::diagnosis {
@@ -103,11 +104,12 @@ void add_shapes(const Candidate& candidate, const std::vector<std::vector<double
 }
 
 std::vector<Shape> shapes_of(const std::vector<Candidate>& candidates, const Motion& motion) {
+  std::vector<std::vector<Shape>> of_each(candidates.size());
+  in_parallel(candidates.size(), [&](size_t i) {
+    if (!candidates[i].is_periodic) add_shapes(candidates[i], grid_points(candidates[i]), motion, of_each[i]);
+  });
   std::vector<Shape> shapes;
-  for (const Candidate& candidate : candidates) {
-    if (candidate.is_periodic) continue;
-    add_shapes(candidate, grid_points(candidate), motion, shapes);
-  }
+  for (std::vector<Shape>& some : of_each) std::ranges::move(some, std::back_inserter(shapes));
   return shapes;
 }
 
