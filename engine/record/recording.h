@@ -54,6 +54,7 @@ struct ReadOptions {
   /// MAT: one flipped bit can make matio compute for minutes and use gigabytes for a file of a kilobyte.
   int time_limit = 10;              ///< [s of computing] and 1 s more per 4 MB of file
   size_t memory_limit = 2ul << 30;  ///< [bytes] and 64 more per byte of file, as it may be compressed
+  bool operator==(const ReadOptions&) const = default;
 };
 
 }  // namespace loopwright

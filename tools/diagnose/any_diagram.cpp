@@ -6,6 +6,7 @@
 #include "tools/diagnose/search/own_shapes.h"
 #include "tools/diagnose/search/site_opinion.h"
 #include "tools/diagnose/verdict/improve.h"
+#include "tools/diagnose/verdict/plots.h"
 #include "tools/diagnose/verdict/site_verdict.h"
 #include "tools/diagnose/verdict/verdict.h"
 
@@ -14,15 +15,22 @@ namespace {
 
 using namespace diagnosis;
 
-/// The diagram with what was found. It must load before it is written.
-void write_improved(const DiagnoseOptions& options, Diagnosis& result) {
+/// The diagram with what was found, in memory. Throws InputError.
+Improvement improvement_with(const DiagnoseOptions& options, const Diagnosis& result,
+                             const Additions& additions) {
   Problems problems;
   const auto file = read_source(result.diagram, {}, problems);
   std::vector<std::shared_ptr<const Experiment>> experiments;
   for (const std::string& path : result.experiments) experiments.push_back(load_experiment(path, problems));
   if (problems.has_errors()) throw InputError(std::move(problems));
+  return improve(file, experiments, options.load, additions);
+}
+
+/// It must load before it is written.
+void write_improved(const DiagnoseOptions& options, Diagnosis& result) {
   const Additions& additions = options.writes_all ? result.all_additions : result.additions;
-  const Improvement improved = improve(file, experiments, options.load, additions);
+  const Improvement improved = improvement_with(options, result, additions);
+  Problems problems;
   const auto loaded = load_diagram_text(improved.file, options.load, problems);
   if (!loaded || !compile(*loaded, problems)) throw InputError(std::move(problems));
   result.improved = options.improved_diagram;
@@ -30,6 +38,16 @@ void write_improved(const DiagnoseOptions& options, Diagnosis& result) {
   result.experiment_ports = improved.moved, result.taken_out_by = improved.taken_out_by;
   result.improved_notes = notes_of(additions, result.all_additions);
   std::ranges::copy(improved.left_out, std::back_inserter(result.improved_notes));
+}
+
+/// Nothing where the improved diagram cannot be made: `-o` says why.
+report::Graph picture_of_improved(const DiagnoseOptions& options, const Diagnosis& result) {
+  if (result.additions.effects.empty()) return {};
+  try {
+    return picture_of(improvement_with(options, result, result.additions), options.load);
+  } catch (const InputError&) {
+    return {};
+  }
 }
 
 }  // namespace
@@ -71,6 +89,7 @@ Diagnosis diagnose_any_diagram(const std::string& diagram, const std::vector<std
   if (model.work().was_short()) result.findings.push_back(ended_at_limit(most_work));
   progress("prediction, simulation and verdict", 0.95);
   tell_sites(filter, *found, result);
+  result.picture = picture_of_improved(options, result);
   if (!options.improved_diagram.empty()) write_improved(options, result);
   return result;
 }

@@ -1,6 +1,6 @@
 /// The answer about any diagram as a page.
 #include <fmt/format.h>
-#include "tools/diagnose/diagnosis.h"
+#include "tools/diagnose/diagnosis_plots.h"
 #include "tools/diagnose/wording.h"
 
 namespace loopwright {
@@ -71,12 +71,23 @@ report::Section sites_staircase(const Diagnosis& d) {
       table.rows.back().insert(table.rows.back().begin() + 2,
                                shown(step.held_out_force_rmse, d.measured_unit));
   }
+  if (d.steps.size() > 1) section.items.push_back(steps_of_the_error(d));
   section.items.push_back(std::move(table));
+  return section;
+}
+
+report::Section what_remains(const Diagnosis& d) {
+  report::Section section{"What remains", {}};
   report::KeyNumbers numbers{
       {{"Squared prediction error, fitted", fmt::format("{:.3f}", d.mean_square), "",
         "1 when all is explained"},
        {"Whiteness, 40 lags", fmt::format("{:.0f}", d.portmanteau), "", "near 40 when nothing is left"}}};
+  for (const SlowDisturbance& slow : d.slow_disturbances)
+    numbers.numbers.push_back(
+        {"Slow disturbance at " + slow.site, shown(slow.size, slow.unit), "",
+         fmt::format("{:.1f} % of the signal, alike for {:.2g} s", 100 * slow.share, slow.time_s)});
   section.items.push_back(std::move(numbers));
+  if (!d.whiteness.lag_s.empty()) section.items.push_back(whiteness(d));
   return section;
 }
 
@@ -101,7 +112,10 @@ report::Page any_diagram_page(const Diagnosis& d) {
   page.facts = {{"Diagram", d.diagram}, {"Record", joined(d.experiments, ", ")}};
   page.sections.push_back({"Answer", {notice_of(d)}});
   page.sections.push_back(what_was_found(d));
+  if (!d.terms.empty()) page.sections.push_back(terms_at_their_sites(d));
   page.sections.push_back(sites_staircase(d));
+  page.sections.push_back(what_remains(d));
+  if (!d.picture.nodes.empty()) page.sections.push_back(improved_diagram(d));
   page.sections.push_back(limits(d));
   return page;
 }

@@ -40,6 +40,14 @@ struct MovedParameter {
   double stated = 0, value = 0, low = 0, high = 0;  ///< SI; 95 % interval
 };
 
+/// Noise at a site that is alike for a while.
+struct SlowDisturbance {
+  std::string site, unit;
+  double size = 0;   ///< [unit] rms
+  double share = 0;  ///< of the signal there
+  double time_s = 0;
+};
+
 /// Effects that explain the records equally well in place of some of the named ones.
 struct OtherExplanation {
   std::vector<std::string> in_place_of, effects;
@@ -98,11 +106,13 @@ struct Additions {
   RecordSizes sizes;
 };
 
-/// The force that only this effect explains, over the variable that determines most of it.
+/// The force that only this effect explains, over the variable that determines most of it. Without roles what
+/// only this term explains at its site.
 struct MissingTerm {
-  std::string effect, site, variable, unit;  ///< site: a port of the diagram
+  std::string effect, site, variable, unit;  ///< site: a port of the diagram; unit: of the variable
   std::vector<double> at, found;        ///< what the diagram with all other effects leaves; NaN: not counted
   std::vector<double> shape_at, shape;  ///< force of the effect: means over narrow ranges of the variable
+  std::string site_unit;
 };
 
 enum class Verdict { nothing_missing, explained, partly_explained, unexplained };
@@ -134,6 +144,7 @@ struct Diagnosis {
   double mean_square = 0, held_out_mean_square = 0, portmanteau = 0;
   double white_force = 0, slow_force = 0, slow_force_time_s = 0;
   std::vector<double> measurement_noise;
+  std::vector<SlowDisturbance> slow_disturbances;                 ///< without roles
   double simulation_horizon_s = 0;                                ///< after which each simulation begins anew
   bool is_simulated() const { return simulation_horizon_s > 0; }  ///< otherwise a map, or too short
   bool simulation_diverged = false;                               ///< of the diagram with all effects

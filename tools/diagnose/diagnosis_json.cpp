@@ -66,6 +66,12 @@ std::string to_json(const Diagnosis& d) {
                    {"slow_force", d.slow_force},
                    {"slow_force_time_s", d.slow_force_time_s},
                    {"measurement", d.measurement_noise}};
+  for (const SlowDisturbance& slow : d.slow_disturbances)
+    json["noise"]["slow_disturbances"].push_back({{"site", slow.site},
+                                                  {"size", slow.size},
+                                                  {"unit", slow.unit},
+                                                  {"share", slow.share},
+                                                  {"time_s", slow.time_s}});
   json["diagram"] = d.improved.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(d.improved);
   json["experiment_ports"] = nlohmann::ordered_json::array();
   for (const MovedPort& moved : d.experiment_ports)

@@ -1,24 +1,11 @@
 #include <fmt/format.h>
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include "tools/diagnose/diagnosis.h"
+#include "tools/diagnose/diagnosis_plots.h"
 #include "tools/diagnose/wording.h"
 
 namespace loopwright {
 namespace {
-
-/// The effect's name in the catalogue, as words.
-std::string words(std::string name) {
-  for (char& c : name)
-    if (c == '_') c = ' ';
-  return name;
-}
-
-std::string lower(std::string name) {
-  for (char& c : name) c = char(std::tolower(static_cast<unsigned char>(c)));
-  return name;
-}
 
 bool is_first_of_its_name(const Diagnosis& d, size_t effect) {
   const auto first = std::ranges::find(d.effects, d.effects[effect].name, &DiagnosedEffect::name);
@@ -128,71 +115,6 @@ report::Section what_is_missing(const Diagnosis& d) {
         report::Paragraph{fmt::format("In the place of {}, {} would explain the record as well.",
                                       in_words(other.in_place_of), in_words(other.effects))});
   return section;
-}
-
-/// What all other effects leave, and the shape of this one through it.
-report::Section terms_at_their_sites(const Diagnosis& d) {
-  report::Section section{"Each missing term at its site", {}};
-  section.items.push_back(report::Paragraph{
-      "Points: the force that the diagram lacks with all other effects in it. Line: the force of the named "
-      "effect, means over narrow ranges of the variable that determines most of it."});
-  for (const MissingTerm& term : d.terms) {
-    report::Plot plot;
-    plot.title = fmt::format("{} at {}, over {}", words(term.effect), term.site, lower(term.variable));
-    plot.x = {term.variable, term.unit}, plot.y = {"Missing force", d.force_unit};
-    plot.series.push_back({"left by all others", term.at, term.found, report::Series::Shape::points});
-    plot.series.push_back({words(term.effect), term.shape_at, term.shape});
-    section.items.push_back(std::move(plot));
-  }
-  return section;
-}
-
-report::Section improved_diagram(const Diagnosis& d) {
-  report::Section section{"The improved diagram", {}};
-  section.items.push_back(report::Paragraph{
-      d.improved.empty() ? "Blocks with a thick outline would be added; -o FILE writes this diagram."
-                         : "Blocks with a thick outline were added."});
-  section.items.push_back(d.picture);
-  return section;
-}
-
-/// The error of each diagram of the staircase, as a curve that falls by steps.
-report::Plot steps_of_the_error(const Diagnosis& d) {
-  report::Plot plot;
-  const bool held_out = d.holds_out;
-  plot.title = d.is_simulated() ? fmt::format("Error of the simulation{}, {:.3g} s ahead",
-                                              held_out ? ", held-out rows" : "", d.simulation_horizon_s)
-               : held_out       ? "Residual force, held-out rows"
-                                : "Residual force";
-  plot.x = {.label = "Row of the table below", .unit = "", .counts = true};
-  plot.y = {d.is_simulated() ? "Simulation error" : "Residual force",
-            d.is_simulated() ? d.measured_unit : d.force_unit};
-  report::Series series{"the diagram so far", {}, {}, report::Series::Shape::steps};
-  for (const DiagnosisStep& step : d.steps) {
-    series.x.push_back(double(series.x.size() + 1));
-    series.y.push_back(d.is_simulated() ? step.simulation_rmse
-                       : held_out       ? step.held_out_force_rmse
-                                        : step.force_rmse);
-  }
-  series.x.push_back(double(series.x.size() + 1)), series.y.push_back(series.y.back());
-  plot.series.push_back(std::move(series));
-  return plot;
-}
-
-/// Correlation of the prediction errors, before and after.
-report::Plot whiteness(const Diagnosis& d) {
-  report::Plot plot;
-  plot.title = "Whiteness of the prediction errors";
-  plot.x = {"Distance in time", "s"}, plot.y = {"Correlation", ""};
-  plot.series.push_back({"nominal diagram", d.whiteness.lag_s, d.whiteness.before});
-  if (!d.effects.empty())
-    plot.series.push_back({"with the effects found", d.whiteness.lag_s, d.whiteness.after});
-  for (const double side : {-1.0, 1.0})
-    plot.marks.push_back({report::Mark::Along::y, side * d.whiteness.most, ""});
-  plot.caption =
-      "Between the lines are 95 % of the correlations of errors that are white: nothing in them can be "
-      "predicted.";
-  return plot;
 }
 
 /// A column after that of the fitted rows.

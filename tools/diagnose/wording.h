@@ -1,6 +1,7 @@
 /// Formats quantities and lists for text and page of a diagnosis.
 #pragma once
 #include <fmt/format.h>
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -14,6 +15,12 @@ inline std::string shown(double value, const std::string& unit) {
   if (!std::isfinite(value)) return "–";
   const report::Quantity q = report::engineering(value, unit);
   return q.unit.empty() ? q.value : fmt::format("{} {}", q.value, q.unit);
+}
+
+/// The effect's name in the catalogue, as words.
+inline std::string words(std::string name) {
+  std::ranges::replace(name, '_', ' ');
+  return name;
 }
 
 /// "cogging and spring", with " and "

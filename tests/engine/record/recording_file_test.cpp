@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <fstream>
+
 #include "support.h"
 
 namespace loopwright::recording_file_test {
@@ -36,6 +38,31 @@ TEST(RecordingFile, RefusesUnknownExtensionsBeforeWriting) {
     EXPECT_THAT(problems.text(), HasSubstr(".mat"));
   }
   EXPECT_EQ(folder.count_files(), 0u);
+}
+
+/// The size and, within a clock tick of the file system, the times of both files are the same.
+TEST(RecordingFile, AFileThatChangesIsReadAnew) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.csv";
+  for (const double value : {1, 2, 1}) {
+    write_recording(path, {{{"time", "s", {0, 1}}, {"x", "m", {0, value}}}, {}});
+    for (int times = 0; times < 2; ++times) {
+      Problems problems;
+      const Recording recording = read_recording(path, problems);
+      ASSERT_EQ(recording.columns.size(), 2u) << problems.text();
+      EXPECT_EQ(recording.columns[1].values[1], value);
+      EXPECT_EQ(problems.files().size(), 1u) << "its contents belong to the identity of what reads it";
+    }
+  }
+}
+TEST(RecordingFile, WhatOneReaderAcceptsIsStillAnErrorForAnother) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "holes.csv";
+  std::ofstream(path) << "time [s],x [m]\n0,1\n1,\n";
+  Problems accepted, refused;
+  EXPECT_EQ(read_recording(path, accepted, {.allow_holes = true}).columns.size(), 2u);
+  EXPECT_TRUE(read_recording(path, refused).columns.empty());
+  EXPECT_TRUE(refused.has_errors());
 }
 
 TEST(Recording, FindsColumnsByName) {

@@ -115,7 +115,7 @@ std::vector<MissingTerm> missing_terms(const Trials& trials, const InverseDynami
     if (candidate.is_unknown) continue;
     std::vector<Member> others = members;
     others.erase(others.begin() + std::ptrdiff_t(m));
-    MissingTerm term{candidate.name, {}, {}, {}, {}, residual_with(trial, inverse, others), {}, {}};
+    MissingTerm term{candidate.name, {}, {}, {}, {}, residual_with(trial, inverse, others), {}, {}, {}};
     std::vector<double> force(left.size());
     for (size_t k = 0; k < force.size(); ++k) force[k] = term.found[k] - left[k];
     double most = -1;
@@ -132,6 +132,7 @@ std::vector<MissingTerm> missing_terms(const Trials& trials, const InverseDynami
       if (!inverse.motion.counts[k]) term.found[k] = std::nan("");
     for (const auto& [role, port] : role_ports)
       if (role == role_of(candidate)) term.site = port;
+    term.site_unit = units.force;
     terms.push_back(std::move(term));
   }
   return terms;
@@ -150,7 +151,8 @@ Diagnosis::Whiteness whiteness_of(Trials& trials, const Estimate& estimate) {
   return result;
 }
 
-/// The improved diagram; its added blocks have the room "added". Empty if it cannot be compiled.
+}  // namespace
+
 report::Graph picture_of(const Improvement& improved, const LoadOptions& load) {
   Problems problems;
   const Value root = parse_json(improved.file, problems);
@@ -162,8 +164,6 @@ report::Graph picture_of(const Improvement& improved, const LoadOptions& load) {
     if (std::ranges::find(improved.blocks, node.path) != improved.blocks.end()) node.room = "added";
   return graph;
 }
-
-}  // namespace
 
 void add_plots(Trials& trials, const InverseDynamics& first_record, const Acceptance& accepted,
                const Improver& improver, const MachineUnits& units, const LoadOptions& load,

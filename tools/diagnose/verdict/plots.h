@@ -11,4 +11,7 @@ void add_plots(Trials& trials, const InverseDynamics& first_record, const Accept
                const Improver& improver, const MachineUnits& units, const LoadOptions& load,
                Diagnosis& result);
 
+/// The improved diagram; its added blocks have the room "added". Empty if it cannot be compiled.
+report::Graph picture_of(const Improvement& improved, const LoadOptions& load);
+
 }  // namespace loopwright::diagnosis

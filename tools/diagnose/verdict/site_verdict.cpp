@@ -11,6 +11,7 @@
 #include "tools/diagnose/verdict/alike_sites.h"
 #include "tools/diagnose/verdict/site_additions.h"
 #include "tools/diagnose/verdict/site_errors.h"
+#include "tools/diagnose/verdict/site_plots.h"
 #include "tools/diagnose/verdict/site_units.h"
 
 namespace loopwright::diagnosis {
@@ -57,6 +58,7 @@ class Telling {
     result_.additions = site_additions(model_, found_, optional);
     result_.all_additions = site_additions(model_, found_, none);
     judge();
+    add_site_plots(fitted_, search_.nominal, found_, result_);
   }
 
  private:
@@ -212,6 +214,7 @@ class Telling {
     const std::vector<Disturbance> list = disturbances_of(fitted_, found_);
     for (const Disturbance& d : list) {
       const Site& site = model_.sites()[size_t(d.site)];
+      result_.slow_disturbances.push_back({site.name, unit_text(site.unit), d.size, d.share, d.time});
       result_.findings.push_back(
           {fmt::format("a slow disturbance at {}: {}, {:.1f} % of the signal, alike for {:.2g} s", site.name,
                        shown(d.size, unit_text(site.unit)), 100 * d.share, d.time),
