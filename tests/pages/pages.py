@@ -55,6 +55,32 @@ def make_run(pages, diagram, *more):
     return pages.page('run_' + name_of(diagram), 'run', diagram, '-q', *more)
 
 
+def diagnosed_cart(pages):
+    """A cart whose spring the diagram lacks: a diagnosis without roles."""
+    def quantity(value, unit):
+        return {'value': value, 'unit': unit}
+
+    blocks = {
+        'source': {'type': 'Multisine', 'band': {'from': 0.2, 'to': 8, 'count': 12, 'amplitude': quantity(1.5, 'N')}},
+        'push': {'type': 'Gain', 'gain': 1, 'in': {'u': 'source.y'}},
+        'viscous': {'type': 'ViscousFriction', 'damping': '=damping', 'in': {'velocity': 'cart.velocity'}},
+        'forces': {'type': 'Sum', 'signs': '+-', 'in': {'terms': ['push.y', 'viscous.force']}},
+        'cart': {'type': 'Mass', 'mass': '=mass', 'in': {'force': 'forces.sum'}}}
+    nominal = {'loopwright': 1, 'title': 'A cart', 'solver': {'method': 'rk4', 'step': 0.0005, 'stop': 6, 'record_step': 0.002},
+               'parameters': {'damping': quantity(3, 'N*s/m'), 'mass': quantity(1.2, 'kg')}, 'blocks': blocks}
+    plant = nominal | {'parameters': nominal['parameters'] | {'stiffness': quantity(2000, 'N/m^3')}, 'blocks': blocks | {
+        'hum': {'type': 'Noise', 'standard_deviation': quantity(0.05, 'N'), 'sample_time': 0.002},
+        'hardening': {'type': 'Expression', 'formula': 'stiffness*x^3', 'names': ['x'], 'in': {'arguments': ['cart.position']}},
+        'forces': {'type': 'Sum', 'signs': '++--', 'in': {'terms': ['push.y', 'hum.y', 'viscous.force', 'hardening.y']}}}}
+    experiment = {'loopwright': 1, 'title': 'A cart', 'data': 'cart.csv', 'time': 'time', 'hold_out': {'fraction': 0.25},
+                  'drive': {'push.u': {'column': 'source.y', 'unit': 'N', 'interpolation': 'linear'}},
+                  'compare': {'cart.position': {'column': 'cart.position', 'unit': 'm'}}}
+    for name, content in ('plant', plant), ('nominal', nominal), ('cart.experiment', experiment):
+        (pages.folder / f'{name}.json').write_text(json.dumps(content))
+    pages.command('run', pages.folder / 'plant.json', '-q', '-o', pages.folder / 'cart.csv')
+    pages.page('any_diagram', 'diagnose', pages.folder / 'nominal.json', pages.folder / 'cart.experiment.json')
+
+
 def make_few(pages):
     motor = SOURCE / 'diagrams/linear_motor'
     first, second = pages.folder / 'first.csv', pages.folder / 'second.csv'
@@ -66,6 +92,7 @@ def make_few(pages):
     pages.page('look', 'look', first)
     pages.page('linearize', 'linearize', motor / 'conventional.json', '--from', 'stage.command', '--to', 'stage.position',
                '--break', 'stage.command')
+    diagnosed_cart(pages)
     if os.environ.get('LOOPWRIGHT_DATA'):
         emps = SOURCE / 'diagrams/emps'
         pages.page('compare', 'compare', emps / 'nominal.json', emps / 'closed_loop.experiment.json')

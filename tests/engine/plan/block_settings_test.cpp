@@ -66,6 +66,19 @@ TEST(NumbersByElement, CheckUnitsAndRangesOfEachElement) {
   EXPECT_THAT(range, HasSubstr("-2"));
 }
 
+TEST(Numbers, WithAUnitInOneTextAreToldHowTheyAreWritten) {
+  const auto told = [](const char* mass) {
+    return problems_of(diagram(fmt::format(R"("f": {{"type": "Constant", "value": 1}},
+      "m": {{"type": "Mass", "mass": "{}", "in": {{"force": "f.y"}}}})",
+                                           mass)));
+  };
+  EXPECT_THAT(told("1.2 kg"), HasSubstr(R"(written {"value": 1.2, "unit": "kg"})"));
+  EXPECT_THAT(told("80g"), HasSubstr(R"(written {"value": 80, "unit": "g"})"));
+  EXPECT_THAT(told("1.2"), HasSubstr("stands without quotes"));
+  EXPECT_THAT(told("inf kg"), HasSubstr("stands without quotes"));
+  EXPECT_THAT(told("3 apples"), HasSubstr("stands without quotes"));
+}
+
 TEST(NumbersByElement, MustBeAsManyAsTheElementsOfTheWires) {
   const std::string wires = problems_of(diagram(R"("c": {"type": "Constant", "value": [1, 2, 3]},
       "g": {"type": "Gain", "gain": [1, 2], "in": {"u": "c.y"}})"));
