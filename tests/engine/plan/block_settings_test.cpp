@@ -1,4 +1,5 @@
 // Numbers that differ by element, and parameters of the diagram inside formulas.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include "engine/run/run.h"

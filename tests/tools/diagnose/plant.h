@@ -24,6 +24,7 @@ struct Plant {
   std::function<Numbers(const Numbers& x, double u, const Numbers& w)> rate;  ///< w: process noise
   std::function<Numbers(const Numbers& x)> outputs;
   std::function<double(double time)> input;
+  bool draws_lines = false;  ///< the input goes in straight lines between the rows; otherwise it is held
   Numbers initial, process_noise, measurement_noise;
   Numbers slow_noise;  ///< beside the process noise, alike for slow_samples; or empty
   double slow_samples = 60;
@@ -88,10 +89,12 @@ class RecordedPlant {
         slow[i] = kept * slow[i] + std::sqrt(1 - kept * kept) * plant.slow_noise[i] * normal(random);
       }
       const double next = (double(k + 1) + plant.jitter * uniform(random)) * plant.sample_time;
-      const double h = (next - t) / substeps;
+      const double h = (next - t) / substeps, change = plant.draws_lines ? plant.input(next) - u : 0;
       for (int i = 0; i < substeps; ++i) {
-        const Numbers a = plant.rate(x, u, w), b = plant.rate(moved(x, a, h / 2), u, w),
-                      c = plant.rate(moved(x, b, h / 2), u, w), d = plant.rate(moved(x, c, h), u, w);
+        const double begin = u + change * i / substeps, middle = u + change * (i + 0.5) / substeps,
+                     end = u + change * (i + 1) / substeps;
+        const Numbers a = plant.rate(x, begin, w), b = plant.rate(moved(x, a, h / 2), middle, w),
+                      c = plant.rate(moved(x, b, h / 2), middle, w), d = plant.rate(moved(x, c, h), end, w);
         for (size_t s = 0; s < x.size(); ++s) x[s] += h / 6 * (a[s] + 2 * b[s] + 2 * c[s] + d[s]);
       }
       t = next;

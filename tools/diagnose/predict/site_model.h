@@ -102,6 +102,9 @@ class SiteModel {
   /// What was computed along the record.
   Work& work() { return work_; }
 
+  /// Lets a recorded input go in straight lines between its rows, or be held.
+  void draw_lines(size_t input, bool is_linear) { record_.inputs[input].is_linear = is_linear; }
+
   /// Steps of the integration in a sample.
   int substeps() const { return substeps_; }
   void set_substeps(int count) { substeps_ = count; }

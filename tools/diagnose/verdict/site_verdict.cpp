@@ -58,6 +58,7 @@ class Telling {
     result_.additions = site_additions(model_, found_, optional);
     result_.all_additions = site_additions(model_, found_, none);
     judge();
+    question_inputs();
     add_site_plots(fitted_, search_.nominal, found_, result_);
   }
 
@@ -255,6 +256,33 @@ class Telling {
       result_.verdict = Verdict::partly_explained;
     else
       result_.verdict = names ? Verdict::explained : Verdict::nothing_missing;
+  }
+
+  /// How an input went between its rows is a statement of the experiment. Held in the place of lines, or the
+  /// reverse, it acts half a sample later, and terms may stand for that.
+  void question_inputs() {
+    const double needed =
+        std::max(criteria::least_gain_of_other_input,
+                 criteria::least_gain_of_other_input_per_reading * double(model_.record().held_out_from));
+    for (size_t i = 0; i < model_.record().inputs.size(); ++i) {
+      const RecordedInput& input = model_.record().inputs[i];
+      const bool is_linear = input.is_linear;
+      SiteHypothesis other = found_;
+      model_.draw_lines(i, !is_linear);
+      fitted_.refine(other, 4, false), fitted_.fit_noise(other);
+      model_.draw_lines(i, is_linear);
+      if (!(other.objective < found_.objective - needed)) continue;
+      result_.findings.push_back(
+          {fmt::format("{} suits it better {} (-2 ln L falls by {:.0f})", input.port,
+                       is_linear ? "held from row to row than on straight lines between them"
+                                 : "on straight lines between the rows than held",
+                       found_.objective - other.objective),
+           fmt::format(
+               "what was found may stand for the difference; state \"interpolation\": \"{}\" for it in "
+               "the experiment, unless the machine is known to do otherwise",
+               is_linear ? "hold" : "linear"),
+           false, false});
+    }
   }
 
   SiteModel& model_;
