@@ -76,7 +76,7 @@ report::Section sites_staircase(const Diagnosis& d) {
   return section;
 }
 
-report::Section what_remains(const Diagnosis& d) {
+report::Section what_is_left(const Diagnosis& d) {
   report::Section section{"What remains", {}};
   report::KeyNumbers numbers{
       {{"Squared prediction error, fitted", fmt::format("{:.3f}", d.mean_square), "",
@@ -114,7 +114,7 @@ report::Page any_diagram_page(const Diagnosis& d) {
   page.sections.push_back(what_was_found(d));
   if (!d.terms.empty()) page.sections.push_back(terms_at_their_sites(d));
   page.sections.push_back(sites_staircase(d));
-  page.sections.push_back(what_remains(d));
+  page.sections.push_back(what_is_left(d));
   if (!d.picture.nodes.empty()) page.sections.push_back(improved_diagram(d));
   page.sections.push_back(limits(d));
   return page;
