@@ -98,7 +98,7 @@ report::Section limits(const Diagnosis& d) {
         report::Notice{f.is_fatal ? report::Notice::Severity::error : report::Notice::Severity::warning,
                        fmt::format("The record: {}. What it costs: {}.", f.what, f.cost)});
   for (const std::string& sentence : d.not_observable)
-    section.items.push_back(report::Paragraph{sentence + "."});
+    section.items.push_back(report::Paragraph{"Not told apart: " + sentence + "."});
   if (section.items.empty())
     section.items.push_back(report::Paragraph{"All sites of the diagram can be told apart."});
   return section;

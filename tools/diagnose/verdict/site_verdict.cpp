@@ -273,10 +273,9 @@ class Telling {
       model_.draw_lines(i, is_linear);
       if (!(other.objective < found_.objective - needed)) continue;
       result_.findings.push_back(
-          {fmt::format("{} suits it better {} (-2 ln L falls by {:.0f})", input.port,
-                       is_linear ? "held from row to row than on straight lines between them"
-                                 : "on straight lines between the rows than held",
-                       found_.objective - other.objective),
+          {fmt::format("with {} {} it is predicted better than with it {} (-2 ln L falls by {:.0f})",
+                       input.port, is_linear ? "held from row to row" : "on straight lines between the rows",
+                       is_linear ? "on straight lines" : "held", found_.objective - other.objective),
            fmt::format(
                "what was found may stand for the difference; state \"interpolation\": \"{}\" for it in "
                "the experiment, unless the machine is known to do otherwise",
