@@ -140,7 +140,7 @@ TEST_F(Check, OptionsThatChangeNothingAreRefused) {
 TEST_F(Check, AnOptionForTheDiagramIsNoErrorInTheOtherFiles) {
   const std::string servo = root + "/diagrams/projects/servo/";
   const Outcome outcome =
-      run({"check", "--strict-units", root + "/hw/devices/qpid_e.json", servo + "servo.json"});
+      run({"check", "--strict-units", root + "/hw/devices/qpid_e.json", servo + "machine.json"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(run({"check", "--strict-units", root + "/hw/devices/qpid_e.json"}).code, 2);
 }

@@ -10,25 +10,19 @@ using testing::Contains, testing::Field;
 
 double friction(double speed) { return 0.01 * std::tanh(speed / 0.5); }
 
-class SitePlots : public testing::Test {
- protected:
-  static void SetUpTestSuite() {
+const Diagnosis& answer() {
+  static const Diagnosis found = [] {
     Motor m;
     m.torque = [](double speed, double) { return friction(speed); };
     Plant plant = motor(m, 31);
     plant.rows = 1200;
-    answer_ = new Diagnosis(diagnosed(plant));
-  }
-  static void TearDownTestSuite() { delete answer_; }
-  static const Diagnosis& answer() { return *answer_; }
-
- private:
-  static Diagnosis* answer_;
-};
-Diagnosis* SitePlots::answer_ = nullptr;
+    return diagnosed(plant);
+  }();
+  return found;
+}
 
 /// The points come from the errors along the record: where the speed is known, they lie on the true law.
-TEST_F(SitePlots, PointsLieOnTheTrueLawAndTheShapeGoesThroughThem) {
+TEST(SitePlots, PointsLieOnTheTrueLawAndTheShapeGoesThroughThem) {
   ASSERT_EQ(answer().terms.size(), 1u) << to_text(answer());
   const MissingTerm& term = answer().terms.front();
   EXPECT_EQ(term.site, "torques.sum");
@@ -46,7 +40,7 @@ TEST_F(SitePlots, PointsLieOnTheTrueLawAndTheShapeGoesThroughThem) {
     EXPECT_NEAR(term.shape[i], -friction(term.shape_at[i]), 0.2 * 0.01) << term.shape_at[i];
 }
 
-TEST_F(SitePlots, ErrorsBecomeWhite) {
+TEST(SitePlots, ErrorsBecomeWhite) {
   const Diagnosis::Whiteness& w = answer().whiteness;
   ASSERT_EQ(w.lag_s.size(), 40u);
   EXPECT_DOUBLE_EQ(w.lag_s.front(), 1e-3);
@@ -57,7 +51,7 @@ TEST_F(SitePlots, ErrorsBecomeWhite) {
   EXPECT_GT(outside(w.before), outside(w.after));
 }
 
-TEST_F(SitePlots, ThePictureMarksTheAddedBlock) {
+TEST(SitePlots, ThePictureMarksTheAddedBlock) {
   EXPECT_THAT(answer().picture.nodes, Contains(Field(&report::GraphNode::room, "added")));
 }
 
