@@ -4,6 +4,8 @@
 
 namespace loopwright::diagnosis {
 
+/// ρ of the whitened errors of an output at one to criteria::portmanteau_lags lags, in the first rows.
+std::vector<double> correlations_of(const SitePass& pass, size_t output, size_t rows);
 /// n Σ ρ² of the whitened errors of an output over criteria::portmanteau_lags lags, in the first rows; near
 /// the number of lags when white.
 double portmanteau_of(const SitePass& pass, size_t output, size_t rows);

@@ -1,7 +1,7 @@
 #include "tools/diagnose/verdict/site_plots.h"
 #include <algorithm>
 #include <cmath>
-#include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/site_whiteness.h"
 #include "tools/diagnose/verdict/site_units.h"
 
 namespace loopwright::diagnosis {
@@ -14,27 +14,13 @@ constexpr double most_deviation = 0.3;
 /// [of the strongest] Response of a node that the record tells at all.
 constexpr double least_response = 1e-3;
 
-/// Of the whitened errors of the first output, at one to forty rows.
-std::vector<double> correlations(const SitePass& pass) {
-  std::vector<double> e, list;
-  for (size_t at = 0; at < pass.error.size(); at += pass.outputs)
-    if (!std::isnan(pass.error[at])) e.push_back(pass.error[at] / std::sqrt(pass.variance[at]));
-  double square = 0;
-  for (double x : e) square += x * x;
-  for (size_t lag = 1; lag <= criteria::portmanteau_lags && lag < e.size(); ++lag) {
-    double product = 0;
-    for (size_t k = lag; k < e.size(); ++k) product += e[k] * e[k - lag];
-    list.push_back(square > 0 ? product / square : 0);
-  }
-  return list;
-}
-
 /// With the noise of the answer, so that both are judged alike.
 void add_whiteness(SiteFitter& fitter, SiteHypothesis nominal, SiteHypothesis found, Diagnosis& result) {
   SitePass before, after;
   nominal.noise = found.noise;
   if (!fitter.pass(nominal, false, before) || !fitter.pass(found, false, after)) return;
-  result.whiteness.before = correlations(before), result.whiteness.after = correlations(after);
+  result.whiteness.before = correlations_of(before, 0, before.rows);
+  result.whiteness.after = correlations_of(after, 0, after.rows);
   for (size_t lag = 1; lag <= result.whiteness.after.size(); ++lag)
     result.whiteness.lag_s.push_back(double(lag) * fitter.model().record().sample_time);
   result.whiteness.most = 1.96 / std::sqrt(double(after.rows));
