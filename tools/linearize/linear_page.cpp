@@ -57,7 +57,7 @@ report::Section responses(const LinearAnalysis& analysis) {
     for (size_t o = 0; o < analysis.system.outputs.size(); ++o) {
       const std::string name = fmt::format("{} → {}", analysis.system.inputs[i], analysis.system.outputs[o]);
       Bode bode(gain_unit(analysis, i, o));
-      bode.gain.title = name;
+      bode.gain.title = "Gain of " + name, bode.phase.title = "Phase of " + name;
       bode.add("linearized", analysis.frequency, channel_response(analysis, Index(i), Index(o)));
       if (i == 0 && o == 0 && !analysis.measured.empty()) {
         std::vector<double> frequency;
@@ -134,7 +134,8 @@ report::Section loop_section(const LoopAnalysis& loop) {
     numbers.numbers.push_back({"Ms", fmt::format("{:.3g}", m.Ms), "", at(m.Ms_frequency)});
   section.items.push_back(std::move(numbers));
   Bode bode("");
-  bode.gain.title = "Loop gain L";
+  bode.gain.title = "Gain of the loop L and of its sensitivity";
+  bode.phase.title = "Phase of the loop L";
   bode.add("L", loop.frequency, loop.response);
   if (std::vector<double>& phase = bode.phase.series[0].y; !phase.empty() && phase[0] > 0)
     for (double& value : phase) value -= 360;  // loops lag
@@ -187,6 +188,9 @@ report::Plot pole_plot(const LinearAnalysis& analysis) {
   report::Plot plot;
   const char* plane = analysis.is_sampled() ? "z" : "s";
   const char* unit = analysis.is_sampled() ? "" : "1/s";
+  plot.title = fmt::format("Poles and transmission zeros in the {} plane", plane);
+  plot.caption =
+      analysis.is_sampled() ? "Poles inside the circle are stable." : "Poles on the left are stable.";
   plot.x = {fmt::format("Re {}", plane), unit, false}, plot.y = {fmt::format("Im {}", plane), unit, false};
   Series poles{"poles", {}, {}, Series::Shape::points};
   for (const Pole& pole : analysis.poles)
