@@ -8,7 +8,7 @@
 namespace loopwright::any_diagram_answer_test {
 namespace {
 
-using testing::HasSubstr, testing::Not;
+using testing::ContainsRegex, testing::HasSubstr, testing::Not;
 
 std::string text_of(const std::string& file) {
   std::ifstream in(file);
@@ -51,7 +51,8 @@ TEST(AnyDiagramAnswer, RolesDecideWhichPathADiagnosisTakes) {
 TEST(AnyDiagramAnswer, SeveralRecordsNeedRolesInEachOfThemOrInNone) {
   const RecordedAxis axis(axis_with_friction());
   const std::string other = without_roles(axis);
-  EXPECT_THAT(refusal(axis.diagram(), {axis.experiment(), other}), HasSubstr("1 of 2 experiments name roles"));
+  EXPECT_THAT(refusal(axis.diagram(), {axis.experiment(), other}),
+              HasSubstr("1 of 2 experiments name roles"));
   EXPECT_THAT(refusal(axis.diagram(), {other, other}), HasSubstr("this record is used already"));
 }
 
@@ -87,7 +88,7 @@ TEST(AnyDiagramAnswer, JsonTextAndPageNameSiteVariableAndMovedParameter) {
   for (const char* part : {"What does the diagram lack?", "balance1.sum", "level1.y", "second_outlet",
                            "The staircase of the error"})
     EXPECT_THAT(page, HasSubstr(part));
-  EXPECT_THAT(page, Not(HasSubstr("NaN")));
+  EXPECT_THAT(page, Not(ContainsRegex("[ >(]NaN")));  // numbers of plots are encoded, and may spell it
 }
 TEST(AnyDiagramAnswer, AnAxisKeepsItsKeys) {
   const RecordedAxis axis(axis_with_friction());

@@ -76,6 +76,7 @@ class SiteSearch {
       add_terms(at);
     }
     exchange(at);
+    simplify(at);
     if (leaves_something(at)) merge_stacked_names(at, 1);
     add_unknown(at);
     remove_idle(at);
@@ -289,6 +290,22 @@ class SiteSearch {
           result_.rivals.push_back({t, other.terms.back(), worse});
         }
       }
+    }
+  }
+
+  /// Dry friction that does not fall with the speed, at the width that was found: by itself that law may have
+  /// been fitted from a worse one.
+  void simplify(SiteHypothesis& at) {
+    const auto sign = std::ranges::find(fitter_.shapes(), "sign", &TermShape::name);
+    for (size_t t = 0; t < at.terms.size() && sign != fitter_.shapes().end(); ++t) {
+      if (at.terms[t].shape->name != "stribeck") continue;
+      SiteHypothesis simple = at;
+      simple.terms[t].shape = &*sign;
+      fitter_.refine(simple, 6, true);
+      fitter_.fit_noise(simple);
+      if (!(criterion(simple) < criterion(at))) continue;
+      tell("simpler: " + describe(model(), simple.terms[t]), simple);
+      at = std::move(simple);
     }
   }
 
