@@ -26,7 +26,7 @@ report::Section terms_at_their_sites(const Diagnosis& d) {
     report::Plot plot;
     plot.title = fmt::format("{} at {}, over {}", words(term.effect), term.site,
                              d.has_roles ? lower(term.variable) : term.variable);
-    plot.x = {term.variable, term.unit},
+    plot.x = {term.variable, term.unit};
     plot.y = {d.has_roles ? "Missing force" : "Missing term", term.site_unit};
     plot.series.push_back({"left by all others", term.at, term.found, report::Series::Shape::points});
     plot.series.push_back({words(term.effect), term.shape_at, term.shape});

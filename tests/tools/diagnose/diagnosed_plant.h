@@ -18,4 +18,18 @@ inline Diagnosis diagnosed(const Plant& plant) {
   return d;
 }
 
+/// "site: effect(variables)" of everything found.
+inline std::vector<std::string> terms(const Diagnosis& d) {
+  std::vector<std::string> list;
+  for (const DiagnosedEffect& e : d.effects)
+    list.push_back(fmt::format("{}: {}({})", e.site, e.name, fmt::join(e.variables, ", ")));
+  return list;
+}
+/// Of the record, with what each costs.
+inline std::vector<std::string> findings(const Diagnosis& d) {
+  std::vector<std::string> list;
+  for (const RecordFinding& f : d.findings) list.push_back(f.what + "; " + f.cost);
+  return list;
+}
+
 }  // namespace loopwright

@@ -20,25 +20,20 @@ Plant shaken(bool draws_lines, bool says_lines) {
   if (says_lines) plant.drive = R"("shaker.u": {"column": "u", "unit": "N", "interpolation": "linear"})";
   return plant;
 }
-std::vector<std::string> costs(const Diagnosis& d) {
-  std::vector<std::string> list;
-  for (const RecordFinding& f : d.findings) list.push_back(f.cost);
-  return list;
-}
 
 TEST(InputBetweenRows, LinesThatAreReadAsHeldAreTold) {
   const Diagnosis d = diagnosed(shaken(true, false));
-  EXPECT_THAT(costs(d), Contains(HasSubstr(R"("interpolation": "linear")"))) << to_text(d);
+  EXPECT_THAT(findings(d), Contains(HasSubstr(R"("interpolation": "linear")"))) << to_text(d);
 }
 TEST(InputBetweenRows, AHeldInputThatIsReadAsLinesIsTold) {
   const Diagnosis d = diagnosed(shaken(false, true));
-  EXPECT_THAT(costs(d), Contains(HasSubstr(R"("interpolation": "hold")"))) << to_text(d);
+  EXPECT_THAT(findings(d), Contains(HasSubstr(R"("interpolation": "hold")"))) << to_text(d);
 }
 TEST(InputBetweenRows, WhatIsStatedRightlyIsNotQuestioned) {
   for (const bool lines : {false, true}) {
     const Diagnosis d = diagnosed(shaken(lines, lines));
     EXPECT_EQ(d.verdict, Verdict::nothing_missing) << to_text(d);
-    EXPECT_THAT(costs(d), Not(Contains(HasSubstr("interpolation")))) << to_text(d);
+    EXPECT_THAT(findings(d), Not(Contains(HasSubstr("interpolation")))) << to_text(d);
   }
 }
 

@@ -10,18 +10,6 @@ namespace {
 
 using testing::Contains, testing::HasSubstr, testing::IsEmpty;
 
-std::vector<std::string> terms(const Diagnosis& d) {
-  std::vector<std::string> list;
-  for (const DiagnosedEffect& e : d.effects)
-    list.push_back(fmt::format("{}: {}({})", e.site, e.name, fmt::join(e.variables, ", ")));
-  return list;
-}
-std::vector<std::string> findings(const Diagnosis& d) {
-  std::vector<std::string> list;
-  for (const RecordFinding& f : d.findings) list.push_back(f.what + "; " + f.cost);
-  return list;
-}
-
 /// Two tanks of which only the lower level is measured.
 Plant lower_tank_only(const Tanks& m, uint64_t seed) {
   Plant plant = tanks(m, seed);

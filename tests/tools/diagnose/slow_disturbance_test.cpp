@@ -9,16 +9,10 @@ namespace {
 using testing::AnyOf, testing::Contains, testing::ElementsAre, testing::HasSubstr, testing::IsEmpty,
     testing::Not;
 
+/// Terms and moved parameters.
 std::vector<std::string> answer(const Diagnosis& d) {
-  std::vector<std::string> list;
-  for (const DiagnosedEffect& e : d.effects)
-    list.push_back(fmt::format("{}: {}({})", e.site, e.name, fmt::join(e.variables, ", ")));
+  std::vector<std::string> list = terms(d);
   for (const MovedParameter& p : d.moved_parameters) list.push_back(p.name);
-  return list;
-}
-std::vector<std::string> findings(const Diagnosis& d) {
-  std::vector<std::string> list;
-  for (const RecordFinding& f : d.findings) list.push_back(f.what + "; " + f.cost);
   return list;
 }
 

@@ -61,6 +61,15 @@ std::vector<std::string> named_in(const SiteModel& model, const SiteHypothesis& 
   return list;
 }
 
+/// One of two answers, with the trails of both.
+SiteSearchResult one_of(SiteSearchResult first, SiteSearchResult second, bool takes_second) {
+  std::vector<std::string> trail = std::move(first.trail);
+  std::ranges::move(second.trail, std::back_inserter(trail));
+  SiteSearchResult answer = std::move(takes_second ? second : first);
+  answer.trail = std::move(trail);
+  return answer;
+}
+
 /// -2 ln L with the price of every number, those of the slow noise included.
 double criterion_with_noise(SiteFitter& fitter, SiteHypothesis h) {
   SitePass pass;
@@ -99,13 +108,9 @@ SiteSearchResult beside_disturbances(SiteFitter& fitter, SiteSearchResult first,
   const double before = criterion_with_noise(fitter, first.found),
                after = criterion_with_noise(fitter, second->found);
   const bool is_answer = after < before && leaves_white_errors(fitter, second->found);
-  std::vector<std::string> trail = std::move(first.trail);
-  std::ranges::move(second->trail, std::back_inserter(trail));
-  trail.push_back(
+  second->trail.push_back(
       fmt::format("criterion {:.1f} without slow disturbances, {:.1f} beside them", before, after));
-  SiteSearchResult answer = std::move(is_answer ? *second : first);
-  answer.trail = std::move(trail);
-  return answer;
+  return one_of(std::move(first), std::move(*second), is_answer);
 }
 
 }  // namespace
@@ -122,15 +127,13 @@ std::optional<SiteSearchResult> search_with_second_opinion(
   first->trail.push_back("again by simulation: noise in the states could explain anything");
   std::optional<SiteSearchResult> second = search_sites(fitter, progress, ErrorsOf::simulation);
   if (!second || fitter.is_interrupted()) return first;
-  std::vector<std::string> trail = std::move(first->trail);
-  std::ranges::move(second->trail, std::back_inserter(trail));
   const auto of_first = simulation_errors(fitter, first->found),
              of_second = simulation_errors(fitter, second->found);
   const bool is_answer = of_second && (!of_first || is_clearly_better(*of_second, *of_first));
   for (const auto& [name, errors] : {std::pair{"predictions", of_first}, {"simulation", of_second}})
-    trail.push_back(errors ? fmt::format("answer by {}: simulation misses the first output by {:.4g}", name,
-                                         errors->judged()[0])
-                           : fmt::format("answer by {} diverges in simulation", name));
+    second->trail.push_back(errors ? fmt::format("answer by {}: simulation misses the first output by {:.4g}",
+                                                 name, errors->judged()[0])
+                                   : fmt::format("answer by {} diverges in simulation", name));
   SecondOpinion opinion{noisy, unmeasured, is_answer,
                         named_in(fitter.model(), (is_answer ? first : second)->found)};
   if (const auto& errors = is_answer ? of_second : of_first) opinion.error = errors->judged()[0];
@@ -139,8 +142,8 @@ std::optional<SiteSearchResult> search_with_second_opinion(
                            own = named_in(fitter.model(), (is_answer ? second : first)->found);
   std::ranges::sort(other), std::ranges::sort(own);
   opinion.agrees = other == own;
-  SiteSearchResult answer = std::move(is_answer ? *second : *first);
-  answer.trail = std::move(trail), answer.second_opinion = std::move(opinion);
+  SiteSearchResult answer = one_of(std::move(*first), std::move(*second), is_answer);
+  answer.second_opinion = std::move(opinion);
   return answer;
 }
 
