@@ -73,7 +73,8 @@ TEST(SweepProgram, SharesRunsAmongRanksAndGivesTheTableOfOneProcess) {
             content(folder.results("one") + "/results.csv"));
 }
 
-// The rank ends itself as soon as it has written a block; mpirun then ends the others.
+// The rank is killed as soon as it has written a block; mpirun then ends the others. The ranks give way to
+// who watches. On a busy computer he may come too late all the same: then he tries again.
 TEST(SweepProgram, MakesWhatAKilledRankLeftAndGivesTheSameTable) {
   if (exit_code("command -v mpirun") != 0) GTEST_SKIP() << "mpirun is not installed";
   const SweepFolder folder(R"("mass.mass": {"linear": {"from": 0.5, "to": 2, "count": 10000}})",
@@ -82,12 +83,18 @@ TEST(SweepProgram, MakesWhatAKilledRankLeftAndGivesTheSameTable) {
                     shard = folder.results() + "/runs_0_of_1_rank_2.shard";
   const std::string killed = fmt::format(
       "[ $OMPI_COMM_WORLD_RANK = 2 ] && (until [ $(stat -c %s {0} 2>/dev/null || echo 0) -gt 200 ]; do sleep "
-      "0.002; done; kill -9 $$) & exec {1} sweep {2} -o {3} -j 1 --lanes scalar",
+      "0.002; done; kill -9 $$) & exec nice -n 19 {1} sweep {2} -o {3} -j 1 --lanes scalar",
       shard, program, file, folder.results());
-  EXPECT_NE(exit_code(fmt::format("{} sh -c '{}'", four_ranks, killed)), 0);
   const SweepPlan plan = folder.plan();
-  const SweepResults left = read_results(plan, folder.results());
+  SweepResults left;
+  int code = 0;
+  for (int attempt = 0; attempt < 10 && left.missing == 0; ++attempt) {
+    std::filesystem::remove_all(folder.results());
+    code = exit_code(fmt::format("{} sh -c '{}'", four_ranks, killed));
+    left = read_results(plan, folder.results());
+  }
   EXPECT_GT(left.missing, 0);
+  EXPECT_NE(code, 0);
   EXPECT_GT(left.table.rows(), 0u);
   ASSERT_EQ(exit_code(fmt::format("{} {} sweep {} -o {} -j 1 --resume", four_ranks, program, file,
                                   folder.results())),
