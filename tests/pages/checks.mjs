@@ -10,7 +10,7 @@ export function smallTexts(least) {
     if (!text || ["SCRIPT", "STYLE", "NOSCRIPT", "TITLE", "title"].includes(parent.tagName)) continue;
     if (!parent.checkVisibility?.({ visibilityProperty: true }) || parent.getClientRects().length === 0) continue;
     let size = parseFloat(getComputedStyle(parent).fontSize);
-    if (parent.ownerSVGElement) size *= parent.getScreenCTM().a;
+    if (parent.ownerSVGElement) { const m = parent.getScreenCTM(); size *= Math.hypot(m.a, m.b); }  // turned texts, too
     if (size < least - 0.01) found.push(`"${text.slice(0, 40)}" is ${size.toFixed(1)} px`);
   }
   return found.slice(0, 10);
