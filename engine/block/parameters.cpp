@@ -1,10 +1,10 @@
 #include "engine/block/parameters.h"
 #include "models/real/whole.h"
 #include <fmt/format.h>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include "engine/json/matrix_form.h"
+#include "engine/json/stated_number.h"
 #include "engine/json/take_unit.h"
 
 namespace loopwright {
@@ -73,16 +73,6 @@ static std::string range_text(const Range& r) {
   if (r.low == -infinity) return fmt::format("at most {}", r.high);
   return fmt::format("{} {} and at most {}", r.low_is_open ? "above" : "at least", r.low, r.high);
 }
-/// In the place of a number: what the user probably meant.
-static std::string hint_for_text(std::string_view text) {
-  double value = 0;
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-  std::string_view unit(end, size_t(text.data() + text.size() - end));
-  unit.remove_prefix(std::min(unit.size(), unit.find_first_not_of(' ')));
-  if (code == std::errc() && std::isfinite(value) && !unit.empty() && parse_unit(unit))
-    return fmt::format(R"(a number with a unit is written {{"value": {}, "unit": "{}"}})", value, unit);
-  return "a number stands without quotes; an expression starts with '=', as in \"=2*pi*40\"";
-}
 static bool wrong_kind(const Value& v, std::string expected, const std::string& block, Problems& problems,
                        std::string_view sentence = {}) {
   if (v.is_broken) return false;  // reported when it was loaded
@@ -90,7 +80,7 @@ static bool wrong_kind(const Value& v, std::string expected, const std::string& 
   p.expected = std::move(expected);
   p.found = kind_of(v);
   p.hint = sentence;
-  if (v.kind == Value::Kind::text && p.expected.starts_with("a number")) p.hint = hint_for_text(v.text);
+  if (v.kind == Value::Kind::text && p.expected.starts_with("a number")) p.hint = hint_for_quoted_number(v.text);
   return false;
 }
 

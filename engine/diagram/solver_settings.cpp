@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include "engine/diagram/names_elsewhere.h"
+#include "engine/json/stated_number.h"
 
 namespace loopwright {
 namespace {
@@ -71,9 +72,12 @@ class SettingsReader {
 
   bool is_number(const Value& value, std::string_view key, const Unit& unit) {
     if (value.kind != Value::Kind::number) {
-      const std::string expected =
-          unit == Unit{} ? "a number" : fmt::format("a number in {}", to_string(unit));
-      return reader_.expect(value, Value::Kind::number, fmt::format("\"{}\"", key), expected);
+      if (value.is_broken) return false;  // reported when it was loaded
+      Problem& problem = reader_.error(value, fmt::format("\"{}\" is of the wrong kind", key));
+      problem.expected = unit == Unit{} ? "a number" : fmt::format("a number in {}", to_string(unit));
+      problem.found = shown(value);
+      if (value.kind == Value::Kind::text) problem.hint = hint_for_quoted_number(value.text);
+      return false;
     }
     if (!value.unit || value.unit->fits(unit)) return true;
     // The period 1/f of a frequency in Hz, or 2*pi/w of one in rad/s, is a time for each cycle.

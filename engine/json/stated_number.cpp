@@ -59,6 +59,13 @@ std::optional<StatedNumber> number_and_unit(const std::string& text) {
   return unit ? std::optional(with_unit(number, *unit, unit_text)) : std::nullopt;
 }
 
+std::string hint_for_quoted_number(const std::string& text) {
+  if (const auto stated = number_and_unit(text); stated && !stated->unit_text.empty())
+    return fmt::format(R"(a number with a unit is written {{"value": {}, "unit": "{}"}})", stated->number,
+                       stated->unit_text);
+  return "a number stands without quotes; an expression starts with '=', as in \"=2*pi*40\"";
+}
+
 std::optional<StatedNumber> stated_number(const Value& value, std::string_view what, const Reader& reader,
                                           double low) {
   auto stated = of_value(value, what, reader);

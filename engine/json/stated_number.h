@@ -24,6 +24,9 @@ extern const std::string_view stated_number_form;
 /// "25 mm"; nothing if the text is not a number and a unit.
 std::optional<StatedNumber> number_and_unit(const std::string& text);
 
+/// For text in the place of a number that takes a unit only as an object: what the user probably meant.
+std::string hint_for_quoted_number(const std::string& text);
+
 /// The number in the value; nothing after a problem. `low` is the least number that is allowed.
 std::optional<StatedNumber> stated_number(const Value& value, std::string_view what, const Reader& reader,
                                           double low = -Reader::infinity);

@@ -11,6 +11,7 @@ std::string to_json(const Diagnosis& d) {
     nlohmann::ordered_json entry{{"effect", effect.name}};
     if (!effect.form.empty()) entry["form"] = effect.form;
     if (!d.has_roles) entry["site"] = effect.site, entry["variables"] = effect.variables;
+    entry["parameters"] = nlohmann::ordered_json::object();  // of a function without a name: none
     for (const DiagnosedParameter& p : effect.parameters) {
       entry["parameters"][p.name] = {{"value", p.value}, {"unit", p.unit}, {"low", p.low}, {"high", p.high}};
       if (p.times_a_turn > 0) entry["parameters"][p.name]["times_a_turn"] = p.times_a_turn;
@@ -65,7 +66,8 @@ std::string to_json(const Diagnosis& d) {
   json["noise"] = {{"white_force", d.white_force},
                    {"slow_force", d.slow_force},
                    {"slow_force_time_s", d.slow_force_time_s},
-                   {"measurement", d.measurement_noise}};
+                   {"measurement", d.measurement_noise},
+                   {"slow_disturbances", nlohmann::ordered_json::array()}};
   for (const SlowDisturbance& slow : d.slow_disturbances)
     json["noise"]["slow_disturbances"].push_back({{"site", slow.site},
                                                   {"size", slow.size},

@@ -173,7 +173,7 @@ report::Table pole_table(const LinearAnalysis& analysis) {
     if (pole.value.imag() < 0) continue;
     const bool finite = std::isfinite(pole.frequency) && pole.frequency > 0;
     table.rows.push_back({pole.value.imag() > 0
-                              ? fmt::format("{:.6f} ± {:.6f} j", pole.value.real(), pole.value.imag())
+                              ? fmt::format("{:.6g} ± {:.6g} j", pole.value.real(), pole.value.imag())
                               : fmt::format("{:.6g}", pole.value.real()),
                           finite ? fmt::format("{:.4g}", pole.frequency / (2 * pi)) : "",
                           finite ? fmt::format("{:.4f}", pole.damping) : "",

@@ -152,7 +152,12 @@ TEST(DiagramErrors, Solver) {
        "0 to 2^53\n  found: the number 1.5\n1 error"},
       {R"("solver": {"stop": "1"})",
        "top.json:2:20: error: \"stop\" is of the wrong kind\n  at: /solver/stop\n  expected: a number in s\n "
-       " found: the text \"1\"\n1 error"},
+       " found: the text \"1\"\n  hint: a number stands without quotes; an expression starts with '=', as "
+       "in \"=2*pi*40\"\n1 error"},
+      {R"("solver": {"step": "0.5 ms"})",
+       "top.json:2:20: error: \"step\" is of the wrong kind\n  at: /solver/step\n  expected: a number in s\n "
+       " found: the text \"0.5 ms\"\n  hint: a number with a unit is written {\"value\": 0.5, \"unit\": "
+       "\"ms\"}\n1 error"},
   });
 }
 

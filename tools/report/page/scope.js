@@ -46,7 +46,7 @@ function options(plot, width) {
   return {
     width, height: plot.equal ? Math.min(SQUARE_HEIGHT, Math.max(HEIGHT, width)) : HEIGHT - (plot.continues ? 44 : 0),
     legend: { show: false },
-    padding: [8, 14, 0, 0],
+    padding: [8, plot.x.logarithmic ? 20 : 14, 0, 0],  // half of the last number, which may be 10000
     scales: {
       x: { time: false, distr: plot.x.logarithmic ? 3 : 1, range: range.x },
       y: { distr: plot.y.logarithmic ? 3 : 1, range: range.y },
