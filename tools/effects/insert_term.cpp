@@ -141,12 +141,14 @@ class TermInserter {
                    : fmt::format(R"(, "in": {{"{}": "{}"}})", term_.input, wires[0]);
     }
     add_block(base_, term_.settings + in);
+    std::string acts = base_ + "." + term_.output;
+    if (term_.is_change) acts = add_sum(base_ + "_change", "+-", acts, wires[0]);
     const std::string parameter = switch_of(base_);
     parameters_.add(level_, parameter, 1, "", term_.title + ": 1; 0 takes it out");
     inserted_.taken_out_by.push_back(joined(level_.prefix, parameter));
     share_ =
-        add_block(base_ + "_share", fmt::format(R"("type": "Gain", "gain": "={}", "in": {{"u": "{}.{}"}})",
-                                                parameter, base_, term_.output)) +
+        add_block(base_ + "_share",
+                  fmt::format(R"("type": "Gain", "gain": "={}", "in": {{"u": "{}"}})", parameter, acts)) +
         ".y";
   }
 

@@ -16,6 +16,7 @@ struct Term {
   std::vector<std::string> reads;   ///< a port, or two of which the second is subtracted; none: a constant
   std::string settings;             ///< of the block, with its type, as JSON members
   std::string input, output = "y";  ///< its ports; the input is a list if it ends with "[]"
+  bool is_change = false;           ///< what acts is the output minus what the block reads
 };
 
 /// What earlier insertions changed in a diagram. Ports are those of the diagram as it was.

@@ -1,8 +1,9 @@
 #include "tools/gp/surface_picture.h"
-#include "models/real/whole.h"
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include "models/real/whole.h"
+#include "tools/report/typography.h"
 
 namespace loopwright {
 namespace {
@@ -95,7 +96,8 @@ report::Picture surface_picture(const gp::MeanTable& mean, const gp::Samples& sa
   for (double y : samples.labels) widen(y);
 
   std::string svg = fmt::format(
-      "<svg viewBox=\"0 0 {} {}\" xmlns=\"http://www.w3.org/2000/svg\" role=\"img\">\n", width, height);
+      "<svg viewBox=\"0 0 {} {}\" style=\"min-width:{}px\" xmlns=\"http://www.w3.org/2000/svg\" role=\"img\">\n",
+      width, height, report::least_scale * width);
   add_axes(svg, view, options.label_unit);
   // From back to front, rows of the mesh and the samples between them.
   for (int j = cells_v - 1; j >= 0; --j) {

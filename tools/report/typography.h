@@ -12,6 +12,10 @@ std::string escape_html(std::string_view text);
 /// A JSON string with its quotes that is also harmless inside a <script> element.
 std::string json_string(std::string_view text);
 
+/// Pictures shrink with the page to this share of their size, then they scroll: their text (12 px) could not
+/// be read any more.
+inline constexpr double least_scale = 0.9;
+
 /// "N*s/m" → "N·s/m", "m/s^2" → "m/s²", "um" → "µm", "ohm" → "Ω", "1" → "".
 std::string readable_unit(std::string_view unit);
 

@@ -51,8 +51,8 @@ class Drawing {
   }
 
   std::string svg() {
-    text = fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" style=\"max-width:{}px\">", width, height,
-                       width);
+    text = fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" style=\"max-width:{}px;min-width:{}px\">", width,
+                       height, width, least_scale * width);
     floor();
     for (size_t j = w.y_values.size(); j-- > 0;) {  // from the back to the front
       curve(j);

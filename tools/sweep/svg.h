@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <string>
 #include <string_view>
+#include "tools/report/typography.h"
 
 namespace loopwright::svg {
 
@@ -17,15 +18,11 @@ inline std::string line(double x1, double y1, double x2, double y2, std::string_
   return fmt::format(R"(<line x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}" {}/>)", x1, y1, x2, y2, more);
 }
 
-/// Pictures shrink with the page to this share of their size; then they scroll, because their text (12 px)
-/// could not be read any more.
-inline constexpr double least_scale = 0.9;
-
 /// The whole picture; it scales down with the page.
 inline std::string picture(double width, double height, const std::string& inside) {
   return fmt::format(
       R"(<svg viewBox="0 0 {0:.0f} {1:.0f}" width="{0:.0f}" style="max-width:100%;min-width:{2:.0f}px" font-size="12" fill="currentColor" role="img">{3}</svg>)",
-      width, height, width * least_scale, inside);
+      width, height, width * report::least_scale, inside);
 }
 
 }  // namespace loopwright::svg

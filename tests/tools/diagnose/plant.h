@@ -24,6 +24,7 @@ struct Plant {
   std::function<Numbers(const Numbers& x, double u, const Numbers& w)> rate;  ///< w: process noise
   std::function<Numbers(const Numbers& x)> outputs;
   std::function<double(double time)> input;
+  double delay = 0;          ///< s; the input acts so much later than it is recorded
   bool draws_lines = false;  ///< the input goes in straight lines between the rows; otherwise it is held
   Numbers initial, process_noise, measurement_noise;
   Numbers slow_noise;  ///< beside the process noise, alike for slow_samples; or empty
@@ -90,9 +91,12 @@ class RecordedPlant {
       }
       const double next = (double(k + 1) + plant.jitter * uniform(random)) * plant.sample_time;
       const double h = (next - t) / substeps, change = plant.draws_lines ? plant.input(next) - u : 0;
+      const auto acting = [&](double part) {  // of the sample
+        return plant.delay > 0 ? late_input(plant, t + part * (next - t)) : u + change * part;
+      };
       for (int i = 0; i < substeps; ++i) {
-        const double begin = u + change * i / substeps, middle = u + change * (i + 0.5) / substeps,
-                     end = u + change * (i + 1) / substeps;
+        const double begin = acting(double(i) / substeps), middle = acting((i + 0.5) / substeps),
+                     end = acting(double(i + 1) / substeps);
         const Numbers a = plant.rate(x, begin, w), b = plant.rate(moved(x, a, h / 2), middle, w),
                       c = plant.rate(moved(x, b, h / 2), middle, w), d = plant.rate(moved(x, c, h), end, w);
         for (size_t s = 0; s < x.size(); ++s) x[s] += h / 6 * (a[s] + 2 * b[s] + 2 * c[s] + d[s]);
@@ -100,6 +104,14 @@ class RecordedPlant {
       t = next;
     }
     return text + "\n";
+  }
+
+  /// Before the record it is as at its start.
+  static double late_input(const Plant& plant, double time) {
+    const double row = std::max(0.0, (time - plant.delay) / plant.sample_time), before = std::floor(row);
+    const double u = plant.input(before * plant.sample_time);
+    if (!plant.draws_lines) return u;
+    return u + (row - before) * (plant.input((before + 1) * plant.sample_time) - u);
   }
 
   std::filesystem::path folder_;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include "engine/block.h"
 #include "engine/json/reader.h"
 #include "engine/run/run.h"
@@ -158,6 +159,21 @@ void SiteModel::add_sensors(const Plan& plan) {
   }
 }
 
+int SiteModel::input_of(int site) const {
+  const Site& place = sites_[size_t(site)];
+  if (place.kind != Site::Kind::input) return -1;
+  const auto found = std::ranges::find(record_.inputs, place.own_signal, &RecordedInput::port);
+  return found == record_.inputs.end() ? -1 : int(found - record_.inputs.begin());
+}
+
+InputLines SiteModel::change_of_input(const SiteTerm& term) const {
+  const InputLines recorded = lines_of(record_, record_.inputs[size_t(input_of(term.site))]);
+  InputLines change = term.shape->late(record_, recorded, term.nonlinear[0], term.nonlinear[1]);
+  for (size_t k = 0; k < change.size(); ++k)
+    change[k].value -= recorded[k].value, change[k].slope -= recorded[k].slope;
+  return change;
+}
+
 int SiteModel::output_of_sensor(int site) const {
   const auto found = std::ranges::find(sensor_sites_, size_t(site));
   return found == sensor_sites_.end() ? -1 : int(found - sensor_sites_.begin());
@@ -211,6 +227,7 @@ void SiteModel::build(const std::string& path, const LoadOptions& options, const
     inputs_.push_back({run_->parameter(block + ".value"), run_->parameter(block + ".slope"),
                        run_->parameter(block + ".since")});
   }
+  lines_.resize(inputs_.size()), draw_all_lines();
   parameters_ = find_parameters(path, options, *diagram, *plan_, *run_);
   for (auto& slope : slope_) slope.resize(size_t(plan_->states));
   stage_.resize(size_t(plan_->states));
@@ -256,10 +273,26 @@ std::string SiteModel::state_name(int state) const {
 void SiteModel::use(std::span<const double> factors, std::span<const SiteTerm> terms) {
   for (size_t i = 0; i < parameters_.size(); ++i) parameters_[i].set(factors[i]);
   for (SiteSignal& signal : signals_) signal.terms.clear(), signal.held = signal.ramp = 0;
-  for (const SiteTerm& term : terms)
-    signals_[size_t(term.site)].terms.emplace_back(
-        term, term.variable < 0 ? SiteVariable{} : variables_[size_t(term.variable)]);
+  if (std::exchange(is_late_, false)) draw_all_lines();
+  for (const SiteTerm& term : terms) {
+    if (term.shape->of != TermShape::Of::past) {
+      signals_[size_t(term.site)].terms.emplace_back(
+          term, term.variable < 0 ? SiteVariable{} : variables_[size_t(term.variable)]);
+      continue;
+    }
+    InputLines& lines = lines_[size_t(input_of(term.site))];
+    lines = term.shape->late(record_, lines, term.nonlinear[0], term.nonlinear[1]), is_late_ = true;
+  }
   run_->reset({plan_->seed, 0});
+}
+
+void SiteModel::draw_lines(size_t input, bool is_linear) {
+  record_.inputs[input].is_linear = is_linear;
+  draw_all_lines();
+}
+
+void SiteModel::draw_all_lines() {
+  for (size_t i = 0; i < lines_.size(); ++i) lines_[i] = lines_of(record_, record_.inputs[i]);
 }
 
 std::vector<double> SiteModel::initial_states() const {
@@ -269,10 +302,8 @@ std::vector<double> SiteModel::initial_states() const {
 
 void SiteModel::set_inputs(size_t row) {
   for (size_t i = 0; i < inputs_.size(); ++i) {
-    const RecordedInput& input = record_.inputs[i];
-    const size_t next = std::min(row + 1, record_.rows() - 1);
-    *inputs_[i].value = input.value[row], *inputs_[i].since = record_.time[row];
-    *inputs_[i].slope = input.is_linear ? (input.value[next] - input.value[row]) / record_.step(row) : 0;
+    const InputLine& line = lines_[i][row];
+    *inputs_[i].value = line.value, *inputs_[i].slope = line.slope, *inputs_[i].since = record_.time[row];
   }
 }
 

@@ -95,6 +95,10 @@ class SiteModel {
   std::string state_name(int state) const;
   /// The state that is measured by the output; -1: a function of states.
   int measured_state(size_t output) const { return measured_state_[output]; }
+  /// The recorded input that acts at the site; -1: none.
+  int input_of(int site) const;
+  /// What a delay or a lag of a recorded input adds to it.
+  InputLines change_of_input(const SiteTerm& term) const;
   /// The output that the site is the sensor of; -1: none.
   int output_of_sensor(int site) const;
   /// Whether a term changes what the output measures.
@@ -103,7 +107,7 @@ class SiteModel {
   Work& work() { return work_; }
 
   /// Lets a recorded input go in straight lines between its rows, or be held.
-  void draw_lines(size_t input, bool is_linear) { record_.inputs[input].is_linear = is_linear; }
+  void draw_lines(size_t input, bool is_linear);
 
   /// Steps of the integration in a sample.
   int substeps() const { return substeps_; }
@@ -142,6 +146,7 @@ class SiteModel {
   void find_nearness();
   void find_variable_of_sensor(size_t output);
   void set_inputs(size_t row);
+  void draw_all_lines();
 
   SignalRecord record_;
   std::shared_ptr<const Plan> plan_;
@@ -159,6 +164,8 @@ class SiteModel {
     double *value, *slope, *since;
   };
   std::vector<Input> inputs_;
+  std::vector<InputLines> lines_;  // of the inputs, as they act
+  bool is_late_ = false;           // whether one of them is not as recorded
   std::vector<Number> outputs_;
   std::vector<int> measured_state_;
   bool has_decisions_ = false, all_are_states_ = true;

@@ -38,6 +38,7 @@ bool over_level(Quantity site, Quantity s) {
 bool outflow(Quantity site, Quantity s) {
   return (site == flow && s == position) || (site == other && (s == position || s == other));
 }
+bool nowhere(Quantity, Quantity) { return false; }
 bool warm(Quantity site, Quantity s) { return site == heat && s == temperature; }
 
 Starts widths(std::span<const double> signal) {
@@ -72,6 +73,14 @@ Starts pitches(std::span<const double> signal) {
   const auto [low, high] = std::ranges::minmax(signal);
   Starts list;
   for (double periods = fewest; periods <= most; periods += step) list.push_back({(high - low) / periods, 0});
+  return list;
+}
+
+/// In samples, and the input before: as it is at first, or none.
+Starts waits(std::span<const double> input) {
+  Starts list;
+  for (double samples : {0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0})
+    for (double before : {input.front(), 0.0}) list.push_back({samples, before});
   return list;
 }
 
@@ -283,6 +292,22 @@ const TermShape known_shapes[] = {
      {"half_width"},
      everywhere,
      knees},
+    {.name = "delay",
+     .title = "A delay of the input",
+     .of = TermShape::Of::past,
+     .cost = 1,
+     .nonlinear = {"delay", "input_before"},
+     .fits = nowhere,
+     .starts = waits,
+     .late = delayed},
+    {.name = "lag",
+     .title = "A first-order lag of the input",
+     .of = TermShape::Of::past,
+     .cost = 1,
+     .nonlinear = {"time_constant", "input_before"},
+     .fits = nowhere,
+     .starts = waits,
+     .late = lagged},
 };
 
 /// A signal between two nodes of a grid over the range [p0, p1].

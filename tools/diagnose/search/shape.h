@@ -5,6 +5,7 @@
 #include <span>
 #include <string_view>
 #include <vector>
+#include "tools/diagnose/predict/input_lines.h"
 #include "tools/diagnose/predict/quantity.h"
 
 namespace loopwright::diagnosis {
@@ -17,6 +18,7 @@ struct TermShape {
     nothing,  ///< a constant
     signal,   ///< any signal that fits
     own,      ///< the signal at the site itself: a distortion, whose coefficient is one
+    past,     ///< a recorded input, which gets to the machine late
   };
   std::string_view name, title;
   /// The same as an expression of "signal", of the coefficients and of its own parameters, by which the shape
@@ -33,7 +35,8 @@ struct TermShape {
   /// Names of its own parameters, in the unit of the signal; empty: none.
   std::array<std::string_view, most_nonlinear> nonlinear{};
   std::function<bool(Quantity site, Quantity signal)> fits = nullptr;
-  /// Values of its own parameters to begin with, from the largest size and the range of the signal.
+  /// Values of its own parameters to begin with, from the largest size and the range of the signal; those of
+  /// the past are in samples.
   std::function<std::vector<std::array<double, most_nonlinear>>(std::span<const double> signal)> starts =
       nullptr;
   /// Within which its own parameters are fitted; empty: about as large as the signal.
@@ -44,6 +47,11 @@ struct TermShape {
   /// Σ coefficient · column where most columns are zero; null: by `evaluate`.
   std::function<double(double signal, const double* p, const double* coefficient)> value = nullptr;
 
+  /// Of the past: what the machine gets of an input. The input `before` the record is fitted with the time.
+  std::function<InputLines(const SignalRecord&, const InputLines& input, double time, double before)> late =
+      nullptr;
+
+  bool has_coefficients() const { return of != Of::own && of != Of::past; }
   int nonlinear_count() const { return int(nonlinear[0] != "") + int(nonlinear[1] != ""); }
 };
 

@@ -40,7 +40,7 @@ std::vector<FittedNumber> fitted_numbers(const SiteHypothesis& h) {
     if (h.is_free[i]) list.push_back({factor, int(i)});
   for (size_t t = 0; t < h.terms.size(); ++t) {
     const TermShape& shape = *h.terms[t].shape;
-    if (shape.of != TermShape::Of::own)
+    if (shape.has_coefficients())
       for (int c = 0; c < shape.columns; ++c) list.push_back({coefficient, int(t), c});
     for (int p = 0; p < shape.nonlinear_count(); ++p) list.push_back({nonlinear, int(t), p});
   }

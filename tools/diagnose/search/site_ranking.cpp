@@ -11,6 +11,8 @@ namespace {
 constexpr double least_energy = 2e-3;
 /// In -2 ln L: what the second of two terms that are ranked together must gain.
 constexpr double least_gain_of_second = 40;
+/// [of a delay's gain] An input that is held gains as much as the delay, which then is none.
+constexpr double share_of_held = 0.9;
 /// Nats, beside those of the shape.
 constexpr double of_far = 6, of_derived = 3, of_difference = 2, of_indirect_sum = 3, of_sensor = 3;
 
@@ -62,6 +64,8 @@ class Ranking {
           rank(shape, site, -1, list);
         else if (shape.of == TermShape::Of::own)
           try_distortion(shape, site, list);
+        else if (shape.of == TermShape::Of::past && model.input_of(site) >= 0)
+          try_past(shape, site, list);
         else if (shape.of == TermShape::Of::signal)
           for (int v = 0; v < int(model.variables().size()); ++v)
             if (is_admissible(shape, site, v)) rank(shape, site, v, list);
@@ -294,6 +298,64 @@ class Ranking {
     if (best.gain <= 0) return;
     best.cost = cost_of(fitter_.model(), best.term);
     list.push_back(best);
+  }
+
+  /// The response of the whitened errors to a change of a recorded input, beside what is free already.
+  Eigen::MatrixXd response_of_input(int site, const InputLines& change) {
+    const SignalRecord& record = fitter_.model().record();
+    for (size_t k = 0; k < pass_.rows; ++k)
+      for (size_t part = 0; part < 3; ++part)
+        phi_[part][k] = change[k].value + change[k].slope * record.step(k) * double(part) / 2;
+    Eigen::MatrixXd column(Eigen::Index(pass_.error.size()), 1);
+    fitter_.filter().respond(pass_, site, phi_[0], phi_[1], phi_[2],
+                             {column.col(0).data(), pass_.error.size()});
+    column -= basis_ * (basis_.transpose() * column);
+    return column;
+  }
+  /// An input that is held from row to row in the place of lines acts half a sample later. That is a
+  /// statement of the experiment, which is questioned as such.
+  double gain_of_held(int site) {
+    const SignalRecord& record = fitter_.model().record();
+    RecordedInput input = record.inputs[size_t(fitter_.model().input_of(site))];
+    if (!input.is_linear) return 0;
+    const InputLines lines = lines_of(record, input);
+    input.is_linear = false;
+    InputLines change = lines_of(record, input);
+    for (size_t k = 0; k < change.size(); ++k)
+      change[k].value -= lines[k].value, change[k].slope -= lines[k].slope;
+    SiteTerm ignored;
+    return explain(response_of_input(site, change), ignored);
+  }
+  /// What a delay or a lag adds to an input is known from the record alone, so that the first values are
+  /// judged by the response to it. As one adds in proportion to a short time, the share of the change that
+  /// fits best corrects the time.
+  void try_past(const TermShape& shape, int site, std::vector<SiteCandidate>& list) {
+    constexpr double longest = 200, shortest = 0.05;  // [samples]
+    constexpr double least_share = 0.3, most_share = 3;
+    if (is_there(shape, site, -1)) return;
+    const SignalRecord& record = fitter_.model().record();
+    const double sample = record.sample_time;
+    const std::vector<double>& input = record.inputs[size_t(fitter_.model().input_of(site))].value;
+    const auto [least, most] = std::ranges::minmax(input);
+    SiteCandidate best;
+    for (const auto& [samples, before] : shape.starts(std::span(input).first(1))) {
+      SiteTerm term;
+      term.shape = &shape, term.site = site, term.nonlinear = {samples * sample, before};
+      term.low = {shortest * sample, std::min(least, 0.0)}, term.high = {longest * sample, std::max(most, 0.0)};
+      const double gain = explain(response_of_input(site, fitter_.model().change_of_input(term)), term);
+      const double share = term.coefficient[0];
+      if (share < least_share || share > most_share || gain <= best.gain) continue;
+      term.nonlinear[0] *= share, term.coefficient[0] = 1;
+      best.gain = gain, best.term = term;
+    }
+    if (best.gain <= 0 || gain_of_held(site) > share_of_held * best.gain) return;
+    SiteHypothesis trial = at_;
+    trial.terms.push_back(best.term);
+    SitePass there;
+    if (!fitter_.pass(trial, false, there)) return;
+    best.gain = pass_.scaled_objective() - there.scaled_objective();
+    best.cost = cost_of(fitter_.model(), best.term);
+    if (best.gain > 0) list.push_back(best);
   }
 
   SiteFitter& fitter_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/late_input.h"
 #include "tools/diagnose/search/moved_parameters.h"
 #include "tools/diagnose/search/site_disturbance.h"
 #include "tools/diagnose/search/stacked_names.h"
@@ -40,8 +41,10 @@ class SiteSearch {
     progress_("fitting parameters", 0.1);
     result_.parameters = with_free_parameters(nominal);
     tell("parameters free", result_.parameters);
-    if (errors_ == ErrorsOf::predictions && disturbances_.empty()) begin_beside_small_disturbances();
-    SiteSearchResult first = searched_from(result_.parameters, 0.2);
+    const auto late = explained_by_late_input(fitter_, nominal, result_.parameters);
+    if (late) tell("a late input by itself", *late);
+    if (!late && errors_ == ErrorsOf::predictions && disturbances_.empty()) begin_beside_small_disturbances();
+    SiteSearchResult first = searched_from(late.value_or(result_.parameters), 0.2);
     if (!is_doubtful(first.found) || is_spent(criteria::work_of_first_search)) return first;
     result_.trail = std::move(first.trail);
     result_.trail.push_back("again, from the parameters as they are stated");

@@ -33,6 +33,11 @@ double size_at_site(const SiteModel& model, const SitePass& pass, int site) {
 }
 
 double size_of_term(const SiteModel& model, const SitePass& pass, const SiteTerm& term) {
+  if (term.shape->of == TermShape::Of::past) {
+    double square = 0;
+    for (const InputLine& change : model.change_of_input(term)) square += change.value * change.value;
+    return std::sqrt(square / double(model.record().rows()));
+  }
   return root_mean_square(pass, [&](const double* at) {
     return term.value(term.variable < 0 ? 0 : model.variables()[size_t(term.variable)].at(at));
   });

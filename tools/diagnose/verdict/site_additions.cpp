@@ -34,7 +34,9 @@ class Writer {
       if (variable.minus >= 0) term.reads = split(variable.name, " - ");
     }
     term.input = "u";
-    if (shape_.of == TermShape::Of::nothing)
+    if (shape_.of == TermShape::Of::past)
+      add_late_input(term);
+    else if (shape_.of == TermShape::Of::nothing)
       term.settings =
           fmt::format(R"("type": "Constant", "value": {})", quantity(coefficient(0), unit_of_site()));
     else if (is_unknown_function(shape_))
@@ -52,6 +54,17 @@ class Writer {
   std::string unit_of_site() const { return unit_text(site_.unit); }
   std::string unit_of_signal() const { return unit_text(model_.variables()[size_t(term_.variable)].unit); }
 
+  /// The block of the delay or lag, beside what it reads.
+  void add_late_input(Term& term) const {
+    const bool is_delay = shape_.name == "delay";
+    const RecordedInput& input = model_.record().inputs[size_t(model_.input_of(term_.site))];
+    term.reads = {input.port}, term.is_change = true;
+    term.settings = fmt::format(R"("type": "{}", "{}": {}, "initial": {})",
+                                is_delay ? "TransportDelay" : "ActuatorLag", shape_.nonlinear[0],
+                                quantity(term_.nonlinear[0], "s"), quantity(term_.nonlinear[1], unit_of_site()));
+    if (!is_delay) term.input = "command", term.output = "force";
+  }
+
   static std::vector<std::string> split(const std::string& name, std::string_view by) {
     const size_t at = name.find(by);
     return {name.substr(0, at), name.substr(at + by.size())};
@@ -64,7 +77,7 @@ class Writer {
           fmt::format(R"({}{{"name": "{}", "value": {}{}}})", constants.empty() ? "" : ", ", name,
                       readable_number(value), unit.empty() ? "" : fmt::format(R"(, "unit": "{}")", unit));
     };
-    if (shape_.of != TermShape::Of::own)
+    if (shape_.has_coefficients())
       for (int c = 0; c < shape_.columns; ++c)
         add(shape_.coefficients[size_t(c)], coefficient(size_t(c)), unit_of_coefficient(model_, term_));
     for (int p = 0; p < shape_.nonlinear_count(); ++p)

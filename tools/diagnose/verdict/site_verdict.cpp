@@ -82,15 +82,13 @@ class Telling {
       DiagnosedEffect effect;
       effect.name = term.shape->name, effect.title = term.shape->title;
       effect.site = site.name, effect.site_unit = unit_text(site.unit), effect.inclusion = 1;
-      const std::string signal_unit =
-          term.variable < 0 ? "" : unit_text(model_.variables()[size_t(term.variable)].unit);
       if (term.variable >= 0) effect.variables.push_back(model_.variables()[size_t(term.variable)].name);
       for (size_t i = 0; i < numbers.size(); ++i) {
         if (numbers[i].kind == FittedNumber::Kind::factor || numbers[i].owner != int(t)) continue;
         const size_t index = size_t(numbers[i].index);
         if (numbers[i].kind == FittedNumber::Kind::nonlinear)
-          effect.parameters.push_back(
-              number(numbers, i, std::string(term.shape->nonlinear[index]), signal_unit));
+          effect.parameters.push_back(number(numbers, i, std::string(term.shape->nonlinear[index]),
+                                             unit_of_own_parameter(model_, term, index)));
         else if (!is_unknown_function(*term.shape))
           effect.parameters.push_back(number(numbers, i, std::string(term.shape->coefficients[index]),
                                              unit_of_coefficient(model_, term)));
