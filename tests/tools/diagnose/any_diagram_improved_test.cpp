@@ -82,6 +82,25 @@ TEST(AnyDiagramImproved, ADistortionOfTheInputStandsBeforeItAndTheExperimentFoll
   EXPECT_EQ(w.blocks()["command"]["in"]["u"], "dead_zone_at_command_sum.sum");
   EXPECT_LT(w.simulated(), 0.1 * w.simulated_before());
 }
+TEST(AnyDiagramImproved, ALateInputStandsBesideWhatItReads) {
+  Plant plant = motor({}, 62);
+  plant.delay = 2.4e-3, plant.rows = 1200;
+  const Written w(plant);
+  ASSERT_THAT(names(w.answer), ElementsAre("delay")) << to_text(w.answer);
+  expect_all_units(w.answer.improved);
+  EXPECT_EQ(w.blocks()["delay_at_amplifier"]["type"], "TransportDelay");
+  EXPECT_THAT(w.answer.taken_out_by, ElementsAre("with_delay_at_amplifier"));
+  EXPECT_LT(w.simulated(), 0.2 * w.simulated_before());
+  EXPECT_NEAR(w.simulated({.set = {{"with_delay_at_amplifier", "0"}}}), w.simulated_before(),
+              1e-6 * w.simulated_before());
+}
+TEST(AnyDiagramImproved, ALagOfTheInputIsAnActuator) {
+  const Written w(lagging_motor(3e-3, 61));
+  ASSERT_THAT(names(w.answer), ElementsAre("lag")) << to_text(w.answer);
+  expect_all_units(w.answer.improved);
+  EXPECT_EQ(w.blocks()["lag_at_amplifier"]["type"], "ActuatorLag");
+  EXPECT_LT(w.simulated(), 0.2 * w.simulated_before());
+}
 TEST(AnyDiagramImproved, ACouplingActsOnBothSides) {
   Tanks m;
   m.spilled = [](double level, double) { return 0.03 * std::max(0.0, level - 0.5); };

@@ -104,21 +104,8 @@ void expect_found(const Diagnosis& d, const std::string& what, double time) {
   EXPECT_NEAR(p.value, time, 0.005 * time);
 }
 
-/// A motor behind an amplifier that follows its command after a while: one more state.
-Plant lagging(double time_constant, uint64_t seed) {
-  Plant plant = motor({}, seed);
-  plant.rows = 1200;
-  plant.rate = [rate = plant.rate, time_constant](const Numbers& x, double u, const Numbers& w) {
-    Numbers slope = rate({x[0], x[1], x[2]}, x[3], w);
-    slope.push_back((u - x[3]) / time_constant);
-    return slope;
-  };
-  plant.initial.push_back(0);
-  return plant;
-}
-
 TEST(LateInput, TheLagOfAnAmplifierIsNamed) {
-  expect_found(diagnosed(lagging(3e-3, 61)), "amplifier.u: lag()", 3e-3);
+  expect_found(diagnosed(lagging_motor(3e-3, 61)), "amplifier.u: lag()", 3e-3);
 }
 TEST(LateInput, ADelayIsNamed) {
   Plant plant = motor({}, 62);

@@ -49,6 +49,18 @@ inline Plant motor(const Motor& m, uint64_t seed) {
   return plant;
 }
 
+/// Behind an amplifier that follows its command with a lag: one more state.
+inline Plant lagging_motor(double time_constant, uint64_t seed) {
+  Plant plant = motor({}, seed);
+  plant.rate = [rate = plant.rate, time_constant](const Numbers& x, double u, const Numbers& w) {
+    Numbers slope = rate({x[0], x[1], x[2]}, x[3], w);
+    slope.push_back((u - x[3]) / time_constant);
+    return slope;
+  };
+  plant.initial.push_back(0), plant.rows = 1200;
+  return plant;
+}
+
 /// Two bodies that exchange heat; both temperatures are measured.
 struct Thermal {
   double first_loss = 0.5, second_loss = 0.3, coupling = 0.8;

@@ -6,6 +6,7 @@
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/late_input.h"
 #include "tools/diagnose/search/moved_parameters.h"
+#include "tools/diagnose/search/simpler_friction.h"
 #include "tools/diagnose/search/site_disturbance.h"
 #include "tools/diagnose/search/stacked_names.h"
 
@@ -56,13 +57,17 @@ class SiteSearch {
   }
 
  private:
-  /// A small disturbance that explains all there is would otherwise cost a long search that follows it by
-  /// terms.
+  /// A small disturbance that explains all there is, and more than a term does, would otherwise cost a long
+  /// search that follows it by terms.
   void begin_beside_small_disturbances() {
     if (!leaves_something(result_.parameters)) return;
     SiteHypothesis disturbed =
         with_disturbances(fitter_, result_.parameters, criteria::most_first_disturbances);
     if (disturbed.noise.slow.empty() || !is_explained_by_small_disturbances(fitter_, disturbed)) return;
+    for (const SiteHypothesis& at : {result_.parameters, result_.nominal}) {
+      const std::vector<SiteHypothesis> tried = fits(at, candidates(at));
+      if (!tried.empty() && tried.front().objective < disturbed.objective) return;
+    }
     result_.nominal.noise.slow = disturbed.noise.slow;
     fitter_.fit_noise(result_.nominal);
     result_.parameters = std::move(disturbed);
@@ -79,7 +84,8 @@ class SiteSearch {
       add_terms(at);
     }
     exchange(at);
-    simplify(at);
+    for (const size_t t : simplify_friction(fitter_, at, [&](const auto& h) { return criterion(h); }))
+      tell("simpler: " + describe(model(), at.terms[t]), at);
     if (leaves_something(at)) merge_stacked_names(at, 1);
     add_unknown(at);
     remove_idle(at);
@@ -293,22 +299,6 @@ class SiteSearch {
           result_.rivals.push_back({t, other.terms.back(), worse});
         }
       }
-    }
-  }
-
-  /// Dry friction that does not fall with the speed, at the width that was found: by itself that law may have
-  /// been fitted from a worse one.
-  void simplify(SiteHypothesis& at) {
-    const auto sign = std::ranges::find(fitter_.shapes(), "sign", &TermShape::name);
-    for (size_t t = 0; t < at.terms.size() && sign != fitter_.shapes().end(); ++t) {
-      if (at.terms[t].shape->name != "stribeck") continue;
-      SiteHypothesis simple = at;
-      simple.terms[t].shape = &*sign;
-      fitter_.refine(simple, 6, true);
-      fitter_.fit_noise(simple);
-      if (!(criterion(simple) < criterion(at))) continue;
-      tell("simpler: " + describe(model(), simple.terms[t]), simple);
-      at = std::move(simple);
     }
   }
 
