@@ -57,8 +57,8 @@ class SiteSearch {
   }
 
  private:
-  /// A small disturbance that explains all there is, and more than a term does, would otherwise cost a long
-  /// search that follows it by terms.
+  /// A small disturbance that explains all there is would otherwise cost a long search that follows it by
+  /// terms. Unless a single term explains all there is, and more.
   void begin_beside_small_disturbances() {
     if (!leaves_something(result_.parameters)) return;
     SiteHypothesis disturbed =
@@ -66,7 +66,8 @@ class SiteSearch {
     if (disturbed.noise.slow.empty() || !is_explained_by_small_disturbances(fitter_, disturbed)) return;
     for (const SiteHypothesis& at : {result_.parameters, result_.nominal}) {
       const std::vector<SiteHypothesis> tried = fits(at, candidates(at));
-      if (!tried.empty() && tried.front().objective < disturbed.objective) return;
+      if (!tried.empty() && tried.front().objective < disturbed.objective && !leaves_something(tried.front()))
+        return;
     }
     result_.nominal.noise.slow = disturbed.noise.slow;
     fitter_.fit_noise(result_.nominal);
