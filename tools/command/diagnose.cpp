@@ -1,6 +1,5 @@
 #include "tools/diagnose/diagnose.h"
 #include <fmt/format.h>
-#include <malloc.h>
 #include "tools/command/command.h"
 
 namespace loopwright {
@@ -13,17 +12,7 @@ struct DiagnoseArguments {
   bool trail = false, all = false;
 };
 
-/// The search frees and allocates vectors of the length of the record all the time. Their memory stays with
-/// the process, because pages that the system gives anew cost a tenth of the processor time.
-void keep_freed_memory() {
-  constexpr int largest_in_heap = 32 << 20, most_kept = 1 << 30, grows_by = 64 << 20;  // bytes
-  mallopt(M_MMAP_THRESHOLD, largest_in_heap);
-  mallopt(M_TRIM_THRESHOLD, most_kept);
-  mallopt(M_TOP_PAD, grows_by);
-}
-
 int run(const DiagnoseArguments& a) {
-  keep_freed_memory();
   require_writable(a.json, "--json");
   require_writable_file(a.report, "--report");
   require_writable_file(a.improved, "-o");
