@@ -7,7 +7,7 @@
 #include "conditions.h"
 #include "tests/hidden_effects/program.h"
 
-static const double degrees = 57.29577951308232;
+static const double degrees = 57.29577951308232, two_pi = 6.283185307179586;
 
 /// [of the column] of one standard unit of length.
 static double column_scale(const Setting* s) {
@@ -22,13 +22,17 @@ static double command_scale(const Setting* s) {
   return s->units.force * (s->volts_per_force > 0 ? s->volts_per_force : 1);
 }
 
+/// By which the sensor is shifted: whole steps of its resolution.
+static double recorded_origin(const Setting* s) {
+  const double resolution = s->noise.resolution_m;
+  return resolution > 0 ? resolution * round(s->origin_m / resolution) : s->origin_m;
+}
+
 /// The recorded motion in the unit of its column. Counts are whole numbers.
 static double shown(const Setting* s, const Log* log, int k) {
   const double value = log->truth.position_m[k];
   if (s->measures_velocity) return value * s->units.length / s->units.time_s;
-  const double resolution = s->noise.resolution_m,
-               origin = resolution > 0 ? resolution * round(s->origin_m / resolution) : s->origin_m;
-  const double scaled = (value + origin) * column_scale(s);
+  const double scaled = (value + recorded_origin(s)) * column_scale(s);
   return strcmp(s->column, "count") == 0 ? round(scaled) : scaled;
 }
 
@@ -53,13 +57,16 @@ static bool write_record(const char* folder, const Setting* s, const Log* log, c
   return done(file);
 }
 
-/// What the diagram contains, in SI.
-static void write_machine(FILE* file, const char* key, const Physics* p) {
+/// What the diagram contains, in SI, over the position as it is recorded.
+static void write_machine(FILE* file, const char* key, const Physics* p, double origin) {
   fprintf(file, "  \"%s\": {\"mass\": %.9g, \"damping\": %.9g", key, p->mass_kg - p->load_kg,
           p->damping_n_s_per_m);
-  if (p->nominal_cogging.amplitude != 0)
-    fprintf(file, ",\n    \"cogging\": {\"pitch\": %.9g, \"amplitude\": %.9g, \"phase\": %.9g}",
-            p->nominal_cogging.pitch_m, p->nominal_cogging.amplitude, p->nominal_cogging.phase_rad);
+  if (p->nominal_cogging.amplitude != 0) {
+    const double turns = origin / p->nominal_cogging.pitch_m;
+    fprintf(file, ",\n    \"cogging\": {\"pitch\": %.12g, \"amplitude\": %.9g, \"phase\": %.9g}",
+            p->nominal_cogging.pitch_m, p->nominal_cogging.amplitude,
+            p->nominal_cogging.phase_rad - two_pi * (turns - floor(turns)));
+  }
   if (p->offset_n != 0) fprintf(file, ",\n    \"gravity\": %.9g", p->offset_n);
   if (p->stribeck.level_n != 0)
     fprintf(file, ",\n    \"stribeck\": {\"level\": %.9g, \"static_level\": %.9g, \"speed\": %.9g}",
@@ -108,8 +115,9 @@ static bool write_truth(const char* folder, const Hidden* h, int rows, const Phy
   if (s->volts_per_force > 0)
     fprintf(file, "  \"motor\": {\"resistance\": %.9g, \"constant\": %.9g},\n",
             s->volts_per_force * s->volts_per_force * s->back_emf, s->volts_per_force * s->back_emf);
-  write_machine(file, "nominal", &nominal);
-  if (second) write_machine(file, "second", second);
+  const double origin = recorded_origin(s) * s->units.length;
+  write_machine(file, "nominal", &nominal, origin);
+  if (second) write_machine(file, "second", second, origin);
   write_effects(file, h, &truth);
   fprintf(file,
           "  \"noise\": {\"white_force\": %.6g, \"slow_force\": %.6g, \"slow_time_s\": %.6g, \"sensor\": "
