@@ -82,4 +82,10 @@ InputLines lagged(const SignalRecord& record, const InputLines& input, double ti
   return lines;
 }
 
+InputLines difference(InputLines first, const InputLines& second) {
+  for (size_t row = 0; row < first.size(); ++row)
+    first[row].value -= second[row].value, first[row].slope -= second[row].slope;
+  return first;
+}
+
 }  // namespace loopwright::diagnosis

@@ -21,4 +21,7 @@ InputLines delayed(const SignalRecord& record, const InputLines& input, double d
 /// z of time_constant · z' = u - z, at rest before each record; lines as for `delayed`.
 InputLines lagged(const SignalRecord& record, const InputLines& input, double time_constant, double before);
 
+/// What the first has more than the second, row by row.
+InputLines difference(InputLines first, const InputLines& second);
+
 }  // namespace loopwright::diagnosis

@@ -168,10 +168,7 @@ int SiteModel::input_of(int site) const {
 
 InputLines SiteModel::change_of_input(const SiteTerm& term) const {
   const InputLines recorded = lines_of(record_, record_.inputs[size_t(input_of(term.site))]);
-  InputLines change = term.shape->late(record_, recorded, term.nonlinear[0], term.nonlinear[1]);
-  for (size_t k = 0; k < change.size(); ++k)
-    change[k].value -= recorded[k].value, change[k].slope -= recorded[k].slope;
-  return change;
+  return difference(term.shape->late(record_, recorded, term.nonlinear[0], term.nonlinear[1]), recorded);
 }
 
 int SiteModel::output_of_sensor(int site) const {

@@ -320,11 +320,8 @@ class Ranking {
     if (!input.is_linear) return 0;
     const InputLines lines = lines_of(record, input);
     input.is_linear = false;
-    InputLines change = lines_of(record, input);
-    for (size_t k = 0; k < change.size(); ++k)
-      change[k].value -= lines[k].value, change[k].slope -= lines[k].slope;
     SiteTerm ignored;
-    return explain(response_of_input(site, change), ignored);
+    return explain(response_of_input(site, difference(lines_of(record, input), lines)), ignored);
   }
   /// What a delay or a lag adds to an input is known from the record alone, so that the first values are
   /// judged by the response to it. As one adds in proportion to a short time, the share of the change that
