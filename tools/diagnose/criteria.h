@@ -55,6 +55,9 @@ constexpr double least_white_noise = 1e-4;
 /// [force of the input, rms] The first guess, and its range during the search: small, so that a missing
 /// effect is not taken for noise.
 constexpr double usual_white_noise = 0.01, least_search_noise = 0.005, most_search_noise = 0.02;
+/// Louder noise is admitted if the errors of the nominal diagram, beside a force that walks at random as
+/// missing effects do, are as white as this: then it is noise.
+constexpr double most_portmanteau_of_noise_seen = 120;
 /// [white force] Slow force of an amplifier.
 constexpr double usual_slow_noise = 0.3;
 /// [white force] A larger slow force is not noise but something that the model lacks.
@@ -117,16 +120,23 @@ constexpr double clear_of_counts = 4;
 constexpr double judged_row_s = 1e-3;
 /// [force of the input, rms] Of a material effect; and of the part of it that no other effect could replace.
 constexpr double least_force = 0.005, least_unique_force = 0.001;
-/// [white force] Of a material effect.
-constexpr double least_force_to_noise = 0.25;
+/// [white force] Of a material effect; but beside loud noise one of this share of the driving force [force of
+/// the input, rms] matters however small it is beside the noise, if it is certain.
+constexpr double least_force_to_noise = 0.25, force_that_matters = 0.01;
 /// [thresholds above] A member within this of one of them must do better than noise fitted without it.
 constexpr double barely_material = 2;
 /// [criterion] What an effect must save, absolutely and for each row: within it sets are alternatives.
 constexpr double least_gain = 10, least_gain_per_row = 0.002;
 /// [criterion] The same for a function without a name, which adapts itself to small errors of an effect.
 constexpr double least_gain_without_name = 20, least_gain_without_name_per_row = 0.1;
+/// [criterion] The same where two or more names depend on the velocity alone: a wrong law of friction shows
+/// as several that sum up to it.
+constexpr double least_gain_over_stacked_names_per_row = 0.02;
 /// [criterion] A set is clearly better; two sets that state the same law of motion differ by the noise alone.
 constexpr double clearly_better = 3, same_law = 20;
+/// [twice the log-likelihood] A set that contains another one as a special case is always close to it: it
+/// must explain so much more to be an alternative.
+constexpr double least_gain_of_larger_set = 4;
 /// [reach of an alternative] A promising set may lose so much on its own motion.
 constexpr double most_promised_loss = 20;
 /// [mean square] The search starts again from functions without a name.
@@ -235,6 +245,12 @@ constexpr double most_optional_simulation = 0.5;
 
 // The variables on which the remainder depends.
 
+/// [force that the noise alone would leave] Forces that balance better than that contradict the noise: it was
+/// inflated by something that happened at some time.
+constexpr double least_residual_of_noise = 0.5;
+/// [squared errors of a record] If so much lies within so small a part of its rows, the remainder is an
+/// event.
+constexpr double most_of_remainder = 0.8, short_part_of_record = 0.25;
 /// [mean square of the remainder] What a function of a variable explains, on blocks to which it was not
 /// fitted; and what the direction must explain beyond the position alone.
 constexpr double least_dependence = 0.05;

@@ -7,6 +7,7 @@
 #include "tools/diagnose/search/catalogue.h"
 #include "tools/diagnose/search/conclude.h"
 #include "tools/diagnose/search/doubt.h"
+#include "tools/diagnose/search/noisy_input.h"
 #include "tools/diagnose/search/remaining_force.h"
 #include "tools/diagnose/verdict/acceptance.h"
 #include "tools/diagnose/verdict/found_parameters.h"
@@ -236,14 +237,16 @@ void tell_errors(const Trials& trials, const Conclusion& conclusion, const Inqui
   result.measurement_noise = noise.measurement;
 }
 
+/// `input_noise`: see AxisModel.
 Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std::string>& experiments,
-                              const DiagnoseOptions& options) {
+                              const DiagnoseOptions& options,
+                              const std::optional<InputNoise>& input_noise = {}) {
   const std::function<void(const char*, double)> progress = [&](const char* stage, double done) {
     if (options.progress) options.progress(stage, done);
   };
   progress("reading the records", 0);
   Motion motion;
-  Trials trials = prepare(diagram, experiments, options.load, motion);
+  Trials trials = prepare(diagram, experiments, options.load, motion, input_noise);
   trials.interrupt = options.interrupt;
   const double most_work = options.most_work.value_or(criteria::most_work);
   *trials.work = Work(most_work);
@@ -280,6 +283,11 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
       accept(conclusion_from(inquiry, result.findings), trials, inverse, improver, options.load,
              catalogue.candidates.size(),
              [&](const Conclusion& c, size_t member) { return inquiry.without(c, member); });
+  if (input_noise)
+    result.findings.push_back(input_is_noisy(trials, *input_noise));
+  else if (const auto noise =
+               noise_instead_of_late_input(trials, accepted.conclusion, catalogue.candidates.size()))
+    return diagnose_to_the_end(diagram, experiments, options, noise);
   if (trials.work->was_short()) result.findings.push_back(ended_at_limit(most_work));
   const Conclusion& conclusion = accepted.conclusion;
   const Staircase& staircase = accepted.staircase;
@@ -308,8 +316,8 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
     result.improved = options.improved_diagram;
     result.improved_experiments = write(improved, experiments, result.improved);
     result.experiment_ports = improved.moved, result.taken_out_by = improved.taken_out_by;
-    result.improved_notes = notes_of(options.writes_all ? result.all_additions : result.additions,
-                                     result.all_additions);
+    result.improved_notes =
+        notes_of(options.writes_all ? result.all_additions : result.additions, result.all_additions);
   }
   add_plots(trials, inverse.front(), accepted, improver, units, options.load, result);
   result.trail.push_back("work: " + told_operations(trials.work->done()));

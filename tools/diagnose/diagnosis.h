@@ -89,6 +89,12 @@ struct RemainderShare {
   double share = 0;
 };
 
+/// When most of the remaining error occurs.
+struct RemainderInterval {
+  size_t record = 1;  ///< which of the records, from 1
+  double from_s = 0, to_s = 0;
+};
+
 /// An effect with its fitted parameters, as it can be added to the diagram.
 struct AddedEffect {
   std::string name;  ///< as in the steps of the diagnosis
@@ -139,6 +145,7 @@ struct Diagnosis {
   std::vector<std::string> contradictions;  ///< why the records are not explained although errors are white
   std::vector<std::string> remainder_variables;  ///< on which the remainder depends
   std::vector<RemainderShare> dependence;
+  std::optional<RemainderInterval> remainder_interval;  ///< if it is a small part of a record
   bool was_interrupted = false;  ///< no other member has a meaning, nothing was written
   size_t rows = 0;               ///< fitted rows that count: those behind the verdict
   double mean_square = 0, held_out_mean_square = 0, portmanteau = 0;

@@ -45,6 +45,10 @@ std::string to_json(const Diagnosis& d) {
                    {"noise_floor", d.noise_floor},
                    {"unit", d.force_unit}};
   json["remainder"]["variables"] = d.remainder_variables;
+  if (d.remainder_interval)
+    json["remainder"]["interval"] = {{"record", d.remainder_interval->record},
+                                     {"from_s", d.remainder_interval->from_s},
+                                     {"to_s", d.remainder_interval->to_s}};
   for (const RemainderShare& dependence : d.dependence)
     json["remainder"]["explained_share"][dependence.variable] = dependence.share;
   json["suggested_experiments"] = nlohmann::ordered_json::array();

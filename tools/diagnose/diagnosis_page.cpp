@@ -33,10 +33,10 @@ report::Notice verdict(const Diagnosis& d) {
       fmt::format("The residual force falls from {} to {}; noise alone would leave {}.",
                   shown(d.error_before, d.force_unit), shown(d.error_after, d.force_unit),
                   shown(d.noise_floor, d.force_unit));
-  const std::string remainder =
-      d.remainder_variables.empty()
-          ? ""
-          : " What is left depends on " + joined(d.remainder_variables, " and ") + ".";
+  std::string remainder = d.remainder_variables.empty()
+                              ? ""
+                              : " What is left depends on " + joined(d.remainder_variables, " and ") + ".";
+  if (d.remainder_interval) remainder += " " + words_of_interval(d);
   switch (d.verdict) {
     case Verdict::nothing_missing:
       return {Severity::good, "Nothing is missing. The diagram explains the record down to its noise."};

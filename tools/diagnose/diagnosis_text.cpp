@@ -74,6 +74,7 @@ std::string to_text(const Diagnosis& d) {
                      joined(other.in_place_of, " + ")));
   if (!d.remainder_variables.empty())
     line("What is left depends on " + joined(d.remainder_variables, " and ") + ".");
+  if (d.remainder_interval) line(words_of_interval(d));
   if (can_be_learned(d))
     line(
         "A Gpr block can stand in for it: train one on this record with `loopwright gp train`, with "

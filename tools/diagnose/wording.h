@@ -30,6 +30,15 @@ inline std::string joined(const std::vector<std::string>& names, const char* wit
   return text;
 }
 
+/// When most of the remainder occurs; empty: it is no event.
+inline std::string words_of_interval(const Diagnosis& d) {
+  if (!d.remainder_interval) return {};
+  const RemainderInterval& when = *d.remainder_interval;
+  const std::string which = d.experiments.size() > 1 ? fmt::format("record {}", when.record) : "the record";
+  return fmt::format("Most of what is left occurs between {:.4g} s and {:.4g} s of {}.", when.from_s,
+                     when.to_s, which);
+}
+
 inline std::string words_of(const MovedPort& moved) {
   return fmt::format(
       "With the improved diagram, the experiment must name {} in the place of {}: otherwise it does not "

@@ -7,6 +7,21 @@
 #include <stdexcept>
 
 namespace loopwright {
+namespace {
+
+constexpr double gauss_point = 0.21132486540518712;  // (1 - 1/√3) / 2
+
+/// An end stop or a short pitch is met somewhere within a sample. With few rows in a motion, a sample in
+/// which the axis may go farther than a part of its stroke is divided.
+size_t parts_of_a_sample(const RecordSizes& sizes) {
+  constexpr double farthest = 0.005;  // [stroke] in a part
+  constexpr size_t most = 4;
+  const double way = sizes.top_speed * sizes.sample_time;
+  if (!(way > farthest * sizes.stroke)) return 1;
+  return std::min(most, whole_count(std::ceil(way / (farthest * sizes.stroke))));
+}
+
+}  // namespace
 
 size_t RoleSignals::rows() const {
   return std::max({position.size(), velocity.size(), acceleration.size(), input.size(), force.size()});
@@ -17,6 +32,7 @@ RoleSample RoleSignals::at(size_t row) const {
     return row < column.size() ? column[row] : 0.0;
   };
   RoleSample sample{value(position), value(velocity), value(acceleration), value(input), value(force)};
+  sample.velocity_bow = value(velocity_bow);
   if (looks_ahead && row + 1 < velocity.size()) sample.next_velocity = velocity[row + 1];
   if (looks_ahead && row + 1 < acceleration.size()) sample.next_acceleration = acceleration[row + 1];
   return sample;
@@ -70,7 +86,7 @@ GivenSignals EffectRun::given_at(const RoleSample& s) const {
   const double period = plan_->sizes.sample_time;
   const double gain = std::isnan(s.next_velocity) ? s.acceleration : (s.next_velocity - s.velocity) / period;
   const double jerk = std::isnan(s.next_acceleration) ? 0.0 : (s.next_acceleration - s.acceleration) / period;
-  return {{s.position, s.velocity, gain, s.acceleration, jerk, s.input, s.force}};
+  return {{s.position, s.velocity + s.velocity_bow, gain, s.acceleration, jerk, s.input, s.force}};
 }
 
 void EffectRun::give(const GivenSignals& given, double now, size_t from, size_t to) {
@@ -124,7 +140,6 @@ void EffectRun::read_held() {
 }
 
 void EffectRun::mean_from(double now) {
-  constexpr double gauss_point = 0.21132486540518712;  // (1 - 1/√3) / 2
   const double period = plan_->sizes.sample_time;
   run_->evaluate(plan_->acts_on_sensor ? now : now + gauss_point * period);
   read_held();
@@ -135,6 +150,39 @@ void EffectRun::mean_from(double now) {
     slope_[i] = std::numbers::sqrt3 * (second_[i] - value_[i]) + stated_slope_[i];
     value_[i] = 0.5 * (value_[i] + second_[i]);
   }
+}
+
+/// Where the signals are at a fraction of a sample, with v = v₀ + a t + 6 b u (1 - u), u = t / T, for a bow
+/// b.
+GivenSignals EffectRun::given_at(const RoleSample& s, double u) const {
+  using enum GivenSignals::Index;
+  GivenSignals given = given_at(s);
+  const double T = plan_->sizes.sample_time, gain = given[velocity_slope] * T, bow = s.velocity_bow;
+  const double way = (s.velocity + 0.5 * gain * u) * u + bow * u * u * (3 - 2 * u);
+  given.value[position] = s.position + T * way;
+  given.value[velocity] = s.velocity + gain * u + 6 * bow * u * (1 - u);
+  given.value[acceleration] = s.acceleration + given[acceleration_slope] * T * u;
+  return given;
+}
+
+/// ∫ f du and 12 ∫ (u - ½) f du over the sample, by two Gauss points in each part of it.
+void EffectRun::mean_of(std::span<const RoleSample> samples, double now) {
+  const bool at_start = plan_->acts_on_sensor;
+  const size_t parts = parts_of_a_sample(plan_->sizes), points = at_start ? 1 : 2 * parts;
+  const double weight = 1.0 / double(points);
+  std::ranges::fill(area_, 0.0), std::ranges::fill(slope_, 0.0);
+  for (size_t point = 0; point < points; ++point) {
+    const double in_part = point % 2 == 0 ? gauss_point : 1 - gauss_point;
+    const double u = at_start ? 0 : (double(point / 2) + in_part) / double(parts);
+    for (size_t i = 0; i < samples.size(); ++i) give(given_at(samples[i], u), now, i, i + 1);
+    run_->evaluate(now);
+    read_held();
+    for (size_t i = 0; i < samples.size(); ++i) {
+      area_[i] += weight * value_[i];
+      slope_[i] += weight * (12 * (u - 0.5) * value_[i] + stated_slope_[i]);
+    }
+  }
+  value_ = area_;
 }
 
 /// ∫ (u - ½) f du = mean / 2 - ∫ I du over the sample, u = 0 … 1, with the integral I of f from its start;
@@ -178,10 +226,11 @@ void EffectRun::run_in_turn(const RoleSignals& signals, size_t rows, size_t lane
 
 template <class Take> void EffectRun::run_side_by_side(const RoleSignals& signals, size_t rows, Take&& take) {
   const double now = run_->time();
+  std::vector<RoleSample> samples(bound_.size());
   for (size_t first = 0; first < rows; first += bound_.size()) {
     const size_t count = std::min(bound_.size(), rows - first);
-    for (size_t i = 0; i < count; ++i) give(given_at(signals.at(first + i)), now, i, i + 1);
-    mean_from(now);
+    for (size_t i = 0; i < count; ++i) samples[i] = signals.at(first + i);
+    mean_of({samples.data(), count}, now);
     for (size_t i = 0; i < count; ++i) take(size_t(0), first + i, value_[i], slope_[i]);
   }
 }

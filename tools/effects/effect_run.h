@@ -15,6 +15,7 @@ struct RoleSample {
   /// value must not depend on later measurements.
   double next_velocity = std::numeric_limits<double>::quiet_NaN();
   double next_acceleration = std::numeric_limits<double>::quiet_NaN();
+  double velocity_bow = 0;  ///< see RoleSignals
 };
 
 /// Columns of a record, or of a predictor; empty if the effect does not read them.
@@ -24,6 +25,9 @@ struct RoleSignals {
   /// best for an analysis of the whole record. False: they are extrapolated from velocity and acceleration,
   /// so that row k depends only on rows up to k.
   bool looks_ahead = false;
+  /// By how much the mean velocity of a sample exceeds the middle between those at its ends; empty: straight
+  /// lines.
+  std::span<const double> velocity_bow;
 
   size_t rows() const;
   RoleSample at(size_t row) const;
@@ -34,8 +38,9 @@ struct RoleSignals {
 ///   acting on force or parameters: the force that it consumes [force], mean over the sample
 ///   acting on the input:           the change of the input [input], mean over the sample
 ///   acting on the sensor:          the change of the measured position [position], at the sample
-/// Within a sample the position is a parabola and the velocity a straight line; input and force are held. The
-/// mean is computed by two-point Gauss quadrature if the effect has no states, else by an additional
+/// Within a sample the position is a parabola and the velocity a straight line, or with a bow a cubic and a
+/// parabola; an effect with memory meets a straight line of the same mean. Input and force are held. The mean
+/// is computed by two-point Gauss quadrature if the effect has no states, else by an additional
 /// integrator. In addition to the mean there is a slope: the change over the sample of the straight line with
 /// the same first moment. A rapidly oscillating force moves the axis by its slope as well as by its mean.
 /// Of a linear effect with states only one sample is integrated for each state and signal; the others follow
@@ -81,10 +86,13 @@ class EffectRun {
   /// Back to rest at the first sample.
   void start(const RoleSample& first);
   GivenSignals given_at(const RoleSample& sample) const;
+  GivenSignals given_at(const RoleSample& sample, double fraction) const;
   /// Sets `value_` and `slope_` to those of the next sample, one per lane.
   void step(const RoleSample& sample);
-  /// The same over given samples, at the two Gauss points from `now` on.
+  /// The same at the two Gauss points of the present sample, which begins `now`.
   void mean_from(double now);
+  /// The same of samples of an effect without memory, one per lane.
+  void mean_of(std::span<const RoleSample> samples, double now);
   void integrate_sample();
   /// Present output of its blocks: the value, and the slope that they state.
   void read_held();

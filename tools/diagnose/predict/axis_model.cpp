@@ -81,8 +81,8 @@ double step_by_samples(Plan& plan, const AxisRecord& record, int steps) {
   return ticks;
 }
 
-AxisModel::AxisModel(const std::string& path, const std::string& experiment_path,
-                     const LoadOptions& options) {
+AxisModel::AxisModel(const std::string& path, const std::string& experiment_path, const LoadOptions& options,
+                     const std::optional<InputNoise>& noise) {
   Problems problems;
   const auto experiment = load_experiment(experiment_path, problems);
   const auto whole = load_diagram(path, options, problems);
@@ -112,6 +112,7 @@ AxisModel::AxisModel(const std::string& path, const std::string& experiment_path
       force_unit = known->unit_of(number);
   record_ = read_axis_record(cut, *changed, problems);
   if (problems.has_errors()) throw InputError(std::move(problems));
+  if (noise) take_away(record_, *noise);
   input_ = number_of(*changed, role(cut, "input").first);
   injected_ = number_of(*changed, parent + injected_force + ".y");
   force_ = number_of(*changed, force_port);

@@ -6,6 +6,7 @@
 #pragma once
 #include <Eigen/Dense>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include "engine/diagram/diagram.h"
@@ -46,8 +47,10 @@ double step_by_samples(Plan& plan, const AxisRecord& record, int steps);
 
 class AxisModel {
  public:
-  /// The diagram at `path`, driven by the experiment's input alone. Throws InputError with every problem.
-  AxisModel(const std::string& path, const std::string& experiment, const LoadOptions& options);
+  /// The diagram at `path`, driven by the experiment's input alone, without noise that the machine does not
+  /// feel. Throws InputError with every problem.
+  AxisModel(const std::string& path, const std::string& experiment, const LoadOptions& options,
+            const std::optional<InputNoise>& noise = {});
   ~AxisModel();
   AxisModel(AxisModel&&) noexcept;
 

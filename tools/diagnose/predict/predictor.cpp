@@ -158,8 +158,8 @@ void run_on_this_machine(const Filter& filter, const Path& path, Acts acts,
 Path Path::first_samples(size_t count) const {
   Path shorter = *this;
   shorter.identity = next_identity();
-  for (auto* list : {&shorter.position, &shorter.velocity, &shorter.acceleration, &shorter.input,
-                     &shorter.force, &shorter.predicted_position})
+  for (auto* list : {&shorter.position, &shorter.velocity, &shorter.acceleration, &shorter.velocity_bow,
+                     &shorter.input, &shorter.force, &shorter.predicted_position})
     list->resize(count);
   if (!input_slope.empty()) shorter.input_slope.resize(count);
   shorter.rests.resize(count), shorter.turns.resize(count);
@@ -173,8 +173,8 @@ Path creep_along(const AxisRecord& map, size_t rows) {
   path.identity = Path::next_identity(), path.sample_time = map.sample_time;
   path.position = {position.begin(), position.begin() + std::ptrdiff_t(rows)};
   path.predicted_position = path.position, path.input = map.input;
-  path.velocity.resize(rows), path.acceleration.resize(rows), path.rests.resize(rows),
-      path.turns.resize(rows);
+  for (auto* list : {&path.velocity, &path.acceleration, &path.velocity_bow}) list->resize(rows);
+  path.rests.resize(rows), path.turns.resize(rows);
   for (size_t k = 0; k < rows; ++k)
     if (k + 1 < position.size())
       path.velocity[k] = creep * (position[k + 1] - position[k]) / path.sample_time;
@@ -257,7 +257,8 @@ Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains,
   result.error.resize(rows * ports), result.slow.resize(rows);
   Path& path = result.path;
   path.identity = Path::next_identity(), path.sample_time = record.sample_time;
-  for (auto* list : {&path.position, &path.velocity, &path.acceleration}) list->resize(rows);
+  for (auto* list : {&path.position, &path.velocity, &path.acceleration, &path.velocity_bow})
+    list->resize(rows);
   path.input = drives.input, path.force = first_rows(model.driving_force(), rows);
   path.predicted_position.resize(rows), path.rests.resize(rows), path.turns.resize(rows);
   if (!record.input_slope.empty()) path.input_slope = first_rows(record.input_slope, rows);
@@ -300,7 +301,10 @@ Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains,
       if (!drives.force_slope.empty()) by -= axis.push[at] * drives.force_slope[k];
       if (axis.slope_share[at] != 0) model.correct(states[i], axis.slope_share[at] * by);
     }
-    path.acceleration[k] = (model.velocity() - velocity_now) / (duration * record.sample_time);
+    const double passed = duration * record.sample_time;
+    path.acceleration[k] = (model.velocity() - velocity_now) / passed;
+    path.velocity_bow[k] =
+        (model.position() - path.position[k]) / passed - 0.5 * (velocity_now + model.velocity());
     d *= gains.memory;
   }
   return result;

@@ -26,6 +26,9 @@ struct Path {
   static uint64_t next_identity();  ///< that no path has yet
   double sample_time = 0;
   std::vector<double> position, velocity, acceleration, input;
+  /// Of each sample: by how much its predicted mean velocity exceeds the middle between the velocities at its
+  /// ends. With few rows in a motion, or much damping, a straight line is no longer close enough.
+  std::vector<double> velocity_bow;
   std::vector<double> input_slope;         ///< of the recorded input; empty: held
   std::vector<double> force;               ///< the force produced by the recorded input
   std::vector<double> predicted_position;  ///< before the measurement of the sample itself

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include "tools/diagnose/criteria.h"
 #include "tools/experiment/even_grid.h"
 
@@ -82,6 +83,30 @@ size_t rows_for_one(const AxisRecord& record) {
 }
 
 }  // namespace
+
+std::vector<double> mean_over_rows(const std::vector<double>& values, double rows) {
+  std::vector<double> weights, means(values.size());
+  double sum = 0;
+  for (size_t i = 0; double(i) < rows + 1; ++i) {
+    weights.push_back(0.5 * (1 + std::cos(std::numbers::pi * double(i) / (rows + 1))));
+    sum += i == 0 ? weights[i] : 2 * weights[i];
+  }
+  const size_t last = values.empty() ? 0 : values.size() - 1;
+  for (size_t k = 0; k < values.size(); ++k) {
+    double mean = weights[0] * values[k];
+    for (size_t i = 1; i < weights.size(); ++i)
+      mean += weights[i] * (values[k < i ? 0 : k - i] + values[std::min(last, k + i)]);
+    means[k] = mean / sum;
+  }
+  return means;
+}
+
+void take_away(AxisRecord& record, const InputNoise& noise) {
+  for (std::vector<double>* values : {&record.input, &record.input_slope}) {
+    const std::vector<double> mean = mean_over_rows(*values, noise.rows);
+    for (size_t k = 0; k < values->size(); ++k) (*values)[k] -= noise.share * ((*values)[k] - mean[k]);
+  }
+}
 
 MeasuredMotion measured_motion(const AxisRecord& record) {
   MeasuredMotion m;

@@ -47,6 +47,16 @@ struct AxisRecord {
 /// only to the model.
 MeasuredMotion measured_motion(const AxisRecord& record);
 
+/// Noise of a measured input that the machine does not feel: a share of what the input is above its mean over
+/// some rows on both sides.
+struct InputNoise {
+  double rows = 0, share = 0;
+};
+/// Means about each row, with weights that fall as a raised cosine over `rows` on both sides: neither delayed
+/// nor advanced.
+std::vector<double> mean_over_rows(const std::vector<double>& values, double rows);
+void take_away(AxisRecord& record, const InputNoise& noise);
+
 /// The columns of the roles, on a uniform grid: see EvenGrid. Problems: missing roles or columns, units that
 /// differ from the diagram's.
 AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Problems& problems);

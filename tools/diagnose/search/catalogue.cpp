@@ -107,7 +107,7 @@ struct Compiled {
     RoleSignals signals;
     signals.position = acts == Acts::sensor ? path.predicted_position : path.position;
     signals.velocity = path.velocity, signals.acceleration = path.acceleration;
-    signals.input = path.input, signals.force = path.force;
+    signals.input = path.input, signals.force = path.force, signals.velocity_bow = path.velocity_bow;
     const size_t rows = path.samples(), per_shape = std::max<size_t>(1, linear.size());
     const size_t wanted = shapes.size() * per_shape;
     std::vector<Columns> result(shapes.size());
@@ -195,6 +195,8 @@ Candidate candidate_of(const Effect& effect, std::shared_ptr<const EffectPlan> p
   }
   candidate.is_repeatable = effect.is_repeatable, candidate.at_rest = effect.at_rest;
   candidate.flies = candidate.acts == Acts::force && compiled->plan->flies;
+  candidate.is_of_velocity = candidate.acts == Acts::force && !compiled->plan->remembers &&
+                             effect.reads == std::vector<std::string>{"velocity"};
   candidate.columns_at = [compiled](const Path& path, const std::vector<std::vector<double>>& shapes) {
     return compiled->columns(path, shapes);
   };

@@ -43,7 +43,8 @@ class Rivals {
     size_t before = 0, now = 0;
     for (size_t m : proposal.removed) before += parameters_of(*estimate_.members[m].candidate);
     for (const Member& m : proposal.added) now += parameters_of(*m.candidate);
-    if (now > before && other.profile > estimate_.profile - 4) return {};
+    const auto left = [](const Estimate& e) { return e.profile + e.against_at_rest; };
+    if (now > before && left(other) > left(estimate_) - least_gain_of_larger_set) return {};
     const double loss = criterion_of(other) - criterion_of(estimate_);
     return loss < reach_ ? std::optional(loss) : std::nullopt;
   }
@@ -102,13 +103,15 @@ bool contains(const std::vector<Proposal>& list, const Proposal& proposal) {
 }
 
 /// Alternatives: every other candidate in place of a member, with its shape and all parameters fitted.
-std::vector<Substitute> substitutes_of(Rivals& rivals, size_t member,
-                                       const std::vector<Proposal>& exchanges) {
+/// `nothing`: what the criterion loses with nothing in its place; an alternative explains something.
+std::vector<Substitute> substitutes_of(Rivals& rivals, size_t member, const std::vector<Proposal>& exchanges,
+                                       double nothing) {
   std::vector<Substitute> list;
   for (const Proposal& proposal : exchanges) {
     const bool is_one_for_one = proposal.removed == std::vector<size_t>{member} && proposal.added.size() == 1;
     if (!is_one_for_one || list.size() >= 3) continue;
-    if (const auto loss = rivals.loss_of(proposal)) list.push_back({proposal.added.front().candidate, *loss});
+    if (const auto loss = rivals.loss_of(proposal); loss && *loss < nothing)
+      list.push_back({proposal.added.front().candidate, *loss});
   }
   std::ranges::stable_sort(list, {}, &Substitute::loss);
   return list;
@@ -243,10 +246,10 @@ void ask_rivals(const Trials& trials, Conclusion& result, Evidence& evidence,
   std::vector<Proposal> near = swaps;
   for (const Proposal& p : exchanges)
     if (p.gain > -far && !contains(swaps, p)) near.push_back(p);
-  const std::vector<double> removal = evidence.gains_of_removal();
+  const std::vector<double> removal = evidence.gains_of_removal(n);
   for (size_t m = 0; m < members.size(); ++m) {
-    result.weights[m].loss = -removal[m] * n / evidence.rows();
-    result.substitutes.push_back(substitutes_of(rivals, m, near));
+    result.weights[m].loss = -removal[m];
+    result.substitutes.push_back(substitutes_of(rivals, m, near, result.weights[m].loss));
     add_simpler_friction(result.substitutes.back(), trials, rivals, result.estimate, m, exchanges);
     double others = std::exp(-std::min(result.weights[m].loss, 600.0) / 2);
     for (const Substitute& s : result.substitutes[m]) others += std::exp(-std::max(s.loss, 0.0) / 4);

@@ -366,13 +366,13 @@ std::vector<Proposal> Evidence::exchanges_for_pairs() {
   return list;
 }
 
-std::vector<double> Evidence::gains_of_removal() const {
+std::vector<double> Evidence::gains_of_removal(double n) const {
   std::vector<double> gains;
   for (size_t m = 0; m < members_.size(); ++m) {
     const Errors errors = errors_without({m});
     const double without = left_by(errors.members.squares, errors.squares);
-    gains.push_back(price(parameters_of(*members_[m].candidate), 1, n_, catalogue_) -
-                    n_ * std::log(without / explained_));
+    gains.push_back(price(parameters_of(*members_[m].candidate), 1, n, catalogue_) -
+                    n * std::log(without / explained_));
   }
   return gains;
 }

@@ -61,7 +61,7 @@ class Evidence {
   /// best first.
   std::vector<Proposal> exchanges_for_pairs();
   /// The members without one, with the saving (mostly negative).
-  std::vector<double> gains_of_removal() const;
+  std::vector<double> gains_of_removal(double n) const;
   double rows() const { return n_; }
 
  private:

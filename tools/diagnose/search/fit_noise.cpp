@@ -67,8 +67,9 @@ double evaluate(unsigned, const double* x, double*, void* data) {
 
 Noise search_noise(const Trials& trials) {
   Noise noise = trials.noise;
-  noise.white = std::clamp(noise.white, criteria::least_search_noise * trials.force_rms,
-                           criteria::most_search_noise * trials.force_rms);
+  noise.white = std::max(noise.white, criteria::least_search_noise * trials.force_rms);
+  if (!trials.noise_is_seen)
+    noise.white = std::min(noise.white, criteria::most_search_noise * trials.force_rms);
   const double sample_time = trials.list.front().model->record().sample_time;
   noise.memory = std::exp(-sample_time / criteria::slow_memory_s);
   noise.step = criteria::usual_slow_noise * noise.white * std::sqrt(1 - noise.memory * noise.memory);

@@ -35,6 +35,7 @@ struct Trials {
   Noise noise;
   bool nominal_holds = false;  ///< the user's diagram has dry friction that holds the axis
   double force_rms = 0;        ///< the force produced by the recorded inputs
+  bool noise_is_seen = false;  ///< the errors of the nominal diagram are white with the noise fitted to them
   double lowest_position = 0, highest_position = 0, longest_s = 0;  ///< as in the first prediction
   const std::vector<InverseDynamics>* inverse = nullptr;            ///< of each record; null: not yet known
   double turn = 0;  ///< [position] after which everything on a rotary axis repeats; 0: not rotary

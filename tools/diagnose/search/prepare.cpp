@@ -5,6 +5,7 @@
 #include <numbers>
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/remembered_runs.h"
+#include "tools/diagnose/search/whiteness.h"
 #include "tools/experiment/experiment_ports.h"
 
 namespace loopwright::diagnosis {
@@ -150,7 +151,7 @@ void reject_mixed(const Trials& trials) {
 }  // namespace
 
 Trials prepare(const std::string& diagram, const std::vector<std::string>& experiments,
-               const LoadOptions& options, Motion& motion) {
+               const LoadOptions& options, Motion& motion, const std::optional<InputNoise>& noise) {
   Trials trials;
   trials.remembered = std::make_shared<RememberedRuns>();
   std::vector<double> speed;
@@ -159,7 +160,7 @@ Trials prepare(const std::string& diagram, const std::vector<std::string>& exper
   for (const std::string& experiment : experiments) {
     Trial trial;
     try {
-      trial.model = std::make_unique<AxisModel>(diagram, experiment, options);
+      trial.model = std::make_unique<AxisModel>(diagram, experiment, options, noise);
     } catch (InputError& error) {
       explain_failure(diagram, experiments, options, std::move(error.problems));
     }
@@ -184,6 +185,8 @@ Trials prepare(const std::string& diagram, const std::vector<std::string>& exper
   trials.noise = fit_noise(trials, nominal, trials.noise, FreeNoise::with_random_walk);
   nominal = run_members(trials, {}, {}, trials.noise);
   look_where_noise_enters(trials, nominal);
+  trials.noise_is_seen =
+      !trials.has_map() && portmanteau(trials, nominal) < criteria::most_portmanteau_of_noise_seen;
   trials.lowest_position = 1e300, trials.highest_position = -1e300;
   for (size_t t = 0; t < trials.list.size(); ++t) {
     const Path& path = nominal[t].prediction.path;

@@ -42,6 +42,7 @@ class Search {
       goes_on = true;
     }
     if (goes_on) grow(most_effects - std::min(most_effects, best_.members.size()));
+    give_way_to_function_of_velocity();
     return {std::move(best_), std::move(trail_)};
   }
 
@@ -257,6 +258,26 @@ class Search {
     note("best of all");
   }
 
+  /// Several names for what depends on the velocity alone, if a function without a name explains much more.
+  void give_way_to_function_of_velocity() {
+    std::vector<Member> members = best_.members;
+    const size_t stacked =
+        std::erase_if(members, [](const Member& m) { return m.candidate->is_of_velocity; });
+    const auto function = std::ranges::find(unknown_, true, &Candidate::is_of_velocity);
+    if (stacked < 2 || function == unknown_.end() || is_spent()) return;
+    members.push_back({&*function, std::vector<double>(function->linear.size()), {}});
+    Estimate trial = refined(members, 4);
+    const double least = criteria::least_gain_without_name +
+                         criteria::least_gain_over_stacked_names_per_row * double(fitted_numbers(trials_));
+    if (!trial.is_valid) return;
+    trail_.push_back(fmt::format("tried a function of velocity in place of {} names: criterion {:+.1f}",
+                                 stacked, score(trial) - score(best_)));
+    if (score(trial) > score(best_) - least) return;
+    take(std::move(trial));
+    note("without a name");
+    prune();
+  }
+
   /// A member, or two, for another: also an equally good one, if it makes others unnecessary.
   void exchange() {
     for (int round = 0; round < 4; ++round) {
@@ -298,7 +319,7 @@ class Search {
   Estimate pruned(Estimate estimate) {
     while (estimate.is_valid && estimate.members.size() > 1) {
       const Evidence evidence(trials_, estimate, {}, candidates_.size());
-      const std::vector<double> gains = evidence.gains_of_removal();
+      const std::vector<double> gains = evidence.gains_of_removal(double(fitted_numbers(trials_)));
       const size_t worst = size_t(std::ranges::max_element(gains) - gains.begin());
       if (gains[worst] < -10) break;
       std::vector<Member> members = estimate.members;

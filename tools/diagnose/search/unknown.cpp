@@ -129,11 +129,13 @@ std::vector<Candidate> unknown_forces(const RecordSizes& sizes, bool is_map) {
   const Variable time = each_sample([](const Path& path, size_t k) { return double(k) * path.sample_time; });
   const Variable position = each_sample(middle_position), velocity = each_sample(middle_velocity);
   const Variable direction = direction_of(transition_of_direction(sizes));
+  Candidate of_velocity = spline("velocity", 24, -top, top, velocity, one);
+  of_velocity.is_of_velocity = true;
   const Candidate of_position = spline("position", 60, low, high, position, one),
                   of_direction = spline("position,direction", 24, low, high, position, direction);
   if (is_map) return {of_position, of_direction};
   return {of_position,
-          spline("velocity", 24, -top, top, velocity, one),
+          std::move(of_velocity),
           spline("time", 40, 0, sizes.duration, time, one),
           of_direction,
           spline("position,velocity", 24, low, high, position, velocity),

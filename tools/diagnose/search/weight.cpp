@@ -90,6 +90,24 @@ double gain_of_member(const NormalEquations& e, const std::vector<Member>& membe
   return std::max(0.0, gain_of(e, all) - gain_of(e, others));
 }
 
+std::vector<double> sum_of_columns(const Member& member, const Path& path) {
+  const Columns columns = member.candidate->columns(path, member.nonlinear);
+  std::vector<double> sum(columns[0].mean->size());
+  for (size_t c = 0; c < columns.size(); ++c)
+    for (size_t k = 0; k < sum.size(); ++k) sum[k] += member.linear[c] * double((*columns[c].mean)[k]);
+  return sum;
+}
+
+/// The input of a path is what the members made of the recorded one: a limit would find nothing above it.
+std::vector<double> change_of_input(std::vector<Member> members, size_t index, const Path& path,
+                                    const std::vector<double>& raw) {
+  std::vector<double> change = drives_of(members, path, raw).input;
+  members.erase(members.begin() + std::ptrdiff_t(index));
+  const std::vector<double> without = drives_of(members, path, raw).input;
+  for (size_t k = 0; k < change.size(); ++k) change[k] -= without[k];
+  return change;
+}
+
 /// Root mean square of the force that a member consumes over the fitted rows.
 double force_rms(const Trials& trials, const Estimate& estimate, size_t index) {
   const Member& member = estimate.members[index];
@@ -97,15 +115,15 @@ double force_rms(const Trials& trials, const Estimate& estimate, size_t index) {
   for (size_t t = 0; t < trials.list.size(); ++t) {
     const Trial& trial = trials.list[t];
     const Fitted& fitted = (*estimate.fitted)[t];
-    const Columns columns = member.candidate->columns(*estimate.motion.paths[t], member.nonlinear);
-    std::vector<float> whole(columns[0].mean->size());
-    for (size_t c = 0; c < columns.size(); ++c)
-      for (size_t k = 0; k < whole.size(); ++k) whole[k] += float(member.linear[c]) * (*columns[c].mean)[k];
-    std::vector<double> seen(whole.begin(), whole.end());
-    if (member.candidate->acts == Acts::input)
+    std::vector<double> seen;
+    if (member.candidate->acts == Acts::input) {
+      seen = change_of_input(estimate.members, index, *estimate.motion.paths[t], trial.input);
       for (double& u : seen) u *= trial.model->force_per_input();
+    } else {
+      seen = sum_of_columns(member, *estimate.motion.paths[t]);
+    }
     if (member.candidate->acts == Acts::sensor) {
-      const Column feigned(whole);
+      const Column feigned(std::vector<float>(seen.begin(), seen.end()));
       const Column* const one = &feigned;
       seen = responses(fitted.axis, fitted.gains, fitted.prediction.path, Acts::sensor, {&one, 1}).front();
       for (double& e : seen) e *= estimate.noise.white;
@@ -137,7 +155,9 @@ double material(const Trials& trials, const Estimate& estimate, const Weight& we
   const double n = judged_numbers(trials);
   const double white =
       estimate.noise.white * std::sqrt(n / double(std::max<size_t>(1, fitted_numbers(trials))));
-  const double least_force_now = std::max(least_force * trials.force_rms, least_force_to_noise * white);
+  const double least_force_now =
+      std::max(least_force * trials.force_rms,
+               std::min(least_force_to_noise * white, force_that_matters * trials.force_rms));
   // A delay acts only for moments, but is clearly visible.
   const double size = std::max(weight.force_rms / least_force_now, weight.wald / (plain_wald_per_row * n));
   return std::min(

@@ -28,18 +28,20 @@ class Judge {
       : trials_(trials), inverse_(inverse), improver_(improver), load_(load) {}
 
   void run(Acceptance& state) {
-    state.runs.clear();
+    state.runs.clear(), state.why_not_run.clear();
     try {
       for (const std::vector<Member>& members : state.staircase.members)
         state.runs.push_back(run_freely(improver_.with(members), improver_, load_, trials_, inverse_,
                                         state.conclusion.estimate.noise));
     } catch (const InputError& error) {
-      state.runs.clear();
       state.why_not_run = "the diagram with the effects cannot be run: " + error.problems.text();
     }
   }
 
   std::optional<Refusal> refused(const Acceptance& state) {
+    // A block has limits too: with less than no damping there is no such machine.
+    if (const size_t at = state.runs.size(); !state.why_not_run.empty() && at > 0)
+      return Refusal{state.staircase.added[at].front(), "the diagram cannot be run with it"};
     for (size_t i = 1; i < state.runs.size(); ++i)
       if (is_worse(state.runs[i - 1], state.runs[i]) && !has_own_load(state.staircase.members[i]) &&
           is_worse_without(state, state.staircase.added[i].front()))
@@ -133,8 +135,9 @@ bool are_larger(const Errors& before, const Errors& after) {
   const auto is_larger = [](double was, double is) {
     return is * is > (1 + criteria::least_worsening) * was * was;
   };
-  return is_larger(before.simulation, after.simulation) && is_larger(before.force, after.force) &&
-         (after.held_out_force == 0 || is_larger(before.held_out_force, after.held_out_force));
+  return is_larger(before.simulation, after.simulation) &&
+         (after.held_out_force == 0 ? is_larger(before.force, after.force)
+                                    : is_larger(before.held_out_force, after.held_out_force));
 }
 
 Acceptance accept(Conclusion conclusion, Trials& trials, const std::vector<InverseDynamics>& inverse,
@@ -147,6 +150,7 @@ Acceptance accept(Conclusion conclusion, Trials& trials, const std::vector<Inver
     state.staircase = climb(trials, state.conclusion, inverse, catalogue);
     judge.run(state);
     const std::optional<Refusal> refusal = judge.refused(state);
+    if (!state.why_not_run.empty()) state.runs.clear();
     if (!refusal) break;
     const std::string name = shown_name(*state.conclusion.estimate.members[refusal->member].candidate);
     state.refused.push_back({name, refusal->why});

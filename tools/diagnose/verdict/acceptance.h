@@ -21,9 +21,9 @@ struct Acceptance {
 struct Errors {
   double simulation = 0, force = 0, held_out_force = 0;
 };
-/// Whether all of them are, though none may be so beyond doubt. An effect that makes them larger gains from
-/// the noise of single rows alone: at tens of kilohertz encoder counts that a controller answers look like a
-/// delay.
+/// Whether simulation and held-out force are (if nothing is held out, the fitted force), though none may be
+/// so beyond doubt. An effect that makes them larger gains from the noise of single rows alone: at tens of
+/// kilohertz encoder counts that a controller answers look like a delay.
 bool are_larger(const Errors& before, const Errors& after);
 
 /// An optional step that brings most of what the simulation gains is needed, and so are those before it.
@@ -31,8 +31,9 @@ void need_what_simulates_better(std::vector<DiagnosisStep>& steps);
 
 /// Removes effects one by one as long as the diagram with one of them simulates worse than without it (unless
 /// a load moves by itself: where it is at the beginning of a window is not known), as all errors are larger
-/// with one, as counts of the sensor are not white and the diagram simulates no better with one, or as the interval of one contains zero while the diagram simulates no worse without it.
-/// `without(conclusion, member)` is the conclusion from the others.
+/// with one, as counts of the sensor are not white and the diagram simulates no better with one, or as the
+/// interval of one contains zero while the diagram simulates no worse without it. `without(conclusion,
+/// member)` is the conclusion from the others.
 Acceptance accept(Conclusion conclusion, Trials& trials, const std::vector<InverseDynamics>& inverse,
                   const Improver& improver, const LoadOptions& load, size_t catalogue,
                   const std::function<Conclusion(const Conclusion&, size_t)>& without);

@@ -26,6 +26,14 @@ RecordFinding ended_at_limit(double most_work) {
       "less, or state in the diagram what is known"};
 }
 
+RecordFinding input_is_noisy(const Trials& trials, const InputNoise& noise) {
+  const double around_s = noise.rows * trials.list.front().model->record().sample_time;
+  return {fmt::format("the recorded input has noise that the machine does not feel: without {:.0f} % of its "
+                      "changes within {:.3g} ms it explains the motion better than with any delay",
+                      100 * noise.share, 1e3 * around_s),
+          "they were taken away for this diagnosis: if the command of the controller is known, record that"};
+}
+
 namespace {
 
 /// A short time is enough for a fast motion.

@@ -85,14 +85,15 @@ class Climb {
   const size_t catalogue_;
 };
 
-/// Members at the end that hardly improve the error are optional.
+/// Members at the end that hardly improve the error, neither over the fitted rows nor over those held out,
+/// are optional: what was held out need not contain every motion.
 void mark_knee(std::vector<DiagnosisStep>& steps) {
-  const auto error = [](const DiagnosisStep& s) {
-    return s.held_out_force_rmse > 0 ? s.held_out_force_rmse : s.force_rmse;
+  const auto is_small = [&](double DiagnosisStep::*error, size_t i) {
+    const double whole = steps.front().*error - steps.back().*error;
+    return steps[i - 1].*error - steps[i].*error <= criteria::knee * whole;
   };
-  const double whole = error(steps.front()) - error(steps.back());
   for (size_t i = steps.size(); i-- > 1;) {
-    if (error(steps[i - 1]) - error(steps[i]) > criteria::knee * whole) break;
+    if (!is_small(&DiagnosisStep::force_rmse, i) || !is_small(&DiagnosisStep::held_out_force_rmse, i)) break;
     steps[i].is_optional = true;
   }
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include "tools/compare/missing_force.h"
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/verdict/remainder_interval.h"
 
 namespace loopwright::diagnosis {
 
@@ -75,11 +76,23 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
     if (is_at_limit(member))
       diagnosis.contradictions.push_back("a parameter of " + name +
                                          " is at the limit of its range, where it stands for something else");
-    // What the counts excuse may also be a load that moves otherwise: neither whiteness nor simulation can tell.
+    // What the counts excuse may also be a load that moves otherwise: neither whiteness nor simulation can
+    // tell.
     if (conclusion.counts_portmanteau > criteria::most_portmanteau_of_counted)
       diagnosis.contradictions.push_back("the counts of the sensor are too coarse to show how the load of " +
                                          name + " moves: its parameters are not certain");
   }
+  const bool has_impacts = std::ranges::any_of(e.members, [](const Member& m) { return m.candidate->flies; });
+  if (!trials.has_map() && !has_impacts &&
+      diagnosis.steps.back().force_rmse < criteria::least_residual_of_noise * diagnosis.noise_floor)
+    diagnosis.contradictions.push_back(
+        "the errors ask for more noise than the forces show: they are not alike over the record, so that "
+        "something happened that is no noise");
+  if (e.against_at_rest > criteria::least_gain)
+    diagnosis.contradictions.push_back(
+        "while the axis rests, its input pushes it more than anything in the diagram holds, or nothing holds "
+        "it "
+        "though something should");
   if (is_not_white && diagnosis.contradictions.empty() && !conclusion.is_remainder_noise)
     diagnosis.contradictions.push_back("a slow force remains that is more than noise");
   is_not_white |= !diagnosis.contradictions.empty();
@@ -89,6 +102,7 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
                          [](const Member& m) { return !m.candidate->is_unknown; });
     const Estimate seen = fit_members(trials, named, tight, motion, 0);
     diagnosis.dependence = dependence_of(trials, *seen.fitted);
+    diagnosis.remainder_interval = interval_of_remainder(trials, *seen.fitted);
     if (!has_unknown && !diagnosis.dependence.empty() &&
         diagnosis.dependence.front().share > criteria::least_dependence)
       add_variables(diagnosis.remainder_variables, diagnosis.dependence.front().variable);

@@ -14,6 +14,8 @@ std::optional<RecordFinding> too_few_rows(const Trials& trials);
 
 /// The search used up its operations.
 RecordFinding ended_at_limit(double most_work);
+/// Noise was taken away from the recorded input: see noise_instead_of_late_input().
+RecordFinding input_is_noisy(const Trials& trials, const InputNoise& noise);
 
 /// Verdict, remainder and its variables, the latter along `motion`. `tight` is the noise of the search: with
 /// the final noise, the slow force has absorbed the remainder. Nothing is explained as long as the residual

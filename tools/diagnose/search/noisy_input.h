@@ -1,0 +1,15 @@
+/// An input that was measured, with noise that the machine does not feel.
+#pragma once
+#include <optional>
+#include "tools/diagnose/search/conclude.h"
+
+namespace loopwright::diagnosis {
+
+/// A lag or a delay that was found may only average the noise of a measured input: then an input of which a
+/// part of the fast changes is taken away, without any delay, explains the records better, because it is
+/// averaged over the rows after each as well. A command that the machine obeys loses by it. Empty: nothing is
+/// late, or it truly is.
+std::optional<InputNoise> noise_instead_of_late_input(Trials& trials, const Conclusion& conclusion,
+                                                      size_t catalogue);
+
+}  // namespace loopwright::diagnosis
