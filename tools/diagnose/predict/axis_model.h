@@ -27,7 +27,8 @@ struct LinearAxis {
   Eigen::VectorXd input_push;  ///< n; effect of a unit of input
   Eigen::VectorXd noise_push;  ///< n; effect of white noise per unit of force
   /// n; effect of a force that grows by one unit within the sample with zero mean, as a fraction of the push.
-  /// ∫ (T - τ)(τ/T - ½) dτ = -T²/12 is a sixth of ∫ (T - τ) dτ, so the position changes by -1/6 of the push.
+  /// Without damping ∫ (T - τ)(τ/T - ½) dτ = -T²/12 is a sixth of ∫ (T - τ) dτ: the position changes by -1/6
+  /// of the push, the velocity by nothing.
   Eigen::VectorXd slope_share;
   Eigen::MatrixXd C;   ///< measured ports × n
   double inertia = 0;  ///< force per acceleration, of the driven mass

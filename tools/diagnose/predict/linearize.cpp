@@ -36,6 +36,20 @@ LinearAxis balance_of(const LinearAxis& moving, double force_per_input) {
   return linear;
 }
 
+/// See LinearAxis::slope_share. Of v' = (f - D v) / M with z = D T / M and f = τ/T - ½, in units of what f =
+/// 1 does: the velocity is ½ - (1 - e^(-z) (1 + z)) / (z (1 - e^(-z))), near z/12, and the position follows
+/// from the balance of momentum.
+struct SlopeShares {
+  double position = -1.0 / 6, velocity = 0;
+};
+SlopeShares slope_shares(double decay) {
+  constexpr double least = 1e-2;  // below it the differences drown in rounding
+  const double z = decay > 0 ? -std::log(decay) : 0;
+  if (std::abs(z) < least) return {-(1 - z / 6) / 6, z / 12};
+  const double velocity = 0.5 - (1 - decay * (1 + z)) / (z * (1 - decay));
+  return {-velocity * (1 - decay) / (z - (1 - decay)), velocity};
+}
+
 }  // namespace
 
 Eigen::VectorXd AxisModel::sample_from(const Eigen::VectorXd& states, double input, double force) {
@@ -111,17 +125,21 @@ LinearAxis AxisModel::linearize_motion() {
   linear.noise_push = linear.push;
   if (noise_enters_at_input_) linear.noise_push = linear.input_push / force_per_input_;
   const Eigen::Index v = velocity_ - plan_->signals, x = position_ - plan_->signals;
-  linear.slope_share = Eigen::VectorXd::Zero(n);
-  for (Eigen::Index i = 0; i < n; ++i)
-    if (position_ >= 0 && seen_[size_t(i)] == x) linear.slope_share[i] = -1.0 / 6;
+  SlopeShares shares;
   for (Eigen::Index i = 0; i < n; ++i)
     if (seen_[size_t(i)] == v) {
       const double decay = linear.A(i, i), per_force = linear.push[i];  // of v' = (F - D v) / M, exactly
+      shares = slope_shares(decay);
       linear.damping = (1 - decay) / per_force;
       const double rate = decay < 1 ? -std::log(decay) : 0;
       linear.inertia =
           rate > 0 ? linear.damping / (rate / record_.sample_time) : record_.sample_time / per_force;
     }
+  linear.slope_share = Eigen::VectorXd::Zero(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (position_ >= 0 && seen_[size_t(i)] == x) linear.slope_share[i] = shares.position;
+    if (seen_[size_t(i)] == v) linear.slope_share[i] = shares.velocity;
+  }
   return linear;
 }
 

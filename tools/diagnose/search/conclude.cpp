@@ -16,10 +16,8 @@ namespace {
 using namespace criteria;
 
 void maximise(Trials& trials, Estimate& estimate) {
-  for (int round = 0; round < 2; ++round) {
-    const Noise noise = fit_noise_alone(trials, *estimate.fitted, estimate.noise, FreeNoise::all);
-    estimate = fit_members(trials, estimate.members, noise, estimate.motion, 8);
-  }
+  constexpr int iterations = 8;
+  estimate = with_own_noise(trials, std::move(estimate), iterations);
 }
 
 /// The result, and the sets that explain the records as well.

@@ -153,6 +153,15 @@ Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& n
   return best;
 }
 
+Estimate with_own_noise(Trials& trials, Estimate estimate, int iterations) {
+  constexpr int rounds = 2;
+  for (int round = 0; round < rounds && estimate.is_valid; ++round) {
+    const Noise noise = fit_noise_alone(trials, *estimate.fitted, estimate.noise, FreeNoise::all);
+    estimate = fit_members(trials, estimate.members, noise, estimate.motion, iterations);
+  }
+  return estimate;
+}
+
 Estimate snap_to_turn(Trials& trials, Estimate estimate) {
   const double span = trials.highest_position - trials.lowest_position;
   for (size_t m = 0; trials.turn > 0 && m < estimate.members.size(); ++m) {

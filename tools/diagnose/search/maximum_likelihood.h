@@ -22,6 +22,9 @@ struct Estimate {
 Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& noise, const Motion& motion,
                      int iterations);
 
+/// Parameters and noise in turn: the likelihood of both together.
+Estimate with_own_noise(Trials& trials, Estimate estimate, int iterations);
+
 /// On a rotary axis what belongs to motor, bearing or encoder repeats a whole number of times a turn, and a
 /// pitch that is wrong by a thousandth is wrong by a period after a few turns. Every pitch that the records
 /// cannot tell from such a part of a turn is set to it and no longer fitted.

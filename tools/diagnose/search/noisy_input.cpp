@@ -27,15 +27,6 @@ Candidate unfelt_noise() {
   return candidate;
 }
 
-Estimate with_own_noise(Trials& trials, Estimate estimate) {
-  constexpr int rounds = 2, iterations = 6;
-  for (int round = 0; round < rounds && estimate.is_valid; ++round)
-    estimate = fit_members(trials, estimate.members,
-                           fit_noise_alone(trials, *estimate.fitted, estimate.noise, FreeNoise::all),
-                           estimate.motion, iterations);
-  return estimate;
-}
-
 }  // namespace
 
 std::optional<InputNoise> noise_instead_of_late_input(Trials& trials, const Conclusion& conclusion,
@@ -43,13 +34,15 @@ std::optional<InputNoise> noise_instead_of_late_input(Trials& trials, const Conc
   const Estimate& found = conclusion.estimate;
   std::vector<Member> others = found.members;
   if (trials.has_map() || std::erase_if(others, is_late) == 0) return {};
+  constexpr int iterations = 6;
   const Candidate candidate = unfelt_noise();
   double least = criterion(trials, found, catalogue);
   std::optional<InputNoise> best;
   for (const double rows : candidate.nonlinear[0].grid) {
     std::vector<Member> members = others;
     members.push_back({&candidate, {0.5}, {rows}});
-    const Estimate trial = with_own_noise(trials, fit_members(trials, members, found.noise, found.motion, 6));
+    const Estimate trial = with_own_noise(
+        trials, fit_members(trials, members, found.noise, found.motion, iterations), iterations);
     if (!trial.is_valid || criterion(trials, trial, catalogue) >= least) continue;
     least = criterion(trials, trial, catalogue);
     best = InputNoise{trial.members.back().nonlinear[0], trial.members.back().linear[0]};

@@ -266,13 +266,16 @@ class Search {
     const auto function = std::ranges::find(unknown_, true, &Candidate::is_of_velocity);
     if (stacked < 2 || function == unknown_.end() || is_spent()) return;
     members.push_back({&*function, std::vector<double>(function->linear.size()), {}});
-    Estimate trial = refined(members, 4);
+    // Each with its own noise: what a name leaves is taken for noise otherwise, and then hides in it.
+    constexpr int iterations = 4;
+    Estimate trial = with_own_noise(trials_, refined(members, iterations), iterations),
+             names = with_own_noise(trials_, best_, iterations);
     const double least = criteria::least_gain_without_name +
                          criteria::least_gain_over_stacked_names_per_row * double(fitted_numbers(trials_));
-    if (!trial.is_valid) return;
+    if (!trial.is_valid || !names.is_valid) return;
     trail_.push_back(fmt::format("tried a function of velocity in place of {} names: criterion {:+.1f}",
-                                 stacked, score(trial) - score(best_)));
-    if (score(trial) > score(best_) - least) return;
+                                 stacked, score(trial) - score(names)));
+    if (score(trial) > score(names) - least) return;
     take(std::move(trial));
     note("without a name");
     prune();
