@@ -293,6 +293,25 @@ constexpr double alike_responses = 0.98;
 /// [rows] A trial term keeps its value as long; about as effects change along a motion.
 constexpr size_t trial_hold = 20;
 
+// Which candidates of any diagram are fitted.
+
+/// [of the best gain] By which a candidate may be behind: after its first steps, in which a law that is linear
+/// in its coefficients is fitted but for the parameters it bends, and after all. And in -2 ln L: less decides
+/// only with the noise of each.
+constexpr double behind_after_first_steps = 0.5, behind_after_all_steps = 0.15, least_behind = 30;
+/// [of the gain of the term that it would replace] Linearized about the same hypothesis, a smaller gain is one
+/// that no fit makes up for.
+constexpr double least_share_of_replaced = 0.5;
+/// [of a gain] Two that differ less respond alike, down to the rounding of differences. [nats] By which the
+/// dearer one of two such laws is no rival.
+constexpr double same_gain = 1e-4, dearer = 5;
+/// [of the gain that a term needs] What is still missing after the first steps without a term, for which the
+/// other steps do not make up.
+constexpr double far_from_idle = 20;
+/// [-2 ln L] By which a single parameter that moves is behind the best set, by the quadratic form: twenty times
+/// what a parameter must gain.
+constexpr double hopeless_parameter = 500;
+
 // Sizes of the motion.
 
 /// [s] Speeds and accelerations are differences over such times.

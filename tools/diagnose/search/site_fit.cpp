@@ -262,7 +262,7 @@ void SiteFitter::fit_noise(SiteHypothesis& h) {
 
 void SiteFitter::anneal(SiteHypothesis& h, bool with_prior) {
   constexpr double colder = 5, most_colder = 1e4;
-  constexpr double better = 2;  // in -2 ln L
+  constexpr double better = 2, same_optimum = 0.5;  // in -2 ln L
   fit_noise(h);
   if (!std::isfinite(h.objective)) return;
   if (h.noise.is_of_simulation) {  // there is but one optimum
@@ -284,7 +284,7 @@ void SiteFitter::anneal(SiteHypothesis& h, bool with_prior) {
     for (double& r : trial.noise.measurement) r *= std::max(1.0, scale);
     refine(trial, 3, with_prior);
     fit_noise(trial);
-    refine(trial, 3, with_prior);
+    if (std::abs(trial.objective - h.objective) > same_optimum) refine(trial, 3, with_prior);
     if (trial.objective < h.objective - better)
       h = trial, failures = 0, factor = colder;
     else

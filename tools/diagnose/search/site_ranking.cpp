@@ -184,20 +184,21 @@ class Ranking {
     const SiteVariable none;
     const SiteVariable& variable =
         term.variable < 0 ? none : fitter_.model().variables()[size_t(term.variable)];
+    const size_t count = size_t(term.shape->columns), rows = pass_.rows;
+    for (auto& list : phi_) list.resize(count * rows);
+    std::array<double, most_columns> square{}, all;
+    for (size_t part = 0; part < 3; ++part)
+      for (size_t k = 0; k < rows; ++k) {
+        term.columns(term.variable < 0 ? 0 : variable.at(&pass_.path[part][k * pass_.numbers]), all.data());
+        for (size_t c = 0; c < count; ++c) phi_[part][c * rows + k] = all[c], square[c] += all[c] * all[c];
+      }
     Eigen::MatrixXd columns(Eigen::Index(pass_.error.size()), term.shape->columns);
-    for (int c = 0; c < term.shape->columns; ++c) {
-      double square = 0;
-      for (size_t part = 0; part < 3; ++part)
-        for (size_t k = 0; k < pass_.rows; ++k) {
-          double all[most_columns];
-          term.columns(term.variable < 0 ? 0 : variable.at(&pass_.path[part][k * pass_.numbers]), all);
-          phi_[part][k] = all[c];
-          square += all[c] * all[c];
-        }
-      const double size = std::sqrt(square / (3 * double(pass_.rows)));
-      term.unit[size_t(c)] = size > 0 ? fitter_.filter().site_scale(term.site) / size : 1;
-      fitter_.filter().respond(pass_, term.site, phi_[0], phi_[1], phi_[2],
-                               {columns.col(c).data(), pass_.error.size()});
+    for (size_t c = 0; c < count; ++c) {
+      const double size = std::sqrt(square[c] / (3 * double(rows)));
+      term.unit[c] = size > 0 ? fitter_.filter().site_scale(term.site) / size : 1;
+      const auto along = [&](size_t part) { return std::span(phi_[part]).subspan(c * rows, rows); };
+      fitter_.filter().respond(pass_, term.site, along(0), along(1), along(2),
+                               {columns.col(Eigen::Index(c)).data(), pass_.error.size()});
     }
     return columns;
   }

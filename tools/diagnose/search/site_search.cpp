@@ -8,6 +8,7 @@
 #include "tools/diagnose/search/moved_parameters.h"
 #include "tools/diagnose/search/simpler_friction.h"
 #include "tools/diagnose/search/site_disturbance.h"
+#include "tools/diagnose/search/site_screening.h"
 #include "tools/diagnose/search/stacked_names.h"
 
 namespace loopwright::diagnosis {
@@ -15,6 +16,8 @@ namespace {
 
 constexpr size_t fitted_keys = 5, fitted_pairs = 2;  // candidates that are confirmed by real fits
 constexpr size_t most_terms = 5;
+/// Gauss-Newton steps of a candidate: after the first ones it shows which are hopeless.
+constexpr int first_steps = 2, further_steps = 3;
 constexpr int most_first_substeps = 64;
 /// In -2 ln L: what a term must gain, also per reading.
 constexpr double least_gain_of_term = 25, least_gain_per_reading = 0.002;
@@ -121,8 +124,9 @@ class SiteSearch {
     for (double r : at.noise.measurement) noise += fmt::format(" {:.3g}", r);
     for (const SlowNoise& slow : at.noise.slow)
       noise += fmt::format(" | slow {:.3g} {:.3g} s", slow.size, slow.time);
-    result_.trail.push_back(fmt::format("{}: -2 ln L {:.1f}, criterion {:.1f}, noise{}", what, at.objective,
-                                        criterion(at), noise));
+    result_.trail.push_back(fmt::format("{}: -2 ln L {:.1f}, criterion {:.1f}, noise{}, after {}", what,
+                                        at.objective, criterion(at), noise,
+                                        told_operations(model().work().done())));
   }
 
   /// -2 ln L + p ln n + twice the cost of the prior.
@@ -186,14 +190,12 @@ class SiteSearch {
       if (candidate.constant) trial.terms.push_back(*candidate.constant);
       trial.terms.push_back(candidate.term);
       if (candidate.term.shape->of == TermShape::Of::own) trial.terms.back().coefficient[0] = 1;
-      fitter_.refine(trial, 5, true);
+      fitter_.refine(trial, first_steps, true);
       if (std::isfinite(trial.objective)) list.push_back(std::move(trial));
     }
-    std::ranges::sort(list, {}, &SiteHypothesis::scaled_objective);
-    if (list.empty()) return list;
-    const double best = list.front().scaled_objective;
-    const double margin = std::max(30.0, 0.15 * (at.scaled_objective - best));
-    std::erase_if(list, [&](const SiteHypothesis& h) { return h.scaled_objective > best + margin; });
+    keep_best(list, at, criteria::behind_after_first_steps);
+    for (SiteHypothesis& h : list) fitter_.refine(h, further_steps, true);
+    keep_best(list, at, criteria::behind_after_all_steps);
     for (SiteHypothesis& h : list) {
       fitter_.fit_noise(h);
       fitter_.refine(h, 3, true);
@@ -207,8 +209,9 @@ class SiteSearch {
     std::vector<SiteCandidate> ranked = rank_terms(fitter_, at, fitter_.shapes(), true), pairs;
     std::ranges::copy_if(ranked, std::back_inserter(pairs), [](const auto& c) { return bool(c.constant); });
     std::erase_if(ranked, [](const auto& c) { return bool(c.constant); });
-    pairs.resize(std::min(fitted_pairs, pairs.size()));
     keys_ = std::max<size_t>(keys_, ranked.size());
+    leave_out_twins(ranked), leave_out_twins(pairs);
+    pairs.resize(std::min(fitted_pairs, pairs.size()));
     std::vector<SiteCandidate> list(ranked.begin(),
                                     ranked.begin() + std::ptrdiff_t(std::min(fitted_keys, ranked.size())));
     for (const SiteCandidate& c : list)
@@ -284,7 +287,7 @@ class SiteSearch {
       const SiteTerm term = at.terms[t];
       without.terms.erase(without.terms.begin() + std::ptrdiff_t(t));
       std::vector<SiteCandidate> others = rank_terms(fitter_, without, fitter_.shapes());
-      std::erase_if(others, [&](const SiteCandidate& c) { return c.is_same_key(term); });
+      leave_out_hopeless(others, term);
       others.resize(std::min<size_t>(3, others.size()));
       for (SiteHypothesis& other : fits(without, others)) {
         const double needed = size_of(other) > size_of(at) ? 20 : least_exchange;
@@ -325,7 +328,9 @@ class SiteSearch {
     for (size_t t = at.terms.size(); t-- > 0;) {
       SiteHypothesis without = at;
       without.terms.erase(without.terms.begin() + std::ptrdiff_t(t));
-      fitter_.refine(without, 6, false);
+      fitter_.refine(without, first_steps, false);
+      if (without.scaled_objective - at.scaled_objective >= criteria::far_from_idle * gain_needed()) continue;
+      fitter_.refine(without, further_steps + 1, false);
       fitter_.fit_noise(without);
       if (without.objective - at.objective >= gain_needed()) continue;
       tell("- " + describe(model(), at.terms[t]), without);
