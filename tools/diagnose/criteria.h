@@ -147,9 +147,9 @@ constexpr double sure = 0.9;
 /// [operations] A record of 56 s with one or two effects needs a twentieth of it, one with a load that flies
 /// half. Half a minute to a minute of processor time.
 constexpr double most_work = 50e9;
-/// [operations] The same without roles: some two minutes. Two records of a motor, 3000 rows together,
-/// need half of it.
-constexpr double most_work_at_sites = 120e9;
+/// [operations] The same without roles: one to two minutes. Of a record with three effects in a stiff circuit,
+/// the first search needs 37e9.
+constexpr double most_work_at_sites = 50e9;
 /// [most_work] Used up, the search accepts no further effect; and no further rival is compared. What was
 /// found is fitted, weighed and simulated in any case.
 constexpr double work_of_search = 0.6, work_with_rivals = 0.8;
@@ -292,6 +292,13 @@ constexpr double weakest_direction = 1e-7;
 constexpr double alike_responses = 0.98;
 /// [rows] A trial term keeps its value as long; about as effects change along a motion.
 constexpr size_t trial_hold = 20;
+
+/// [-2 ln L] By which an answer with another term, and all parameters as stated, may be behind and is declared:
+/// an effect too small to be named, of half that certainty, makes as much of a difference.
+constexpr double most_lost_by_fewer_changes = 50;
+/// [of the parameter] A smaller change is within what data sheets and weighing leave open, and within what an
+/// effect without a name does to the parameters that resemble it.
+constexpr double small_change_of_parameter = 0.02;
 
 // Which candidates of any diagram are fitted.
 

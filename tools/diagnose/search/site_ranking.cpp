@@ -291,9 +291,7 @@ class Ranking {
       SiteHypothesis trial = at_;
       trial.terms.push_back(term_of(shape, site, own, values, start));
       trial.terms.back().coefficient[0] = 1;
-      SitePass there;
-      if (!fitter_.pass(trial, false, there)) continue;
-      const double gain = pass_.scaled_objective() - there.scaled_objective();
+      const double gain = pass_.scaled_objective() - fitter_.scaled_objective_beside(trial, pass_);
       if (gain > best.gain) best.gain = gain, best.term = trial.terms.back();
     }
     if (best.gain <= 0) return;

@@ -10,6 +10,7 @@
 #include "tools/diagnose/search/site_disturbance.h"
 #include "tools/diagnose/search/site_screening.h"
 #include "tools/diagnose/search/stacked_names.h"
+#include "tools/diagnose/search/stated_parameters.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -96,7 +97,7 @@ class SiteSearch {
     progress_("deciding which parameters moved", begin_ + 0.3);
     decide_parameters(at);
     if (remove_idle(at)) decide_parameters(at);
-    compare_with_single_terms(at);
+    compare_with_stated_parameters(at);
     if (errors_ == ErrorsOf::predictions) at = without_idle_disturbances(fitter_, std::move(at));
     result_.found = std::move(at);
     return std::exchange(result_, std::move(before));
@@ -353,18 +354,19 @@ class SiteSearch {
             {choices[i].moved(), {}, choices[i].criterion - choices.front().criterion});
   }
 
-  /// A single term with the diagram's own parameters against moved parameters without a term.
-  void compare_with_single_terms(SiteHypothesis& at) {
-    if (!at.terms.empty() || at.free_parameters() == 0 || is_spent(criteria::work_with_rivals)) return;
-    std::vector<SiteCandidate> ranked = rank_terms(fitter_, result_.nominal, fitter_.shapes());
-    std::erase_if(ranked,
-                  [](const SiteCandidate& c) { return c.term.shape->name == "linear"; });  // a parameter
-    ranked.resize(std::min<size_t>(3, ranked.size()));
-    const double parameters = at.objective + double(at.free_parameters()) * (std::log(readings_) + 4);
-    for (const SiteHypothesis& other : fits(result_.nominal, ranked)) {
-      const double worse = criterion(other) - parameters;
-      tell("in the place of parameters: " + describe(model(), other.terms.back()), other);
-      if (worse < rival_within) result_.parameter_rivals.push_back({{}, other.terms, worse});
+  /// What explains nearly as much with all parameters as the diagram states them.
+  void compare_with_stated_parameters(const SiteHypothesis& at) {
+    if (at.free_parameters() == 0 || is_spent(criteria::work_with_rivals)) return;
+    const auto fit = [&](const SiteHypothesis& h, std::span<const SiteCandidate> list) {
+      return fits(h, list);
+    };
+    for (StatedParameters& other : with_stated_parameters(fitter_, at, result_.nominal, fit)) {
+      const SiteTerm& term = other.hypothesis.terms.back();
+      const double worse = criterion(other.hypothesis) - whole_criterion(at),
+                   lost = other.hypothesis.objective - at.objective;
+      tell("in the place of parameters: " + describe(model(), term), other.hypothesis);
+      if (worse < rival_within || (other.of && lost < criteria::most_lost_by_fewer_changes))
+        result_.parameter_rivals.push_back({{}, {term}, worse, other.of});
     }
   }
 
