@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/state_behind.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -99,26 +100,7 @@ class Ranking {
         });
         if (!is_multiple_[v]) directions.push_back(along / size);
       }
-    find_functions_of_states();
-  }
-  /// A level of a function of a state is a level of the state.
-  void find_functions_of_states() {
-    const std::vector<SiteVariable>& variables = fitter_.model().variables();
-    is_function_.assign(variables.size(), false);
-    for (size_t s = 0; s < variables.size(); ++s) {
-      if (!variables[s].is_state || variables[s].minus >= 0) continue;
-      const std::vector<double> state = signal(int(s));
-      std::vector<size_t> order(state.size());
-      for (size_t k = 0; k < order.size(); ++k) order[k] = k;
-      std::ranges::sort(order, {}, [&](size_t k) { return state[k]; });
-      for (size_t v = 0; v < variables.size(); ++v) {
-        if (variables[v].is_state || is_function_[v]) continue;
-        const std::vector<double> values = signal(int(v));
-        const auto value = [&](size_t k) { return values[k]; };
-        is_function_[v] = std::ranges::is_sorted(order, std::less{}, value) ||
-                          std::ranges::is_sorted(order, std::greater{}, value);
-      }
-    }
+    state_behind_ = states_behind(fitter_.model(), pass_);
   }
   bool acts(int site) const {
     if (is_sensor(site)) return true;
@@ -152,7 +134,8 @@ class Ranking {
                            : is_multiple_[size_t(variable)])
       return false;
     if (nearness == Nearness::far && !is_plain(shape)) return false;
-    if (shape.nonlinear[0] == "level" && is_function_[size_t(variable)]) return false;
+    // A level of a function of a state is a level of the state.
+    if (shape.nonlinear[0] == "level" && state_behind_[size_t(variable)] != variable) return false;
     return shape.fits(model.sites()[size_t(site)].quantity, model.variables()[size_t(variable)].quantity);
   }
   /// Along the path, at the start of each sample.
@@ -363,7 +346,8 @@ class Ranking {
   double constant_gain_ = 0;
   bool has_constant_ = false;
   bool is_good_ = false;
-  std::vector<bool> is_multiple_, is_function_;
+  std::vector<bool> is_multiple_;
+  std::vector<int> state_behind_;  // of each variable
   Eigen::MatrixXd basis_;
   Eigen::VectorXd rest_;
   std::array<std::vector<double>, 3> phi_;

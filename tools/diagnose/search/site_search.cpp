@@ -249,8 +249,8 @@ class SiteSearch {
 
   /// Names that pile up at one site for one signal may stand for a function without a name.
   void merge_stacked_names(SiteHypothesis& at, size_t fewest) {
-    for (const StackedNames& names : stacked_names(at, fewest)) {
-      if (fewest > 1 && are_laws_of_friction(at, names)) continue;
+    for (const StackedNames& names : stacked_names(fitter_, at, fewest)) {
+      if (fewest > 1 && are_usual_together(at, names)) continue;
       const auto function = with_function(fitter_, at, names, [&](const auto& h) { return criterion(h); });
       if (!function) continue;
       tell("in the place of " + std::to_string(names.terms.size()) +
@@ -268,7 +268,7 @@ class SiteSearch {
     const double needed = std::max(least_gain_of_unknown, least_gain_of_unknown_per_reading * readings_);
     if (criterion(function) < criterion(at) - needed) return true;
     const auto& range = function.terms.back().nonlinear;
-    if (names.terms.size() < 2 || are_laws_of_friction(at, names) ||
+    if (names.terms.size() < 2 || are_usual_together(at, names) ||
         are_periods(at, names, range[1] - range[0]))
       return false;
     SiteHypothesis nothing = without(at, names);
