@@ -83,7 +83,8 @@ TEST(AnyDiagram, AParameterThatIsHardlyOffBesideATermMayStandForSomethingSmall) 
   EXPECT_TRUE(std::ranges::any_of(d.other_explanations, [](const OtherExplanation& other) {
     return other.in_place_of == std::vector<std::string>{"resistance"} && other.effects.empty();
   })) << to_text(d);
-  EXPECT_NE(to_text(d).find("or something small without a name in the place of resistance"), std::string::npos);
+  EXPECT_NE(to_text(d).find("or something small without a name in the place of resistance"),
+            std::string::npos);
 }
 TEST(AnyDiagram, TheDropOfBrushesIsFoundAtItsVoltages) {
   Motor m;

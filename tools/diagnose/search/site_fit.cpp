@@ -15,8 +15,8 @@ constexpr double widest_factor = 50;
 constexpr double prior_deviation = 1;
 /// Lengths of a Gauss-Newton step that are tried where a whole one does not help.
 constexpr double shorter_steps[] = {0.4, 0.1, 0.02};
-/// [of the decrease that linear errors would have] A step that reaches it finds nearly the same derivatives at
-/// its end: they cost a run of the model for every number.
+/// [of the decrease that linear errors would have] A step that reaches it finds nearly the same derivatives
+/// at its end: they cost a run of the model for every number.
 constexpr double still_linear = 0.8;
 /// [in -2 ln L] Smaller improvements end a refinement.
 constexpr double enough = 0.05;

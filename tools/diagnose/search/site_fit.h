@@ -57,8 +57,8 @@ class SiteFitter {
   /// Parameters are biased in the wrong one. Noise in the states is therefore made small, parameters and
   /// noise are fitted, as long as the likelihood improves.
   void anneal(SiteHypothesis& hypothesis, bool with_prior);
-  /// The scaled objective with the gains and variances of a pass: what a change gains, in one run of the model
-  /// in the place of one for each state. Infinite if the model diverges.
+  /// The scaled objective with the gains and variances of a pass: what a change gains, in one run of the
+  /// model in the place of one for each state. Infinite if the model diverges.
   double scaled_objective_beside(const SiteHypothesis& hypothesis, const SitePass& about);
   /// Derivatives of the whitened errors with respect to all fitted numbers, as columns; a missing reading is
   /// zero. At the edge of what the diagram can be run with, the difference is taken on the other side; zero

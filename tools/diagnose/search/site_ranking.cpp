@@ -320,7 +320,8 @@ class Ranking {
     for (const auto& [samples, before] : shape.starts(std::span(input).first(1))) {
       SiteTerm term;
       term.shape = &shape, term.site = site, term.nonlinear = {samples * sample, before};
-      term.low = {shortest * sample, std::min(least, 0.0)}, term.high = {longest * sample, std::max(most, 0.0)};
+      term.low = {shortest * sample, std::min(least, 0.0)},
+      term.high = {longest * sample, std::max(most, 0.0)};
       const double gain = explain(response_of_input(site, fitter_.model().change_of_input(term)), term);
       const double share = term.coefficient[0];
       if (share < least_share || share > most_share || gain <= best.gain) continue;

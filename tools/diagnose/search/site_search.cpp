@@ -361,12 +361,13 @@ class SiteSearch {
       return fits(h, list);
     };
     for (StatedParameters& other : with_stated_parameters(fitter_, at, result_.nominal, fit)) {
-      const SiteTerm& term = other.hypothesis.terms.back();
       const double worse = criterion(other.hypothesis) - whole_criterion(at),
                    lost = other.hypothesis.objective - at.objective;
-      tell("in the place of parameters: " + describe(model(), term), other.hypothesis);
-      if (worse < rival_within || (other.of && lost < criteria::most_lost_by_fewer_changes))
-        result_.parameter_rivals.push_back({{}, {term}, worse, other.of});
+      tell("in the place of parameters: " + describe(model(), other.terms().back()), other.hypothesis);
+      const size_t numbers = size_of(other.hypothesis);
+      const double most_lost = numbers < size_of(at) ? criteria::most_lost_by_fewer_changes : rival_within;
+      if (worse < rival_within || (other.of && numbers <= size_of(at) && lost < most_lost))
+        result_.parameter_rivals.push_back({{}, other.terms(), worse, other.of});
     }
   }
 

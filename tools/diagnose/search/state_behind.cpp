@@ -18,7 +18,8 @@ std::vector<int> states_behind(const SiteModel& model, const SitePass& pass) {
     for (size_t v = 0; v < variables.size(); ++v) {
       if (variables[v].is_state || behind[v] != int(v)) continue;
       const auto along = [&](size_t row) { return value(v, row); };
-      if (std::ranges::is_sorted(order, std::less{}, along) || std::ranges::is_sorted(order, std::greater{}, along))
+      if (std::ranges::is_sorted(order, std::less{}, along) ||
+          std::ranges::is_sorted(order, std::greater{}, along))
         behind[v] = int(s);
     }
   }

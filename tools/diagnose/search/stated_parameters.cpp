@@ -7,24 +7,45 @@ namespace {
 
 constexpr size_t fitted_in_its_place = 3;  // candidates
 
-}  // namespace
+class Replacement {
+ public:
+  Replacement(SiteFitter& fitter, const FitsOfCandidates& fits) : fitter_(fitter), fits_(fits) {}
 
-std::vector<StatedParameters> with_stated_parameters(SiteFitter& fitter, const SiteHypothesis& found,
-                                                     const SiteHypothesis& nominal,
-                                                     const FitsOfCandidates& fits) {
-  std::vector<StatedParameters> list;
-  const auto try_at = [&](const SiteHypothesis& at, std::optional<size_t> of) {
-    std::vector<SiteCandidate> ranked = rank_terms(fitter, at, fitter.shapes());
+  void try_at(const SiteHypothesis& at, std::optional<size_t> of, size_t added = 1) {
+    std::vector<SiteCandidate> ranked = rank_terms(fitter_, at, fitter_.shapes());
     std::erase_if(ranked, [&](const SiteCandidate& c) {
       return c.term.shape->name == "linear" && !of;  // a parameter
     });
     leave_out_twins(ranked);
     ranked.resize(std::min(fitted_in_its_place, ranked.size()));
-    for (SiteHypothesis& h : fits(at, ranked)) list.push_back({std::move(h), of});
-  };
+    for (SiteHypothesis& h : fits_(at, ranked)) list_.push_back({std::move(h), of, added});
+  }
+  /// A law with an offset, as radiation has one, may stand for a constant and another law.
+  void try_with_constant(const SiteHypothesis& at, size_t of, int site) {
+    const auto constant = std::ranges::find(fitter_.shapes(), "constant", &TermShape::name);
+    if (constant == fitter_.shapes().end()) return;
+    const std::span<const TermShape> shapes{&*constant, 1};
+    const std::vector<SiteCandidate> ranked = rank_terms_at(fitter_, at, shapes, site, -1);
+    const std::vector<SiteHypothesis> fitted = fits_(at, ranked);
+    if (!fitted.empty()) try_at(fitted.front(), of, 2);
+  }
+  std::vector<StatedParameters> take() { return std::move(list_); }
+
+ private:
+  SiteFitter& fitter_;
+  const FitsOfCandidates& fits_;
+  std::vector<StatedParameters> list_;
+};
+
+}  // namespace
+
+std::vector<StatedParameters> with_stated_parameters(SiteFitter& fitter, const SiteHypothesis& found,
+                                                     const SiteHypothesis& nominal,
+                                                     const FitsOfCandidates& fits) {
+  Replacement replacement(fitter, fits);
   if (found.terms.empty()) {
-    try_at(nominal, {});
-    return list;
+    replacement.try_at(nominal, {});
+    return replacement.take();
   }
   SiteHypothesis stated = found;
   std::ranges::fill(stated.factors, 1.0);
@@ -32,9 +53,10 @@ std::vector<StatedParameters> with_stated_parameters(SiteFitter& fitter, const S
   for (size_t t = 0; t < found.terms.size(); ++t) {
     SiteHypothesis without = stated;
     without.terms.erase(without.terms.begin() + std::ptrdiff_t(t));
-    try_at(without, t);
+    replacement.try_at(without, t);
+    if (found.terms[t].variable >= 0) replacement.try_with_constant(without, t, found.terms[t].site);
   }
-  return list;
+  return replacement.take();
 }
 
 }  // namespace loopwright::diagnosis
