@@ -157,9 +157,9 @@ constexpr double sure = 0.9;
 /// [operations] A record of 56 s with one or two effects needs a twentieth of it, one with a load that flies
 /// half. Half a minute to a minute of processor time.
 constexpr double most_work = 50e9;
-/// [operations] The same without roles: some two minutes. Two records of a motor, 3000 rows together,
-/// need half of it.
-constexpr double most_work_at_sites = 120e9;
+/// [operations] The same without roles: one to two minutes. Of a record with three effects in a stiff
+/// circuit, the first search needs 37e9.
+constexpr double most_work_at_sites = 50e9;
 /// [most_work] Used up, the search accepts no further effect; and no further rival is compared. What was
 /// found is fitted, weighed and simulated in any case.
 constexpr double work_of_search = 0.6, work_with_rivals = 0.8;
@@ -308,6 +308,32 @@ constexpr double weakest_direction = 1e-7;
 constexpr double alike_responses = 0.98;
 /// [rows] A trial term keeps its value as long; about as effects change along a motion.
 constexpr size_t trial_hold = 20;
+
+/// [-2 ln L] By which an answer with fewer numbers, and all parameters as stated, may be behind and is
+/// declared: twice what a term must gain to be named.
+constexpr double most_lost_by_fewer_changes = 50;
+/// [of the parameter] A smaller change is within what data sheets and weighing leave open, and within what an
+/// effect without a name does to the parameters that resemble it.
+constexpr double small_change_of_parameter = 0.02;
+
+// Which candidates of any diagram are fitted.
+
+/// [of the best gain] By which a candidate may be behind: after its first steps, in which a law that is
+/// linear in its coefficients is fitted but for the parameters it bends, and after all. And in -2 ln L: less
+/// decides only with the noise of each.
+constexpr double behind_after_first_steps = 0.5, behind_after_all_steps = 0.15, least_behind = 30;
+/// [of the gain of the term that it would replace] Linearized about the same hypothesis, a smaller gain is
+/// one that no fit makes up for.
+constexpr double least_share_of_replaced = 0.5;
+/// [of a gain] Two that differ less respond alike, down to the rounding of differences. [nats] By which the
+/// dearer one of two such laws is no rival.
+constexpr double same_gain = 1e-4, dearer = 5;
+/// [of the gain that a term needs] What is still missing after the first steps without a term, for which the
+/// other steps do not make up.
+constexpr double far_from_idle = 20;
+/// [-2 ln L] By which a single parameter that moves is behind the best set, by the quadratic form: twenty
+/// times what a parameter must gain.
+constexpr double hopeless_parameter = 500;
 
 // Sizes of the motion.
 

@@ -74,6 +74,18 @@ TEST(AnyDiagram, DryFrictionOfAMotorIsFoundAtItsTorques) {
   expect_parameter(d.effects[0], "level", -0.01, 0.001, "N*m");
   expect_explained(d);
 }
+TEST(AnyDiagram, AParameterThatIsHardlyOffBesideATermMayStandForSomethingSmall) {
+  Motor m;
+  m.resistance *= 1.01, m.torque = [](double speed, double) { return 0.01 * std::tanh(speed / 0.5); };
+  const Diagnosis d = diagnosed(motor(m, 26));
+  EXPECT_EQ(d.verdict, Verdict::explained) << to_text(d);
+  ASSERT_EQ(d.moved_parameters.size(), 1u) << to_text(d);
+  EXPECT_TRUE(std::ranges::any_of(d.other_explanations, [](const OtherExplanation& other) {
+    return other.in_place_of == std::vector<std::string>{"resistance"} && other.effects.empty();
+  })) << to_text(d);
+  EXPECT_NE(to_text(d).find("or something small without a name in the place of resistance"),
+            std::string::npos);
+}
 TEST(AnyDiagram, TheDropOfBrushesIsFoundAtItsVoltages) {
   Motor m;
   m.voltage_drop = [](double current, double) { return 0.6 * std::tanh(current / 0.3); };

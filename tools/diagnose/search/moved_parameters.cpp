@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <set>
+#include "tools/diagnose/criteria.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -57,6 +58,7 @@ std::vector<uint32_t> promising_sets(const Eigen::MatrixXd& covariance, const Ei
   if (count <= most_for_all_subsets) {
     for (uint32_t set = 0; set <= full; ++set) add(set);
   } else {
+    for (size_t i = 0; i < count; ++i) add(1u << i);
     for (uint32_t set = full; set;) {  // the least important first
       add(set);
       uint32_t best = 0;
@@ -71,7 +73,9 @@ std::vector<uint32_t> promising_sets(const Eigen::MatrixXd& covariance, const Ei
   std::ranges::sort(ranked);
   std::set<uint32_t> sets{0};
   for (size_t i = 0; i < std::min(fitted_sets, ranked.size()); ++i) sets.insert(ranked[i].second);
-  for (size_t i = 0; i < count; ++i) sets.insert(1u << i);
+  const double most = ranked.front().first + criteria::hopeless_parameter;
+  for (const auto& [cost, set] : ranked)
+    if (std::has_single_bit(set) && cost < most) sets.insert(set);
   return {sets.begin(), sets.end()};
 }
 

@@ -13,8 +13,11 @@ constexpr double widest_factor = 50;
 /// [of the parameter] Standard deviation of the prior while all parameters are free, so that those which the
 /// record does not determine stay where they are.
 constexpr double prior_deviation = 1;
-/// Lengths of a Gauss-Newton step that are tried.
-constexpr double step_lengths[] = {1, 0.4, 0.1, 0.02};
+/// Lengths of a Gauss-Newton step that are tried where a whole one does not help.
+constexpr double shorter_steps[] = {0.4, 0.1, 0.02};
+/// [of the decrease that linear errors would have] A step that reaches it finds nearly the same derivatives
+/// at its end: they cost a run of the model for every number.
+constexpr double still_linear = 0.8;
 /// [in -2 ln L] Smaller improvements end a refinement.
 constexpr double enough = 0.05;
 constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -83,6 +86,16 @@ Eigen::VectorXd SiteFitter::whitened(const SitePass& pass) const {
   return e;
 }
 
+double SiteFitter::scaled_objective_beside(const SiteHypothesis& h, const SitePass& about) {
+  use(h);
+  if (!filter_.run_frozen(about, errors_)) return infinite;
+  double squares = 0;
+  for (size_t k = 0; k < errors_.size(); ++k)
+    if (!std::isnan(about.error[k])) squares += squared(errors_[k]) / about.variance[k];
+  const double count = double(about.readings);
+  return std::isfinite(squares) ? about.log_variances + count * std::log(squares / count) + count : infinite;
+}
+
 double SiteFitter::step_of(const SiteHypothesis& h, const FittedNumber& number) const {
   if (number.kind == FittedNumber::Kind::factor) return 1e-5 * h.factors[size_t(number.owner)];
   const SiteTerm& term = h.terms[size_t(number.owner)];
@@ -126,6 +139,44 @@ void SiteFitter::keep_within_limits(SiteHypothesis& h, const FittedNumber& numbe
   value = std::clamp(std::clamp(value, before - most, before + most), low, high);
 }
 
+/// One system of linear equations for a step: derivatives and what is left, whitened, with the prior as rows.
+struct SiteFitter::Normal {
+  Eigen::MatrixXd derivatives;  ///< of the whitened errors
+  Eigen::VectorXd move;
+  double decrease = 0;  ///< of the objective, as far as the errors are linear
+};
+
+void SiteFitter::solve(const SiteHypothesis& h, const std::vector<FittedNumber>& numbers, bool with_prior,
+                       Normal& normal) const {
+  const double scale = std::sqrt(pass_.squares / double(pass_.readings));
+  const Eigen::MatrixXd& J = normal.derivatives;
+  const Eigen::Index rows = J.rows(), count = J.cols();
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(rows + count, count);
+  Eigen::VectorXd rest = Eigen::VectorXd::Zero(rows + count);
+  all.topRows(rows) = J / scale, rest.head(rows) = -whitened(pass_) / scale;
+  for (Eigen::Index i = 0; i < count; ++i)
+    if (with_prior && numbers[size_t(i)].kind == FittedNumber::Kind::factor) {
+      SiteHypothesis at = h;
+      all(rows + i, i) = 1 / prior_deviation;
+      rest[rows + i] = (1 - value_of(at, numbers[size_t(i)])) / prior_deviation;
+    }
+  Eigen::VectorXd norm = all.colwise().norm().transpose();
+  for (double& size : norm)
+    if (!(size > 0)) size = 1;
+  const Eigen::MatrixXd unit =
+      norm.cwiseInverse().asDiagonal() * (all.transpose() * all) * norm.cwiseInverse().asDiagonal();
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(unit);
+  const Eigen::VectorXd right = norm.cwiseInverse().asDiagonal() * (all.transpose() * rest);
+  normal.move = Eigen::VectorXd::Zero(count), normal.decrease = 0;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    if (!(eigen.eigenvalues()[i] > criteria::weakest_direction)) continue;
+    const double along = eigen.eigenvectors().col(i).dot(right);
+    normal.move += eigen.eigenvectors().col(i) * (along / eigen.eigenvalues()[i]);
+    normal.decrease += along * along / eigen.eigenvalues()[i];
+  }
+  normal.move = norm.cwiseInverse().asDiagonal() * normal.move;
+}
+
 void SiteFitter::refine(SiteHypothesis& h, int steps, bool with_prior) {
   const std::vector<FittedNumber> numbers = fitted_numbers(h);
   if (!pass(h, false, pass_) || numbers.empty()) return;
@@ -136,49 +187,33 @@ void SiteFitter::refine(SiteHypothesis& h, int steps, bool with_prior) {
     return sum;
   };
   double best = pass_.scaled_objective() + prior(h);
-  for (int step = 0; step < steps && !is_interrupted_(); ++step) {
-    const Eigen::MatrixXd J = jacobian(h, pass_);
-    const double scale = std::sqrt(pass_.squares / double(pass_.readings));
-    const Eigen::Index rows = J.rows(), count = J.cols();
-    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(rows + count, count);
-    Eigen::VectorXd rest = Eigen::VectorXd::Zero(rows + count);
-    all.topRows(rows) = J / scale, rest.head(rows) = -whitened(pass_) / scale;
-    for (Eigen::Index i = 0; i < count; ++i)
-      if (with_prior && numbers[size_t(i)].kind == FittedNumber::Kind::factor) {
-        all(rows + i, i) = 1 / prior_deviation;
-        rest[rows + i] = (1 - value_of(h, numbers[size_t(i)])) / prior_deviation;
-      }
-    Eigen::VectorXd norm = all.colwise().norm().transpose();
-    for (double& size : norm)
-      if (!(size > 0)) size = 1;
-    const Eigen::MatrixXd normal =
-        norm.cwiseInverse().asDiagonal() * (all.transpose() * all) * norm.cwiseInverse().asDiagonal();
-    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(normal);
-    const Eigen::VectorXd right = norm.cwiseInverse().asDiagonal() * (all.transpose() * rest);
-    Eigen::VectorXd move = Eigen::VectorXd::Zero(count);
-    for (Eigen::Index i = 0; i < count; ++i)
-      if (eigen.eigenvalues()[i] > criteria::weakest_direction)
-        move +=
-            eigen.eigenvectors().col(i) * (eigen.eigenvectors().col(i).dot(right) / eigen.eigenvalues()[i]);
-    move = norm.cwiseInverse().asDiagonal() * move;
-    bool is_better = false;
-    for (double length : step_lengths) {
-      SiteHypothesis trial = h;
-      for (size_t i = 0; i < numbers.size(); ++i) {
-        double& value = value_of(trial, numbers[i]);
-        const double before = value;
-        value += length * move[Eigen::Index(i)];
-        keep_within_limits(trial, numbers[i], before);
-      }
-      SitePass there;
-      if (!pass(trial, false, there)) continue;
-      const double objective = there.scaled_objective() + prior(trial);
-      if (!(objective < best)) continue;
-      is_better = best - objective > enough;
-      best = objective, h = trial, pass_ = std::move(there);
-      break;
+  const auto is_lower_at = [&](double length, const Normal& normal) {
+    SiteHypothesis trial = h;
+    for (size_t i = 0; i < numbers.size(); ++i) {
+      double& value = value_of(trial, numbers[i]);
+      const double before = value;
+      value += length * normal.move[Eigen::Index(i)];
+      keep_within_limits(trial, numbers[i], before);
     }
-    if (!is_better) return;
+    SitePass there;
+    if (!pass(trial, false, there)) return false;
+    const double objective = there.scaled_objective() + prior(trial);
+    if (!(objective < best)) return false;
+    best = objective, h = std::move(trial), pass_ = std::move(there);
+    return true;
+  };
+  Normal normal;
+  bool is_known = false;  // the derivatives, from an earlier step
+  for (int step = 0; step < steps && !is_interrupted_(); ++step) {
+    const bool is_new = !is_known;
+    if (is_new) normal.derivatives = jacobian(h, pass_);
+    solve(h, numbers, with_prior, normal);
+    if (normal.decrease < enough) return;
+    const double before = best;
+    is_known = is_lower_at(1, normal) && before - best > still_linear * normal.decrease;
+    if (before == best && is_new)
+      std::ranges::any_of(shorter_steps, [&](double length) { return is_lower_at(length, normal); });
+    if (is_new && !(before - best > enough)) return;
   }
 }
 
@@ -262,7 +297,7 @@ void SiteFitter::fit_noise(SiteHypothesis& h) {
 
 void SiteFitter::anneal(SiteHypothesis& h, bool with_prior) {
   constexpr double colder = 5, most_colder = 1e4;
-  constexpr double better = 2;  // in -2 ln L
+  constexpr double better = 2, same_optimum = 0.5;  // in -2 ln L
   fit_noise(h);
   if (!std::isfinite(h.objective)) return;
   if (h.noise.is_of_simulation) {  // there is but one optimum
@@ -284,7 +319,7 @@ void SiteFitter::anneal(SiteHypothesis& h, bool with_prior) {
     for (double& r : trial.noise.measurement) r *= std::max(1.0, scale);
     refine(trial, 3, with_prior);
     fit_noise(trial);
-    refine(trial, 3, with_prior);
+    if (std::abs(trial.objective - h.objective) > same_optimum) refine(trial, 3, with_prior);
     if (trial.objective < h.objective - better)
       h = trial, failures = 0, factor = colder;
     else

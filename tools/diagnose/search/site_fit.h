@@ -49,7 +49,7 @@ class SiteFitter {
   /// A whole pass; false if the model diverges. Sets the hypothesis' objectives.
   bool pass(SiteHypothesis& hypothesis, bool with_columns, SitePass& to);
   /// Gauss-Newton steps on all fitted numbers, judged by whole passes; with a weak prior on the factors of
-  /// parameters if `with_prior`.
+  /// parameters if `with_prior`. The derivatives stay as long as steps do what they promise.
   void refine(SiteHypothesis& hypothesis, int steps, bool with_prior);
   /// Maximum likelihood of the noise, linearized about a pass.
   void fit_noise(SiteHypothesis& hypothesis);
@@ -57,6 +57,9 @@ class SiteFitter {
   /// Parameters are biased in the wrong one. Noise in the states is therefore made small, parameters and
   /// noise are fitted, as long as the likelihood improves.
   void anneal(SiteHypothesis& hypothesis, bool with_prior);
+  /// The scaled objective with the gains and variances of a pass: what a change gains, in one run of the
+  /// model in the place of one for each state. Infinite if the model diverges.
+  double scaled_objective_beside(const SiteHypothesis& hypothesis, const SitePass& about);
   /// Derivatives of the whitened errors with respect to all fitted numbers, as columns; a missing reading is
   /// zero. At the edge of what the diagram can be run with, the difference is taken on the other side; zero
   /// if it cannot be run on either.
@@ -66,6 +69,9 @@ class SiteFitter {
   double step_of(const SiteHypothesis& hypothesis, const FittedNumber& number) const;
 
  private:
+  struct Normal;
+  void solve(const SiteHypothesis& hypothesis, const std::vector<FittedNumber>& numbers, bool with_prior,
+             Normal& normal) const;
   void use(const SiteHypothesis& hypothesis);
   SiteNoise best_noise(const SitePass& pass, const SiteNoise& from) const;
   std::optional<SiteNoise> evened(const SiteNoise& noise) const;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/state_behind.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -99,26 +100,7 @@ class Ranking {
         });
         if (!is_multiple_[v]) directions.push_back(along / size);
       }
-    find_functions_of_states();
-  }
-  /// A level of a function of a state is a level of the state.
-  void find_functions_of_states() {
-    const std::vector<SiteVariable>& variables = fitter_.model().variables();
-    is_function_.assign(variables.size(), false);
-    for (size_t s = 0; s < variables.size(); ++s) {
-      if (!variables[s].is_state || variables[s].minus >= 0) continue;
-      const std::vector<double> state = signal(int(s));
-      std::vector<size_t> order(state.size());
-      for (size_t k = 0; k < order.size(); ++k) order[k] = k;
-      std::ranges::sort(order, {}, [&](size_t k) { return state[k]; });
-      for (size_t v = 0; v < variables.size(); ++v) {
-        if (variables[v].is_state || is_function_[v]) continue;
-        const std::vector<double> values = signal(int(v));
-        const auto value = [&](size_t k) { return values[k]; };
-        is_function_[v] = std::ranges::is_sorted(order, std::less{}, value) ||
-                          std::ranges::is_sorted(order, std::greater{}, value);
-      }
-    }
+    state_behind_ = states_behind(fitter_.model(), pass_);
   }
   bool acts(int site) const {
     if (is_sensor(site)) return true;
@@ -152,7 +134,8 @@ class Ranking {
                            : is_multiple_[size_t(variable)])
       return false;
     if (nearness == Nearness::far && !is_plain(shape)) return false;
-    if (shape.nonlinear[0] == "level" && is_function_[size_t(variable)]) return false;
+    // A level of a function of a state is a level of the state.
+    if (shape.nonlinear[0] == "level" && state_behind_[size_t(variable)] != variable) return false;
     return shape.fits(model.sites()[size_t(site)].quantity, model.variables()[size_t(variable)].quantity);
   }
   /// Along the path, at the start of each sample.
@@ -184,20 +167,21 @@ class Ranking {
     const SiteVariable none;
     const SiteVariable& variable =
         term.variable < 0 ? none : fitter_.model().variables()[size_t(term.variable)];
+    const size_t count = size_t(term.shape->columns), rows = pass_.rows;
+    for (auto& list : phi_) list.resize(count * rows);
+    std::array<double, most_columns> square{}, all;
+    for (size_t part = 0; part < 3; ++part)
+      for (size_t k = 0; k < rows; ++k) {
+        term.columns(term.variable < 0 ? 0 : variable.at(&pass_.path[part][k * pass_.numbers]), all.data());
+        for (size_t c = 0; c < count; ++c) phi_[part][c * rows + k] = all[c], square[c] += all[c] * all[c];
+      }
     Eigen::MatrixXd columns(Eigen::Index(pass_.error.size()), term.shape->columns);
-    for (int c = 0; c < term.shape->columns; ++c) {
-      double square = 0;
-      for (size_t part = 0; part < 3; ++part)
-        for (size_t k = 0; k < pass_.rows; ++k) {
-          double all[most_columns];
-          term.columns(term.variable < 0 ? 0 : variable.at(&pass_.path[part][k * pass_.numbers]), all);
-          phi_[part][k] = all[c];
-          square += all[c] * all[c];
-        }
-      const double size = std::sqrt(square / (3 * double(pass_.rows)));
-      term.unit[size_t(c)] = size > 0 ? fitter_.filter().site_scale(term.site) / size : 1;
-      fitter_.filter().respond(pass_, term.site, phi_[0], phi_[1], phi_[2],
-                               {columns.col(c).data(), pass_.error.size()});
+    for (size_t c = 0; c < count; ++c) {
+      const double size = std::sqrt(square[c] / (3 * double(rows)));
+      term.unit[c] = size > 0 ? fitter_.filter().site_scale(term.site) / size : 1;
+      const auto along = [&](size_t part) { return std::span(phi_[part]).subspan(c * rows, rows); };
+      fitter_.filter().respond(pass_, term.site, along(0), along(1), along(2),
+                               {columns.col(Eigen::Index(c)).data(), pass_.error.size()});
     }
     return columns;
   }
@@ -290,9 +274,7 @@ class Ranking {
       SiteHypothesis trial = at_;
       trial.terms.push_back(term_of(shape, site, own, values, start));
       trial.terms.back().coefficient[0] = 1;
-      SitePass there;
-      if (!fitter_.pass(trial, false, there)) continue;
-      const double gain = pass_.scaled_objective() - there.scaled_objective();
+      const double gain = pass_.scaled_objective() - fitter_.scaled_objective_beside(trial, pass_);
       if (gain > best.gain) best.gain = gain, best.term = trial.terms.back();
     }
     if (best.gain <= 0) return;
@@ -338,7 +320,8 @@ class Ranking {
     for (const auto& [samples, before] : shape.starts(std::span(input).first(1))) {
       SiteTerm term;
       term.shape = &shape, term.site = site, term.nonlinear = {samples * sample, before};
-      term.low = {shortest * sample, std::min(least, 0.0)}, term.high = {longest * sample, std::max(most, 0.0)};
+      term.low = {shortest * sample, std::min(least, 0.0)},
+      term.high = {longest * sample, std::max(most, 0.0)};
       const double gain = explain(response_of_input(site, fitter_.model().change_of_input(term)), term);
       const double share = term.coefficient[0];
       if (share < least_share || share > most_share || gain <= best.gain) continue;
@@ -364,7 +347,8 @@ class Ranking {
   double constant_gain_ = 0;
   bool has_constant_ = false;
   bool is_good_ = false;
-  std::vector<bool> is_multiple_, is_function_;
+  std::vector<bool> is_multiple_;
+  std::vector<int> state_behind_;  // of each variable
   Eigen::MatrixXd basis_;
   Eigen::VectorXd rest_;
   std::array<std::vector<double>, 3> phi_;

@@ -8,13 +8,17 @@
 #include "tools/diagnose/search/moved_parameters.h"
 #include "tools/diagnose/search/simpler_friction.h"
 #include "tools/diagnose/search/site_disturbance.h"
+#include "tools/diagnose/search/site_screening.h"
 #include "tools/diagnose/search/stacked_names.h"
+#include "tools/diagnose/search/stated_parameters.h"
 
 namespace loopwright::diagnosis {
 namespace {
 
 constexpr size_t fitted_keys = 5, fitted_pairs = 2;  // candidates that are confirmed by real fits
 constexpr size_t most_terms = 5;
+/// Gauss-Newton steps of a candidate: after the first ones it shows which are hopeless.
+constexpr int first_steps = 2, further_steps = 3;
 constexpr int most_first_substeps = 64;
 /// In -2 ln L: what a term must gain, also per reading.
 constexpr double least_gain_of_term = 25, least_gain_per_reading = 0.002;
@@ -93,7 +97,7 @@ class SiteSearch {
     progress_("deciding which parameters moved", begin_ + 0.3);
     decide_parameters(at);
     if (remove_idle(at)) decide_parameters(at);
-    compare_with_single_terms(at);
+    compare_with_stated_parameters(at);
     if (errors_ == ErrorsOf::predictions) at = without_idle_disturbances(fitter_, std::move(at));
     result_.found = std::move(at);
     return std::exchange(result_, std::move(before));
@@ -121,8 +125,9 @@ class SiteSearch {
     for (double r : at.noise.measurement) noise += fmt::format(" {:.3g}", r);
     for (const SlowNoise& slow : at.noise.slow)
       noise += fmt::format(" | slow {:.3g} {:.3g} s", slow.size, slow.time);
-    result_.trail.push_back(fmt::format("{}: -2 ln L {:.1f}, criterion {:.1f}, noise{}", what, at.objective,
-                                        criterion(at), noise));
+    result_.trail.push_back(fmt::format("{}: -2 ln L {:.1f}, criterion {:.1f}, noise{}, after {}", what,
+                                        at.objective, criterion(at), noise,
+                                        told_operations(model().work().done())));
   }
 
   /// -2 ln L + p ln n + twice the cost of the prior.
@@ -186,14 +191,12 @@ class SiteSearch {
       if (candidate.constant) trial.terms.push_back(*candidate.constant);
       trial.terms.push_back(candidate.term);
       if (candidate.term.shape->of == TermShape::Of::own) trial.terms.back().coefficient[0] = 1;
-      fitter_.refine(trial, 5, true);
+      fitter_.refine(trial, first_steps, true);
       if (std::isfinite(trial.objective)) list.push_back(std::move(trial));
     }
-    std::ranges::sort(list, {}, &SiteHypothesis::scaled_objective);
-    if (list.empty()) return list;
-    const double best = list.front().scaled_objective;
-    const double margin = std::max(30.0, 0.15 * (at.scaled_objective - best));
-    std::erase_if(list, [&](const SiteHypothesis& h) { return h.scaled_objective > best + margin; });
+    keep_best(list, at, criteria::behind_after_first_steps);
+    for (SiteHypothesis& h : list) fitter_.refine(h, further_steps, true);
+    keep_best(list, at, criteria::behind_after_all_steps);
     for (SiteHypothesis& h : list) {
       fitter_.fit_noise(h);
       fitter_.refine(h, 3, true);
@@ -207,8 +210,9 @@ class SiteSearch {
     std::vector<SiteCandidate> ranked = rank_terms(fitter_, at, fitter_.shapes(), true), pairs;
     std::ranges::copy_if(ranked, std::back_inserter(pairs), [](const auto& c) { return bool(c.constant); });
     std::erase_if(ranked, [](const auto& c) { return bool(c.constant); });
-    pairs.resize(std::min(fitted_pairs, pairs.size()));
     keys_ = std::max<size_t>(keys_, ranked.size());
+    leave_out_twins(ranked), leave_out_twins(pairs);
+    pairs.resize(std::min(fitted_pairs, pairs.size()));
     std::vector<SiteCandidate> list(ranked.begin(),
                                     ranked.begin() + std::ptrdiff_t(std::min(fitted_keys, ranked.size())));
     for (const SiteCandidate& c : list)
@@ -245,8 +249,8 @@ class SiteSearch {
 
   /// Names that pile up at one site for one signal may stand for a function without a name.
   void merge_stacked_names(SiteHypothesis& at, size_t fewest) {
-    for (const StackedNames& names : stacked_names(at, fewest)) {
-      if (fewest > 1 && are_laws_of_friction(at, names)) continue;
+    for (const StackedNames& names : stacked_names(fitter_, at, fewest)) {
+      if (fewest > 1 && are_usual_together(at, names)) continue;
       const auto function = with_function(fitter_, at, names, [&](const auto& h) { return criterion(h); });
       if (!function) continue;
       tell("in the place of " + std::to_string(names.terms.size()) +
@@ -264,7 +268,7 @@ class SiteSearch {
     const double needed = std::max(least_gain_of_unknown, least_gain_of_unknown_per_reading * readings_);
     if (criterion(function) < criterion(at) - needed) return true;
     const auto& range = function.terms.back().nonlinear;
-    if (names.terms.size() < 2 || are_laws_of_friction(at, names) ||
+    if (names.terms.size() < 2 || are_usual_together(at, names) ||
         are_periods(at, names, range[1] - range[0]))
       return false;
     SiteHypothesis nothing = without(at, names);
@@ -284,7 +288,7 @@ class SiteSearch {
       const SiteTerm term = at.terms[t];
       without.terms.erase(without.terms.begin() + std::ptrdiff_t(t));
       std::vector<SiteCandidate> others = rank_terms(fitter_, without, fitter_.shapes());
-      std::erase_if(others, [&](const SiteCandidate& c) { return c.is_same_key(term); });
+      leave_out_hopeless(others, term);
       others.resize(std::min<size_t>(3, others.size()));
       for (SiteHypothesis& other : fits(without, others)) {
         const double needed = size_of(other) > size_of(at) ? 20 : least_exchange;
@@ -325,7 +329,9 @@ class SiteSearch {
     for (size_t t = at.terms.size(); t-- > 0;) {
       SiteHypothesis without = at;
       without.terms.erase(without.terms.begin() + std::ptrdiff_t(t));
-      fitter_.refine(without, 6, false);
+      fitter_.refine(without, first_steps, false);
+      if (without.scaled_objective - at.scaled_objective >= criteria::far_from_idle * gain_needed()) continue;
+      fitter_.refine(without, further_steps + 1, false);
       fitter_.fit_noise(without);
       if (without.objective - at.objective >= gain_needed()) continue;
       tell("- " + describe(model(), at.terms[t]), without);
@@ -348,18 +354,20 @@ class SiteSearch {
             {choices[i].moved(), {}, choices[i].criterion - choices.front().criterion});
   }
 
-  /// A single term with the diagram's own parameters against moved parameters without a term.
-  void compare_with_single_terms(SiteHypothesis& at) {
-    if (!at.terms.empty() || at.free_parameters() == 0 || is_spent(criteria::work_with_rivals)) return;
-    std::vector<SiteCandidate> ranked = rank_terms(fitter_, result_.nominal, fitter_.shapes());
-    std::erase_if(ranked,
-                  [](const SiteCandidate& c) { return c.term.shape->name == "linear"; });  // a parameter
-    ranked.resize(std::min<size_t>(3, ranked.size()));
-    const double parameters = at.objective + double(at.free_parameters()) * (std::log(readings_) + 4);
-    for (const SiteHypothesis& other : fits(result_.nominal, ranked)) {
-      const double worse = criterion(other) - parameters;
-      tell("in the place of parameters: " + describe(model(), other.terms.back()), other);
-      if (worse < rival_within) result_.parameter_rivals.push_back({{}, other.terms, worse});
+  /// What explains nearly as much with all parameters as the diagram states them.
+  void compare_with_stated_parameters(const SiteHypothesis& at) {
+    if (at.free_parameters() == 0 || is_spent(criteria::work_with_rivals)) return;
+    const auto fit = [&](const SiteHypothesis& h, std::span<const SiteCandidate> list) {
+      return fits(h, list);
+    };
+    for (StatedParameters& other : with_stated_parameters(fitter_, at, result_.nominal, fit)) {
+      const double worse = criterion(other.hypothesis) - whole_criterion(at),
+                   lost = other.hypothesis.objective - at.objective;
+      tell("in the place of parameters: " + describe(model(), other.terms().back()), other.hypothesis);
+      const size_t numbers = size_of(other.hypothesis);
+      const double most_lost = numbers < size_of(at) ? criteria::most_lost_by_fewer_changes : rival_within;
+      if (worse < rival_within || (other.of && numbers <= size_of(at) && lost < most_lost))
+        result_.parameter_rivals.push_back({{}, other.terms(), worse, other.of});
     }
   }
 

@@ -20,6 +20,7 @@ struct ParameterRival {
   std::vector<int> moved;       ///< instead of those that moved
   std::vector<SiteTerm> terms;  ///< a term in place of all moved parameters, if not empty
   double worse = 0;
+  std::optional<size_t> of = std::nullopt;  ///< and of this found term
 };
 
 /// A site at which noise of this share of its size was found.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 #include "tools/diagnose/search/site_ranking.h"
+#include "tools/diagnose/search/state_behind.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -21,16 +22,26 @@ LawOfFriction law_of(const TermShape& shape) {
 
 }  // namespace
 
-std::vector<StackedNames> stacked_names(const SiteHypothesis& at, size_t fewest) {
+std::vector<StackedNames> stacked_names(SiteFitter& fitter, const SiteHypothesis& at, size_t fewest) {
   std::vector<StackedNames> list;
+  SitePass pass;
+  SiteHypothesis along = at;
+  if (at.terms.size() < fewest || !fitter.pass(along, true, pass)) return list;
+  const std::vector<int> behind = states_behind(fitter.model(), pass);
   for (size_t t = 0; t < at.terms.size(); ++t) {
     const SiteTerm& term = at.terms[t];
     if (term.variable < 0 || term.shape->of == TermShape::Of::own || is_unknown_function(*term.shape))
       continue;
+    const int variable = behind[size_t(term.variable)];
     auto same = std::ranges::find_if(
-        list, [&](const StackedNames& s) { return s.site == term.site && s.variable == term.variable; });
-    if (same == list.end()) same = list.insert(same, {term.site, term.variable, {}});
+        list, [&](const StackedNames& s) { return s.site == term.site && s.variable == variable; });
+    if (same == list.end()) same = list.insert(same, {term.site, variable, {}});
     same->terms.push_back(t);
+  }
+  for (StackedNames& names : list) {  // a single name keeps its own variable
+    const int own = at.terms[names.terms.front()].variable;
+    if (std::ranges::all_of(names.terms, [&](size_t t) { return at.terms[t].variable == own; }))
+      names.variable = own;
   }
   std::erase_if(list, [&](const StackedNames& s) { return s.terms.size() < fewest; });
   return list;
@@ -43,12 +54,18 @@ SiteHypothesis without(const SiteHypothesis& at, const StackedNames& names) {
   return rest;
 }
 
-bool are_laws_of_friction(const SiteHypothesis& at, const StackedNames& names) {
+bool are_usual_together(const SiteHypothesis& at, const StackedNames& names) {
   std::set<LawOfFriction> laws;
-  return std::ranges::all_of(names.terms, [&](size_t t) {
+  const bool are_of_friction = std::ranges::all_of(names.terms, [&](size_t t) {
     const LawOfFriction law = law_of(*at.terms[t].shape);
-    return law != LawOfFriction::none && laws.insert(law).second;
+    return at.terms[t].variable == names.variable && law != LawOfFriction::none && laws.insert(law).second;
   });
+  std::set<std::string_view> shapes;
+  return are_of_friction || std::ranges::all_of(names.terms, [&](size_t t) {
+           const std::string_view shape = at.terms[t].shape->name;
+           return (shape == "radiation" || shape == "convection" || shape == "linear") &&
+                  shapes.insert(shape).second;
+         });
 }
 
 bool are_periods(const SiteHypothesis& at, const StackedNames& names, double range) {

@@ -8,20 +8,20 @@
 
 namespace loopwright::diagnosis {
 
-/// Terms of a hypothesis that depend on one variable at one site.
+/// Terms of a hypothesis that depend on one variable at one site, or on functions of it.
 struct StackedNames {
   int site, variable;
   std::vector<size_t> terms;  ///< places in the hypothesis
 };
 /// Those with a name, distortions excluded, of sites and variables with at least `fewest` of them.
-std::vector<StackedNames> stacked_names(const SiteHypothesis& at, size_t fewest);
+std::vector<StackedNames> stacked_names(SiteFitter& fitter, const SiteHypothesis& at, size_t fewest);
 
 /// The hypothesis without them, not fitted again.
 SiteHypothesis without(const SiteHypothesis& at, const StackedNames& names);
 
 /// Names that occur together in machines. Other sums of laws resemble any function, as a series of sines
-/// does. Laws of friction, at most one of each kind.
-bool are_laws_of_friction(const SiteHypothesis& at, const StackedNames& names);
+/// does. Laws of friction or of cooling, at most one of each kind.
+bool are_usual_together(const SiteHypothesis& at, const StackedNames& names);
 /// Periods that each repeat often within the range of the signal.
 bool are_periods(const SiteHypothesis& at, const StackedNames& names, double range);
 

@@ -139,8 +139,25 @@ class Telling {
       OtherExplanation other{moved, {}};
       for (int i : rival.moved) other.effects.push_back(model_.parameters()[size_t(i)].name);
       for (const SiteTerm& term : rival.terms) other.effects.push_back(describe(model_, term));
+      if (rival.of) other.in_place_of.emplace_back(search_.found.terms[*rival.of].shape->name);
       result_.other_explanations.push_back(std::move(other));
     }
+    // Beside terms it may stand for what these do not do exactly, or for an effect that is not named.
+    for (const MovedParameter& p : result_.moved_parameters)
+      if (!found_.terms.empty() && is_small(p)) result_.other_explanations.push_back({{p.name}, {}});
+  }
+  static bool is_small(const MovedParameter& p) {
+    return std::abs(p.value - p.stated) < criteria::small_change_of_parameter * std::abs(p.stated);
+  }
+  /// An effect that has no name here bends the parameters that resemble it a little, and a slow disturbance
+  /// follows what they leave.
+  bool may_stand_for_an_effect() {
+    if (result_.moved_parameters.empty() || !result_.effects.empty() || result_.slow_disturbances.empty() ||
+        !std::ranges::all_of(result_.moved_parameters, is_small))
+      return false;
+    result_.findings.push_back({"parameters that are hardly off explain it only beside a slow disturbance",
+                                "both may stand for an effect that nothing here names", true, false});
+    return true;
   }
 
   void tell_steps() {
@@ -250,7 +267,7 @@ class Telling {
       result_.verdict = Verdict::nothing_missing;
     else if (worse || (!names && (!is_white || misses_held_out)))
       result_.verdict = Verdict::unexplained;
-    else if (!is_white || has_unknown || misses_held_out)
+    else if (!is_white || has_unknown || misses_held_out || may_stand_for_an_effect())
       result_.verdict = Verdict::partly_explained;
     else
       result_.verdict = names ? Verdict::explained : Verdict::nothing_missing;

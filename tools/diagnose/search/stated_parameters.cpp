@@ -1,0 +1,62 @@
+#include "tools/diagnose/search/stated_parameters.h"
+#include <algorithm>
+#include "tools/diagnose/search/site_screening.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+constexpr size_t fitted_in_its_place = 3;  // candidates
+
+class Replacement {
+ public:
+  Replacement(SiteFitter& fitter, const FitsOfCandidates& fits) : fitter_(fitter), fits_(fits) {}
+
+  void try_at(const SiteHypothesis& at, std::optional<size_t> of, size_t added = 1) {
+    std::vector<SiteCandidate> ranked = rank_terms(fitter_, at, fitter_.shapes());
+    std::erase_if(ranked, [&](const SiteCandidate& c) {
+      return c.term.shape->name == "linear" && !of;  // a parameter
+    });
+    leave_out_twins(ranked);
+    ranked.resize(std::min(fitted_in_its_place, ranked.size()));
+    for (SiteHypothesis& h : fits_(at, ranked)) list_.push_back({std::move(h), of, added});
+  }
+  /// A law with an offset, as radiation has one, may stand for a constant and another law.
+  void try_with_constant(const SiteHypothesis& at, size_t of, int site) {
+    const auto constant = std::ranges::find(fitter_.shapes(), "constant", &TermShape::name);
+    if (constant == fitter_.shapes().end()) return;
+    const std::span<const TermShape> shapes{&*constant, 1};
+    const std::vector<SiteCandidate> ranked = rank_terms_at(fitter_, at, shapes, site, -1);
+    const std::vector<SiteHypothesis> fitted = fits_(at, ranked);
+    if (!fitted.empty()) try_at(fitted.front(), of, 2);
+  }
+  std::vector<StatedParameters> take() { return std::move(list_); }
+
+ private:
+  SiteFitter& fitter_;
+  const FitsOfCandidates& fits_;
+  std::vector<StatedParameters> list_;
+};
+
+}  // namespace
+
+std::vector<StatedParameters> with_stated_parameters(SiteFitter& fitter, const SiteHypothesis& found,
+                                                     const SiteHypothesis& nominal,
+                                                     const FitsOfCandidates& fits) {
+  Replacement replacement(fitter, fits);
+  if (found.terms.empty()) {
+    replacement.try_at(nominal, {});
+    return replacement.take();
+  }
+  SiteHypothesis stated = found;
+  std::ranges::fill(stated.factors, 1.0);
+  stated.is_free.assign(stated.is_free.size(), false);
+  for (size_t t = 0; t < found.terms.size(); ++t) {
+    SiteHypothesis without = stated;
+    without.terms.erase(without.terms.begin() + std::ptrdiff_t(t));
+    replacement.try_at(without, t);
+    if (found.terms[t].variable >= 0) replacement.try_with_constant(without, t, found.terms[t].site);
+  }
+  return replacement.take();
+}
+
+}  // namespace loopwright::diagnosis
