@@ -260,6 +260,7 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   const WhyNot cannot_be_added = attachable(diagram, experiments.front(), options.load, units, sizes);
   const auto why_not = [&](const Effect& effect) {
     std::string why = trials.has_map() ? not_in_a_map(effect) : std::string();
+    if (why.empty() && input_noise) why = hidden_by_input_noise(effect);
     return why.empty() ? cannot_be_added(effect) : why;
   };
   const Catalogue catalogue = make_catalogue(folders, units, sizes, why_not);

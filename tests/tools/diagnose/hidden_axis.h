@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -89,7 +90,10 @@ struct HiddenMachine {
   std::optional<double> velocity_noise;  ///< measured with this noise; empty: not measured
   bool measures_position = true, has_controller = true;
   double leaves_out_s = 0;  ///< of the start of every record
-  size_t loses_every = 0;   ///< one row in this number that a device would have lost; 0: none
+  double unfelt_noise = 0;  ///< of the recorded input, that the machine does not feel
+  /// What arrives of a command at a time; empty: all of it.
+  std::function<double(double command, double time)> drive;
+  size_t loses_every = 0;  ///< one row in this number that a device would have lost; 0: none
   std::string position_port = "mass.position", velocity_port = "mass.velocity",
               damping_port = "viscous.force";
   std::string further_blocks;   ///< of the diagram
@@ -161,10 +165,12 @@ class HiddenAxis {
           plant.state[VELOCITY] + machine_.velocity_noise.value_or(0) * random_normal(&random);
       const double t = double(k) * hidden_sample_time;
       const bool is_lost = machine_.loses_every > 0 && k % machine_.loses_every == machine_.loses_every / 2;
+      const double felt = machine_.drive ? machine_.drive(force, t) : force;
+      if (machine_.unfelt_noise > 0) force += machine_.unfelt_noise * random_normal(&random);
       if (t >= machine_.leaves_out_s && !is_lost)
         out << fmt::format("{:.3f},{:.10g},{:.10g},{:.10g}\n", t, force / machine_.newtons_per_column, seen,
                            velocity);
-      plant_sample(&plant, force, scale * random_normal(&random) + slow);
+      plant_sample(&plant, felt, scale * random_normal(&random) + slow);
       slow = memory * slow + 0.3 * scale * std::sqrt(1 - memory * memory) * random_normal(&random);
       square += force * force;
     }

@@ -1,6 +1,7 @@
 // The prediction errors, and the filters that describe their response to forces.
 #include "tools/diagnose/predict/predictor.h"
 #include <cmath>
+#include "tests/tools/diagnose/hidden_axis.h"
 #include "tests/tools/diagnose/recorded_axis.h"
 
 namespace loopwright::diagnosis::predictor_test {
@@ -51,6 +52,26 @@ TEST(Predictor, ErrorsOfARightDiagramAreWhiteAndAsLargeAsTheNoiseSays) {
   for (size_t k = 400; k < e.size(); ++k) square += e[k] * e[k], next += e[k] * e[k - 1];
   EXPECT_NEAR(square / double(e.size() - 400), 1, 0.06);
   EXPECT_NEAR(next / square, 0, 0.05);
+}
+
+/// A force that rises by one unit within a sample, around zero: v' = (f - D v) / M, integrated finely.
+TEST(Predictor, AForceThatRisesWithinASampleMovesADampedAxisToo) {
+  HiddenMachine machine;
+  machine.damping = 60;
+  HiddenAxis axis(machine);
+  AxisModel model(axis.diagram(), axis.record("damped", axis.nominal(), there_and_back(0.1, 0.2)), {});
+  const LinearAxis linear = model.linearize();
+  constexpr int parts = 100000;
+  constexpr double dt = hidden_sample_time / parts;
+  double x = 0, v = 0;
+  for (int i = 0; i < parts; ++i) {
+    const double force = (i + 0.5) / parts - 0.5;
+    v += dt * (force - machine.damping * v) / machine.mass, x += dt * v;
+  }
+  const Eigen::VectorXd moved = linear.slope_share.cwiseProduct(linear.push);
+  const Eigen::Index position = std::abs(linear.push[0]) < std::abs(linear.push[1]) ? 0 : 1;
+  EXPECT_NEAR(moved[position], x, 1e-3 * std::abs(x));
+  EXPECT_NEAR(moved[1 - position], v, 1e-3 * std::abs(v));
 }
 
 TEST(Predictor, AForceChangesTheErrorsAsItsFilterSays) {

@@ -21,6 +21,7 @@ TEST(Catalogue, HoldsTheEffectsByTheirNames) {
                                           "force_ripple",
                                           "force_gain",
                                           "force_saturation",
+                                          "dead_band",
                                           "constant_force",
                                           "spring",
                                           "hardening_spring",

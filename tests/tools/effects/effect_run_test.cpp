@@ -52,6 +52,30 @@ TEST(EffectRun, GivesTheMeanForceOverEachSample) {
     EXPECT_NEAR(force[k], 2.0 * 0.5 * (s.velocity[k] + s.velocity[k + 1]), 1e-12) << k;
 }
 
+/// Within a sample of 20 ms the axis goes 8 mm, faster in the middle than on a straight line of the velocity.
+TEST(EffectRun, FollowsAMotionThatIsCurvedWithinASample) {
+  RecordSizes sizes = axis_sizes();
+  sizes.sample_time = 0.02;
+  Problems problems;
+  EffectRun cogging(compile_effect(effect_named("cogging"), {}, sizes, problems));
+  ASSERT_EQ(problems.text(), "");
+  constexpr double pitch = 0.03, x = 0.1, v = 0.4, a = 3, bow = 0.05, T = 0.02;
+  cogging.set(0, pitch), cogging.set(1, 1), cogging.set(2, 0);
+  const std::vector<double> position{x}, velocity{v}, acceleration{a}, input{0}, bows{bow};
+  RoleSignals signals{position, velocity, acceleration, input, input};
+  signals.velocity_bow = bows;
+  std::vector<double> force(1);
+  cogging.run(signals, force);
+  double mean = 0;
+  constexpr int parts = 1000;
+  for (int i = 0; i < parts; ++i) {
+    const double u = (i + 0.5) / parts;
+    const double way = T * (v * u + a * T * u * u / 2 + bow * u * u * (3 - 2 * u));
+    mean += std::sin(2 * M_PI * (x + way) / pitch) / parts;
+  }
+  EXPECT_NEAR(force[0], mean, 2e-4);
+}
+
 TEST(EffectRun, WithoutLookingAheadARowDoesNotKnowTheNext) {
   const Sampled whole;
   for (const Effect& effect : whole_catalogue()) {

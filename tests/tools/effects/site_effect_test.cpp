@@ -66,8 +66,8 @@ TEST(SiteEffect, AllMistakesAreReportedAtOnce) {
 std::string problems_of(const std::string& parameters, const std::string& formula, const std::string& of) {
   DiagramFolder folder;
   folder.with("own.json", R"({"loopwright": 1, "effect": "own", "title": "", "physics": "", "site": "any",
-  "of": )" + (of.starts_with('[') ? of : '"' + of + '"') + R"(, "parameters": {)" +
-                              parameters + R"(}, "formula": ")" + formula + "\"}");
+  "of": )" + (of.starts_with('[') ? of : '"' + of + '"') +
+                              R"(, "parameters": {)" + parameters + R"(}, "formula": ")" + formula + "\"}");
   Problems problems;
   EXPECT_FALSE(load_site_effect(folder.path("own.json"), problems));
   return problems.text();
@@ -75,7 +75,8 @@ std::string problems_of(const std::string& parameters, const std::string& formul
 std::string problems_of_good(const std::string& parameters, const std::string& formula) {
   DiagramFolder folder;
   folder.with("own.json", R"({"loopwright": 1, "effect": "own", "title": "T", "physics": "P", "site": "any",
-  "of": "any", "parameters": {)" + parameters + R"(}, "formula": ")" + formula + "\"}");
+  "of": "any", "parameters": {)" +
+                              parameters + R"(}, "formula": ")" + formula + "\"}");
   Problems problems;
   EXPECT_TRUE(load_site_effect(folder.path("own.json"), problems));
   return problems.text();
@@ -99,15 +100,18 @@ TEST(SiteEffect, ItsFormulaIsReadAndProportionalToItsLinearParameters) {
 
 TEST(SiteEffect, ItsFormulaHasTheUnitOfTheSite) {
   constexpr const char* by_square = R"("size": {"unit": "$site/$signal^2", "linear": true})";
-  EXPECT_THAT(problems_of(size, "size*signal*abs(signal)", "any"), testing::HasSubstr("units of the formula"));
+  EXPECT_THAT(problems_of(size, "size*signal*abs(signal)", "any"),
+              testing::HasSubstr("units of the formula"));
   EXPECT_THAT(problems_of(size, "size*exp(signal)", "any"), testing::HasSubstr("units of the formula"));
-  EXPECT_THAT(problems_of(by_square, "size*(signal - 0.3)^2", "any"), testing::HasSubstr("units of the formula"));
+  EXPECT_THAT(problems_of(by_square, "size*(signal - 0.3)^2", "any"),
+              testing::HasSubstr("units of the formula"));
   for (const auto& [parameters, formula] :
        {std::pair<std::string, const char*>{by_square, "size*signal*abs(signal)"},
         {R"("size": {"unit": "$site/$signal^0.5", "linear": true})", "size*sqrt(signal)"},
         {std::string(size) + ", " + knee, "size*tanh(signal/knee)"}})
     EXPECT_EQ(problems_of_good(parameters, formula), "") << formula;
-  EXPECT_THAT(problems_of(R"("size": {"unit": "$site", "linear": true, "range": [0, 1]})", "size*sign(signal)", "any"),
+  EXPECT_THAT(problems_of(R"("size": {"unit": "$site", "linear": true, "range": [0, 1]})",
+                          "size*sign(signal)", "any"),
               testing::HasSubstr("a linear parameter has no \"range\""));
 }
 

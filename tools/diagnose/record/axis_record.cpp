@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include "tools/diagnose/criteria.h"
 #include "tools/experiment/even_grid.h"
 
@@ -84,18 +83,20 @@ size_t rows_for_one(const AxisRecord& record) {
 
 }  // namespace
 
-std::vector<double> mean_over_rows(const std::vector<double>& values, double rows) {
+std::vector<double> mean_over_rows(const std::vector<double>& values, double rows, RowsOfMean side) {
+  constexpr double widths = 5;  // beyond which the weights are below a hundredth
+  const bool about = side == RowsOfMean::about;
   std::vector<double> weights, means(values.size());
   double sum = 0;
-  for (size_t i = 0; double(i) < rows + 1; ++i) {
-    weights.push_back(0.5 * (1 + std::cos(std::numbers::pi * double(i) / (rows + 1))));
-    sum += i == 0 ? weights[i] : 2 * weights[i];
+  for (size_t i = 0; double(i) < widths * rows + 1; ++i) {
+    weights.push_back(std::exp(-double(i) / rows));
+    sum += i > 0 && about ? 2 * weights[i] : weights[i];
   }
   const size_t last = values.empty() ? 0 : values.size() - 1;
   for (size_t k = 0; k < values.size(); ++k) {
     double mean = weights[0] * values[k];
     for (size_t i = 1; i < weights.size(); ++i)
-      mean += weights[i] * (values[k < i ? 0 : k - i] + values[std::min(last, k + i)]);
+      mean += weights[i] * (values[std::min(last, k + i)] + (about ? values[k < i ? 0 : k - i] : 0.0));
     means[k] = mean / sum;
   }
   return means;

@@ -52,9 +52,11 @@ MeasuredMotion measured_motion(const AxisRecord& record);
 struct InputNoise {
   double rows = 0, share = 0;
 };
-/// Means about each row, with weights that fall as a raised cosine over `rows` on both sides: neither delayed
-/// nor advanced.
-std::vector<double> mean_over_rows(const std::vector<double>& values, double rows);
+/// Means of each row with those about it, or with those after it alone, with weights that fall to 37 % over
+/// `rows`. About a row they are neither delayed nor advanced.
+enum class RowsOfMean { about, after };
+std::vector<double> mean_over_rows(const std::vector<double>& values, double rows,
+                                   RowsOfMean side = RowsOfMean::about);
 void take_away(AxisRecord& record, const InputNoise& noise);
 
 /// The columns of the roles, on a uniform grid: see EvenGrid. Problems: missing roles or columns, units that

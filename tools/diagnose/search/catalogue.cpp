@@ -281,6 +281,11 @@ std::string not_in_a_map(const Effect& effect) {
   return needs_motion ? "a map of balances has neither speeds nor times" : "";
 }
 
+std::string hidden_by_input_noise(const Effect& effect) {
+  const bool is_shape = std::ranges::none_of(effect.parameters, &EffectParameter::is_linear);
+  return acts(effect) == Acts::input && is_shape ? "the noise of the recorded input hides when it acts" : "";
+}
+
 Catalogue make_catalogue(const std::vector<std::string>& folders, const MachineUnits& units,
                          const RecordSizes& sizes, const WhyNot& why_not) {
   Problems problems;

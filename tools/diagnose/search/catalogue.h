@@ -23,6 +23,10 @@ using WhyNot = std::function<std::string(const Effect&)>;
 /// Why a map of balances contains no information about an effect; empty: it contains some.
 std::string not_in_a_map(const Effect& effect);
 
+/// Why noise of the recorded input hides an effect; empty: it does not. When a noisy input acts cannot be
+/// told.
+std::string hidden_by_input_noise(const Effect& effect);
+
 /// Effects that cannot be added, and effects whose numbers cannot be computed for these records, are left
 /// out. Throws InputError with every problem of the effect files.
 Catalogue make_catalogue(const std::vector<std::string>& folders, const MachineUnits& units,

@@ -1,5 +1,6 @@
 #include "tools/diagnose/search/noisy_input.h"
 #include <algorithm>
+#include <limits>
 
 namespace loopwright::diagnosis {
 namespace {
@@ -9,15 +10,15 @@ bool is_late(const Member& member) {
 }
 
 /// Takes a share of what the input is above its mean over some rows away from it.
-Candidate unfelt_noise() {
+Candidate unfelt_noise(RowsOfMean side) {
   Candidate candidate;
   candidate.name = "unfelt_noise", candidate.acts = Acts::input;
   candidate.linear = {{"share", "1", 0, 1.2, false, {}}};
-  candidate.nonlinear = {{"rows", "1", 1, 300, true, {2, 8, 32, 128}}};
-  candidate.columns_at = [](const Path& path, const std::vector<std::vector<double>>& shapes) {
+  candidate.nonlinear = {{"rows", "1", 0.5, 300, true, {2, 8, 32}}};
+  candidate.columns_at = [side](const Path& path, const std::vector<std::vector<double>>& shapes) {
     std::vector<Columns> result;
     for (const std::vector<double>& shape : shapes) {
-      const std::vector<double> mean = mean_over_rows(path.input, shape[0]);
+      const std::vector<double> mean = mean_over_rows(path.input, shape[0], side);
       std::vector<float> above(mean.size());
       for (size_t k = 0; k < above.size(); ++k) above[k] = float(path.input[k] - mean[k]);
       result.push_back({Column(std::move(above))});
@@ -27,6 +28,38 @@ Candidate unfelt_noise() {
   return candidate;
 }
 
+/// Sets of members beside a smoothed input, each with its own noise.
+class Smoothed {
+ public:
+  Smoothed(Trials& trials, const Estimate& found, std::vector<Member> others, size_t catalogue)
+      : trials_(trials), found_(found), others_(std::move(others)), catalogue_(catalogue) {}
+
+  double criterion_of(const Estimate& e) const {
+    return e.is_valid ? criterion(trials_, e, catalogue_) : std::numeric_limits<double>::infinity();
+  }
+  Estimate with(std::vector<Member> members) {
+    constexpr int iterations = 6;
+    members.insert(members.begin(), others_.begin(), others_.end());
+    return with_own_noise(trials_, fit_members(trials_, members, found_.noise, found_.motion, iterations),
+                          iterations);
+  }
+  /// From the best of the starts.
+  Estimate with(const Candidate& smoothing) {
+    Estimate best;
+    for (const double rows : smoothing.nonlinear[0].grid) {
+      Estimate trial = with({Member{&smoothing, {0.5}, {rows}}});
+      if (criterion_of(trial) < criterion_of(best)) best = std::move(trial);
+    }
+    return best;
+  }
+
+ private:
+  Trials& trials_;
+  const Estimate& found_;
+  std::vector<Member> others_;
+  size_t catalogue_;
+};
+
 }  // namespace
 
 std::optional<InputNoise> noise_instead_of_late_input(Trials& trials, const Conclusion& conclusion,
@@ -34,20 +67,17 @@ std::optional<InputNoise> noise_instead_of_late_input(Trials& trials, const Conc
   const Estimate& found = conclusion.estimate;
   std::vector<Member> others = found.members;
   if (trials.has_map() || std::erase_if(others, is_late) == 0) return {};
-  constexpr int iterations = 6;
-  const Candidate candidate = unfelt_noise();
-  double least = criterion(trials, found, catalogue);
-  std::optional<InputNoise> best;
-  for (const double rows : candidate.nonlinear[0].grid) {
-    std::vector<Member> members = others;
-    members.push_back({&candidate, {0.5}, {rows}});
-    const Estimate trial = with_own_noise(
-        trials, fit_members(trials, members, found.noise, found.motion, iterations), iterations);
-    if (!trial.is_valid || criterion(trials, trial, catalogue) >= least) continue;
-    least = criterion(trials, trial, catalogue);
-    best = InputNoise{trial.members.back().nonlinear[0], trial.members.back().linear[0]};
-  }
-  return best;
+  std::erase_if(others, is_own_load);  // which a wrong lag calls for
+  Smoothed smoothed(trials, found, std::move(others), catalogue);
+  const Candidate about = unfelt_noise(RowsOfMean::about), after = unfelt_noise(RowsOfMean::after);
+  const Estimate noise = smoothed.with(about);
+  if (!noise.is_valid) return {};
+  const double late = criterion(trials, found, catalogue),
+               nothing = smoothed.criterion_of(smoothed.with(std::vector<Member>{})),
+               early = smoothed.criterion_of(smoothed.with(after));
+  const bool gains_early = nothing - early > criteria::least_gain_of_early_input * (nothing - late);
+  if (!gains_early && smoothed.criterion_of(noise) >= late) return {};
+  return InputNoise{noise.members.back().nonlinear[0], noise.members.back().linear[0]};
 }
 
 }  // namespace loopwright::diagnosis

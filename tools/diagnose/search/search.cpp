@@ -167,6 +167,12 @@ class Search {
     leave_out_doubtful(trials_, best_);
     for (size_t m = best_.members.size(); m < weights.size(); ++m) {
       const Weight& w = weights[m];
+      const Member& member = trial.members[m];
+      if (member.candidate->acts == Acts::input && is_at_limit(member)) {
+        trail_.push_back("at the end of its range, where it stands for something else: " +
+                         member.candidate->name);
+        return false;
+      }
       const bool spoils = spoils_balance(trials_, trial, m);
       if (material(trials_, trial, w) >= 1 && !spoils) continue;
       if (spoils) {
