@@ -85,7 +85,7 @@ std::optional<SiteHypothesis> disturbed_instead(SiteFitter& fitter, SiteHypothes
   const size_t functions =
       std::erase_if(h.terms, [](const SiteTerm& term) { return is_unknown_function(*term.shape); });
   if (functions == 0 && leaves_white_errors(fitter, h)) return {};
-  if (functions > 0) fitter.refine(h, 6, true), fitter.fit_noise(h);
+  if (functions > 0) fitter.refine(h, 6), fitter.fit_noise(h);
   h = with_disturbances(fitter, std::move(h), criteria::most_slow_disturbances);
   const bool explain =
       functions > 0 ? is_explained_by_small_disturbances(fitter, h) : leaves_white_errors(fitter, h);
@@ -113,6 +113,39 @@ SiteSearchResult beside_disturbances(SiteFitter& fitter, SiteSearchResult first,
   return one_of(std::move(first), std::move(*second), is_answer);
 }
 
+/// Whether a small deviation of a state grows along the record until a simulation tells nothing about its
+/// cause: motion that is chaotic or unstable.
+bool is_lost_in_simulation(SiteFitter& fitter, SiteHypothesis h) {
+  SitePass pass;
+  if (!fitter.pass(h, false, pass)) return true;
+  const auto count = Eigen::Index(fitter.model().states()), all = Eigen::Index(pass.states);
+  const Eigen::Map<const Eigen::MatrixXd> path(pass.filtered.data(), all, Eigen::Index(pass.rows));
+  Eigen::VectorXd size = path.topRows(count).rowwise().norm() / std::sqrt(double(pass.rows));
+  for (double& s : size)
+    if (!(s > 0)) s = 1;
+  Eigen::MatrixXd growth;
+  for (size_t row = 0; row < pass.rows; ++row) {
+    if (fitter.model().record().begins_at(row)) growth = size.asDiagonal();
+    const Eigen::Map<const Eigen::MatrixXd> A(&pass.A[row * size_t(all * all)], all, all);
+    growth = (A.topLeftCorner(count, count) * growth).eval();
+    if (!((size.cwiseInverse().asDiagonal() * growth).norm() < criteria::most_growth)) return true;
+  }
+  return false;
+}
+
+/// Whether what simulation found predicts much worse than an answer that explains all there is, with the best
+/// noise of its own: it follows the motion by something else than its cause.
+bool predicts_much_worse(SiteFitter& fitter, const SiteHypothesis& simulation,
+                         const SiteHypothesis& predictions, std::vector<std::string>& trail) {
+  if (!leaves_white_errors(fitter, predictions)) return false;
+  SiteHypothesis h = simulation;
+  h.noise = predictions.noise;
+  fitter.anneal(h);
+  const double lost = criterion_with_noise(fitter, h) - criterion_with_noise(fitter, predictions);
+  trail.push_back(fmt::format("answer by simulation: predicts worse by {:.1f}", lost));
+  return !(lost < criteria::most_lost_by_simulation);
+}
+
 }  // namespace
 
 std::optional<SiteSearchResult> search_with_second_opinion(
@@ -124,17 +157,24 @@ std::optional<SiteSearchResult> search_with_second_opinion(
   if (unmeasured.empty()) return first;
   const std::vector<NoisySite> noisy = noisy_sites(fitter, first->found);
   if (noisy.empty() || fitter.model().work().is_spent(criteria::work_of_search)) return first;
+  if (leaves_white_errors(fitter, first->found) && is_lost_in_simulation(fitter, first->found)) {
+    first->trail.push_back("not again by simulation: small deviations grow along the record");
+    first->second_opinion = SecondOpinion{noisy, unmeasured};
+    first->second_opinion->is_lost = true;
+    return first;
+  }
   first->trail.push_back("again by simulation: noise in the states could explain anything");
   std::optional<SiteSearchResult> second = search_sites(fitter, progress, ErrorsOf::simulation);
   if (!second || fitter.is_interrupted()) return first;
   const auto of_first = simulation_errors(fitter, first->found),
              of_second = simulation_errors(fitter, second->found);
-  const bool is_answer = of_second && (!of_first || is_clearly_better(*of_second, *of_first));
+  const bool is_answer = of_second && (!of_first || is_clearly_better(*of_second, *of_first)) &&
+                         !predicts_much_worse(fitter, second->found, first->found, second->trail);
   for (const auto& [name, errors] : {std::pair{"predictions", of_first}, {"simulation", of_second}})
     second->trail.push_back(errors ? fmt::format("answer by {}: simulation misses the first output by {:.4g}",
                                                  name, errors->judged()[0])
                                    : fmt::format("answer by {} diverges in simulation", name));
-  SecondOpinion opinion{noisy, unmeasured, is_answer,
+  SecondOpinion opinion{noisy, unmeasured, false, is_answer,
                         named_in(fitter.model(), (is_answer ? first : second)->found)};
   if (const auto& errors = is_answer ? of_second : of_first) opinion.error = errors->judged()[0];
   if (const auto& errors = is_answer ? of_first : of_second) opinion.other_error = errors->judged()[0];
