@@ -45,8 +45,7 @@ std::vector<double> standard_errors(SiteFitter& fitter, SiteHypothesis h) {
       covariance_of_factors(fitter.jacobian(h, pass), pass.squares / double(pass.readings),
                             Eigen::Index(count), criteria::deviation_of_stated_parameter);
   std::vector<double> list;
-  for (size_t i = 0; i < count; ++i)
-    list.push_back(std::sqrt(covariance(Eigen::Index(i), Eigen::Index(i))));
+  for (size_t i = 0; i < count; ++i) list.push_back(std::sqrt(covariance(Eigen::Index(i), Eigen::Index(i))));
   return list;
 }
 
@@ -145,8 +144,8 @@ bool is_immaterial(const MovedParameters& choice, const std::vector<MovedParamet
     std::vector<int> without = moved;
     without.erase(without.begin() + std::ptrdiff_t(i));
     const bool gains_little = std::ranges::any_of(all, [&](const MovedParameters& other) {
-      return other.moved() == without && other.hypothesis.objective - choice.hypothesis.objective <
-                                             criteria::least_gain_of_parameter;
+      return other.moved() == without &&
+             other.hypothesis.objective - choice.hypothesis.objective < criteria::least_gain_of_parameter;
     });
     if (gains_little) return true;
   }
@@ -179,8 +178,8 @@ std::vector<MovedParameters> moved_parameters(SiteFitter& fitter, const SiteHypo
     const Eigen::MatrixXd J = fitter.jacobian(start, pass);
     Eigen::VectorXd deviation(Eigen::Index(free.size()));
     for (size_t i = 0; i < free.size(); ++i) deviation[Eigen::Index(i)] = start.factors[size_t(free[i])] - 1;
-    const Eigen::MatrixXd covariance =
-        covariance_of_factors(J, pass.squares / double(pass.readings), Eigen::Index(free.size()), undetermined);
+    const Eigen::MatrixXd covariance = covariance_of_factors(J, pass.squares / double(pass.readings),
+                                                             Eigen::Index(free.size()), undetermined);
     sets = promising_sets(covariance, deviation, readings);
   }
   std::vector<MovedParameters> list;

@@ -151,9 +151,11 @@ void SiteFitter::solve(const SiteHypothesis& h, const std::vector<FittedNumber>&
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(rows + count, count);
   Eigen::VectorXd rest = Eigen::VectorXd::Zero(rows + count);
   all.topRows(rows) = J / scale, rest.head(rows) = -whitened(pass_) / scale;
+  Eigen::VectorXd stated = Eigen::VectorXd::Zero(count);  // information of the prior
   for (Eigen::Index i = 0; i < count; ++i)
     if (numbers[size_t(i)].kind == FittedNumber::Kind::factor) {
       SiteHypothesis at = h;
+      stated[i] = 1 / squared(criteria::deviation_of_stated_parameter);
       all(rows + i, i) = 1 / criteria::deviation_of_stated_parameter;
       rest[rows + i] = (1 - value_of(at, numbers[size_t(i)])) / criteria::deviation_of_stated_parameter;
     }
@@ -166,7 +168,10 @@ void SiteFitter::solve(const SiteHypothesis& h, const std::vector<FittedNumber>&
   const Eigen::VectorXd right = norm.cwiseInverse().asDiagonal() * (all.transpose() * rest);
   normal.move = Eigen::VectorXd::Zero(count), normal.decrease = 0;
   for (Eigen::Index i = 0; i < count; ++i) {
-    if (!(eigen.eigenvalues()[i] > criteria::weakest_direction)) continue;
+    // What the record tells less about than the diagram goes to what is stated.
+    const double told =
+        eigen.eigenvectors().col(i).cwiseQuotient(norm).cwiseAbs2().dot(stated) / eigen.eigenvalues()[i];
+    if (!(eigen.eigenvalues()[i] > criteria::weakest_direction) && !(told > 0.5)) continue;
     const double along = eigen.eigenvectors().col(i).dot(right);
     normal.move += eigen.eigenvectors().col(i) * (along / eigen.eigenvalues()[i]);
     normal.decrease += along * along / eigen.eigenvalues()[i];

@@ -53,6 +53,13 @@ bool is_clearly_better(const SimulationErrors& simulation, const SimulationError
          (!has_held_out || log_ratio(simulation.held_out, predictions.held_out) < needed);
 }
 
+/// A simulation that misses more than one of the diagram as it is names no cause.
+bool is_worse_than_stated(SiteFitter& fitter, const SimulationErrors& simulation,
+                          const SiteHypothesis& nominal) {
+  const auto of_nominal = simulation_errors(fitter, nominal);
+  return of_nominal && log_ratio(simulation.judged(), of_nominal->judged()) > 0;
+}
+
 std::vector<std::string> named_in(const SiteModel& model, const SiteHypothesis& h) {
   std::vector<std::string> list;
   for (const SiteTerm& term : h.terms) list.push_back(describe(model, term));
@@ -113,26 +120,6 @@ SiteSearchResult beside_disturbances(SiteFitter& fitter, SiteSearchResult first,
   return one_of(std::move(first), std::move(*second), is_answer);
 }
 
-/// Whether a small deviation of a state grows along the record until a simulation tells nothing about its
-/// cause: motion that is chaotic or unstable.
-bool is_lost_in_simulation(SiteFitter& fitter, SiteHypothesis h) {
-  SitePass pass;
-  if (!fitter.pass(h, false, pass)) return true;
-  const auto count = Eigen::Index(fitter.model().states()), all = Eigen::Index(pass.states);
-  const Eigen::Map<const Eigen::MatrixXd> path(pass.filtered.data(), all, Eigen::Index(pass.rows));
-  Eigen::VectorXd size = path.topRows(count).rowwise().norm() / std::sqrt(double(pass.rows));
-  for (double& s : size)
-    if (!(s > 0)) s = 1;
-  Eigen::MatrixXd growth;
-  for (size_t row = 0; row < pass.rows; ++row) {
-    if (fitter.model().record().begins_at(row)) growth = size.asDiagonal();
-    const Eigen::Map<const Eigen::MatrixXd> A(&pass.A[row * size_t(all * all)], all, all);
-    growth = (A.topLeftCorner(count, count) * growth).eval();
-    if (!((size.cwiseInverse().asDiagonal() * growth).norm() < criteria::most_growth)) return true;
-  }
-  return false;
-}
-
 /// Whether what simulation found predicts much worse than an answer that explains all there is, with the best
 /// noise of its own: it follows the motion by something else than its cause.
 bool predicts_much_worse(SiteFitter& fitter, const SiteHypothesis& simulation,
@@ -157,7 +144,7 @@ std::optional<SiteSearchResult> search_with_second_opinion(
   if (unmeasured.empty()) return first;
   const std::vector<NoisySite> noisy = noisy_sites(fitter, first->found);
   if (noisy.empty() || fitter.model().work().is_spent(criteria::work_of_search)) return first;
-  if (leaves_white_errors(fitter, first->found) && is_lost_in_simulation(fitter, first->found)) {
+  if (leaves_white_errors(fitter, first->found) && forgets_its_start(fitter, first->found)) {
     first->trail.push_back("not again by simulation: small deviations grow along the record");
     first->second_opinion = SecondOpinion{noisy, unmeasured};
     first->second_opinion->is_lost = true;
@@ -168,8 +155,10 @@ std::optional<SiteSearchResult> search_with_second_opinion(
   if (!second || fitter.is_interrupted()) return first;
   const auto of_first = simulation_errors(fitter, first->found),
              of_second = simulation_errors(fitter, second->found);
-  const bool is_answer = of_second && (!of_first || is_clearly_better(*of_second, *of_first)) &&
-                         !predicts_much_worse(fitter, second->found, first->found, second->trail);
+  const bool is_better = of_second && !is_worse_than_stated(fitter, *of_second, first->nominal) &&
+                         (!of_first || is_clearly_better(*of_second, *of_first));
+  const bool is_answer =
+      is_better && !predicts_much_worse(fitter, second->found, first->found, second->trail);
   for (const auto& [name, errors] : {std::pair{"predictions", of_first}, {"simulation", of_second}})
     second->trail.push_back(errors ? fmt::format("answer by {}: simulation misses the first output by {:.4g}",
                                                  name, errors->judged()[0])
@@ -181,7 +170,7 @@ std::optional<SiteSearchResult> search_with_second_opinion(
   std::vector<std::string> other = opinion.other,
                            own = named_in(fitter.model(), (is_answer ? second : first)->found);
   std::ranges::sort(other), std::ranges::sort(own);
-  opinion.agrees = other == own;
+  opinion.agrees = other == own, opinion.predicts_worse = is_better && !is_answer;
   SiteSearchResult answer = one_of(std::move(*first), std::move(*second), is_answer);
   answer.second_opinion = std::move(opinion);
   return answer;

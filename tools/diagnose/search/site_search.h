@@ -37,6 +37,7 @@ struct SecondOpinion {
   bool is_answer = false;          ///< what was found by simulation is the answer
   std::vector<std::string> other;  ///< terms and parameters that are not the answer
   bool agrees = false;             ///< they are the same
+  bool predicts_worse = false;  ///< it simulates better, and predicts much worse than one that explains all
   /// [unit of the first output] rms by which simulations with the answer and with the other miss it; nothing
   /// if one diverges.
   std::optional<double> error, other_error;

@@ -36,8 +36,9 @@ void tell_second_opinion(const SiteModel& model, const SecondOpinion& opinion, D
     finding.cost = "free simulations ask for the same";
   else
     finding.cost = fmt::format(
-        "free simulations would name {}; with that one {}, with the answer it {}: that decides nothing",
-        other, missed(opinion.other_error, unit), missed(opinion.error, unit));
+        "free simulations would name {}; with that one {}, with the answer it {}: {}", other,
+        missed(opinion.other_error, unit), missed(opinion.error, unit),
+        opinion.predicts_worse ? "but it predicts the record much worse" : "that decides nothing");
   result.findings.push_back(std::move(finding));
 }
 
