@@ -169,9 +169,9 @@ void SiteFitter::solve(const SiteHypothesis& h, const std::vector<FittedNumber>&
   normal.move = Eigen::VectorXd::Zero(count), normal.decrease = 0;
   for (Eigen::Index i = 0; i < count; ++i) {
     // What the record tells less about than the diagram goes to what is stated.
-    const double told =
+    const double told =  // share of the diagram
         eigen.eigenvectors().col(i).cwiseQuotient(norm).cwiseAbs2().dot(stated) / eigen.eigenvalues()[i];
-    if (!(eigen.eigenvalues()[i] > criteria::weakest_direction) && !(told > 0.5)) continue;
+    if (!(eigen.eigenvalues()[i] > criteria::weakest_direction) && !(told > 1 - told)) continue;
     const double along = eigen.eigenvectors().col(i).dot(right);
     normal.move += eigen.eigenvectors().col(i) * (along / eigen.eigenvalues()[i]);
     normal.decrease += along * along / eigen.eigenvalues()[i];
