@@ -5,9 +5,9 @@
 #include "tools/diagnose/improvement.h"
 #include "tools/diagnose/search/own_shapes.h"
 #include "tools/diagnose/search/site_opinion.h"
-#include "tools/diagnose/verdict/improve.h"
 #include "tools/diagnose/verdict/plots.h"
 #include "tools/diagnose/verdict/site_verdict.h"
+#include "tools/diagnose/verdict/trial_run.h"
 #include "tools/diagnose/verdict/verdict.h"
 
 namespace loopwright {
@@ -15,29 +15,33 @@ namespace {
 
 using namespace diagnosis;
 
+struct UserFiles {
+  std::shared_ptr<const SourceFile> diagram;
+  std::vector<std::shared_ptr<const Experiment>> experiments;
+};
+/// Throws InputError.
+UserFiles files_of(const Diagnosis& result) {
+  Problems problems;
+  UserFiles files{read_source(result.diagram, {}, problems), {}};
+  for (const std::string& path : result.experiments)
+    files.experiments.push_back(load_experiment(path, problems));
+  if (problems.has_errors()) throw InputError(std::move(problems));
+  return files;
+}
+
 /// The diagram with what was found, in memory. Throws InputError.
 Improvement improvement_with(const DiagnoseOptions& options, const Diagnosis& result,
                              const Additions& additions) {
-  Problems problems;
-  const auto file = read_source(result.diagram, {}, problems);
-  std::vector<std::shared_ptr<const Experiment>> experiments;
-  for (const std::string& path : result.experiments) experiments.push_back(load_experiment(path, problems));
-  if (problems.has_errors()) throw InputError(std::move(problems));
-  return improve(file, experiments, options.load, additions);
+  const UserFiles files = files_of(result);
+  return improve(files.diagram, files.experiments, options.load, additions);
 }
 
-/// It must load before it is written.
+/// It must run along the records before it is written.
 void write_improved(const DiagnoseOptions& options, Diagnosis& result) {
   const Additions& additions = options.writes_all ? result.all_additions : result.additions;
-  const Improvement improved = improvement_with(options, result, additions);
-  Problems problems;
-  const auto loaded = load_diagram_text(improved.file, options.load, problems);
-  if (!loaded || !compile(*loaded, problems)) throw InputError(std::move(problems));
-  result.improved = options.improved_diagram;
-  result.improved_experiments = write(improved, result.experiments, result.improved);
-  result.experiment_ports = improved.moved, result.taken_out_by = improved.taken_out_by;
-  result.improved_notes = notes_of(additions, result.all_additions);
-  std::ranges::copy(improved.left_out, std::back_inserter(result.improved_notes));
+  const UserFiles files = files_of(result);
+  const Improvement improved = improve(files.diagram, files.experiments, options.load, additions);
+  write_if_it_runs(improved, files.diagram, files.experiments, options, result);
 }
 
 /// Nothing where the improved diagram cannot be made: `-o` says why.

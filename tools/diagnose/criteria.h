@@ -308,6 +308,27 @@ constexpr double least_gain_of_other_input = 25, least_gain_of_other_input_per_r
 constexpr double better_simulation_held_out = 0.9, better_simulation_without_hold_out = 0.8;
 /// [of the strongest] Directions of a fit that are weaker are left out.
 constexpr double weakest_direction = 1e-7;
+/// [of the parameter] Standard deviation of what a diagram states, as a prior of its parameters: they are not
+/// off by more than about themselves. Directions that the record does not determine, such as a common scale
+/// of mass, damping and gain, then stay where they were stated.
+constexpr double deviation_of_stated_parameter = 1;
+/// [standard errors] A parameter that is closer to what is stated has not moved: its interval contains it.
+constexpr double within_interval = 1.96;
+/// [-2 ln L] What a parameter that moved must gain: five standard errors.
+constexpr double least_gain_of_parameter = 25;
+/// [criterion] An answer that simulates better, but predicts worse by more than this than one that explains
+/// all there is, is another motion, not another cause: twice what a term must gain.
+constexpr double most_lost_by_simulation = 50;
+/// [of the size of a state] By which one of its size grows along the record at most where a free simulation
+/// tells anything. An integrator makes hundreds of it; what is chaotic or unstable any number.
+constexpr double most_growth = 1e3;
+/// [-2 ln L, and for each reading] What a function without a name must gain against a named term.
+constexpr double least_gain_of_unknown = 60, least_gain_of_unknown_per_reading = 0.005;
+/// [of what unusual names gain] A function without a name that gains this much is what they stand for.
+constexpr double least_share_of_function = 0.95;
+/// [free simulation of the nominal diagram, rms error] A simulation that misses by more, and by more than the
+/// signal spreads, diverges.
+constexpr double diverging_simulation = 10;
 /// [cosine between responses] Beyond it no shape of the catalogue tells two sites apart.
 constexpr double alike_responses = 0.98;
 /// [rows] A trial term keeps its value as long; about as effects change along a motion.

@@ -17,6 +17,7 @@
 #include "tools/diagnose/search/search.h"
 #include "tools/experiment/repeated_records.h"
 #include "tools/diagnose/search/unknown.h"
+#include "tools/diagnose/verdict/trial_run.h"
 #include "tools/diagnose/verdict/verdict.h"
 
 namespace loopwright {
@@ -313,12 +314,8 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   result.all_additions = improver.additions(members_of(staircase.steps.size()));
   if (!options.improved_diagram.empty()) {
     const size_t last = options.writes_all ? staircase.steps.size() : staircase.necessary();
-    const Improvement improved = improver.with(members_of(last));
-    result.improved = options.improved_diagram;
-    result.improved_experiments = write(improved, experiments, result.improved);
-    result.experiment_ports = improved.moved, result.taken_out_by = improved.taken_out_by;
-    result.improved_notes =
-        notes_of(options.writes_all ? result.all_additions : result.additions, result.all_additions);
+    write_if_it_runs(improver.with(members_of(last)), improver.file(), improver.experiments(), options,
+                     result);
   }
   add_plots(trials, inverse.front(), accepted, improver, units, options.load, result);
   result.trail.push_back("work: " + told_operations(trials.work->done()));

@@ -3,6 +3,7 @@
 #include <cmath>
 #include "tests/tools/diagnose/diagnosed_plant.h"
 #include "tools/diagnose/predict/site_filter.h"
+#include "tools/diagnose/search/site_simulation.h"
 #include "where.h"
 
 namespace loopwright::second_opinion_test {
@@ -36,6 +37,23 @@ TEST(SecondOpinion, NoiseOfAStateThatIsNotMeasuredIsNoEffect) {
   EXPECT_THAT(terms(d), IsEmpty()) << to_text(d);
   EXPECT_THAT(d.moved_parameters, IsEmpty());
   EXPECT_THAT(findings(d), Contains(HasSubstr("(not measured: level1.y)"))) << to_text(d);
+}
+
+/// A spring that pushes in the place of one that pulls: corrected at every row, the model follows the record,
+/// and no simulation does.
+TEST(SecondOpinion, KnowsMotionThatForgetsItsStart) {
+  for (const bool pushes : {false, true}) {
+    Plant plant = oscillator({}, 7);
+    if (pushes) plant.diagram.replace(plant.diagram.find(R"("+--")"), 5, R"("+-+")");
+    const RecordedPlant files(plant);
+    diagnosis::SiteModel model(files.diagram(), {files.experiment()}, {});
+    diagnosis::SiteFilter filter(model);
+    diagnosis::SiteFitter fitter(filter, model.record().held_out_from, [] { return false; });
+    diagnosis::SiteHypothesis h;
+    h.factors.assign(model.parameters().size(), 1.0), h.is_free.assign(h.factors.size(), false);
+    h.noise = filter.guess_noise();
+    EXPECT_EQ(diagnosis::forgets_its_start(fitter, h), pushes);
+  }
 }
 
 TEST(SecondOpinion, ASimulationBeginsWithTheStatesThatFitBest) {

@@ -90,13 +90,8 @@ void SiteFilter::learn_scales(const SitePass& pass) {
     std::ranges::nth_element(sizes, high);
     if (*high > 0 && std::isfinite(*high)) state_scale_[i] = *high;
   }
-  for (size_t s = 0; s < pass.sites; ++s) {  // what moves a state by a hundredth of its size in a sample
-    double scale = std::numeric_limits<double>::infinity();
-    for (size_t i = 0; i < model_states_; ++i)
-      if (const double g = std::abs(pass.G[s * n + i]); g > 0)
-        scale = std::min(scale, 0.01 * state_scale_[i] / g);
-    if (std::isfinite(scale)) site_scale_[s] = scale;
-  }
+  for (size_t s = 0; s < pass.sites; ++s)
+    if (const double size = notable_size(&pass.G[s * n]); std::isfinite(size)) site_scale_[s] = size;
 }
 
 void SiteFilter::allocate(size_t rows, bool with_columns, SitePass& pass) {
@@ -332,7 +327,7 @@ void SiteFilter::predict_covariance(const SitePass& pass, size_t row, const Site
   const double shorter = record_.sample_time / record_.step(row);
   for (size_t s = 0; s < noise.sites.size(); ++s) {
     const ConstMap G(&pass.G[(row * pass.sites + size_t(noise.sites[s])) * n], Eigen::Index(n));
-    P_.noalias() += (shorter * squared(noise.process[s])) * G * G.transpose();
+    P_.noalias() += (shorter * squared(deviation_at(pass, row, noise, s))) * G * G.transpose();
   }
   for (size_t j = 0; j < noise.slow.size(); ++j) {
     const auto i = Eigen::Index(model_states_ + j);

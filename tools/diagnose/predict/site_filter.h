@@ -126,6 +126,12 @@ class SiteFilter {
   bool try_flow(size_t row, const SitePass& pass, const double* from, double* to);
   char* modes_at(SitePass& pass, size_t row) const { return &pass.modes[row * model_.mode_bytes()]; }
   void predict_covariance(const SitePass& pass, size_t row, const SiteNoise& noise);
+  /// At a site with these effects on the states, held over a typical sample: what moves one of them by a
+  /// hundredth of its size. Infinite if it moves none.
+  double notable_size(const double* G) const;
+  /// Of the process noise at the row. In a simulation it is told by what it does to the states: parameters
+  /// that all become smaller, and leave the motion as it is, would otherwise have it grow.
+  double deviation_at(const SitePass& pass, size_t row, const SiteNoise& noise, size_t index) const;
   bool simulate_from(const Eigen::VectorXd& initial, size_t from, size_t to, std::span<double> error);
 
   SiteModel& model_;

@@ -82,7 +82,7 @@ double SiteFilter::objective_with(const SitePass& pass, const SiteNoise& noise) 
       const double shorter = record_.sample_time / record_.step(row);
       for (size_t s = 0; s < noise.sites.size(); ++s) {
         const MapOf G(&pass.G[(row * pass.sites + size_t(noise.sites[s])) * pass.states], n);
-        P.noalias() += ((shorter * squared(noise.process[s])) * G) * G.transpose();
+        P.noalias() += ((shorter * squared(deviation_at(pass, row, noise, s))) * G) * G.transpose();
       }
       for (size_t j = 0; j < noise.slow.size(); ++j) {
         const auto i = Eigen::Index(model_states_ + j);

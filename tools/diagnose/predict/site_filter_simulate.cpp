@@ -1,6 +1,7 @@
 /// The model along a record without any correction.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include "tools/diagnose/predict/site_filter.h"
 
 namespace loopwright::diagnosis {
@@ -30,6 +31,22 @@ Eigen::VectorXd weighted(std::span<const double> error, const std::vector<double
 }
 
 }  // namespace
+
+double SiteFilter::notable_size(const double* G) const {
+  double size = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < model_states_; ++i)
+    if (const double g = std::abs(G[i]); g > 0) size = std::min(size, 0.01 * state_scale_[i] / g);
+  return size;
+}
+
+double SiteFilter::deviation_at(const SitePass& pass, size_t row, const SiteNoise& noise,
+                                size_t index) const {
+  if (!noise.is_of_simulation) return noise.process[index];
+  const auto site = size_t(noise.sites[index]);
+  const double size = notable_size(&pass.G[(row * pass.sites + site) * pass.states]),
+               longer = record_.step(row) / record_.sample_time;
+  return std::isfinite(size) ? noise.process[index] * longer * size / site_scale_[site] : 0;
+}
 
 bool SiteFilter::simulate(const SitePass& pass, size_t from, size_t to, std::span<double> error) {
   for (size_t row = from; row < to; ++row) {

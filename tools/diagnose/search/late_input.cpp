@@ -27,13 +27,13 @@ std::optional<SiteHypothesis> explained_by_late_input(SiteFitter& fitter, const 
   for (size_t i = 0; i < std::min(most_tried, candidates.size()); ++i) {
     SiteHypothesis trial = nominal;
     trial.terms.push_back(candidates[i].term);
-    fitter.refine(trial, 6, false);
+    fitter.refine(trial, 6);
     fitter.fit_noise(trial);
-    fitter.refine(trial, 3, false);
+    fitter.refine(trial, 3);
     if (!best || trial.objective < best->objective) best = std::move(trial);
   }
   if (!best) return {};
-  fitter.anneal(*best, false);
+  fitter.anneal(*best);
   const bool is_better = best->objective < parameters.objective - least_gain_over_parameters;
   return is_better && leaves_white_errors(fitter, *best) ? best : std::nullopt;
 }

@@ -8,8 +8,8 @@
 namespace loopwright::diagnosis {
 namespace {
 
-/// In -2 ln L, and [of the parameter]: smaller changes are none.
-constexpr double least_gain_of_parameters = 25, least_change = 2e-3;
+/// [of the parameter] Smaller changes are none.
+constexpr double least_change = 2e-3;
 constexpr size_t fitted_sets = 4;
 /// Sets of them are bits of a word.
 constexpr size_t most_free = 31;
@@ -18,11 +18,12 @@ constexpr size_t most_for_all_subsets = 12;
 /// [of a parameter] Directions that the record does not determine.
 constexpr double undetermined = 10;
 
-/// Of the free factors, with everything else fitted.
-Eigen::MatrixXd covariance_of_factors(const Eigen::MatrixXd& J, double variance, Eigen::Index count) {
+/// Of the free factors, with everything else fitted, and the standard deviation of what is stated.
+Eigen::MatrixXd covariance_of_factors(const Eigen::MatrixXd& J, double variance, Eigen::Index count,
+                                      double stated) {
   Eigen::MatrixXd information = J.transpose() * J / variance;
   for (Eigen::Index i = 0; i < information.rows(); ++i)
-    information(i, i) = information(i, i) * (1 + 1e-10) + (i < count ? 1 / (undetermined * undetermined) : 0);
+    information(i, i) = information(i, i) * (1 + 1e-10) + (i < count ? 1 / (stated * stated) : 0);
   Eigen::VectorXd size = information.diagonal().cwiseSqrt();
   for (double& s : size)
     if (!(s > 0)) s = 1;
@@ -32,6 +33,20 @@ Eigen::MatrixXd covariance_of_factors(const Eigen::MatrixXd& J, double variance,
                                   unit.completeOrthogonalDecomposition().pseudoInverse() *
                                   size.cwiseInverse().asDiagonal();
   return inverse.topLeftCorner(count, count);
+}
+
+/// Of the free factors, in their order.
+std::vector<double> standard_errors(SiteFitter& fitter, SiteHypothesis h) {
+  const size_t count = h.free_parameters();
+  SitePass pass;
+  if (count == 0 || !fitter.pass(h, false, pass))
+    return std::vector<double>(count, criteria::deviation_of_stated_parameter);
+  const Eigen::MatrixXd covariance =
+      covariance_of_factors(fitter.jacobian(h, pass), pass.squares / double(pass.readings),
+                            Eigen::Index(count), criteria::deviation_of_stated_parameter);
+  std::vector<double> list;
+  for (size_t i = 0; i < count; ++i) list.push_back(std::sqrt(covariance(Eigen::Index(i), Eigen::Index(i))));
+  return list;
 }
 
 /// Cost in -2 ln L of fixing those not in the set.
@@ -79,12 +94,70 @@ std::vector<uint32_t> promising_sets(const Eigen::MatrixXd& covariance, const Ei
   return {sets.begin(), sets.end()};
 }
 
+void put_back(SiteHypothesis& h, int parameter) {
+  h.is_free[size_t(parameter)] = false, h.factors[size_t(parameter)] = 1;
+}
+
+/// With its own noise; the list stays in the order of the criterion.
+void add_fitted(std::vector<MovedParameters>& list, SiteFitter& fitter, SiteHypothesis h, double readings) {
+  fitter.refine(h, 8);
+  fitter.fit_noise(h);
+  fitter.refine(h, 3);
+  if (!std::isfinite(h.objective)) return;
+  const double cost = double(h.free_parameters()) * (std::log(readings) + cost_of_parameter);
+  MovedParameters choice{std::move(h), 0};
+  choice.criterion = choice.hypothesis.objective + cost;
+  choice.standard_errors = standard_errors(fitter, choice.hypothesis);
+  list.insert(std::ranges::upper_bound(list, choice.criterion, {}, &MovedParameters::criterion), choice);
+}
+
+/// [standard errors] By which the i-th of the moved parameters is off.
+double significance(const MovedParameters& choice, size_t i) {
+  const auto parameter = size_t(choice.moved()[i]);
+  return std::abs(choice.hypothesis.factors[parameter] - 1) / choice.standard_errors[i];
+}
+
+/// Sets are proposed by a quadratic form about one point, far from which it may miss the simpler one: the
+/// best is fitted again without its least certain parameter as long as that is not sure to have moved.
+void put_idle_ones_back(std::vector<MovedParameters>& list, SiteFitter& fitter, double readings) {
+  while (!list.empty() && !list.front().moved().empty() && !fitter.is_interrupted()) {
+    const MovedParameters best = list.front();
+    std::vector<int> without = best.moved();
+    size_t idle = 0;
+    for (size_t i = 1; i < without.size(); ++i)
+      if (significance(best, i) < significance(best, idle)) idle = i;
+    if (squared(significance(best, idle)) >= criteria::least_gain_of_parameter) return;
+    SiteHypothesis h = best.hypothesis;
+    put_back(h, without[idle]);
+    without.erase(without.begin() + std::ptrdiff_t(idle));
+    if (std::ranges::any_of(list, [&](const auto& known) { return known.moved() == without; })) return;
+    add_fitted(list, fitter, std::move(h), readings);
+  }
+}
+
+/// A parameter that gains little, hardly moves or may be as it is stated has not moved.
+bool is_immaterial(const MovedParameters& choice, const std::vector<MovedParameters>& all) {
+  const std::vector<int> moved = choice.moved();
+  for (size_t i = 0; i < moved.size(); ++i) {
+    if (std::abs(choice.hypothesis.factors[size_t(moved[i])] - 1) < least_change) return true;
+    if (significance(choice, i) < criteria::within_interval) return true;
+    std::vector<int> without = moved;
+    without.erase(without.begin() + std::ptrdiff_t(i));
+    const bool gains_little = std::ranges::any_of(all, [&](const MovedParameters& other) {
+      return other.moved() == without &&
+             other.hypothesis.objective - choice.hypothesis.objective < criteria::least_gain_of_parameter;
+    });
+    if (gains_little) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<MovedParameters> moved_parameters(SiteFitter& fitter, const SiteHypothesis& all_free,
                                               double readings) {
   SiteHypothesis start = all_free;
-  fitter.refine(start, 4, true);
+  fitter.refine(start, 4);
   SitePass pass;
   if (!fitter.pass(start, false, pass)) return {};
   std::vector<int> free;
@@ -97,7 +170,7 @@ std::vector<MovedParameters> moved_parameters(SiteFitter& fitter, const SiteHypo
       start.is_free[size_t(free[i])] = false, start.factors[size_t(free[i])] = 1;
     free.resize(most_free);
     std::ranges::sort(free);
-    fitter.refine(start, 4, true);
+    fitter.refine(start, 4);
     if (!fitter.pass(start, false, pass)) return {};
   }
   std::vector<uint32_t> sets{0};
@@ -105,38 +178,20 @@ std::vector<MovedParameters> moved_parameters(SiteFitter& fitter, const SiteHypo
     const Eigen::MatrixXd J = fitter.jacobian(start, pass);
     Eigen::VectorXd deviation(Eigen::Index(free.size()));
     for (size_t i = 0; i < free.size(); ++i) deviation[Eigen::Index(i)] = start.factors[size_t(free[i])] - 1;
-    const Eigen::MatrixXd covariance =
-        covariance_of_factors(J, pass.squares / double(pass.readings), Eigen::Index(free.size()));
+    const Eigen::MatrixXd covariance = covariance_of_factors(J, pass.squares / double(pass.readings),
+                                                             Eigen::Index(free.size()), undetermined);
     sets = promising_sets(covariance, deviation, readings);
   }
   std::vector<MovedParameters> list;
   for (uint32_t set : sets) {
-    MovedParameters choice{start, 0};
-    SiteHypothesis& h = choice.hypothesis;
+    SiteHypothesis h = start;
     for (size_t i = 0; i < free.size(); ++i)
-      if (!(set >> i & 1)) h.is_free[size_t(free[i])] = false, h.factors[size_t(free[i])] = 1;
-    fitter.refine(h, 8, false);
-    fitter.fit_noise(h);
-    fitter.refine(h, 3, false);
-    if (!std::isfinite(h.objective)) continue;
-    choice.criterion = h.objective + double(h.free_parameters()) * (std::log(readings) + cost_of_parameter);
-    list.push_back(std::move(choice));
+      if (!(set >> i & 1)) put_back(h, free[i]);
+    add_fitted(list, fitter, std::move(h), readings);
   }
-  std::ranges::sort(list, {}, &MovedParameters::criterion);
+  put_idle_ones_back(list, fitter, readings);
   const std::vector<MovedParameters> all = list;
-  // A parameter that gains little or hardly moves has not moved.
-  const auto is_immaterial = [&](const MovedParameters& choice) {
-    return std::ranges::any_of(choice.moved(), [&](int i) {
-      if (std::abs(choice.hypothesis.factors[size_t(i)] - 1) < least_change) return true;
-      return std::ranges::any_of(all, [&](const MovedParameters& other) {
-        std::vector<int> without = choice.moved();
-        std::erase(without, i);
-        return other.moved() == without &&
-               other.hypothesis.objective - choice.hypothesis.objective < least_gain_of_parameters;
-      });
-    });
-  };
-  std::erase_if(list, is_immaterial);
+  std::erase_if(list, [&](const MovedParameters& choice) { return is_immaterial(choice, all); });
   return list.empty() ? all : list;
 }
 

@@ -11,6 +11,7 @@ inline constexpr double cost_of_parameter = 4;
 struct MovedParameters {
   SiteHypothesis hypothesis;  ///< the others exactly as the diagram states
   double criterion = 0;
+  std::vector<double> standard_errors = {};  ///< of those that moved, [of the parameter]
 
   std::vector<int> moved() const {
     std::vector<int> list;

@@ -11,7 +11,7 @@ std::vector<size_t> simplify_friction(SiteFitter& fitter, SiteHypothesis& at,
     if (at.terms[t].shape->name != "stribeck") continue;
     SiteHypothesis simple = at;
     simple.terms[t].shape = &*sign;
-    fitter.refine(simple, 6, true);
+    fitter.refine(simple, 6);
     fitter.fit_noise(simple);
     if (!(criterion(simple) < criterion(at))) continue;
     at = std::move(simple);

@@ -38,7 +38,7 @@ SiteHypothesis with_disturbances(SiteFitter& fitter, SiteHypothesis h, size_t mo
     }
     if (!(best.objective < h.objective - least_help)) break;
     h = std::move(best);
-    fitter.refine(h, 4, true);
+    fitter.refine(h, 4);
     fitter.fit_noise(h);
   }
   return h;
@@ -48,7 +48,7 @@ SiteHypothesis without_idle_disturbances(SiteFitter& fitter, SiteHypothesis h) {
   for (size_t j = h.noise.slow.size(); j-- > 0;) {
     SiteHypothesis without = h;
     without.noise.slow.erase(without.noise.slow.begin() + std::ptrdiff_t(j));
-    fitter.refine(without, 4, false);
+    fitter.refine(without, 4);
     fitter.fit_noise(without);
     if (without.objective - h.objective < least_help) h = std::move(without);
   }

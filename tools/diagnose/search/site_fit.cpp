@@ -10,9 +10,6 @@ namespace {
 
 /// A parameter keeps its sign and its order of magnitude: beyond, the diagram is another one.
 constexpr double widest_factor = 50;
-/// [of the parameter] Standard deviation of the prior while all parameters are free, so that those which the
-/// record does not determine stay where they are.
-constexpr double prior_deviation = 1;
 /// Lengths of a Gauss-Newton step that are tried where a whole one does not help.
 constexpr double shorter_steps[] = {0.4, 0.1, 0.02};
 /// [of the decrease that linear errors would have] A step that reaches it finds nearly the same derivatives
@@ -146,7 +143,7 @@ struct SiteFitter::Normal {
   double decrease = 0;  ///< of the objective, as far as the errors are linear
 };
 
-void SiteFitter::solve(const SiteHypothesis& h, const std::vector<FittedNumber>& numbers, bool with_prior,
+void SiteFitter::solve(const SiteHypothesis& h, const std::vector<FittedNumber>& numbers,
                        Normal& normal) const {
   const double scale = std::sqrt(pass_.squares / double(pass_.readings));
   const Eigen::MatrixXd& J = normal.derivatives;
@@ -154,11 +151,13 @@ void SiteFitter::solve(const SiteHypothesis& h, const std::vector<FittedNumber>&
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(rows + count, count);
   Eigen::VectorXd rest = Eigen::VectorXd::Zero(rows + count);
   all.topRows(rows) = J / scale, rest.head(rows) = -whitened(pass_) / scale;
+  Eigen::VectorXd stated = Eigen::VectorXd::Zero(count);  // information of the prior
   for (Eigen::Index i = 0; i < count; ++i)
-    if (with_prior && numbers[size_t(i)].kind == FittedNumber::Kind::factor) {
+    if (numbers[size_t(i)].kind == FittedNumber::Kind::factor) {
       SiteHypothesis at = h;
-      all(rows + i, i) = 1 / prior_deviation;
-      rest[rows + i] = (1 - value_of(at, numbers[size_t(i)])) / prior_deviation;
+      stated[i] = 1 / squared(criteria::deviation_of_stated_parameter);
+      all(rows + i, i) = 1 / criteria::deviation_of_stated_parameter;
+      rest[rows + i] = (1 - value_of(at, numbers[size_t(i)])) / criteria::deviation_of_stated_parameter;
     }
   Eigen::VectorXd norm = all.colwise().norm().transpose();
   for (double& size : norm)
@@ -169,7 +168,10 @@ void SiteFitter::solve(const SiteHypothesis& h, const std::vector<FittedNumber>&
   const Eigen::VectorXd right = norm.cwiseInverse().asDiagonal() * (all.transpose() * rest);
   normal.move = Eigen::VectorXd::Zero(count), normal.decrease = 0;
   for (Eigen::Index i = 0; i < count; ++i) {
-    if (!(eigen.eigenvalues()[i] > criteria::weakest_direction)) continue;
+    // What the record tells less about than the diagram goes to what is stated.
+    const double told =  // share of the diagram
+        eigen.eigenvectors().col(i).cwiseQuotient(norm).cwiseAbs2().dot(stated) / eigen.eigenvalues()[i];
+    if (!(eigen.eigenvalues()[i] > criteria::weakest_direction) && !(told > 1 - told)) continue;
     const double along = eigen.eigenvectors().col(i).dot(right);
     normal.move += eigen.eigenvectors().col(i) * (along / eigen.eigenvalues()[i]);
     normal.decrease += along * along / eigen.eigenvalues()[i];
@@ -177,13 +179,13 @@ void SiteFitter::solve(const SiteHypothesis& h, const std::vector<FittedNumber>&
   normal.move = norm.cwiseInverse().asDiagonal() * normal.move;
 }
 
-void SiteFitter::refine(SiteHypothesis& h, int steps, bool with_prior) {
+void SiteFitter::refine(SiteHypothesis& h, int steps) {
   const std::vector<FittedNumber> numbers = fitted_numbers(h);
   if (!pass(h, false, pass_) || numbers.empty()) return;
   const auto prior = [&](const SiteHypothesis& at) {
     double sum = 0;
-    for (size_t i = 0; with_prior && i < at.factors.size(); ++i)
-      if (at.is_free[i]) sum += std::pow((at.factors[i] - 1) / prior_deviation, 2);
+    for (size_t i = 0; i < at.factors.size(); ++i)
+      if (at.is_free[i]) sum += std::pow((at.factors[i] - 1) / criteria::deviation_of_stated_parameter, 2);
     return sum;
   };
   double best = pass_.scaled_objective() + prior(h);
@@ -207,7 +209,7 @@ void SiteFitter::refine(SiteHypothesis& h, int steps, bool with_prior) {
   for (int step = 0; step < steps && !is_interrupted_(); ++step) {
     const bool is_new = !is_known;
     if (is_new) normal.derivatives = jacobian(h, pass_);
-    solve(h, numbers, with_prior, normal);
+    solve(h, numbers, normal);
     if (normal.decrease < enough) return;
     const double before = best;
     is_known = is_lower_at(1, normal) && before - best > still_linear * normal.decrease;
@@ -295,13 +297,13 @@ void SiteFitter::fit_noise(SiteHypothesis& h) {
   }
 }
 
-void SiteFitter::anneal(SiteHypothesis& h, bool with_prior) {
+void SiteFitter::anneal(SiteHypothesis& h) {
   constexpr double colder = 5, most_colder = 1e4;
   constexpr double better = 2, same_optimum = 0.5;  // in -2 ln L
   fit_noise(h);
   if (!std::isfinite(h.objective)) return;
   if (h.noise.is_of_simulation) {  // there is but one optimum
-    refine(h, 6, with_prior);
+    refine(h, 6);
     fit_noise(h);
     return;
   }
@@ -317,9 +319,9 @@ void SiteFitter::anneal(SiteHypothesis& h, bool with_prior) {
     if (!pass(trial, false, there)) break;
     const double scale = std::sqrt(there.squares / double(there.readings));
     for (double& r : trial.noise.measurement) r *= std::max(1.0, scale);
-    refine(trial, 3, with_prior);
+    refine(trial, 3);
     fit_noise(trial);
-    if (std::abs(trial.objective - h.objective) > same_optimum) refine(trial, 3, with_prior);
+    if (std::abs(trial.objective - h.objective) > same_optimum) refine(trial, 3);
     if (trial.objective < h.objective - better)
       h = trial, failures = 0, factor = colder;
     else

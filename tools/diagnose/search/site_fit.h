@@ -48,15 +48,15 @@ class SiteFitter {
 
   /// A whole pass; false if the model diverges. Sets the hypothesis' objectives.
   bool pass(SiteHypothesis& hypothesis, bool with_columns, SitePass& to);
-  /// Gauss-Newton steps on all fitted numbers, judged by whole passes; with a weak prior on the factors of
-  /// parameters if `with_prior`. The derivatives stay as long as steps do what they promise.
-  void refine(SiteHypothesis& hypothesis, int steps, bool with_prior);
+  /// Gauss-Newton steps on all fitted numbers, judged by whole passes, with a weak prior on the factors of
+  /// parameters. The derivatives stay as long as steps do what they promise.
+  void refine(SiteHypothesis& hypothesis, int steps);
   /// Maximum likelihood of the noise, linearized about a pass.
   void fit_noise(SiteHypothesis& hypothesis);
   /// The likelihood has two optima: much noise in the states and little in the sensors, and the reverse.
   /// Parameters are biased in the wrong one. Noise in the states is therefore made small, parameters and
   /// noise are fitted, as long as the likelihood improves.
-  void anneal(SiteHypothesis& hypothesis, bool with_prior);
+  void anneal(SiteHypothesis& hypothesis);
   /// The scaled objective with the gains and variances of a pass: what a change gains, in one run of the
   /// model in the place of one for each state. Infinite if the model diverges.
   double scaled_objective_beside(const SiteHypothesis& hypothesis, const SitePass& about);
@@ -70,7 +70,7 @@ class SiteFitter {
 
  private:
   struct Normal;
-  void solve(const SiteHypothesis& hypothesis, const std::vector<FittedNumber>& numbers, bool with_prior,
+  void solve(const SiteHypothesis& hypothesis, const std::vector<FittedNumber>& numbers,
              Normal& normal) const;
   void use(const SiteHypothesis& hypothesis);
   SiteNoise best_noise(const SitePass& pass, const SiteNoise& from) const;

@@ -53,6 +53,13 @@ bool is_clearly_better(const SimulationErrors& simulation, const SimulationError
          (!has_held_out || log_ratio(simulation.held_out, predictions.held_out) < needed);
 }
 
+/// A simulation that misses more than one of the diagram as it is names no cause.
+bool is_worse_than_stated(SiteFitter& fitter, const SimulationErrors& simulation,
+                          const SiteHypothesis& nominal) {
+  const auto of_nominal = simulation_errors(fitter, nominal);
+  return of_nominal && log_ratio(simulation.judged(), of_nominal->judged()) > 0;
+}
+
 std::vector<std::string> named_in(const SiteModel& model, const SiteHypothesis& h) {
   std::vector<std::string> list;
   for (const SiteTerm& term : h.terms) list.push_back(describe(model, term));
@@ -85,7 +92,7 @@ std::optional<SiteHypothesis> disturbed_instead(SiteFitter& fitter, SiteHypothes
   const size_t functions =
       std::erase_if(h.terms, [](const SiteTerm& term) { return is_unknown_function(*term.shape); });
   if (functions == 0 && leaves_white_errors(fitter, h)) return {};
-  if (functions > 0) fitter.refine(h, 6, true), fitter.fit_noise(h);
+  if (functions > 0) fitter.refine(h, 6), fitter.fit_noise(h);
   h = with_disturbances(fitter, std::move(h), criteria::most_slow_disturbances);
   const bool explain =
       functions > 0 ? is_explained_by_small_disturbances(fitter, h) : leaves_white_errors(fitter, h);
@@ -113,6 +120,19 @@ SiteSearchResult beside_disturbances(SiteFitter& fitter, SiteSearchResult first,
   return one_of(std::move(first), std::move(*second), is_answer);
 }
 
+/// Whether what simulation found predicts much worse than an answer that explains all there is, with the best
+/// noise of its own: it follows the motion by something else than its cause.
+bool predicts_much_worse(SiteFitter& fitter, const SiteHypothesis& simulation,
+                         const SiteHypothesis& predictions, std::vector<std::string>& trail) {
+  if (!leaves_white_errors(fitter, predictions)) return false;
+  SiteHypothesis h = simulation;
+  h.noise = predictions.noise;
+  fitter.anneal(h);
+  const double lost = criterion_with_noise(fitter, h) - criterion_with_noise(fitter, predictions);
+  trail.push_back(fmt::format("answer by simulation: predicts worse by {:.1f}", lost));
+  return !(lost < criteria::most_lost_by_simulation);
+}
+
 }  // namespace
 
 std::optional<SiteSearchResult> search_with_second_opinion(
@@ -124,24 +144,33 @@ std::optional<SiteSearchResult> search_with_second_opinion(
   if (unmeasured.empty()) return first;
   const std::vector<NoisySite> noisy = noisy_sites(fitter, first->found);
   if (noisy.empty() || fitter.model().work().is_spent(criteria::work_of_search)) return first;
+  if (leaves_white_errors(fitter, first->found) && forgets_its_start(fitter, first->found)) {
+    first->trail.push_back("not again by simulation: small deviations grow along the record");
+    first->second_opinion = SecondOpinion{noisy, unmeasured};
+    first->second_opinion->is_lost = true;
+    return first;
+  }
   first->trail.push_back("again by simulation: noise in the states could explain anything");
   std::optional<SiteSearchResult> second = search_sites(fitter, progress, ErrorsOf::simulation);
   if (!second || fitter.is_interrupted()) return first;
   const auto of_first = simulation_errors(fitter, first->found),
              of_second = simulation_errors(fitter, second->found);
-  const bool is_answer = of_second && (!of_first || is_clearly_better(*of_second, *of_first));
+  const bool is_better = of_second && !is_worse_than_stated(fitter, *of_second, first->nominal) &&
+                         (!of_first || is_clearly_better(*of_second, *of_first));
+  const bool is_answer =
+      is_better && !predicts_much_worse(fitter, second->found, first->found, second->trail);
   for (const auto& [name, errors] : {std::pair{"predictions", of_first}, {"simulation", of_second}})
     second->trail.push_back(errors ? fmt::format("answer by {}: simulation misses the first output by {:.4g}",
                                                  name, errors->judged()[0])
                                    : fmt::format("answer by {} diverges in simulation", name));
-  SecondOpinion opinion{noisy, unmeasured, is_answer,
+  SecondOpinion opinion{noisy, unmeasured, false, is_answer,
                         named_in(fitter.model(), (is_answer ? first : second)->found)};
   if (const auto& errors = is_answer ? of_second : of_first) opinion.error = errors->judged()[0];
   if (const auto& errors = is_answer ? of_first : of_second) opinion.other_error = errors->judged()[0];
   std::vector<std::string> other = opinion.other,
                            own = named_in(fitter.model(), (is_answer ? second : first)->found);
   std::ranges::sort(other), std::ranges::sort(own);
-  opinion.agrees = other == own;
+  opinion.agrees = other == own, opinion.predicts_worse = is_better && !is_answer;
   SiteSearchResult answer = one_of(std::move(*first), std::move(*second), is_answer);
   answer.second_opinion = std::move(opinion);
   return answer;

@@ -26,10 +26,7 @@ constexpr double least_gain_of_term = 25, least_gain_per_reading = 0.002;
 constexpr double least_improvement = 10, least_exchange = 3, rival_within = 10;
 /// [of the gain needed, and of the best candidate's] A smaller linearized gain is not worth a real fit.
 constexpr double promising = 0.4, promising_beside_best = 0.2;
-/// In -2 ln L, a function without a name against a named term.
-constexpr double least_gain_of_unknown = 60, least_gain_of_unknown_per_reading = 0.005;
-/// [of what unusual names gain] A function without a name that gains this much is what they stand for.
-constexpr double least_share_of_function = 0.95;
+using criteria::least_gain_of_unknown, criteria::least_gain_of_unknown_per_reading;
 
 class SiteSearch {
  public:
@@ -175,8 +172,8 @@ class SiteSearch {
     constexpr double least_response = 1e-3;  // in whitened errors, for a change by all of the parameter
     for (size_t i = 0; i < h.is_free.size(); ++i)
       h.is_free[i] = J.col(Eigen::Index(i)).norm() > least_response;
-    fitter_.refine(h, 8, true);
-    fitter_.anneal(h, true);
+    fitter_.refine(h, 8);
+    fitter_.anneal(h);
     return h;
   }
 
@@ -191,15 +188,15 @@ class SiteSearch {
       if (candidate.constant) trial.terms.push_back(*candidate.constant);
       trial.terms.push_back(candidate.term);
       if (candidate.term.shape->of == TermShape::Of::own) trial.terms.back().coefficient[0] = 1;
-      fitter_.refine(trial, first_steps, true);
+      fitter_.refine(trial, first_steps);
       if (std::isfinite(trial.objective)) list.push_back(std::move(trial));
     }
     keep_best(list, at, criteria::behind_after_first_steps);
-    for (SiteHypothesis& h : list) fitter_.refine(h, further_steps, true);
+    for (SiteHypothesis& h : list) fitter_.refine(h, further_steps);
     keep_best(list, at, criteria::behind_after_all_steps);
     for (SiteHypothesis& h : list) {
       fitter_.fit_noise(h);
-      fitter_.refine(h, 3, true);
+      fitter_.refine(h, 3);
     }
     std::ranges::sort(list, {}, [&](const SiteHypothesis& h) { return criterion(h); });
     return list;
@@ -238,7 +235,7 @@ class SiteSearch {
                          criterion(at) - criterion(best) >= least_improvement;
       tell(fmt::format("{} {}", gains ? "+" : "not enough:", describe(model(), best.terms.back())), best);
       if (!gains) return;
-      fitter_.anneal(best, true);
+      fitter_.anneal(best);
       tell("  annealed", best);
       at = std::move(best);
       remove_idle(at);
@@ -272,10 +269,10 @@ class SiteSearch {
         are_periods(at, names, range[1] - range[0]))
       return false;
     SiteHypothesis nothing = without(at, names);
-    fitter_.refine(nothing, 6, true);
+    fitter_.refine(nothing, 6);
     fitter_.fit_noise(nothing);
     const double gained = nothing.objective - at.objective;
-    return nothing.objective - function.objective > least_share_of_function * gained;
+    return nothing.objective - function.objective > criteria::least_share_of_function * gained;
   }
 
   /// In the criterion: a worse term is no rival.
@@ -329,9 +326,9 @@ class SiteSearch {
     for (size_t t = at.terms.size(); t-- > 0;) {
       SiteHypothesis without = at;
       without.terms.erase(without.terms.begin() + std::ptrdiff_t(t));
-      fitter_.refine(without, first_steps, false);
+      fitter_.refine(without, first_steps);
       if (without.scaled_objective - at.scaled_objective >= criteria::far_from_idle * gain_needed()) continue;
-      fitter_.refine(without, further_steps + 1, false);
+      fitter_.refine(without, further_steps + 1);
       fitter_.fit_noise(without);
       if (without.objective - at.objective >= gain_needed()) continue;
       tell("- " + describe(model(), at.terms[t]), without);
@@ -354,8 +351,10 @@ class SiteSearch {
             {choices[i].moved(), {}, choices[i].criterion - choices.front().criterion});
   }
 
-  /// What explains nearly as much with all parameters as the diagram states them.
-  void compare_with_stated_parameters(const SiteHypothesis& at) {
+  /// What explains nearly as much with all parameters as the diagram states them. Where one of these explains
+  /// more, terms were added beside parameters that the missing law had bent: it is the answer.
+  void compare_with_stated_parameters(SiteHypothesis& at) {
+    std::optional<SiteHypothesis> better;
     if (at.free_parameters() == 0 || is_spent(criteria::work_with_rivals)) return;
     const auto fit = [&](const SiteHypothesis& h, std::span<const SiteCandidate> list) {
       return fits(h, list);
@@ -366,9 +365,17 @@ class SiteSearch {
       tell("in the place of parameters: " + describe(model(), other.terms().back()), other.hypothesis);
       const size_t numbers = size_of(other.hypothesis);
       const double most_lost = numbers < size_of(at) ? criteria::most_lost_by_fewer_changes : rival_within;
+      if (worse < -least_exchange && (!better || criterion(other.hypothesis) < criterion(*better)))
+        better = other.hypothesis;
       if (worse < rival_within || (other.of && numbers <= size_of(at) && lost < most_lost))
         result_.parameter_rivals.push_back({{}, other.terms(), worse, other.of});
     }
+    if (!better) return;
+    at = *better;
+    tell("it is better than parameters that moved", at);
+    result_.rivals.clear(), result_.parameter_rivals.clear(), result_.steps.push_back(at);
+    exchange(at);
+    decide_parameters(at = with_free_parameters(at));
   }
 
   SiteFitter& fitter_;
@@ -382,12 +389,6 @@ class SiteSearch {
 };
 
 }  // namespace
-
-std::string describe(const SiteModel& model, const SiteTerm& term) {
-  std::string text = fmt::format("{}: {}", model.sites()[size_t(term.site)].name, term.shape->name);
-  if (term.variable >= 0) text += fmt::format("({})", model.variables()[size_t(term.variable)].name);
-  return text;
-}
 
 std::optional<SiteSearchResult> search_sites(SiteFitter& fitter,
                                              const std::function<void(const char*, double)>& progress,

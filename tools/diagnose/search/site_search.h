@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 #include "tools/diagnose/search/site_ranking.h"
+#include "tools/diagnose/search/term_text.h"
 
 namespace loopwright::diagnosis {
 
@@ -32,9 +33,11 @@ struct NoisySite {
 struct SecondOpinion {
   std::vector<NoisySite> noisy;    ///< why it was asked for
   std::vector<int> unmeasured;     ///< states on which no output depends directly
+  bool is_lost = false;            ///< small deviations grow: no simulation was asked
   bool is_answer = false;          ///< what was found by simulation is the answer
   std::vector<std::string> other;  ///< terms and parameters that are not the answer
   bool agrees = false;             ///< they are the same
+  bool predicts_worse = false;  ///< it simulates better, and predicts much worse than one that explains all
   /// [unit of the first output] rms by which simulations with the answer and with the other miss it; nothing
   /// if one diverges.
   std::optional<double> error, other_error;
@@ -60,7 +63,5 @@ std::optional<SiteSearchResult> search_sites(SiteFitter& fitter,
                                              const std::function<void(const char*, double)>& progress,
                                              ErrorsOf errors = ErrorsOf::predictions,
                                              const std::vector<SlowNoise>& disturbances = {});
-
-std::string describe(const SiteModel& model, const SiteTerm& term);
 
 }  // namespace loopwright::diagnosis

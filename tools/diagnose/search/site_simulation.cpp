@@ -1,5 +1,6 @@
 #include "tools/diagnose/search/site_simulation.h"
 #include <cmath>
+#include "tools/diagnose/criteria.h"
 
 namespace loopwright::diagnosis {
 
@@ -24,6 +25,24 @@ std::optional<SimulationErrors> simulation_errors(SiteFitter& fitter, const Site
     for (size_t j = 0; j < outputs; ++j) list.push_back(std::sqrt(squares[j] / std::max(1.0, readings[j])));
   }
   return errors;
+}
+
+bool forgets_its_start(SiteFitter& fitter, SiteHypothesis h) {
+  SitePass pass;
+  if (!fitter.pass(h, false, pass)) return true;
+  const auto count = Eigen::Index(fitter.model().states()), all = Eigen::Index(pass.states);
+  const Eigen::Map<const Eigen::MatrixXd> path(pass.filtered.data(), all, Eigen::Index(pass.rows));
+  Eigen::VectorXd size = path.topRows(count).rowwise().norm() / std::sqrt(double(pass.rows));
+  for (double& s : size)
+    if (!(s > 0)) s = 1;
+  Eigen::MatrixXd growth;
+  for (size_t row = 0; row < pass.rows; ++row) {
+    if (fitter.model().record().begins_at(row)) growth = size.asDiagonal();
+    const Eigen::Map<const Eigen::MatrixXd> A(&pass.A[row * size_t(all * all)], all, all);
+    growth = (A.topLeftCorner(count, count) * growth).eval();
+    if (!((size.cwiseInverse().asDiagonal() * growth).norm() < criteria::most_growth)) return true;
+  }
+  return false;
 }
 
 }  // namespace loopwright::diagnosis

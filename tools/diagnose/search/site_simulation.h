@@ -17,4 +17,8 @@ struct SimulationErrors {
 /// Nothing if the model diverges.
 std::optional<SimulationErrors> simulation_errors(SiteFitter& fitter, const SiteHypothesis& hypothesis);
 
+/// Whether a small deviation of a state grows along the fitted rows until a simulation tells nothing about
+/// its cause: motion that is chaotic or unstable.
+bool forgets_its_start(SiteFitter& fitter, SiteHypothesis hypothesis);
+
 }  // namespace loopwright::diagnosis

@@ -84,9 +84,9 @@ std::optional<SiteHypothesis> with_function(SiteFitter& fitter, const SiteHypoth
        rank_terms_at(fitter, rest, unknown_functions(), names.site, names.variable)) {
     SiteHypothesis trial = rest;
     trial.terms.push_back(candidate.term);
-    fitter.refine(trial, refinements, true);
+    fitter.refine(trial, refinements);
     fitter.fit_noise(trial);
-    fitter.refine(trial, refinements, true);
+    fitter.refine(trial, refinements);
     if (!std::isfinite(trial.objective)) continue;
     if (best && criterion(*best) <= criterion(trial)) break;  // finer ones cost more still
     best = std::move(trial);

@@ -16,6 +16,7 @@ class Improver {
   Improver(const std::string& diagram, const std::vector<std::string>& experiments, const LoadOptions& load,
            const Catalogue& catalogue, const MachineUnits& units, const RecordSizes& sizes);
 
+  const std::shared_ptr<const SourceFile>& file() const { return file_; }
   const std::vector<std::shared_ptr<const Experiment>>& experiments() const { return experiments_; }
   /// In the direction of the signal.
   Additions additions(std::vector<Member> members) const;

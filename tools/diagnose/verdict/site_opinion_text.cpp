@@ -23,7 +23,11 @@ void tell_second_opinion(const SiteModel& model, const SecondOpinion& opinion, D
       loopwright::joined(noisy, " and "), loopwright::joined(unmeasured, ", "));
   const std::string& unit = result.measured_unit;
   const std::string other = opinion.other.empty() ? "nothing" : loopwright::joined(opinion.other, " + ");
-  if (opinion.is_answer)
+  if (opinion.is_lost)
+    finding.cost =
+        "free simulations cannot be asked about it: along this record a small deviation grows until nothing "
+        "is left of what caused it";
+  else if (opinion.is_answer)
     finding.cost = fmt::format(
         "the answer is that of free simulations, with which one {}; by predictions of one sample {} would be "
         "named, with which it {}",
@@ -32,8 +36,9 @@ void tell_second_opinion(const SiteModel& model, const SecondOpinion& opinion, D
     finding.cost = "free simulations ask for the same";
   else
     finding.cost = fmt::format(
-        "free simulations would name {}; with that one {}, with the answer it {}: that decides nothing",
-        other, missed(opinion.other_error, unit), missed(opinion.error, unit));
+        "free simulations would name {}; with that one {}, with the answer it {}: {}", other,
+        missed(opinion.other_error, unit), missed(opinion.error, unit),
+        opinion.predicts_worse ? "but it predicts the record much worse" : "that decides nothing");
   result.findings.push_back(std::move(finding));
 }
 

@@ -1,0 +1,73 @@
+#include "tools/diagnose/verdict/trial_run.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include "tools/compare/compare.h"
+#include "tools/diagnose/criteria.h"
+#include "tools/diagnose/verdict/improve.h"
+#include "tools/diagnose/wording.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+double spread_of(const std::vector<double>& values) {
+  double sum = 0, square = 0, count = 0;
+  for (const double v : values)
+    if (std::isfinite(v)) sum += v, square += v * v, ++count;
+  return count > 0 ? std::sqrt(std::max(0.0, square / count - sum * sum / (count * count))) : 0;
+}
+
+/// A run that ends early counts as one that diverges.
+bool is_complete(const Comparison& run, size_t rows) { return run.time.size() == rows; }
+
+std::optional<std::string> why_diverges(const Comparison& improved, const Comparison& nominal) {
+  for (size_t j = 0; j < improved.signals.size(); ++j) {
+    const ComparedSignal &with = improved.signals[j], &without = nominal.signals[j];
+    const double most = std::max(criteria::diverging_simulation * without.rmse, spread_of(without.measured));
+    if (!(with.rmse <= most))
+      return fmt::format("simulated along the record it misses {} by {}, the diagram as it is by {}",
+                         without.name, shown(with.rmse, with.unit), shown(without.rmse, without.unit));
+  }
+  return {};
+}
+
+}  // namespace
+
+std::optional<std::string> why_not_run(const Improvement& improved,
+                                       const std::shared_ptr<const SourceFile>& nominal,
+                                       const std::vector<std::shared_ptr<const Experiment>>& experiments,
+                                       const LoadOptions& load) {
+  for (const auto& experiment : experiments) {
+    const size_t rows = experiment->data.columns.front().values.size();
+    const Comparison before = compare_signals(nominal, *experiment, load);
+    try {
+      const Comparison after =
+          compare_signals(improved.file, with_moved_ports(*experiment, improved.moved), load);
+      if (!is_complete(before, rows)) continue;  // it tells nothing
+      if (!is_complete(after, rows)) return after.run.message;
+      if (const auto why = why_diverges(after, before)) return why;
+    } catch (const InputError& error) {
+      return error.problems.list().empty() ? error.what() : error.problems.list().front().message;
+    }
+  }
+  return {};
+}
+
+void write_if_it_runs(const Improvement& improved, const std::shared_ptr<const SourceFile>& nominal,
+                      const std::vector<std::shared_ptr<const Experiment>>& experiments,
+                      const DiagnoseOptions& options, Diagnosis& result) {
+  if (const auto why = why_not_run(improved, nominal, experiments, options.load)) {
+    RecordFinding& finding = result.findings.emplace_back();
+    finding.what = "no improved diagram is written: " + *why;
+    finding.cost = "with what was found the diagram cannot be used";
+    return;
+  }
+  result.improved = options.improved_diagram;
+  result.improved_experiments = write(improved, result.experiments, result.improved);
+  result.experiment_ports = improved.moved, result.taken_out_by = improved.taken_out_by;
+  result.improved_notes =
+      notes_of(options.writes_all ? result.all_additions : result.additions, result.all_additions);
+  std::ranges::copy(improved.left_out, std::back_inserter(result.improved_notes));
+}
+
+}  // namespace loopwright::diagnosis
