@@ -53,6 +53,7 @@ RecordSizes sizes_of(const Scenario& scenario) {
 /// The effect of that name, in its true form.
 loopwright::Effect effect_of(const std::string& name, const nlohmann::json& truth) {
   const std::string form = name == "end_stop" ? "high end"
+                           : name == "force_saturation" ? "iron"
                            : name == "direction_dependent_friction" ? "viscous friction"
                            : name == "stribeck_friction"
                                ? truth.at("exponent") == 1 ? "exponential fall" : "bell-shaped fall"
