@@ -55,6 +55,15 @@ std::string force_above_noise(const Trials& trials, const std::vector<InverseDyn
   return {};
 }
 
+/// Whether the estimated noise would leave far more force than there is. Beside impacts this says nothing,
+/// and a record without noise has the least that the search assumes.
+bool is_noise_inflated(const Trials& trials, const std::vector<Member>& members, const Diagnosis& diagnosis) {
+  const bool has_impacts = std::ranges::any_of(members, [](const Member& m) { return m.candidate->flies; });
+  const double floor = diagnosis.noise_floor;
+  return !trials.has_map() && !has_impacts && floor > criteria::least_excess * trials.force_rms &&
+         diagnosis.steps.back().force_rmse < criteria::least_residual_of_noise * floor;
+}
+
 }  // namespace
 
 void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, const Noise& tight,
@@ -82,9 +91,7 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
       diagnosis.contradictions.push_back("the counts of the sensor are too coarse to show how the load of " +
                                          name + " moves: its parameters are not certain");
   }
-  const bool has_impacts = std::ranges::any_of(e.members, [](const Member& m) { return m.candidate->flies; });
-  if (!trials.has_map() && !has_impacts &&
-      diagnosis.steps.back().force_rmse < criteria::least_residual_of_noise * diagnosis.noise_floor)
+  if (is_noise_inflated(trials, e.members, diagnosis))
     diagnosis.contradictions.push_back(
         "the errors ask for more noise than the forces show: they are not alike over the record, so that "
         "something happened that is no noise");
