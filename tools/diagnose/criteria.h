@@ -55,9 +55,9 @@ constexpr double least_white_noise = 1e-4;
 /// [force of the input, rms] The first guess, and its range during the search: small, so that a missing
 /// effect is not taken for noise.
 constexpr double usual_white_noise = 0.01, least_search_noise = 0.005, most_search_noise = 0.02;
-/// Louder noise is admitted if the errors of the nominal diagram, beside a force that walks at random as
-/// missing effects do, are as white as this: then it is noise.
-constexpr double most_portmanteau_of_noise_seen = 120;
+/// [force of the input, rms] Noise as loud as this is admitted if the errors of the nominal diagram, beside a
+/// force that walks at random as missing effects do, are as white: then it is noise.
+constexpr double loud_noise = 0.1, most_portmanteau_of_noise_seen = 120;
 /// [white force] Slow force of an amplifier.
 constexpr double usual_slow_noise = 0.3;
 /// [white force] A larger slow force is not noise but something that the model lacks.

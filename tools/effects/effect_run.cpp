@@ -86,7 +86,7 @@ GivenSignals EffectRun::given_at(const RoleSample& s) const {
   const double period = plan_->sizes.sample_time;
   const double gain = std::isnan(s.next_velocity) ? s.acceleration : (s.next_velocity - s.velocity) / period;
   const double jerk = std::isnan(s.next_acceleration) ? 0.0 : (s.next_acceleration - s.acceleration) / period;
-  return {{s.position, s.velocity + s.velocity_bow, gain, s.acceleration, jerk, s.input, s.force}};
+  return {{s.position, s.velocity, gain, s.acceleration, jerk, s.input, s.force}};
 }
 
 void EffectRun::give(const GivenSignals& given, double now, size_t from, size_t to) {

@@ -39,7 +39,7 @@ struct RoleSignals {
 ///   acting on the input:           the change of the input [input], mean over the sample
 ///   acting on the sensor:          the change of the measured position [position], at the sample
 /// Within a sample the position is a parabola and the velocity a straight line, or with a bow a cubic and a
-/// parabola; an effect with memory meets a straight line of the same mean. Input and force are held. The mean
+/// parabola; of an effect with memory the bow is left out. Input and force are held. The mean
 /// is computed by two-point Gauss quadrature if the effect has no states, else by an additional
 /// integrator. In addition to the mean there is a slope: the change over the sample of the straight line with
 /// the same first moment. A rapidly oscillating force moves the axis by its slope as well as by its mean.

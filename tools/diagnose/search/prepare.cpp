@@ -185,8 +185,9 @@ Trials prepare(const std::string& diagram, const std::vector<std::string>& exper
   trials.noise = fit_noise(trials, nominal, trials.noise, FreeNoise::with_random_walk);
   nominal = run_members(trials, {}, {}, trials.noise);
   look_where_noise_enters(trials, nominal);
+  const bool is_loud = trials.noise.white > criteria::loud_noise * trials.force_rms;
   trials.noise_is_seen =
-      !trials.has_map() && portmanteau(trials, nominal) < criteria::most_portmanteau_of_noise_seen;
+      is_loud && !trials.has_map() && portmanteau(trials, nominal) < criteria::most_portmanteau_of_noise_seen;
   trials.lowest_position = 1e300, trials.highest_position = -1e300;
   for (size_t t = 0; t < trials.list.size(); ++t) {
     const Path& path = nominal[t].prediction.path;
