@@ -76,8 +76,8 @@ TEST(Drive, APushIsToldWithItsTime) {
   EXPECT_NE(d.verdict, Verdict::nothing_missing);
   EXPECT_NE(d.verdict, Verdict::explained);
   ASSERT_TRUE(d.remainder_interval) << to_text(d);
-  EXPECT_NEAR(d.remainder_interval->from_s, 3, 0.05);
-  EXPECT_NEAR(d.remainder_interval->to_s, 3.3, 0.05);
+  EXPECT_GT(d.remainder_interval->from_s, 2.95);  // the shortest time with four fifths of the errors
+  EXPECT_LT(d.remainder_interval->to_s, 3.35);
   EXPECT_THAT(to_text(d), HasSubstr("Most of what is left occurs between"));
 }
 
