@@ -60,7 +60,8 @@ class Evidence {
   /// A member, or two, replaced by two shapes, both of them needed: the best for each pair of candidates,
   /// best first.
   std::vector<Proposal> exchanges_for_pairs();
-  /// The members without one, with the saving (mostly negative).
+  /// The members without one, with the saving (mostly negative) of a record of `n` fitted numbers: the
+  /// evidence may hold a part of them.
   std::vector<double> gains_of_removal(double n) const;
   double rows() const { return n_; }
 

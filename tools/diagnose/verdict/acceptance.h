@@ -21,7 +21,7 @@ struct Acceptance {
 struct Errors {
   double simulation = 0, force = 0, held_out_force = 0;
 };
-/// Whether simulation and held-out force are (if nothing is held out, the fitted force), though none may be
+/// Whether simulation and held-out force are (if nothing is held out, the fitted force), though neither may be
 /// so beyond doubt. An effect that makes them larger gains from the noise of single rows alone: at tens of
 /// kilohertz encoder counts that a controller answers look like a delay.
 bool are_larger(const Errors& before, const Errors& after);
@@ -30,8 +30,8 @@ bool are_larger(const Errors& before, const Errors& after);
 void need_what_simulates_better(std::vector<DiagnosisStep>& steps);
 
 /// Removes effects one by one as long as the diagram with one of them simulates worse than without it (unless
-/// a load moves by itself: where it is at the beginning of a window is not known), as all errors are larger
-/// with one, as counts of the sensor are not white and the diagram simulates no better with one, or as the
+/// a load moves by itself: where it is at the beginning of a window is not known), as simulation and held-out force are worse
+/// with one, as the diagram cannot be run with one, as counts of the sensor are not white and the diagram simulates no better with one, or as the
 /// interval of one contains zero while the diagram simulates no worse without it. `without(conclusion,
 /// member)` is the conclusion from the others.
 Acceptance accept(Conclusion conclusion, Trials& trials, const std::vector<InverseDynamics>& inverse,
