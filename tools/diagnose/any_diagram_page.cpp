@@ -51,9 +51,9 @@ report::Section what_was_found(const Diagnosis& d) {
     section.items.push_back(std::move(table));
   }
   for (const OtherExplanation& other : d.other_explanations)
-    section.items.push_back(report::Paragraph{fmt::format(
-        "In the place of {}, {} would explain the record as well.", joined(other.in_place_of, " and "),
-        other.effects.empty() ? "something small without a name" : joined(other.effects, " and "))});
+    section.items.push_back(
+        report::Paragraph{fmt::format("In the place of {}, {} would explain the record as well.",
+                                      joined(other.in_place_of, " and "), words_of(other, " and "))});
   return section;
 }
 

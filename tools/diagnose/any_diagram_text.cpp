@@ -45,8 +45,7 @@ std::string any_diagram_text(const Diagnosis& d) {
     line(fmt::format("  {} = {}, not {}", p.name, with_interval(p.value, p.low, p.high, p.unit),
                      shown(p.stated, p.unit)));
   for (const OtherExplanation& other : d.other_explanations)
-    line(fmt::format("  or {} in the place of {}: this record cannot tell",
-                     other.effects.empty() ? "something small without a name" : joined(other.effects, " + "),
+    line(fmt::format("  or {} in the place of {}: this record cannot tell", words_of(other, " + "),
                      other.in_place_of.empty() ? "none" : joined(other.in_place_of, " + ")));
   const auto held_out = [&](const std::string& words) {
     return d.holds_out ? fmt::format(" {:>14}", words) : "";

@@ -30,6 +30,11 @@ inline std::string joined(const std::vector<std::string>& names, const char* wit
   return text;
 }
 
+/// What would explain as much in the place of what was found.
+inline std::string words_of(const OtherExplanation& other, const char* with) {
+  return other.effects.empty() ? "something small without a name" : joined(other.effects, with);
+}
+
 /// When most of the remainder occurs; empty: it is no event.
 inline std::string words_of_interval(const Diagnosis& d) {
   if (!d.remainder_interval) return {};

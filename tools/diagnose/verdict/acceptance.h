@@ -21,19 +21,19 @@ struct Acceptance {
 struct Errors {
   double simulation = 0, force = 0, held_out_force = 0;
 };
-/// Whether simulation and held-out force are (if nothing is held out, the fitted force), though neither may be
-/// so beyond doubt. An effect that makes them larger gains from the noise of single rows alone: at tens of
+/// Whether simulation and held-out force are (if nothing is held out, the fitted force), though neither may
+/// be so beyond doubt. An effect that makes them larger gains from the noise of single rows alone: at tens of
 /// kilohertz encoder counts that a controller answers look like a delay.
 bool are_larger(const Errors& before, const Errors& after);
 
 /// An optional step that brings most of what the simulation gains is needed, and so are those before it.
 void need_what_simulates_better(std::vector<DiagnosisStep>& steps);
 
-/// Removes effects one by one as long as the diagram with one of them simulates worse than without it (unless
-/// a load moves by itself: where it is at the beginning of a window is not known), as simulation and held-out force are worse
-/// with one, as the diagram cannot be run with one, as counts of the sensor are not white and the diagram simulates no better with one, or as the
-/// interval of one contains zero while the diagram simulates no worse without it. `without(conclusion,
-/// member)` is the conclusion from the others.
+/// Removes effects one by one as long as the diagram cannot be run with one of them, or simulates worse with
+/// it than without it (unless a load moves by itself: where it is at the beginning of a window is not known),
+/// as simulation and held-out force are both worse with one, as counts of the sensor are not white and the
+/// diagram simulates no better with one, or as the interval of one contains zero while the diagram simulates
+/// no worse without it. `without(conclusion, member)` is the conclusion from the others.
 Acceptance accept(Conclusion conclusion, Trials& trials, const std::vector<InverseDynamics>& inverse,
                   const Improver& improver, const LoadOptions& load, size_t catalogue,
                   const std::function<Conclusion(const Conclusion&, size_t)>& without);

@@ -1,5 +1,6 @@
 #include "tools/diagnose/verdict/remainder_interval.h"
 #include <algorithm>
+#include <numeric>
 #include "tools/diagnose/criteria.h"
 
 namespace loopwright::diagnosis {
@@ -15,9 +16,7 @@ std::vector<double> squared_errors(const Trial& trial, const Fitted& fitted, siz
 }
 
 double sum_of(const std::vector<double>& values) {
-  double sum = 0;
-  for (double v : values) sum += v;
-  return sum;
+  return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
 /// First and last row of the shortest stretch that sums up to so much.

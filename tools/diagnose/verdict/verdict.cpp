@@ -4,6 +4,7 @@
 #include <cmath>
 #include "tools/compare/missing_force.h"
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/doubt.h"
 #include "tools/diagnose/verdict/remainder_interval.h"
 
 namespace loopwright::diagnosis {
@@ -32,8 +33,7 @@ void add_variables(std::vector<std::string>& list, std::string_view joined) {
 std::string force_above_noise(const Trials& trials, const std::vector<InverseDynamics>& inverse,
                               const std::vector<Member>& members) {
   // An impact that is predicted a moment too late leaves a large force for a moment.
-  const bool has_impacts = std::ranges::any_of(members, [](const Member& m) { return m.candidate->flies; });
-  if (trials.has_map() || has_impacts) return {};
+  if (trials.has_map() || may_be_doubtful(members)) return {};
   for (size_t t = 0; t < trials.list.size(); ++t) {
     const MeasuredMotion motion = away_from_turns(inverse[t]);
     const std::vector<double> residual = residual_with(trials.list[t], inverse[t], members);
@@ -58,9 +58,9 @@ std::string force_above_noise(const Trials& trials, const std::vector<InverseDyn
 /// Whether the estimated noise would leave far more force than there is. Beside impacts this says nothing,
 /// and a record without noise has the least that the search assumes.
 bool is_noise_inflated(const Trials& trials, const std::vector<Member>& members, const Diagnosis& diagnosis) {
-  const bool has_impacts = std::ranges::any_of(members, [](const Member& m) { return m.candidate->flies; });
   const double floor = diagnosis.noise_floor;
-  return !trials.has_map() && !has_impacts && floor > criteria::least_excess * trials.force_rms &&
+  return !trials.has_map() && !may_be_doubtful(members) &&
+         floor > criteria::least_excess * trials.force_rms &&
          diagnosis.steps.back().force_rmse < criteria::least_residual_of_noise * floor;
 }
 
@@ -97,9 +97,8 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
         "something happened that is no noise");
   if (e.against_at_rest > criteria::least_gain)
     diagnosis.contradictions.push_back(
-        "while the axis rests, its input pushes it more than anything in the diagram holds, or nothing holds "
-        "it "
-        "though something should");
+        "while the axis rests, its input pushes it more than anything in the diagram holds, or nothing "
+        "holds it though something should");
   if (is_not_white && diagnosis.contradictions.empty() && !conclusion.is_remainder_noise)
     diagnosis.contradictions.push_back("a slow force remains that is more than noise");
   is_not_white |= !diagnosis.contradictions.empty();
