@@ -56,20 +56,23 @@ TEST(SlowDisturbance, ASmallEffectIsNotTakenForOne) {
   EXPECT_THAT(findings(d), Not(Contains(HasSubstr("a slow disturbance"))));
 }
 
+/// A disturbed motor whose resistance is a multiple of what its diagram states.
+Diagnosis diagnosed_with_resistance(double multiple) {
+  Motor m;
+  m.resistance *= multiple;
+  return diagnosed(disturbed_motor(m, 0.02, 25));
+}
+
 /// An effect without a name bends the parameters that resemble it, and a disturbance follows what is left.
 TEST(SlowDisturbance, ParametersThatAreHardlyOffBesideItDoNotExplainEverything) {
-  Motor m;
-  m.resistance *= 1.01;
-  const Diagnosis d = diagnosed(disturbed_motor(m, 0.02, 25));
+  const Diagnosis d = diagnosed_with_resistance(1.01);
   EXPECT_EQ(d.verdict, Verdict::partly_explained) << to_text(d);
   EXPECT_THAT(answer(d), ElementsAre("resistance"));
   EXPECT_THAT(findings(d), Contains(HasSubstr("both may stand for an effect")));
 }
 
 TEST(SlowDisturbance, AParameterThatIsClearlyOffBesideItExplainsEverything) {
-  Motor m;
-  m.resistance *= 1.1;
-  const Diagnosis d = diagnosed(disturbed_motor(m, 0.02, 25));
+  const Diagnosis d = diagnosed_with_resistance(1.1);
   EXPECT_EQ(d.verdict, Verdict::explained) << to_text(d);
   EXPECT_THAT(answer(d), ElementsAre("resistance"));
 }
