@@ -38,10 +38,20 @@ class Smoothed {
     return e.is_valid ? criterion(trials_, e, catalogue_) : std::numeric_limits<double>::infinity();
   }
   Estimate with(std::vector<Member> members) {
-    constexpr int iterations = 6;
     members.insert(members.begin(), others_.begin(), others_.end());
-    return with_own_noise(trials_, fit_members(trials_, members, found_.noise, found_.motion, iterations),
-                          iterations);
+    return fitted(members, found_);
+  }
+  /// The measured input as it is, also with what the fits of a smoothed one made of the others and of the
+  /// noise: that is no gain of smoothing.
+  Estimate with_nothing(std::initializer_list<const Estimate*> starts) {
+    Estimate best = with(std::vector<Member>{});
+    for (const Estimate* start : starts) {
+      if (!start->is_valid) continue;
+      std::vector<Member> others(start->members.begin(), start->members.end() - 1);
+      Estimate trial = fit_members(trials_, std::move(others), start->noise, start->motion, iterations);
+      if (criterion_of(trial) < criterion_of(best)) best = std::move(trial);
+    }
+    return best;
   }
   /// From the best of the starts.
   Estimate with(const Candidate& smoothing) {
@@ -54,6 +64,13 @@ class Smoothed {
   }
 
  private:
+  static constexpr int iterations = 6;
+
+  Estimate fitted(const std::vector<Member>& members, const Estimate& start) {
+    return with_own_noise(trials_, fit_members(trials_, members, start.noise, start.motion, iterations),
+                          iterations);
+  }
+
   Trials& trials_;
   const Estimate& found_;
   std::vector<Member> others_;
@@ -72,11 +89,12 @@ std::optional<InputNoise> noise_instead_of_late_input(Trials& trials, const Conc
   const Candidate about = unfelt_noise(RowsOfMean::about), after = unfelt_noise(RowsOfMean::after);
   const Estimate noise = smoothed.with(about);
   if (!noise.is_valid) return {};
-  const double late = criterion(trials, found, catalogue),
-               nothing = smoothed.criterion_of(smoothed.with(std::vector<Member>{})),
-               early = smoothed.criterion_of(smoothed.with(after));
-  const bool gains_early = nothing - early > criteria::least_gain_of_early_input * (nothing - late);
-  if (!gains_early && smoothed.criterion_of(noise) >= late) return {};
+  const Estimate early = smoothed.with(after);
+  const double of_late = criterion(trials, found, catalogue),
+               of_nothing = smoothed.criterion_of(smoothed.with_nothing({&noise, &early}));
+  const bool gains_early = of_nothing - smoothed.criterion_of(early) >
+                           criteria::least_gain_of_early_input * (of_nothing - of_late);
+  if (!gains_early && smoothed.criterion_of(noise) >= of_late) return {};
   return InputNoise{noise.members.back().nonlinear[0], noise.members.back().linear[0]};
 }
 

@@ -47,7 +47,7 @@ class Judge {
           is_worse_without(state, state.staircase.added[i].front()))
         return why_worse(state, i);
     for (size_t i = 1; i < state.runs.size(); ++i)
-      if (helps_nowhere(state, i) && !has_own_load(state.staircase.members[i]) &&
+      if (helps_nowhere(state, i) && !brings_own_load(state, i) &&
           helps_nowhere_beside_all(state, state.staircase.added[i].front()))
         return Refusal{state.staircase.added[i].front(),
                        "neither does the diagram simulate better with it, nor do the forces balance better"};
@@ -79,6 +79,10 @@ class Judge {
     Estimate others = fit_members(trials_, std::move(members), e.noise, e.motion, iterations);
     FreeRun run = run_freely(improver_.with(others.members), improver_, load_, trials_, inverse_, e.noise);
     return {std::move(others), std::move(run)};
+  }
+  /// Beside the same load the others are compared fairly.
+  static bool brings_own_load(const Acceptance& state, size_t step) {
+    return has_own_load(state.staircase.members[step]) != has_own_load(state.staircase.members[step - 1]);
   }
   static bool helps_nowhere(const Acceptance& state, size_t step) {
     const auto errors = [&](size_t i) {
