@@ -1,6 +1,8 @@
 // The prediction errors, and the filters that describe their response to forces.
 #include "tools/diagnose/predict/predictor.h"
 #include <cmath>
+#include "engine/run/run.h"
+#include "tests/engine/written_diagram.h"
 #include "tests/tools/diagnose/hidden_axis.h"
 #include "tests/tools/diagnose/recorded_axis.h"
 
@@ -109,6 +111,26 @@ TEST(Predictor, OtherGainsNeedNoOtherRun) {
   for (size_t k = 0; k < error.size(); ++k)
     off += std::pow(error[k] - expected[k], 2), size += expected[k] * expected[k];
   EXPECT_LT(off, 1e-3 * size) << "the same but for samples near rest, where the two see other speeds";
+}
+
+/// A record may need several steps in a sample, or have samples of any length. A delayed command still arrives.
+TEST(Predictor, SampledBlocksRunAtTheirSamplesWhateverTheStep) {
+  const auto plan = plan_of(R"({"loopwright": 1, "solver": {"step": 0.001, "stop": 1}, "blocks": {
+    "command": {"type": "Constant", "value": 3},
+    "late": {"type": "FractionalDelay", "delay": 0.0025, "sample_time": 0.001, "in": {"u": "command.y"}},
+    "way": {"type": "Integrator", "in": {"u": "late.y"}}}})");
+  AxisRecord record;
+  record.sample_time = 0.001;
+  for (const int steps : {1, 4}) {
+    Plan shorter = *plan;
+    const double ticks = step_by_samples(shorter, record, steps);
+    loopwright::Run<double> run(shorter);
+    run.reset({plan->seed, 0});
+    constexpr int samples = 10;
+    const int64_t end = std::llround(samples * ticks);
+    while (run.now().tick < end) run.step_fixed(end, false, [] {});
+    EXPECT_NEAR(run.number(plan->find("way.y").front()), 3 * (0.010 - 0.0025), 1e-12) << steps << " steps";
+  }
 }
 
 }  // namespace

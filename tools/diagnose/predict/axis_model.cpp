@@ -30,8 +30,13 @@ void divide_ticks(Plan& plan) {
   plan.clock.base.denominator *= parts;
   for (int64_t* ticks : {&plan.step_ticks, &plan.record_ticks, &plan.start_tick, &plan.stop_tick})
     *ticks *= parts;
-  for (Rate& rate : plan.rates) rate.period *= parts, rate.offset *= parts;
-  for (Plan::Block& block : plan.blocks) block.period *= parts, block.offset *= parts;
+  const auto divide = [](auto& rate) { rate.period *= parts, rate.offset *= parts; };
+  for (Rate& rate : plan.rates) divide(rate);
+  for (Plan::Block& block : plan.blocks) divide(block);
+  for (Plan::Entry& entry : plan.order) divide(entry.rate);
+  for (Plan::AlgebraicLoop& loop : plan.algebraic_loops)
+    for (Plan::Entry& entry : loop.entries) divide(entry.rate);
+  for (Plan::Logged& logged : plan.log) divide(logged.rate);
 }
 
 /// "axis.mass.mass": the inertia on which this force acts.
