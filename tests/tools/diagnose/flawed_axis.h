@@ -20,6 +20,7 @@ namespace loopwright {
 struct FlawedMachine {
   double mass = 0.5, damping = 2;  ///< as the diagram has them
   double coulomb = 0, cogging = 0, pitch = 0.012, added_damping = 0, added_mass = 0;  ///< hidden
+  double smooth_friction = 0, smooth_speed = 1;  ///< hidden: a tanh of the speed
   double sample_time = 1e-3, duration = 20;
   double stroke = 0.2, top_speed = 0.3;
   std::vector<double> steady_speeds;  ///< instead of strokes: each one held, forward and back
@@ -123,7 +124,8 @@ class FlawedAxis {
   void advance(double& x, double& v, double force, double h) const {
     const double mass = machine_.mass + machine_.added_mass;
     const double free = force - (machine_.damping + machine_.added_damping) * v -
-                        machine_.cogging * std::sin(2 * std::numbers::pi * x / machine_.pitch);
+                        machine_.cogging * std::sin(2 * std::numbers::pi * x / machine_.pitch) -
+                        machine_.smooth_friction * std::tanh(v / machine_.smooth_speed);
     const double fast = v + h / mass * free, most = machine_.coulomb * h / mass;
     const double next = std::copysign(std::max(std::abs(fast) - most, 0.0), fast);
     x += h * (v + next) / 2, v = next;

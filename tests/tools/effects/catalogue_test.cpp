@@ -14,6 +14,7 @@ TEST(Catalogue, HoldsTheEffectsByTheirNames) {
                                           "stribeck_friction",
                                           "direction_dependent_friction",
                                           "quadratic_drag",
+                                          "smooth_friction",
                                           "eddy_current_drag",
                                           "presliding_hysteresis",
                                           "cogging",
