@@ -62,6 +62,9 @@ constexpr double loud_noise = 0.1, most_portmanteau_of_noise_seen = 120;
 constexpr double usual_slow_noise = 0.3;
 /// [white force] A larger slow force is not noise but something that the model lacks.
 constexpr double most_slow_noise = 0.8;
+/// [sample times] A force that is forgotten sooner is noise, however large: the ripple of an amplifier. What a
+/// model lacks lasts as long as the motion, of which a record shows more samples.
+constexpr double quick_noise = 3;
 /// [white force] The slow force that remains when it is counted as white.
 constexpr double next_to_no_slow_noise = 0.01;
 /// [factor] The likelihood looks for each noise within this of its start.

@@ -307,8 +307,8 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
     next.trail.insert(next.trail.begin(), result.trail.begin(), result.trail.end());
     return next;
   }
-  const Noise free = fit_noise(trials, *estimate.fitted, estimate.noise, FreeNoise::all);
-  result.is_remainder_noise = free.slow() <= criteria::most_slow_noise * free.white;
+  result.is_remainder_noise =
+      is_slow_force_noise(fit_noise(trials, *estimate.fitted, estimate.noise, FreeNoise::all));
   return result;
 }
 

@@ -97,6 +97,11 @@ Noise fit_noise(const Trials& trials, const std::vector<Fitted>& fitted, const N
   return objective.coordinates.at(x.data());
 }
 
+bool is_slow_force_noise(const Noise& noise) {
+  const bool is_quick = -1 / std::log(noise.memory) < criteria::quick_noise;
+  return is_quick || noise.slow() <= criteria::most_slow_noise * noise.white;
+}
+
 Noise fit_noise_alone(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& start,
                       FreeNoise free) {
   // If it is nearly zero, or was set to zero, the likelihood is too flat to recover it.
@@ -104,7 +109,7 @@ Noise fit_noise_alone(const Trials& trials, const std::vector<Fitted>& fitted, c
   from.step =
       std::max(from.step, criteria::usual_slow_noise * from.white * std::sqrt(1 - from.memory * from.memory));
   Noise noise = fit_noise(trials, fitted, from, free);
-  if (noise.slow() <= criteria::most_slow_noise * noise.white) return noise;
+  if (is_slow_force_noise(noise)) return noise;
   noise.white = std::hypot(noise.white, noise.slow());
   noise.step = criteria::next_to_no_slow_noise * noise.white * std::sqrt(1 - noise.memory * noise.memory);
   return noise;

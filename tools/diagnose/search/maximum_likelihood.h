@@ -42,6 +42,9 @@ enum class FreeNoise { with_random_walk, white_and_slow, all };
 /// around the start.
 Noise fit_noise(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& start, FreeNoise free);
 
+/// Whether the slow force is small or forgotten quickly; otherwise it is something that the model lacks.
+bool is_slow_force_noise(const Noise& noise);
+
 /// fit_noise; but if the slow force is more than noise, all of it is counted as white. Otherwise the
 /// predictor would follow what the model lacks, and effects fitted with it would lose their steady parts to
 /// it.
