@@ -5,6 +5,7 @@
 #include <cmath>
 #include "tools/diagnose/criteria.h"
 #include "tools/experiment/even_grid.h"
+#include "tools/experiment/false_readings.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -71,6 +72,19 @@ void thin(AxisRecord& record, size_t every) {
   }
   for (MeasuredPort& port : record.measured) keep(port.value);
   record.sample_time *= double(every);
+}
+
+/// A device that gives an old value now and then says nothing of the machine.
+void replace_false_readings(AxisRecord& record) {
+  if (record.is_map) return;
+  std::vector<double> at(record.rows());
+  for (size_t k = 1; k < at.size(); ++k)
+    at[k] = at[k - 1] + (record.duration.empty() ? 1 : record.duration[k - 1]);
+  for (MeasuredPort& port : record.measured) {
+    const std::vector<size_t> rows = false_readings(port.value);
+    replace_readings(at, port.value, rows);
+    record.false_readings += rows.size();
+  }
 }
 
 /// How many rows become one: see criteria.h.
@@ -185,6 +199,7 @@ AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Prob
       record.measured.push_back({role, wanted, unit, signal.resolution, grid.measured(column.values)});
     }
   }
+  replace_false_readings(record);
   if (const size_t every = rows_for_one(record); every > 1) thin(record, every);
   record.held_out_from = whole_between<size_t>(
       std::round(double(record.rows()) * (1 - experiment.hold_out_fraction)), 0, record.rows());

@@ -32,6 +32,7 @@ struct AxisRecord {
   std::string input_unit;
   std::vector<MeasuredPort> measured;  ///< position first; at least one
   bool is_map = false;                 ///< rows are independent balances: see gather_balances
+  size_t false_readings = 0;           ///< replaced by what their neighbours say: see replace_readings
   size_t held_out_from = 0;            ///< first row held out of the identification; rows() without hold-out
 
   size_t rows() const { return input.size(); }

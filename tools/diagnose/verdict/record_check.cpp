@@ -36,6 +36,12 @@ RecordFinding input_is_noisy(const Trials& trials, const InputNoise& noise) {
 
 namespace {
 
+size_t false_readings(const Trials& trials) {
+  size_t count = 0;
+  for (const Trial& trial : trials.list) count += trial.model->record().false_readings;
+  return count;
+}
+
 /// A short time is enough for a fast motion.
 bool shows_enough(const Trials& trials, const std::vector<RecordContent>& contents) {
   int reversals = 0;
@@ -62,6 +68,11 @@ std::vector<RecordFinding> look_at_records(const Trials& trials,
   for (size_t t = 0; t < trials.list.size(); ++t)
     records.push_back({inverse[t].motion, residuals[t], contents[t]});
   std::vector<RecordFinding> findings;
+  if (const size_t count = false_readings(trials); count > 0)
+    findings.push_back({fmt::format("{} reading{} not those of their rows: they repeat the one before while "
+                                    "the axis moves on, or leap out and back",
+                                    count, count == 1 ? " is" : "s are"),
+                        "what their neighbours say was taken instead"});
   for (const RecordFault& fault : faults_of(records)) {
     if (trials.has_map() && fault.name != "one_direction") continue;  // a map has no times and no speeds
     if (fault.name == "too_short" && shows_enough(trials, contents))

@@ -1,0 +1,84 @@
+#include "tools/experiment/false_readings.h"
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include "tools/experiment/signal_figures.h"
+
+namespace loopwright {
+namespace {
+
+/// The smallest change from row to row: a count, if the sensor counts.
+double least_change(std::span<const double> value) {
+  double least = std::numeric_limits<double>::infinity();
+  for (size_t k = 1; k < value.size(); ++k)
+    if (value[k] != value[k - 1]) least = std::min(least, std::abs(value[k] - value[k - 1]));
+  return least;
+}
+
+/// Rows that repeat the reading before while the signal moves on.
+void add_stale(std::span<const double> value, std::vector<size_t>& rows) {
+  constexpr double least_counts = 4, same_speed = 0.3;
+  const double least_step = least_counts * least_change(value);
+  for (size_t k = 2, good = 0; k + 1 < value.size(); ++k) {  // good: the last true reading before k - 1
+    if (value[k] != value[k - 1]) {
+      good = k - 1;
+      continue;
+    }
+    size_t end = k;
+    while (end < value.size() && value[end] == value[k - 1]) ++end;
+    if (end == value.size()) return;
+    const double speed = (value[k - 1] - value[good]) / double(k - 1 - good);  // per row
+    const double caught_up = value[end] - value[k - 1], expected = speed * double(end - k + 1);
+    const bool moves_on = std::abs(caught_up - expected) < same_speed * std::abs(expected);
+    if (good < k - 1 && moves_on && std::abs(speed) > least_step)
+      for (size_t row = k; row < end; ++row) rows.push_back(row);
+    good = k - 1, k = end;
+  }
+}
+
+/// Out and back: the second differences of the neighbours are half as large, and of the other sign.
+void add_leaps(std::span<const double> value, std::vector<size_t>& rows) {
+  const auto second = [&](size_t k) { return value[k + 1] - 2 * value[k] + value[k - 1]; };
+  for (const size_t row : outliers(value)) {
+    if (row < 2 || row + 2 >= value.size()) continue;
+    const auto is_half = [&](size_t k) {
+      const double share = -second(k) / second(row);
+      return share > 0.25 && share < 0.75;
+    };
+    if (is_half(row - 1) && is_half(row + 1)) rows.push_back(row);
+  }
+}
+
+}  // namespace
+
+std::vector<size_t> false_readings(std::span<const double> value) {
+  std::vector<size_t> rows;
+  add_stale(value, rows), add_leaps(value, rows);
+  std::ranges::sort(rows);
+  rows.erase(std::ranges::unique(rows).begin(), rows.end());
+  return rows;
+}
+
+void replace_readings(std::span<const double> at, std::span<double> value, std::span<const size_t> rows) {
+  const auto is_false = [&](size_t row) { return std::ranges::binary_search(rows, row); };
+  for (const size_t row : rows) {
+    std::array<size_t, 4> around{};
+    size_t found = 0;
+    for (size_t k = row; k-- > 0 && found < 2;)
+      if (!is_false(k)) around[found++] = k;
+    for (size_t k = row + 1; found >= 2 && k < value.size() && found < 4; ++k)
+      if (!is_false(k)) around[found++] = k;
+    if (found < 4) continue;
+    double sum = 0;
+    for (const size_t j : around) {
+      double weight = 1;
+      for (const size_t other : around)
+        if (other != j) weight *= (at[row] - at[other]) / (at[j] - at[other]);
+      sum += weight * value[j];
+    }
+    value[row] = sum;
+  }
+}
+
+}  // namespace loopwright

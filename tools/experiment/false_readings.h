@@ -1,0 +1,17 @@
+/// Single readings of a sensor that do not belong to their rows.
+#pragma once
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace loopwright {
+
+/// Rows whose reading is that of the row before although the signal moves on and has caught up in the next
+/// row, and single rows that leap out and back. Ascending. A step of one count is no proof: four are.
+std::vector<size_t> false_readings(std::span<const double> value);
+
+/// The readings of these rows become those of the cubic through the two nearest other rows on either side.
+/// `at`: where the rows lie, in any unit. Rows without two on either side keep theirs.
+void replace_readings(std::span<const double> at, std::span<double> value, std::span<const size_t> rows);
+
+}  // namespace loopwright
