@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include "tools/experiment/signal_figures.h"
 
 namespace loopwright {
@@ -16,10 +17,18 @@ double least_change(std::span<const double> value) {
   return least;
 }
 
+/// [signal a row] Faster, two equal readings are no chance.
+double least_speed(std::span<const double> value) {
+  constexpr double least_counts = 4, least_deviations = 8;
+  std::vector<double> at(value.size());
+  std::iota(at.begin(), at.end(), 0.0);
+  return std::max(least_counts * least_change(value), least_deviations * noise_of(at, value));
+}
+
 /// Rows that repeat the reading before while the signal moves on.
 void add_stale(std::span<const double> value, std::vector<size_t>& rows) {
-  constexpr double least_counts = 4, same_speed = 0.3;
-  const double least_step = least_counts * least_change(value);
+  constexpr double same_speed = 0.3;
+  const double least_step = least_speed(value);
   for (size_t k = 2, good = 0; k + 1 < value.size(); ++k) {  // good: the last true reading before k - 1
     if (value[k] != value[k - 1]) {
       good = k - 1;
