@@ -1,4 +1,4 @@
-/// value = column(t) of a recording, held from sample to sample or interpolated linearly
+/// value = column(t) of a recording: held from sample to sample, on straight lines, or smooth between them
 ///
 /// The file is read once, during the check. A sample takes effect a millionth of its interval early, so that
 /// times printed with few digits are not late by a tick. A row with the time and the value of the row before
@@ -12,20 +12,20 @@
 #include "engine/unit/scaled_rate.h"
 #include "engine/record/recording_file.h"
 #include "engine/record/time_axis.h"
+#include "models/signal/between_rows.h"
 
 namespace loopwright::blocks {
 
-enum class Joined { hold, linear };
-constexpr auto names_of(Joined) { return std::array<std::string_view, 2>{"hold", "linear"}; }
 enum class Beyond { hold, fault };
 constexpr auto names_of(Beyond) { return std::array<std::string_view, 2>{"hold", "fault"}; }
 
 struct RecordedColumn {
   struct Table {
-    std::vector<double> time, begin, value;  // s, s, SI; begin: time from which the sample is valid
+    std::vector<double> begin;  // s; time from which the sample is valid
+    RowCurve curve;             // s, SI
   };
   std::string file, column, time_column, unit, experiment;
-  Joined interpolation = Joined::hold;
+  BetweenRows interpolation = BetweenRows::hold;
   Beyond beyond = Beyond::hold;
   std::shared_ptr<const Table> table;
   std::optional<Unit> known_unit;  ///< of the file or of `unit`; nothing if neither has one
@@ -68,21 +68,21 @@ struct RecordedColumn {
         std::upper_bound(table->begin.begin(), table->begin.end(), now.time) - table->begin.begin() - 1;
   }
   Fault outputs(const Instant& now, const Mode& mode, Out& out) const {
-    const auto& [time, begin, value] = *table;
+    const auto& [begin, curve] = *table;
+    const std::vector<double>& time = curve.time();
     const size_t row = size_t(std::max(mode.row, ptrdiff_t(0)));
     const bool is_inside = mode.row >= 0 && row + 1 < time.size();
-    out.value = value[row];
-    if (interpolation == Joined::linear && is_inside) {
-      const double s = (now.time - time[row]) / (time[row + 1] - time[row]);
-      out.value = (1 - s) * value[row] + s * value[row + 1];
-    }
+    out.value = interpolation != BetweenRows::hold && is_inside ? curve.at(now.time) : curve.value()[row];
     const bool is_last = row + 1 == time.size() && now.time <= 2 * time[row] - begin[row];
     return fault_if(beyond == Beyond::fault && !is_inside && !(mode.row >= 0 && is_last),
                     "the recording does not reach this time");
   }
   double next_stop(double now) const {
-    const auto next = std::upper_bound(table->begin.begin(), table->begin.end(), now);
-    return next == table->begin.end() ? infinity : *next;
+    const std::vector<double>& begin = table->begin;
+    if (interpolation == BetweenRows::band_limited)  // smooth between its ends
+      return now < begin.front() ? begin.front() : now < begin.back() ? begin.back() : infinity;
+    const auto next = std::upper_bound(begin.begin(), begin.end(), now);
+    return next == begin.end() ? infinity : *next;
   }
 };
 
@@ -131,26 +131,27 @@ void RecordedColumn::check(const Checker& checker) {
   if (!values && recording.find(column)) checker.error("column", "the recording cannot be used").found = file;
   if (!times || !scale) return;
   if (!unit.empty() || !values->unit.empty()) known_unit = kept_in_si(*scale);
-  auto loaded = std::make_shared<Table>();
+  std::vector<double> time, value;
   const std::vector<double> all = in_si(*values, *scale).values;
   for (size_t i = 0; i < all.size(); ++i) {
     const bool repeats = i > 0 && times->values[i] == times->values[i - 1] && all[i] == all[i - 1];
-    if (!repeats) loaded->time.push_back(times->values[i]), loaded->value.push_back(all[i]);
+    if (!repeats) time.push_back(times->values[i]), value.push_back(all[i]);
   }
-  put_on_grid(loaded->time);
-  loaded->begin = loaded->time;
-  for (size_t i = 1; i < loaded->time.size(); ++i) {
-    const double step = loaded->time[i] - loaded->time[i - 1];
-    loaded->begin[i] -= 1e-6 * step;
+  put_on_grid(time);
+  std::vector<double> begin = time;
+  for (size_t i = 1; i < time.size(); ++i) {
+    const double step = time[i] - time[i - 1];
+    begin[i] -= 1e-6 * step;
     if (step > 0) continue;
     auto& p = checker.error(names_time, "time does not rise from sample to sample");
-    p.found = reading::number_text(loaded->time[i - 1]) + " s, then " +
-              reading::number_text(loaded->time[i]) + " s at sample " + std::to_string(i + 1) + " of " +
-              times->name;
+    p.found = reading::number_text(time[i - 1]) + " s, then " + reading::number_text(time[i]) +
+              " s at sample " + std::to_string(i + 1) + " of " + times->name;
     return;
   }
-  if (loaded->time.size() > 1) loaded->begin[0] -= 1e-6 * (loaded->time[1] - loaded->time[0]);
-  if (!failed()) table = std::move(loaded);
+  if (time.size() > 1) begin[0] -= 1e-6 * (time[1] - time[0]);
+  if (failed()) return;
+  table = std::make_shared<const Table>(
+      Table{std::move(begin), RowCurve(std::move(time), std::move(value), interpolation)});
 }
 LOOPWRIGHT_BLOCK(RecordedColumn)
 

@@ -2,7 +2,8 @@
 ///
 /// y = S(x), v = S'(x) x', a = S''(x) x'² + S'(x) x''. The spline and its first two derivatives are
 /// continuous (C. de Boor, A Practical Guide to Splines, 1978, chapter IV). Its ends: "periodic" joins the
-/// last point to the first one, "at_rest" has the slope 0 there, "natural" the second derivative 0.
+/// last point to the first one, "at_rest" has the slope 0 there, "natural" the second derivative 0,
+/// "not_a_knot" one cubic between the three outermost points.
 ///
 /// "cyclic" repeats the table for ever, in both directions: each cycle of the master begins where the last
 /// one ended, the last point takes the place of the first. A cam that comes back has equal first and last

@@ -7,17 +7,49 @@
 
 namespace loopwright {
 
-enum class SplineEnds { periodic, at_rest, natural };
+/// "periodic": slope and bend at the last point are those at the first. "at_rest": the slope is 0. "natural":
+/// the bend is 0. "not_a_knot": the first two pieces are one cubic, and so are the last two, so that nothing
+/// is said about the ends; fewer than four points are too few for that, and have natural ends.
+enum class SplineEnds { periodic, at_rest, natural, not_a_knot };
 constexpr auto names_of(SplineEnds) {
-  return std::array<std::string_view, 3>{"periodic", "at_rest", "natural"};
+  return std::array<std::string_view, 4>{"periodic", "at_rest", "natural", "not_a_knot"};
 }
 
 struct SplinePoint {
   double value = 0, slope = 0, bend = 0;  ///< the function and its first two derivatives
 };
 
-/// Through points of rising x, at least two. "periodic": slope and bend at the last point are those at the
-/// first.
+/// Over an interval: mean + change · (x - middle) / length.
+struct MeanLine {
+  double mean = 0, change = 0;
+};
+
+/// A cubic over an interval that begins at x = 0, by its values and slopes at both ends.
+struct CubicPiece {
+  double length, first, last, first_slope, last_slope;
+
+  /// Outside the interval it is continued.
+  SplinePoint at(double x) const {
+    const double chord = (last - first) / length;
+    const double c = (3 * chord - 2 * first_slope - last_slope) / length,
+                 d = (first_slope + last_slope - 2 * chord) / (length * length);
+    return {first + x * (first_slope + x * (c + x * d)), first_slope + x * (2 * c + 3 * x * d),
+            2 * c + 6 * x * d};
+  }
+  CubicPiece part(double from, double to) const {
+    const SplinePoint begin = at(from), end = at(to);
+    return {to - from, begin.value, end.value, begin.slope, end.slope};
+  }
+  /// The line with the same mean and the same first moment about the middle. A mass that a force moves gets
+  /// by both to the same place with the same velocity.
+  MeanLine line() const {
+    const double change = last - first;
+    return {(first + last) / 2 + length * (first_slope - last_slope) / 12,
+            change + (change - length * (first_slope + last_slope) / 2) / 5};
+  }
+};
+
+/// Through points of rising x, at least two.
 class CubicSpline {
  public:
   CubicSpline() = default;
@@ -32,12 +64,10 @@ class CubicSpline {
   SplinePoint at(double x) const {
     const auto above = std::upper_bound(x_.begin() + 1, x_.end() - 1, x);
     const size_t i = size_t(above - x_.begin()) - 1;
-    const double h = x_[i + 1] - x_[i], t = x - x_[i], chord = (y_[i + 1] - y_[i]) / h;
-    const double c = (3 * chord - 2 * slope_[i] - slope_[i + 1]) / h,
-                 d = (slope_[i] + slope_[i + 1] - 2 * chord) / (h * h);
-    return {y_[i] + t * (slope_[i] + t * (c + t * d)), slope_[i] + t * (2 * c + 3 * t * d),
-            2 * c + 6 * t * d};
+    return CubicPiece{width(i), y_[i], y_[i + 1], slope_[i], slope_[i + 1]}.at(x - x_[i]);
   }
+  /// At the points.
+  const std::vector<double>& slopes() const { return slope_; }
 
  private:
   double width(size_t i) const { return x_[i + 1] - x_[i]; }
@@ -58,6 +88,12 @@ class CubicSpline {
   double right_side(size_t before, size_t after) const {
     return 3 * (width(after) * chord(before) + width(before) * chord(after));
   }
+  /// The pieces at an end and next to it are one cubic: at the end, with g and h for their widths,
+  /// h s + (g + h) s' = ((3 g + 2 h) h chord + g² chord') / (g + h).
+  double of_one_cubic(size_t outer, size_t inner) const {
+    const double g = width(outer), h = width(inner);
+    return ((3 * g + 2 * h) * h * chord(outer) + g * g * chord(inner)) / (g + h);
+  }
   void find_slopes(SplineEnds ends) {
     const size_t n = x_.size();
     std::vector<double> lower(n, 0.0), diagonal(n, 1.0), upper(n, 0.0);
@@ -65,7 +101,11 @@ class CubicSpline {
       lower[i] = width(i), diagonal[i] = 2 * (width(i - 1) + width(i)), upper[i] = width(i - 1);
       slope_[i] = right_side(i - 1, i);
     }
-    if (ends == SplineEnds::natural) {
+    if (ends == SplineEnds::not_a_knot && n > 3) {
+      diagonal[0] = width(1), upper[0] = width(0) + width(1), slope_[0] = of_one_cubic(0, 1);
+      diagonal[n - 1] = width(n - 3), lower[n - 1] = width(n - 2) + width(n - 3);
+      slope_[n - 1] = of_one_cubic(n - 2, n - 3);
+    } else if (ends != SplineEnds::at_rest) {
       diagonal[0] = diagonal[n - 1] = 2, upper[0] = lower[n - 1] = 1;
       slope_[0] = 3 * chord(0), slope_[n - 1] = 3 * chord(n - 2);
     }

@@ -142,9 +142,7 @@ def experiment(truth, units, ports):
     measured = {"column": "measured", "unit": unit}
     if sensor["resolution"] > 0:
         measured["resolution"] = 1 if sensor["unit"] == "count" else sensor["resolution"] * in_column
-    # A user knows that the command is smooth between rows, and chooses the nearest that there is.
-    drive = {"column": "command", "unit": "V" if "motor" in truth else units["force"],
-             "interpolation": "hold" if truth["interpolation"] == "hold" else "linear"}
+    drive = {"column": "command", "unit": "V" if "motor" in truth else units["force"], "interpolation": truth["interpolation"]}
     result = {"loopwright": 1, "title": "The machine, driven by the recorded command", "data": "record.csv", "time": "t",
               "drive": {ports["input"]: drive}, "compare": {ports["counts"] or ports[kind]: measured},
               "roles": {role: ports[role] for role in ("position", "velocity", "force", "input")}, "hold_out": {"fraction": 0.25}}

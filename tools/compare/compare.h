@@ -40,7 +40,7 @@ struct ForceAnalysis {
 
 struct Comparison {
   std::vector<double> time;     ///< s
-  int64_t missing_samples = 0;  ///< between rows of the recording: the input was held there
+  int64_t missing_samples = 0;  ///< between rows of the recording: a held input was held there
   std::vector<ComparedSignal> signals;
   std::vector<double> position, velocity;  ///< measured or simulated, according to the roles; empty: unknown
   std::string position_unit, velocity_unit, position_source, velocity_source;

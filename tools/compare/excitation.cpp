@@ -232,7 +232,7 @@ std::vector<RecordFault> own_faults(const MeasuredMotion& m, const ForceResidual
     faults.push_back({"gaps",
                       fmt::format("{} sample{} {} missing at {} place{}", lost, lost == 1 ? "" : "s",
                                   lost == 1 ? "is" : "are", gaps, gaps == 1 ? "" : "s"),
-                      "the input is taken as held there, and the rows beside the gaps do not count"});
+                      "a held input is taken as held there, and the rows beside the gaps do not count"});
   if (const size_t count = outliers(m.raw_position).size(); count > 0)
     faults.push_back(
         {"outliers",

@@ -110,7 +110,6 @@ std::shared_ptr<const Plan> driven_plan(const std::string& diagram, const Experi
     RecordedSignal drive = input;
     drive.port = port;
     open.drives.push_back(std::move(drive));
-    open.drive_is_linear.push_back(false);
   }
   Problems problems;
   auto load = [&](const LoadOptions& with) -> std::shared_ptr<const Plan> {
@@ -307,8 +306,9 @@ std::optional<Machine> find_machine(const std::string& diagram, const Experiment
     return {};
   }
   const EvenGrid grid(experiment);
+  const std::vector<double>& command = experiment.data.find(input->port)->values;
   machine.motion.input =
-      mean_over_even_samples(grid.held(experiment.data.find(input->port)->values), grid.duration());
+      mean_over_even_samples(grid.driving(command, input->between_rows).mean, grid.duration());
   machine.motion.input_unit = experiment.data.find(input->port)->unit;
   machine.plan =
       driven_plan(diagram, experiment, options, *input, *input_port, is_driven, machine.motion, why);

@@ -14,7 +14,7 @@ struct MeasuredMotion {
   std::vector<char> missing;          ///< samples without a row in the record; empty: none
   std::vector<double> raw_position;   ///< as recorded; integrated if only the velocity was measured
   std::vector<double> position, velocity, acceleration;  ///< below the cut-off; central differences
-  std::vector<double> input;                             ///< held from each sample to the next
+  std::vector<double> input;                             ///< its mean from each sample to the next
   /// The force produced by the input, according to the model, where the forces are summed: see
   /// driving_force().
   std::vector<double> force;

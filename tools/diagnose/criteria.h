@@ -303,8 +303,8 @@ constexpr double most_slow_disturbance = 0.03;
 /// [sites] Of slow disturbances beside what was found; and beside nothing but parameters, where a missing
 /// effect would be taken for several of them.
 constexpr size_t most_slow_disturbances = 3, most_first_disturbances = 1;
-/// [-2 ln L, and for each reading] By which an input must suit the record better as held or as lines before
-/// the experiment's statement is questioned: as much as a term must gain.
+/// [-2 ln L, and for each reading] By which an input must suit the record better, if it does something else
+/// between its rows, before the experiment's statement is questioned: as much as a term must gain.
 constexpr double least_gain_of_other_input = 25, least_gain_of_other_input_per_reading = 0.02;
 /// [rms error of simulation] An answer by simulation stands only if it leaves at most this of the other's,
 /// also over the held-out rows; without them chance has a larger part.

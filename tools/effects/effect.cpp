@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fmt/format.h>
-#include "engine/record/installation.h"
+#include "tools/effects/effect_files.h"
 #include "tools/effects/effect_values.h"
 
 namespace loopwright {
@@ -33,7 +33,7 @@ const EffectParameter* Effect::find(std::string_view parameter) const {
 std::string catalogue_folder() {
   const char* variable = std::getenv("LOOPWRIGHT_EFFECTS");
   if (variable && *variable) return variable;
-  return shared_file("diagrams/effects");
+  return installed_catalogue();
 }
 
 FitRange range_of(const EffectParameter& parameter, const RecordSizes& sizes) {

@@ -9,4 +9,7 @@ namespace loopwright {
 /// Sorted by name. A problem if the folder is not there.
 std::vector<std::string> effect_files(const std::string& folder, Problems& problems);
 
+/// The catalogue installed with the program, see shared_file.
+std::string installed_catalogue();
+
 }  // namespace loopwright

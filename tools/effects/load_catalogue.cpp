@@ -1,20 +1,27 @@
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
+#include <set>
 #include "engine/json/reader.h"
+#include "engine/record/installation.h"
 #include "tools/effects/effect.h"
 #include "tools/effects/effect_files.h"
 
 namespace loopwright {
 namespace {
 
-/// Effects name each other; a name that does not exist is a typing error.
+/// Effects name each other, also those that a folder with a part of the catalogue leaves out. A name that no
+/// effect has is a typing error.
 void check_names(const std::vector<Effect>& effects, Problems& problems) {
-  std::vector<std::string> names;
-  for (const Effect& effect : effects) names.push_back(effect.name);
+  std::set<std::string> sorted;
+  for (const Effect& effect : effects) sorted.insert(effect.name);
+  Problems not_installed;  // then the loaded names are all that there are
+  for (const std::string& file : effect_files(installed_catalogue(), not_installed))
+    sorted.insert(std::filesystem::path(file).stem().string());
+  const std::vector<std::string> names(sorted.begin(), sorted.end());
   for (const Effect& effect : effects)
     for (const ConfusableEffect& other : effect.confusable)
-      if (std::ranges::find(names, other.with) == names.end()) {
+      if (!sorted.contains(other.with)) {
         auto& p = problems.error(
             effect.blocks.place, "/confusable", "",
             fmt::format("\"{}\" is confusable with \"{}\", which is no effect", effect.name, other.with));
@@ -38,6 +45,8 @@ std::vector<std::string> effect_files(const std::string& folder, Problems& probl
   std::ranges::sort(files);
   return files;
 }
+
+std::string installed_catalogue() { return shared_file("diagrams/effects"); }
 
 std::vector<Effect> load_catalogue(const std::vector<std::string>& folders, Problems& problems) {
   std::vector<Effect> catalogue;

@@ -130,11 +130,21 @@ std::vector<double> EvenGrid::measured(const std::vector<double>& column) const 
   return values;
 }
 
-std::vector<double> EvenGrid::held(const std::vector<double>& column) const {
-  std::vector<double> values;
-  values.reserve(row_.size());
-  for (size_t row : row_) values.push_back(column[row]);
-  return values;
+OverSamples EvenGrid::driving(const std::vector<double>& column, BetweenRows between) const {
+  OverSamples over;
+  if (between == BetweenRows::hold) {
+    for (size_t row : row_) over.mean.push_back(column[row]);
+    return over;
+  }
+  const RowCurve curve(place_, column, between);
+  for (size_t k = 0; k < row_.size(); ++k) {
+    const bool ends_row = k + 1 == row_.size() || row_[k + 1] != row_[k];
+    const CubicPiece piece = curve.piece(row_[k]);
+    const double end = ends_row ? 1 : fraction_[k + 1];
+    const MeanLine line = piece.part(fraction_[k] * piece.length, end * piece.length).line();
+    over.mean.push_back(line.mean), over.change.push_back(line.change);
+  }
+  return over;
 }
 
 std::vector<double> at_even_instants(const std::vector<double>& values, const std::vector<double>& duration) {
@@ -157,17 +167,17 @@ std::vector<double> at_even_instants(const std::vector<double>& values, const st
   return even;
 }
 
-std::vector<double> mean_over_even_samples(const std::vector<double>& held,
+std::vector<double> mean_over_even_samples(const std::vector<double>& means,
                                            const std::vector<double>& duration) {
-  if (duration.empty()) return held;
+  if (duration.empty()) return means;
   const std::vector<double> at = instants(duration);
-  std::vector<double> mean(held.size());
-  for (size_t k = 0, i = 0; k < held.size(); ++k) {
+  std::vector<double> mean(means.size());
+  for (size_t k = 0, i = 0; k < means.size(); ++k) {
     const double end = double(k) + 1;
     for (double now = double(k); now < end;) {
       while (i + 1 < at.size() && at[i + 1] <= now) ++i;
       const double until = i + 1 < at.size() ? std::min(end, at[i + 1]) : end;
-      mean[k] += (until - now) * held[i];
+      mean[k] += (until - now) * means[i];
       now = until;
     }
   }

@@ -5,6 +5,12 @@
 
 namespace loopwright {
 
+/// A driving signal over each sample: its mean, and the change of the line with the same first moment.
+struct OverSamples {
+  std::vector<double> mean;
+  std::vector<double> change;  ///< empty: held
+};
+
 /// The samples of a record one after the other, with those that have no row, such as lost samples of a
 /// device, in their places, so that later rows are not shifted forward.
 ///
@@ -25,8 +31,8 @@ class EvenGrid {
   /// A measured column at the samples. Missing samples are bridged by a curve with the values and slopes of
   /// the rows around them.
   std::vector<double> measured(const std::vector<double>& column) const;
-  /// A command from each sample on: held over missing samples, as a device holds it.
-  std::vector<double> held(const std::vector<double>& column) const;
+  /// A held one is held over missing samples, too, as a device holds it.
+  OverSamples driving(const std::vector<double>& column, BetweenRows between) const;
 
  private:
   void by_sample(const std::vector<int64_t>& sample);
@@ -44,8 +50,8 @@ class EvenGrid {
 /// Values at samples of these durations as they were at even instants, by cubics through the four samples
 /// around each. Unchanged without durations.
 std::vector<double> at_even_instants(const std::vector<double>& values, const std::vector<double>& duration);
-/// The mean over each even sample of a command that is held from sample to sample.
-std::vector<double> mean_over_even_samples(const std::vector<double>& held,
+/// The mean over each even sample of a command with these means over the samples.
+std::vector<double> mean_over_even_samples(const std::vector<double>& means,
                                            const std::vector<double>& duration);
 
 /// A sentence if too many samples are missing for the record to be used; otherwise empty.

@@ -76,7 +76,7 @@ class Loader {
         reader_.error(entry, fmt::format("\"{}\" names no column", entry.name)).expected =
             "\"column\": name of a column in the data";
       if (drives)
-        result_->drive_is_linear.push_back(interpolation(entry.value));
+        signal.between_rows = interpolation(entry.value);
       else
         read_resolution(entry);
       to.push_back(std::move(signal));
@@ -90,14 +90,18 @@ class Loader {
       if (auto stated = stated_number(member->value, "\"resolution\"", reader_, 0))
         resolutions_[compared.name] = std::move(*stated);
   }
-  bool interpolation(const Value& entry) {
+  BetweenRows interpolation(const Value& entry) {
+    constexpr auto names = names_of(BetweenRows());
     const Value::Member* member = entry.find("interpolation");
-    if (!member) return false;
+    if (!member) return BetweenRows::hold;
     const std::string text = reader_.text(entry, "interpolation");
-    if (text == "hold" || text == "linear") return text == "linear";
+    const auto found = std::ranges::find(names, text);
+    if (found != names.end()) return BetweenRows(found - names.begin());
     auto& p = reader_.error(*member, "there is no such interpolation");
-    p.expected = "\"hold\" or \"linear\"";
-    return false;
+    p.expected = fmt::format("one of \"{}\"", fmt::join(names, "\", \""));
+    if (const std::string near = nearest_name(text, {names.begin(), names.end()}); !near.empty())
+      p.hint = fmt::format("did you mean \"{}\"?", near);
+    return BetweenRows::hold;
   }
 
   void read_roles(const Value& file) {
@@ -309,8 +313,7 @@ void reject_map(const Experiment& experiment, Problems& problems) {
 
 LoadOptions follow(const Experiment& experiment, LoadOptions options) {
   const bool is_excerpt = has_excerpt(experiment);
-  for (size_t i = 0; i < experiment.drives.size(); ++i) {
-    const RecordedSignal& signal = experiment.drives[i];
+  for (const RecordedSignal& signal : experiment.drives) {
     Drive drive;
     drive.port = signal.port;
     drive.settings.kind = Value::Kind::object;
@@ -328,7 +331,7 @@ LoadOptions follow(const Experiment& experiment, LoadOptions options) {
     add("time", experiment.time_column);
     add("unit", signal.unit);
     if (is_excerpt) add("experiment", experiment.path);
-    add("interpolation", experiment.drive_is_linear[i] ? "linear" : "hold");
+    add("interpolation", std::string(names_of(BetweenRows())[size_t(signal.between_rows)]));
     drive.settings.place = signal.place;
     options.drives.push_back(std::move(drive));
   }

@@ -6,6 +6,7 @@
 #include "engine/diagram/diagram.h"
 #include "engine/record/recording.h"
 #include "engine/record/time_axis.h"
+#include "models/signal/between_rows.h"
 
 namespace loopwright {
 
@@ -15,6 +16,7 @@ struct RecordedSignal {
   std::string column;
   std::string unit;       ///< as written in the experiment; numbers below are in SI
   double resolution = 0;  ///< SI; 0: not stated
+  BetweenRows between_rows = BetweenRows::hold;
   Place place;
   std::string pointer;
 };
@@ -33,7 +35,6 @@ struct Experiment {
   Recording data;  ///< driving and compared columns in SI, "time" first
   TimeAxis time;
   std::vector<RecordedSignal> drives, compared;
-  std::vector<bool> drive_is_linear;  ///< linear interpolation; otherwise held
   Roles roles;
   std::vector<Wire> sites;  ///< ports to which a diagnosis without roles is limited; empty: all
   double hold_out_fraction =

@@ -1,14 +1,17 @@
 #include "tools/experiment/experiment_shape.h"
 #include "engine/record/excerpt.h"
+#include "models/signal/between_rows.h"
 
 namespace loopwright {
 
 using namespace shapes;
 
 FileShape driven_port_shape() {
+  constexpr auto interpolations = names_of(BetweenRows());
   return object({required("column", text(1), "Name of a column in the data"),
                  optional("unit", text(), "Unit of the numbers, where the data do not state it"),
-                 optional("interpolation", choice({"hold", "linear"}), "Between rows; hold when left out")});
+                 optional("interpolation", choice({interpolations.begin(), interpolations.end()}),
+                          "Between rows; hold when left out")});
 }
 
 FileShape compared_port_shape() {

@@ -1,7 +1,11 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <numbers>
 #include "tests/blocks/block_under_test.h"
 
 namespace loopwright::recorded_column_test {
@@ -19,7 +23,7 @@ class Recorded {
         "RecordedColumn", R"({"file": ")" + (folder_ / "data.csv").string() + "\", " + settings + "}");
   }
   ~Recorded() { std::filesystem::remove_all(folder_); }
-  double at(double time) {
+  double at(double time) const {
     block->evaluate(time);
     return block->output("value");
   }
@@ -52,6 +56,44 @@ TEST(RecordedColumn, JoinsSamplesByStraightLinesWhenToldTo) {
   EXPECT_NEAR(column.at(7), 0.020, 1e-15);
 }
 
+/// A sine with eight rows a period, a quarter of half their rate: `late` rows after its even instants.
+Recorded sine_of_eight_rows(const std::function<double(int row)>& late) {
+  std::string csv = "t,y\n";
+  for (int k = 0; k < 200; ++k) {
+    const double t = k + late(k);
+    csv += fmt::format("{:.17g},{:.17g}\n", t, std::sin(std::numbers::pi / 4 * t));
+  }
+  return {csv, R"("column": "y", "interpolation": "band_limited")"};
+}
+
+TEST(RecordedColumn, ABandLimitedSineIsReproduced) {
+  const Recorded even = sine_of_eight_rows([](int) { return 0.0; });
+  for (int k = 0; k < 200; ++k) EXPECT_EQ(even.at(k), std::sin(std::numbers::pi / 4 * k)) << k;
+  double along = 0, square = 0;
+  for (double t = 40; t < 160; t += 1.0 / 64) {
+    const double sine = std::sin(std::numbers::pi / 4 * t), value = even.at(t);
+    EXPECT_NEAR(value, sine, 1.1e-3) << t;
+    along += value * sine, square += sine * sine;
+  }
+  EXPECT_NEAR(along / square, 1 - 6.1e-4, 1e-5) << "the gain that docs/recordings.md states";
+  for (double t = 0; t < 10; t += 1.0 / 64)
+    EXPECT_NEAR(even.at(t), std::sin(std::numbers::pi / 4 * t), 0.02) << "near its beginning " << t;
+}
+
+TEST(RecordedColumn, ABandLimitedSineDoesNotDependOnWhereItsRowsAre) {
+  const Recorded even = sine_of_eight_rows([](int) { return 0.0; });
+  const Recorded uneven = sine_of_eight_rows([](int row) { return 0.05 * std::sin(7.0 * row * row); });
+  for (double t = 40; t < 160; t += 1.0 / 64) EXPECT_NEAR(even.at(t), uneven.at(t), 1e-3) << t;
+}
+
+TEST(RecordedColumn, ABandLimitedSignalStopsNoSolverBetweenItsEnds) {
+  Recorded column(ramp, R"("column": "y", "interpolation": "band_limited")");
+  const double last = column.block->next_stop(0);
+  EXPECT_NEAR(last, 0.4, 1e-6);
+  EXPECT_EQ(column.block->next_stop(last), infinity);
+  EXPECT_EQ(column.at(7), 8);
+}
+
 TEST(RecordedColumn, IsNotLateWhereTimeWasPrintedWithFewDigits) {
   std::string csv = "t,y\n";
   for (int k = 0; k < 3000; ++k) csv += std::to_string(k * 0.001) + "," + std::to_string(k) + "\n";
@@ -67,7 +109,7 @@ TEST(RecordedColumn, EntersANewSampleAtEveryStopThatItAnnounces) {
 }
 
 TEST(RecordedColumn, StopsTheRunBeyondItsEndWhenToldTo) {
-  for (const char* kind : {"hold", "linear"}) {
+  for (const char* kind : {"hold", "linear", "band_limited"}) {
     Recorded column(ramp,
                     R"("column": "y", "beyond": "fault", "interpolation": ")" + std::string(kind) + "\"");
     column.at(0), column.at(0.3), column.at(0.4);

@@ -12,12 +12,12 @@ using namespace diagnosis;
 using testing::ElementsAre, testing::IsEmpty;
 
 /// Two records with irregular time stamps.
-SignalRecord irregular(bool is_linear) {
+SignalRecord irregular(BetweenRows between) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> uniform(0.2, 1.8), level(-3, 5);
   SignalRecord record;
   record.sample_time = 0.01;
-  record.inputs.resize(1), record.inputs[0].is_linear = is_linear;
+  record.inputs.resize(1), record.inputs[0].between_rows = between;
   for (int part = 0; part < 2; ++part) {
     double t = part ? 0.7 : -0.2;
     for (int k = 0; k < 40; ++k, t += 0.01 * uniform(random)) {
@@ -48,7 +48,7 @@ double input_at(const SignalRecord& record, const InputLines& lines, size_t firs
   return lines[row].value + lines[row].slope * (time - record.time[row]);
 }
 
-class InputLinesOf : public testing::TestWithParam<bool> {};
+class InputLinesOf : public testing::TestWithParam<BetweenRows> {};
 
 TEST_P(InputLinesOf, ADelayHasItsMeansAndMoments) {
   const SignalRecord record = irregular(GetParam());
@@ -90,8 +90,11 @@ TEST_P(InputLinesOf, ALagHasItsMeansAndMoments) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Inputs, InputLinesOf, testing::Bool(),
-                         [](const auto& input) { return input.param ? "Linear" : "Held"; });
+INSTANTIATE_TEST_SUITE_P(Inputs, InputLinesOf,
+                         testing::Values(BetweenRows::hold, BetweenRows::linear, BetweenRows::band_limited),
+                         [](const auto& input) {
+                           return std::string(names_of(input.param)[size_t(input.param)]);
+                         });
 
 /// What is found: its site, its name and its time. Its interval is narrower than what the mean over a sample
 /// leaves open.
@@ -114,7 +117,7 @@ TEST(LateInput, ADelayIsNamed) {
 }
 TEST(LateInput, ADelayOfAnInputOnLinesIsNamed) {
   Plant plant = motor({}, 63);
-  plant.delay = 4e-3, plant.draws_lines = true, plant.rows = 1200;
+  plant.delay = 4e-3, plant.between_rows = BetweenRows::linear, plant.rows = 1200;
   plant.drive = R"("amplifier.u": {"column": "u", "unit": "V", "interpolation": "linear"})";
   expect_found(diagnosed(plant), "amplifier.u: delay()", 4e-3);
 }

@@ -12,6 +12,7 @@
 #include <random>
 #include <string>
 #include <vector>
+#include "models/signal/between_rows.h"
 
 namespace loopwright {
 
@@ -24,8 +25,8 @@ struct Plant {
   std::function<Numbers(const Numbers& x, double u, const Numbers& w)> rate;  ///< w: process noise
   std::function<Numbers(const Numbers& x)> outputs;
   std::function<double(double time)> input;
-  double delay = 0;          ///< s; the input acts so much later than it is recorded
-  bool draws_lines = false;  ///< the input goes in straight lines between the rows; otherwise it is held
+  double delay = 0;                              ///< s; the input acts so much later than it is recorded
+  BetweenRows between_rows = BetweenRows::hold;  ///< what the input does; band-limited: as `input` is there
   Numbers initial, process_noise, measurement_noise;
   Numbers slow_noise;  ///< beside the process noise, alike for slow_samples; or empty
   double slow_samples = 60;
@@ -90,9 +91,12 @@ class RecordedPlant {
         slow[i] = kept * slow[i] + std::sqrt(1 - kept * kept) * plant.slow_noise[i] * normal(random);
       }
       const double next = (double(k + 1) + plant.jitter * uniform(random)) * plant.sample_time;
-      const double h = (next - t) / substeps, change = plant.draws_lines ? plant.input(next) - u : 0;
+      const double h = (next - t) / substeps;
       const auto acting = [&](double part) {  // of the sample
-        return plant.delay > 0 ? late_input(plant, t + part * (next - t)) : u + change * part;
+        if (plant.delay > 0) return late_input(plant, t + part * (next - t));
+        if (plant.between_rows == BetweenRows::hold) return u;
+        if (plant.between_rows == BetweenRows::band_limited) return plant.input(t + part * (next - t));
+        return u + part * (plant.input(next) - u);
       };
       for (int i = 0; i < substeps; ++i) {
         const double begin = acting(double(i) / substeps), middle = acting((i + 0.5) / substeps),
@@ -106,11 +110,11 @@ class RecordedPlant {
     return text + "\n";
   }
 
-  /// Before the record it is as at its start.
+  /// Held, or on lines. Before the record it is as at its start.
   static double late_input(const Plant& plant, double time) {
     const double row = std::max(0.0, (time - plant.delay) / plant.sample_time), before = std::floor(row);
     const double u = plant.input(before * plant.sample_time);
-    if (!plant.draws_lines) return u;
+    if (plant.between_rows == BetweenRows::hold) return u;
     return u + (row - before) * (plant.input((before + 1) * plant.sample_time) - u);
   }
 

@@ -112,5 +112,19 @@ TEST(UsersCatalogue, ABumpIsNamedOnceItsFileIsThere) {
   EXPECT_EQ(improved.verdict, Verdict::nothing_missing) << to_text(improved);
 }
 
+TEST(UsersCatalogue, MayBeAPartOfTheBuiltInOne) {
+  HiddenAxis axis;
+  Physics truth = axis.nominal();
+  truth.coulomb_n = 0.15;
+  const std::string experiment = axis.record("record", truth, there_and_back());
+  std::filesystem::create_directory(axis.file("part"));
+  for (const char* name : {"coulomb_friction.json", "viscous_friction.json", "inertia.json"})
+    std::filesystem::copy(catalogue_folder() + "/" + name, axis.file("part/" + std::string(name)));
+  DiagnoseOptions options;
+  options.catalogues = {axis.file("part")};
+  const Diagnosis d = diagnose(axis.diagram(), {experiment}, options);
+  EXPECT_THAT(names(d), ElementsAre("coulomb_friction")) << to_text(d);
+}
+
 }  // namespace
 }  // namespace loopwright::room_test

@@ -12,7 +12,7 @@ namespace {
 SignalRecord low_pass(size_t rows, double hz, double held_out) {
   constexpr double dt = 1e-3, time_constant = 0.05;
   SignalRecord record;
-  record.inputs.push_back({"u", "1", false, {}}), record.outputs.push_back({"y", "1", 0, {}});
+  record.inputs.push_back({"u", "1", BetweenRows::hold, {}}), record.outputs.push_back({"y", "1", 0, {}});
   double y = 0;
   for (size_t k = 0; k < rows; ++k) {
     const double u = std::sin(2 * std::numbers::pi * hz * double(k) * dt);
@@ -42,7 +42,7 @@ TEST(Shorten, AShortRecordIsLeftAsItIs) {
   std::vector<SignalRecord> records{low_pass(1000, 3, 0.25)};
   EXPECT_FALSE(shorten(records, 1000));
   EXPECT_EQ(records[0].rows(), 1000u);
-  EXPECT_FALSE(records[0].inputs[0].is_linear);
+  EXPECT_EQ(records[0].inputs[0].between_rows, BetweenRows::hold);
 }
 TEST(Shorten, MeansOfRowsFollowTheSameLaw) {
   std::vector<SignalRecord> records{low_pass(6000, 3, 0.25), low_pass(4000, 3, 0)};
@@ -54,7 +54,7 @@ TEST(Shorten, MeansOfRowsFollowTheSameLaw) {
   EXPECT_EQ(records[0].held_out_from, 900u);
   EXPECT_NEAR(records[0].time[1] - records[0].time[0], 5e-3, 1e-12);
   for (const SignalRecord& record : records) {
-    EXPECT_TRUE(record.inputs[0].is_linear);
+    EXPECT_EQ(record.inputs[0].between_rows, BetweenRows::linear);
     EXPECT_LT(largest_error_of_law(record), 2e-4) << "a shift by half a row alone would be 9e-4";
   }
 }

@@ -1,5 +1,7 @@
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
+#include <filesystem>
 #include <set>
+#include "tests/engine/written_diagram.h"
 #include "tests/tools/effects/axis_sizes.h"
 #include "tools/effects/effect_run.h"
 
@@ -44,6 +46,33 @@ TEST(Catalogue, CompilesForLinearAndRotaryMachines) {
       EXPECT_TRUE(compile_effect(effect, units, axis_sizes(), problems)) << effect.name << " " << effect.form;
       EXPECT_EQ(problems.text(), "") << effect.name << " " << effect.form << " in " << units.force;
     }
+}
+
+TEST(Catalogue, APartOfItLoadsWithoutComplaint) {
+  for (const auto& file : std::filesystem::directory_iterator(catalogue_folder())) {
+    DiagramFolder folder;
+    std::filesystem::copy(file.path(), folder.path(file.path().filename().string()));
+    Problems problems;
+    EXPECT_FALSE(load_catalogue({folder.path("")}, problems).empty()) << file.path();
+    EXPECT_EQ(problems.text(), "");
+  }
+}
+
+TEST(Catalogue, ANameThatNoEffectHasIsATypingError) {
+  DiagramFolder folder;
+  folder.with("push.json", R"({
+    "loopwright": 1, "effect": "push", "title": "A push", "physics": "Something pushes.",
+    "parameters": {"level": {"unit": "$force", "linear": true, "range": [-1, 1], "start": 0.1}},
+    "blocks": {"force": {"type": "ConstantForce", "level": "=level"}},
+    "attach": [{"to": "force", "from": "force.force"}],
+    "needs": {"text": "motion"},
+    "confusable": [{"with": "sprng", "when": "always", "experiment": {"text": "Move."}}]
+  })");
+  Problems problems;
+  load_catalogue({folder.path("")}, problems);
+  EXPECT_THAT(problems.text(),
+              testing::AllOf(testing::HasSubstr(R"("push" is confusable with "sprng", which is no effect)"),
+                             testing::HasSubstr(R"(did you mean "spring"?)")));
 }
 
 }  // namespace loopwright::catalogue_test

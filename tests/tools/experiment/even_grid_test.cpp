@@ -35,11 +35,31 @@ TEST(EvenGrid, OneLostSampleMovesNoRowBehindIt) {
   ASSERT_EQ(grid.rows(), 1000u);
   std::vector<double> position, command;
   for (double t : e.data.columns.front().values) position.push_back(std::sin(20 * t)), command.push_back(t);
-  const std::vector<double> x = grid.measured(position), u = grid.held(command);
+  const std::vector<double> x = grid.measured(position), u = grid.driving(command, BetweenRows::hold).mean;
   for (size_t k = 0; k < 1000; ++k) {
     EXPECT_NEAR(x[k], std::sin(20 * double(k) * dt), k == 400 ? 1e-6 : 1e-12) << k;
     EXPECT_NEAR(u[k], (k == 400 ? 399 : double(k)) * dt, 1e-15) << k;
     EXPECT_EQ(grid.missing()[k], char(k == 400)) << k;
+  }
+}
+
+TEST(EvenGrid, ADrivingSignalGoesOnOverALostSampleAsItDoesBetweenRows) {
+  const Experiment e = record(with_losses(1000, {400}));
+  const EvenGrid grid(e);
+  std::vector<double> line, sine;
+  constexpr double w = 100;
+  for (double t : e.data.columns.front().values) line.push_back(3 * t), sine.push_back(std::sin(w * t));
+  const OverSamples straight = grid.driving(line, BetweenRows::linear),
+                    smooth = grid.driving(sine, BetweenRows::band_limited);
+  EXPECT_TRUE(grid.driving(line, BetweenRows::hold).change.empty());
+  ASSERT_EQ(straight.mean.size(), 1000u);
+  ASSERT_EQ(smooth.change.size(), 1000u);
+  for (size_t k = 0; k + 1 < 1000; ++k) {
+    const double begin = double(k) * dt;
+    EXPECT_NEAR(straight.mean[k], 3 * (begin + dt / 2), 1e-12) << k;
+    EXPECT_NEAR(straight.change[k], 3 * dt, 1e-12) << k;
+    EXPECT_NEAR(smooth.mean[k], (std::cos(w * begin) - std::cos(w * (begin + dt))) / (w * dt), 5e-6) << k;
+    EXPECT_NEAR(smooth.change[k], dt * w * std::cos(w * (begin + dt / 2)), 1e-4) << k;
   }
 }
 

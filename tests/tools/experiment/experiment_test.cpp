@@ -231,8 +231,8 @@ TEST_F(Experiments, UnknownKeysAndMissingPartsAreErrors) {
   expect_refusal({"unti", "did you mean \"unit\"?"});
   folder.experiment(drive, "");
   expect_refusal({"compares nothing"});
-  folder.experiment(R"("stage.force": {"column": "F", "unit": "N", "interpolation": "cubic"})");
-  expect_refusal({"\"hold\" or \"linear\""});
+  folder.experiment(R"("stage.force": {"column": "F", "unit": "N", "interpolation": "band_limit"})");
+  expect_refusal({R"(one of "hold", "linear", "band_limited")", R"(did you mean "band_limited"?)"});
   folder.experiment(drive, R"("stage.position": {"column": "x_mm", "unit": "mm"})",
                     R"(, "hold_out": {"fraction": 2})");
   expect_refusal({"\"fraction\" is out of range", "from 0 to 1"});

@@ -22,7 +22,7 @@ STATED = [5, "5 mm", {"value": 5, "unit": "mm"}]
 
 EXPERIMENTS = [
     {**HEAD, "description": "All keys", "data": "motion.csv", "time": "time",
-     "drive": {"a.u": {"column": "u", "unit": "N", "interpolation": "hold"}},
+     "drive": {"a.u": {"column": "u", "unit": "N", "interpolation": "band_limited"}},
      "compare": {"a.x": {"column": "x", "unit": "m", "resolution": {"value": 1, "unit": "um"}},
                  "a.v": {"column": "v", "resolution": "1 mm/s"}, "a.z": {"column": "z", "resolution": 0.1}},
      "roles": {"position": "a.x", "velocity": "a.v", "acceleration": "a.a", "force": "a.f", "input": "a.u"},

@@ -32,11 +32,21 @@ struct Decay {
 }  // namespace
 
 InputLines lines_of(const SignalRecord& record, const RecordedInput& input) {
-  InputLines lines(record.rows());
-  for (size_t row = 0; row < lines.size(); ++row) {
-    const size_t next = std::min(row + 1, lines.size() - 1);
-    lines[row].value = input.value[row];
-    if (input.is_linear) lines[row].slope = (input.value[next] - input.value[row]) / record.step(row);
+  InputLines lines;
+  lines.reserve(record.rows());
+  while (lines.size() < record.rows()) {  // one record after the other
+    const size_t first = lines.size();
+    size_t end = first + 1;
+    while (end < record.rows() && !record.begins_at(end)) ++end;
+    const auto part = [&](const std::vector<double>& all) {
+      return std::vector<double>(all.begin() + std::ptrdiff_t(first), all.begin() + std::ptrdiff_t(end));
+    };
+    const RowCurve curve(part(record.time), part(input.value), input.between_rows);
+    for (size_t row = first; row < end; ++row) {
+      const CubicPiece piece = curve.piece(row - first);
+      const auto [mean, change] = piece.line();
+      lines.push_back({mean - change / 2, change / piece.length});
+    }
   }
   return lines;
 }

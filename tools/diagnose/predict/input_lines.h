@@ -11,7 +11,7 @@ struct InputLine {
 };
 using InputLines = std::vector<InputLine>;  ///< one for each row
 
-/// As it was recorded: held, or straight from row to row.
+/// As it was recorded, between its rows as the experiment states.
 InputLines lines_of(const SignalRecord& record, const RecordedInput& input);
 
 /// u(t - delay): over each sample the line with the same mean and first moment. `before`: what the input was

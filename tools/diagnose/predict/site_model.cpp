@@ -283,8 +283,8 @@ void SiteModel::use(std::span<const double> factors, std::span<const SiteTerm> t
   run_->reset({plan_->seed, 0});
 }
 
-void SiteModel::draw_lines(size_t input, bool is_linear) {
-  record_.inputs[input].is_linear = is_linear;
+void SiteModel::suppose_between_rows(size_t input, BetweenRows between) {
+  record_.inputs[input].between_rows = between;
   draw_all_lines();
 }
 

@@ -106,8 +106,8 @@ class SiteModel {
   /// What was computed along the record.
   Work& work() { return work_; }
 
-  /// Lets a recorded input go in straight lines between its rows, or be held.
-  void draw_lines(size_t input, bool is_linear);
+  /// What a recorded input does between its rows, in the place of what the experiment states.
+  void suppose_between_rows(size_t input, BetweenRows between);
 
   /// Steps of the integration in a sample.
   int substeps() const { return substeps_; }

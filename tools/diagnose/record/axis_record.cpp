@@ -37,16 +37,6 @@ Number number_of_role(const Experiment& experiment, const Plan& plan, std::strin
   return -1;
 }
 
-/// Mean and change over each sample of an input that goes on a straight line to the next row.
-void interpolate_input(AxisRecord& record) {
-  std::vector<double>& input = record.input;
-  record.input_slope.resize(input.size());
-  for (size_t k = 0; k + 1 < input.size(); ++k) {
-    record.input_slope[k] = input[k + 1] - input[k];
-    input[k] += record.input_slope[k] / 2;
-  }
-}
-
 /// Of a long record every so many rows are measurements. Between them the input keeps its mean and its first
 /// moment, which is all that the next position of a mass depends on.
 void thin(AxisRecord& record, size_t every) {
@@ -139,7 +129,7 @@ MeasuredMotion measured_motion(const AxisRecord& record) {
 
 Experiment cut_open(const Experiment& experiment, const Plan& plan, Problems& problems) {
   Experiment cut = experiment;
-  cut.drives.clear(), cut.drive_is_linear.clear();
+  cut.drives.clear();
   Place place;
   const std::string* port = role_port(experiment, "input", &place);
   if (!port) {
@@ -148,20 +138,18 @@ Experiment cut_open(const Experiment& experiment, const Plan& plan, Problems& pr
     return cut;
   }
   const Number wanted = number_of_role(experiment, plan, "input", problems);
-  const auto take = [&](const RecordedSignal& signal, bool linear) {
+  const auto take = [&](const RecordedSignal& signal) {
     const std::vector<Number> numbers = plan.find(signal.port);
     if (!cut.drives.empty() || numbers.size() != 1 || numbers[0] != wanted) return;
     cut.drives.push_back(signal);
     cut.drives.back().port = *port;
-    cut.drive_is_linear.push_back(linear);
     if (signal.port == *port) return;
     loopwright::Column column = *experiment.data.find(signal.port);
     column.name = *port;
     if (!cut.data.find(*port)) cut.data.columns.push_back(std::move(column));
   };
-  for (size_t i = 0; i < experiment.drives.size(); ++i)
-    take(experiment.drives[i], experiment.drive_is_linear[i]);
-  for (const RecordedSignal& signal : experiment.compared) take(signal, false);
+  for (const auto* list : {&experiment.drives, &experiment.compared})
+    for (const RecordedSignal& signal : *list) take(signal);
   if (cut.drives.empty() && wanted >= 0) {
     auto& p =
         problems.error(place, "/roles/input", "", fmt::format("the input \"{}\" was not recorded", *port));
@@ -181,12 +169,13 @@ AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Prob
   }
   const EvenGrid grid(experiment);
   record.start = grid.start(), record.sample_time = grid.sample_time(), record.missing = grid.missing();
-  const loopwright::Column& input = *experiment.data.find(experiment.drives.front().port);
+  const RecordedSignal& drive = experiment.drives.front();
+  const loopwright::Column& input = *experiment.data.find(drive.port);
   record.duration = grid.duration();
-  record.input = grid.held(input.values);
-  if (experiment.drive_is_linear.front()) interpolate_input(record);
+  record.is_map = experiment.is_map;  // its rows do not follow each other
+  OverSamples over = grid.driving(input.values, record.is_map ? BetweenRows::hold : drive.between_rows);
+  record.input = std::move(over.mean), record.input_slope = std::move(over.change);
   record.input_unit = input.unit;
-  record.is_map = experiment.is_map;
   for (const char* role : {"position", "velocity"}) {
     const Number wanted = number_of_role(experiment, plan, role, problems);
     if (wanted < 0) continue;

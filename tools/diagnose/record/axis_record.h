@@ -1,5 +1,5 @@
-/// The record of one axis in the form that the predictor reads: one input held from sample to sample, and the
-/// measured position and velocity.
+/// The record of one axis in the form that the predictor reads: one input over each sample, and the measured
+/// position and velocity.
 #pragma once
 #include <array>
 #include <string>
@@ -25,7 +25,8 @@ struct AxisRecord {
   double start = 0;           ///< s
   std::vector<char> missing;  ///< samples that were not recorded; empty: none
   std::vector<double> input;  ///< SI; the mean from its sample to the next
-  /// The change of the input from its sample to the next, where it is interpolated; empty: it is held.
+  /// From its sample to the next, the change of the line with the mean and the first moment of the input;
+  /// empty: the input is held.
   std::vector<double> input_slope;
   /// [sample times] From each row to the next, where the rows were not sampled evenly; empty: 1.
   std::vector<double> duration;

@@ -42,7 +42,9 @@ double averaged_away(const std::vector<SignalRecord>& records, size_t count) {
 double mean_of_input(const RecordedInput& input, size_t first, size_t row, size_t count) {
   double sum = 0;
   for (size_t k = row; k < row + count; ++k)
-    sum += input.is_linear ? input.value[k] : 0.5 * (input.value[k] + input.value[k > first ? k - 1 : k]);
+    sum += input.between_rows == BetweenRows::hold
+               ? 0.5 * (input.value[k] + input.value[k > first ? k - 1 : k])
+               : input.value[k];
   return sum / double(count);
 }
 
@@ -81,7 +83,8 @@ SignalRecord shortened(const SignalRecord& record, size_t count, double share) {
   append_means(record, held_out, held_out + part(rows - held_out), count, thin);
   thin.sample_time = record.sample_time * double(count);
   if (count > 1)
-    for (RecordedInput& input : thin.inputs) input.is_linear = true;
+    for (RecordedInput& input : thin.inputs)
+      if (input.between_rows == BetweenRows::hold) input.between_rows = BetweenRows::linear;
   if (share < 1 && thin.held_out_from > 0 && thin.held_out_from < thin.rows()) {
     thin.begins.assign(thin.rows(), false);
     thin.begins[0] = thin.begins[thin.held_out_from] = true;

@@ -38,12 +38,9 @@ SignalRecord read_signal_record(const Experiment& experiment, Problems& problems
     return record;
   }
   record.sample_time = median_step(record.time);
-  for (size_t i = 0; i < experiment.drives.size(); ++i) {
-    const RecordedSignal& drive = experiment.drives[i];
+  for (const RecordedSignal& drive : experiment.drives)
     if (const Column* column = experiment.data.find(drive.port))
-      record.inputs.push_back(
-          {drive.port, column->unit, bool(experiment.drive_is_linear[i]), column->values});
-  }
+      record.inputs.push_back({drive.port, column->unit, drive.between_rows, column->values});
   for (const RecordedSignal& compared : experiment.compared) {
     const Column* column = experiment.data.find(compared.port);
     if (!column) continue;

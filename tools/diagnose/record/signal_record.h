@@ -11,7 +11,7 @@ namespace loopwright::diagnosis {
 
 struct RecordedInput {
   std::string port, unit;
-  bool is_linear = false;     ///< straight lines between the samples; otherwise held
+  BetweenRows between_rows = BetweenRows::hold;
   std::vector<double> value;  ///< SI, at the time stamps
 };
 

@@ -294,14 +294,14 @@ class Ranking {
     column -= basis_ * (basis_.transpose() * column);
     return column;
   }
-  /// An input that is held from row to row in the place of lines acts half a sample later. That is a
+  /// An input that is held from row to row in the place of a curve acts half a sample later. That is a
   /// statement of the experiment, which is questioned as such.
   double gain_of_held(int site) {
     const SignalRecord& record = fitter_.model().record();
     RecordedInput input = record.inputs[size_t(fitter_.model().input_of(site))];
-    if (!input.is_linear) return 0;
+    if (input.between_rows == BetweenRows::hold) return 0;
     const InputLines lines = lines_of(record, input);
-    input.is_linear = false;
+    input.between_rows = BetweenRows::hold;
     SiteTerm ignored;
     return explain(response_of_input(site, difference(lines_of(record, input), lines)), ignored);
   }

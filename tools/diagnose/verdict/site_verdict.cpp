@@ -17,6 +17,18 @@
 namespace loopwright::diagnosis {
 namespace {
 
+const char* wording_of(BetweenRows between) {
+  switch (between) {
+    case BetweenRows::hold:
+      return "held";
+    case BetweenRows::linear:
+      return "on straight lines";
+    case BetweenRows::band_limited:
+      break;
+  }
+  return "smooth";
+}
+
 /// Of all fitted numbers, in the order of fitted_numbers(); infinite for those that the record does not tell.
 Eigen::MatrixXd covariance_of(SiteFitter& fitter, SiteHypothesis h) {
   SitePass pass;
@@ -279,30 +291,42 @@ class Telling {
       result_.verdict = names ? Verdict::explained : Verdict::nothing_missing;
   }
 
-  /// How an input went between its rows is a statement of the experiment. Held in the place of lines, or the
-  /// reverse, it acts half a sample later, and terms may stand for that.
+  /// What an input does between its rows is a statement of the experiment. Held in the place of a curve, or
+  /// the reverse, it acts half a sample later; on lines it is weaker than a smooth one. Terms may stand for
+  /// that.
   void question_inputs() {
     const double needed =
         std::max(criteria::least_gain_of_other_input,
                  criteria::least_gain_of_other_input_per_reading * double(model_.record().held_out_from));
     for (size_t i = 0; i < model_.record().inputs.size(); ++i) {
       const RecordedInput& input = model_.record().inputs[i];
-      const bool is_linear = input.is_linear;
-      SiteHypothesis other = found_;
-      model_.draw_lines(i, !is_linear);
-      fitted_.refine(other, 4), fitted_.fit_noise(other);
-      model_.draw_lines(i, is_linear);
-      if (!(other.objective < found_.objective - needed)) continue;
+      const BetweenRows stated = input.between_rows;
+      BetweenRows best = stated;
+      double gain = 0;
+      for (const BetweenRows other : {BetweenRows::hold, BetweenRows::linear, BetweenRows::band_limited}) {
+        if (other == stated) continue;
+        const double gained = found_.objective - objective_with(i, other);
+        if (gained > gain) gain = gained, best = other;
+      }
+      model_.suppose_between_rows(i, stated);
+      if (!(gain > needed)) continue;
       result_.findings.push_back(
-          {fmt::format("with {} {} it is predicted better than with it {} (-2 ln L falls by {:.0f})",
-                       input.port, is_linear ? "held from row to row" : "on straight lines between the rows",
-                       is_linear ? "on straight lines" : "held", found_.objective - other.objective),
+          {fmt::format("with {} {} between its rows it is predicted better than with it {} (-2 ln L falls by "
+                       "{:.0f})",
+                       input.port, wording_of(best), wording_of(stated), gain),
            fmt::format(
                "what was found may stand for the difference; state \"interpolation\": \"{}\" for it in "
                "the experiment, unless the machine is known to do otherwise",
-               is_linear ? "hold" : "linear"),
+               names_of(best)[size_t(best)]),
            false, false});
     }
+  }
+  /// Of what was found, refined for an input that does this between its rows.
+  double objective_with(size_t input, BetweenRows between) {
+    SiteHypothesis other = found_;
+    model_.suppose_between_rows(input, between);
+    fitted_.refine(other, 4), fitted_.fit_noise(other);
+    return other.objective;
   }
 
   SiteModel& model_;
