@@ -39,6 +39,7 @@ class Loader {
     read_signals(file, "drive", result_->drives);
     read_signals(file, "compare", result_->compared);
     read_roles(file);
+    read_set(file);
     read_sites(file);
     read_hold_out(file);
     read_kind_of_rows(file);
@@ -108,6 +109,20 @@ class Loader {
     for (const Value::Member& role : roles->value.members) {
       result_->roles.ports.emplace_back(role.name, reader_.text(roles->value, role.name));
       result_->roles.places.push_back(role.place);
+    }
+  }
+  /// What stands there is checked when a diagram is read with it.
+  void read_set(const Value& file) {
+    const Value::Member* set = file.find("set");
+    if (!set || !reader_.expect(set->value, Value::Kind::object, "\"set\"",
+                                R"(an object: path → value, {"payload": {"value": 0.5, "unit": "kg"}})"))
+      return;
+    result_->set = set->value.members;
+    for (const Value::Member& setting : result_->set) {
+      if (split_path(setting.name).front() != "solver") continue;
+      auto& p = reader_.error(setting, "a record has no solver of its own");
+      p.expected = "parameters of the diagram that have another value in this record";
+      p.hint = "--set solver.… holds for all records";
     }
   }
   void read_sites(const Value& file) {
@@ -299,6 +314,13 @@ std::shared_ptr<const Experiment> load_experiment(const std::string& path, Probl
   return own.has_errors() ? nullptr : experiment;
 }
 
+std::vector<std::shared_ptr<const Experiment>> load_experiments(const std::vector<std::string>& paths,
+                                                                Problems& problems) {
+  std::vector<std::shared_ptr<const Experiment>> list;
+  for (const std::string& path : paths) list.push_back(load_experiment(path, problems));
+  return list;
+}
+
 void reject_map(const Experiment& experiment, Problems& problems) {
   if (!experiment.is_map) return;
   auto& p = problems.error(experiment.map_place, "/rows", "",
@@ -307,7 +329,13 @@ void reject_map(const Experiment& experiment, Problems& problems) {
   p.hint = "`loopwright diagnose` reads maps";
 }
 
+LoadOptions with_own_values(const Experiment& experiment, LoadOptions options) {
+  std::ranges::copy(experiment.set, std::back_inserter(options.set_in_file));
+  return options;
+}
+
 LoadOptions follow(const Experiment& experiment, LoadOptions options) {
+  options = with_own_values(experiment, std::move(options));
   const bool is_excerpt = has_excerpt(experiment);
   for (size_t i = 0; i < experiment.drives.size(); ++i) {
     const RecordedSignal& signal = experiment.drives[i];
