@@ -20,7 +20,7 @@ class Payloads : public testing::Test {
   "loopwright": 1,
   "parameters": {
     "carriage": {"value": 1.5, "unit": "kg"},
-    "payload":  0,
+    "payload":  {"value": 0, "unit": "kg"},
     "damping":  {"value": 1, "unit": "N*s/m"}
   },
   "solver": {"method": "rk4", "step": 0.01, "stop": 1},
@@ -78,7 +78,7 @@ TEST_F(Payloads, TheCarriageIsTheSameInAllRecords) {
   Problems problems;
   const std::string written = with_fitted_values(folder.path("axis.json"), result, problems);
   EXPECT_EQ(problems.text(), "");
-  EXPECT_THAT(written, HasSubstr("\"payload\":  0,")) << "no record's own value";
+  EXPECT_THAT(written, HasSubstr(R"("payload":  {"value": 0, "unit": "kg"})")) << "no record's own value";
   EXPECT_THAT(written, Not(HasSubstr("\"value\": 1.5, \"unit\": \"kg\"")));
 }
 
