@@ -15,6 +15,7 @@
 #include "tools/experiment/balances.h"
 #include "tools/experiment/data_file.h"
 #include "tools/experiment/experiment_shape.h"
+#include "tools/experiment/signal_figures.h"
 
 namespace loopwright {
 namespace {
@@ -258,6 +259,7 @@ class Loader {
   }
   void add_column(const Recording& data, RecordedSignal& signal) {
     if (signal.column.empty()) return;  // already reported
+    if (is_refused_as_slower(data, signal)) return;
     const Column* found = find_column(data, signal.column, error_at(signal.place, signal.pointer));
     if (!found) return;
     const auto unit = unit_of(*found, signal.unit, error_at(signal.place, signal.pointer));
@@ -267,6 +269,26 @@ class Loader {
     Column values = in_si(*found, *unit);
     values.name = signal.port;
     if (!result_->data.find(signal.port)) result_->data.columns.push_back(std::move(values));
+  }
+
+  /// Between its samples a slower signal has no numbers, and what is written there instead would count as
+  /// measured.
+  bool is_refused_as_slower(const Recording& data, const RecordedSignal& signal) {
+    const Column* column = data.find(signal.column);
+    if (!column || column->holes.count == 0) return false;
+    const auto [first, every] = rows_with_numbers(column->values);
+    if (every == 1) return false;
+    auto& p = problems_.error(signal.place, signal.pointer, "",
+                              fmt::format("column \"{}\" has a number in one of {} rows, from row {} on",
+                                          signal.column, every, first + 1));
+    p.expected = "signals of one rate: a number in every row that is used";
+    p.found = column->origin;
+    p.hint = fmt::format(
+        "leave it out, or use the rows that have it: \"excerpt\": {{\"skip\": {}, \"decimate\": {}}}; inputs "
+        "are then "
+        "held from one of these rows to the next",
+        first, every);
+    return true;
   }
 
   /// [SI], 0 if it is not stated.
