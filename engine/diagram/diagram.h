@@ -37,10 +37,10 @@ struct PortWires {
 
 /// When a subdiagram runs: while a signal is true, or at each of its edges.
 struct RunCondition {
-  std::string key;  ///< "enabled_by" or "triggered_by"
-  Place place;      ///< of the key
-  Wire wire;        ///< in the diagram that contains the subdiagram
-  std::string kind = "level";  ///< or the edge: "rising", "falling", "either"
+  std::string key;              ///< "enabled_by" or "triggered_by"
+  Place place;                  ///< of the key
+  Wire wire;                    ///< in the diagram that contains the subdiagram
+  std::string kind = "level";   ///< or the edge: "rising", "falling", "either"
   bool resets_states = false;   ///< states start anew when it is enabled; otherwise they are held
   bool resets_outputs = false;  ///< outputs are 0 while it is disabled; otherwise they are held
   bool is_triggered() const { return kind != "level"; }
@@ -57,7 +57,7 @@ struct BlockEntry {
   std::vector<PortWires> in;
   std::shared_ptr<const Diagram> subdiagram;
   std::shared_ptr<const RunCondition> condition;  ///< of a subdiagram; null: it runs all the time
-  std::string variant;  ///< name of the active variant; empty without variants
+  std::string variant;                            ///< name of the active variant; empty without variants
 };
 
 struct DiagramInput {
@@ -129,6 +129,8 @@ struct LoadOptions {
   /// a setting of a block ("cogging.harmonics.0.amplitude"), or a key of the solver ("solver.stop"). The
   /// value is JSON, an expression ("=2*pi"), a number with a unit ("25 mm"), or otherwise plain text.
   std::vector<std::pair<std::string, std::string>> set;
+  std::vector<Value::Member>
+      set_in_file;  ///< the same as a file states it: path → value; applied after `set`
   std::map<std::string, std::string>
       variants;  ///< `--variant stage=quanser`: block path → name of the variant
   std::vector<Drive> drives;

@@ -53,6 +53,8 @@ Instance top_instance(const LoadOptions& options, Problems& problems) {
   Instance top;
   for (const auto& option : options.set)
     if (auto edit = read_edit(option, problems)) top.edits.push_back(std::move(*edit));
+  for (const Value::Member& setting : options.set_in_file)
+    if (auto edit = read_edit(setting, problems)) top.edits.push_back(std::move(*edit));
   for (const auto& [block, variant] : options.variants)
     if (auto choice = read_variant_choice(block, variant, problems))
       top.variants.push_back(std::move(*choice));

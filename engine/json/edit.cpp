@@ -16,6 +16,15 @@ std::optional<size_t> index_in(const std::string& text) {
   return index;
 }
 
+/// "25 mm" as a number with a unit; any other value as it is.
+Value with_unit_read(Value value) {
+  if (value.kind != Value::Kind::text) return value;
+  auto number = number_and_unit(value.text);
+  if (!number) return value;
+  number->at.place = value.place;
+  return number->at;
+}
+
 Value read_value(const std::shared_ptr<const SourceFile>& source, Problems& problems) {
   const std::string& text = source->text;
   Value plain;
@@ -32,11 +41,17 @@ Value read_value(const std::shared_ptr<const SourceFile>& source, Problems& prob
     json.is_broken = true;
     return json;
   }
-  if (auto number = number_and_unit(text)) {
-    number->at.place = plain.place;
-    return number->at;
-  }
-  return plain;
+  return with_unit_read(std::move(plain));
+}
+
+/// Nothing after a problem.
+std::optional<Edit> edit_at(const std::string& path, const Place& place, Problems& problems) {
+  Edit edit{split_path(path), 0, {}};
+  const auto is_step = [](const std::string& step) { return is_name(step) || index_in(step); };
+  if (std::ranges::all_of(edit.path, is_step)) return edit;
+  Problem& problem = problems.error(place, place.pointer(), {}, fmt::format("\"{}\" is no path", path));
+  problem.expected = "names with dots between them, as in stage.payload";
+  return {};
 }
 
 /// The number of {"value": 500, "unit": "g"}, or null.
@@ -54,15 +69,16 @@ std::string Edit::text() const { return fmt::format("{}", fmt::join(path, "."));
 std::optional<Edit> read_edit(const std::pair<std::string, std::string>& option, Problems& problems) {
   const auto& [path, text] = option;
   const auto source = std::make_shared<SourceFile>(SourceFile{fmt::format("--set {}", path), text});
-  Edit edit{split_path(path), 0, {}};
-  const auto is_step = [](const std::string& step) { return is_name(step) || index_in(step); };
-  if (!std::ranges::all_of(edit.path, is_step)) {
-    Problem& problem = problems.error({source, 0}, {}, {}, fmt::format("\"{}\" is no path", path));
-    problem.expected = "names with dots between them, as in stage.payload=0.5";
-    return {};
-  }
-  edit.value = read_value(source, problems);
-  if (edit.value.is_broken) return {};
+  auto edit = edit_at(path, {source, 0}, problems);
+  if (!edit) return {};
+  edit->value = read_value(source, problems);
+  if (edit->value.is_broken) return {};
+  return edit;
+}
+
+std::optional<Edit> read_edit(const Value::Member& setting, Problems& problems) {
+  auto edit = edit_at(setting.name, setting.place, problems);
+  if (edit) edit->value = with_unit_read(setting.value);
   return edit;
 }
 

@@ -24,6 +24,9 @@ struct Edit {
 /// Nothing after a problem.
 std::optional<Edit> read_edit(const std::pair<std::string, std::string>& option, Problems& problems);
 
+/// The same of a file, path → value: problems name its place there.
+std::optional<Edit> read_edit(const Value::Member& setting, Problems& problems);
+
 /// Sets the member or item of `value` at the remaining path, from `depth` on. A missing member is added, as
 /// it may have a default; an index must exist in the list. A bare number takes the unit of the number that it
 /// replaces. `contents` is called for every value on the way, so that one that stands in another file is

@@ -162,6 +162,8 @@ void Excerpt::keep_rows(Recording& recording, const std::string& time, const Rea
   for (Column& column : recording.columns) {
     size_t row = 0;
     std::erase_if(column.values, [&](double) { return keep[row++] == 0; });
+    if (std::ranges::none_of(column.values, [](double value) { return std::isnan(value); }))
+      column.holes = {};
   }
 }
 

@@ -273,6 +273,8 @@ RecordContent content_of(const std::vector<RecordView>& records) {
   for (size_t r = 1; r < records.size(); ++r) {
     const RecordContent& c = records[r].content;
     all.sizes.duration += c.sizes.duration;
+    all.sizes.machine_mass = std::min(all.sizes.machine_mass, c.sizes.machine_mass);
+    all.sizes.machine_damping = std::min(all.sizes.machine_damping, c.sizes.machine_damping);
     all.sizes.lowest_position = std::min(all.sizes.lowest_position, c.sizes.lowest_position);
     all.sizes.highest_position = std::max(all.sizes.highest_position, c.sizes.highest_position);
     all.sizes.top_speed = std::max(all.sizes.top_speed, c.sizes.top_speed);

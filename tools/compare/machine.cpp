@@ -325,7 +325,7 @@ std::optional<Machine> find_machine(const std::string& diagram, const Experiment
   if (const std::string* force = port_of(experiment, "force"))
     if (const auto number = machine.plan->find(*force); number.size() == 1) {
       machine.net_force = number[0];
-      machine.force_unit = unit_of_port(*force, *machine.plan, diagram, options);
+      machine.force_unit = unit_of_port(*force, *machine.plan, diagram, with_own_values(experiment, options));
     }
   if (machine.sensor != machine.position && recorded(experiment, *plan, *position, false))
     take_out_sensor_error(machine);

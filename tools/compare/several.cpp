@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include "tools/experiment/experiment_ports.h"
 #include "tools/report/typography.h"
 
 namespace loopwright {
@@ -48,8 +49,11 @@ std::string file_name(const std::string& path) { return std::filesystem::path(pa
 SeveralComparisons compare(const std::string& diagram, const std::vector<std::string>& experiments,
                            const LoadOptions& options, const RunOptions& run_options) {
   SeveralComparisons several{experiments, {}, {}, {}};
-  for (const std::string& experiment : experiments)
-    several.records.push_back(compare(diagram, experiment, options, run_options));
+  for (const std::string& experiment : experiments) try {
+      several.records.push_back(compare(diagram, experiment, options, run_options));
+    } catch (InputError& error) {
+      explain_failure(diagram, experiments, options, std::move(error.problems));
+    }
   std::vector<RecordView> views;
   for (const Comparison& c : several.records)
     if (c.force) views.push_back({c.force->motion, c.force->residual, c.force->content});

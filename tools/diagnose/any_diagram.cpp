@@ -22,9 +22,7 @@ struct UserFiles {
 /// Throws InputError.
 UserFiles files_of(const Diagnosis& result) {
   Problems problems;
-  UserFiles files{read_source(result.diagram, {}, problems), {}};
-  for (const std::string& path : result.experiments)
-    files.experiments.push_back(load_experiment(path, problems));
+  UserFiles files{read_source(result.diagram, {}, problems), load_experiments(result.experiments, problems)};
   if (problems.has_errors()) throw InputError(std::move(problems));
   return files;
 }

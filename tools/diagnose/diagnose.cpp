@@ -258,7 +258,7 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   std::vector<std::string> folders =
       options.catalogues.empty() ? std::vector<std::string>{catalogue_folder()} : options.catalogues;
   std::ranges::copy(options.more_catalogues, std::back_inserter(folders));
-  const WhyNot cannot_be_added = attachable(diagram, experiments.front(), options.load, units, sizes);
+  const WhyNot cannot_be_added = attachable(diagram, experiments, options.load, units, sizes);
   const auto why_not = [&](const Effect& effect) {
     std::string why = trials.has_map() ? not_in_a_map(effect) : std::string();
     if (why.empty() && input_noise) why = hidden_by_input_noise(effect);

@@ -42,7 +42,7 @@ void move_roles(const Insertion& insertion, RolePorts& roles) {
 RolePorts roles_of(const std::shared_ptr<const SourceFile>& diagram, const Experiment& experiment,
                    const LoadOptions& load) {
   Problems problems;
-  const auto loaded = load_diagram_text(diagram, load, problems);
+  const auto loaded = load_diagram_text(diagram, with_own_values(experiment, load), problems);
   const auto plan = loaded ? compile(*loaded, problems) : nullptr;
   if (!plan) throw InputError(std::move(problems));
   return without_sensor_gains(*plan, experiment).roles.ports;

@@ -295,6 +295,7 @@ class Inserter {
     for (const NameUse& use : names_in(attachment.add.text))
       if (const EffectParameter* p = effect_.find(use.name)) change.unit = unit_in(p->unit, site_.units);
     if (site_.can_be_taken_out) declare_switch(sum_level_), change.times = switch_of(base_);
+    result_.changed.push_back(joined(block_path, parameter));
     const ChangedSetting changed = add_to_setting(sum_level_, setting.value, change, new_parameters_);
     if (changed == ChangedSetting::nothing) {
       auto& p = error(fmt::format("nothing can be added to the setting \"{}.{}\"", block_path, parameter));

@@ -35,6 +35,7 @@ struct Insertion {
   std::vector<MovedPort> input_at;
   /// The role "input" with which a further effect of the input acts after this one; empty: unchanged.
   std::string input_behind;
+  std::vector<std::string> changed;  ///< settings of the user's blocks to which something is added
   std::string taken_out_by;  ///< the parameter that takes it out when 0: "axis.with_cogging"; empty: none
 };
 

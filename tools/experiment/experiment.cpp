@@ -15,6 +15,7 @@
 #include "tools/experiment/balances.h"
 #include "tools/experiment/data_file.h"
 #include "tools/experiment/experiment_shape.h"
+#include "tools/experiment/signal_figures.h"
 
 namespace loopwright {
 namespace {
@@ -39,6 +40,7 @@ class Loader {
     read_signals(file, "drive", result_->drives);
     read_signals(file, "compare", result_->compared);
     read_roles(file);
+    read_set(file);
     read_sites(file);
     read_hold_out(file);
     read_kind_of_rows(file);
@@ -112,6 +114,20 @@ class Loader {
     for (const Value::Member& role : roles->value.members) {
       result_->roles.ports.emplace_back(role.name, reader_.text(roles->value, role.name));
       result_->roles.places.push_back(role.place);
+    }
+  }
+  /// What stands there is checked when a diagram is read with it.
+  void read_set(const Value& file) {
+    const Value::Member* set = file.find("set");
+    if (!set || !reader_.expect(set->value, Value::Kind::object, "\"set\"",
+                                R"(an object: path → value, {"payload": {"value": 0.5, "unit": "kg"}})"))
+      return;
+    result_->set = set->value.members;
+    for (const Value::Member& setting : result_->set) {
+      if (split_path(setting.name).front() != "solver") continue;
+      auto& p = reader_.error(setting, "a record has no solver of its own");
+      p.expected = "parameters of the diagram that have another value in this record";
+      p.hint = "--set solver.… holds for all records";
     }
   }
   void read_sites(const Value& file) {
@@ -247,6 +263,7 @@ class Loader {
   }
   void add_column(const Recording& data, RecordedSignal& signal) {
     if (signal.column.empty()) return;  // already reported
+    if (is_refused_as_slower(data, signal)) return;
     const Column* found = find_column(data, signal.column, error_at(signal.place, signal.pointer));
     if (!found) return;
     const auto unit = unit_of(*found, signal.unit, error_at(signal.place, signal.pointer));
@@ -256,6 +273,26 @@ class Loader {
     Column values = in_si(*found, *unit);
     values.name = signal.port;
     if (!result_->data.find(signal.port)) result_->data.columns.push_back(std::move(values));
+  }
+
+  /// Between its samples a slower signal has no numbers, and what is written there instead would count as
+  /// measured.
+  bool is_refused_as_slower(const Recording& data, const RecordedSignal& signal) {
+    const Column* column = data.find(signal.column);
+    if (!column || column->holes.count == 0) return false;
+    const auto [first, every] = rows_with_numbers(column->values);
+    if (every == 1) return false;
+    auto& p = problems_.error(signal.place, signal.pointer, "",
+                              fmt::format("column \"{}\" has a number in one of {} rows, from row {} on",
+                                          signal.column, every, first + 1));
+    p.expected = "signals of one rate: a number in every row that is used";
+    p.found = column->origin;
+    p.hint = fmt::format(
+        "leave it out, or use the rows that have it: \"excerpt\": {{\"skip\": {}, \"decimate\": {}}}; inputs "
+        "are then "
+        "held from one of these rows to the next",
+        first, every);
+    return true;
   }
 
   /// [SI], 0 if it is not stated.
@@ -303,6 +340,13 @@ std::shared_ptr<const Experiment> load_experiment(const std::string& path, Probl
   return own.has_errors() ? nullptr : experiment;
 }
 
+std::vector<std::shared_ptr<const Experiment>> load_experiments(const std::vector<std::string>& paths,
+                                                                Problems& problems) {
+  std::vector<std::shared_ptr<const Experiment>> list;
+  for (const std::string& path : paths) list.push_back(load_experiment(path, problems));
+  return list;
+}
+
 void reject_map(const Experiment& experiment, Problems& problems) {
   if (!experiment.is_map) return;
   auto& p = problems.error(experiment.map_place, "/rows", "",
@@ -311,7 +355,13 @@ void reject_map(const Experiment& experiment, Problems& problems) {
   p.hint = "`loopwright diagnose` reads maps";
 }
 
+LoadOptions with_own_values(const Experiment& experiment, LoadOptions options) {
+  std::ranges::copy(experiment.set, std::back_inserter(options.set_in_file));
+  return options;
+}
+
 LoadOptions follow(const Experiment& experiment, LoadOptions options) {
+  options = with_own_values(experiment, std::move(options));
   const bool is_excerpt = has_excerpt(experiment);
   for (const RecordedSignal& signal : experiment.drives) {
     Drive drive;

@@ -36,6 +36,8 @@ struct Experiment {
   TimeAxis time;
   std::vector<RecordedSignal> drives, compared;
   Roles roles;
+  /// Values of the diagram that this record is known to have: path as for `--set` → value.
+  std::vector<Value::Member> set;
   std::vector<Wire> sites;  ///< ports to which a diagnosis without roles is limited; empty: all
   double hold_out_fraction =
       0;  ///< fraction of the rows, at the end, held out of any fit; 1: the whole record
@@ -48,13 +50,21 @@ struct Experiment {
 /// Reads the experiment and its data. Data files are searched beside the experiment, then below
 /// $LOOPWRIGHT_DATA. Null when there are errors.
 std::shared_ptr<const Experiment> load_experiment(const std::string& path, Problems& problems);
+/// The same of several, in their order.
+std::vector<std::shared_ptr<const Experiment>> load_experiments(const std::vector<std::string>& paths,
+                                                                Problems& problems);
 /// With errors the result contains what could be read, ports without columns; null if nothing could be read.
 std::shared_ptr<const Experiment> read_experiment(const std::string& path, Problems& problems);
 
 /// Reports a problem if the experiment is a map of balances, which no simulation in time can follow.
 void reject_map(const Experiment& experiment, Problems& problems);
 
-/// Load options that make a diagram follow the experiment: its drives, and the run's stop and rows.
+/// Load options with the values that this record is known to have; what `--set` states of the same does not
+/// count.
+LoadOptions with_own_values(const Experiment& experiment, LoadOptions options);
+
+/// Load options that make a diagram follow the experiment: its own values, its
+/// drives, and the run's stop and rows.
 LoadOptions follow(const Experiment& experiment, LoadOptions options);
 
 }  // namespace loopwright

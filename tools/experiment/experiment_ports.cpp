@@ -168,7 +168,8 @@ void explain_failure(const std::string& path, const std::vector<std::string>& ex
   for (const std::string& experiment_path : experiments) {
     Problems problems;
     const auto experiment = read_experiment(experiment_path, problems);
-    const LoadOptions driven = with_drives(path, experiment ? *experiment : Experiment{}, options, problems);
+    const Experiment& read = experiment ? *experiment : Experiment{};
+    const LoadOptions driven = with_drives(path, read, with_own_values(read, options), problems);
     Problems of_diagram;
     const auto diagram = load_diagram(path, driven, of_diagram);
     const auto plan = diagram ? compile(*diagram, of_diagram) : nullptr;

@@ -40,6 +40,7 @@ FileShape experiment_shape() {
        optional("drive", by_name(driven_port_shape()), "Ports that follow the data"),
        required("compare", by_name(compared_port_shape(), 1), "Ports that are held against the data"),
        optional("roles", roles_shape(), "Which ports are the axis, for a diagnosis"),
+       optional("set", by_name(anything()), "Values of this record, as with --set: path → value"),
        optional("sites", list(text()), "Ports where an effect may act, for a diagnosis without roles"),
        optional("hold_out", hold_out_shape(), "Rows that are not fitted, but predicted"),
        optional("rows", choice({"samples", "balances"}),

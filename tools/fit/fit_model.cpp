@@ -45,7 +45,7 @@ FitModel::FitModel(const std::string& diagram, const std::vector<std::string>& e
     for (const std::string& path : *list) {
       const auto experiment = load_experiment(path, problems);
       if (experiment) reject_map(*experiment, problems);
-      records_.push_back({experiment, list == &fit_options.held_out});
+      records_.push_back({path, experiment, list == &fit_options.held_out});
       loaded.push_back(experiment);
     }
   refuse_repeated_records(loaded, problems);
@@ -57,10 +57,7 @@ FitModel::FitModel(const std::string& diagram, const std::vector<std::string>& e
   });
   if (fits_nothing && !problems.has_errors())
     problems.error({}, "", "", "every record is held out").expected = "a record to fit";
-  if (!problems.has_errors()) return;
-  std::vector<std::string> all = experiments;
-  std::ranges::copy(fit_options.held_out, std::back_inserter(all));
-  explain_failure(diagram, all, options, std::move(problems));
+  if (problems.has_errors()) explain_failure(diagram, paths(), options, std::move(problems));
 }
 
 void FitModel::find_unknowns(const std::vector<std::string>& parameters, Problems& problems) {
@@ -74,6 +71,7 @@ void FitModel::find_unknowns(const std::vector<std::string>& parameters, Problem
         problems.error({}, "", "", fmt::format("\"{}\" is to be fitted twice", path)).expected =
             "each parameter once, in --parameters or in --of-each";
       else if (const auto number = find_number(*loaded, path, problems)) {
+        refuse_known(path, problems);
         Unknown unknown{path, *number};
         bound(unknown, problems);
         if (list == &parameters) {
@@ -92,6 +90,25 @@ void FitModel::find_unknowns(const std::vector<std::string>& parameters, Problem
     names.explain(
         problems.error({}, "", "", fmt::format("--range names \"{}\", which is not fitted", range.path)),
         range.path);
+  }
+}
+
+/// What a record states for itself is known there, and has no value in common.
+void FitModel::refuse_known(const std::string& path, Problems& problems) const {
+  const auto leads_to = [](const std::string& a, const std::string& b) {
+    return b.starts_with(a) && (b.size() == a.size() || b[a.size()] == '.');
+  };
+  for (const Record& record : records_) {
+    if (!record.experiment) continue;
+    for (const Value::Member& setting : record.experiment->set) {
+      if (!leads_to(setting.name, path) && !leads_to(path, setting.name)) continue;
+      auto& p = problems.error(setting.place, setting.value.place.pointer(), "",
+                               fmt::format("\"{}\" is to be fitted, and this record sets it", path));
+      p.expected = "either in \"set\", as known, or among the fitted parameters";
+      p.hint =
+          "where only a part is known, make that a parameter of the diagram, \"=carriage + payload\", or the "
+          "\"payload\" of a Mass: set that, and fit the rest";
+    }
   }
 }
 
@@ -135,8 +152,18 @@ Comparison FitModel::simulate(size_t record, const std::vector<double>& values) 
 
 std::vector<Comparison> FitModel::simulate(const std::vector<double>& values) {
   std::vector<Comparison> all;
-  for (size_t r = 0; r < records_.size(); ++r) all.push_back(simulate(r, values));
+  try {
+    for (size_t r = 0; r < records_.size(); ++r) all.push_back(simulate(r, values));
+  } catch (InputError& error) {
+    explain_failure(diagram_, paths(), options_, std::move(error.problems));
+  }
   return all;
+}
+
+std::vector<std::string> FitModel::paths() const {
+  std::vector<std::string> list;
+  for (const Record& record : records_) list.push_back(record.path);
+  return list;
 }
 
 std::map<std::string, FitModel::Squares> FitModel::squares_of(const std::vector<Comparison>& all) const {

@@ -28,6 +28,7 @@ class FitModel {
   bool is_interrupted() const { return fit_options_.interrupt && *fit_options_.interrupt; }
 
   struct Record {
+    std::string path;  ///< of the experiment
     std::shared_ptr<const Experiment> experiment;
     bool is_held_out = false;
     /// Of a signal with so many rows.
@@ -55,8 +56,10 @@ class FitModel {
   const std::vector<size_t>& rows_of_errors() const { return rows_of_errors_; }
 
  private:
+  std::vector<std::string> paths() const;
   std::vector<double> errors(size_t record, const std::vector<double>& values, const Weights& weights);
   void find_unknowns(const std::vector<std::string>& parameters, Problems& problems);
+  void refuse_known(const std::string& path, Problems& problems) const;
   void bound(Unknown& unknown, Problems& problems) const;
   struct Squares {
     double sum = 0, rows = 0, size = 0, resolution = 0;

@@ -92,6 +92,39 @@ TEST_F(Experiments, AUnitThatCannotBeReadIsAnError) {
   expect_refusal({"the unit \"blorps\" cannot be read"});
 }
 
+/// x = t²/4, with a velocity in every third row alone.
+TEST_F(Experiments, ASlowerSignalIsRefusedWithTheRowsThatHaveIt) {
+  const auto record = [&](const char* none) {
+    std::string text = "t,F,x_mm,v\n";
+    for (int k = 0; k < 20; ++k) {
+      const double t = 0.05 * k;
+      text += fmt::format("{},1,{},{}\n", t, 250 * t * t, k % 3 == 0 ? fmt::format("{}", t / 2) : none);
+    }
+    folder.with("data.csv", text);
+  };
+  const std::string both = R"("stage.position": {"column": "x_mm", "unit": "mm"},
+    "stage.velocity": {"column": "v", "unit": "m/s"})";
+  for (const char* none : {"", "nan"}) {
+    record(none);
+    folder.experiment(drive, both);
+    expect_refusal({"column \"v\" has a number in one of 3 rows, from row 1 on", "e.json:",
+                    R"("excerpt": {"skip": 0, "decimate": 3})"});
+    folder.experiment(drive, both, R"(, "excerpt": {"skip": 0, "decimate": 3})");
+    const Comparison c = folder.compared();
+    EXPECT_EQ(c.time.size(), 7u);
+    for (const ComparedSignal& signal : c.signals) EXPECT_LT(signal.rmse, 1e-9) << signal.name;
+    folder.experiment(drive, R"("stage.position": {"column": "x_mm", "unit": "mm"})");
+    EXPECT_LT(folder.compared().signals[0].rmse, 1e-9) << "what is not used may have holes";
+  }
+}
+
+/// A single cell without a number is told at its place.
+TEST_F(Experiments, AHoleIsNoSlowerSignal) {
+  folder.with("data.csv", "t,F,x_mm\n0,1,0\n1,1,\n2,1,1000\n3,1,2250\n");
+  folder.experiment();
+  expect_refusal({"data.csv:3:5: error: column \"x_mm\": an empty cell"});
+}
+
 TEST_F(Experiments, TheTimeColumnHonoursItsUnit) {
   folder.with("data.csv", "t [ms],F,x_mm\n0,1,0\n1000,1,250\n2000,1,1000\n");
   const Comparison c = folder.compared();

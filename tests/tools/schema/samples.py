@@ -26,6 +26,7 @@ EXPERIMENTS = [
      "compare": {"a.x": {"column": "x", "unit": "m", "resolution": {"value": 1, "unit": "um"}},
                  "a.v": {"column": "v", "resolution": "1 mm/s"}, "a.z": {"column": "z", "resolution": 0.1}},
      "roles": {"position": "a.x", "velocity": "a.v", "acceleration": "a.a", "force": "a.f", "input": "a.u"},
+     "set": {"a.mass": {"value": 1, "unit": "kg"}, "load": "=1/2", "gains.1": 3, "way": "5 mm"},
      "hold_out": {"fraction": 0.25}, "rows": "samples",
      "columns": {"z": {"column": "x", "unit": "m", "scale": 2, "offset": "3 mm"}},
      "excerpt": {"from": "0.5 s", "to": 3, "skip": 1, "decimate": 2}},

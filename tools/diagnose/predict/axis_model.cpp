@@ -90,9 +90,10 @@ AxisModel::AxisModel(const std::string& path, const std::string& experiment_path
                      const std::optional<InputNoise>& noise) {
   Problems problems;
   const auto experiment = load_experiment(experiment_path, problems);
-  const auto whole = load_diagram(path, options, problems);
+  const auto whole =
+      experiment ? load_diagram(path, with_own_values(*experiment, options), problems) : nullptr;
   const auto whole_plan = whole ? compile(*whole, problems) : nullptr;
-  if (!experiment || !whole_plan || problems.has_errors()) throw InputError(std::move(problems));
+  if (!whole_plan || problems.has_errors()) throw InputError(std::move(problems));
   const Experiment cut = cut_open(
       without_sensor_gains(*whole_plan, in_units_of_ports(*whole_plan, *experiment)), *whole_plan, problems);
   const auto [force_port, force_place] = role(cut, "force");

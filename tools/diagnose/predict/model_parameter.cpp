@@ -43,18 +43,33 @@ std::vector<Tunable> tunables(const Plan& plan, Run<double>& run) {
   return list;
 }
 
-/// ln(b₁/b₀) / ln(p₁/p₀), to the nearest quarter if that is what it is.
-double power_of(double before, double after) {
+/// The power ln(b₁/b₀) / ln(p₁/p₀): of a law, to the nearest quarter. What is in between is no law, but the
+/// share (b₁ - b₀)/b₀ / ((p₁ - p₀)/p₀) of a sum.
+ModelParameter::Number dependence(double* at, double before, double after) {
+  constexpr double same_power = 1e-9;  // rounding, divided by the change
   const double power = std::log(after / before) / std::log1p(change);
   const double quarter = std::round(4 * power) / 4;
-  return std::abs(power - quarter) < 1e-3 ? quarter : power;
+  if (std::abs(power - quarter) < same_power) return {at, before, quarter};
+  const double share = (after / before - 1) / change;
+  if (share > 0 && share < 1) return {at, before, share, true};
+  return {at, before, power};
 }
 
 }  // namespace
 
+double ModelParameter::Number::at_factor(double factor) const {
+  if (factor == 1) return nominal;
+  return nominal * (is_share ? 1 + power * (factor - 1) : std::pow(factor, power));
+}
+
 void ModelParameter::set(double factor) const {
-  for (const Number& number : numbers)
-    *number.at = number.nominal * (factor == 1 ? 1 : std::pow(factor, number.power));
+  for (const Number& number : numbers) *number.at = number.at_factor(factor);
+}
+
+void ModelParameter::refer_to(double other) {
+  for (Number& number : numbers)
+    if (number.power == 1 && nominal != other) number.power = other / nominal, number.is_share = true;
+  nominal = other;
 }
 
 std::vector<ModelParameter> find_parameters(const std::string& diagram, const LoadOptions& options,
@@ -80,7 +95,7 @@ std::vector<ModelParameter> find_parameters(const std::string& diagram, const Lo
     for (size_t i = 0; i < own.size(); ++i) {
       const double* at = another.parameter(own[i].path);
       if (!at || *at == own[i].value || !(*at / own[i].value > 0)) continue;
-      found.numbers.push_back({run.parameter(own[i].path), own[i].value, power_of(own[i].value, *at)});
+      found.numbers.push_back(dependence(run.parameter(own[i].path), own[i].value, *at));
       is_determined[i] = true;
     }
     if (!found.numbers.empty()) list.push_back(std::move(found));

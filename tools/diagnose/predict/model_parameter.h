@@ -17,14 +17,19 @@ struct ModelParameter {
   std::string name;
   std::string unit;    ///< SI
   double nominal = 0;  ///< SI; never zero: what is absent from a diagram is a missing term
-  /// A number of a block: its value is proportional to a power of the parameter.
+  /// A number of a block: proportional to a power of the parameter, or a sum of which this is its share.
   struct Number {
     double* at;
     double nominal, power;
+    bool is_share = false;
+    double at_factor(double factor) const;
   };
   std::vector<Number> numbers;
 
   void set(double factor) const;
+  /// The factor refers to this value: of a setting that differs between records, what it lacks is the same in
+  /// all of them.
+  void refer_to(double nominal);
 };
 
 /// Of all blocks with an output; parameters of the outermost diagram are followed into the expressions that

@@ -113,9 +113,9 @@ void SiteFilter::allocate(size_t rows, bool with_columns, SitePass& pass) {
 }
 
 std::vector<double> SiteFilter::initial_states(size_t row) {
-  std::vector<double> states = model_.initial_states();
+  std::vector<double> states = model_.initial_states(row);
   start_modes_.resize(model_.mode_bytes());
-  model_.keep_modes(start_modes_.data());
+  model_.keep_modes(row, start_modes_.data());
   for (size_t j = 0; j < record_.outputs.size(); ++j)
     if (const int state = model_.measured_state(j); state >= 0)
       for (size_t k = row; k < record_.rows() && (k == row || !record_.begins_at(k)); ++k)
@@ -166,7 +166,7 @@ bool SiteFilter::advance(size_t row, const SiteNoise& noise, double* middle) {
 }
 
 bool SiteFilter::try_flow(size_t row, const SitePass& pass, const double* from, double* to) {
-  model_.put_modes_back(&pass.modes[row * model_.mode_bytes()]);
+  model_.put_modes_back(row, &pass.modes[row * model_.mode_bytes()]);
   return model_.flow(row, from, to);
 }
 
@@ -206,18 +206,18 @@ bool SiteFilter::slopes_of_outputs(size_t row, SitePass& pass) {
   }
   if (are_all_known) return true;
   moved_ = x_;
-  model_.keep_modes(modes_.data());
+  model_.keep_modes(row, modes_.data());
   for (size_t i = 0; i < model_states_; ++i) {
     const double change = difference_step * state_scale_[i];
     moved_[Eigen::Index(i)] += change;
-    model_.put_modes_back(modes_.data());
+    model_.put_modes_back(row, modes_.data());
     if (!model_.outputs(row, moved_.data(), y_moved_.data())) return false;
     moved_[Eigen::Index(i)] = x_[Eigen::Index(i)];
     for (size_t j = 0; j < pass.outputs; ++j)
       if (model_.measured_state(j) < 0 || model_.is_distorted(j))
         C[j * n + i] = (y_moved_[j] - y_[j]) / change;
   }
-  model_.put_modes_back(modes_.data());
+  model_.put_modes_back(row, modes_.data());
   return true;
 }
 
@@ -288,7 +288,7 @@ bool SiteFilter::linearize(size_t row, const SiteNoise& noise, SitePass& pass) {
 bool SiteFilter::differences(size_t row, const SiteNoise& noise, SitePass& pass) {
   const size_t n = pass.states;
   moved_ = x_, moved_next_ = next_;
-  model_.keep_modes(modes_.data());  // where the next row goes on
+  model_.keep_modes(row, modes_.data());  // where the next row goes on
   Map(&pass.A[row * n * n], Eigen::Index(n * n)).setZero();
   for (size_t i = 0; i < model_states_; ++i) {
     const double change = difference_step * state_scale_[i];
@@ -301,7 +301,7 @@ bool SiteFilter::differences(size_t row, const SiteNoise& noise, SitePass& pass)
   if (!pass.has_columns) {
     for (int site : noise.sites)
       if (!respond_to(site, false, row, pass, G(site))) return false;
-    model_.put_modes_back(modes_.data());
+    model_.put_modes_back(row, modes_.data());
     return true;
   }
   for (int site = 0; site < int(pass.sites); ++site) {
@@ -311,11 +311,11 @@ bool SiteFilter::differences(size_t row, const SiteNoise& noise, SitePass& pass)
   }
   const double begin = record_.time[row], step = record_.step(row);
   const auto numbers = [&](size_t k) { return &pass.path[k][row * pass.numbers]; };
-  model_.put_modes_back(modes_at(pass, row));
+  model_.put_modes_back(row, modes_at(pass, row));
   const bool good = model_.look(row, begin, x_.data(), numbers(0)) &&
                     model_.look(row, begin + step / 2, middle_.data(), numbers(1)) &&
                     model_.look(row, begin + step, next_.data(), numbers(2));
-  model_.put_modes_back(modes_.data());
+  model_.put_modes_back(row, modes_.data());
   return good;
 }
 
@@ -349,7 +349,7 @@ bool SiteFilter::run(size_t rows, const SiteNoise& noise, bool with_columns, Sit
         P_(Eigen::Index(i), Eigen::Index(i)) = initial_variance(noise, i);
     }
     if (!correct(row, noise, pass)) return false;
-    model_.keep_modes(modes_at(pass, row));
+    model_.keep_modes(row, modes_at(pass, row));
     if (!advance(row, noise, with_columns ? middle_.data() : nullptr)) return false;
     if (!linearize(row, noise, pass)) return false;
     predict_covariance(pass, row, noise);

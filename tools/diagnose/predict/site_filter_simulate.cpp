@@ -52,7 +52,7 @@ bool SiteFilter::simulate(const SitePass& pass, size_t from, size_t to, std::spa
   for (size_t row = from; row < to; ++row) {
     if (row == from || record_.begins_at(row)) {
       x_ = ConstMap(&pass.filtered[row * pass.states], Eigen::Index(pass.states));
-      model_.put_modes_back(&pass.modes[row * model_.mode_bytes()]);
+      model_.put_modes_back(row, &pass.modes[row * model_.mode_bytes()]);
     }
     if (!model_.outputs(row, x_.data(), y_.data())) return false;
     for (size_t j = 0; j < pass.outputs; ++j)
@@ -65,7 +65,7 @@ bool SiteFilter::simulate(const SitePass& pass, size_t from, size_t to, std::spa
 
 bool SiteFilter::simulate_from(const Eigen::VectorXd& initial, size_t from, size_t to,
                                std::span<double> error) {
-  model_.put_modes_back(start_modes_.data());
+  model_.put_modes_back(from, start_modes_.data());
   x_ = initial, next_.resize(initial.size());
   const size_t outputs = record_.outputs.size();
   for (size_t row = from; row < to; ++row) {

@@ -1,5 +1,6 @@
 /// The user's diagram as the general predictor steps it: states from one time stamp to the next, recorded
-/// inputs in between, and terms that are added at its sites inside the right-hand side.
+/// inputs in between, and terms that are added at its sites inside the right-hand side. Where records have
+/// values of their own, "set", each is stepped by the diagram with its values.
 #pragma once
 #include <array>
 #include <memory>
@@ -116,16 +117,17 @@ class SiteModel {
   /// Values as factors of the diagram's own, and terms. Takes effect at once; the initial states are those of
   /// the diagram.
   void use(std::span<const double> factors, std::span<const SiteTerm> terms);
-  std::vector<double> initial_states() const;
+  /// Of the record that the row belongs to.
+  std::vector<double> initial_states(size_t row);
 
   /// The states at the next time stamp; false if they become non-finite or a block stops. `middle`: also
   /// those in the middle of the sample.
   bool flow(size_t row, const double* from, double* to, double* middle = nullptr);
-  /// Modes of blocks, such as the state of a relay, change with every flow, look and outputs: who only tries a
-  /// way keeps them before and puts them back. In bytes.
+  /// Modes of blocks, such as the state of a relay, change with every flow, look and outputs: who only tries
+  /// a way keeps them before and puts them back. In bytes.
   size_t mode_bytes() const { return mode_bytes_; }
-  void keep_modes(char* to) const;
-  void put_modes_back(const char* from);
+  void keep_modes(size_t row, char* to);
+  void put_modes_back(size_t row, const char* from);
   /// What is added at a site, over every flow until it is set again.
   SiteSignal& at_site(int site) { return signals_[size_t(site)]; }
   /// All numbers at given states, with the inputs of this row.
@@ -135,44 +137,59 @@ class SiteModel {
 
  private:
   using Experiments = std::vector<std::shared_ptr<const Experiment>>;
+  struct Input {
+    double *value, *slope, *since;
+  };
+  /// The diagram with the values of one record, or of all records alike.
+  struct OwnRun {
+    std::shared_ptr<const Plan> plan;
+    std::unique_ptr<Run<double>> run;
+    double* numbers = nullptr;               // the arena's
+    std::vector<Input> inputs;               // of the record
+    std::vector<ModelParameter> parameters;  // as this record has them
+    std::vector<std::span<char>> modes;
+  };
+
   void build(const std::string& diagram, const LoadOptions& options, const Experiments& experiments,
              Problems& problems);
-  void read_records(const Plan& plan, const Experiments& experiments, Problems& problems);
+  void read_records(const std::vector<std::shared_ptr<const Plan>>& plans, const Experiments& experiments,
+                    Problems& problems);
   void add_sensors(const Plan& plan);
   void complete_units(const Plan& stated);
-  void find_inputs_and_outputs(Problems& problems);
+  std::shared_ptr<const Plan> with_site_blocks(const Plan& compiled) const;
+  void find_inputs_and_outputs(const Plan& plan, Problems& problems);
+  void start(OwnRun& own);
+  void share_parameters(const Experiments& experiments);
   void find_variables();
   void find_differences();
   void find_nearness();
   void find_variable_of_sensor(size_t output);
-  void set_inputs(size_t row);
+  /// The run of the record that the row belongs to, which the terms at the sites then read.
+  OwnRun& run_of(size_t row);
+  /// The same, with the inputs of the row.
+  OwnRun& driven_at(size_t row);
   void draw_all_lines();
 
   SignalRecord record_;
-  std::shared_ptr<const Plan> plan_;
-  std::unique_ptr<Run<double>> run_;
-  double* numbers_ = nullptr;  // the arena's
+  std::shared_ptr<const Plan> plan_;  // of the first record; its numbers are those of every one
+  std::vector<OwnRun> runs_;          // one, or one for each record
   std::vector<Site> sites_;
-  std::vector<SiteSignal> signals_;  // one for each site; its block points to it
+  const OwnRun* is_read_ = nullptr;  // by the signals
+  std::vector<SiteSignal> signals_;  // one for each site; its blocks point to it
   std::vector<SiteVariable> variables_;
-  std::vector<ModelParameter> parameters_;
+  std::vector<ModelParameter> parameters_;  // as the first record has them
   std::vector<Nearness> nearness_;
   std::vector<int> own_;
   std::vector<bool> drives_state_;
   std::vector<size_t> sensor_sites_;  // of the outputs
-  struct Input {
-    double *value, *slope, *since;
-  };
-  std::vector<Input> inputs_;
-  std::vector<InputLines> lines_;  // of the inputs, as they act
-  bool is_late_ = false;           // whether one of them is not as recorded
+  std::vector<InputLines> lines_;     // of the inputs, as they act
+  bool is_late_ = false;              // whether one of them is not as recorded
   std::vector<Number> outputs_;
   std::vector<int> measured_state_;
   bool has_decisions_ = false, all_are_states_ = true;
   int substeps_ = 2;
   Work work_;
   std::vector<double> slope_[4], stage_;
-  std::vector<std::span<char>> modes_;
   size_t mode_bytes_ = 0;
 };
 

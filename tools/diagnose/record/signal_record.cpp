@@ -78,11 +78,13 @@ SignalRecord joined(std::vector<SignalRecord> records, Problems& problems) {
     all.time.clear(), all.begins.clear();
     for (RecordedInput& input : all.inputs) input.value.clear();
     for (RecordedOutput& output : all.outputs) output.value.clear();
-    const auto append = [&](const SignalRecord& record, size_t from, size_t to) {
+    const auto append = [&](size_t number, size_t from, size_t to) {
+      const SignalRecord& record = records[number];
       const auto copy = [&](const std::vector<double>& part, std::vector<double>& whole) {
         whole.insert(whole.end(), part.begin() + std::ptrdiff_t(from), part.begin() + std::ptrdiff_t(to));
       };
-      for (size_t row = from; row < to; ++row) all.begins.push_back(row == from);
+      for (size_t row = from; row < to; ++row)
+        all.begins.push_back(row == from), all.of_record.push_back(number);
       copy(record.time, all.time);
       for (size_t i = 0; i < all.inputs.size(); ++i) copy(record.inputs[i].value, all.inputs[i].value);
       for (size_t j = 0; j < all.outputs.size(); ++j) copy(record.outputs[j].value, all.outputs[j].value);
@@ -93,9 +95,9 @@ SignalRecord joined(std::vector<SignalRecord> records, Problems& problems) {
         p.expected = "those of " + records.front().path + ", in the same order", p.found = record.path;
         return all;
       }
-    for (const SignalRecord& record : records) append(record, 0, record.held_out_from);
+    for (size_t r = 0; r < records.size(); ++r) append(r, 0, records[r].held_out_from);
     all.held_out_from = all.rows();
-    for (const SignalRecord& record : records) append(record, record.held_out_from, record.rows());
+    for (size_t r = 0; r < records.size(); ++r) append(r, records[r].held_out_from, records[r].rows());
   }
   reject_too_few(all, problems);
   return all;

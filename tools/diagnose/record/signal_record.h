@@ -27,8 +27,9 @@ struct SignalRecord {
   double sample_time = 0;    ///< s; the median distance of the time stamps
   std::vector<RecordedInput> inputs;
   std::vector<RecordedOutput> outputs;
-  size_t held_out_from = 0;  ///< first row held out of the identification; rows() without hold-out
-  std::vector<bool> begins;  ///< of several records: rows at which one begins, with states of its own
+  size_t held_out_from = 0;       ///< first row held out of the identification; rows() without hold-out
+  std::vector<bool> begins;       ///< of several records: rows at which one begins, with states of its own
+  std::vector<size_t> of_record;  ///< of several records: the one to which each row belongs
   std::optional<RecordFinding> shortened;  ///< how, if there were too many rows
 
   size_t rows() const { return time.size(); }

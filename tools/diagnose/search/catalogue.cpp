@@ -268,8 +268,10 @@ RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
   sizes.lowest_position = low, sizes.highest_position = high, sizes.stroke = high - low;
   sizes.force_level = std::sqrt(squared_force / std::max(count, 1.0));
   sizes.input_level = std::sqrt(squared_input / std::max(count, 1.0));
-  sizes.machine_mass = models.front()->nominal_inertia();
-  sizes.machine_damping = std::max(0.0, models.front()->nominal_damping());
+  // Of records with masses of their own the least counts: what an effect takes away must be there in each.
+  sizes.machine_mass = std::ranges::min(models, {}, &AxisModel::nominal_inertia)->nominal_inertia();
+  sizes.machine_damping =
+      std::max(0.0, std::ranges::min(models, {}, &AxisModel::nominal_damping)->nominal_damping());
   sizes.sample_time = paths.front()->sample_time;
   return sizes;
 }

@@ -53,7 +53,7 @@ class Rivals {
       maximise(trials_, other);
     const std::optional<double> loss = loss_of(proposal, other);
     if (!loss) return {};
-    const double disliked = *loss - preference(other.members, estimate_.members);
+    const double disliked = *loss - preference(trials_, other.members, estimate_.members);
     if (disliked < best_loss_) best_loss_ = disliked, best_ = std::move(other);
     return loss;
   }
@@ -71,7 +71,7 @@ class Rivals {
     if (!best_.is_valid || at_limit(best_) > at_limit(estimate_) || is_spent()) return {};
     maximise(trials_, best_);
     const double gain = criterion_of(estimate_) - criterion_of(best_);
-    return gain + preference(best_.members, estimate_.members) > std::max(clearly_better, doubt)
+    return gain + preference(trials_, best_.members, estimate_.members) > std::max(clearly_better, doubt)
                ? std::optional(std::move(best_))
                : std::nullopt;
   }
@@ -229,7 +229,7 @@ void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
 /// Computes the alternatives, and from them the probability of each member.
 void ask_rivals(const Trials& trials, Conclusion& result, Evidence& evidence,
                 const std::vector<Proposal>& exchanges, const std::vector<Candidate>& candidates,
-                const AxisModel& model, Rivals& rivals, double n) {
+                Rivals& rivals, double n) {
   const double reach = rivals.reach();
   // Far from its operating point the loss predicted by a linearization may be wrong by a hundred.
   const double far = std::max(100.0, 3 * reach);
@@ -240,7 +240,7 @@ void ask_rivals(const Trials& trials, Conclusion& result, Evidence& evidence,
   std::ranges::stable_sort(several, std::ranges::greater{}, &Proposal::gain);
   result.other_sets = other_sets(rivals, members, several);
   std::vector<Proposal> swaps = shape_swaps(members, candidates);
-  std::ranges::move(law_swaps(members, candidates, model), std::back_inserter(swaps));
+  std::ranges::move(law_swaps(members, candidates, trials), std::back_inserter(swaps));
   std::vector<Proposal> near = swaps;
   for (const Proposal& p : exchanges)
     if (p.gain > -far && !contains(swaps, p)) near.push_back(p);
@@ -298,7 +298,7 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
   std::optional<Estimate> instead;
   if (!stays) instead = simplified(rivals, estimate.members, exchanges);
   if (!instead) {
-    ask_rivals(trials, result, evidence, exchanges, candidates, *trials.list.front().model, rivals, n);
+    ask_rivals(trials, result, evidence, exchanges, candidates, rivals, n);
     if (!stays && rounds > 0 && (instead = rivals.better(unexplained(result.portmanteau_beside_counts()))))
       result.trail.push_back("with noise of its own another set does better");
   }

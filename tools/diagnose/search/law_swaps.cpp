@@ -57,13 +57,32 @@ Proposal without(const Term& removed, std::span<const Term> terms, const std::ve
   return proposal;
 }
 
+double mean_over_records(const Trials& trials, double (AxisModel::*number)() const) {
+  double sum = 0;
+  for (const Trial& trial : trials.list) sum += ((*trial.model).*number)();
+  return sum / double(trials.list.size());
+}
+
+/// Whether all records are of one mass and damping.
+bool have_one_law(const Trials& trials) {
+  constexpr double alike = 1e-6;  // relative: what differencing the same model leaves
+  const AxisModel& first = *trials.list.front().model;
+  const auto is_alike = [](double a, double b) { return std::abs(a - b) <= alike * std::abs(a); };
+  return std::ranges::all_of(trials.list, [&](const Trial& trial) {
+    return is_alike(first.nominal_inertia(), trial.model->nominal_inertia()) &&
+           is_alike(first.nominal_damping(), trial.model->nominal_damping());
+  });
+}
+
 }  // namespace
 
 std::vector<Proposal> law_swaps(const std::vector<Member>& members, const std::vector<Candidate>& candidates,
-                                const AxisModel& model) {
-  const Term terms[] = {term_of(gain_name, 1, members, candidates),
-                        term_of("inertia", model.nominal_inertia(), members, candidates),
-                        term_of("viscous_friction", model.nominal_damping(), members, candidates)};
+                                const Trials& trials) {
+  const Term terms[] = {
+      term_of(gain_name, 1, members, candidates),
+      term_of("inertia", mean_over_records(trials, &AxisModel::nominal_inertia), members, candidates),
+      term_of("viscous_friction", mean_over_records(trials, &AxisModel::nominal_damping), members,
+              candidates)};
   const auto present = std::ranges::count(terms, true, &Term::is_member);
   std::vector<Proposal> list;
   for (const Term& term : terms) {
@@ -76,8 +95,9 @@ std::vector<Proposal> law_swaps(const std::vector<Member>& members, const std::v
   return list;
 }
 
-double preference(const std::vector<Member>& members, const std::vector<Member>& other) {
-  if (members.size() != other.size()) return 0;
+double preference(const Trials& trials, const std::vector<Member>& members,
+                  const std::vector<Member>& other) {
+  if (members.size() != other.size() || !have_one_law(trials)) return 0;
   return criteria::same_law * (int(has_gain(other)) - int(has_gain(members)));
 }
 

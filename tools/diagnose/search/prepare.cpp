@@ -180,7 +180,8 @@ Trials prepare(const std::string& diagram, const std::vector<std::string>& exper
   trials.noise = first_guess(trials);
   const double rest_speed = criteria::rest_speed * quantile(speed, 0.99);
   for (Trial& trial : trials.list) trial.pace = pace_of(*trial.model, trials.noise, rest_speed);
-  trials.nominal_holds = trials.list.front().model->holds_at_rest(1e-3 * trials.force_rms);
+  trials.nominal_holds = std::ranges::any_of(
+      trials.list, [&](Trial& trial) { return trial.model->holds_at_rest(1e-3 * trials.force_rms); });
   std::vector<Fitted> nominal = mark_usable(trials);
   trials.noise = fit_noise(trials, nominal, trials.noise, FreeNoise::with_random_walk);
   nominal = run_members(trials, {}, {}, trials.noise);

@@ -160,8 +160,10 @@ bool is_negligible(const Trials& trials, const std::vector<Member>& members) {
   return std::max(left.fitted, left.held_out) <= criteria::negligible_force * trials.force_rms;
 }
 
-double residual_floor(const Trials& trials, const Noise& noise) {
-  const AxisModel& model = *trials.list.front().model;
+namespace {
+
+/// Mean square of the residual that noise alone leaves along a record.
+double square_of_noise(const AxisModel& model, const Noise& noise) {
   const double T = model.record().sample_time, mass = model.nominal_inertia();
   const bool from_position = model.record().measured.front().role == "position";
   const double motion_cutoff = std::min(200.0, 0.2 / T);
@@ -176,7 +178,18 @@ double residual_floor(const Trials& trials, const Noise& noise) {
     const double filter = gain_of_filter(f, force_cutoff(T), T);
     sum += filter * filter * (hold * (noise.white * noise.white + slow) + motion * motion);
   }
-  return std::sqrt(sum / points);
+  return sum / points;
+}
+
+}  // namespace
+
+double residual_floor(const Trials& trials, const Noise& noise) {
+  double sum = 0, rows = 0;
+  for (const Trial& trial : trials.list) {
+    const double own = double(trial.model->record().rows());
+    sum += own * square_of_noise(*trial.model, noise), rows += own;
+  }
+  return std::sqrt(sum / rows);
 }
 
 }  // namespace loopwright::diagnosis

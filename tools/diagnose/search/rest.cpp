@@ -73,7 +73,10 @@ double against_held(const Trials& trials, const Noise& noise) {
   const size_t apart = rows_in(deviation_s, T, 2), glance = rows_in(glance_s, T, 3 * apart);
   const Swerve swerve = swerve_at_rest(trials, apart, glance);
   if (swerve.glances == 0) return 0;
-  const double kick = noise.white / model.nominal_inertia() * T * T;
+  double square = 0;  // of 1/mass: its mean over the records
+  for (const Trial& trial : trials.list)
+    square += std::pow(trial.model->nominal_inertia(), -2) / double(trials.list.size());
+  const double kick = noise.white * std::sqrt(square) * T * T;
   // From sample to sample hardly anything but the sensor changes, including its steps.
   const double sensor =
       std::max(swerve_at_rest(trials, 1, glance).square, 6 * std::pow(noise.measurement[0], 2));

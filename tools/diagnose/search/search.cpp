@@ -299,7 +299,7 @@ class Search {
       for (const Proposal& swap : shape_swaps(best_.members, candidates_))
         others.push_back(applied(swap, best_.members));
       if (has_gain(best_.members))
-        for (const Proposal& swap : law_swaps(best_.members, candidates_, *trials_.list.front().model))
+        for (const Proposal& swap : law_swaps(best_.members, candidates_, trials_))
           others.push_back(applied(swap, best_.members));
       Estimate best;
       double best_gain = criteria::clearly_better;
@@ -307,7 +307,7 @@ class Search {
         Estimate trial = pruned(refined(members, 4));
         const double gain = gain_of(trial);
         trail_.push_back(fmt::format("tried instead {}: criterion {:+.1f}", names_of(members), -gain));
-        const double preferred = gain + preference(trial.members, best_.members);
+        const double preferred = gain + preference(trials_, trial.members, best_.members);
         if (preferred <= best_gain) continue;
         best_gain = preferred, best = std::move(trial);
       }

@@ -30,7 +30,7 @@ class FreeAxis {
       if (!plan || problems.has_errors()) throw InputError(std::move(problems));
       return plan;
     };
-    const auto whole = plan_with(options);
+    const auto whole = plan_with(with_own_values(recorded, options));
     const Experiment moved = with_moved_ports(recorded, diagram.moved);
     const Experiment cut =
         cut_open(without_sensor_gains(*whole, in_units_of_ports(*whole, moved)), *whole, problems);

@@ -1,6 +1,7 @@
 #include "tools/diagnose/verdict/improve.h"
 #include <algorithm>
 #include <filesystem>
+#include <fmt/format.h>
 #include "engine/json/json.h"
 #include "engine/record/atomic_file.h"
 #include "tools/diagnose/verdict/staircase.h"
@@ -49,21 +50,35 @@ std::string moved_text(const std::string& path, const std::vector<MovedPort>& mo
   return edits.apply(file->text);
 }
 
+/// Empty unless a record states for itself what the effect changes.
+std::string why_known(const Insertion& effect,
+                      const std::vector<std::shared_ptr<const Experiment>>& experiments) {
+  for (const auto& experiment : experiments)
+    for (const Value::Member& setting : experiment->set)
+      if (std::ranges::find(effect.changed, setting.name) != effect.changed.end())
+        return fmt::format(
+            "\"set\" in {} states \"{}\", which is then known; where only a part of it is known, make that a "
+            "parameter of the diagram, \"=carriage + payload\", or the \"payload\" of a Mass, and set that",
+            experiment->path, setting.name);
+  return {};
+}
+
 }  // namespace
 
-WhyNot attachable(const std::string& diagram, const std::string& experiment_path, const LoadOptions& load,
+WhyNot attachable(const std::string& diagram, const std::vector<std::string>& paths, const LoadOptions& load,
                   const MachineUnits& units, const RecordSizes& sizes) {
   Problems problems;
-  const auto experiment = load_experiment(experiment_path, problems);
+  const auto experiments = load_experiments(paths, problems);
   const std::shared_ptr<const SourceFile> file = read_source(diagram, {}, problems);
-  if (!file || !experiment) throw InputError(std::move(problems));
-  const InsertionSite site{roles_of(file, *experiment, load), load.variants, units};
+  if (problems.has_errors()) throw InputError(std::move(problems));
+  const InsertionSite site{roles_of(file, *experiments.front(), load), load.variants, units};
   return [=](const Effect& effect) -> std::string {
     std::vector<double> starts;
     for (const EffectParameter& p : effect.parameters)
       if (p.is_fitted) starts.push_back(range_of(p, sizes).start);
     Problems own;
-    if (insert_effect(file, site, effect, starts, sizes, own)) return {};
+    if (const auto inserted = insert_effect(file, site, effect, starts, sizes, own))
+      return why_known(*inserted, experiments);
     return own.list().empty() ? "it cannot be added to the diagram" : own.list().front().message;
   };
 }
@@ -73,10 +88,9 @@ Improver::Improver(const std::string& diagram, const std::vector<std::string>& e
                    const RecordSizes& sizes)
     : load_(load), catalogue_(catalogue), units_(units), sizes_(sizes) {
   Problems problems;
-  for (const std::string& path : experiments) experiments_.push_back(load_experiment(path, problems));
+  experiments_ = load_experiments(experiments, problems);
   file_ = read_source(diagram, {}, problems);
-  if (!file_ || std::ranges::find(experiments_, nullptr) != experiments_.end())
-    throw InputError(std::move(problems));
+  if (problems.has_errors()) throw InputError(std::move(problems));
 }
 
 Additions Improver::additions(std::vector<Member> members) const {

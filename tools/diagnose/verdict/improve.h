@@ -6,9 +6,10 @@
 
 namespace loopwright::diagnosis {
 
-/// Tries each effect on the user's diagram, in memory.
-WhyNot attachable(const std::string& diagram, const std::string& experiment, const LoadOptions& load,
-                  const MachineUnits& units, const RecordSizes& sizes);
+/// Tries each effect on the user's diagram, in memory. An effect that changes a setting which a record states
+/// for itself cannot be added: what a record states is known.
+WhyNot attachable(const std::string& diagram, const std::vector<std::string>& experiments,
+                  const LoadOptions& load, const MachineUnits& units, const RecordSizes& sizes);
 
 class Improver {
  public:

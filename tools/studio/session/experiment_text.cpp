@@ -55,7 +55,7 @@ std::string time_columns(const Value& columns, std::string_view time) {
 
 }  // namespace
 
-std::string experiment_text(const Value& request, const std::string& data) {
+std::string experiment_text(const Value& request, const std::string& data, const Value& before) {
   std::vector<std::pair<std::string, std::string>> drives, compared, roles;
   const Value::Member* columns = request.find("columns");
   if (!columns || columns->value.kind != Kind::list) throw Refused("the request lacks the list \"columns\"");
@@ -86,6 +86,8 @@ std::string experiment_text(const Value& request, const std::string& data) {
   if (!drives.empty()) text += fmt::format("  \"drive\": {},\n", lines_of(drives));
   text += fmt::format("  \"compare\": {}", lines_of(compared));
   if (!roles.empty()) text += fmt::format(",\n  \"roles\": {}", lines_of(roles));
+  if (const Value::Member* set = before.find("set"))
+    text += fmt::format(",\n  \"set\": {}", source_of(set->value));
   const Value::Member* hold_out = request.find("hold_out");
   if (hold_out && hold_out->value.kind == Kind::number && hold_out->value.number > 0)
     text += fmt::format(",\n  \"hold_out\": {{\"fraction\": {}}}", hold_out->value.number);

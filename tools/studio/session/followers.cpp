@@ -258,8 +258,11 @@ class Search {
     const auto take = [&](const Entry& diagram) {
       if (!fits(diagram)) return;
       const auto renamed = renamed_.find(diagram.identity);
-      TextChanges changes =
-          renamed == renamed_.end() ? TextChanges() : renamed_in_experiment(entry.root(), renamed->second);
+      std::vector<std::string> conflicts;
+      TextChanges changes = renamed == renamed_.end()
+                                ? TextChanges()
+                                : renamed_in_experiment(entry.root(), renamed->second, conflicts);
+      for (const std::string& conflict : conflicts) leave_behind(entry, conflict);
       if (changes.empty())
         keeping.push_back(&diagram);
       else if (entry.changes.empty())

@@ -24,16 +24,21 @@ std::string parent_of(const std::string& path) {
 
 bool is_expression(const Value& value) { return value.kind == Kind::text && value.text.starts_with('='); }
 
-class SweepChanges {
+/// In a sweep or an experiment.
+class FileChanges {
  public:
-  SweepChanges(const std::vector<Renaming>& renamings, std::vector<std::string>& conflicts)
+  FileChanges(const std::vector<Renaming>& renamings, std::vector<std::string>& conflicts)
       : renamings_(renamings), names_(renamings), conflicts_(conflicts) {}
 
-  TextChanges take(const Value& sweep) {
-    for (const Value::Member& entry : members_of(sweep, "set")) {
-      set_name(entry, name_of_setting(entry.name));
-      follow_value(entry);
-    }
+  TextChanges take_experiment(const Value& experiment) {
+    follow_set(experiment);
+    std::ranges::move(
+        ports_renamed(experiment, [&](const std::string& port) { return names_.signal(port); }),
+        std::back_inserter(changes_));
+    return std::move(changes_);
+  }
+  TextChanges take_sweep(const Value& sweep) {
+    follow_set(sweep);
     for (const Value::Member& choice : members_of(sweep, "variants"))
       set_name(choice, names_.block(choice.name));
     for (const Value::Member& axis : members_of(sweep, "axes")) set_name(axis, name_of_axis(axis));
@@ -47,8 +52,14 @@ class SweepChanges {
   }
 
  private:
-  static std::span<const Value::Member> members_of(const Value& sweep, std::string_view name) {
-    const Value::Member* list = sweep.find(name);
+  void follow_set(const Value& file) {
+    for (const Value::Member& entry : members_of(file, "set")) {
+      set_name(entry, name_of_setting(entry.name));
+      follow_value(entry);
+    }
+  }
+  static std::span<const Value::Member> members_of(const Value& file, std::string_view name) {
+    const Value::Member* list = file.find(name);
     return list ? std::span<const Value::Member>(list->value.members) : std::span<const Value::Member>();
   }
   std::string name_of_setting(const std::string& path) {
@@ -161,12 +172,12 @@ std::string NewNames::setting(std::string path, std::string& conflict) const {
 
 TextChanges renamed_in_sweep(const Value& sweep, const std::vector<Renaming>& renamings,
                              std::vector<std::string>& conflicts) {
-  return SweepChanges(renamings, conflicts).take(sweep);
+  return FileChanges(renamings, conflicts).take_sweep(sweep);
 }
 
-TextChanges renamed_in_experiment(const Value& experiment, const std::vector<Renaming>& renamings) {
-  const NewNames names(renamings);
-  return ports_renamed(experiment, [&](const std::string& port) { return names.signal(port); });
+TextChanges renamed_in_experiment(const Value& experiment, const std::vector<Renaming>& renamings,
+                                  std::vector<std::string>& conflicts) {
+  return FileChanges(renamings, conflicts).take_experiment(experiment);
 }
 
 TextChanges renamed_in_level(const Value& diagram, const std::vector<Renaming>& renamings) {

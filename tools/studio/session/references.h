@@ -34,7 +34,8 @@ class NewNames {
 // subject.
 TextChanges renamed_in_sweep(const Value& sweep, const std::vector<Renaming>& renamings,
                              std::vector<std::string>& conflicts);
-TextChanges renamed_in_experiment(const Value& experiment, const std::vector<Renaming>& renamings);
+TextChanges renamed_in_experiment(const Value& experiment, const std::vector<Renaming>& renamings,
+                                  std::vector<std::string>& conflicts);
 /// Wires, outputs and records of one level of a diagram, without the diagrams inside it.
 TextChanges renamed_in_level(const Value& diagram, const std::vector<Renaming>& renamings);
 

@@ -154,9 +154,8 @@ using Experiments = std::vector<std::shared_ptr<const Experiment>>;
 
 Experiments read(const std::vector<std::string>& paths) {
   Problems problems;
-  Experiments experiments;
-  for (const std::string& path : paths) experiments.push_back(load_experiment(path, problems));
-  if (std::ranges::find(experiments, nullptr) != experiments.end()) throw InputError(std::move(problems));
+  Experiments experiments = load_experiments(paths, problems);
+  if (problems.has_errors()) throw InputError(std::move(problems));
   return experiments;
 }
 

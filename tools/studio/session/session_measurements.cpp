@@ -254,8 +254,9 @@ Json Session::write_experiment(const Request& request) {
   const std::filesystem::path beside = std::filesystem::path(target).parent_path();
   const std::string named =
       std::filesystem::path(data).lexically_relative(beside.empty() ? "." : beside).generic_string();
-  const std::string text = experiment_text(request.message, named);
   const std::optional<std::string> before = folder_.read(target);
+  const ParsedText replaced(folder_.path_of(target), before.value_or("{}"));
+  const std::string text = experiment_text(request.message, named, replaced.root);
   if (before && *before != text && !request.flag("replace"))
     throw Refused(fmt::format("\"{}\" is there already", target));
   if (folder_.replace(target, before, text))

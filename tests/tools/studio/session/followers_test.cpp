@@ -66,7 +66,7 @@ constexpr const char* sweep = R"({
 )";
 
 constexpr const char* experiment =
-    R"({"loopwright": 1, "data": "r.csv", "drive": {"push.y": {"column": "u"}}, "compare": {"stage.mass.position": {"column": "stage.mass.position"}}, "sites": ["stage.net.sum"]})";
+    R"({"loopwright": 1, "data": "r.csv", "drive": {"push.y": {"column": "u"}}, "compare": {"stage.mass.position": {"column": "stage.mass.position"}}, "sites": ["stage.net.sum"], "set": {"stage.mass": "1 kg", "stage.mass.payload": 0.5}})";
 
 std::string with_all(std::string text, const std::string& from, const std::string& to) {
   for (size_t at = 0; (at = text.find(from, at)) != text.npos; at += to.size())
@@ -128,7 +128,8 @@ TEST_F(Followers, FollowABlockAtAnyDepthAndComeBackWithOneUndo) {
             with_all(with_all(sweep, "stage.mass.", "stage.slide."), "inner.mass.", "inner.slide."));
   // The column of the record is still called as it was.
   EXPECT_EQ(folder_.read("loop.experiment.json"),
-            with_all(experiment, "\"stage.mass.position\": {", "\"stage.slide.position\": {"));
+            with_all(with_all(experiment, "\"stage.mass.position\": {", "\"stage.slide.position\": {"),
+                     "stage.mass.payload", "stage.slide.payload"));
   page.ask({{"do", "undo"}, {"path", "axis.json"}});
   EXPECT_EQ(all(), before);
   const Json again = page.ask({{"do", "redo"}, {"path", "axis.json"}});
@@ -143,7 +144,8 @@ TEST_F(Followers, FollowAParameter) {
   expect_all_load();
   EXPECT_EQ(folder_.read("loop.json"), with_all(loop, "{\"mass\": \"=load\"}", "{\"moved\": \"=load\"}"));
   EXPECT_EQ(folder_.read("a.sweep.json"), with_all(sweep, "\"stage.mass\"", "\"stage.moved\""));
-  EXPECT_EQ(folder_.read("loop.experiment.json"), experiment);
+  EXPECT_EQ(folder_.read("loop.experiment.json"),
+            with_all(experiment, "\"stage.mass\":", "\"stage.moved\":"));
   page.ask({{"do", "undo"}, {"path", "axis.json"}});
   EXPECT_EQ(all(), before);
 }

@@ -83,6 +83,31 @@ TEST_F(Measurements, UnitsInParenthesesAreThoseOfTheHeading) {
   expect_right(found);
 }
 
+/// What this record is known to have is nothing that the page asks for.
+TEST_F(Measurements, ValuesOfTheRecordStayAndCount) {
+  record("Time (ms),ActPos (mm),SetForce (N)");
+  const auto insert = [&](const std::string& file, const std::string& before, const std::string& text) {
+    std::string whole = folder_.read(file);
+    whole.insert(whole.find(before), text);
+    folder_.write(file, whole);
+  };
+  insert("parts/axis.json", ", \"unit\": \"kg\"", "5");
+  const Json found = columns();
+  ASSERT_TRUE(written(found)["written"]);
+  const std::string set = R"("set": {"axis.mass.mass": "2 kg"})", path = "top/log.experiment.json";
+  const auto error = [&] {
+    return page_
+        .ask({{"do", "compare"}, {"path", "top/stage.json"}, {"experiment", path}})["signals"][0]["rmse"]
+        .get<double>();
+  };
+  EXPECT_GT(error(), 1e-3);
+  insert(path, "\"roles\"", set + ", ");
+  EXPECT_LT(error(), 3e-6);
+  ASSERT_TRUE(written(found)["written"]);
+  EXPECT_THAT(folder_.read(path), HasSubstr(set));
+  EXPECT_LT(error(), 3e-6);
+}
+
 TEST_F(Measurements, UnitsAreTypedForEveryColumnAndTheTime) {
   record("t,x_act,F_mot");
   Json found = columns();
