@@ -24,6 +24,28 @@ std::vector<size_t> operating_rows(const AxisRecord& record) {
   return rows;
 }
 
+/// The positions at which the diagram is linearized; those of a measured velocity begin at zero.
+std::vector<double> positions_of(const AxisRecord& record) {
+  if (const MeasuredPort* position = record.find("position")) return position->value;
+  const std::vector<double>& velocity = record.measured.front().value;
+  std::vector<double> position(velocity.size());
+  for (size_t k = 1; k < position.size(); ++k) {
+    const double step = record.sample_time * (record.duration.empty() ? 1 : record.duration[k - 1]);
+    position[k] = position[k - 1] + step * (velocity[k - 1] + velocity[k]) / 2;
+  }
+  return position;
+}
+
+/// Whether values scatter about zero: their mean is no larger than three of its standard errors.
+bool scatter_about_zero(const std::vector<double>& values) {
+  constexpr double standard_errors = 3;
+  const double n = double(values.size());
+  double mean = 0, square = 0;
+  for (double v : values) mean += v / n;
+  for (double v : values) square += (v - mean) * (v - mean) / n;
+  return std::abs(mean) <= standard_errors * std::sqrt(square / n);
+}
+
 /// In a map each row is independent: one state, the remaining sum of the model's forces, which is measured to
 /// be zero.
 LinearAxis balance_of(const LinearAxis& moving, double force_per_input) {
@@ -82,13 +104,17 @@ LinearAxis AxisModel::linearize_motion() {
   if (force_size == 0) force_size = 1;
   const MeasuredPort* position = record_.find("position");
   const MeasuredPort* velocity = record_.find("velocity");
+  const std::vector<double> place = positions_of(record_);
+  const auto place_of = [&](Number number) {  // among the states; -1: it is none
+    const auto found = std::ranges::find(seen_, number - plan_->signals);
+    return number < 0 || found == seen_.end() ? Eigen::Index(-1) : Eigen::Index(found - seen_.begin());
+  };
+  const Eigen::Index v = place_of(velocity_), x = place_of(position_);
+  std::vector<double> slopes;  // of the velocity over the position
   const double weight = 1.0 / double(rows.size());
   for (size_t k : rows) {
-    const double v = velocity ? velocity->value[k]
-                     : position
-                         ? (position->value[k + 1] - position->value[k - 1]) / (2 * record_.sample_time)
-                         : 0;
-    start(position ? position->value[k] : 0, v);
+    start(place[k], velocity ? velocity->value[k]
+                             : (place[k + 1] - place[k - 1]) / (2 * record_.sample_time));
     if (force_remembers_) remembered_.assign(run_->arena().begin(), run_->arena().end());
     Eigen::VectorXd at(n);
     for (Eigen::Index i = 0; i < n; ++i) at[i] = state(seen_[size_t(i)]);
@@ -104,7 +130,9 @@ LinearAxis AxisModel::linearize_motion() {
       Eigen::VectorXd up = at, down = at;
       up[i] += change, down[i] -= change;
       const Eigen::VectorXd high = sample_from(up, u, 0);
-      linear.A.col(i) += weight * (high - sample_from(down, u, 0)) / (2 * change);
+      const Eigen::VectorXd slope = (high - sample_from(down, u, 0)) / (2 * change);
+      linear.A.col(i) += weight * slope;
+      if (i == x && v >= 0) slopes.push_back(slope[v]);
     }
     for (Eigen::Index i = 0; i < n; ++i) {
       const double change = std::max(std::abs(moved[i]), 1e-6);
@@ -124,22 +152,19 @@ LinearAxis AxisModel::linearize_motion() {
   if (input_is_filtered_ && inner_states_.empty()) linear.input_push = linear.push * force_per_input_;
   linear.noise_push = linear.push;
   if (noise_enters_at_input_) linear.noise_push = linear.input_push / force_per_input_;
-  const Eigen::Index v = velocity_ - plan_->signals, x = position_ - plan_->signals;
-  SlopeShares shares;
-  for (Eigen::Index i = 0; i < n; ++i)
-    if (seen_[size_t(i)] == v) {
-      const double decay = linear.A(i, i), per_force = linear.push[i];  // of v' = (F - D v) / M, exactly
-      shares = slope_shares(decay);
-      linear.damping = (1 - decay) / per_force;
-      const double rate = decay < 1 ? -std::log(decay) : 0;
-      linear.inertia =
-          rate > 0 ? linear.damping / (rate / record_.sample_time) : record_.sample_time / per_force;
-    }
+  // What rises here and falls there with a position that nobody measures, as cogging, does not show it.
+  if (!position && !slopes.empty() && scatter_about_zero(slopes))
+    linear.A.col(x) = Eigen::VectorXd::Unit(n, x);
   linear.slope_share = Eigen::VectorXd::Zero(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    if (position_ >= 0 && seen_[size_t(i)] == x) linear.slope_share[i] = shares.position;
-    if (seen_[size_t(i)] == v) linear.slope_share[i] = shares.velocity;
-  }
+  if (v < 0) return linear;
+  const double decay = linear.A(v, v), per_force = linear.push[v];  // of v' = (F - D v) / M, exactly
+  const SlopeShares shares = slope_shares(decay);
+  linear.damping = (1 - decay) / per_force;
+  const double rate = decay < 1 ? -std::log(decay) : 0;
+  linear.inertia =
+      rate > 0 ? linear.damping / (rate / record_.sample_time) : record_.sample_time / per_force;
+  linear.slope_share[v] = shares.velocity;
+  if (x >= 0) linear.slope_share[x] = shares.position;
   return linear;
 }
 
