@@ -75,6 +75,8 @@ Diagnosis diagnose_any_diagram(const std::string& diagram, const std::vector<std
   result.measured_port = model.record().outputs.front().port;
   result.rows = model.record().held_out_from;
   if (model.record().shortened) result.findings.push_back(*model.record().shortened);
+  if (const size_t count = model.record().false_readings; count > 0)
+    result.findings.push_back(readings_are_false(count, "they count as missing"));
   const auto found = search_with_second_opinion(fitter, progress);
   if (is_interrupted()) {
     result.was_interrupted = true;

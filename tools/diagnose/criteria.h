@@ -177,6 +177,9 @@ constexpr double work_of_first_search = 0.4;
 
 /// [mean square in motion] Errors that the set does not explain occur at rest too.
 constexpr double worse_at_rest = 4;
+/// [s] Shorter rests contradict no answer: an axis that turns seems to rest for a moment, and longer if its
+/// sensor counts coarsely.
+constexpr double least_rest_s = 0.1;
 /// [motion of a free axis under noise] Control reduces it; more is motion.
 constexpr double least_freedom = 0.4, most_freedom = 3;
 /// [s] Enough for a deviation, too little to correct all of it; and enough to average the encoder's steps.

@@ -16,8 +16,9 @@ void check_names(const std::vector<Effect>& effects, Problems& problems) {
   std::set<std::string> sorted;
   for (const Effect& effect : effects) sorted.insert(effect.name);
   Problems not_installed;  // then the loaded names are all that there are
-  for (const std::string& file : effect_files(installed_catalogue(), not_installed))
-    sorted.insert(std::filesystem::path(file).stem().string());
+  for (const std::string& folder : {installed_catalogue(), catalogue_folder()})
+    for (const std::string& file : effect_files(folder, not_installed))
+      sorted.insert(std::filesystem::path(file).stem().string());
   const std::vector<std::string> names(sorted.begin(), sorted.end());
   for (const Effect& effect : effects)
     for (const ConfusableEffect& other : effect.confusable)

@@ -1,6 +1,6 @@
 // Records that cannot support a verdict are named, with the consequence.
 #include <gmock/gmock.h>
-#include "tests/tools/diagnose/diagnosed.h"
+#include "tests/tools/diagnose/diagnosed_plant.h"
 #include "tests/tools/diagnose/hidden_axis.h"
 #include "tests/tools/diagnose/recorded_axis.h"
 #include "tools/diagnose/diagnose.h"
@@ -55,7 +55,23 @@ TEST(BadRecord, TooFewRowsGiveNoVerdict) {
 
 TEST(BadRecord, OutliersAreCounted) {
   const Diagnosis d = spoilt([](auto&, auto& position) { position[2000] += 1e-3, position[3500] -= 1e-3; });
-  EXPECT_THAT(d.findings, finds("leap out of line"));
+  EXPECT_THAT(d.findings, finds("2 readings are not those of their rows"));
+}
+
+TEST(BadRecord, OldReadingsAreCounted) {
+  const Diagnosis d = spoilt([](auto&, auto& position) { position[2000] = position[1999]; });
+  EXPECT_THAT(d.findings, finds("1 reading is not that of its row"));
+}
+
+TEST(BadRecord, LeapsOfAnyDiagramCountAsMissing) {
+  Plant plant = motor({}, 5);
+  plant.outputs = [row = 0](const Numbers& x) mutable {
+    constexpr double leap_rad = 0.5;
+    return Numbers{x[0], ++row % 101 == 0 ? x[1] + leap_rad : x[1]};
+  };
+  const Diagnosis d = diagnosed(plant);
+  EXPECT_EQ(name_of(d.verdict), "nothing_missing") << to_text(d);
+  EXPECT_THAT(d.findings, finds("24 readings are not those of their rows"));
 }
 
 TEST(BadRecord, LostSamplesAreCountedAndTakenForNoDeadTime) {

@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include "models/real/whole.h"
 #include "tools/diagnose/record/shorten.h"
+#include "tools/experiment/false_readings.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -51,6 +53,10 @@ SignalRecord read_signal_record(const Experiment& experiment, Problems& problems
       continue;
     }
     record.outputs.push_back({compared.port, column->unit, compared.resolution, column->values});
+    for (const size_t row : false_readings(column->values)) {
+      record.outputs.back().value[row] = std::numeric_limits<double>::quiet_NaN();
+      ++record.false_readings;
+    }
   }
   record.held_out_from = whole_between<size_t>(
       std::round(double(record.rows()) * (1 - experiment.hold_out_fraction)), 0, record.rows());
@@ -68,6 +74,8 @@ SignalRecord joined(std::vector<SignalRecord> records, Problems& problems) {
   const std::optional<RecordFinding> shortened = shorten(records, most_rows);
   SignalRecord all = records.front();
   all.shortened = shortened;
+  all.false_readings = 0;
+  for (const SignalRecord& record : records) all.false_readings += record.false_readings;
   if (records.size() > 1) {
     const auto ports = [](const SignalRecord& record) {
       std::vector<std::string> list;

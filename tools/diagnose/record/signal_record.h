@@ -30,6 +30,7 @@ struct SignalRecord {
   size_t held_out_from = 0;       ///< first row held out of the identification; rows() without hold-out
   std::vector<bool> begins;       ///< of several records: rows at which one begins, with states of its own
   std::vector<size_t> of_record;  ///< of several records: the one to which each row belongs
+  size_t false_readings = 0;      ///< see loopwright::false_readings; they count as missing
   std::optional<RecordFinding> shortened;  ///< how, if there were too many rows
 
   size_t rows() const { return time.size(); }

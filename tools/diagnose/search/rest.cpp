@@ -25,13 +25,18 @@ AtRest at_rest(const std::vector<Member>& members) {
 }
 
 /// Something held the axis that the members leave free.
-double against_free(const Trials& trials, const std::vector<Fitted>& fitted) {
+double against_free(const Trials& trials, const std::vector<Fitted>& fitted, double least_rest_s) {
   double sum = 0, count = 0;
   const size_t ports = trials.ports();
-  for (size_t t = 0; t < trials.list.size(); ++t)
-    for (size_t k = 0; k < trials.list[t].held_out_from; ++k)
-      for (size_t p = 0; p < ports && trials.list[t].at_rest[k]; ++p)
+  for (size_t t = 0; t < trials.list.size(); ++t) {
+    const Trial& trial = trials.list[t];
+    const double least_rows = least_rest_s / trial.model->record().sample_time;
+    for (size_t k = 0, resting = 0; k < trial.held_out_from; ++k) {
+      resting = trial.at_rest[k] ? resting + 1 : 0;
+      for (size_t p = 0; p < ports && resting > 0 && double(resting) > least_rows; ++p)
         sum += std::pow(fitted[t].white[k * ports + p], 2), count += 1;
+    }
+  }
   const double in_motion = mean_square(trials, fitted);
   return count > 0 ? count * std::log(std::max(1.0, sum / count / (worse_at_rest * in_motion))) : 0;
 }
@@ -88,11 +93,11 @@ double against_held(const Trials& trials, const Noise& noise) {
 }  // namespace
 
 double against_at_rest(const Trials& trials, const std::vector<Member>& members,
-                       const std::vector<Fitted>& fitted, const Noise& noise) {
+                       const std::vector<Fitted>& fitted, const Noise& noise, double least_rest_s) {
   if (trials.nominal_holds) return 0;
   switch (at_rest(members)) {
     case AtRest::free:
-      return against_free(trials, fitted);
+      return against_free(trials, fitted, least_rest_s);
     case AtRest::holds:
       return against_held(trials, noise);
     default:

@@ -19,6 +19,14 @@ std::optional<RecordFinding> too_few_rows(const Trials& trials) {
       true};
 }
 
+RecordFinding readings_are_false(size_t count, std::string consequence) {
+  const char* const text = count == 1 ? "1 reading is not that of its row: it repeats the one before while the "
+                                        "signal moves on, or leaps out and back"
+                                      : "{} readings are not those of their rows: they repeat the one before "
+                                        "while the signal moves on, or leap out and back";
+  return {fmt::format(fmt::runtime(text), count), std::move(consequence)};
+}
+
 RecordFinding ended_at_limit(double most_work) {
   return {
       "the search ended at its limit of " + told_operations(most_work),
@@ -69,10 +77,7 @@ std::vector<RecordFinding> look_at_records(const Trials& trials,
     records.push_back({inverse[t].motion, residuals[t], contents[t]});
   std::vector<RecordFinding> findings;
   if (const size_t count = false_readings(trials); count > 0)
-    findings.push_back({fmt::format("{} reading{} not those of their rows: they repeat the one before while "
-                                    "the axis moves on, or leap out and back",
-                                    count, count == 1 ? " is" : "s are"),
-                        "what their neighbours say was taken instead"});
+    findings.push_back(readings_are_false(count, "what their neighbours say was taken instead"));
   for (const RecordFault& fault : faults_of(records)) {
     if (trials.has_map() && fault.name != "one_direction") continue;  // a map has no times and no speeds
     if (fault.name == "too_short" && shows_enough(trials, contents))

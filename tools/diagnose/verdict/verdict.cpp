@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include "tools/compare/missing_force.h"
+#include "tools/diagnose/search/rest.h"
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/doubt.h"
 #include "tools/diagnose/verdict/remainder_interval.h"
@@ -95,7 +96,7 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
     diagnosis.contradictions.push_back(
         "the errors ask for more noise than the forces show: they are not alike over the record, so that "
         "something happened that is no noise");
-  if (e.against_at_rest > criteria::least_gain)
+  if (against_at_rest(trials, e.members, *e.fitted, e.noise, criteria::least_rest_s) > criteria::least_gain)
     diagnosis.contradictions.push_back(
         "while the axis rests, its input pushes it more than anything in the diagram holds, or nothing "
         "holds it though something should");

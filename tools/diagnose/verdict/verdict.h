@@ -12,6 +12,9 @@ std::vector<RecordFinding> look_at_records(const Trials& trials, const std::vect
 /// Fatal: fewer fitted rows than a verdict needs.
 std::optional<RecordFinding> too_few_rows(const Trials& trials);
 
+/// Readings that are not those of their rows, and what was done about them: see loopwright::false_readings.
+RecordFinding readings_are_false(size_t count, std::string consequence);
+
 /// The search used up its operations.
 RecordFinding ended_at_limit(double most_work);
 /// Noise was taken away from the recorded input: see noise_instead_of_late_input().
