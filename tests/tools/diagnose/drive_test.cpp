@@ -24,7 +24,7 @@ WantedMotion brisk() { return there_and_back(0.2, 0.6).stroke(0.2, 0.5, 0.08).st
 TEST(Drive, AnAmplifierThatLimitsItsCurrentIsNamedWithItsLimit) {
   HiddenMachine machine;
   machine.has_controller = false;
-  machine.drive = [](double command, double, double) { return std::clamp(command, -1.5, 1.5); };
+  machine.drive = [](double command, double) { return std::clamp(command, -1.5, 1.5); };
   HiddenAxis axis(machine);
   const Diagnosis d = diagnosed(axis, brisk());
   EXPECT_EQ(d.verdict, Verdict::explained) << to_text(d);
@@ -37,7 +37,7 @@ TEST(Drive, AnAmplifierThatLimitsItsCurrentIsNamedWithItsLimit) {
 
 TEST(Drive, ADeadBandOfAnAmplifierIsNamedWithItsWidth) {
   HiddenMachine machine;
-  machine.drive = [](double command, double, double) {
+  machine.drive = [](double command, double) {
     return std::copysign(std::max(0.0, std::abs(command) - 0.1), command);
   };
   HiddenAxis axis(machine);
@@ -45,19 +45,6 @@ TEST(Drive, ADeadBandOfAnAmplifierIsNamedWithItsWidth) {
   EXPECT_EQ(d.verdict, Verdict::explained) << to_text(d);
   ASSERT_THAT(names(d), ElementsAre("dead_band")) << to_text(d);
   EXPECT_NEAR(value_of(d.effects[0], "width"), 0.1, 0.005);
-}
-
-/// As of a voice coil that leaves its magnet. The catalogue has no name for it.
-TEST(Drive, AGainThatDependsOnPositionIsAFunctionOfPositionAndInput) {
-  HiddenMachine machine;
-  machine.drive = [](double command, double, double x) { return command * (1 - 30 * std::pow(x - 0.1, 2)); };
-  HiddenAxis axis(machine);
-  const Diagnosis d = diagnosed(axis, brisk().stroke(0.2, 0.3, 0.1).stroke(-0.2, 0.4, 0.05));
-  EXPECT_EQ(d.verdict, Verdict::unexplained) << to_text(d);
-  EXPECT_THAT(d.remainder_variables, ElementsAre("position", "input")) << to_text(d);
-  ASSERT_EQ(d.steps.size(), 2u);
-  EXPECT_LT(d.steps[1].force_rmse, 0.2 * d.steps[0].force_rmse);
-  EXPECT_LT(d.steps[1].simulation_rmse, 0.2 * d.steps[0].simulation_rmse) << "written as blocks";
 }
 
 /// A force sensor of the drive: its noise is averaged by a lag, which looked like one of the machine.
@@ -72,7 +59,7 @@ TEST(Drive, NoiseOfAMeasuredInputIsNoLag) {
 /// The bridge is off for the first strokes of the controller: the axis rests although its command pushes it.
 TEST(Drive, ACommandThatDoesNotArriveIsNoNoise) {
   HiddenMachine machine;
-  machine.drive = [](double command, double t, double) { return t < 0.9 ? 0.0 : command; };
+  machine.drive = [](double command, double t) { return t < 0.9 ? 0.0 : command; };
   HiddenAxis axis(machine);
   const Diagnosis d = diagnosed(axis, there_and_back(0.2, 0.4));
   EXPECT_EQ(d.verdict, Verdict::unexplained) << to_text(d);
@@ -83,7 +70,7 @@ TEST(Drive, ACommandThatDoesNotArriveIsNoNoise) {
 /// Somebody pushes the axis for a third of a second.
 TEST(Drive, APushIsToldWithItsTime) {
   HiddenMachine machine;
-  machine.drive = [](double command, double t, double) { return t > 3 && t < 3.3 ? command + 1 : command; };
+  machine.drive = [](double command, double t) { return t > 3 && t < 3.3 ? command + 1 : command; };
   HiddenAxis axis(machine);
   const Diagnosis d = diagnosed(axis, there_and_back(0.3, 0.3));
   EXPECT_NE(d.verdict, Verdict::nothing_missing);

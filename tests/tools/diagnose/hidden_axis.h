@@ -92,7 +92,7 @@ struct HiddenMachine {
   double leaves_out_s = 0;  ///< of the start of every record
   double unfelt_noise = 0;  ///< of the recorded input, that the machine does not feel
   /// What arrives of a command at a time; empty: all of it.
-  std::function<double(double command, double time, double position)> drive;
+  std::function<double(double command, double time)> drive;
   size_t loses_every = 0;  ///< one row in this number that a device would have lost; 0: none
   std::string position_port = "mass.position", velocity_port = "mass.velocity",
               damping_port = "viscous.force";
@@ -165,7 +165,7 @@ class HiddenAxis {
           plant.state[VELOCITY] + machine_.velocity_noise.value_or(0) * random_normal(&random);
       const double t = double(k) * hidden_sample_time;
       const bool is_lost = machine_.loses_every > 0 && k % machine_.loses_every == machine_.loses_every / 2;
-      const double felt = machine_.drive ? machine_.drive(force, t, plant.state[POSITION]) : force;
+      const double felt = machine_.drive ? machine_.drive(force, t) : force;
       if (machine_.unfelt_noise > 0) force += machine_.unfelt_noise * random_normal(&random);
       if (t >= machine_.leaves_out_s && !is_lost)
         out << fmt::format("{:.3f},{:.10g},{:.10g},{:.10g}\n", t, force / machine_.newtons_per_column, seen,

@@ -77,12 +77,6 @@ Candidate spline(std::string variables, size_t levels, double low, double high, 
   return candidate;
 }
 
-/// What the input loses.
-Candidate at_input(Candidate candidate) {
-  candidate.acts = Acts::input, candidate.at_rest = AtRest::free;
-  return candidate;
-}
-
 /// Its mean acts like a mass, without delay.
 Candidate mass_along(Candidate candidate) {
   candidate.added_inertia = [](const Member& member) {
@@ -132,7 +126,6 @@ std::vector<Candidate> unknown_forces(const RecordSizes& sizes, bool is_map) {
   const double low = sizes.lowest_position, high = sizes.highest_position, top = sizes.top_speed;
   const Variable one = each_sample([](const Path&, size_t) { return 1.0; });
   const Variable acceleration = each_sample([](const Path& path, size_t k) { return path.acceleration[k]; });
-  const Variable input = each_sample([](const Path& path, size_t k) { return path.input[k]; });
   const Variable time = each_sample([](const Path& path, size_t k) { return double(k) * path.sample_time; });
   const Variable position = each_sample(middle_position), velocity = each_sample(middle_velocity);
   const Variable direction = direction_of(transition_of_direction(sizes));
@@ -146,7 +139,6 @@ std::vector<Candidate> unknown_forces(const RecordSizes& sizes, bool is_map) {
           spline("time", 40, 0, sizes.duration, time, one),
           of_direction,
           spline("position,velocity", 24, low, high, position, velocity),
-          at_input(spline("position,input", 24, low, high, position, input)),
           mass_along(spline("position,acceleration", 24, low, high, position, acceleration)),
           tone(sizes)};
 }

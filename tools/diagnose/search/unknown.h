@@ -6,8 +6,8 @@
 namespace loopwright::diagnosis {
 
 /// Functions of position, of velocity, of time, of position with the direction (a position-dependent dry
-/// friction), with the velocity (a position-dependent damping), with the acceleration (a position-dependent mass)
-/// or with the input (a position-dependent gain of the drive), and a tone in time. `form` lists the variables, separated by commas. For a map of balances, only
+/// friction), with the velocity (a position-dependent damping) or with the acceleration (a position-dependent
+/// mass), and a tone in time. `form` lists the variables, separated by commas. For a map of balances, only
 /// position and direction.
 std::vector<Candidate> unknown_forces(const RecordSizes& sizes, bool is_map);
 

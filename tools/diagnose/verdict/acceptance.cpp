@@ -77,8 +77,17 @@ class Judge {
     std::vector<Member> members = e.members;
     members.erase(members.begin() + std::ptrdiff_t(member));
     Estimate others = fit_members(trials_, std::move(members), e.noise, e.motion, iterations);
-    FreeRun run = run_freely(improver_.with(others.members), improver_, load_, trials_, inverse_, e.noise);
-    return {std::move(others), std::move(run)};
+    return {others, run_of(others.members, e.noise)};
+  }
+  /// A diagram that cannot be run with them counts as one that diverges.
+  FreeRun run_of(const std::vector<Member>& members, const Noise& noise) {
+    try {
+      return run_freely(improver_.with(members), improver_, load_, trials_, inverse_, noise);
+    } catch (const InputError&) {
+      FreeRun none;
+      none.diverged = true;
+      return none;
+    }
   }
   /// Beside the same load the others are compared fairly.
   static bool brings_own_load(const Acceptance& state, size_t step) {

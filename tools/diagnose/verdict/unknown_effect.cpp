@@ -68,12 +68,6 @@ std::pair<std::string, std::string> blocks_of(const Member& member, const Record
             R"({{"damping": {}, "force": {{"type": "Product", "in": {{"factors": ["damping.y", "velocity"]}}}}}})",
             table),
         "force.product"};
-  if (form == "position,input")
-    return {
-        fmt::format(
-            R"({{"loss": {}, "lost": {{"type": "Product", "in": {{"factors": ["loss.y", "input"]}}}}, "drive": {{"type": "Sum", "signs": "+-", "in": {{"terms": ["input", "lost.product"]}}}}}})",
-            table),
-        "drive.sum"};
   if (form == "position,direction")
     return {
         fmt::format(
@@ -98,7 +92,6 @@ std::optional<Effect> effect_of_unknown(const Member& member, const RecordSizes&
   effect.blocks = parse_json(std::make_shared<SourceFile>(SourceFile{effect.name, blocks}), problems);
   Attachment attachment;
   attachment.from = from;
-  if (member.candidate->acts == Acts::input) attachment.to = Attachment::To::input;
   effect.attachments.push_back(std::move(attachment));
   return effect;
 }
