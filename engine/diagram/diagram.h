@@ -129,8 +129,8 @@ struct LoadOptions {
   /// a setting of a block ("cogging.harmonics.0.amplitude"), or a key of the solver ("solver.stop"). The
   /// value is JSON, an expression ("=2*pi"), a number with a unit ("25 mm"), or otherwise plain text.
   std::vector<std::pair<std::string, std::string>> set;
-  std::vector<Value::Member>
-      set_in_file;  ///< the same as a file states it: path → value; applied after `set`
+  /// The same as a file states it: path → value; applied after `set`.
+  std::vector<Value::Member> set_in_file;
   std::map<std::string, std::string>
       variants;  ///< `--variant stage=quanser`: block path → name of the variant
   std::vector<Drive> drives;

@@ -49,11 +49,12 @@ std::string file_name(const std::string& path) { return std::filesystem::path(pa
 SeveralComparisons compare(const std::string& diagram, const std::vector<std::string>& experiments,
                            const LoadOptions& options, const RunOptions& run_options) {
   SeveralComparisons several{experiments, {}, {}, {}};
-  for (const std::string& experiment : experiments) try {
+  try {
+    for (const std::string& experiment : experiments)
       several.records.push_back(compare(diagram, experiment, options, run_options));
-    } catch (InputError& error) {
-      explain_failure(diagram, experiments, options, std::move(error.problems));
-    }
+  } catch (InputError& error) {
+    explain_failure(diagram, experiments, options, std::move(error.problems));
+  }
   std::vector<RecordView> views;
   for (const Comparison& c : several.records)
     if (c.force) views.push_back({c.force->motion, c.force->residual, c.force->content});

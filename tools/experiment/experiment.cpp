@@ -289,8 +289,7 @@ class Loader {
     p.found = column->origin;
     p.hint = fmt::format(
         "leave it out, or use the rows that have it: \"excerpt\": {{\"skip\": {}, \"decimate\": {}}}; inputs "
-        "are then "
-        "held from one of these rows to the next",
+        "are then held from one of these rows to the next",
         first, every);
     return true;
   }

@@ -48,12 +48,13 @@ void add_stale(std::span<const double> value, std::vector<size_t>& rows) {
 
 /// Out and back: the second differences of the neighbours are half as large, and of the other sign.
 void add_leaps(std::span<const double> value, std::vector<size_t>& rows) {
+  constexpr double least_share = 0.25, most_share = 0.75;  // about a half
   const auto second = [&](size_t k) { return value[k + 1] - 2 * value[k] + value[k - 1]; };
   for (const size_t row : outliers(value)) {
     if (row < 2 || row + 2 >= value.size()) continue;
     const auto is_half = [&](size_t k) {
       const double share = -second(k) / second(row);
-      return share > 0.25 && share < 0.75;
+      return share > least_share && share < most_share;
     };
     if (is_half(row - 1) && is_half(row + 1)) rows.push_back(row);
   }
@@ -79,14 +80,9 @@ void replace_readings(std::span<const double> at, std::span<double> value, std::
     for (size_t k = row + 1; found >= 2 && k < value.size() && found < 4; ++k)
       if (!is_false(k)) around[found++] = k;
     if (found < 4) continue;
-    double sum = 0;
-    for (const size_t j : around) {
-      double weight = 1;
-      for (const size_t other : around)
-        if (other != j) weight *= (at[row] - at[other]) / (at[j] - at[other]);
-      sum += weight * value[j];
-    }
-    value[row] = sum;
+    const std::array<double, 4> weights = weights_of_cubic(at, row, around);
+    value[row] = 0;
+    for (size_t j = 0; j < around.size(); ++j) value[row] += weights[j] * value[around[j]];
   }
 }
 

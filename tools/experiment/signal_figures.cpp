@@ -17,19 +17,25 @@ double difference_after(std::span<const double> x, size_t lag, size_t step) {
 
 }  // namespace
 
+std::array<double, 4> weights_of_cubic(std::span<const double> at, size_t row,
+                                       const std::array<size_t, 4>& around) {
+  std::array<double, 4> weights{1, 1, 1, 1};
+  for (size_t j = 0; j < around.size(); ++j)
+    for (const size_t other : around)
+      if (other != around[j]) weights[j] *= (at[row] - at[other]) / (at[around[j]] - at[other]);
+  return weights;
+}
+
 double roughness(std::span<const double> at, std::span<const double> value) {
   constexpr size_t reach = 2, most = 20000;
   const size_t n = value.size(), step = std::max<size_t>(1, n / most);
   std::vector<std::pair<double, double>> rows;  // speed, deviation
   for (size_t i = reach; i + reach < n; i += step) {
-    const size_t around[] = {i - 2, i - 1, i + 1, i + 2};
+    const std::array<size_t, 4> around{i - 2, i - 1, i + 1, i + 2};
+    const std::array<double, 4> weights = weights_of_cubic(at, i, around);
     double deviation = value[i], squares = 1;
-    for (size_t j : around) {
-      double weight = 1;
-      for (size_t other : around)
-        if (other != j) weight *= (at[i] - at[other]) / (at[j] - at[other]);
-      deviation -= weight * value[j], squares += weight * weight;
-    }
+    for (size_t j = 0; j < around.size(); ++j)
+      deviation -= weights[j] * value[around[j]], squares += weights[j] * weights[j];
     rows.emplace_back(std::abs(value[i + reach] - value[i - reach]),
                       std::abs(deviation) / std::sqrt(squares));
   }

@@ -1,10 +1,16 @@
 /// Figures of a single recorded signal.
 #pragma once
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
 
 namespace loopwright {
+
+/// Of the cubic through four rows, at another one: what the value of each of the four counts. `at`: where the
+/// rows lie, in any unit.
+std::array<double, 4> weights_of_cubic(std::span<const double> at, size_t row,
+                                       const std::array<size_t, 4>& around);
 
 /// The median deviation of a signal from the cubic through the two rows before and the two behind each row,
 /// over the faster half of the rows; per unit of independent noise. 0 for fewer than 20 rows. `at`: where the

@@ -127,7 +127,8 @@ TEST(LateInput, IsToldApartFromDryFrictionBesideIt) {
   Plant plant = motor(m, 64);
   plant.delay = 3e-3, plant.rows = 1500;
   const Diagnosis d = diagnosed(plant);
-  EXPECT_THAT(terms(d), testing::UnorderedElementsAre("amplifier.u: delay()", "torques.sum: sign(rotor.velocity)"))
+  EXPECT_THAT(terms(d),
+              testing::UnorderedElementsAre("amplifier.u: delay()", "torques.sum: sign(rotor.velocity)"))
       << to_text(d);
 }
 TEST(LateInput, OfAMotorThatGetsItAtOnceNothingIsSaid) {

@@ -113,7 +113,8 @@ TEST(Predictor, OtherGainsNeedNoOtherRun) {
   EXPECT_LT(off, 1e-3 * size) << "the same but for samples near rest, where the two see other speeds";
 }
 
-/// A record may need several steps in a sample, or have samples of any length. A delayed command still arrives.
+/// A record may need several steps in a sample, or have samples of any length. A delayed command still
+/// arrives.
 TEST(Predictor, SampledBlocksRunAtTheirSamplesWhateverTheStep) {
   const auto plan = plan_of(R"({"loopwright": 1, "solver": {"step": 0.001, "stop": 1}, "blocks": {
     "command": {"type": "Constant", "value": 3},

@@ -8,15 +8,16 @@ namespace {
 
 using testing::ElementsAre;
 
-Diagnosis diagnosed(const FlawedMachine& machine) {
+/// Of 0.4 N that rise over a speed.
+Diagnosis diagnosed(double speed) {
+  FlawedMachine machine;
+  machine.smooth_friction = 0.4, machine.smooth_speed = speed;
   const FlawedAxis axis(machine);
   return diagnose(axis.diagram(), {axis.experiment()});
 }
 
 TEST(SmoothFriction, IsNamedWithItsLevelAndSpeed) {
-  FlawedMachine machine;
-  machine.smooth_friction = 0.4, machine.smooth_speed = 0.04;
-  const Diagnosis d = diagnosed(machine);
+  const Diagnosis d = diagnosed(0.04);
   EXPECT_EQ(name_of(d.verdict), "explained") << to_text(d);
   ASSERT_THAT(names(d), ElementsAre("smooth_friction")) << to_text(d);
   expect_parameter(d.effects[0], "level", 0.4, 0.02, "N");
@@ -24,9 +25,7 @@ TEST(SmoothFriction, IsNamedWithItsLevelAndSpeed) {
 }
 
 TEST(SmoothFriction, OfVerySmallSpeedsIsDryFriction) {
-  FlawedMachine machine;
-  machine.smooth_friction = 0.4, machine.smooth_speed = 0.0005;
-  const Diagnosis d = diagnosed(machine);
+  const Diagnosis d = diagnosed(0.0005);
   EXPECT_EQ(name_of(d.verdict), "explained") << to_text(d);
   EXPECT_THAT(names(d), ElementsAre("coulomb_friction")) << to_text(d);
 }

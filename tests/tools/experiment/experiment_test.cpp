@@ -107,8 +107,8 @@ TEST_F(Experiments, ASlowerSignalIsRefusedWithTheRowsThatHaveIt) {
   for (const char* none : {"", "nan"}) {
     record(none);
     folder.experiment(drive, both);
-    expect_refusal({"column \"v\" has a number in one of 3 rows, from row 1 on", "e.json:",
-                    R"("excerpt": {"skip": 0, "decimate": 3})"});
+    expect_refusal({"column \"v\" has a number in one of 3 rows, from row 1 on",
+                    "e.json:", R"("excerpt": {"skip": 0, "decimate": 3})"});
     folder.experiment(drive, both, R"(, "excerpt": {"skip": 0, "decimate": 3})");
     const Comparison c = folder.compared();
     EXPECT_EQ(c.time.size(), 7u);

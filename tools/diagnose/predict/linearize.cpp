@@ -72,6 +72,18 @@ SlopeShares slope_shares(double decay) {
   return {-velocity * (1 - decay) / (z - (1 - decay)), velocity};
 }
 
+/// Inertia, damping and the shares of a slope, from how a velocity decays and what a force does to it: v' =
+/// (F - D v) / M, exactly. `x`: the position among the states; -1: none.
+void read_law_of_motion(LinearAxis& linear, Eigen::Index v, Eigen::Index x, double sample_time) {
+  const double decay = linear.A(v, v), per_force = linear.push[v];
+  const SlopeShares shares = slope_shares(decay);
+  linear.damping = (1 - decay) / per_force;
+  const double rate = decay < 1 ? -std::log(decay) : 0;
+  linear.inertia = rate > 0 ? linear.damping / (rate / sample_time) : sample_time / per_force;
+  linear.slope_share[v] = shares.velocity;
+  if (x >= 0) linear.slope_share[x] = shares.position;
+}
+
 }  // namespace
 
 Eigen::VectorXd AxisModel::sample_from(const Eigen::VectorXd& states, double input, double force) {
@@ -113,8 +125,8 @@ LinearAxis AxisModel::linearize_motion() {
   std::vector<double> slopes;  // of the velocity over the position
   const double weight = 1.0 / double(rows.size());
   for (size_t k : rows) {
-    start(place[k], velocity ? velocity->value[k]
-                             : (place[k + 1] - place[k - 1]) / (2 * record_.sample_time));
+    start(place[k],
+          velocity ? velocity->value[k] : (place[k + 1] - place[k - 1]) / (2 * record_.sample_time));
     if (force_remembers_) remembered_.assign(run_->arena().begin(), run_->arena().end());
     Eigen::VectorXd at(n);
     for (Eigen::Index i = 0; i < n; ++i) at[i] = state(seen_[size_t(i)]);
@@ -156,15 +168,7 @@ LinearAxis AxisModel::linearize_motion() {
   if (!position && !slopes.empty() && scatter_about_zero(slopes))
     linear.A.col(x) = Eigen::VectorXd::Unit(n, x);
   linear.slope_share = Eigen::VectorXd::Zero(n);
-  if (v < 0) return linear;
-  const double decay = linear.A(v, v), per_force = linear.push[v];  // of v' = (F - D v) / M, exactly
-  const SlopeShares shares = slope_shares(decay);
-  linear.damping = (1 - decay) / per_force;
-  const double rate = decay < 1 ? -std::log(decay) : 0;
-  linear.inertia =
-      rate > 0 ? linear.damping / (rate / record_.sample_time) : record_.sample_time / per_force;
-  linear.slope_share[v] = shares.velocity;
-  if (x >= 0) linear.slope_share[x] = shares.position;
+  if (v >= 0) read_law_of_motion(linear, v, x, record_.sample_time);
   return linear;
 }
 

@@ -89,7 +89,8 @@ Noise fit_noise(const Trials& trials, const std::vector<Fitted>& fitted, const N
   nlopt_set_lower_bounds(optimiser, low.data());
   nlopt_set_upper_bounds(optimiser, high.data());
   nlopt_set_initial_step1(optimiser, 0.7);
-  nlopt_set_ftol_abs(optimiser, 0.02);
+  constexpr double flat = 0.02;  // [-2 ln L] A turn that gains less is the last one.
+  nlopt_set_ftol_abs(optimiser, flat);
   nlopt_set_maxeval(optimiser, 60 * int(x.size()));
   double value = 0;
   nlopt_optimize(optimiser, x.data(), &value);

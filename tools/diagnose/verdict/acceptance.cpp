@@ -77,7 +77,8 @@ class Judge {
     std::vector<Member> members = e.members;
     members.erase(members.begin() + std::ptrdiff_t(member));
     Estimate others = fit_members(trials_, std::move(members), e.noise, e.motion, iterations);
-    return {others, run_of(others.members, e.noise)};
+    FreeRun run = run_of(others.members, e.noise);
+    return {std::move(others), std::move(run)};
   }
   /// A diagram that cannot be run with them counts as one that diverges.
   FreeRun run_of(const std::vector<Member>& members, const Noise& noise) {

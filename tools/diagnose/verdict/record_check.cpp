@@ -20,10 +20,11 @@ std::optional<RecordFinding> too_few_rows(const Trials& trials) {
 }
 
 RecordFinding readings_are_false(size_t count, std::string consequence) {
-  const char* const text = count == 1 ? "1 reading is not that of its row: it repeats the one before while the "
-                                        "signal moves on, or leaps out and back"
-                                      : "{} readings are not those of their rows: they repeat the one before "
-                                        "while the signal moves on, or leap out and back";
+  const char* const text = count == 1
+                               ? "1 reading is not that of its row: it repeats the one before while the "
+                                 "signal moves on, or leaps out and back"
+                               : "{} readings are not those of their rows: they repeat the one before "
+                                 "while the signal moves on, or leap out and back";
   return {fmt::format(fmt::runtime(text), count), std::move(consequence)};
 }
 

@@ -10,8 +10,8 @@
 namespace loopwright::studio {
 
 /// From a request "write_experiment" (tools/studio/protocol.md); `data`: the record, relative to the
-/// experiment. `before`: the experiment that it replaces, or nothing; its "set", which a request does not have,
-/// stays. Throws Refused for a request that is incomplete.
+/// experiment. `before`: the experiment that it replaces, or nothing; its "set", which a request does not
+/// have, stays. Throws Refused for a request that is incomplete.
 std::string experiment_text(const Value& request, const std::string& data, const Value& before);
 
 /// Every port that an experiment drives, compares, or names in its roles and sites.

@@ -32,9 +32,8 @@ class FileChanges {
 
   TextChanges take_experiment(const Value& experiment) {
     follow_set(experiment);
-    std::ranges::move(
-        ports_renamed(experiment, [&](const std::string& port) { return names_.signal(port); }),
-        std::back_inserter(changes_));
+    std::ranges::move(ports_renamed(experiment, [&](const std::string& port) { return names_.signal(port); }),
+                      std::back_inserter(changes_));
     return std::move(changes_);
   }
   TextChanges take_sweep(const Value& sweep) {

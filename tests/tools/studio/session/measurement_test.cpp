@@ -1,4 +1,5 @@
-// Records as people bring them: units in headings or typed, drives, files that appear, paths outside of the folder.
+// Records as people bring them: units in headings or typed, drives, files that appear, paths outside of the
+// folder.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,7 +21,8 @@ class Measurements : public testing::Test {
         "net": {"type": "Sum", "signs": "+", "in": {"terms": ["force"]}},
         "mass": {"type": "Mass", "mass": {"value": 2, "unit": "kg"}, "in": {"force": "net.sum"}}},
       "outputs": {"position": "mass.position", "velocity": "mass.velocity"}})");
-    folder_.write("top/stage.json", R"({"loopwright": 1, "solver": {"method": "rk4", "step": 0.001, "stop": 1},
+    folder_.write("top/stage.json",
+                  R"({"loopwright": 1, "solver": {"method": "rk4", "step": 0.001, "stop": 1},
       "blocks": {
         "push": {"type": "Constant", "value": {"value": 0, "unit": "N"}},
         "axis": {"diagram": "../parts/axis.json", "in": {"force": "push.y"}}},
@@ -42,7 +44,9 @@ class Measurements : public testing::Test {
     ADD_FAILURE() << name << " is not among " << columns["columns"].dump(1);
     return columns["columns"][0];
   }
-  static void type_unit(Json& column, const char* unit) { column["unit"] = unit, column["unit_is_stated"] = false; }
+  static void type_unit(Json& column, const char* unit) {
+    column["unit"] = unit, column["unit_is_stated"] = false;
+  }
   Json written(const Json& columns) {
     Json roles = Json::object();
     for (const Json& role : columns["roles"]) roles[role["role"].get<std::string>()] = role["port"];
@@ -59,8 +63,8 @@ class Measurements : public testing::Test {
   void expect_right(const Json& columns) {
     const Json answer = written(columns);
     ASSERT_TRUE(answer["written"]) << answer.dump(1);
-    const Json comparison = page_.ask(
-        {{"do", "compare"}, {"path", "top/stage.json"}, {"experiment", answer["experiment"]}});
+    const Json comparison =
+        page_.ask({{"do", "compare"}, {"path", "top/stage.json"}, {"experiment", answer["experiment"]}});
     EXPECT_EQ(comparison["drives"], 1);
     ASSERT_EQ(comparison["signals"].size(), 1u);
     EXPECT_LT(comparison["signals"][0]["rmse"].get<double>(), 3e-6) << answer["text"];
@@ -150,17 +154,19 @@ TEST_F(Measurements, AComparisonWithoutDriveIsCounted) {
   Json found = columns();
   const Json answer = written(found);
   ASSERT_TRUE(answer["written"]) << answer.dump(1);
-  const Json comparison = page_.ask(
-      {{"do", "compare"}, {"path", "top/stage.json"}, {"experiment", answer["experiment"]}});
+  const Json comparison =
+      page_.ask({{"do", "compare"}, {"path", "top/stage.json"}, {"experiment", answer["experiment"]}});
   EXPECT_EQ(comparison["drives"], 0);
 }
 
 TEST_F(Measurements, FilesThatAppearAreListed) {
   page_.ask({{"do", "open"}, {"path", "top/stage.json"}});
-  folder_.write("top/new.experiment.json", R"({"loopwright": 1, "title": "New", "data": "log.csv", "compare": {}})");
+  folder_.write("top/new.experiment.json",
+                R"({"loopwright": 1, "title": "New", "data": "log.csv", "compare": {}})");
   const auto lists_it = [](const Json& files) {
     for (const Json& file : files)
-      if (file["path"] == "top/new.experiment.json") return file["kind"] == "experiment" && file["title"] == "New";
+      if (file["path"] == "top/new.experiment.json")
+        return file["kind"] == "experiment" && file["title"] == "New";
     return false;
   };
   page_.session().look();
@@ -177,7 +183,8 @@ TEST_F(Measurements, PathsLeadToTheFilesFromAnywhere) {
   EXPECT_EQ(files["axis"], "parts/axis.json");
   EXPECT_EQ(page_.ask({{"do", "open"}, {"path", "parts/axis.json"}})["path"], "parts/axis.json");
   const Json run = page_.ask({{"do", "run"}, {"path", "top/stage.json"}});
-  EXPECT_EQ(run["command"], "loopwright run " + folder_.path("top/stage.json")) << "as in the terminal of the studio";
+  EXPECT_EQ(run["command"], "loopwright run " + folder_.path("top/stage.json"))
+      << "as in the terminal of the studio";
 }
 
 }  // namespace
