@@ -35,6 +35,14 @@ constexpr double least_rows = 200;
 /// [s]: the search runs hundreds of shapes along all of them.
 constexpr double most_rows = 120000, thinned_sample_s = 2e-3;
 
+/// [rows] On both sides of a change of sign, where the sign of dry friction is not certain.
+constexpr size_t rows_of_a_turn = 1;
+/// [mean square of the whitened errors] A law explains the rows after the reversals. Where an axis sticks, or
+/// its sensor is noisy, none does: hundreds.
+constexpr double most_mean_square_at_reversals = 2;
+/// [criterion] Over all rows together, by which another law must do better than the present one.
+constexpr double least_gain_at_reversals = 50;
+
 // Steps.
 
 /// [poles of a sample] Their sizes after a whole step and two halves differ by less if the step is short

@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include "tools/diagnose/search/doubt.h"
+#include "tools/diagnose/search/friction_at_reversals.h"
 #include "tools/diagnose/search/law_swaps.h"
 #include "tools/diagnose/search/remaining_force.h"
 #include "tools/diagnose/search/spectrum.h"
@@ -24,8 +25,13 @@ void maximise(Trials& trials, Estimate& estimate) {
 class Rivals {
  public:
   /// `reach`: loss of the criterion that a rival may have.
-  Rivals(Trials& trials, const Estimate& estimate, size_t catalogue, double reach)
-      : trials_(trials), estimate_(estimate), catalogue_(catalogue), reach_(reach) {}
+  Rivals(Trials& trials, const Estimate& estimate, size_t catalogue, double reach,
+         FrictionAtReversals& at_reversals)
+      : trials_(trials),
+        estimate_(estimate),
+        catalogue_(catalogue),
+        reach_(reach),
+        at_reversals_(at_reversals) {}
 
   double reach() const { return reach_; }
   /// No further rival is fitted.
@@ -52,10 +58,15 @@ class Rivals {
     if (const double loss = criterion_of(other) - criterion_of(estimate_); loss > reach_ && loss < 4 * reach_)
       maximise(trials_, other);
     const std::optional<double> loss = loss_of(proposal, other);
-    if (!loss) return {};
+    if (!loss || is_refuted(proposal)) return {};
     const double disliked = *loss - preference(trials_, other.members, estimate_.members);
     if (disliked < best_loss_) best_loss_ = disliked, best_ = std::move(other);
     return loss;
+  }
+  /// Another law of dry friction, against which the rows after reversals speak.
+  bool is_refuted(const Proposal& p) const {
+    return p.removed.size() == 1 && p.added.size() == 1 &&
+           at_reversals_.is_refuted(p.removed[0], *p.added[0].candidate);
   }
   /// Whether it is as good on the same motion, and not much worse on its own motion. If the diagram itself
   /// quantizes, for example with an encoder, every run gives a different result.
@@ -83,6 +94,7 @@ class Rivals {
   const Estimate& estimate_;
   size_t catalogue_;
   double reach_, best_loss_ = -clearly_better;
+  FrictionAtReversals& at_reversals_;
   Estimate best_;
 };
 
@@ -115,6 +127,11 @@ std::vector<Substitute> substitutes_of(Rivals& rivals, size_t member, const std:
   return list;
 }
 
+void add_if_new(std::vector<Substitute>& list, const Candidate* candidate) {
+  if (std::ranges::find(list, candidate, &Substitute::candidate) == list.end())
+    list.push_back({candidate, 0});
+}
+
 /// Dry friction with a shape, where simpler dry friction leaves no more force along the smooth motion: only
 /// the moments after a breakaway speak for the shape, and these also depend on when exactly it happened.
 void add_simpler_friction(std::vector<Substitute>& list, const Trials& trials, Rivals& rivals,
@@ -125,8 +142,7 @@ void add_simpler_friction(std::vector<Substitute>& list, const Trials& trials, R
     if (p.removed != std::vector<size_t>{member} || p.added.size() != 1) return false;
     const Candidate& other = *p.added.front().candidate;
     return other.at_rest != AtRest::free && !other.is_unknown && other.acts == Acts::force &&
-           parameters_of(other) < parameters_of(shaped) &&
-           std::ranges::find(list, &other, &Substitute::candidate) == list.end();
+           parameters_of(other) < parameters_of(shaped);
   };
   const double left = residual_size(trials, *trials.inverse, estimate.members).fitted;
   for (const Proposal& proposal : exchanges) {
@@ -134,7 +150,8 @@ void add_simpler_friction(std::vector<Substitute>& list, const Trials& trials, R
     const Estimate other = rivals.fitted(proposal);
     if (!other.is_valid) continue;
     const double with_other = residual_size(trials, *trials.inverse, other.members).fitted;
-    if (with_other <= criteria::same_balance * left) list.push_back({proposal.added.front().candidate, 0});
+    if (with_other <= criteria::same_balance * left && !rivals.is_refuted(proposal))
+      add_if_new(list, proposal.added.front().candidate);
   }
 }
 
@@ -174,7 +191,8 @@ std::optional<Estimate> simplified(Rivals& rivals, const std::vector<Member>& me
                               parameters_of(*proposal.added[0].candidate) < parameters_of(*member.candidate);
       if (!is_simpler || proposal.gain <= -10 * rivals.reach() || rivals.is_spent()) continue;
       Estimate other = rivals.fitted(proposal);
-      if (rivals.loss_of(proposal, other) || rivals.is_promised(proposal, other)) return other;
+      const bool is_good = rivals.loss_of(proposal, other) || rivals.is_promised(proposal, other);
+      if (is_good && !rivals.is_refuted(proposal)) return other;
     }
   }
   return {};
@@ -229,7 +247,7 @@ void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
 /// Computes the alternatives, and from them the probability of each member.
 void ask_rivals(const Trials& trials, Conclusion& result, Evidence& evidence,
                 const std::vector<Proposal>& exchanges, const std::vector<Candidate>& candidates,
-                Rivals& rivals, double n) {
+                Rivals& rivals, const FrictionAtReversals& at_reversals, double n) {
   const double reach = rivals.reach();
   // Far from its operating point the loss predicted by a linearization may be wrong by a hundred.
   const double far = std::max(100.0, 3 * reach);
@@ -249,6 +267,8 @@ void ask_rivals(const Trials& trials, Conclusion& result, Evidence& evidence,
     result.weights[m].loss = -removal[m];
     result.substitutes.push_back(substitutes_of(rivals, m, near, result.weights[m].loss));
     add_simpler_friction(result.substitutes.back(), trials, rivals, result.estimate, m, exchanges);
+    for (const auto& [member, law] : at_reversals.not_excluded())
+      if (member == m) add_if_new(result.substitutes.back(), law);
     double others = std::exp(-std::min(result.weights[m].loss, 600.0) / 2);
     for (const Substitute& s : result.substitutes[m]) others += std::exp(-std::max(s.loss, 0.0) / 4);
     result.inclusion.push_back(0.995 / (1 + others));
@@ -292,18 +312,22 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
     for (const Shape& shape : *list) all.push_back(&shape);
   Evidence evidence(trials, estimate, all, candidates.size());
   const std::vector<Proposal> exchanges = evidence.exchanges();
+  FrictionAtReversals at_reversals(trials, estimate, shapes, candidates.size());
   Rivals rivals(
       trials, estimate, candidates.size(),
-      std::max({least_gain, least_gain_per_row * n, unexplained(result.portmanteau_beside_counts())}));
+      std::max({least_gain, least_gain_per_row * n, unexplained(result.portmanteau_beside_counts())}),
+      at_reversals);
   std::optional<Estimate> instead;
-  if (!stays) instead = simplified(rivals, estimate.members, exchanges);
+  if (rounds > 0 && (instead = at_reversals.better()))
+    result.trail.push_back("after reversals another law of dry friction does better");
+  if (!stays && !instead) instead = simplified(rivals, estimate.members, exchanges);
   if (!instead) {
-    ask_rivals(trials, result, evidence, exchanges, candidates, rivals, n);
+    ask_rivals(trials, result, evidence, exchanges, candidates, rivals, at_reversals, n);
     if (!stays && rounds > 0 && (instead = rivals.better(unexplained(result.portmanteau_beside_counts()))))
       result.trail.push_back("with noise of its own another set does better");
   }
   if (instead) {
-    Conclusion next = concluded(trials, candidates, shapes, std::move(*instead), rounds - 1, false);
+    Conclusion next = concluded(trials, candidates, shapes, std::move(*instead), rounds - 1, stays);
     next.trail.insert(next.trail.begin(), result.trail.begin(), result.trail.end());
     return next;
   }

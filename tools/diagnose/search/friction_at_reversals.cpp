@@ -1,0 +1,161 @@
+#include "tools/diagnose/search/friction_at_reversals.h"
+#include <algorithm>
+#include <cmath>
+#include "models/real/whole.h"
+#include "tools/diagnose/criteria.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+bool is_dry(const Candidate& candidate) {
+  return candidate.at_rest != AtRest::free && candidate.acts == Acts::force && !candidate.is_unknown;
+}
+
+bool turns_at(const Path& path, size_t row) {
+  return row > 0 && row < path.samples() && (path.velocity[row] > 0) != (path.velocity[row - 1] > 0);
+}
+
+/// In motion after the start, and not beside a change of sign.
+bool has_certain_sign(const Path& path, const AxisRecord& record, size_t row) {
+  if (path.rests[row] || record.is_missing(row)) return false;
+  for (size_t near = row; near <= row + 1 + criteria::rows_of_a_turn; ++near)
+    if (near >= criteria::rows_of_a_turn && turns_at(path, near - criteria::rows_of_a_turn)) return false;
+  return true;
+}
+
+std::vector<char> with_reversals(const Trial& trial, const Path& path) {
+  std::vector<char> rows = trial.usable;
+  const size_t start = whole_count(std::ceil(criteria::settling_s / path.sample_time));
+  for (size_t k = start; k < std::min(path.samples(), rows.size()); ++k)
+    if (has_certain_sign(path, trial.model->record(), k)) rows[k] = 1;
+  return rows;
+}
+
+/// Other rows count as long as it lives.
+class OtherRows {
+ public:
+  OtherRows(Trials& trials, const std::vector<std::vector<char>>& rows) : trials_(trials), before_(rows) {
+    exchange();
+  }
+  ~OtherRows() { exchange(); }
+  OtherRows(const OtherRows&) = delete;
+  const std::vector<std::vector<char>>& before() const { return before_; }
+
+ private:
+  void exchange() {
+    for (size_t t = 0; t < before_.size(); ++t) std::swap(trials_.list[t].usable, before_[t]);
+  }
+  Trials& trials_;
+  std::vector<std::vector<char>> before_;
+};
+
+/// Other laws of dry friction, if this is one.
+std::vector<const Candidate*> other_laws(const Candidate& present, const std::vector<Shape>& shapes) {
+  std::vector<const Candidate*> laws;
+  for (const Shape& shape : shapes)
+    if (is_dry(present) && is_dry(*shape.candidate) && shape.candidate->name != present.name &&
+        (laws.empty() || laws.back() != shape.candidate))
+      laws.push_back(shape.candidate);
+  return laws;
+}
+
+/// A law in place of a member: its first amplitude is the level.
+std::vector<Member> exchanged(std::vector<Member> members, size_t at, const Candidate& law,
+                              std::vector<double> nonlinear) {
+  std::vector<double> linear(law.linear.size(), 0.0);
+  linear.front() = members[at].linear.front();
+  members[at] = {&law, std::move(linear), std::move(nonlinear)};
+  return members;
+}
+
+}  // namespace
+
+FrictionAtReversals::FrictionAtReversals(Trials& trials, const Estimate& estimate,
+                                         const std::vector<Shape>& shapes, size_t catalogue)
+    : trials_(trials), estimate_(estimate), shapes_(shapes), catalogue_(catalogue) {
+  const auto is_dry_member = [](const Member& m) { return is_dry(*m.candidate); };
+  if (trials.has_map() || std::ranges::none_of(estimate.members, is_dry_member)) return;
+  for (size_t t = 0; t < trials.list.size(); ++t) {
+    const Trial& trial = trials.list[t];
+    rows_.push_back(with_reversals(trial, (*estimate.fitted)[t].prediction.path));
+    for (size_t k = 0; k < trial.held_out_from; ++k) after_reversals_ += rows_[t][k] > trial.usable[k];
+  }
+  if (after_reversals_ > 0) present_ = on_all_rows(estimate.members, 4);
+}
+
+FrictionAtReversals::Rows FrictionAtReversals::on_all_rows(const std::vector<Member>& members,
+                                                           int iterations) {
+  const OtherRows counted(trials_, rows_);
+  Rows rows{fit_members(trials_, members, estimate_.noise, estimate_.motion, iterations), 0, {}};
+  if (!rows.fitted.is_valid) return rows;
+  const size_t ports = trials_.ports();
+  for (size_t t = 0; t < rows_.size(); ++t)
+    for (size_t k = 0, last = 0; k < trials_.list[t].held_out_from; ++k) {
+      if (!(rows_[t][k] > counted.before()[t][k])) continue;
+      if (rows.squares.empty() || k > last + 2 + 2 * criteria::rows_of_a_turn) rows.squares.push_back(0);
+      for (size_t p = 0; p < ports; ++p)
+        rows.squares.back() += std::pow((*rows.fitted.fitted)[t].white[k * ports + p], 2);
+      last = k;
+    }
+  for (double squares : rows.squares) rows.mean_square += squares / double(after_reversals_ * ports);
+  return rows;
+}
+
+FrictionAtReversals::Rows FrictionAtReversals::with_law(size_t member, const Candidate& law) {
+  constexpr int first_iterations = 1, iterations = 6;
+  Rows best;
+  for (const Shape& shape : shapes_) {
+    if (shape.candidate != &law) continue;
+    Rows rows = on_all_rows(exchanged(estimate_.members, member, law, shape.nonlinear), first_iterations);
+    if (rows.fitted.is_valid && (!best.fitted.is_valid || rows.fitted.profile < best.fitted.profile))
+      best = std::move(rows);
+  }
+  return best.fitted.is_valid ? on_all_rows(best.fitted.members, iterations) : best;
+}
+
+double FrictionAtReversals::gain(const Rows& from, const Rows& to) const {
+  const OtherRows counted(trials_, rows_);
+  return criterion(trials_, from.fitted, catalogue_) - criterion(trials_, to.fitted, catalogue_);
+}
+
+/// Beyond doubt, and not because of a single reversal.
+bool FrictionAtReversals::explains(const Rows& one, const Rows& other) const {
+  if (!one.fitted.is_valid || !other.fitted.is_valid || one.squares.size() != other.squares.size())
+    return false;
+  if (one.mean_square > criteria::most_mean_square_at_reversals) return false;
+  const double gained = gain(other, one);
+  double most = 0, all = 0;
+  for (size_t i = 0; i < one.squares.size(); ++i) {
+    const double here = other.squares[i] - one.squares[i];
+    most = std::max(most, here), all += here;
+  }
+  return gained > criteria::least_gain_at_reversals && (all <= 0 || all - most > 0);
+}
+
+std::optional<Estimate> FrictionAtReversals::better() {
+  const double numbers = double(after_reversals_ * trials_.ports());
+  if (numbers * (present_.mean_square - 1) < criteria::least_gain_at_reversals) return {};
+  Rows best;
+  for (size_t m = 0; m < estimate_.members.size(); ++m)
+    for (const Candidate* law : other_laws(*estimate_.members[m].candidate, shapes_)) {
+      Rows rows = with_law(m, *law);
+      if (!explains(rows, present_)) continue;
+      if (is_at_limit(rows.fitted.members[m]))
+        not_excluded_.push_back({m, law});
+      else if (!best.fitted.is_valid || gain(best, rows) > 0)
+        best = std::move(rows);
+    }
+  if (!best.fitted.is_valid) return {};
+  for (size_t t = 0; t < rows_.size(); ++t) trials_.list[t].moving = trials_.list[t].usable = rows_[t];
+  after_reversals_ = 0;
+  return std::move(best.fitted);
+}
+
+bool FrictionAtReversals::is_refuted(size_t member, const Candidate& law) {
+  const Candidate& present = *estimate_.members[member].candidate;
+  if (after_reversals_ == 0 || !is_dry(present) || !is_dry(law)) return false;
+  if (present_.mean_square > criteria::most_mean_square_at_reversals) return false;
+  return explains(present_, with_law(member, law));
+}
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,50 @@
+/// Which law of dry friction the rows right after the reversals show. The fit leaves them out: the instant at
+/// which friction turns is known only to within a sample or two, and whatever is wrong there is wrong for
+/// some time. But it is there that the laws differ: presliding hysteresis builds up over a distance, and
+/// friction that falls with speed is largest.
+#pragma once
+#include "tools/diagnose/search/evidence.h"
+
+namespace loopwright::diagnosis {
+
+class FrictionAtReversals {
+ public:
+  /// The estimate is only read. `shapes`: where the fits of other laws begin.
+  FrictionAtReversals(Trials& trials, const Estimate& estimate, const std::vector<Shape>& shapes,
+                      size_t catalogue);
+
+  /// With another law in place of the present one: it explains the rows after reversals, and the present one
+  /// does not. These rows count from then on: they determine its parameters.
+  std::optional<Estimate> better();
+  /// Laws that the rows after reversals ask for with a parameter at the end of its range: not found, and not
+  /// excluded either.
+  struct Law {
+    size_t member;
+    const Candidate* candidate;
+  };
+  const std::vector<Law>& not_excluded() const { return not_excluded_; }
+  /// Whether the present law explains the rows after reversals, and this one in place of a member does not.
+  bool is_refuted(size_t member, const Candidate& law);
+
+ private:
+  struct Rows {
+    Estimate fitted;              ///< to all of them
+    double mean_square = 0;       ///< after reversals
+    std::vector<double> squares;  ///< after each reversal
+  };
+  Rows on_all_rows(const std::vector<Member>& members, int iterations);
+  Rows with_law(size_t member, const Candidate& law);
+  double gain(const Rows& from, const Rows& to) const;
+  bool explains(const Rows& one, const Rows& other) const;
+
+  Trials& trials_;
+  const Estimate& estimate_;
+  const std::vector<Shape>& shapes_;
+  size_t catalogue_;
+  std::vector<std::vector<char>> rows_;  ///< those that count, and those after reversals
+  size_t after_reversals_ = 0;
+  Rows present_;
+  std::vector<Law> not_excluded_;
+};
+
+}  // namespace loopwright::diagnosis
