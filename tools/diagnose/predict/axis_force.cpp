@@ -173,7 +173,8 @@ void AxisModel::work_out_driving_force(const std::optional<Unit>& force_unit) {
 }
 
 bool AxisModel::holds_at_rest(double small_force) {
-  start(record_.measured.front().value[0], 0);
+  const MeasuredPort* position = record_.find("position");
+  start(position ? std::optional(position->value[0]) : std::nullopt, 0);
   return net_force(0, small_force) - net_force(0, -small_force) < small_force;
 }
 

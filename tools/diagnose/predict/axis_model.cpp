@@ -221,9 +221,9 @@ bool AxisModel::set_noise_enters_at_input(bool enters) {
   return size > 0 && std::abs(axis.push.dot(axis.noise_push)) < criteria::same_push * size;
 }
 
-void AxisModel::start(double position, double velocity) {
+void AxisModel::start(std::optional<double> position, double velocity) {
   run_->reset({plan_->seed, 0});
-  place(position, velocity);
+  place(position.value_or(this->position()), velocity);
 }
 
 void AxisModel::place(double position, double velocity) {
@@ -244,5 +244,10 @@ double AxisModel::velocity() const { return velocity_ < 0 ? 0 : numbers_[velocit
 double AxisModel::measured(size_t port) const { return numbers_[record_.measured[port].number]; }
 double AxisModel::state(int index) const { return numbers_[plan_->signals + index]; }
 void AxisModel::correct(int index, double by) { numbers_[plan_->signals + index] += by; }
+bool AxisModel::position_follows_velocity() const {
+  return !record_.find("position") && record_.measured.front().number == velocity_ &&
+         position_ >= plan_->signals && std::ranges::find(seen_, position_ - plan_->signals) == seen_.end();
+}
+void AxisModel::shift_position(double by) { numbers_[position_] += by; }
 
 }  // namespace loopwright::diagnosis

@@ -75,8 +75,8 @@ class AxisModel {
   /// White noise acts as the input does, instead of on the role force; returns whether that differs.
   bool set_noise_enters_at_input(bool enters);
 
-  /// Back to the start: position and velocity as given, everything else at the diagram's initial values.
-  void start(double position, double velocity);
+  /// Back to the start: velocity and, if given, position; everything else at the diagram's initial values.
+  void start(std::optional<double> position, double velocity);
   /// Advances by a sample, or `duration` sample times, with held input and held force (added to the force
   /// role; pushes forward).
   void step(double input, double force, double duration = 1);
@@ -89,6 +89,10 @@ class AxisModel {
   std::span<const int> states() const { return seen_; }
   double state(int index) const;
   void correct(int index, double by);
+  /// Whether the position is known as the integral of the measured velocity alone: a state that the velocity
+  /// does not show, but on which forces may depend, as cogging does.
+  bool position_follows_velocity() const;
+  void shift_position(double by);
   /// The mean force on the moving part at the present state, including the added force.
   double net_force(double input, double force);
   void place(double position, double velocity);

@@ -24,11 +24,11 @@ std::vector<size_t> operating_rows(const AxisRecord& record) {
   return rows;
 }
 
-/// The positions at which the diagram is linearized; those of a measured velocity begin at zero.
-std::vector<double> positions_of(const AxisRecord& record) {
+/// The positions at which the diagram is linearized; those of a measured velocity begin where it begins.
+std::vector<double> positions_of(const AxisRecord& record, double start) {
   if (const MeasuredPort* position = record.find("position")) return position->value;
   const std::vector<double>& velocity = record.measured.front().value;
-  std::vector<double> position(velocity.size());
+  std::vector<double> position(velocity.size(), start);
   for (size_t k = 1; k < position.size(); ++k) {
     const double step = record.sample_time * (record.duration.empty() ? 1 : record.duration[k - 1]);
     position[k] = position[k - 1] + step * (velocity[k - 1] + velocity[k]) / 2;
@@ -36,14 +36,13 @@ std::vector<double> positions_of(const AxisRecord& record) {
   return position;
 }
 
-/// Whether values scatter about zero: their mean is no larger than three of its standard errors.
+/// Whether values scatter by more than their mean. Of cogging, the mean of a few is a fifth of their scatter.
 bool scatter_about_zero(const std::vector<double>& values) {
-  constexpr double standard_errors = 3;
   const double n = double(values.size());
   double mean = 0, square = 0;
   for (double v : values) mean += v / n;
   for (double v : values) square += (v - mean) * (v - mean) / n;
-  return std::abs(mean) <= standard_errors * std::sqrt(square / n);
+  return std::abs(mean) <= std::sqrt(square);
 }
 
 /// In a map each row is independent: one state, the remaining sum of the model's forces, which is measured to
@@ -87,10 +86,9 @@ void read_law_of_motion(LinearAxis& linear, Eigen::Index v, Eigen::Index x, doub
 }  // namespace
 
 Eigen::VectorXd AxisModel::sample_from(const Eigen::VectorXd& states, double input, double force) {
-  if (force_remembers_) {  // sampled filters and delays keep their state, independent of earlier trials
-    std::ranges::copy(remembered_, run_->arena().begin());
-    run_->restored({plan_->clock.time(plan_->start_tick), plan_->start_tick});
-  }
+  // States that nobody sees, sampled filters and delays are as before every trial.
+  std::ranges::copy(remembered_, run_->arena().begin());
+  run_->restored({plan_->clock.time(plan_->start_tick), plan_->start_tick});
   for (size_t i = 0; i < seen_.size(); ++i) numbers_[plan_->signals + seen_[i]] = states[Eigen::Index(i)];
   step(input, force);
   Eigen::VectorXd next(states.size());
@@ -116,7 +114,8 @@ LinearAxis AxisModel::linearize_motion() {
   if (force_size == 0) force_size = 1;
   const MeasuredPort* position = record_.find("position");
   const MeasuredPort* velocity = record_.find("velocity");
-  const std::vector<double> place = positions_of(record_);
+  start({}, 0);
+  const std::vector<double> place = positions_of(record_, this->position());
   const auto place_of = [&](Number number) {  // among the states; -1: it is none
     const auto found = std::ranges::find(seen_, number - plan_->signals);
     return number < 0 || found == seen_.end() ? Eigen::Index(-1) : Eigen::Index(found - seen_.begin());
@@ -127,7 +126,7 @@ LinearAxis AxisModel::linearize_motion() {
   for (size_t k : rows) {
     start(place[k],
           velocity ? velocity->value[k] : (place[k + 1] - place[k - 1]) / (2 * record_.sample_time));
-    if (force_remembers_) remembered_.assign(run_->arena().begin(), run_->arena().end());
+    remembered_.assign(run_->arena().begin(), run_->arena().end());
     Eigen::VectorXd at(n);
     for (Eigen::Index i = 0; i < n; ++i) at[i] = state(seen_[size_t(i)]);
     const double u = record_.input[k], push = 1e-3 * force_size, change_of_u = 1e-3 * input_size;

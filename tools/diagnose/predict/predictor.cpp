@@ -266,9 +266,9 @@ Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains,
   const MeasuredPort* velocity = record.find("velocity");
   const auto& first = record.measured.front().value;
   model.start(
-      position ? position->value[0] : 0,
+      position ? std::optional(position->value[0]) : std::nullopt,
       velocity ? velocity->value[0] : (first[std::min<size_t>(rows - 1, 1)] - first[0]) / record.sample_time);
-  double d = 0;
+  double d = 0, passed = 0, left = 0;  // left: velocity error after the correction
   int turning = 0;
   std::array<double, 2> e{};
   for (size_t k = 0; k < rows; ++k) {
@@ -283,6 +283,10 @@ Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains,
       for (size_t i = 0; i < states.size(); ++i)
         model.correct(states[i], gains.K(Eigen::Index(i), Eigen::Index(p)) * e[p]);
       d += gains.K(Eigen::Index(states.size()), Eigen::Index(p)) * e[p];
+    }
+    if (model.position_follows_velocity()) {
+      if (!record.is_missing(k)) model.shift_position(0.5 * passed * (left + e[0]));
+      left = record.is_missing(k) ? 0 : velocity->value[k] - model.velocity();
     }
     const double velocity_now = model.velocity();
     path.position[k] = model.position(), path.velocity[k] = velocity_now;
@@ -301,7 +305,7 @@ Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains,
       if (!drives.force_slope.empty()) by -= axis.push[at] * drives.force_slope[k];
       if (axis.slope_share[at] != 0) model.correct(states[i], axis.slope_share[at] * by);
     }
-    const double passed = duration * record.sample_time;
+    passed = duration * record.sample_time;
     path.acceleration[k] = (model.velocity() - velocity_now) / passed;
     path.velocity_bow[k] =
         (model.position() - path.position[k]) / passed - 0.5 * (velocity_now + model.velocity());

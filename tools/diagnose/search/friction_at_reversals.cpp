@@ -118,8 +118,8 @@ double FrictionAtReversals::gain(const Rows& from, const Rows& to) const {
   return criterion(trials_, from.fitted, catalogue_) - criterion(trials_, to.fitted, catalogue_);
 }
 
-/// Beyond doubt, and not because of a single reversal.
-bool FrictionAtReversals::explains(const Rows& one, const Rows& other) const {
+/// Not because of a single reversal.
+bool FrictionAtReversals::explains(const Rows& one, const Rows& other, double least_gain) const {
   if (!one.fitted.is_valid || !other.fitted.is_valid || one.squares.size() != other.squares.size())
     return false;
   if (one.mean_square > criteria::most_mean_square_at_reversals) return false;
@@ -129,18 +129,19 @@ bool FrictionAtReversals::explains(const Rows& one, const Rows& other) const {
     const double here = other.squares[i] - one.squares[i];
     most = std::max(most, here), all += here;
   }
-  return gained > criteria::least_gain_at_reversals && (all <= 0 || all - most > 0);
+  return gained > least_gain && (all <= 0 || all - most > 0);
 }
 
 std::optional<Estimate> FrictionAtReversals::better() {
   const double numbers = double(after_reversals_ * trials_.ports());
-  if (numbers * (present_.mean_square - 1) < criteria::least_gain_at_reversals) return {};
+  if (numbers * (present_.mean_square - 1) < criteria::least_gain) return {};
   Rows best;
   for (size_t m = 0; m < estimate_.members.size(); ++m)
     for (const Candidate* law : other_laws(*estimate_.members[m].candidate, shapes_)) {
       Rows rows = with_law(m, *law);
-      if (!explains(rows, present_)) continue;
-      if (is_at_limit(rows.fitted.members[m]))
+      if (!explains(rows, present_, criteria::least_gain)) continue;
+      const bool is_beyond_doubt = gain(present_, rows) > criteria::least_gain_at_reversals;
+      if (!is_beyond_doubt || is_at_limit(rows.fitted.members[m]))
         not_excluded_.push_back({m, law});
       else if (!best.fitted.is_valid || gain(best, rows) > 0)
         best = std::move(rows);
@@ -155,7 +156,7 @@ bool FrictionAtReversals::is_refuted(size_t member, const Candidate& law) {
   const Candidate& present = *estimate_.members[member].candidate;
   if (after_reversals_ == 0 || !is_dry(present) || !is_dry(law)) return false;
   if (present_.mean_square > criteria::most_mean_square_at_reversals) return false;
-  return explains(present_, with_law(member, law));
+  return explains(present_, with_law(member, law), criteria::least_gain_at_reversals);
 }
 
 }  // namespace loopwright::diagnosis

@@ -16,8 +16,8 @@ class FrictionAtReversals {
   /// With another law in place of the present one: it explains the rows after reversals, and the present one
   /// does not. These rows count from then on: they determine its parameters.
   std::optional<Estimate> better();
-  /// Laws that the rows after reversals ask for with a parameter at the end of its range: not found, and not
-  /// excluded either.
+  /// Laws that do a little better, or with a parameter at the end of its range: not found, and not excluded
+  /// either.
   struct Law {
     size_t member;
     const Candidate* candidate;
@@ -35,7 +35,7 @@ class FrictionAtReversals {
   Rows on_all_rows(const std::vector<Member>& members, int iterations);
   Rows with_law(size_t member, const Candidate& law);
   double gain(const Rows& from, const Rows& to) const;
-  bool explains(const Rows& one, const Rows& other) const;
+  bool explains(const Rows& one, const Rows& other, double least_gain) const;
 
   Trials& trials_;
   const Estimate& estimate_;
