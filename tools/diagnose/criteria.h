@@ -8,7 +8,8 @@ namespace loopwright::diagnosis::criteria {
 
 // Rows that count.
 
-/// [s] After the start of a record: the predictor begins with a guessed velocity.
+/// [s] After the start of a record, or the correction below if that takes longer: the predictor begins with a
+/// guessed velocity.
 constexpr double settling_s = 0.1;
 /// [time constants of the predictor's motion] After a reversal, or an impact. Dry friction changes its sign
 /// within a sample or two of it; after five time constants a hundredth of that error is left.

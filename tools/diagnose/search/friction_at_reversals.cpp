@@ -1,7 +1,6 @@
 #include "tools/diagnose/search/friction_at_reversals.h"
 #include <algorithm>
 #include <cmath>
-#include "models/real/whole.h"
 #include "tools/diagnose/criteria.h"
 
 namespace loopwright::diagnosis {
@@ -25,8 +24,7 @@ bool has_certain_sign(const Path& path, const AxisRecord& record, size_t row) {
 
 std::vector<char> with_reversals(const Trial& trial, const Path& path) {
   std::vector<char> rows = trial.usable;
-  const size_t start = whole_count(std::ceil(criteria::settling_s / path.sample_time));
-  for (size_t k = start; k < std::min(path.samples(), rows.size()); ++k)
+  for (size_t k = trial.settled_from; k < std::min(path.samples(), rows.size()); ++k)
     if (has_certain_sign(path, trial.model->record(), k)) rows[k] = 1;
   return rows;
 }

@@ -20,6 +20,7 @@ class RememberedRuns;
 struct Trial {
   std::unique_ptr<AxisModel> model;
   Pace pace;
+  size_t settled_from = 0;    ///< first row at which the predictor has forgotten its start
   std::vector<char> moving;   ///< rows that have been moving for some time, after the start, not damaged
   std::vector<char> usable;   ///< those of them that count: see leave_out_doubtful()
   std::vector<char> at_rest;  ///< rows at rest, after the start

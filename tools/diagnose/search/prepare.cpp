@@ -88,11 +88,13 @@ void mark_usable(Trial& trial, const Path& path, bool is_map) {
   const size_t rows = path.samples();
   trial.moving.assign(rows, 1), trial.at_rest.assign(rows, 0);
   int since_rest = trial.pace.samples_after_rest;
-  const int start = is_map ? 1 : int(whole_count(std::ceil(criteria::settling_s / path.sample_time)));
+  trial.settled_from = is_map ? 1
+                              : std::max(whole_count(std::ceil(criteria::settling_s / path.sample_time)),
+                                         size_t(trial.pace.samples_to_correct));
   for (size_t k = 0; k < rows; ++k) {
     since_rest = path.rests[k] ? 0 : since_rest + 1;
-    trial.moving[k] = since_rest > trial.pace.samples_after_rest && !path.turns[k] && int(k) >= start;
-    trial.at_rest[k] = path.rests[k] && int(k) >= start;
+    trial.moving[k] = since_rest > trial.pace.samples_after_rest && !path.turns[k] && k >= trial.settled_from;
+    trial.at_rest[k] = path.rests[k] && k >= trial.settled_from;
   }
   trial.usable = trial.moving;
 }

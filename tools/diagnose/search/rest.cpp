@@ -37,7 +37,8 @@ double against_free(const Trials& trials, const std::vector<Fitted>& fitted, dou
         sum += std::pow(fitted[t].white[k * ports + p], 2), count += 1;
     }
   }
-  const double in_motion = mean_square(trials, fitted);
+  // Below one the noise is at the least that is assumed, and errors within it contradict nothing.
+  const double in_motion = std::max(1.0, mean_square(trials, fitted));
   return count > 0 ? count * std::log(std::max(1.0, sum / count / (worse_at_rest * in_motion))) : 0;
 }
 
