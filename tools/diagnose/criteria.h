@@ -227,6 +227,8 @@ constexpr double least_horizon_rows = 20;
 constexpr double plenty_of_windows = 15;
 /// [windows] Fewer decide nothing.
 constexpr double least_windows = 3;
+/// [steps in a time constant] Of a lag at the input: with less than one in 2.8 the method diverges.
+constexpr double steps_in_a_lag = 2;
 /// [strokes] A larger error in a window is a divergence: no friction and no stop is that far off.
 constexpr double most_strokes = 10;
 /// [standard errors] Of the mean difference of two simulations between windows: one record in a thousand

@@ -57,6 +57,8 @@ std::string FragmentText::value(const Value& value, const std::string& path, Set
   if (value.kind == Kind::text && value.text.starts_with('=')) {
     const std::string name = value.text.substr(1);
     if (effect_.find(name)) settings.emplace_back(name, path);
+    // All digits: a sampled block must not drift away from the rows of the record, or of a controller.
+    if (name == "sample_time") return fmt::format("{}", values_.evaluate(value));
     return readable_number(values_.evaluate(value));
   }
   std::string items;

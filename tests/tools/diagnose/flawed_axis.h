@@ -21,6 +21,9 @@ struct FlawedMachine {
   double mass = 0.5, damping = 2;  ///< as the diagram has them
   double coulomb = 0, cogging = 0, pitch = 0.012, added_damping = 0, added_mass = 0;  ///< hidden
   double smooth_friction = 0, smooth_speed = 1;  ///< hidden: a tanh of the speed
+  double presliding = 0;           ///< of the dry friction, which then builds up over this distance
+  double eddy = 0, eddy_speed = 1;  ///< hidden: a drag that falls beyond this speed
+  bool cogging_is_known = false;   ///< the diagram has it, and the position at the start
   double sample_time = 1e-3, duration = 20;
   double stroke = 0.2, top_speed = 0.3;
   std::vector<double> steady_speeds;  ///< instead of strokes: each one held, forward and back
@@ -120,12 +123,18 @@ class FlawedAxis {
     return {};
   }
 
-  /// A step of a mass with set-valued dry friction: it may stop within the step.
-  void advance(double& x, double& v, double force, double h) const {
+  /// A step of a mass with set-valued dry friction: it may stop within the step. Or friction bends first.
+  void advance(double& x, double& v, double force, double h) {
     const double mass = machine_.mass + machine_.added_mass;
-    const double free = force - (machine_.damping + machine_.added_damping) * v -
-                        machine_.cogging * std::sin(2 * std::numbers::pi * x / machine_.pitch) -
+    const double eddy = machine_.eddy * v / (1 + v * v / (machine_.eddy_speed * machine_.eddy_speed));
+    const double free = force - eddy - (machine_.damping + machine_.added_damping) * v -
+                        machine_.cogging * std::sin(2 * std::numbers::pi * (machine_.origin + x) / machine_.pitch) -
                         machine_.smooth_friction * std::tanh(v / machine_.smooth_speed);
+    if (machine_.presliding > 0) {
+      v += h / mass * (free - bent_), x += h * v;
+      bent_ += std::abs(h * v) / machine_.presliding * (std::copysign(machine_.coulomb, v) - bent_);
+      return;
+    }
     const double fast = v + h / mass * free, most = machine_.coulomb * h / mass;
     const double next = std::copysign(std::max(std::abs(fast) - most, 0.0), fast);
     x += h * (v + next) / 2, v = next;
@@ -182,6 +191,14 @@ class FlawedAxis {
     }
   }
   void write_diagram() const {
+    std::string cogging, start;
+    if (machine_.cogging_is_known) {
+      cogging = fmt::format(
+          R"(
+    "cogging":   {{"type": "CoggingForce", "pole_pitch": {{"value": {}, "unit": "m"}}, "harmonics": [{{"order": 1, "amplitude": {{"value": {}, "unit": "N"}}}}], "in": {{"position": "mass.position"}}}},)",
+          machine_.pitch, machine_.cogging);
+      start = fmt::format(R"("initial_position": {{"value": {}, "unit": "m"}}, )", machine_.origin);
+    }
     std::ofstream(folder_ / "nominal.json") << fmt::format(R"({{
   "loopwright": 1, "title": "An axis, nominal",
   "solver": {{"method": "rk4", "step": 0.001, "stop": 12}},
@@ -189,13 +206,15 @@ class FlawedAxis {
     "force":     {{"type": "Constant", "value": {{"value": 0, "unit": "N"}}}},
     "motor":     {{"type": "Gain", "gain": 1, "in": {{"u": "force.y"}}}},
     "viscous":   {{"type": "ViscousFriction", "damping": {{"value": {}, "unit": "N*s/m"}}, "in": {{"velocity": "mass.velocity"}}}},
-    "net_force": {{"type": "Sum", "signs": "+-", "in": {{"terms": ["motor.y", "viscous.force"]}}}},
-    "mass":      {{"type": "Mass", "mass": {{"value": {}, "unit": "kg"}}, "in": {{"force": "net_force.sum"}}}}
+    {}"net_force": {{"type": "Sum", "signs": "+-{}", "in": {{"terms": ["motor.y", "viscous.force"{}]}}}},
+    "mass":      {{"type": "Mass", "mass": {{"value": {}, "unit": "kg"}}, {}"in": {{"force": "net_force.sum"}}}}
   }},
   "log": ["mass.position"]
 }}
 )",
-                                                           machine_.damping, machine_.mass);
+                                                           machine_.damping, cogging, cogging.empty() ? "" : "-",
+                                                           cogging.empty() ? "" : R"(, "cogging.force")",
+                                                           machine_.mass, start);
   }
   void write_experiment() const {
     const std::string compared =
@@ -220,6 +239,7 @@ class FlawedAxis {
   std::filesystem::path folder_;
   bool is_kept_ = false;
   double ahead_ = 0;  // of the next sampling instant
+  double bent_ = 0;   // force of friction that builds up over a distance
 };
 
 }  // namespace loopwright

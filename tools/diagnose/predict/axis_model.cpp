@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include "engine/run/run.h"
 #include "tools/experiment/experiment_ports.h"
 #include "tools/experiment/sensor_gains.h"
@@ -24,13 +25,17 @@ Number number_of(const Plan& plan, const std::string& port) {
   return numbers.size() == 1 ? numbers[0] : -1;
 }
 
-/// Shorter ticks, so that samples can have any length.
+/// Shorter ticks, so that samples can have any length: as short as times in 64 bits allow.
 void divide_ticks(Plan& plan) {
-  constexpr int64_t parts = 1 << 16;
+  constexpr int64_t most = std::numeric_limits<int64_t>::max() / 4;
+  const int64_t longest =
+      std::max({plan.clock.base.denominator, plan.step_ticks, plan.record_ticks, plan.stop_tick});
+  int64_t parts = 1 << 16;
+  while (parts > 1 && longest > most / parts) parts /= 2;
   plan.clock.base.denominator *= parts;
   for (int64_t* ticks : {&plan.step_ticks, &plan.record_ticks, &plan.start_tick, &plan.stop_tick})
     *ticks *= parts;
-  const auto divide = [](auto& rate) { rate.period *= parts, rate.offset *= parts; };
+  const auto divide = [parts](auto& rate) { rate.period *= parts, rate.offset *= parts; };
   for (Rate& rate : plan.rates) divide(rate);
   for (Plan::Block& block : plan.blocks) divide(block);
   for (Plan::Entry& entry : plan.order) divide(entry.rate);

@@ -31,8 +31,8 @@ class Judge {
     state.runs.clear(), state.why_not_run.clear();
     try {
       for (const std::vector<Member>& members : state.staircase.members)
-        state.runs.push_back(run_freely(improver_.with(members), improver_, load_, trials_, inverse_,
-                                        state.conclusion.estimate.noise));
+        state.runs.push_back(
+            run_freely(members, improver_, load_, trials_, inverse_, state.conclusion.estimate.noise));
     } catch (const InputError& error) {
       state.why_not_run = "the diagram with the effects cannot be run: " + error.problems.text();
     }
@@ -83,7 +83,7 @@ class Judge {
   /// A diagram that cannot be run with them counts as one that diverges.
   FreeRun run_of(const std::vector<Member>& members, const Noise& noise) {
     try {
-      return run_freely(improver_.with(members), improver_, load_, trials_, inverse_, noise);
+      return run_freely(members, improver_, load_, trials_, inverse_, noise);
     } catch (const InputError&) {
       FreeRun none;
       none.diverged = true;

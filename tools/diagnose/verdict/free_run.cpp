@@ -20,7 +20,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 class FreeAxis {
  public:
   FreeAxis(const Improvement& diagram, const Experiment& recorded, const AxisModel& model,
-           const LoadOptions& options)
+           const LoadOptions& options, int finer)
       : record_(model.record()) {
     Problems problems;
     const Value root = parse_json(diagram.file, problems);
@@ -53,7 +53,7 @@ class FreeAxis {
       shows_output_ |= measured_[i] >= 0 && measured_[i] < plan_->signals;
     }
     silence(*plan_, input_);
-    sample_ticks_ = step_by_samples(*plan_, record_, model.steps_a_sample());
+    sample_ticks_ = step_by_samples(*plan_, record_, finer * model.steps_a_sample());
     keep_only(*plan_, {moving_[0], moving_[1], measured_[0], measured_[1]});
     run_ = std::make_unique<Run<double>>(*plan_);
     switch_off_noise(*run_, *plan_);
@@ -166,6 +166,15 @@ class Windows {
   std::vector<double> errors_;
 };
 
+/// Steps in a sample that an input with a lag needs.
+int steps_for(const std::vector<Member>& members, double sample_time) {
+  double steps = 1;
+  for (const Member& member : members)
+    if (member.candidate->acts == Acts::input && member.candidate->amplitude_is_one)
+      steps = std::max(steps, criteria::steps_in_a_lag * sample_time / member.nonlinear[0]);
+  return int(whole_between<size_t>(std::ceil(steps), 1, criteria::most_steps_a_sample));
+}
+
 size_t rows_of_window(AxisModel& model, const Noise& noise) {
   const LinearAxis axis = model.linearize();
   const double constant = correction_time(axis, gains_of(axis, noise, model.nominal_inertia())),
@@ -192,10 +201,11 @@ double FreeRun::rmse() const {
   return squares.empty() ? std::nan("") : std::sqrt(sum / double(squares.size()));
 }
 
-FreeRun run_freely(const Improvement& diagram, const Improver& improver, const LoadOptions& load,
+FreeRun run_freely(const std::vector<Member>& members, const Improver& improver, const LoadOptions& load,
                    const Trials& trials, const std::vector<InverseDynamics>& inverse, const Noise& noise) {
   FreeRun result;
   if (trials.has_map()) return result;
+  const Improvement diagram = improver.with(members);
   const auto holds_out = [](const Trial& trial) {
     return trial.held_out_from < trial.model->record().rows();
   };
@@ -206,7 +216,8 @@ FreeRun run_freely(const Improvement& diagram, const Improver& improver, const L
     AxisModel& model = *trials.list[t].model;
     const size_t length = rows_of_window(model, noise);
     result.horizon_s = std::max(result.horizon_s, double(length) * model.record().sample_time);
-    FreeAxis axis(diagram, *improver.experiments()[t], model, load);
+    FreeAxis axis(diagram, *improver.experiments()[t], model, load,
+                  steps_for(members, model.record().sample_time));
     Windows(axis, trials.list[t], inverse[t], result).run(length);
   }
   return result;

@@ -20,7 +20,7 @@ struct FreeRun {
 /// estimated in each window, because the motion is measured with noise: what remains is what the forces are
 /// wrong by. A window lasts many time constants of a predictor with this noise. Windows without missing
 /// samples, over the held-out rows where there are any. Empty for maps.
-FreeRun run_freely(const Improvement& diagram, const Improver& improver, const LoadOptions& load,
+FreeRun run_freely(const std::vector<Member>& members, const Improver& improver, const LoadOptions& load,
                    const Trials& trials, const std::vector<InverseDynamics>& inverse, const Noise& noise);
 
 /// Whether the second is worse than the first, by more than the scatter between windows: of the differences;
