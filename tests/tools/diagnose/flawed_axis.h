@@ -21,9 +21,9 @@ struct FlawedMachine {
   double mass = 0.5, damping = 2;  ///< as the diagram has them
   double coulomb = 0, cogging = 0, pitch = 0.012, added_damping = 0, added_mass = 0;  ///< hidden
   double smooth_friction = 0, smooth_speed = 1;  ///< hidden: a tanh of the speed
-  double presliding = 0;           ///< of the dry friction, which then builds up over this distance
+  double presliding = 0;            ///< of the dry friction, which then builds up over this distance
   double eddy = 0, eddy_speed = 1;  ///< hidden: a drag that falls beyond this speed
-  bool cogging_is_known = false;   ///< the diagram has it, and the position at the start
+  bool cogging_is_known = false;    ///< the diagram has it, and the position at the start
   double sample_time = 1e-3, duration = 20;
   double stroke = 0.2, top_speed = 0.3;
   std::vector<double> steady_speeds;  ///< instead of strokes: each one held, forward and back
@@ -127,9 +127,10 @@ class FlawedAxis {
   void advance(double& x, double& v, double force, double h) {
     const double mass = machine_.mass + machine_.added_mass;
     const double eddy = machine_.eddy * v / (1 + v * v / (machine_.eddy_speed * machine_.eddy_speed));
-    const double free = force - eddy - (machine_.damping + machine_.added_damping) * v -
-                        machine_.cogging * std::sin(2 * std::numbers::pi * (machine_.origin + x) / machine_.pitch) -
-                        machine_.smooth_friction * std::tanh(v / machine_.smooth_speed);
+    const double free =
+        force - eddy - (machine_.damping + machine_.added_damping) * v -
+        machine_.cogging * std::sin(2 * std::numbers::pi * (machine_.origin + x) / machine_.pitch) -
+        machine_.smooth_friction * std::tanh(v / machine_.smooth_speed);
     if (machine_.presliding > 0) {
       v += h / mass * (free - bent_), x += h * v;
       bent_ += std::abs(h * v) / machine_.presliding * (std::copysign(machine_.coulomb, v) - bent_);
@@ -199,7 +200,8 @@ class FlawedAxis {
           machine_.pitch, machine_.cogging);
       start = fmt::format(R"("initial_position": {{"value": {}, "unit": "m"}}, )", machine_.origin);
     }
-    std::ofstream(folder_ / "nominal.json") << fmt::format(R"({{
+    std::ofstream(folder_ / "nominal.json")
+        << fmt::format(R"({{
   "loopwright": 1, "title": "An axis, nominal",
   "solver": {{"method": "rk4", "step": 0.001, "stop": 12}},
   "blocks": {{
@@ -212,9 +214,8 @@ class FlawedAxis {
   "log": ["mass.position"]
 }}
 )",
-                                                           machine_.damping, cogging, cogging.empty() ? "" : "-",
-                                                           cogging.empty() ? "" : R"(, "cogging.force")",
-                                                           machine_.mass, start);
+                       machine_.damping, cogging, cogging.empty() ? "" : "-",
+                       cogging.empty() ? "" : R"(, "cogging.force")", machine_.mass, start);
   }
   void write_experiment() const {
     const std::string compared =

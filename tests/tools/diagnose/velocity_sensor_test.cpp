@@ -12,7 +12,7 @@ using testing::ElementsAre;
 /// Its cogging rises and falls faster than a spring of 400 N/m would push.
 FlawedMachine machine_with_known_cogging() {
   FlawedMachine machine;
-  machine.velocity_noise = 2e-4;
+  machine.velocity_noise = 5e-5;
   machine.cogging = 0.8, machine.pitch = 0.012, machine.cogging_is_known = true, machine.origin = 0.0043;
   return machine;
 }

@@ -143,6 +143,8 @@ AxisModel::AxisModel(const std::string& path, const std::string& experiment_path
   if (position_ >= 0)
     if (const auto unit = plan->unit_of(position_)) position_unit_ = to_string(*unit);
   run_with(*changed, 1);
+  start({}, 0);
+  if (!record_.find("position")) record_.first_position = position();
   for (Number n : wanted) all_outputs_ |= n >= 0 && n < plan_->signals && n != force_;
   inertia_parameter_ = inertia_parameter(*plan_, *run_, force_);
   if (!inertia_parameter_.empty()) own_inertia_ = *run_->parameter(inertia_parameter_);

@@ -25,10 +25,10 @@ std::vector<size_t> operating_rows(const AxisRecord& record) {
 }
 
 /// The positions at which the diagram is linearized; those of a measured velocity begin where it begins.
-std::vector<double> positions_of(const AxisRecord& record, double start) {
+std::vector<double> positions_of(const AxisRecord& record) {
   if (const MeasuredPort* position = record.find("position")) return position->value;
   const std::vector<double>& velocity = record.measured.front().value;
-  std::vector<double> position(velocity.size(), start);
+  std::vector<double> position(velocity.size(), record.first_position);
   for (size_t k = 1; k < position.size(); ++k) {
     const double step = record.sample_time * (record.duration.empty() ? 1 : record.duration[k - 1]);
     position[k] = position[k - 1] + step * (velocity[k - 1] + velocity[k]) / 2;
@@ -114,8 +114,7 @@ LinearAxis AxisModel::linearize_motion() {
   if (force_size == 0) force_size = 1;
   const MeasuredPort* position = record_.find("position");
   const MeasuredPort* velocity = record_.find("velocity");
-  start({}, 0);
-  const std::vector<double> place = positions_of(record_, this->position());
+  const std::vector<double> place = positions_of(record_);
   const auto place_of = [&](Number number) {  // among the states; -1: it is none
     const auto found = std::ranges::find(seen_, number - plan_->signals);
     return number < 0 || found == seen_.end() ? Eigen::Index(-1) : Eigen::Index(found - seen_.begin());

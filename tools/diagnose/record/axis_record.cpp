@@ -124,6 +124,7 @@ MeasuredMotion measured_motion(const AxisRecord& record) {
   else
     m.velocity = at_even_instants(record.find("velocity")->value, record.duration);
   smooth_motion(m);
+  shift_position(m, record.first_position);
   return m;
 }
 

@@ -31,6 +31,7 @@ struct AxisRecord {
   /// [sample times] From each row to the next, where the rows were not sampled evenly; empty: 1.
   std::vector<double> duration;
   std::string input_unit;
+  double first_position = 0;  ///< SI; of the diagram, where nobody measures the position
   std::vector<MeasuredPort> measured;  ///< position first; at least one
   bool is_map = false;                 ///< rows are independent balances: see gather_balances
   size_t false_readings = 0;           ///< replaced by what their neighbours say: see replace_readings
