@@ -83,6 +83,13 @@ struct RefusedEffect {
   std::string effect, why;
 };
 
+/// An effect that the records show with certainty, and that is too small to matter.
+struct TooSmallEffect {
+  std::string effect;
+  double force_rms = 0;
+  double share = 0;  ///< of the driving force
+};
+
 /// A share of the remaining error that a variable explains.
 struct RemainderShare {
   std::string variable;
@@ -142,6 +149,7 @@ struct Diagnosis {
   std::vector<MovedParameter> moved_parameters;  ///< without roles
   std::vector<std::string> not_observable;       ///< without roles: sentences
   std::vector<RefusedEffect> refused;
+  std::vector<TooSmallEffect> too_small;  ///< best first; all of them stand for one
   std::vector<std::string> contradictions;  ///< why the records are not explained although errors are white
   std::vector<std::string> remainder_variables;  ///< on which the remainder depends
   std::vector<RemainderShare> dependence;

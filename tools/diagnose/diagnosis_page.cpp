@@ -193,6 +193,9 @@ report::Section what_next(const Diagnosis& d) {
   for (const RefusedEffect& r : d.refused)
     section.items.push_back(report::Notice{report::Notice::Severity::warning,
                                            fmt::format("Not accepted: {}; {}.", words(r.effect), r.why)});
+  if (!d.too_small.empty())
+    section.items.push_back(
+        report::Notice{report::Notice::Severity::note, words(words_of_small_effects(d)) + "."});
   for (const NotLookedFor& n : d.not_looked_for)
     section.items.push_back(
         report::Notice{report::Notice::Severity::warning,

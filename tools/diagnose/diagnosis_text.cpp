@@ -98,6 +98,7 @@ std::string to_text(const Diagnosis& d) {
   for (const RecordFinding& f : d.findings) line(fmt::format("The record: {}; {}.", f.what, f.cost));
   for (const std::string& why : d.contradictions) line("Not explained: " + why + ".");
   for (const RefusedEffect& r : d.refused) line(fmt::format("Not accepted: {}; {}.", r.effect, r.why));
+  if (!d.too_small.empty()) line(words_of_small_effects(d) + ".");
   for (const NotLookedFor& n : d.not_looked_for)
     line(fmt::format("Not looked for: {}; {}.", joined(n.effects, ", "), n.why));
   return text + words_of_improvement(d);

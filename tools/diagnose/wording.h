@@ -51,6 +51,15 @@ inline std::string words_of(const MovedPort& moved) {
       joined(moved.to, " and "), moved.from);
 }
 
+/// Effects that are there, but too small to matter.
+inline std::string words_of_small_effects(const Diagnosis& d) {
+  std::vector<std::string> names;
+  for (const TooSmallEffect& e : d.too_small) names.push_back(e.effect);
+  const TooSmallEffect& best = d.too_small.front();
+  return fmt::format("Seen, but too small to matter: {}, {} rms, {:.2g} % of the driving force",
+                     joined(names, " or "), shown(best.force_rms, d.force_unit), 100 * best.share);
+}
+
 /// How the improved diagram was written, if it was.
 std::string words_of_improvement(const Diagnosis& diagnosis);
 

@@ -343,6 +343,11 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
     result.trail.push_back("after reversals another law of dry friction does better");
   if (!stays && !instead) instead = named(trials, rivals, estimate.members, exchanges);
   if (!stays && !instead) instead = simplified(rivals, estimate.members, exchanges);
+  SecondLook seen;
+  if (!stays && !instead && rounds > 0) {
+    seen = look_again(trials, estimate, evidence, candidates.size());
+    if ((instead = std::move(seen.better))) result.trail.push_back("with the noise known, more is seen");
+  }
   if (!instead) {
     ask_rivals(trials, result, evidence, exchanges, candidates, rivals, at_reversals, n);
     if (!stays && rounds > 0 && (instead = rivals.better(unexplained(result.portmanteau_beside_counts()))))
@@ -355,6 +360,7 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
   }
   result.is_remainder_noise =
       is_slow_force_noise(fit_noise(trials, *estimate.fitted, estimate.noise, FreeNoise::all));
+  result.too_small = std::move(seen.small);
   return result;
 }
 

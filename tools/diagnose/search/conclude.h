@@ -2,6 +2,7 @@
 #pragma once
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/evidence.h"
+#include "tools/diagnose/search/second_look.h"
 #include "tools/diagnose/search/weight.h"
 
 namespace loopwright::diagnosis {
@@ -22,6 +23,7 @@ struct Conclusion {
   std::vector<Weight> weights;                       ///< one per member
   std::vector<std::vector<Substitute>> substitutes;  ///< within reach, best first
   std::vector<OtherSet> other_sets;                  ///< within reach, best first
+  std::vector<SmallEffect> too_small;                ///< beside the set, where it leaves no more than noise
   std::vector<double> inclusion;                     ///< probability that the effect is there, calibrated
   bool is_remainder_noise = true;                    ///< otherwise a slow force exceeds the noise
   double turn = 0;                                   ///< see Trials::turn

@@ -68,16 +68,22 @@ std::vector<Member> exchanged(std::vector<Member> members, size_t at, const Cand
 
 }  // namespace
 
+std::vector<std::vector<char>> rows_with_reversals(const Trials& trials, const Estimate& estimate) {
+  std::vector<std::vector<char>> rows;
+  for (size_t t = 0; t < trials.list.size(); ++t)
+    rows.push_back(with_reversals(trials.list[t], (*estimate.fitted)[t].prediction.path));
+  return rows;
+}
+
 FrictionAtReversals::FrictionAtReversals(Trials& trials, const Estimate& estimate,
                                          const std::vector<Shape>& shapes, size_t catalogue)
     : trials_(trials), estimate_(estimate), shapes_(shapes), catalogue_(catalogue) {
   const auto is_dry_member = [](const Member& m) { return is_dry(*m.candidate); };
   if (trials.has_map() || std::ranges::none_of(estimate.members, is_dry_member)) return;
-  for (size_t t = 0; t < trials.list.size(); ++t) {
-    const Trial& trial = trials.list[t];
-    rows_.push_back(with_reversals(trial, (*estimate.fitted)[t].prediction.path));
-    for (size_t k = 0; k < trial.held_out_from; ++k) after_reversals_ += rows_[t][k] > trial.usable[k];
-  }
+  rows_ = rows_with_reversals(trials, estimate);
+  for (size_t t = 0; t < rows_.size(); ++t)
+    for (size_t k = 0; k < trials.list[t].held_out_from; ++k)
+      after_reversals_ += rows_[t][k] > trials.list[t].usable[k];
   if (after_reversals_ > 0) present_ = on_all_rows(estimate.members, 4);
 }
 

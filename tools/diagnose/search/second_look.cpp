@@ -1,0 +1,46 @@
+#include "tools/diagnose/search/second_look.h"
+#include <algorithm>
+#include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/remaining_force.h"
+#include "tools/diagnose/search/weight.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+/// Loads that fly leave rows out, and what stands at the end of its range stands for something else.
+bool may_be_told(const Trials& trials, const Estimate& trial, size_t member) {
+  const Candidate& candidate = *trial.members[member].candidate;
+  return !candidate.is_unknown && !candidate.flies && !is_at_limit(trial.members[member]) &&
+         !spoils_balance(trials, trial, member);
+}
+
+}  // namespace
+
+SecondLook look_again(Trials& trials, const Estimate& estimate, const Evidence& evidence, size_t catalogue) {
+  constexpr size_t most_tried = 3;
+  constexpr int iterations = 8;
+  SecondLook result;
+  const double least = std::max(criteria::least_gain, criteria::least_gain_per_row * judged_numbers(trials));
+  std::vector<Proposal> proposals = evidence.extensions();
+  if (proposals.size() > most_tried) proposals.resize(most_tried);
+  for (const Proposal& proposal : proposals) {
+    if (proposal.gain < least / 2 || trials.work->is_spent(criteria::work_with_rivals)) break;
+    Estimate trial =
+        fit_members(trials, applied(proposal, estimate.members), estimate.noise, estimate.motion, iterations);
+    trial = with_own_noise(trials, std::move(trial), iterations);
+    if (!trial.is_valid) continue;
+    const double gain = criterion(trials, estimate, catalogue) - criterion(trials, trial, catalogue);
+    const size_t member = trial.members.size() - 1;
+    if (gain < least || !may_be_told(trials, trial, member)) continue;
+    const Weight weight = weigh_all(trials, trial).back();
+    if (material(trials, trial, weight) >= 1) {
+      result.better = std::move(trial);
+      return result;
+    }
+    result.small.push_back({trial.members.back().candidate, gain, weight.force_rms});
+  }
+  std::ranges::stable_sort(result.small, std::ranges::greater{}, &SmallEffect::gain);
+  return result;
+}
+
+}  // namespace loopwright::diagnosis
