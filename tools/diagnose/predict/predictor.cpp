@@ -276,7 +276,7 @@ Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains,
     path.predicted_position[k] = model.position();
     for (size_t p = 0; p < ports; ++p) {
       const double expected = model.measured(p) + (p == 0 && position ? sensor : 0.0);
-      e[p] = record.measured[p].value[k] - expected;
+      e[p] = record.is_false(k) ? 0 : record.measured[p].value[k] - expected;
       result.error[k * ports + p] = e[p];
     }
     for (size_t p = 0; p < ports; ++p) {
@@ -286,7 +286,7 @@ Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains,
     }
     if (model.position_follows_velocity()) {
       if (!record.is_missing(k)) model.shift_position(0.5 * passed * (left + e[0]));
-      left = record.is_missing(k) ? 0 : velocity->value[k] - model.velocity();
+      left = record.is_missing(k) || record.is_false(k) ? 0 : velocity->value[k] - model.velocity();
     }
     const double velocity_now = model.velocity();
     path.position[k] = model.position(), path.velocity[k] = velocity_now;

@@ -61,7 +61,8 @@ void thin(AxisRecord& record, size_t every) {
     keep(record.missing);
   }
   for (MeasuredPort& port : record.measured) keep(port.value);
-  record.sample_time *= double(every);
+  if (!record.false_rows.empty()) keep(record.false_rows);
+  record.sample_time *= double(every), record.is_thinned = true;
 }
 
 /// A device that gives an old value now and then says nothing of the machine.
@@ -74,6 +75,8 @@ void replace_false_readings(AxisRecord& record) {
     const std::vector<size_t> rows = false_readings(port.value);
     replace_readings(at, port.value, rows);
     record.false_readings += rows.size();
+    if (!rows.empty()) record.false_rows.resize(record.rows());
+    for (const size_t row : rows) record.false_rows[row] = 1;
   }
 }
 

@@ -31,14 +31,19 @@ struct AxisRecord {
   /// [sample times] From each row to the next, where the rows were not sampled evenly; empty: 1.
   std::vector<double> duration;
   std::string input_unit;
-  double first_position = 0;  ///< SI; of the diagram, where nobody measures the position
+  double first_position = 0;           ///< SI; of the diagram, where nobody measures the position
   std::vector<MeasuredPort> measured;  ///< position first; at least one
   bool is_map = false;                 ///< rows are independent balances: see gather_balances
-  size_t false_readings = 0;           ///< replaced by what their neighbours say: see replace_readings
-  size_t held_out_from = 0;            ///< first row held out of the identification; rows() without hold-out
+  /// Rows whose readings are false, and replaced by what their neighbours say: see replace_readings. The
+  /// predictor does not correct itself by them. Empty: none.
+  std::vector<char> false_rows;
+  size_t false_readings = 0;  ///< of all sensors
+  bool is_thinned = false;    ///< several recorded rows are one
+  size_t held_out_from = 0;   ///< first row held out of the identification; rows() without hold-out
 
   size_t rows() const { return input.size(); }
   bool is_missing(size_t row) const { return !missing.empty() && missing[row]; }
+  bool is_false(size_t row) const { return !false_rows.empty() && false_rows[row]; }
   const MeasuredPort* find(std::string_view role) const {
     for (const MeasuredPort& port : measured)
       if (port.role == role) return &port;

@@ -16,7 +16,7 @@ bool turns_at(const Path& path, size_t row) {
 
 /// In motion after the start, and not beside a change of sign.
 bool has_certain_sign(const Path& path, const AxisRecord& record, size_t row) {
-  if (path.rests[row] || record.is_missing(row)) return false;
+  if (path.rests[row] || record.is_missing(row) || record.is_false(row)) return false;
   for (size_t near = row; near <= row + 1 + criteria::rows_of_a_turn; ++near)
     if (near >= criteria::rows_of_a_turn && turns_at(path, near - criteria::rows_of_a_turn)) return false;
   return true;

@@ -85,6 +85,7 @@ bool shorten(Pace& pace) {
 
 /// Rows while moving, some time after the last rest or reversal; and rows at rest.
 void mark_usable(Trial& trial, const Path& path, bool is_map) {
+  const AxisRecord& record = trial.model->record();
   const size_t rows = path.samples();
   trial.moving.assign(rows, 1), trial.at_rest.assign(rows, 0);
   int since_rest = trial.pace.samples_after_rest;
@@ -93,8 +94,9 @@ void mark_usable(Trial& trial, const Path& path, bool is_map) {
                                          size_t(trial.pace.samples_to_correct));
   for (size_t k = 0; k < rows; ++k) {
     since_rest = path.rests[k] ? 0 : since_rest + 1;
-    trial.moving[k] = since_rest > trial.pace.samples_after_rest && !path.turns[k] && k >= trial.settled_from;
-    trial.at_rest[k] = path.rests[k] && k >= trial.settled_from;
+    trial.moving[k] = since_rest > trial.pace.samples_after_rest && !path.turns[k] &&
+                      k >= trial.settled_from && !record.is_false(k);
+    trial.at_rest[k] = path.rests[k] && k >= trial.settled_from && !record.is_false(k);
   }
   trial.usable = trial.moving;
 }

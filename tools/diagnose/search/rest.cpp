@@ -32,8 +32,7 @@ double against_free(const Trials& trials, const std::vector<Fitted>& fitted, dou
     const Trial& trial = trials.list[t];
     const double least_rows = least_rest_s / trial.model->record().sample_time;
     // With other noise than the first guess the predictor forgets its start later.
-    const size_t from =
-        whole_count(std::ceil(correction * correction_time(fitted[t].axis, fitted[t].gains)));
+    const size_t from = whole_count(std::ceil(correction * correction_time(fitted[t].axis, fitted[t].gains)));
     for (size_t k = 0, resting = 0; k < trial.held_out_from; ++k) {
       resting = trial.at_rest[k] && k >= from ? resting + 1 : 0;
       for (size_t p = 0; p < ports && resting > 0 && double(resting) > least_rows; ++p)
