@@ -60,6 +60,9 @@ constexpr int most_steps_a_sample = 64;
 /// plenty_of_rows: an oscillation shows as much in a short time as other motions do in a long one.
 constexpr int plenty_of_reversals = 20;
 
+/// [rows that stand for several] A delay or a lag of fewer may be the other one.
+constexpr double rows_that_blur = 20;
+
 // Noise.
 
 /// [force of the input, rms] A fiftieth of the smallest material force. If the sensor's counts are the only
@@ -128,9 +131,9 @@ constexpr double independent_block_s = 0.5;
 /// [χ²] Five standard deviations; and shares of the rows, below which a model is not exact enough to tell: of
 /// certainty, and of a size that needs no large force, because a delay acts only for moments.
 constexpr double least_wald = 25, least_wald_per_row = 0.001, plain_wald_per_row = 0.01;
-/// [simulation error without the effect] By which it must fall with each effect where counts color the
-/// errors.
-constexpr double least_help_beside_counts = 0.02;
+/// [simulation error without the effect] By which it must fall with each effect where counts color the errors,
+/// and with each optional one beside a load that flies.
+constexpr double least_help = 0.02;
 /// [χ²] That errors of counts alone would give the effect: one that stands out less may be a beat of the
 /// counts with the samples. Twice in amplitude.
 constexpr double clear_of_counts = 4;

@@ -265,6 +265,26 @@ void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
   }
 }
 
+/// Of a record whose rows were put together, a delay and a lag of a few of the new rows. Within a row the
+/// controller has already answered to noise that the predictor has not yet seen; which of the two predicts
+/// better is then no proof.
+void add_blurred_shapes(const Trials& trials, Conclusion& result, const std::vector<Candidate>& candidates) {
+  const AxisRecord& record = trials.list.front().model->record();
+  const auto is_shape = [](const Candidate& c) { return c.acts == Acts::input && c.amplitude_is_one; };
+  const std::vector<Member>& members = result.estimate.members;
+  for (size_t m = 0; m < members.size() && record.is_thinned; ++m) {
+    if (!is_shape(*members[m].candidate)) continue;
+    if (members[m].nonlinear[0] > criteria::rows_that_blur * record.sample_time) continue;
+    for (const Candidate& other : candidates) {
+      if (!is_shape(other) || &other == members[m].candidate) continue;
+      if (std::ranges::find(members, &other, &Member::candidate) == members.end())
+        add_if_new(result.substitutes[m], &other);
+      else
+        result.other_sets.push_back({{&other, members[m].candidate}, {members[m].candidate}, 0});
+    }
+  }
+}
+
 /// Computes the alternatives, and from them the probability of each member.
 void ask_rivals(const Trials& trials, Conclusion& result, Evidence& evidence,
                 const std::vector<Proposal>& exchanges, const std::vector<Candidate>& candidates,
@@ -294,6 +314,7 @@ void ask_rivals(const Trials& trials, Conclusion& result, Evidence& evidence,
     for (const Substitute& s : result.substitutes[m]) others += std::exp(-std::max(s.loss, 0.0) / 4);
     result.inclusion.push_back(0.995 / (1 + others));
   }
+  add_blurred_shapes(trials, result, candidates);
 }
 
 /// Joint maximum likelihood, repeated with a simpler set that is as good, or at most `rounds` times with a

@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/doubt.h"
 #include "tools/diagnose/wording.h"
 
 namespace loopwright::diagnosis {
@@ -53,11 +54,18 @@ class Judge {
                        "neither does the diagram simulate better with it, nor do the forces balance better"};
     if (state.conclusion.counts_portmanteau > criteria::most_portmanteau_of_counted && !state.runs.empty())
       for (size_t m = 0; m < state.conclusion.estimate.members.size(); ++m)
-        if (!helps_beside_counts(state, m))
+        if (!helps(state, m))
           return Refusal{
               m,
               "the counts of the sensor beat with the samples, which resembles it, and the diagram "
               "simulates no better with it"};
+    if (may_be_doubtful(state.conclusion.estimate.members) && !state.runs.empty())
+      for (size_t i = 1; i < state.runs.size(); ++i)
+        for (size_t m : state.staircase.added[i])
+          if (state.staircase.steps[i].is_optional && !helps(state, m))
+            return Refusal{m,
+                           "what a load that flies leaves after its blows resembles it, and the diagram "
+                           "simulates no better with it"};
     for (size_t i = 1; i < state.runs.size(); ++i)
       for (size_t m : state.staircase.added[i])
         if (state.conclusion.weights[m].certainty < 1 && !is_worse(state.runs[i], state.runs[i - 1]))
@@ -111,10 +119,10 @@ class Judge {
     return are_larger(errors(without, others.members),
                       errors(state.runs.back(), state.conclusion.estimate.members));
   }
-  bool helps_beside_counts(const Acceptance& state, size_t member) {
+  bool helps(const Acceptance& state, size_t member) {
     const FreeRun without = without_member(state, member).second;
     return without.diverged ||
-           state.runs.back().rmse() < (1 - criteria::least_help_beside_counts) * without.rmse();
+           state.runs.back().rmse() < (1 - criteria::least_help) * without.rmse();
   }
   Refusal why_worse(const Acceptance& state, size_t step) {
     const std::string& unit = trials_.list.front().model->record().measured.front().unit;
