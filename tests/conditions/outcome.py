@@ -36,19 +36,37 @@ def acceptable(names, truth):
     return must <= names <= must | may
 
 
+def too_small(result):
+    """Effects that the answer says are there, but too small to matter; all of them stand for one."""
+    return [effect["effect"] for effect in result["answer"].get("too_small", [])]
+
+
+def invents_something_small(result):
+    truth, small = result["truth"], too_small(result)
+    return bool(small) and not set(small) & (required(truth) | tolerated(truth))
+
+
+def declares(result):
+    small = [[]] + [[name] for name in too_small(result)]
+    for choices in score.declared_choices(result):
+        for choice in itertools.product(*choices):
+            if len(set(choice)) == len(choice) and any(acceptable([*choice, *more], result["truth"]) for more in small):
+                return True
+    return False
+
+
 def classify(result):
     truth, answer = result["truth"], result["answer"]
     if answer is None or result["over_limit"]:
         return without_answer(result)
     names = score.found_names(result)
-    if not names:
-        if not required(truth) and answer["verdict"] == "nothing_missing":
+    if not invents_something_small(result):
+        if not names:
+            if not required(truth) and answer["verdict"] == "nothing_missing":
+                return "exact"
+        elif not is_clean(truth) and acceptable(names, truth):
             return "exact"
-    elif not is_clean(truth):
-        if acceptable(names, truth):
-            return "exact"
-        if any(len(set(choice)) == len(choice) and acceptable(choice, truth)
-               for choices in score.declared_choices(result) for choice in itertools.product(*choices)):
+        if not is_clean(truth) and (names or too_small(result)) and declares(result):
             return "declared"
     return "flagged" if score.flagged(result) else "silent"
 

@@ -52,6 +52,15 @@ class Classes(unittest.TestCase):
         self.expect("silent", result(what, named("cogging"), named("spring")))
         self.expect("exact", result(truth(hardly=["spring"]), verdict="nothing_missing"))
 
+    def test_what_is_too_small_is_declared_and_must_be_there(self):
+        small = {"too_small": [{"effect": "input_delay"}, {"effect": "actuator_lag"}]}
+        self.expect("declared", result(truth("input_delay"), verdict="nothing_missing", **small))
+        self.expect("declared", result(truth("cogging", "actuator_lag"), named("cogging"), **small))
+        self.expect("silent", result(truth("input_delay", "actuator_lag"), verdict="nothing_missing", **small))
+        self.expect("exact", result(truth("cogging", hardly=["input_delay"]), named("cogging"), **small))
+        self.expect("silent", result(truth("cogging"), named("cogging"), **small))
+        self.expect("silent", result(truth(), verdict="nothing_missing", **small))
+
     def test_without_an_answer(self):
         self.expect("refused", ended(2, "error: no roles"))
         self.expect("crash", ended(2, ""))
