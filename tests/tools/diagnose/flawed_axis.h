@@ -23,6 +23,7 @@ struct FlawedMachine {
   double smooth_friction = 0, smooth_speed = 1;  ///< hidden: a tanh of the speed
   double presliding = 0;            ///< of the dry friction, which then builds up over this distance
   double eddy = 0, eddy_speed = 1;  ///< hidden: a drag that falls beyond this speed
+  double lag = 0;                   ///< hidden: s, of the force behind its command
   bool cogging_is_known = false;    ///< the diagram has it, and the position at the start
   double sample_time = 1e-3, duration = 20;
   double stroke = 0.2, top_speed = 0.3;
@@ -35,10 +36,11 @@ struct FlawedMachine {
   double stamp_jitter = 0;    ///< greatest error of a stamp alone, in sample times
   double stamp_quantum = 0;   ///< s; stamps are rounded to it
   size_t loses_every = 0, repeats_every = 0;  ///< one row in this number
-  bool input_is_linear = false;               ///< the force between two rows; otherwise held
-  double measured_late = 0;                   ///< of a sample time: the position is older than its row
-  double outlier = 0;                         ///< added to the position of every thousandth row
-  double last_bits = 0;                       ///< relative error of every number
+  size_t stale_every = 0;  ///< one reading in this number is that of the row before, for the controller too
+  bool input_is_linear = false;  ///< the force between two rows; otherwise held
+  double measured_late = 0;      ///< of a sample time: the position is older than its row
+  double outlier = 0;            ///< added to the position of every thousandth row
+  double last_bits = 0;          ///< relative error of every number
   uint64_t seed = 1;
 };
 
@@ -125,6 +127,7 @@ class FlawedAxis {
 
   /// A step of a mass with set-valued dry friction: it may stop within the step. Or friction bends first.
   void advance(double& x, double& v, double force, double h) {
+    if (machine_.lag > 0) force = lagging_ += (force - lagging_) * (1 - std::exp(-h / machine_.lag));
     const double mass = machine_.mass + machine_.added_mass;
     const double eddy = machine_.eddy * v / (1 + v * v / (machine_.eddy_speed * machine_.eddy_speed));
     const double free =
@@ -158,6 +161,8 @@ class FlawedAxis {
       const double behind = machine_.measured_late * T;
       double place = machine_.origin + (x - behind * v) + machine_.sensor_noise * normal();
       if (machine_.resolution > 0) place = std::round(place / machine_.resolution) * machine_.resolution;
+      if (machine_.stale_every > 0 && k % machine_.stale_every == 5) place = last_place_;
+      last_place_ = place;
       const double seen = place - machine_.origin, speed = v + machine_.velocity_noise * normal();
       if (k == 0) last_seen = seen, last_time = now - T;
       const double difference = machine_.velocity_noise > 0 ? speed : (seen - last_seen) / (now - last_time);
@@ -239,6 +244,7 @@ class FlawedAxis {
   uint64_t state_;
   std::filesystem::path folder_;
   bool is_kept_ = false;
+  double last_place_ = 0, lagging_ = 0;
   double ahead_ = 0;  // of the next sampling instant
   double bent_ = 0;   // force of friction that builds up over a distance
 };

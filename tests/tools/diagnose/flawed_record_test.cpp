@@ -8,6 +8,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
+using testing::UnorderedElementsAre;
 
 Diagnosis diagnosis_of(const FlawedMachine& machine) {
   const FlawedAxis axis(machine);
@@ -175,6 +176,43 @@ TEST(NoNoise, OnlyCountsAreNoMissingEffect) {
   expect_nothing(diagnosis_of(machine));
 }
 
+TEST(NoNoise, ALawWithANameTakesThePlaceOfAFunctionWithout) {
+  FlawedMachine machine;
+  machine.force_noise = machine.sensor_noise = machine.resolution = 0;
+  machine.cogging = 0.2, machine.eddy = 8, machine.eddy_speed = 0.08;
+  const Diagnosis d = diagnosis_of(machine);
+  EXPECT_THAT(names(d), UnorderedElementsAre("eddy_current_drag", "cogging")) << to_text(d);
+}
+
+TEST(SmallEffects, AreSeenAndSaidToBeTooSmall) {
+  FlawedMachine machine;
+  machine.coulomb = 0.0008, machine.force_noise = 0.004, machine.duration = 60;
+  const Diagnosis d = diagnosis_of(machine);
+  EXPECT_EQ(name_of(d.verdict), "nothing_missing") << to_text(d);
+  ASSERT_FALSE(d.too_small.empty()) << to_text(d);
+  EXPECT_TRUE(std::ranges::any_of(d.too_small, [](const auto& e) { return e.effect == "coulomb_friction"; }))
+      << to_text(d);
+  EXPECT_THAT(to_text(d), testing::HasSubstr("Seen, but too small to matter: "));
+}
+
+TEST(SlowRates, ALagShorterThanASampleStandsInSimulation) {
+  FlawedMachine machine;
+  machine.sample_time = 6.25e-3, machine.duration = 40, machine.lag = 2.2e-3;
+  const Diagnosis d = diagnosis_of(machine);
+  EXPECT_TRUE(d.refused.empty()) << to_text(d);
+  ASSERT_FALSE(d.effects.empty()) << to_text(d);
+  EXPECT_TRUE(d.effects[0].name == "actuator_lag" || d.effects[0].name == "input_delay") << to_text(d);
+}
+
+TEST(StaleReadings, AndWhatTheControllerDidAboutThemAreNoMissingEffect) {
+  FlawedMachine machine;
+  machine.stale_every = 100, machine.top_speed = 0.6;
+  const Diagnosis clean = diagnosis_of(machine);
+  EXPECT_EQ(name_of(clean.verdict), "nothing_missing") << to_text(clean);
+  machine.coulomb = 0.3;
+  expect_friction(diagnosis_of(machine));
+}
+
 TEST(Counts, CoarseOnesAreNoMissingEffect) {
   for (const double resolution : {1e-5, 5e-5}) {
     SCOPED_TRACE(resolution);
@@ -184,7 +222,8 @@ TEST(Counts, CoarseOnesAreNoMissingEffect) {
   }
 }
 
-/// At 0.978 counts a sample the counts beat with the samples, at 44 Hz or every 44 counts: no cogging, and no mode.
+/// At 0.978 counts a sample the counts beat with the samples, at 44 Hz or every 44 counts: no cogging, and no
+/// mode.
 TEST(Counts, SteadySpeedsFeignNoEffect) {
   FlawedMachine machine;
   machine.sample_time = 5e-4, machine.resolution = 1e-4, machine.sensor_noise = 7e-6;

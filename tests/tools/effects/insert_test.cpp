@@ -157,6 +157,16 @@ TEST(Insertion, IsAFewLinesInTheUsersOwnForm) {
   EXPECT_EQ(run_text(text, file->name).status, RunStatus::finished);
 }
 
+TEST(Insertion, ASampledDelayKeepsInStepWithRowsOfAnyPeriod) {
+  RecordSizes sizes = axis_sizes();
+  sizes.sample_time = 1.0 / 750;
+  Problems problems;
+  const auto insertion =
+      insert_effect(nominal(), nominal_axis, effect_named("input_delay"), {6e-4}, sizes, problems);
+  ASSERT_TRUE(insertion) << problems.text();
+  EXPECT_THAT(insertion->text, testing::HasSubstr("\"sample_time\": 0.0013333333333333333"));
+}
+
 TEST(Insertion, InASubdiagramLeavesTheFileOfTheOthersAlone) {
   const auto file = nominal();
   const std::string text = insert_text(file, nominal_axis, effect_named("coulomb_friction"), {0.12});

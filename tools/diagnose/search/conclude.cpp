@@ -58,15 +58,15 @@ class Rivals {
     if (const double loss = criterion_of(other) - criterion_of(estimate_); loss > reach_ && loss < 4 * reach_)
       maximise(trials_, other);
     const std::optional<double> loss = loss_of(proposal, other);
-    if (!loss || is_refuted(proposal)) return {};
+    if (!loss || is_refuted(proposal, other)) return {};
     const double disliked = *loss - preference(trials_, other.members, estimate_.members);
     if (disliked < best_loss_) best_loss_ = disliked, best_ = std::move(other);
     return loss;
   }
   /// Another law of dry friction, against which the rows after reversals speak.
-  bool is_refuted(const Proposal& p) const {
+  bool is_refuted(const Proposal& p, const Estimate& other) const {
     return p.removed.size() == 1 && p.added.size() == 1 &&
-           at_reversals_.is_refuted(p.removed[0], *p.added[0].candidate);
+           at_reversals_.is_refuted(p.removed[0], *p.added[0].candidate, other);
   }
   /// Whether it is as good on the same motion, and not much worse on its own motion. If the diagram itself
   /// quantizes, for example with an encoder, every run gives a different result.
@@ -150,7 +150,7 @@ void add_simpler_friction(std::vector<Substitute>& list, const Trials& trials, R
     const Estimate other = rivals.fitted(proposal);
     if (!other.is_valid) continue;
     const double with_other = residual_size(trials, *trials.inverse, other.members).fitted;
-    if (with_other <= criteria::same_balance * left && !rivals.is_refuted(proposal))
+    if (with_other <= criteria::same_balance * left && !rivals.is_refuted(proposal, other))
       add_if_new(list, proposal.added.front().candidate);
   }
 }
@@ -192,7 +192,7 @@ std::optional<Estimate> simplified(Rivals& rivals, const std::vector<Member>& me
       if (!is_simpler || proposal.gain <= -10 * rivals.reach() || rivals.is_spent()) continue;
       Estimate other = rivals.fitted(proposal);
       const bool is_good = rivals.loss_of(proposal, other) || rivals.is_promised(proposal, other);
-      if (is_good && !rivals.is_refuted(proposal)) return other;
+      if (is_good && !rivals.is_refuted(proposal, other)) return other;
     }
   }
   return {};

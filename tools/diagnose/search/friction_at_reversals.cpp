@@ -29,6 +29,8 @@ std::vector<char> with_reversals(const Trial& trial, const Path& path) {
   return rows;
 }
 
+constexpr int iterations = 6;  // of a fit to all rows
+
 /// Other rows count as long as it lives.
 class OtherRows {
  public:
@@ -106,7 +108,8 @@ FrictionAtReversals::Rows FrictionAtReversals::on_all_rows(const std::vector<Mem
 }
 
 FrictionAtReversals::Rows FrictionAtReversals::with_law(size_t member, const Candidate& law) {
-  constexpr int first_iterations = 1, iterations = 6;
+  // A level alone is about that of the present law; what comes beside it must be solved for.
+  const int first_iterations = law.linear.size() > 1 ? 1 : 0;
   Rows best;
   for (const Shape& shape : shapes_) {
     if (shape.candidate != &law) continue;
@@ -156,11 +159,12 @@ std::optional<Estimate> FrictionAtReversals::better() {
   return std::move(best.fitted);
 }
 
-bool FrictionAtReversals::is_refuted(size_t member, const Candidate& law) {
+bool FrictionAtReversals::is_refuted(size_t member, const Candidate& law, const Estimate& other) {
   const Candidate& present = *estimate_.members[member].candidate;
   if (after_reversals_ == 0 || !is_dry(present) || !is_dry(law)) return false;
   if (present_.mean_square > criteria::most_mean_square_at_reversals) return false;
-  return explains(present_, with_law(member, law), criteria::least_gain_at_reversals);
+  return other.is_valid &&
+         explains(present_, on_all_rows(other.members, iterations), criteria::least_gain_at_reversals);
 }
 
 }  // namespace loopwright::diagnosis

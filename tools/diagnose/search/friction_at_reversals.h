@@ -26,8 +26,9 @@ class FrictionAtReversals {
     const Candidate* candidate;
   };
   const std::vector<Law>& not_excluded() const { return not_excluded_; }
-  /// Whether the present law explains the rows after reversals, and this one in place of a member does not.
-  bool is_refuted(size_t member, const Candidate& law);
+  /// Whether the present law explains the rows after reversals, and that of `other` in its place does not.
+  /// `other`: fitted to the rows that count, and like the estimate but for the law.
+  bool is_refuted(size_t member, const Candidate& law, const Estimate& other);
 
  private:
   struct Rows {

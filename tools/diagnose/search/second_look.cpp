@@ -21,10 +21,12 @@ SecondLook look_again(Trials& trials, const Estimate& estimate, const Evidence& 
   constexpr int iterations = 8;
   SecondLook result;
   const double least = std::max(criteria::least_gain, criteria::least_gain_per_row * judged_numbers(trials));
+  const double rows =
+      double(fitted_numbers(trials)) / std::max(1.0, evidence.rows());  // for each that it used
   std::vector<Proposal> proposals = evidence.extensions();
   if (proposals.size() > most_tried) proposals.resize(most_tried);
   for (const Proposal& proposal : proposals) {
-    if (proposal.gain < least / 2 || trials.work->is_spent(criteria::work_with_rivals)) break;
+    if (rows * proposal.gain < least / 2 || trials.work->is_spent(criteria::work_with_rivals)) break;
     Estimate trial =
         fit_members(trials, applied(proposal, estimate.members), estimate.noise, estimate.motion, iterations);
     trial = with_own_noise(trials, std::move(trial), iterations);

@@ -62,7 +62,8 @@ class Judge {
     if (may_be_doubtful(state.conclusion.estimate.members) && !state.runs.empty())
       for (size_t i = 1; i < state.runs.size(); ++i)
         for (size_t m : state.staircase.added[i])
-          if (state.staircase.steps[i].is_optional && !helps(state, m))
+          if (state.staircase.steps[i].is_optional && !is_own_load(state.conclusion.estimate.members[m]) &&
+              !helps(state, m))
             return Refusal{m,
                            "what a load that flies leaves after its blows resembles it, and the diagram "
                            "simulates no better with it"};
