@@ -296,7 +296,7 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   result.refused = std::move(accepted.refused);
   for (const SmallEffect& small : conclusion.too_small)
     result.too_small.push_back({effect_of(catalogue, small.candidate).name, small.force_rms,
-                                small.force_rms / std::max(trials.force_rms, 1e-300)});
+                                small.force_rms / std::max(trials.force_rms, 1e-300), small.gain});
   if (!accepted.why_not_run.empty()) result.contradictions.push_back(std::move(accepted.why_not_run));
   result.holds_out = std::ranges::any_of(
       trials.list, [](const Trial& trial) { return trial.held_out_from < trial.usable.size(); });

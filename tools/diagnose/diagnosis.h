@@ -88,6 +88,7 @@ struct TooSmallEffect {
   std::string effect;
   double force_rms = 0;
   double share = 0;  ///< of the driving force
+  double gain = 0;   ///< in twice the log-likelihood, less the price of its parameters
 };
 
 /// A share of the remaining error that a variable explains.

@@ -58,8 +58,10 @@ std::string to_json(const Diagnosis& d) {
   for (const RecordFinding& f : d.findings) json["record"].push_back({{"finding", f.what}, {"cost", f.cost}});
   json["too_small"] = nlohmann::ordered_json::array();
   for (const TooSmallEffect& e : d.too_small)
-    json["too_small"].push_back(
-        {{"effect", e.effect}, {"force_rms", e.force_rms}, {"share_of_driving_force", e.share}});
+    json["too_small"].push_back({{"effect", e.effect},
+                                 {"force_rms", e.force_rms},
+                                 {"share_of_driving_force", e.share},
+                                 {"gain", e.gain}});
   json["refused"] = nlohmann::ordered_json::array();
   for (const RefusedEffect& r : d.refused) json["refused"].push_back({{"effect", r.effect}, {"why", r.why}});
   json["contradictions"] = d.contradictions;

@@ -3,6 +3,7 @@
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/remaining_force.h"
 #include "tools/diagnose/search/weight.h"
+#include "tools/diagnose/search/whiteness.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -20,6 +21,10 @@ SecondLook look_again(Trials& trials, const Estimate& estimate, const Evidence& 
   constexpr size_t most_tried = 3;
   constexpr int iterations = 8;
   SecondLook result;
+  // In noise that is assumed, or errors that are not white, small effects are the errors of the model.
+  const bool is_noisy = estimate.noise.white > 2 * criteria::least_white_noise * trials.force_rms;
+  if (!is_noisy || portmanteau(trials, *estimate.fitted) > criteria::most_portmanteau_of_counted)
+    return result;
   const double least = std::max(criteria::least_gain, criteria::least_gain_per_row * judged_numbers(trials));
   const double rows =
       double(fitted_numbers(trials)) / std::max(1.0, evidence.rows());  // for each that it used
@@ -39,6 +44,7 @@ SecondLook look_again(Trials& trials, const Estimate& estimate, const Evidence& 
       result.better = std::move(trial);
       return result;
     }
+    if (is_own_load(trial.members.back())) continue;
     result.small.push_back({trial.members.back().candidate, gain, weight.force_rms});
   }
   std::ranges::stable_sort(result.small, std::ranges::greater{}, &SmallEffect::gain);

@@ -44,7 +44,7 @@ class Judge {
     if (const size_t at = state.runs.size(); !state.why_not_run.empty() && at > 0)
       return Refusal{state.staircase.added[at].front(), "the diagram cannot be run with it"};
     for (size_t i = 1; i < state.runs.size(); ++i)
-      if (is_worse(state.runs[i - 1], state.runs[i]) && !has_own_load(state.staircase.members[i]) &&
+      if (is_worse(state.runs[i - 1], state.runs[i]) && is_judged_by_simulation(state, i) &&
           is_worse_without(state, state.staircase.added[i].front()))
         return why_worse(state, i);
     for (size_t i = 1; i < state.runs.size(); ++i)
@@ -99,6 +99,15 @@ class Judge {
       return none;
     }
   }
+  /// A load that moves by itself may begin a window wrongly. A late input moves it as it moves the motor.
+  static bool is_judged_by_simulation(const Acceptance& state, size_t step) {
+    if (!has_own_load(state.staircase.members[step])) return true;
+    const auto is_late = [&](size_t m) {
+      const Candidate& candidate = *state.conclusion.estimate.members[m].candidate;
+      return candidate.acts == Acts::input && candidate.amplitude_is_one;
+    };
+    return std::ranges::all_of(state.staircase.added[step], is_late);
+  }
   /// Beside the same load the others are compared fairly.
   static bool brings_own_load(const Acceptance& state, size_t step) {
     return has_own_load(state.staircase.members[step]) != has_own_load(state.staircase.members[step - 1]);
@@ -122,8 +131,7 @@ class Judge {
   }
   bool helps(const Acceptance& state, size_t member) {
     const FreeRun without = without_member(state, member).second;
-    return without.diverged ||
-           state.runs.back().rmse() < (1 - criteria::least_help) * without.rmse();
+    return without.diverged || state.runs.back().rmse() < (1 - criteria::least_help) * without.rmse();
   }
   Refusal why_worse(const Acceptance& state, size_t step) {
     const std::string& unit = trials_.list.front().model->record().measured.front().unit;
