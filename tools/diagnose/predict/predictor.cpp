@@ -269,6 +269,7 @@ Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains,
       position ? std::optional(position->value[0]) : std::nullopt,
       velocity ? velocity->value[0] : (first[std::min<size_t>(rows - 1, 1)] - first[0]) / record.sample_time);
   double d = 0, passed = 0, left = 0;  // left: velocity error after the correction
+  const bool follows_velocity = model.position_follows_velocity();
   int turning = 0;
   std::array<double, 2> e{};
   for (size_t k = 0; k < rows; ++k) {
@@ -284,7 +285,7 @@ Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains,
         model.correct(states[i], gains.K(Eigen::Index(i), Eigen::Index(p)) * e[p]);
       d += gains.K(Eigen::Index(states.size()), Eigen::Index(p)) * e[p];
     }
-    if (model.position_follows_velocity()) {
+    if (follows_velocity) {
       if (!record.is_missing(k)) model.shift_position(0.5 * passed * (left + e[0]));
       left = record.is_missing(k) || record.is_false(k) ? 0 : velocity->value[k] - model.velocity();
     }
