@@ -44,10 +44,6 @@ constexpr double most_mean_square_at_reversals = 2;
 /// [criterion] Over all rows together, by which another law must do better than the present one.
 constexpr double least_gain_at_reversals = 50;
 
-/// [rows that count] From so many on the rows after reversals are worth it. [mean square of all rows] And they
-/// are explained as well as the others.
-constexpr double many_after_reversals = 0.2, same_after_reversals = 1.3;
-
 // Steps.
 
 /// [poles of a sample] Their sizes after a whole step and two halves differ by less if the step is short

@@ -29,7 +29,7 @@ std::vector<char> with_reversals(const Trial& trial, const Path& path) {
   return rows;
 }
 
-constexpr int iterations = 6;  // of a fit to all rows
+constexpr int iterations_of_a_law = 6;  // fitted to all rows
 
 /// Other rows count as long as it lives.
 class OtherRows {
@@ -59,6 +59,12 @@ std::vector<const Candidate*> other_laws(const Candidate& present, const std::ve
   return laws;
 }
 
+/// Friction that falls with speed contains dry friction, and takes up what a step makes of the first rows
+/// after a turn: it is declared. So only what builds up over a distance, or has no more parameters, replaces.
+bool may_replace(const Candidate& law, const Candidate& present) {
+  return law.at_rest == AtRest::gives || parameters_of(law) <= parameters_of(present);
+}
+
 /// A law in place of a member: its first amplitude is the level.
 std::vector<Member> exchanged(std::vector<Member> members, size_t at, const Candidate& law,
                               std::vector<double> nonlinear) {
@@ -70,19 +76,13 @@ std::vector<Member> exchanged(std::vector<Member> members, size_t at, const Cand
 
 }  // namespace
 
-std::vector<std::vector<char>> rows_with_reversals(const Trials& trials, const Estimate& estimate) {
-  std::vector<std::vector<char>> rows;
-  for (size_t t = 0; t < trials.list.size(); ++t)
-    rows.push_back(with_reversals(trials.list[t], (*estimate.fitted)[t].prediction.path));
-  return rows;
-}
-
 FrictionAtReversals::FrictionAtReversals(Trials& trials, const Estimate& estimate,
                                          const std::vector<Shape>& shapes, size_t catalogue)
     : trials_(trials), estimate_(estimate), shapes_(shapes), catalogue_(catalogue) {
   const auto is_dry_member = [](const Member& m) { return is_dry(*m.candidate); };
   if (trials.has_map() || std::ranges::none_of(estimate.members, is_dry_member)) return;
-  rows_ = rows_with_reversals(trials, estimate);
+  for (size_t t = 0; t < trials.list.size(); ++t)
+    rows_.push_back(with_reversals(trials.list[t], (*estimate.fitted)[t].prediction.path));
   for (size_t t = 0; t < rows_.size(); ++t)
     for (size_t k = 0; k < trials.list[t].held_out_from; ++k)
       after_reversals_ += rows_[t][k] > trials.list[t].usable[k];
@@ -117,7 +117,7 @@ FrictionAtReversals::Rows FrictionAtReversals::with_law(size_t member, const Can
     if (rows.fitted.is_valid && (!best.fitted.is_valid || rows.fitted.profile < best.fitted.profile))
       best = std::move(rows);
   }
-  return best.fitted.is_valid ? on_all_rows(best.fitted.members, iterations) : best;
+  return best.fitted.is_valid ? on_all_rows(best.fitted.members, iterations_of_a_law) : best;
 }
 
 double FrictionAtReversals::gain(const Rows& from, const Rows& to) const {
@@ -147,7 +147,8 @@ std::optional<Estimate> FrictionAtReversals::better() {
     for (const Candidate* law : other_laws(*estimate_.members[m].candidate, shapes_)) {
       Rows rows = with_law(m, *law);
       if (!explains(rows, present_, criteria::least_gain)) continue;
-      const bool is_beyond_doubt = gain(present_, rows) > criteria::least_gain_at_reversals;
+      const bool is_beyond_doubt = gain(present_, rows) > criteria::least_gain_at_reversals &&
+                                   may_replace(*law, *estimate_.members[m].candidate);
       if (!is_beyond_doubt || is_at_limit(rows.fitted.members[m]))
         not_excluded_.push_back({m, law});
       else if (!best.fitted.is_valid || gain(best, rows) > 0)
@@ -163,8 +164,8 @@ bool FrictionAtReversals::is_refuted(size_t member, const Candidate& law, const 
   const Candidate& present = *estimate_.members[member].candidate;
   if (after_reversals_ == 0 || !is_dry(present) || !is_dry(law)) return false;
   if (present_.mean_square > criteria::most_mean_square_at_reversals) return false;
-  return other.is_valid &&
-         explains(present_, on_all_rows(other.members, iterations), criteria::least_gain_at_reversals);
+  return other.is_valid && explains(present_, on_all_rows(other.members, iterations_of_a_law),
+                                    criteria::least_gain_at_reversals);
 }
 
 }  // namespace loopwright::diagnosis

@@ -7,9 +7,6 @@
 
 namespace loopwright::diagnosis {
 
-/// Of each record, the rows that count, and those after reversals where the sign of the motion is certain.
-std::vector<std::vector<char>> rows_with_reversals(const Trials& trials, const Estimate& estimate);
-
 class FrictionAtReversals {
  public:
   /// The estimate is only read. `shapes`: where the fits of other laws begin.

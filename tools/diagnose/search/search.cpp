@@ -7,7 +7,6 @@
 #include <ranges>
 #include "tools/diagnose/search/conclude.h"
 #include "tools/diagnose/search/doubt.h"
-#include "tools/diagnose/search/friction_at_reversals.h"
 #include "tools/diagnose/search/law_swaps.h"
 #include "tools/diagnose/search/remaining_force.h"
 #include "tools/diagnose/search/spectrum.h"
@@ -37,7 +36,6 @@ class Search {
 
   SearchResult run() {
     bool goes_on = grow(4);
-    if (!goes_on && count_reversals()) goes_on = grow(4);
     if (goes_on && is_much_left() && trials_.has_map()) goes_on = grow(most_steps_in_a_map);
     if (!is_spent() && (is_much_left() || explain_without_name())) {
       start_from_what_has_no_name();
@@ -122,30 +120,6 @@ class Search {
 
   bool is_spent() const { return trials_.work->is_spent(criteria::work_of_search); }
   bool is_much_left() const { return best_.mean_square >= criteria::much_left; }
-
-  /// Where reversals are so frequent that the rows after them are a large part of all, and the set explains
-  /// them as well as the others, nothing is wrong there: they count too. Returns whether they do now.
-  bool count_reversals() {
-    const double before = double(fitted_numbers(trials_));
-    std::vector<std::vector<char>> rows = rows_with_reversals(trials_, best_);
-    const auto exchange = [&] {
-      for (size_t t = 0; t < rows.size(); ++t) std::swap(trials_.list[t].moving, rows[t]);
-      leave_out_doubtful(trials_, best_);
-    };
-    if (trials_.has_map() || is_spent()) return false;
-    const double squares = before * best_.mean_square;
-    exchange();
-    const double added = double(fitted_numbers(trials_)) - before;
-    const double square = (best_.mean_square * (before + added) - squares) / std::max(1.0, added);
-    if (added < criteria::many_after_reversals * before ||
-        square > criteria::same_after_reversals * best_.mean_square) {
-      exchange();
-      return false;
-    }
-    take(refined(best_.members, 2));
-    note("with the rows after reversals");
-    return true;
-  }
 
   /// False when nothing more was found.
   bool grow(size_t most) {
