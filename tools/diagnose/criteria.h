@@ -41,6 +41,8 @@ constexpr size_t rows_of_a_turn = 1;
 /// [mean square of the whitened errors] A law explains the rows after the reversals. Where an axis sticks, or
 /// its sensor is noisy, none does: hundreds.
 constexpr double most_mean_square_at_reversals = 2;
+/// [rest_speed] Friction that falls within fewer of them is not seen after reversals.
+constexpr double rest_speeds_of_a_fall = 4;
 /// [criterion] Over all rows together, by which another law must do better than the present one.
 constexpr double least_gain_at_reversals = 50;
 

@@ -120,6 +120,12 @@ FrictionAtReversals::Rows FrictionAtReversals::with_law(size_t member, const Can
   return best.fitted.is_valid ? on_all_rows(best.fitted.members, iterations_of_a_law) : best;
 }
 
+/// A fall within a few speeds at which the axis counts as at rest is what a step makes of a turn.
+bool FrictionAtReversals::is_resolved(const Member& law) const {
+  const double least = criteria::rest_speeds_of_a_fall * trials_.list.front().pace.rest_speed;
+  return law.candidate->at_rest != AtRest::holds || law.nonlinear.empty() || law.nonlinear[0] > least;
+}
+
 double FrictionAtReversals::gain(const Rows& from, const Rows& to) const {
   const OtherRows counted(trials_, rows_);
   return criterion(trials_, from.fitted, catalogue_) - criterion(trials_, to.fitted, catalogue_);
@@ -146,7 +152,7 @@ std::optional<Estimate> FrictionAtReversals::better() {
   for (size_t m = 0; m < estimate_.members.size(); ++m)
     for (const Candidate* law : other_laws(*estimate_.members[m].candidate, shapes_)) {
       Rows rows = with_law(m, *law);
-      if (!explains(rows, present_, criteria::least_gain)) continue;
+      if (!explains(rows, present_, criteria::least_gain) || !is_resolved(rows.fitted.members[m])) continue;
       const bool is_beyond_doubt = gain(present_, rows) > criteria::least_gain_at_reversals &&
                                    may_replace(*law, *estimate_.members[m].candidate);
       if (!is_beyond_doubt || is_at_limit(rows.fitted.members[m]))

@@ -35,6 +35,7 @@ class FrictionAtReversals {
   };
   Rows on_all_rows(const std::vector<Member>& members, int iterations);
   Rows with_law(size_t member, const Candidate& law);
+  bool is_resolved(const Member& law) const;
   double gain(const Rows& from, const Rows& to) const;
   bool explains(const Rows& one, const Rows& other, double least_gain) const;
 
