@@ -66,6 +66,11 @@ struct Member {
   bool is_free(size_t nonlinear_index) const { return !is_part_of_turn || nonlinear_index > 0; }
 };
 
+/// A delay or a lag of the input.
+inline bool is_late_input(const Candidate& candidate) {
+  return candidate.acts == Acts::input && candidate.amplitude_is_one;
+}
+
 /// Whether it makes a part of the mass move by itself.
 inline bool is_own_load(const Member& member) {
   const Candidate& candidate = *member.candidate;

@@ -270,13 +270,12 @@ void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
 /// better is then no proof.
 void add_blurred_shapes(const Trials& trials, Conclusion& result, const std::vector<Candidate>& candidates) {
   const AxisRecord& record = trials.list.front().model->record();
-  const auto is_shape = [](const Candidate& c) { return c.acts == Acts::input && c.amplitude_is_one; };
   const std::vector<Member>& members = result.estimate.members;
   for (size_t m = 0; m < members.size() && record.is_thinned; ++m) {
-    if (!is_shape(*members[m].candidate)) continue;
+    if (!is_late_input(*members[m].candidate)) continue;
     if (members[m].nonlinear[0] > criteria::rows_that_blur * record.sample_time) continue;
     for (const Candidate& other : candidates) {
-      if (!is_shape(other) || &other == members[m].candidate) continue;
+      if (!is_late_input(other) || &other == members[m].candidate) continue;
       if (std::ranges::find(members, &other, &Member::candidate) == members.end())
         add_if_new(result.substitutes[m], &other);
       else

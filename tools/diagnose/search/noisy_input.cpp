@@ -6,7 +6,7 @@ namespace loopwright::diagnosis {
 namespace {
 
 bool is_late(const Member& member) {
-  return member.candidate->acts == Acts::input && member.candidate->amplitude_is_one;
+  return is_late_input(*member.candidate);
 }
 
 /// Takes a share of what the input is above its mean over some rows away from it.

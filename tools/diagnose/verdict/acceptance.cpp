@@ -103,8 +103,7 @@ class Judge {
   static bool is_judged_by_simulation(const Acceptance& state, size_t step) {
     if (!has_own_load(state.staircase.members[step])) return true;
     const auto is_late = [&](size_t m) {
-      const Candidate& candidate = *state.conclusion.estimate.members[m].candidate;
-      return candidate.acts == Acts::input && candidate.amplitude_is_one;
+      return is_late_input(*state.conclusion.estimate.members[m].candidate);
     };
     return std::ranges::all_of(state.staircase.added[step], is_late);
   }

@@ -170,7 +170,7 @@ class Windows {
 int steps_for(const std::vector<Member>& members, double sample_time) {
   double steps = 1;
   for (const Member& member : members)
-    if (member.candidate->acts == Acts::input && member.candidate->amplitude_is_one)
+    if (is_late_input(*member.candidate))
       steps = std::max(steps, criteria::steps_in_a_lag * sample_time / member.nonlinear[0]);
   return int(whole_between<size_t>(std::ceil(steps), 1, criteria::most_steps_a_sample));
 }
