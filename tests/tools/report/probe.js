@@ -19,6 +19,9 @@ addEventListener("load", async () => {
   await settled();
   seen.read = [readings(0), readings(2)];
 
+  // What is drawn late above a plot moves it under the mouse.
+  document.body.prepend(Object.assign(document.createElement("div"), { style: "height: 200px" }));
+  await settled();
   mouse(overlay(0), "mousedown", 0.25, 0.5);
   mouse(overlay(0), "mousemove", 0.5, 0.5);
   mouse(overlay(0), "mouseup", 0.5, 0.5);

@@ -21,12 +21,21 @@ function curveOptions(plot) {
   });
 }
 
-/** A press and release at one place is a click, which sets a cursor; between them lies a zoom. */
+/**
+ * A press and release at one place is a click, which sets a cursor; between them lies a zoom.
+ * uPlot remembers where a plot stands, and asks again only when the page scrolls. But what is drawn late above a plot
+ * moves it too, so every event asks.
+ */
 function mouse(plot) {
   let pressed = null;
   return {
+    mousemove: (u, target, handler) => (event) => {
+      u.syncRect(true);
+      handler(event);
+    },
     mousedown: (u, target, handler) => (event) => {
       if (event.button !== 0) return;
+      u.syncRect(true);
       pressed = { x: event.clientX, y: event.clientY };
       if (event.shiftKey) pan(plot, u, event);
       else handler(event);

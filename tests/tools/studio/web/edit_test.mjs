@@ -81,7 +81,8 @@ for (const [dark, width, height] of [[false, 1400, 900], [true, 1280, 800]])
       await page.waitForSelector("[aria-label='Guard of the transition']");
       await page.fill("[aria-label='Guard of the transition']", "after(5 s)");
       await page.keyboard.press("Enter");
-      await page.waitForFunction(() => document.querySelectorAll(".machine [data-transition]").length === 8);
+      await page.waitForSelector(".machine .when:has-text('after(5 s)')");
+      assert.equal(await page.locator(".machine [data-transition]").count(), 8);
       const states = JSON.parse(readFileSync(file, "utf8")).blocks.machine.states;
       assert.deepEqual(states.find((state) => state.name === "fault").transitions.at(-1), { when: "after(5 s)", to: "state_7" });
       assert.deepEqual(states.at(-1).set, { lamp: 3 });
