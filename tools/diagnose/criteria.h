@@ -119,6 +119,9 @@ constexpr double negligible_force = 1e-3;
 constexpr double least_force_share = 0.3;
 /// [standard deviations] By which the share must be below.
 constexpr double sure_deviations = 2;
+/// [χ² a row] An effect as loud as this is no answer of a controller to noise; and [residual that the noise
+/// leaves] its force up to which the motion that it follows may be driven by the noise.
+constexpr double loud_wald_per_row = 0.3, noise_that_drives = 2;
 /// [residual force] Two sets within this factor balance the forces alike.
 constexpr double same_balance = 1.02;
 /// [s] Errors further apart are independent.

@@ -35,6 +35,9 @@ bool adds_inertia(const Attachment& attachment) {
 
 constexpr double linear_points = 8;
 constexpr double grid_ratio = 1.7;  // between neighbors on a logarithmic scale, at most
+/// [times the smallest of the grid] The longest delay or lag: 20 samples, and a twentieth of one. A held force
+/// that changes from sample to sample shows a delay of a tenth.
+constexpr double ranges_of_delays = 400;
 
 /// Initial values of the search. Later shapes of an effect start in the middle: the fit moves them.
 std::vector<double> grid_of(const CandidateParameter& p, bool is_first, int points) {
@@ -191,7 +194,7 @@ Candidate candidate_of(const Effect& effect, std::shared_ptr<const EffectPlan> p
     std::vector<double>& grid = candidate.nonlinear.front().grid;
     const double high = candidate.nonlinear.front().high;
     grid.clear();
-    for (double value = high / 60; value < high; value *= 1.5) grid.push_back(value);
+    for (double value = high / ranges_of_delays; value < high; value *= 1.5) grid.push_back(value);
   }
   candidate.is_repeatable = effect.is_repeatable, candidate.at_rest = effect.at_rest;
   candidate.flies = candidate.acts == Acts::force && compiled->plan->flies;

@@ -223,7 +223,7 @@ std::optional<Estimate> named(const Trials& trials, Rivals& rivals, const std::v
 std::vector<double> sizes_of_members(const Trials& trials, const Conclusion& result) {
   std::vector<double> sizes;
   for (size_t m = 0; m < result.weights.size(); ++m)
-    sizes.push_back(spoils_balance(trials, result.estimate, m)
+    sizes.push_back(spoils_balance(trials, result.estimate, m, result.weights[m])
                         ? 0
                         : material(trials, result.estimate, result.weights[m]));
   return sizes;
@@ -243,13 +243,16 @@ void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
       weigh_counts(trials, estimate, result.weights);
       sizes = sizes_of_members(trials, result);
     }
-    const auto least = std::ranges::min_element(sizes);
-    if (*least >= barely_material) return;
-    const size_t weakest = size_t(least - sizes.begin());
+    size_t weakest = 0;  // of several that spoil the balance of the forces, the one that the record asks for least
+    for (size_t m = 1; m < sizes.size(); ++m)
+      if (std::pair(sizes[m], result.weights[m].wald) < std::pair(sizes[weakest], result.weights[weakest].wald))
+        weakest = m;
+    const double least = sizes[weakest];
+    if (least >= barely_material) return;
     std::vector<Member> members = estimate.members;
     members.erase(members.begin() + std::ptrdiff_t(weakest));
     Estimate without = fit_members(trials, members, estimate.noise, estimate.motion, 4);
-    if (*least >= 1) {
+    if (least >= 1) {
       maximise(trials, without);
       if (criterion(trials, without, catalogue) > criterion(trials, estimate, catalogue)) return;
     }
@@ -258,7 +261,7 @@ void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
         fmt::format("{}: {}, χ² {:.0f} (of counts {:.0f}), force {:.3g}, unique {:.3g} beside a driving "
                     "force of {:.3g} and "
                     "noise of {:.3g} and {:.3g}",
-                    *least < 1 ? "not material" : "other noise does as well",
+                    least < 1 ? "not material" : "other noise does as well",
                     estimate.members[weakest].candidate->name, weight.wald, weight.counts, weight.force_rms,
                     weight.unique_force, trials.force_rms, estimate.noise.white, estimate.noise.slow()));
     estimate = std::move(without);

@@ -146,8 +146,12 @@ ForceShare share_of_force(const Trials& trials, const std::vector<InverseDynamic
   return {slope, std::sqrt(scatter) / squares};
 }
 
-bool spoils_balance(const Trials& trials, const Estimate& estimate, size_t member) {
+bool spoils_balance(const Trials& trials, const Estimate& estimate, size_t member, const Weight& weight) {
   if (!trials.inverse) return false;
+  const bool is_loud = weight.wald > criteria::loud_wald_per_row * double(fitted_numbers(trials));
+  if (is_loud && estimate.members[member].candidate->acts == Acts::force &&
+      weight.force_rms < criteria::noise_that_drives * residual_floor(trials, estimate.noise))
+    return false;
   std::vector<Member> others = estimate.members;
   others.erase(others.begin() + std::ptrdiff_t(member));
   const ForceShare share = share_of_force(trials, *trials.inverse, estimate.members, others);

@@ -3,6 +3,7 @@
 #pragma once
 #include "tools/compare/machine.h"
 #include "tools/diagnose/search/maximum_likelihood.h"
+#include "tools/diagnose/search/weight.h"
 
 namespace loopwright::diagnosis {
 
@@ -42,8 +43,10 @@ ForceShare share_of_force(const Trials& trials, const std::vector<InverseDynamic
 
 /// Whether a member makes the balance of the forces along the smooth motion worse. In a closed loop the input
 /// answers to disturbances that the record of the motion does not yet show: a delay, a lag or a mode can
-/// then predict a part of the noise, but does not fit the motion itself.
-bool spoils_balance(const Trials& trials, const Estimate& estimate, size_t member);
+/// then predict a part of the noise, but does not fit the motion itself. Where noise drives the motion that the
+/// force of an effect follows, as beside a resonance, the balance is as wrong: an effect that is loud in the
+/// errors, and quieter than the noise in the balance, is not asked.
+bool spoils_balance(const Trials& trials, const Estimate& estimate, size_t member, const Weight& weight);
 
 /// Whether the force that the members leave is too small to matter, in the fitted rows and in the others.
 bool is_negligible(const Trials& trials, const std::vector<Member>& members);

@@ -10,6 +10,7 @@
 #include "tools/diagnose/search/law_swaps.h"
 #include "tools/diagnose/search/remaining_force.h"
 #include "tools/diagnose/search/spectrum.h"
+#include "tools/diagnose/search/whiteness.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -36,6 +37,7 @@ class Search {
 
   SearchResult run() {
     bool goes_on = grow(4);
+    if (!goes_on && is_much_left() && rest_is_noise()) goes_on = grow(4);
     if (goes_on && is_much_left() && trials_.has_map()) goes_on = grow(most_steps_in_a_map);
     if (!is_spent() && (is_much_left() || explain_without_name())) {
       start_from_what_has_no_name();
@@ -173,7 +175,7 @@ class Search {
                          member.candidate->name);
         return false;
       }
-      const bool spoils = spoils_balance(trials_, trial, m);
+      const bool spoils = spoils_balance(trials_, trial, m, w);
       if (material(trials_, trial, w) >= 1 && !spoils) continue;
       if (spoils) {
         trail_.push_back("spoils the balance of the forces: " + trial.members[m].candidate->name);
@@ -346,6 +348,19 @@ class Search {
     noise_ = fit_noise_alone(trials_, *best_.fitted, noise_, FreeNoise::white_and_slow);
     take(fit_members(trials_, best_.members, noise_, best_.motion, 2));
     trail_.push_back(fmt::format("noise: white {:.3g}, slow {:.3g}", noise_.white, noise_.slow()));
+  }
+
+  /// If what is left looks like noise that is louder than assumed, it is taken for that: gains of the predictor
+  /// that are too small colour the errors, and bend what is fitted to them.
+  bool rest_is_noise() {
+    const Noise louder = fit_noise_alone(trials_, *best_.fitted, noise_, FreeNoise::white_and_slow);
+    Estimate trial = fit_members(trials_, best_.members, louder, best_.motion, 4);
+    if (!trial.is_valid || portmanteau(trials_, *trial.fitted) > criteria::most_portmanteau) return false;
+    noise_ = louder;
+    take(std::move(trial));
+    note("with louder noise");
+    prune();
+    return true;
   }
 
   const std::vector<Candidate>& unknown_;

@@ -9,10 +9,10 @@ namespace loopwright::diagnosis {
 namespace {
 
 /// Loads that fly leave rows out, and what stands at the end of its range stands for something else.
-bool may_be_told(const Trials& trials, const Estimate& trial, size_t member) {
+bool may_be_told(const Trials& trials, const Estimate& trial, size_t member, const Weight& weight) {
   const Candidate& candidate = *trial.members[member].candidate;
   return !candidate.is_unknown && !candidate.flies && !is_at_limit(trial.members[member]) &&
-         !spoils_balance(trials, trial, member);
+         !spoils_balance(trials, trial, member, weight);
 }
 
 }  // namespace
@@ -38,8 +38,9 @@ SecondLook look_again(Trials& trials, const Estimate& estimate, const Evidence& 
     if (!trial.is_valid) continue;
     const double gain = criterion(trials, estimate, catalogue) - criterion(trials, trial, catalogue);
     const size_t member = trial.members.size() - 1;
-    if (gain < least || !may_be_told(trials, trial, member)) continue;
+    if (gain < least) continue;
     const Weight weight = weigh_all(trials, trial).back();
+    if (!may_be_told(trials, trial, member, weight)) continue;
     if (material(trials, trial, weight) >= 1) {
       result.better = std::move(trial);
       return result;
