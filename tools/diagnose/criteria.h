@@ -119,6 +119,9 @@ constexpr double negligible_force = 1e-3;
 constexpr double least_force_share = 0.3;
 /// [standard deviations] By which the share must be below.
 constexpr double sure_deviations = 2;
+/// [force of the input, rms] What is as small in the errors of the predictor may be an error of the model, as that
+/// of forces between the rows. It is no effect that is too small to matter.
+constexpr double error_of_model = 2.5e-4;
 /// [χ² a row] An effect as loud as this is no answer of a controller to noise; and [residual that the noise
 /// leaves] its force up to which the motion that it follows may be driven by the noise.
 constexpr double loud_wald_per_row = 0.3, noise_that_drives = 2;
@@ -167,6 +170,9 @@ constexpr double most_promised_loss = 20;
 constexpr double much_left = 8;
 /// A delay or a lag replaces a step from 0 to its shape; the step that the errors ask for must be near 1.
 constexpr double least_step_to_shape = 0.6, most_step_to_shape = 1.7;
+/// An effect is also tried with a shape that differs from its present one by more than this factor: beyond what
+/// a fit reaches, as a resonance at another frequency is.
+constexpr double other_shape = 1.5;
 /// [twice the log-likelihood] A smaller gain ends the iterations of a fit.
 constexpr double least_step_gain = 0.01;
 /// [ln(mean square)] Two models that differ less have the same motion.

@@ -96,14 +96,15 @@ class Inquiry {
     look_at_all_rows(conclusion);
     return conclusion;
   }
-  /// The same without a member.
+  /// The same without a member, which is refused from now on. What was found beside it may have needed it.
   Conclusion without(const Conclusion& conclusion, size_t member) {
     const std::vector<Shape>& shapes = shapes_along_fitted_rows();
     std::vector<Member> members = conclusion.estimate.members;
     members.erase(members.begin() + std::ptrdiff_t(member));
     const Estimate& e = conclusion.estimate;
+    refused_.push_back(e.members[member].candidate);
     Conclusion rest = conclude(trials_, catalogue_.candidates, shapes,
-                               fit_members(trials_, members, e.noise, e.motion, 8), true);
+                               fit_members(trials_, members, e.noise, e.motion, 8), refused_);
     look_at_all_rows(rest);
     return rest;
   }
@@ -148,6 +149,7 @@ class Inquiry {
   Motion fitted_motion_;
   std::vector<Shape> shapes_;  // along it
   std::vector<size_t> rows_of_shapes_;
+  std::vector<const Candidate*> refused_;
   Estimate on_all_rows_;
 };
 

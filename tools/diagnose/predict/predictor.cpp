@@ -162,6 +162,7 @@ Path Path::first_samples(size_t count) const {
                      &shorter.input, &shorter.force, &shorter.predicted_position})
     list->resize(count);
   if (!input_slope.empty()) shorter.input_slope.resize(count);
+  if (!duration.empty()) shorter.duration.resize(count);
   shorter.rests.resize(count), shorter.turns.resize(count);
   return shorter;
 }
@@ -262,6 +263,7 @@ Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains,
   path.input = drives.input, path.force = first_rows(model.driving_force(), rows);
   path.predicted_position.resize(rows), path.rests.resize(rows), path.turns.resize(rows);
   if (!record.input_slope.empty()) path.input_slope = first_rows(record.input_slope, rows);
+  if (!record.duration.empty()) path.duration = first_rows(record.duration, rows);
   const MeasuredPort* position = record.find("position");
   const MeasuredPort* velocity = record.find("velocity");
   const auto& first = record.measured.front().value;

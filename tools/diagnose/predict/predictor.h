@@ -30,6 +30,7 @@ struct Path {
   /// ends. With few rows in a motion, or much damping, a straight line is no longer close enough.
   std::vector<double> velocity_bow;
   std::vector<double> input_slope;         ///< of the recorded input; empty: held
+  std::vector<double> duration;            ///< [sample times] of each sample; empty: 1
   std::vector<double> force;               ///< the force produced by the recorded input
   std::vector<double> predicted_position;  ///< before the measurement of the sample itself
   std::vector<char> rests;                 ///< slower than Pace::rest_speed

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <deque>
 #include <map>
+#include <optional>
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/predict/even_path.h"
 #include "tools/effects/effect_run.h"
 #include "models/real/whole.h"
 
@@ -111,7 +113,10 @@ struct Compiled {
     signals.position = acts == Acts::sensor ? path.predicted_position : path.position;
     signals.velocity = path.velocity, signals.acceleration = path.acceleration;
     signals.input = path.input, signals.force = path.force, signals.velocity_bow = path.velocity_bow;
-    const size_t rows = path.samples(), per_shape = std::max<size_t>(1, linear.size());
+    std::optional<EvenPath> even;
+    if (acts == Acts::force && plan->remembers && !path.duration.empty())
+      even.emplace(path), signals = even->signals();
+    const size_t rows = even ? even->rows() : path.samples(), per_shape = std::max<size_t>(1, linear.size());
     const size_t wanted = shapes.size() * per_shape;
     std::vector<Columns> result(shapes.size());
     EffectRun& run = run_for(wanted);
@@ -128,6 +133,7 @@ struct Compiled {
       run.run(signals, rows, outputs);
       for (size_t lane = 0; lane < outputs.size(); ++lane) {
         auto& [factor, mean, slope] = outputs[lane];
+        if (even) even->to_rows(mean, slope);
         if (std::ranges::all_of(slope, [](float s) { return s == 0; })) slope.clear();
         result[(first + lane) / per_shape].emplace_back(std::move(mean), std::move(slope));
       }

@@ -5,9 +5,9 @@
 #include <optional>
 #include <set>
 #include "tools/diagnose/search/doubt.h"
-#include "tools/diagnose/search/friction_at_reversals.h"
 #include "tools/diagnose/search/law_swaps.h"
 #include "tools/diagnose/search/remaining_force.h"
+#include "tools/diagnose/search/rivals.h"
 #include "tools/diagnose/search/spectrum.h"
 #include "tools/diagnose/search/whiteness.h"
 
@@ -15,88 +15,6 @@ namespace loopwright::diagnosis {
 namespace {
 
 using namespace criteria;
-
-void maximise(Trials& trials, Estimate& estimate) {
-  constexpr int iterations = 8;
-  estimate = with_own_noise(trials, std::move(estimate), iterations);
-}
-
-/// The result, and the sets that explain the records as well.
-class Rivals {
- public:
-  /// `reach`: loss of the criterion that a rival may have.
-  Rivals(Trials& trials, const Estimate& estimate, size_t catalogue, double reach,
-         FrictionAtReversals& at_reversals)
-      : trials_(trials),
-        estimate_(estimate),
-        catalogue_(catalogue),
-        reach_(reach),
-        at_reversals_(at_reversals) {}
-
-  double reach() const { return reach_; }
-  /// No further rival is fitted.
-  bool is_spent() const { return trials_.work->is_spent(criteria::work_with_rivals); }
-  /// With a proposal applied and all parameters fitted.
-  Estimate fitted(const Proposal& proposal) {
-    return fit_members(trials_, applied(proposal, estimate_.members), estimate_.noise, estimate_.motion, 4);
-  }
-  /// How much worse its criterion is; empty: out of reach. A larger set that contains this one as a special
-  /// case is always close, so it must explain more to be a rival.
-  std::optional<double> loss_of(const Proposal& proposal, const Estimate& other) const {
-    if (!other.is_valid) return {};
-    size_t before = 0, now = 0;
-    for (size_t m : proposal.removed) before += parameters_of(*estimate_.members[m].candidate);
-    for (const Member& m : proposal.added) now += parameters_of(*m.candidate);
-    const auto left = [](const Estimate& e) { return e.profile + e.against_at_rest; };
-    if (now > before && left(other) > left(estimate_) - least_gain_of_larger_set) return {};
-    const double loss = criterion_of(other) - criterion_of(estimate_);
-    return loss < reach_ ? std::optional(loss) : std::nullopt;
-  }
-  std::optional<double> loss_of(const Proposal& proposal) {
-    if (is_spent()) return {};
-    Estimate other = fitted(proposal);
-    if (const double loss = criterion_of(other) - criterion_of(estimate_); loss > reach_ && loss < 4 * reach_)
-      maximise(trials_, other);
-    const std::optional<double> loss = loss_of(proposal, other);
-    if (!loss || is_refuted(proposal, other)) return {};
-    const double disliked = *loss - preference(trials_, other.members, estimate_.members);
-    if (disliked < best_loss_) best_loss_ = disliked, best_ = std::move(other);
-    return loss;
-  }
-  /// Another law of dry friction, against which the rows after reversals speak.
-  bool is_refuted(const Proposal& p, const Estimate& other) const {
-    return p.removed.size() == 1 && p.added.size() == 1 &&
-           at_reversals_.is_refuted(p.removed[0], *p.added[0].candidate, other);
-  }
-  /// Whether it is as good on the same motion, and not much worse on its own motion. If the diagram itself
-  /// quantizes, for example with an encoder, every run gives a different result.
-  bool is_promised(const Proposal& proposal, const Estimate& other) const {
-    return proposal.gain > 0 && other.is_valid &&
-           criterion_of(other) - criterion_of(estimate_) < most_promised_loss * reach_;
-  }
-  /// The best of the sets whose loss was computed, if it is also better with noise of its own: the search
-  /// compared them under the noise known then. `doubt`: what its gain must exceed when the errors are not
-  /// white.
-  std::optional<Estimate> better(double doubt) {
-    const auto at_limit = [](const Estimate& e) { return std::ranges::count_if(e.members, is_at_limit); };
-    if (!best_.is_valid || at_limit(best_) > at_limit(estimate_) || is_spent()) return {};
-    maximise(trials_, best_);
-    const double gain = criterion_of(estimate_) - criterion_of(best_);
-    return gain + preference(trials_, best_.members, estimate_.members) > std::max(clearly_better, doubt)
-               ? std::optional(std::move(best_))
-               : std::nullopt;
-  }
-
- private:
-  double criterion_of(const Estimate& estimate) const { return criterion(trials_, estimate, catalogue_); }
-
-  Trials& trials_;
-  const Estimate& estimate_;
-  size_t catalogue_;
-  double reach_, best_loss_ = -clearly_better;
-  FrictionAtReversals& at_reversals_;
-  Estimate best_;
-};
 
 /// What a set leaves unexplained, in twice the log-likelihood: approximately the gain of a model of the
 /// errors' autocorrelation. A set that is worse by less cannot be excluded. Beyond the limit of white errors
@@ -320,9 +238,10 @@ void ask_rivals(const Trials& trials, Conclusion& result, Evidence& evidence,
 }
 
 /// Joint maximum likelihood, repeated with a simpler set that is as good, or at most `rounds` times with a
-/// better one. `stays`: not repeated.
+/// better one.
 Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
-                     const std::vector<Shape>& shapes, Estimate found, int rounds, bool stays) {
+                     const std::vector<Shape>& shapes, Estimate found, int rounds,
+                     const std::vector<const Candidate*>& refused) {
   Conclusion result;
   Estimate& estimate = result.estimate;
   result.turn = trials.turn;
@@ -353,31 +272,32 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
   const std::vector<Shape> periodic = periodic_shapes(trials, estimate, candidates, 1);
   std::vector<const Shape*> all;
   for (const auto* list : {&shapes, &periodic})
-    for (const Shape& shape : *list) all.push_back(&shape);
+    for (const Shape& shape : *list)
+      if (std::ranges::find(refused, shape.candidate) == refused.end()) all.push_back(&shape);
   Evidence evidence(trials, estimate, all, candidates.size());
   const std::vector<Proposal> exchanges = evidence.exchanges();
   FrictionAtReversals at_reversals(trials, estimate, shapes, candidates.size());
   Rivals rivals(
       trials, estimate, candidates.size(),
       std::max({least_gain, least_gain_per_row * n, unexplained(result.portmanteau_beside_counts())}),
-      at_reversals);
+      at_reversals, refused);
   std::optional<Estimate> instead;
   if (rounds > 0 && (instead = at_reversals.better()))
     result.trail.push_back("after reversals another law of dry friction does better");
-  if (!stays && !instead) instead = named(trials, rivals, estimate.members, exchanges);
-  if (!stays && !instead) instead = simplified(rivals, estimate.members, exchanges);
+  if (!instead) instead = named(trials, rivals, estimate.members, exchanges);
+  if (!instead) instead = simplified(rivals, estimate.members, exchanges);
   SecondLook seen;
-  if (!stays && !instead && rounds > 0) {
+  if (!instead) {
     seen = look_again(trials, estimate, evidence, candidates.size());
-    if ((instead = std::move(seen.better))) result.trail.push_back("with the noise known, more is seen");
+    if (rounds > 0 && (instead = std::move(seen.better))) result.trail.push_back("with the noise known, more is seen");
   }
   if (!instead) {
     ask_rivals(trials, result, evidence, exchanges, candidates, rivals, at_reversals, n);
-    if (!stays && rounds > 0 && (instead = rivals.better(unexplained(result.portmanteau_beside_counts()))))
+    if (rounds > 0 && (instead = rivals.better(unexplained(result.portmanteau_beside_counts()))))
       result.trail.push_back("with noise of its own another set does better");
   }
   if (instead) {
-    Conclusion next = concluded(trials, candidates, shapes, std::move(*instead), rounds - 1, stays);
+    Conclusion next = concluded(trials, candidates, shapes, std::move(*instead), rounds - 1, refused);
     next.trail.insert(next.trail.begin(), result.trail.begin(), result.trail.end());
     return next;
   }
@@ -390,9 +310,10 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
 }  // namespace
 
 Conclusion conclude(Trials& trials, const std::vector<Candidate>& candidates,
-                    const std::vector<Shape>& shapes, Estimate found, bool stays) {
+                    const std::vector<Shape>& shapes, Estimate found,
+                    const std::vector<const Candidate*>& refused) {
   constexpr int rounds = 2;
-  return concluded(trials, candidates, shapes, std::move(found), rounds, stays);
+  return concluded(trials, candidates, shapes, std::move(found), rounds, refused);
 }
 
 }  // namespace loopwright::diagnosis

@@ -44,8 +44,9 @@ struct Conclusion {
 };
 
 /// Joint maximum likelihood of parameters and noise; immaterial members are removed one by one. Sets that are
-/// as good with fewer members, or better, take its place, unless it `stays`.
+/// as good with fewer members, or better, take its place. None of them contains a candidate that was refused.
 Conclusion conclude(Trials& trials, const std::vector<Candidate>& candidates,
-                    const std::vector<Shape>& shapes, Estimate found, bool stays = false);
+                    const std::vector<Shape>& shapes, Estimate found,
+                    const std::vector<const Candidate*>& refused = {});
 
 }  // namespace loopwright::diagnosis

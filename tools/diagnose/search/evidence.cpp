@@ -34,6 +34,15 @@ bool is_feasible(const Shape& shape, const Eigen::VectorXd& theta, Eigen::Index 
   return true;
 }
 
+/// Whether shapes differ by more than the neighbours of a grid.
+bool is_far(const std::vector<double>& shape, const std::vector<double>& other) {
+  for (size_t i = 0; i < shape.size(); ++i) {
+    const double ratio = std::abs(shape[i] / other[i]);
+    if (!(ratio < criteria::other_shape && ratio > 1 / criteria::other_shape)) return true;
+  }
+  return false;
+}
+
 /// Squares that a solution leaves, beyond rounding.
 double left_by(double squares, double of) { return std::max(squares, 1e-12 * of); }
 
@@ -231,15 +240,17 @@ Evidence::Errors Evidence::errors_without(const std::vector<size_t>& removed) co
           solve(G_, member_columns(removed, true), b, squares)};
 }
 
-/// A candidate is a member only once; one that repeats along the axis may be added again at another pitch.
+/// A candidate is a member only once; one that repeats along the axis may be added again at another pitch. In the
+/// place of itself it may take another shape, which a fit does not reach: a resonance at another frequency.
 bool Evidence::may_be_added(const Shape& shape, const std::vector<size_t>& removed) const {
   for (size_t m = 0; m < members_.size(); ++m) {
     const Member& member = members_[m];
     if (member.candidate != shape.candidate) continue;
-    const bool other_pitch = shape.candidate->is_periodic && shape.candidate->is_repeatable &&
+    const bool is_removed = std::ranges::find(removed, m) != removed.end();
+    const bool is_periodic = shape.candidate->is_periodic;
+    const bool other_pitch = is_periodic && shape.candidate->is_repeatable &&
                              std::abs(shape.nonlinear[0] / member.nonlinear[0] - 1) > 0.02;
-    if (!other_pitch) return false;
-    if (std::ranges::find(removed, m) != removed.end()) return false;
+    if (is_removed ? is_periodic || !is_far(shape.nonlinear, member.nonlinear) : !other_pitch) return false;
   }
   return true;
 }
@@ -253,17 +264,18 @@ std::vector<int> Evidence::columns_of(const std::vector<size_t>& shapes) const {
 
 /// What the shapes save together with all parameters of the members that stay; empty: not within their
 /// ranges.
-std::optional<double> Evidence::gain_of(const std::vector<size_t>& shapes, const Errors& errors) const {
+std::optional<double> Evidence::gain_of(const std::vector<size_t>& shapes, const Errors& errors,
+                                        double n) const {
   const Added added = add(G_, columns_of(shapes), errors.members, errors.b);
   Eigen::Index first = 0;
   double cost = 0;
   for (size_t s : shapes) {
     if (!is_feasible(*shapes_[s], added.theta, first)) return {};
     first += width_of(s);
-    cost += price(parameters_of(*shapes_[s]->candidate), 1, n_, catalogue_);
+    cost += price(parameters_of(*shapes_[s]->candidate), 1, n, catalogue_);
   }
-  for (size_t m : errors.removed) cost -= price(parameters_of(*members_[m].candidate), 1, n_, catalogue_);
-  return n_ * std::log(explained_ / left_by(added.squares, errors.squares)) - cost;
+  for (size_t m : errors.removed) cost -= price(parameters_of(*members_[m].candidate), 1, n, catalogue_);
+  return n * std::log(explained_ / left_by(added.squares, errors.squares)) - cost;
 }
 
 /// The step of the linear parameters of the members that stay, and of the shapes: if the members' shapes are
@@ -287,11 +299,11 @@ Proposal Evidence::with_step(const std::vector<size_t>& shapes, const Errors& er
 }
 
 /// For every candidate that is not a member, the shape that saves most.
-std::vector<Evidence::Promise> Evidence::best_shapes(const Errors& errors) const {
+std::vector<Evidence::Promise> Evidence::best_shapes(const Errors& errors, double n) const {
   std::vector<Promise> best;
   for (size_t s = 0; s < shapes_.size(); ++s) {
     if (!may_be_added(*shapes_[s], errors.removed)) continue;
-    const auto gain = gain_of({s}, errors);
+    const auto gain = gain_of({s}, errors, n);
     if (!gain) continue;
     const auto same = std::ranges::find(best, shapes_[s]->candidate,
                                         [&](const Promise& p) { return shapes_[p.shape]->candidate; });
@@ -303,10 +315,10 @@ std::vector<Evidence::Promise> Evidence::best_shapes(const Errors& errors) const
   return best;
 }
 
-std::vector<Proposal> Evidence::extensions() const {
+std::vector<Proposal> Evidence::extensions(double n) const {
   std::vector<Proposal> list;
   const Errors errors = errors_without({});
-  for (const auto [shape, gain] : best_shapes(errors))
+  for (const auto [shape, gain] : best_shapes(errors, n))
     if (gain > 0) list.push_back(with_step({shape}, errors, gain));
   std::ranges::stable_sort(list, std::ranges::greater{}, &Proposal::gain);
   return list;
@@ -314,7 +326,7 @@ std::vector<Proposal> Evidence::extensions() const {
 
 Proposal Evidence::best_pair(bool one_without_name) {
   const Errors errors = errors_without({});
-  const std::vector<Promise> best = best_shapes(errors);
+  const std::vector<Promise> best = best_shapes(errors, n_);
   std::vector<size_t> pair;
   double most = 0;
   for (size_t i = 0; i < best.size(); ++i)
@@ -323,7 +335,7 @@ Proposal Evidence::best_pair(bool one_without_name) {
       if (one_without_name && shapes_[one]->candidate->is_unknown == shapes_[other]->candidate->is_unknown)
         continue;
       multiply(one, other);
-      if (const auto gain = gain_of({one, other}, errors); gain && *gain > most)
+      if (const auto gain = gain_of({one, other}, errors, n_); gain && *gain > most)
         most = *gain, pair = {one, other};
     }
   return pair.empty() ? Proposal{} : with_step(pair, errors, most);
@@ -342,7 +354,7 @@ std::vector<Proposal> Evidence::exchanges() const {
   std::vector<Proposal> list;
   for (const auto& removed : removals()) {
     const Errors errors = errors_without(removed);
-    for (const auto [shape, gain] : best_shapes(errors)) list.push_back(with_step({shape}, errors, gain));
+    for (const auto [shape, gain] : best_shapes(errors, n_)) list.push_back(with_step({shape}, errors, gain));
   }
   std::ranges::stable_sort(list, std::ranges::greater{}, &Proposal::gain);
   return list;
@@ -352,12 +364,12 @@ std::vector<Proposal> Evidence::exchanges_for_pairs() {
   std::vector<Proposal> list;
   for (const auto& removed : removals()) {
     const Errors errors = errors_without(removed);
-    const std::vector<Promise> best = best_shapes(errors);
+    const std::vector<Promise> best = best_shapes(errors, n_);
     for (size_t i = 0; i < best.size(); ++i)
       for (size_t j = i + 1; j < best.size(); ++j) {
         const std::vector<size_t> pair{best[i].shape, best[j].shape};
         multiply(pair[0], pair[1]);
-        const auto gain = gain_of(pair, errors);
+        const auto gain = gain_of(pair, errors, n_);
         if (gain && *gain > std::max(best[i].gain, best[j].gain))
           list.push_back(with_step(pair, errors, *gain));
       }

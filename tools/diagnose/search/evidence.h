@@ -51,7 +51,9 @@ class Evidence {
            size_t catalogue, size_t most_rows = 9000);
 
   /// The best shape of every candidate that is not yet a member, best first; without those that save nothing.
-  std::vector<Proposal> extensions() const;
+  std::vector<Proposal> extensions() const { return extensions(n_); }
+  /// The same with the savings of a record of `n` fitted numbers: the evidence may hold a part of them.
+  std::vector<Proposal> extensions(double n) const;
   /// The best two shapes together, from the best shapes of every candidate; if requested, one of them
   /// unnamed.
   Proposal best_pair(bool one_without_name = false);
@@ -60,8 +62,7 @@ class Evidence {
   /// A member, or two, replaced by two shapes, both of them needed: the best for each pair of candidates,
   /// best first.
   std::vector<Proposal> exchanges_for_pairs();
-  /// The members without one, with the saving (mostly negative) of a record of `n` fitted numbers: the
-  /// evidence may hold a part of them.
+  /// The members without one, with the saving (mostly negative) of a record of `n` fitted numbers.
   std::vector<double> gains_of_removal(double n) const;
   double rows() const { return n_; }
 
@@ -84,7 +85,7 @@ class Evidence {
                       Eigen::Index top, size_t ports);
   int width_of(size_t shape) const { return int(shapes_[shape]->columns[0].size()); }
   std::vector<int> columns_of(const std::vector<size_t>& shapes) const;
-  std::optional<double> gain_of(const std::vector<size_t>& shapes, const Errors& errors) const;
+  std::optional<double> gain_of(const std::vector<size_t>& shapes, const Errors& errors, double n) const;
   Proposal with_step(const std::vector<size_t>& shapes, const Errors& errors, double gain) const;
   bool may_be_added(const Shape& shape, const std::vector<size_t>& removed) const;
   /// A shape, and what it saves.
@@ -92,7 +93,7 @@ class Evidence {
     size_t shape;
     double gain;
   };
-  std::vector<Promise> best_shapes(const Errors& errors) const;
+  std::vector<Promise> best_shapes(const Errors& errors, double n) const;
 
   const std::vector<Member> members_;
   const std::vector<const Shape*> shapes_;

@@ -148,6 +148,7 @@ ForceShare share_of_force(const Trials& trials, const std::vector<InverseDynamic
 
 bool spoils_balance(const Trials& trials, const Estimate& estimate, size_t member, const Weight& weight) {
   if (!trials.inverse) return false;
+  if (estimate.members[member].candidate->flies) return false;
   const bool is_loud = weight.wald > criteria::loud_wald_per_row * double(fitted_numbers(trials));
   if (is_loud && estimate.members[member].candidate->acts == Acts::force &&
       weight.force_rms < criteria::noise_that_drives * residual_floor(trials, estimate.noise))

@@ -1,5 +1,6 @@
 #include "tools/diagnose/search/second_look.h"
 #include <algorithm>
+#include <cmath>
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/remaining_force.h"
 #include "tools/diagnose/search/weight.h"
@@ -15,6 +16,12 @@ bool may_be_told(const Trials& trials, const Estimate& trial, size_t member, con
          !spoils_balance(trials, trial, member, weight);
 }
 
+/// Beside next to no noise the arithmetic of the diagram has effects too.
+bool is_error_of_model(const Trials& trials, const Estimate& trial, const Weight& weight) {
+  const double error = criteria::error_of_model * trials.force_rms / trial.noise.white;
+  return weight.wald < error * error * double(fitted_numbers(trials));
+}
+
 }  // namespace
 
 SecondLook look_again(Trials& trials, const Estimate& estimate, const Evidence& evidence, size_t catalogue) {
@@ -26,12 +33,10 @@ SecondLook look_again(Trials& trials, const Estimate& estimate, const Evidence& 
   if (!is_noisy || portmanteau(trials, *estimate.fitted) > criteria::most_portmanteau_of_counted)
     return result;
   const double least = std::max(criteria::least_gain, criteria::least_gain_per_row * judged_numbers(trials));
-  const double rows =
-      double(fitted_numbers(trials)) / std::max(1.0, evidence.rows());  // for each that it used
-  std::vector<Proposal> proposals = evidence.extensions();
+  std::vector<Proposal> proposals = evidence.extensions(double(fitted_numbers(trials)));
   if (proposals.size() > most_tried) proposals.resize(most_tried);
   for (const Proposal& proposal : proposals) {
-    if (rows * proposal.gain < least / 2 || trials.work->is_spent(criteria::work_with_rivals)) break;
+    if (2 * proposal.gain < least || trials.work->is_spent(criteria::work_with_rivals)) break;
     Estimate trial =
         fit_members(trials, applied(proposal, estimate.members), estimate.noise, estimate.motion, iterations);
     trial = with_own_noise(trials, std::move(trial), iterations);
@@ -45,7 +50,7 @@ SecondLook look_again(Trials& trials, const Estimate& estimate, const Evidence& 
       result.better = std::move(trial);
       return result;
     }
-    if (is_own_load(trial.members.back())) continue;
+    if (is_own_load(trial.members.back()) || is_error_of_model(trials, trial, weight)) continue;
     result.small.push_back({trial.members.back().candidate, gain, weight.force_rms});
   }
   std::ranges::stable_sort(result.small, std::ranges::greater{}, &SmallEffect::gain);

@@ -108,6 +108,13 @@ std::vector<double> change_of_input(std::vector<Member> members, size_t index, c
   return change;
 }
 
+/// The force by which an error of one standard deviation is counted. Slow noise with the memory of a few
+/// samples stands for white noise.
+double force_of_an_error(const Noise& noise) {
+  const bool is_quick = -1 / std::log(noise.memory) < quick_noise;
+  return is_quick ? std::hypot(noise.white, noise.slow()) : noise.white;
+}
+
 /// Root mean square of the force that a member consumes over the fitted rows.
 double force_rms(const Trials& trials, const Estimate& estimate, size_t index) {
   const Member& member = estimate.members[index];
@@ -126,7 +133,7 @@ double force_rms(const Trials& trials, const Estimate& estimate, size_t index) {
       const Column feigned(std::vector<float>(seen.begin(), seen.end()));
       const Column* const one = &feigned;
       seen = responses(fitted.axis, fitted.gains, fitted.prediction.path, Acts::sensor, {&one, 1}).front();
-      for (double& e : seen) e *= estimate.noise.white;
+      for (double& e : seen) e *= force_of_an_error(estimate.noise);
     }
     for (size_t k = 0; k < trial.held_out_from; ++k)
       if (trial.usable[k]) sum += seen[k] * seen[k], n += 1;

@@ -1,0 +1,34 @@
+/// A path whose rows were not sampled evenly, as an effect with a memory runs along it: the blocks of effects step
+/// from sample to sample, all of the same length.
+#pragma once
+#include <span>
+#include <vector>
+#include "tools/diagnose/predict/predictor.h"
+#include "tools/effects/effect_run.h"
+
+namespace loopwright::diagnosis {
+
+/// Lines over intervals one after the other: the mean, and the change over the interval.
+struct LinesOver {
+  std::vector<double> edges;  ///< one more than intervals
+  std::vector<double> mean, change;
+};
+/// Over each of other intervals the line with the same integral and the same first moment.
+LinesOver over(const LinesOver& lines, std::vector<double> edges);
+
+/// The signals of a path at even instants, each from the row nearest to it.
+class EvenPath {
+ public:
+  explicit EvenPath(const Path& path);
+
+  size_t rows() const { return position_.size(); }
+  RoleSignals signals() const;
+  /// What an effect gives over the even samples, as it is over the rows of the path.
+  void to_rows(std::vector<float>& mean, std::vector<float>& change) const;
+
+ private:
+  std::vector<double> edges_, even_edges_;  ///< [sample times]
+  std::vector<double> position_, velocity_, acceleration_, input_, force_;
+};
+
+}  // namespace loopwright::diagnosis

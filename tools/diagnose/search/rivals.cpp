@@ -1,0 +1,64 @@
+#include "tools/diagnose/search/rivals.h"
+#include <algorithm>
+#include "tools/diagnose/search/doubt.h"
+#include "tools/diagnose/search/law_swaps.h"
+
+namespace loopwright::diagnosis {
+
+using namespace criteria;
+
+void maximise(Trials& trials, Estimate& estimate) {
+  constexpr int iterations = 8;
+  estimate = with_own_noise(trials, std::move(estimate), iterations);
+}
+
+std::optional<double> Rivals::loss_of(const Proposal& proposal, const Estimate& other) const {
+  if (!other.is_valid) return {};
+  size_t before = 0, now = 0;
+  for (size_t m : proposal.removed) before += parameters_of(*estimate_.members[m].candidate);
+  for (const Member& m : proposal.added) now += parameters_of(*m.candidate);
+  const auto left = [](const Estimate& e) { return e.profile + e.against_at_rest; };
+  if (now > before && left(other) > left(estimate_) - least_gain_of_larger_set) return {};
+  const double loss = criterion_of(other) - criterion_of(estimate_);
+  return loss < reach_ ? std::optional(loss) : std::nullopt;
+}
+
+std::optional<double> Rivals::loss_of(const Proposal& proposal) {
+  if (is_spent() || is_refused(proposal)) return {};
+  Estimate other = fitted(proposal);
+  if (const double loss = criterion_of(other) - criterion_of(estimate_); loss > reach_ && loss < 4 * reach_)
+    maximise(trials_, other);
+  const std::optional<double> loss = loss_of(proposal, other);
+  if (!loss || is_refuted(proposal, other)) return {};
+  const double disliked = *loss - preference(trials_, other.members, estimate_.members);
+  if (disliked < best_loss_) best_loss_ = disliked, best_ = std::move(other);
+  return loss;
+}
+
+bool Rivals::is_refuted(const Proposal& p, const Estimate& other) const {
+  return p.removed.size() == 1 && p.added.size() == 1 &&
+         at_reversals_.is_refuted(p.removed[0], *p.added[0].candidate, other);
+}
+
+bool Rivals::is_promised(const Proposal& proposal, const Estimate& other) const {
+  return proposal.gain > 0 && other.is_valid &&
+         criterion_of(other) - criterion_of(estimate_) < most_promised_loss * reach_;
+}
+
+std::optional<Estimate> Rivals::better(double doubt) {
+  const auto at_limit = [](const Estimate& e) { return std::ranges::count_if(e.members, is_at_limit); };
+  if (!best_.is_valid || at_limit(best_) > at_limit(estimate_) || is_spent()) return {};
+  maximise(trials_, best_);
+  const double gain = criterion_of(estimate_) - criterion_of(best_);
+  return gain + preference(trials_, best_.members, estimate_.members) > std::max(clearly_better, doubt)
+             ? std::optional(std::move(best_))
+             : std::nullopt;
+}
+
+bool Rivals::is_refused(const Proposal& proposal) const {
+  return std::ranges::any_of(proposal.added, [&](const Member& member) {
+    return std::ranges::find(refused_, member.candidate) != refused_.end();
+  });
+}
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,59 @@
+/// Other sets of effects beside one that was found.
+#pragma once
+#include <optional>
+#include "tools/diagnose/search/evidence.h"
+#include "tools/diagnose/search/friction_at_reversals.h"
+
+namespace loopwright::diagnosis {
+
+/// Fits parameters and noise together.
+void maximise(Trials& trials, Estimate& estimate);
+
+/// The set that was found, and those that explain the records as well.
+class Rivals {
+ public:
+  /// `reach`: loss of the criterion that a rival may have. No rival contains a candidate that was refused.
+  Rivals(Trials& trials, const Estimate& estimate, size_t catalogue, double reach,
+         FrictionAtReversals& at_reversals, const std::vector<const Candidate*>& refused)
+      : trials_(trials),
+        estimate_(estimate),
+        catalogue_(catalogue),
+        reach_(reach),
+        at_reversals_(at_reversals),
+        refused_(refused) {}
+
+  double reach() const { return reach_; }
+  /// No further rival is fitted.
+  bool is_spent() const { return trials_.work->is_spent(criteria::work_with_rivals); }
+  /// With a proposal applied and all parameters fitted.
+  Estimate fitted(const Proposal& proposal) {
+    return fit_members(trials_, applied(proposal, estimate_.members), estimate_.noise, estimate_.motion, 4);
+  }
+  /// How much worse its criterion is; empty: out of reach. A larger set that contains this one as a special
+  /// case is always close, so it must explain more to be a rival.
+  std::optional<double> loss_of(const Proposal& proposal, const Estimate& other) const;
+  std::optional<double> loss_of(const Proposal& proposal);
+  /// Another law of dry friction, against which the rows after reversals speak.
+  bool is_refuted(const Proposal& proposal, const Estimate& other) const;
+  /// Whether it is as good on the same motion, and not much worse on its own motion. If the diagram itself
+  /// quantizes, for example with an encoder, every run gives a different result.
+  bool is_promised(const Proposal& proposal, const Estimate& other) const;
+  /// The best of the sets whose loss was computed, if it is also better with noise of its own: the search
+  /// compared them under the noise known then. `doubt`: what its gain must exceed when the errors are not
+  /// white.
+  std::optional<Estimate> better(double doubt);
+
+ private:
+  bool is_refused(const Proposal& proposal) const;
+  double criterion_of(const Estimate& estimate) const { return criterion(trials_, estimate, catalogue_); }
+
+  Trials& trials_;
+  const Estimate& estimate_;
+  size_t catalogue_;
+  double reach_, best_loss_ = -criteria::clearly_better;
+  FrictionAtReversals& at_reversals_;
+  const std::vector<const Candidate*>& refused_;
+  Estimate best_;
+};
+
+}  // namespace loopwright::diagnosis
