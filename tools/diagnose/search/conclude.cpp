@@ -265,8 +265,11 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
         result.most_portmanteau = criteria::most_portmanteau_of_counted;
       result.counts_portmanteau = portmanteau_of_counts(trials, errors);
     }
-  result.trail.push_back(fmt::format("portmanteau {:.0f}, of counts alone {:.0f}", result.portmanteau,
-                                     result.counts_portmanteau));
+  const Noise& noise = estimate.noise;
+  result.trail.push_back(fmt::format(
+      "portmanteau {:.0f}, of counts alone {:.0f}; noise: white {:.3g}, slow {:.3g} over {:.3g} rows, sensor {:.3g}",
+      result.portmanteau, result.counts_portmanteau, noise.white, noise.slow(), -1 / std::log(noise.memory),
+      noise.measurement.front()));
   result.is_negligible = is_negligible(trials, estimate.members);
   const double n = double(fitted_numbers(trials));
   const std::vector<Shape> periodic = periodic_shapes(trials, estimate, candidates, 1);
