@@ -61,6 +61,8 @@ std::string any_diagram_text(const Diagnosis& d) {
   line(fmt::format("This rests on {} rows of the record.", d.rows));
   for (const RecordFinding& f : d.findings) line(fmt::format("The record: {}; {}.", f.what, f.cost));
   for (const std::string& sentence : d.not_observable) line("Not told apart: " + sentence + ".");
+  for (const NotLookedFor& n : d.not_looked_for)
+    line(fmt::format("Not looked for: {}; {}.", joined(n.effects, ", "), n.why));
   return text + words_of_improvement(d);
 }
 

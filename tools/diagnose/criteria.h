@@ -360,6 +360,8 @@ constexpr double least_share_of_function = 0.95;
 /// [free simulation of the nominal diagram, rms error] A simulation that misses by more, and by more than the
 /// signal spreads, diverges.
 constexpr double diverging_simulation = 10;
+/// [spread of the signal] A diagram that misses a signal by more is no plant that can be simulated by itself.
+constexpr double runaway_simulation = 10;
 /// [cosine between responses] Beyond it no shape of the catalogue tells two sites apart.
 constexpr double alike_responses = 0.98;
 /// [rows] A trial term keeps its value as long; about as effects change along a motion.

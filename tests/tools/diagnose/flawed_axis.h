@@ -24,6 +24,7 @@ struct FlawedMachine {
   double presliding = 0;            ///< of the dry friction, which then builds up over this distance
   double eddy = 0, eddy_speed = 1;  ///< hidden: a drag that falls beyond this speed
   double lag = 0;                   ///< hidden: s, of the force behind its command
+  double load_mass = 0, load_hz = 30, load_damping_ratio = 0.04;  ///< hidden: a part of the mass, on a spring
   bool cogging_is_known = false;    ///< the diagram has it, and the position at the start
   double sample_time = 1e-3, duration = 20;
   double stroke = 0.2, top_speed = 0.3;
@@ -128,7 +129,13 @@ class FlawedAxis {
   /// A step of a mass with set-valued dry friction: it may stop within the step. Or friction bends first.
   void advance(double& x, double& v, double force, double h) {
     if (machine_.lag > 0) force = lagging_ += (force - lagging_) * (1 - std::exp(-h / machine_.lag));
-    const double mass = machine_.mass + machine_.added_mass;
+    const double mass = machine_.mass + machine_.added_mass - machine_.load_mass;
+    if (machine_.load_mass > 0) {
+      const double w = 2 * std::numbers::pi * machine_.load_hz;
+      const double pull = w * w * (x - load_x_) + 2 * machine_.load_damping_ratio * w * (v - load_v_);
+      load_v_ += h * pull, load_x_ += h * load_v_;
+      force -= machine_.load_mass * pull;
+    }
     const double eddy = machine_.eddy * v / (1 + v * v / (machine_.eddy_speed * machine_.eddy_speed));
     const double free =
         force - eddy - (machine_.damping + machine_.added_damping) * v -
@@ -247,6 +254,7 @@ class FlawedAxis {
   double last_place_ = 0, lagging_ = 0;
   double ahead_ = 0;  // of the next sampling instant
   double bent_ = 0;   // force of friction that builds up over a distance
+  double load_x_ = 0, load_v_ = 0;
 };
 
 }  // namespace loopwright

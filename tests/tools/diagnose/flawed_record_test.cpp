@@ -40,6 +40,18 @@ FlawedMachine with_friction() {
   return machine;
 }
 
+FlawedMachine with_resonance() {
+  FlawedMachine machine;
+  machine.load_mass = 0.12, machine.top_speed = 0.6;
+  return machine;
+}
+void expect_resonance(const Diagnosis& d) {
+  EXPECT_EQ(name_of(d.verdict), "explained") << to_text(d);
+  ASSERT_THAT(names(d), ElementsAre("flexible_mode")) << to_text(d);
+  expect_parameter(d.effects[0], "load_mass", 0.12, 0.012, "N*s^2/m");
+  expect_parameter(d.effects[0], "frequency", 30, 1, "Hz");
+}
+
 // Rows.
 
 TEST(Rows, AnOscillationOfFewRowsBetweenItsTurnsIsJudged) {
@@ -106,6 +118,13 @@ TEST(Stamps, TimesAtWhichTheRowsWereSampledAreFollowed) {
   FlawedMachine machine;
   machine.jitter = 0.3, machine.cogging = 0.2;
   expect_cogging(diagnosis_of(machine), 0.2, machine.pitch);
+}
+
+/// The load swings on at the times of the rows, not at even ones.
+TEST(Stamps, AResonanceIsFoundAlongUnevenRows) {
+  FlawedMachine machine = with_resonance();
+  machine.jitter = 0.25;
+  expect_resonance(diagnosis_of(machine));
 }
 
 TEST(Stamps, LateStampsOfEvenRowsAreNotFollowed) {
@@ -202,6 +221,32 @@ TEST(SlowRates, ALagShorterThanASampleStandsInSimulation) {
   EXPECT_TRUE(d.refused.empty()) << to_text(d);
   ASSERT_FALSE(d.effects.empty()) << to_text(d);
   EXPECT_TRUE(d.effects[0].name == "actuator_lag" || d.effects[0].name == "input_delay") << to_text(d);
+}
+
+/// A held force leaps at each row; a tenth of a row later, it has been felt for a tenth less.
+TEST(HeldInput, AForceThatIsATenthOfASampleLateIsSeen) {
+  FlawedMachine machine;
+  machine.lag = 1.2e-4, machine.duration = 40;
+  const Diagnosis d = diagnosis_of(machine);
+  ASSERT_FALSE(d.effects.empty()) << to_text(d);
+  EXPECT_TRUE(d.effects[0].name == "actuator_lag" || d.effects[0].name == "input_delay") << to_text(d);
+}
+
+/// Ten times the usual noise, which the search takes for missing forces at first.
+TEST(LoudNoise, AResonanceIsFoundBesideFriction) {
+  FlawedMachine machine = with_resonance();
+  machine.coulomb = 0.6, machine.force_noise = 0.2;
+  const Diagnosis d = diagnosis_of(machine);
+  EXPECT_THAT(names(d), UnorderedElementsAre("coulomb_friction", "flexible_mode")) << to_text(d);
+}
+
+TEST(Counts, FrictionThatBuildsUpOverFortyOfThemIsSeen) {
+  FlawedMachine machine;
+  machine.resolution = 5e-5, machine.sensor_noise = 5e-6;
+  machine.coulomb = 0.6, machine.presliding = 40 * machine.resolution;
+  const Diagnosis d = diagnosis_of(machine);
+  ASSERT_THAT(names(d), ElementsAre("presliding_hysteresis")) << to_text(d);
+  expect_parameter(d.effects[0], "distance", machine.presliding, 0.3 * machine.presliding, "m");
 }
 
 TEST(StaleReadings, AndWhatTheControllerDidAboutThemAreNoMissingEffect) {

@@ -190,11 +190,9 @@ void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
 /// controller has already answered to noise that the predictor has not yet seen; which of the two predicts
 /// better is then no proof.
 void add_blurred_shapes(const Trials& trials, Conclusion& result, const std::vector<Candidate>& candidates) {
-  const AxisRecord& record = trials.list.front().model->record();
   const std::vector<Member>& members = result.estimate.members;
-  for (size_t m = 0; m < members.size() && record.is_thinned; ++m) {
-    if (!is_late_input(*members[m].candidate)) continue;
-    if (members[m].nonlinear[0] > criteria::rows_that_blur * record.sample_time) continue;
+  for (size_t m = 0; m < members.size(); ++m) {
+    if (!is_blurred(trials, members[m])) continue;
     for (const Candidate& other : candidates) {
       if (!is_late_input(other) || &other == members[m].candidate) continue;
       if (std::ranges::find(members, &other, &Member::candidate) == members.end())

@@ -157,9 +157,7 @@ Estimate with_own_noise(Trials& trials, Estimate estimate, int iterations) {
   constexpr int rounds = 2;
   for (int round = 0; round < rounds && estimate.is_valid; ++round) {
     const Noise noise = fit_noise_alone(trials, *estimate.fitted, estimate.noise, FreeNoise::all);
-    Estimate next = fit_members(trials, estimate.members, noise, estimate.motion, iterations);
-    if (!next.is_valid || next.profile >= estimate.profile) break;  // other gains left other errors
-    estimate = std::move(next);
+    estimate = fit_members(trials, estimate.members, noise, estimate.motion, iterations);
   }
   return estimate;
 }

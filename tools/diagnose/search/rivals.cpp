@@ -5,8 +5,6 @@
 
 namespace loopwright::diagnosis {
 
-using namespace criteria;
-
 void maximise(Trials& trials, Estimate& estimate) {
   constexpr int iterations = 8;
   estimate = with_own_noise(trials, std::move(estimate), iterations);
@@ -18,7 +16,7 @@ std::optional<double> Rivals::loss_of(const Proposal& proposal, const Estimate& 
   for (size_t m : proposal.removed) before += parameters_of(*estimate_.members[m].candidate);
   for (const Member& m : proposal.added) now += parameters_of(*m.candidate);
   const auto left = [](const Estimate& e) { return e.profile + e.against_at_rest; };
-  if (now > before && left(other) > left(estimate_) - least_gain_of_larger_set) return {};
+  if (now > before && left(other) > left(estimate_) - criteria::least_gain_of_larger_set) return {};
   const double loss = criterion_of(other) - criterion_of(estimate_);
   return loss < reach_ ? std::optional(loss) : std::nullopt;
 }
@@ -42,7 +40,7 @@ bool Rivals::is_refuted(const Proposal& p, const Estimate& other) const {
 
 bool Rivals::is_promised(const Proposal& proposal, const Estimate& other) const {
   return proposal.gain > 0 && other.is_valid &&
-         criterion_of(other) - criterion_of(estimate_) < most_promised_loss * reach_;
+         criterion_of(other) - criterion_of(estimate_) < criteria::most_promised_loss * reach_;
 }
 
 std::optional<Estimate> Rivals::better(double doubt) {
@@ -50,7 +48,7 @@ std::optional<Estimate> Rivals::better(double doubt) {
   if (!best_.is_valid || at_limit(best_) > at_limit(estimate_) || is_spent()) return {};
   maximise(trials_, best_);
   const double gain = criterion_of(estimate_) - criterion_of(best_);
-  return gain + preference(trials_, best_.members, estimate_.members) > std::max(clearly_better, doubt)
+  return gain + preference(trials_, best_.members, estimate_.members) > std::max(criteria::clearly_better, doubt)
              ? std::optional(std::move(best_))
              : std::nullopt;
 }

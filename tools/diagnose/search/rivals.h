@@ -1,6 +1,7 @@
 /// Other sets of effects beside one that was found.
 #pragma once
 #include <optional>
+#include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/evidence.h"
 #include "tools/diagnose/search/friction_at_reversals.h"
 

@@ -7,12 +7,20 @@
 #include "tools/diagnose/search/whiteness.h"
 
 namespace loopwright::diagnosis {
+
+bool is_blurred(const Trials& trials, const Member& member) {
+  const AxisRecord& record = trials.list.front().model->record();
+  return record.is_thinned && is_late_input(*member.candidate) &&
+         member.nonlinear[0] <= criteria::rows_that_blur * record.sample_time;
+}
+
 namespace {
 
 /// Loads that fly leave rows out, and what stands at the end of its range stands for something else.
 bool may_be_told(const Trials& trials, const Estimate& trial, size_t member, const Weight& weight) {
   const Candidate& candidate = *trial.members[member].candidate;
   return !candidate.is_unknown && !candidate.flies && !is_at_limit(trial.members[member]) &&
+         !is_blurred(trials, trial.members[member]) &&
          !spoils_balance(trials, trial, member, weight);
 }
 

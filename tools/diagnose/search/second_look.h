@@ -12,6 +12,10 @@ struct SmallEffect {
   double force_rms = 0;
 };
 
+/// Whether it is a delay or a lag of a few rows that were put together of several each: see
+/// criteria::rows_that_blur.
+bool is_blurred(const Trials& trials, const Member& member);
+
 struct SecondLook {
   std::optional<Estimate> better;  ///< with a further member that is material
   std::vector<SmallEffect> small;  ///< best first; those that do nearly as well are other names of the first

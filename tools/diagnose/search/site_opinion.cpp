@@ -143,7 +143,12 @@ std::optional<SiteSearchResult> search_with_second_opinion(
   const std::vector<int> unmeasured = unmeasured_states(fitter, first->found);
   if (unmeasured.empty()) return first;
   const std::vector<NoisySite> noisy = noisy_sites(fitter, first->found);
-  if (noisy.empty() || fitter.model().work().is_spent(criteria::work_of_search)) return first;
+  if (noisy.empty()) return first;
+  if (fitter.model().work().is_spent(criteria::work_of_search)) {
+    first->second_opinion = SecondOpinion{noisy, unmeasured};
+    first->second_opinion->is_not_asked = true;
+    return first;
+  }
   if (leaves_white_errors(fitter, first->found) && forgets_its_start(fitter, first->found)) {
     first->trail.push_back("not again by simulation: small deviations grow along the record");
     first->second_opinion = SecondOpinion{noisy, unmeasured};
@@ -163,8 +168,8 @@ std::optional<SiteSearchResult> search_with_second_opinion(
     second->trail.push_back(errors ? fmt::format("answer by {}: simulation misses the first output by {:.4g}",
                                                  name, errors->judged()[0])
                                    : fmt::format("answer by {} diverges in simulation", name));
-  SecondOpinion opinion{noisy, unmeasured, false, is_answer,
-                        named_in(fitter.model(), (is_answer ? first : second)->found)};
+  SecondOpinion opinion{noisy, unmeasured};
+  opinion.is_answer = is_answer, opinion.other = named_in(fitter.model(), (is_answer ? first : second)->found);
   if (const auto& errors = is_answer ? of_second : of_first) opinion.error = errors->judged()[0];
   if (const auto& errors = is_answer ? of_first : of_second) opinion.other_error = errors->judged()[0];
   std::vector<std::string> other = opinion.other,

@@ -6,9 +6,11 @@
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/late_input.h"
 #include "tools/diagnose/search/moved_parameters.h"
+#include "tools/diagnose/search/one_parameter.h"
 #include "tools/diagnose/search/simpler_friction.h"
 #include "tools/diagnose/search/site_disturbance.h"
 #include "tools/diagnose/search/site_screening.h"
+#include "tools/diagnose/search/site_start.h"
 #include "tools/diagnose/search/stacked_names.h"
 #include "tools/diagnose/search/stated_parameters.h"
 
@@ -19,7 +21,6 @@ constexpr size_t fitted_keys = 5, fitted_pairs = 2;  // candidates that are conf
 constexpr size_t most_terms = 5;
 /// Gauss-Newton steps of a candidate: after the first ones it shows which are hopeless.
 constexpr int first_steps = 2, further_steps = 3;
-constexpr int most_first_substeps = 64;
 /// In -2 ln L: what a term must gain, also per reading.
 constexpr double least_gain_of_term = 25, least_gain_per_reading = 0.002;
 /// In the criterion: what an added term and an exchange must gain, and within what a rival is declared.
@@ -36,17 +37,19 @@ class SiteSearch {
 
   std::optional<SiteSearchResult> run() {
     SiteHypothesis& nominal = result_.nominal;
-    nominal.factors.assign(model().parameters().size(), 1.0);
-    nominal.is_free.assign(model().parameters().size(), false);
-    const bool is_good = errors_ == ErrorsOf::predictions ? start(nominal) : start_simulation(nominal);
-    if (!is_good) return {};
+    const std::optional<double> readings = start_from_stated(fitter_, errors_, disturbances_, nominal);
+    if (!readings) return {};
+    readings_ = *readings;
+    tell("the diagram as it is", nominal);
     progress_("fitting parameters", 0.1);
     result_.parameters = with_free_parameters(nominal);
     tell("parameters free", result_.parameters);
-    const auto late = explained_by_late_input(fitter_, nominal, result_.parameters);
-    if (late) tell("a late input by itself", *late);
-    if (!late && errors_ == ErrorsOf::predictions && disturbances_.empty()) begin_beside_small_disturbances();
-    SiteSearchResult first = searched_from(late.value_or(result_.parameters), 0.2);
+    single_ = with_one_parameter(fitter_, nominal, result_.parameters);
+    std::optional<SiteHypothesis> alone = explained_by_late_input(fitter_, nominal, result_.parameters);
+    if (alone) tell("a late input by itself", *alone);
+    if (!alone && explains_by_itself(single_)) tell("a parameter by itself", *(alone = single_.front()));
+    if (!alone && errors_ == ErrorsOf::predictions && disturbances_.empty()) begin_beside_small_disturbances();
+    SiteSearchResult first = searched_from(alone.value_or(result_.parameters), 0.2);
     if (!is_doubtful(first.found) || is_spent(criteria::work_of_first_search)) return first;
     result_.trail = std::move(first.trail);
     result_.trail.push_back("again, from the parameters as they are stated");
@@ -58,6 +61,10 @@ class SiteSearch {
   }
 
  private:
+  bool explains_by_itself(const std::vector<SiteHypothesis>& single) {
+    return !single.empty() && !leaves_something(single.front()) &&
+           whole_criterion(single.front()) < whole_criterion(result_.parameters);
+  }
   /// A small disturbance that explains all there is would otherwise cost a long search that follows it by
   /// terms. Unless a single term explains all there is, and more.
   void begin_beside_small_disturbances() {
@@ -95,6 +102,7 @@ class SiteSearch {
     decide_parameters(at);
     if (remove_idle(at)) decide_parameters(at);
     compare_with_stated_parameters(at);
+    compare_with_one_parameter(at);
     if (errors_ == ErrorsOf::predictions) at = without_idle_disturbances(fitter_, std::move(at));
     result_.found = std::move(at);
     return std::exchange(result_, std::move(before));
@@ -132,36 +140,6 @@ class SiteSearch {
     double sum = h.objective + double(size_of(h)) * std::log(readings_);
     for (const SiteTerm& term : h.terms) sum += 2 * cost_of(model(), term) + 2 * std::log(double(keys_));
     return sum;
-  }
-
-  /// Sizes of states and sites, and the best noise of the diagram as it is.
-  bool start(SiteHypothesis& h) {
-    constexpr int rounds = 3;  // the sizes of the first pass are guesses
-    for (int round = 0; round < rounds; ++round) {
-      h.noise = fitter_.filter().guess_noise();
-      while (!fitter_.pass(h, true, pass_)) {  // a fast state needs shorter steps
-        if (model().substeps() >= most_first_substeps) return false;
-        model().set_substeps(2 * model().substeps());
-      }
-      fitter_.filter().learn_scales(pass_);
-      fitter_.filter().choose_substeps(pass_);
-    }
-    h.noise = fitter_.filter().guess_noise();
-    h.noise.slow = disturbances_;
-    readings_ = double(pass_.readings);
-    fitter_.fit_noise(h);
-    tell("the diagram as it is", h);
-    return fitter_.pass(h, false, pass_);
-  }
-
-  /// With the sizes that predictions have found.
-  bool start_simulation(SiteHypothesis& h) {
-    h.noise = fitter_.filter().noise_of_simulation();
-    if (!fitter_.pass(h, false, pass_)) return false;
-    readings_ = double(pass_.readings);
-    fitter_.fit_noise(h);
-    tell("the diagram as it is", h);
-    return fitter_.pass(h, false, pass_);
   }
 
   /// Those parameters free that the record sees at all.
@@ -378,9 +356,30 @@ class SiteSearch {
     decide_parameters(at = with_free_parameters(at));
   }
 
+  /// Terms and parameters that do what a single parameter does are that parameter.
+  void compare_with_one_parameter(SiteHypothesis& at) {
+    const size_t changes = at.terms.size() + at.free_parameters();
+    if (changes == 0) return;
+    for (const SiteHypothesis& one : single_) {
+      const int moved = moved_parameter(one);
+      if (changes == 1 && at.is_free[size_t(moved)]) continue;
+      const double worse = whole_criterion(one) - whole_criterion(at);
+      if (changes > 1 && worse < -least_exchange) {
+        tell("a single parameter does better", one);
+        at = one;
+        result_.rivals.clear(), result_.parameter_rivals.clear(), result_.steps.clear();
+        return compare_with_one_parameter(at);
+      }
+      const double lost = one.objective - at.objective;
+      if (worse < rival_within || (changes > 1 && lost < criteria::most_lost_by_fewer_changes))
+        result_.parameter_rivals.push_back({{moved}, {}, worse, {}, true});
+    }
+  }
+
   SiteFitter& fitter_;
   const std::function<void(const char*, double)>& progress_;
   SiteSearchResult result_;
+  std::vector<SiteHypothesis> single_;  ///< see with_one_parameter()
   SitePass pass_;
   double readings_ = 0, begin_ = 0.2;
   size_t keys_ = 10;

@@ -22,6 +22,7 @@ struct ParameterRival {
   std::vector<SiteTerm> terms;  ///< a term in place of all moved parameters, if not empty
   double worse = 0;
   std::optional<size_t> of = std::nullopt;  ///< and of this found term
+  bool of_all_terms = false;                ///< and of all of them
 };
 
 /// A site at which noise of this share of its size was found.
@@ -34,10 +35,13 @@ struct SecondOpinion {
   std::vector<NoisySite> noisy;    ///< why it was asked for
   std::vector<int> unmeasured;     ///< states on which no output depends directly
   bool is_lost = false;            ///< small deviations grow: no simulation was asked
+  bool is_not_asked = false;       ///< no work was left for it
   bool is_answer = false;          ///< what was found by simulation is the answer
   std::vector<std::string> other;  ///< terms and parameters that are not the answer
   bool agrees = false;             ///< they are the same
   bool predicts_worse = false;  ///< it simulates better, and predicts much worse than one that explains all
+  /// Nothing tells the answer from noise that does as well.
+  bool is_open() const { return !is_lost && !is_answer && !agrees; }
   /// [unit of the first output] rms by which simulations with the answer and with the other miss it; nothing
   /// if one diverges.
   std::optional<double> error, other_error;

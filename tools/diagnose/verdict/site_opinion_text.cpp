@@ -27,6 +27,8 @@ void tell_second_opinion(const SiteModel& model, const SecondOpinion& opinion, D
     finding.cost =
         "free simulations cannot be asked about it: along this record a small deviation grows until nothing "
         "is left of what caused it";
+  else if (opinion.is_not_asked)
+    finding.cost = "the search had used up its operations before free simulations could be asked about it";
   else if (opinion.is_answer)
     finding.cost = fmt::format(
         "the answer is that of free simulations, with which one {}; by predictions of one sample {} would be "

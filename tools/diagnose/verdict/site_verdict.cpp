@@ -76,6 +76,7 @@ class Telling {
     result_.additions = site_additions(model_, found_, optional);
     result_.all_additions = site_additions(model_, found_, none);
     judge();
+    tell_sensors_not_looked_at();
     question_inputs();
     add_site_plots(fitted_, search_.nominal, found_, result_);
   }
@@ -158,6 +159,8 @@ class Telling {
       for (int i : rival.moved) other.effects.push_back(model_.parameters()[size_t(i)].name);
       for (const SiteTerm& term : rival.terms) other.effects.push_back(describe(model_, term));
       if (rival.of) other.in_place_of.emplace_back(search_.found.terms[*rival.of].shape->name);
+      if (rival.of_all_terms)
+        for (const SiteTerm& term : found_.terms) other.in_place_of.emplace_back(term.shape->name);
       result_.other_explanations.push_back(std::move(other));
     }
     // Beside terms it may stand for what these do not do exactly, or for an effect that is not named.
@@ -230,6 +233,25 @@ class Telling {
     return true;
   }
 
+  /// Terms none of whose coefficients the record tells from zero: together with others they do what one law of
+  /// another name may do.
+  bool has_untold_terms() {
+    bool is_any = false;
+    for (size_t t = 0; t < result_.effects.size(); ++t) {
+      const auto names = found_.terms[t].shape->coefficients;
+      size_t told = 0, all = 0;
+      for (const DiagnosedParameter& p : result_.effects[t].parameters)
+        if (std::ranges::find(names, p.name) != names.end()) ++all, told += p.low > 0 || p.high < 0;
+      if (all == 0 || told > 0) continue;
+      is_any = true;
+      result_.findings.push_back(
+          {fmt::format("the intervals of all coefficients of {} contain zero",
+                       describe(model_, found_.terms[t])),
+           "its name stands for what the record does not tell", true, false});
+    }
+    return is_any;
+  }
+
   /// Whether the simulation misses the record by no more than the arithmetic does.
   bool is_exact() const {
     if (errors_.diverges) return false;
@@ -265,6 +287,8 @@ class Telling {
                           errors_.portmanteau < criteria::most_portmanteau_of_any_diagram;
     const bool names = !result_.effects.empty() || !result_.moved_parameters.empty();
     const bool worse = names && simulates_worse();
+    const bool is_open = (names && search_.second_opinion && search_.second_opinion->is_open()) ||
+                         has_untold_terms();
     const bool is_nothing = !names && (is_left_out_ || is_exact());
     const bool misses_held_out =
         result_.holds_out && !errors_.diverges &&
@@ -285,10 +309,21 @@ class Telling {
       result_.verdict = Verdict::nothing_missing;
     else if (worse || (!names && (!is_white || misses_held_out)))
       result_.verdict = Verdict::unexplained;
-    else if (!is_white || has_unknown || misses_held_out || may_stand_for_an_effect())
+    else if (!is_white || has_unknown || is_open || misses_held_out || may_stand_for_an_effect())
       result_.verdict = Verdict::partly_explained;
     else
       result_.verdict = names ? Verdict::explained : Verdict::nothing_missing;
+  }
+
+  /// An offset of a sensor bends what is found in its place.
+  void tell_sensors_not_looked_at() {
+    std::vector<std::string> sensors;
+    for (const Site& site : model_.sites())
+      if (site.kind == Site::Kind::sensor && !site.is_searched) sensors.push_back(site.own_signal);
+    if (sensors.empty() || (result_.effects.empty() && result_.moved_parameters.empty())) return;
+    result_.not_looked_for.push_back(
+        {{"errors of the sensors of " + loopwright::joined(sensors, ", ")},
+         "what was found may stand for an offset of one; \"sites\" of the experiment may name the ports"});
   }
 
   /// What an input does between its rows is a statement of the experiment. Held in the place of a curve, or

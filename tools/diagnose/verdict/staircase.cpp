@@ -45,15 +45,25 @@ class Climb {
   Stage without_least(const Stage& from) {
     const auto is_correction = [&](size_t m) { return corrects_nominal(conclusion_.estimate.members[m]); };
     const bool only_corrections = std::ranges::all_of(from.members, is_correction);
-    Stage best;
+    std::vector<Stage> stages;
     for (size_t m : from.members) {
       if (is_correction(m) && !only_corrections) continue;
       std::vector<size_t> rest;
       std::ranges::copy_if(from.members, std::back_inserter(rest), [&](size_t other) { return other != m; });
-      Stage stage = fitted(rest, from.estimate);
-      if (!best.estimate.fitted || stage.force < best.force) best = std::move(stage);
+      stages.push_back(fitted(rest, from.estimate));
     }
-    return with_own_noise(without_idle_corrections(std::move(best), is_correction));
+    return with_own_noise(without_idle_corrections(simplest_of_best(std::move(stages)), is_correction));
+  }
+  /// Of those that balance the forces alike the one with the fewest parameters.
+  static Stage simplest_of_best(std::vector<Stage> stages) {
+    const double least = std::ranges::min(stages, {}, &Stage::force).force;
+    std::erase_if(stages, [&](const Stage& stage) { return stage.force > criteria::same_balance * least; });
+    const auto size = [](const Stage& stage) {
+      size_t parameters = 0;
+      for (const Member& member : stage.estimate.members) parameters += parameters_of(*member.candidate);
+      return std::pair(parameters, stage.force);
+    };
+    return std::move(*std::ranges::min_element(stages, {}, size));
   }
   /// The force that this stage lacks is larger than the final noise.
   Stage with_own_noise(Stage stage) {
