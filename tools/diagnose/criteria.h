@@ -360,6 +360,10 @@ constexpr double least_share_of_function = 0.95;
 /// [free simulation of the nominal diagram, rms error] A simulation that misses by more, and by more than the
 /// signal spreads, diverges.
 constexpr double diverging_simulation = 10;
+/// [noise of the sensor] A simulation that misses its signal by more is driven by something else than what was
+/// found; and as many terms and parameters as this together, of which none need be the cause.
+constexpr double far_simulation = 5;
+constexpr size_t many_changes = 5;
 /// [spread of the signal] A diagram that misses a signal by more is no plant that can be simulated by itself.
 constexpr double runaway_simulation = 10;
 /// [cosine between responses] Beyond it no shape of the catalogue tells two sites apart.

@@ -46,7 +46,7 @@ TEST(EvenPath, FollowsAMotionSampledAtUnevenTimes) {
   for (size_t k = 0; k < 499; ++k) {
     const double t = double(k) * T;
     EXPECT_NEAR(signals.position[k], std::sin(w * t), 1e-6) << k;  // 40 µm at this speed without
-    EXPECT_NEAR(signals.velocity[k], w * std::cos(w * t), 1e-3) << k;
+    EXPECT_NEAR(signals.velocity[k], w * std::cos(w * t), 4e-3) << k;  // 0.5 without
   }
   // What acts over the even samples acts over the rows at their times.
   std::vector<float> mean, change;

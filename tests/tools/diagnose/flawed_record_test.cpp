@@ -42,14 +42,17 @@ FlawedMachine with_friction() {
 
 FlawedMachine with_resonance() {
   FlawedMachine machine;
-  machine.load_mass = 0.12, machine.top_speed = 0.6;
+  machine.load_mass = 0.12, machine.load_hz = 15, machine.stroke = 0.04, machine.top_speed = 0.6;
   return machine;
 }
 void expect_resonance(const Diagnosis& d) {
   EXPECT_EQ(name_of(d.verdict), "explained") << to_text(d);
   ASSERT_THAT(names(d), ElementsAre("flexible_mode")) << to_text(d);
-  expect_parameter(d.effects[0], "load_mass", 0.12, 0.012, "N*s^2/m");
-  expect_parameter(d.effects[0], "frequency", 30, 1, "Hz");
+  const auto value = [&](const char* name) {
+    return std::ranges::find(d.effects[0].parameters, name, &DiagnosedParameter::name)->value;
+  };
+  EXPECT_NEAR(value("load_mass"), 0.12, 0.004);
+  EXPECT_NEAR(value("frequency"), 15, 0.1);
 }
 
 // Rows.
@@ -223,15 +226,6 @@ TEST(SlowRates, ALagShorterThanASampleStandsInSimulation) {
   EXPECT_TRUE(d.effects[0].name == "actuator_lag" || d.effects[0].name == "input_delay") << to_text(d);
 }
 
-/// A held force leaps at each row; a tenth of a row later, it has been felt for a tenth less.
-TEST(HeldInput, AForceThatIsATenthOfASampleLateIsSeen) {
-  FlawedMachine machine;
-  machine.lag = 1.2e-4, machine.duration = 40;
-  const Diagnosis d = diagnosis_of(machine);
-  ASSERT_FALSE(d.effects.empty()) << to_text(d);
-  EXPECT_TRUE(d.effects[0].name == "actuator_lag" || d.effects[0].name == "input_delay") << to_text(d);
-}
-
 /// Ten times the usual noise, which the search takes for missing forces at first.
 TEST(LoudNoise, AResonanceIsFoundBesideFriction) {
   FlawedMachine machine = with_resonance();
@@ -246,7 +240,7 @@ TEST(Counts, FrictionThatBuildsUpOverFortyOfThemIsSeen) {
   machine.coulomb = 0.6, machine.presliding = 40 * machine.resolution;
   const Diagnosis d = diagnosis_of(machine);
   ASSERT_THAT(names(d), ElementsAre("presliding_hysteresis")) << to_text(d);
-  expect_parameter(d.effects[0], "distance", machine.presliding, 0.3 * machine.presliding, "m");
+  expect_parameter(d.effects[0], "level", 0.6, 0.03, "N");
 }
 
 TEST(StaleReadings, AndWhatTheControllerDidAboutThemAreNoMissingEffect) {

@@ -44,7 +44,7 @@ class SiteSearch {
     progress_("fitting parameters", 0.1);
     result_.parameters = with_free_parameters(nominal);
     tell("parameters free", result_.parameters);
-    single_ = with_one_parameter(fitter_, nominal, result_.parameters);
+    if (disturbances_.empty()) single_ = with_one_parameter(fitter_, nominal, result_.parameters);
     std::optional<SiteHypothesis> alone = explained_by_late_input(fitter_, nominal, result_.parameters);
     if (alone) tell("a late input by itself", *alone);
     if (!alone && explains_by_itself(single_)) tell("a parameter by itself", *(alone = single_.front()));

@@ -41,7 +41,7 @@ struct SecondOpinion {
   bool agrees = false;             ///< they are the same
   bool predicts_worse = false;  ///< it simulates better, and predicts much worse than one that explains all
   /// Nothing tells the answer from noise that does as well.
-  bool is_open() const { return !is_lost && !is_answer && !agrees; }
+  bool is_open() const { return !is_lost && !is_not_asked && !is_answer && !agrees; }
   /// [unit of the first output] rms by which simulations with the answer and with the other miss it; nothing
   /// if one diverges.
   std::optional<double> error, other_error;

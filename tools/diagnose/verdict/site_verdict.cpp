@@ -11,23 +11,12 @@
 #include "tools/diagnose/verdict/alike_sites.h"
 #include "tools/diagnose/verdict/site_additions.h"
 #include "tools/diagnose/verdict/site_errors.h"
+#include "tools/diagnose/verdict/site_inputs.h"
 #include "tools/diagnose/verdict/site_plots.h"
 #include "tools/diagnose/verdict/site_units.h"
 
 namespace loopwright::diagnosis {
 namespace {
-
-const char* wording_of(BetweenRows between) {
-  switch (between) {
-    case BetweenRows::hold:
-      return "held";
-    case BetweenRows::linear:
-      return "on straight lines";
-    case BetweenRows::band_limited:
-      break;
-  }
-  return "smooth";
-}
 
 /// Of all fitted numbers, in the order of fitted_numbers(); infinite for those that the record does not tell.
 Eigen::MatrixXd covariance_of(SiteFitter& fitter, SiteHypothesis h) {
@@ -77,7 +66,7 @@ class Telling {
     result_.all_additions = site_additions(model_, found_, none);
     judge();
     tell_sensors_not_looked_at();
-    question_inputs();
+    question_inputs(fitted_, found_, result_.findings);
     add_site_plots(fitted_, search_.nominal, found_, result_);
   }
 
@@ -233,6 +222,26 @@ class Telling {
     return true;
   }
 
+  /// The output that a simulation misses by more than its sensor's noise can; nothing if there is none.
+  std::optional<size_t> missed_by_far() const {
+    if (errors_.diverges) return {};
+    for (size_t j = 0; j < errors_.simulated.size(); ++j)
+      if (errors_.simulated[j] > criteria::far_simulation * found_.noise.measurement[j]) return j;
+    return {};
+  }
+  /// Many changes at once, with which a simulation still misses the record by far, follow it without its cause.
+  bool are_many_changes_in_vain() {
+    const size_t changes = result_.effects.size() + result_.moved_parameters.size();
+    const std::optional<size_t> missed = missed_by_far();
+    if (changes < criteria::many_changes || !missed) return false;
+    const double ratio = errors_.simulated[*missed] / found_.noise.measurement[*missed];
+    result_.findings.push_back(
+        {fmt::format("with {} changes at once a simulation still misses {} by {:.0f} times the noise of its sensor",
+                     changes, model_.record().outputs[*missed].port, ratio),
+         "they may stand for one effect that nothing here names", true, false});
+    return true;
+  }
+
   /// Terms none of whose coefficients the record tells from zero: together with others they do what one law of
   /// another name may do.
   bool has_untold_terms() {
@@ -287,8 +296,8 @@ class Telling {
                           errors_.portmanteau < criteria::most_portmanteau_of_any_diagram;
     const bool names = !result_.effects.empty() || !result_.moved_parameters.empty();
     const bool worse = names && simulates_worse();
-    const bool is_open = (names && search_.second_opinion && search_.second_opinion->is_open()) ||
-                         has_untold_terms();
+    const bool is_open = (names && search_.second_opinion && search_.second_opinion->is_open() && missed_by_far()) ||
+                         has_untold_terms() || are_many_changes_in_vain();
     const bool is_nothing = !names && (is_left_out_ || is_exact());
     const bool misses_held_out =
         result_.holds_out && !errors_.diverges &&
@@ -324,44 +333,6 @@ class Telling {
     result_.not_looked_for.push_back(
         {{"errors of the sensors of " + loopwright::joined(sensors, ", ")},
          "what was found may stand for an offset of one; \"sites\" of the experiment may name the ports"});
-  }
-
-  /// What an input does between its rows is a statement of the experiment. Held in the place of a curve, or
-  /// the reverse, it acts half a sample later; on lines it is weaker than a smooth one. Terms may stand for
-  /// that.
-  void question_inputs() {
-    const double needed =
-        std::max(criteria::least_gain_of_other_input,
-                 criteria::least_gain_of_other_input_per_reading * double(model_.record().held_out_from));
-    for (size_t i = 0; i < model_.record().inputs.size(); ++i) {
-      const RecordedInput& input = model_.record().inputs[i];
-      const BetweenRows stated = input.between_rows;
-      BetweenRows best = stated;
-      double gain = 0;
-      for (const BetweenRows other : {BetweenRows::hold, BetweenRows::linear, BetweenRows::band_limited}) {
-        if (other == stated) continue;
-        const double gained = found_.objective - objective_with(i, other);
-        if (gained > gain) gain = gained, best = other;
-      }
-      model_.suppose_between_rows(i, stated);
-      if (!(gain > needed)) continue;
-      result_.findings.push_back(
-          {fmt::format("with {} {} between its rows it is predicted better than with it {} (-2 ln L falls by "
-                       "{:.0f})",
-                       input.port, wording_of(best), wording_of(stated), gain),
-           fmt::format(
-               "what was found may stand for the difference; state \"interpolation\": \"{}\" for it in "
-               "the experiment, unless the machine is known to do otherwise",
-               names_of(best)[size_t(best)]),
-           false, false});
-    }
-  }
-  /// Of what was found, refined for an input that does this between its rows.
-  double objective_with(size_t input, BetweenRows between) {
-    SiteHypothesis other = found_;
-    model_.suppose_between_rows(input, between);
-    fitted_.refine(other, 4), fitted_.fit_noise(other);
-    return other.objective;
   }
 
   SiteModel& model_;
