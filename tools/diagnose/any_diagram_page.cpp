@@ -100,8 +100,9 @@ report::Section limits(const Diagnosis& d) {
   for (const std::string& sentence : d.not_observable)
     section.items.push_back(report::Paragraph{"Not told apart: " + sentence + "."});
   for (const NotLookedFor& n : d.not_looked_for)
-    section.items.push_back(report::Notice{report::Notice::Severity::note,
-                                           fmt::format("Not looked for: {}; {}.", joined(n.effects, ", "), n.why)});
+    section.items.push_back(
+        report::Notice{report::Notice::Severity::note,
+                       fmt::format("Not looked for: {}; {}.", joined(n.effects, ", "), n.why)});
   if (section.items.empty())
     section.items.push_back(report::Paragraph{"All sites of the diagram can be told apart."});
   return section;

@@ -76,8 +76,8 @@ constexpr double loud_noise = 0.1, most_portmanteau_of_noise_seen = 120;
 constexpr double usual_slow_noise = 0.3;
 /// [white force] A larger slow force is not noise but something that the model lacks.
 constexpr double most_slow_noise = 0.8;
-/// [sample times] A force that is forgotten sooner is noise, however large: the ripple of an amplifier. What a
-/// model lacks lasts as long as the motion, of which a record shows more samples.
+/// [sample times] A force that is forgotten sooner is noise, however large: the ripple of an amplifier. What
+/// a model lacks lasts as long as the motion, of which a record shows more samples.
 constexpr double quick_noise = 3;
 /// [white force] The slow force that remains when it is counted as white.
 constexpr double next_to_no_slow_noise = 0.01;
@@ -119,8 +119,8 @@ constexpr double negligible_force = 1e-3;
 constexpr double least_force_share = 0.3;
 /// [standard deviations] By which the share must be below.
 constexpr double sure_deviations = 2;
-/// [force of the input, rms] What is as small in the errors of the predictor may be an error of the model, as that
-/// of forces between the rows. It is no effect that is too small to matter.
+/// [force of the input, rms] What is as small in the errors of the predictor may be an error of the model, as
+/// that of forces between the rows. It is no effect that is too small to matter.
 constexpr double error_of_model = 2.5e-4;
 /// [χ² a row] An effect as loud as this is no answer of a controller to noise; and [residual that the noise
 /// leaves] its force up to which the motion that it follows may be driven by the noise.
@@ -135,8 +135,8 @@ constexpr double independent_block_s = 0.5;
 /// [χ²] Five standard deviations; and shares of the rows, below which a model is not exact enough to tell: of
 /// certainty, and of a size that needs no large force, because a delay acts only for moments.
 constexpr double least_wald = 25, least_wald_per_row = 0.001, plain_wald_per_row = 0.01;
-/// [simulation error without the effect] By which it must fall with each effect where counts color the errors,
-/// and with each optional one beside a load that flies.
+/// [simulation error without the effect] By which it must fall with each effect where counts color the
+/// errors, and with each optional one beside a load that flies.
 constexpr double least_help = 0.02;
 /// [χ²] That errors of counts alone would give the effect: one that stands out less may be a beat of the
 /// counts with the samples. Twice in amplitude.
@@ -170,8 +170,8 @@ constexpr double most_promised_loss = 20;
 constexpr double much_left = 8;
 /// A delay or a lag replaces a step from 0 to its shape; the step that the errors ask for must be near 1.
 constexpr double least_step_to_shape = 0.6, most_step_to_shape = 1.7;
-/// An effect is also tried with a shape that differs from its present one by more than this factor: beyond what
-/// a fit reaches, as a resonance at another frequency is.
+/// An effect is also tried with a shape that differs from its present one by more than this factor: beyond
+/// what a fit reaches, as a resonance at another frequency is.
 constexpr double other_shape = 1.5;
 /// [twice the log-likelihood] A smaller gain ends the iterations of a fit.
 constexpr double least_step_gain = 0.01;
@@ -360,8 +360,8 @@ constexpr double least_share_of_function = 0.95;
 /// [free simulation of the nominal diagram, rms error] A simulation that misses by more, and by more than the
 /// signal spreads, diverges.
 constexpr double diverging_simulation = 10;
-/// [noise of the sensor] A simulation that misses its signal by more is driven by something else than what was
-/// found; and as many terms and parameters as this together, of which none need be the cause.
+/// [noise of the sensor] A simulation that misses its signal by more is driven by something else than what
+/// was found; and as many terms and parameters as this together, of which none need be the cause.
 constexpr double far_simulation = 5;
 constexpr size_t many_changes = 5;
 /// [spread of the signal] A diagram that misses a signal by more is no plant that can be simulated by itself.

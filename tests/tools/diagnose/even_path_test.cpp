@@ -21,7 +21,8 @@ TEST(LinesOverIntervals, KeepAStraightLineIntegralsAndFirstMoments) {
     EXPECT_NEAR(others.mean[k], 3 + to[k] + to[k + 1], 1e-12);
     EXPECT_NEAR(others.change[k], 2 * (to[k + 1] - to[k]), 1e-12);
   }
-  // A leap within an interval: 0 up to 0.25, then 1. Mean 3/4; 12 times the first moment about the middle 9/8.
+  // A leap within an interval: 0 up to 0.25, then 1. Mean 3/4; 12 times the first moment about the middle
+  // 9/8.
   const LinesOver leap = over({{0, 0.25, 1}, {0, 1}, {0, 0}}, {0, 1});
   EXPECT_NEAR(leap.mean[0], 0.75, 1e-12);
   EXPECT_NEAR(leap.change[0], 12 * (0.75 * 0.125), 1e-12);
@@ -45,7 +46,7 @@ TEST(EvenPath, FollowsAMotionSampledAtUnevenTimes) {
   const RoleSignals signals = even.signals();
   for (size_t k = 0; k < 499; ++k) {
     const double t = double(k) * T;
-    EXPECT_NEAR(signals.position[k], std::sin(w * t), 1e-6) << k;  // 40 µm at this speed without
+    EXPECT_NEAR(signals.position[k], std::sin(w * t), 1e-6) << k;      // 40 µm at this speed without
     EXPECT_NEAR(signals.velocity[k], w * std::cos(w * t), 4e-3) << k;  // 0.5 without
   }
   // What acts over the even samples acts over the rows at their times.
@@ -53,8 +54,7 @@ TEST(EvenPath, FollowsAMotionSampledAtUnevenTimes) {
   for (size_t k = 0; k < even.rows(); ++k) mean.push_back(float(double(k) + 0.5)), change.push_back(1);
   even.to_rows(mean, change);
   ASSERT_EQ(mean.size(), path.samples());
-  for (size_t k = 0; k < mean.size(); ++k)
-    EXPECT_NEAR(mean[k], 0.5 * (time[k] + time[k + 1]) / T, 1e-3) << k;
+  for (size_t k = 0; k < mean.size(); ++k) EXPECT_NEAR(mean[k], 0.5 * (time[k] + time[k + 1]) / T, 1e-3) << k;
 }
 
 }  // namespace

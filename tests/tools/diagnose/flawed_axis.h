@@ -25,7 +25,7 @@ struct FlawedMachine {
   double eddy = 0, eddy_speed = 1;  ///< hidden: a drag that falls beyond this speed
   double lag = 0;                   ///< hidden: s, of the force behind its command
   double load_mass = 0, load_hz = 30, load_damping_ratio = 0.04;  ///< hidden: a part of the mass, on a spring
-  bool cogging_is_known = false;    ///< the diagram has it, and the position at the start
+  bool cogging_is_known = false;  ///< the diagram has it, and the position at the start
   double sample_time = 1e-3, duration = 20;
   double stroke = 0.2, top_speed = 0.3;
   std::vector<double> steady_speeds;  ///< instead of strokes: each one held, forward and back

@@ -35,6 +35,12 @@ TEST_F(TrialRun, RefusesWhatDiverges) {
   ASSERT_TRUE(why);
   EXPECT_THAT(*why, HasSubstr("it misses mass.position by"));
 }
+/// A plant that only its controller holds runs away in a simulation by itself, with any law.
+TEST_F(TrialRun, AsksNothingOfAPlantThatRunsAway) {
+  const std::string held = R"("signs": "+--")", runs_away = R"("signs": "++-")";
+  plant.diagram.replace(plant.diagram.find(held), held.size(), runs_away);
+  EXPECT_EQ(why_not_with(R"("value": 200,)", R"("value": 400,)"), std::nullopt);
+}
 TEST_F(TrialRun, RefusesWhatCannotBeRun) {
   const auto why = why_not_with(R"("value": 1.5,)", R"("value": -1.5,)");
   ASSERT_TRUE(why);

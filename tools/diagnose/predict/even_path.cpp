@@ -60,7 +60,8 @@ RoleSignals EvenPath::signals() const {
 }
 
 void EvenPath::to_rows(std::vector<float>& mean, std::vector<float>& change) const {
-  const LinesOver on_rows = over({even_edges_, {mean.begin(), mean.end()}, {change.begin(), change.end()}}, edges_);
+  const LinesOver on_rows =
+      over({even_edges_, {mean.begin(), mean.end()}, {change.begin(), change.end()}}, edges_);
   mean.assign(on_rows.mean.begin(), on_rows.mean.end());
   change.assign(on_rows.change.begin(), on_rows.change.end());
 }

@@ -1,5 +1,5 @@
-/// A path whose rows were not sampled evenly, as an effect with a memory runs along it: the blocks of effects step
-/// from sample to sample, all of the same length.
+/// A path whose rows were not sampled evenly, as an effect with a memory runs along it: the blocks of effects
+/// step from sample to sample, all of the same length.
 #pragma once
 #include <span>
 #include <vector>

@@ -37,8 +37,8 @@ bool adds_inertia(const Attachment& attachment) {
 
 constexpr double linear_points = 8;
 constexpr double grid_ratio = 1.7;  // between neighbors on a logarithmic scale, at most
-/// [times the smallest of the grid] The longest delay or lag: 20 samples, and a fifteenth of one. A held force
-/// that changes from sample to sample shows a delay of a tenth.
+/// [times the smallest of the grid] The longest delay or lag: 20 samples, and a fifteenth of one. A held
+/// force that changes from sample to sample shows a delay of a tenth.
 constexpr double ranges_of_delays = 303.75;
 
 /// Initial values of the search. Later shapes of an effect start in the middle: the fit moves them.

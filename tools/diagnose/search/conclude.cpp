@@ -161,9 +161,11 @@ void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
       weigh_counts(trials, estimate, result.weights);
       sizes = sizes_of_members(trials, result);
     }
-    size_t weakest = 0;  // of several that spoil the balance of the forces, the one that the record asks for least
+    size_t weakest =
+        0;  // of several that spoil the balance of the forces, the one that the record asks for least
     for (size_t m = 1; m < sizes.size(); ++m)
-      if (std::pair(sizes[m], result.weights[m].wald) < std::pair(sizes[weakest], result.weights[weakest].wald))
+      if (std::pair(sizes[m], result.weights[m].wald) <
+          std::pair(sizes[weakest], result.weights[weakest].wald))
         weakest = m;
     const double least = sizes[weakest];
     if (least >= barely_material) return;
@@ -264,10 +266,11 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
       result.counts_portmanteau = portmanteau_of_counts(trials, errors);
     }
   const Noise& noise = estimate.noise;
-  result.trail.push_back(fmt::format(
-      "portmanteau {:.0f}, of counts alone {:.0f}; noise: white {:.3g}, slow {:.3g} over {:.3g} rows, sensor {:.3g}",
-      result.portmanteau, result.counts_portmanteau, noise.white, noise.slow(), -1 / std::log(noise.memory),
-      noise.measurement.front()));
+  result.trail.push_back(
+      fmt::format("portmanteau {:.0f}, of counts alone {:.0f}; noise: white {:.3g}, slow {:.3g} over {:.3g} "
+                  "rows, sensor {:.3g}",
+                  result.portmanteau, result.counts_portmanteau, noise.white, noise.slow(),
+                  -1 / std::log(noise.memory), noise.measurement.front()));
   result.is_negligible = is_negligible(trials, estimate.members);
   const double n = double(fitted_numbers(trials));
   const std::vector<Shape> periodic = periodic_shapes(trials, estimate, candidates, 1);
@@ -290,7 +293,8 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
   SecondLook seen;
   if (!instead) {
     seen = look_again(trials, estimate, evidence, candidates.size());
-    if (rounds > 0 && (instead = std::move(seen.better))) result.trail.push_back("with the noise known, more is seen");
+    if (rounds > 0 && (instead = std::move(seen.better)))
+      result.trail.push_back("with the noise known, more is seen");
   }
   if (!instead) {
     ask_rivals(trials, result, evidence, exchanges, candidates, rivals, at_reversals, n);

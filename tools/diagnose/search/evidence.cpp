@@ -240,8 +240,9 @@ Evidence::Errors Evidence::errors_without(const std::vector<size_t>& removed) co
           solve(G_, member_columns(removed, true), b, squares)};
 }
 
-/// A candidate is a member only once; one that repeats along the axis may be added again at another pitch. In the
-/// place of itself it may take another shape, which a fit does not reach: a resonance at another frequency.
+/// A candidate is a member only once; one that repeats along the axis may be added again at another pitch. In
+/// the place of itself it may take another shape, which a fit does not reach: a resonance at another
+/// frequency.
 bool Evidence::may_be_added(const Shape& shape, const std::vector<size_t>& removed) const {
   for (size_t m = 0; m < members_.size(); ++m) {
     const Member& member = members_[m];

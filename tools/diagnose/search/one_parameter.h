@@ -5,9 +5,9 @@
 
 namespace loopwright::diagnosis {
 
-/// The diagram as it is but for one parameter, for each of those that are free in `parameters`; best first. Fits
-/// of all parameters together bend those that the record tells poorly, and the sets that are tried about such a
-/// point miss a single one that is far from it. A hopeless one has the noise of the diagram as it is.
+/// The diagram as it is but for one parameter, for each of those that are free in `parameters`; best first.
+/// Fits of all parameters together bend those that the record tells poorly, and the sets that are tried about
+/// such a point miss a single one that is far from it. A hopeless one has the noise of the diagram as it is.
 std::vector<SiteHypothesis> with_one_parameter(SiteFitter& fitter, const SiteHypothesis& nominal,
                                                const SiteHypothesis& parameters);
 /// Which one it is.

@@ -43,10 +43,10 @@ ForceShare share_of_force(const Trials& trials, const std::vector<InverseDynamic
 
 /// Whether a member makes the balance of the forces along the smooth motion worse. In a closed loop the input
 /// answers to disturbances that the record of the motion does not yet show: a delay, a lag or a mode can
-/// then predict a part of the noise, but does not fit the motion itself. Where noise drives the motion that the
-/// force of an effect follows, as beside a resonance, the balance is as wrong: an effect that is loud in the
-/// errors, and quieter than the noise in the balance, is not asked. Nor is a load that flies: the moments of its
-/// blows are not those of the smooth motion.
+/// then predict a part of the noise, but does not fit the motion itself. Where noise drives the motion that
+/// the force of an effect follows, as beside a resonance, the balance is as wrong: an effect that is loud in
+/// the errors, and quieter than the noise in the balance, is not asked. Nor is a load that flies: the moments
+/// of its blows are not those of the smooth motion.
 bool spoils_balance(const Trials& trials, const Estimate& estimate, size_t member, const Weight& weight);
 
 /// Whether the force that the members leave is too small to matter, in the fitted rows and in the others.

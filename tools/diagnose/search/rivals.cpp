@@ -48,7 +48,8 @@ std::optional<Estimate> Rivals::better(double doubt) {
   if (!best_.is_valid || at_limit(best_) > at_limit(estimate_) || is_spent()) return {};
   maximise(trials_, best_);
   const double gain = criterion_of(estimate_) - criterion_of(best_);
-  return gain + preference(trials_, best_.members, estimate_.members) > std::max(criteria::clearly_better, doubt)
+  return gain + preference(trials_, best_.members, estimate_.members) >
+                 std::max(criteria::clearly_better, doubt)
              ? std::optional(std::move(best_))
              : std::nullopt;
 }

@@ -350,8 +350,8 @@ class Search {
     trail_.push_back(fmt::format("noise: white {:.3g}, slow {:.3g}", noise_.white, noise_.slow()));
   }
 
-  /// If what is left looks like noise that is louder than assumed, it is taken for that: gains of the predictor
-  /// that are too small colour the errors, and bend what is fitted to them.
+  /// If what is left looks like noise that is louder than assumed, it is taken for that: gains of the
+  /// predictor that are too small colour the errors, and bend what is fitted to them.
   bool rest_is_noise() {
     const Noise louder = fit_noise_alone(trials_, *best_.fitted, noise_, FreeNoise::white_and_slow);
     Estimate trial = fit_members(trials_, best_.members, louder, best_.motion, 4);

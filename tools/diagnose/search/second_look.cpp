@@ -20,8 +20,7 @@ namespace {
 bool may_be_told(const Trials& trials, const Estimate& trial, size_t member, const Weight& weight) {
   const Candidate& candidate = *trial.members[member].candidate;
   return !candidate.is_unknown && !candidate.flies && !is_at_limit(trial.members[member]) &&
-         !is_blurred(trials, trial.members[member]) &&
-         !spoils_balance(trials, trial, member, weight);
+         !is_blurred(trials, trial.members[member]) && !spoils_balance(trials, trial, member, weight);
 }
 
 /// Beside next to no noise the arithmetic of the diagram has effects too.

@@ -169,7 +169,8 @@ std::optional<SiteSearchResult> search_with_second_opinion(
                                                  name, errors->judged()[0])
                                    : fmt::format("answer by {} diverges in simulation", name));
   SecondOpinion opinion{noisy, unmeasured};
-  opinion.is_answer = is_answer, opinion.other = named_in(fitter.model(), (is_answer ? first : second)->found);
+  opinion.is_answer = is_answer,
+  opinion.other = named_in(fitter.model(), (is_answer ? first : second)->found);
   if (const auto& errors = is_answer ? of_second : of_first) opinion.error = errors->judged()[0];
   if (const auto& errors = is_answer ? of_first : of_second) opinion.other_error = errors->judged()[0];
   std::vector<std::string> other = opinion.other,

@@ -48,7 +48,8 @@ class SiteSearch {
     std::optional<SiteHypothesis> alone = explained_by_late_input(fitter_, nominal, result_.parameters);
     if (alone) tell("a late input by itself", *alone);
     if (!alone && explains_by_itself(single_)) tell("a parameter by itself", *(alone = single_.front()));
-    if (!alone && errors_ == ErrorsOf::predictions && disturbances_.empty()) begin_beside_small_disturbances();
+    if (!alone && errors_ == ErrorsOf::predictions && disturbances_.empty())
+      begin_beside_small_disturbances();
     SiteSearchResult first = searched_from(alone.value_or(result_.parameters), 0.2);
     if (!is_doubtful(first.found) || is_spent(criteria::work_of_first_search)) return first;
     result_.trail = std::move(first.trail);

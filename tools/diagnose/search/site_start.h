@@ -6,7 +6,8 @@
 
 namespace loopwright::diagnosis {
 
-/// Parameters as stated and no terms. Returns the number of readings; nothing if it diverges along the record.
+/// Parameters as stated and no terms. Returns the number of readings; nothing if it diverges along the
+/// record.
 std::optional<double> start_from_stated(SiteFitter& fitter, ErrorsOf errors,
                                         const std::vector<SlowNoise>& disturbances, SiteHypothesis& h);
 

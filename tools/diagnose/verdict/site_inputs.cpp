@@ -45,11 +45,13 @@ void question_inputs(SiteFitter& fitter, const SiteHypothesis& found, std::vecto
     model.suppose_between_rows(i, stated);
     if (!(gain > needed)) continue;
     findings.push_back(
-        {fmt::format("with {} {} between its rows it is predicted better than with it {} (-2 ln L falls by {:.0f})",
-                     input.port, wording_of(best), wording_of(stated), gain),
-         fmt::format("what was found may stand for the difference; state \"interpolation\": \"{}\" for it in the "
-                     "experiment, unless the machine is known to do otherwise",
-                     names_of(best)[size_t(best)]),
+        {fmt::format(
+             "with {} {} between its rows it is predicted better than with it {} (-2 ln L falls by {:.0f})",
+             input.port, wording_of(best), wording_of(stated), gain),
+         fmt::format(
+             "what was found may stand for the difference; state \"interpolation\": \"{}\" for it in the "
+             "experiment, unless the machine is known to do otherwise",
+             names_of(best)[size_t(best)]),
          false, false});
   }
 }

@@ -229,21 +229,23 @@ class Telling {
       if (errors_.simulated[j] > criteria::far_simulation * found_.noise.measurement[j]) return j;
     return {};
   }
-  /// Many changes at once, with which a simulation still misses the record by far, follow it without its cause.
+  /// Many changes at once, with which a simulation still misses the record by far, follow it without its
+  /// cause.
   bool are_many_changes_in_vain() {
     const size_t changes = result_.effects.size() + result_.moved_parameters.size();
     const std::optional<size_t> missed = missed_by_far();
     if (changes < criteria::many_changes || !missed) return false;
     const double ratio = errors_.simulated[*missed] / found_.noise.measurement[*missed];
     result_.findings.push_back(
-        {fmt::format("with {} changes at once a simulation still misses {} by {:.0f} times the noise of its sensor",
-                     changes, model_.record().outputs[*missed].port, ratio),
+        {fmt::format(
+             "with {} changes at once a simulation still misses {} by {:.0f} times the noise of its sensor",
+             changes, model_.record().outputs[*missed].port, ratio),
          "they may stand for one effect that nothing here names", true, false});
     return true;
   }
 
-  /// Terms none of whose coefficients the record tells from zero: together with others they do what one law of
-  /// another name may do.
+  /// Terms none of whose coefficients the record tells from zero: together with others they do what one law
+  /// of another name may do.
   bool has_untold_terms() {
     bool is_any = false;
     for (size_t t = 0; t < result_.effects.size(); ++t) {
@@ -253,10 +255,9 @@ class Telling {
         if (std::ranges::find(names, p.name) != names.end()) ++all, told += p.low > 0 || p.high < 0;
       if (all == 0 || told > 0) continue;
       is_any = true;
-      result_.findings.push_back(
-          {fmt::format("the intervals of all coefficients of {} contain zero",
-                       describe(model_, found_.terms[t])),
-           "its name stands for what the record does not tell", true, false});
+      result_.findings.push_back({fmt::format("the intervals of all coefficients of {} contain zero",
+                                              describe(model_, found_.terms[t])),
+                                  "its name stands for what the record does not tell", true, false});
     }
     return is_any;
   }
@@ -296,8 +297,9 @@ class Telling {
                           errors_.portmanteau < criteria::most_portmanteau_of_any_diagram;
     const bool names = !result_.effects.empty() || !result_.moved_parameters.empty();
     const bool worse = names && simulates_worse();
-    const bool is_open = (names && search_.second_opinion && search_.second_opinion->is_open() && missed_by_far()) ||
-                         has_untold_terms() || are_many_changes_in_vain();
+    const bool is_open =
+        (names && search_.second_opinion && search_.second_opinion->is_open() && missed_by_far()) ||
+        has_untold_terms() || are_many_changes_in_vain();
     const bool is_nothing = !names && (is_left_out_ || is_exact());
     const bool misses_held_out =
         result_.holds_out && !errors_.diverges &&
