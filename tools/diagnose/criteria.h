@@ -266,6 +266,10 @@ constexpr double least_excess = least_force;
 
 // The staircase of effects.
 
+/// [residual force] Of two stages within this factor the one with fewer parameters is shown: Coulomb friction
+/// before friction that is smooth around rest.
+constexpr double same_step = 1.05;
+
 /// [residual force] A correction of the nominal mass or damping that leaves more than this share only trades
 /// with effects that are still to come, as damping does with eddy-current drag.
 constexpr double least_benefit_of_a_correction = 0.99;
@@ -360,6 +364,8 @@ constexpr double least_share_of_function = 0.95;
 /// [free simulation of the nominal diagram, rms error] A simulation that misses by more, and by more than the
 /// signal spreads, diverges.
 constexpr double diverging_simulation = 10;
+/// [rms error] A second opinion whose simulation misses by so much more questions nothing.
+constexpr double much_worse_opinion = 5;
 /// [noise of the sensor] A simulation that misses its signal by more is driven by something else than what
 /// was found; and as many terms and parameters as this together, of which none need be the cause.
 constexpr double far_simulation = 5;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <vector>
+#include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/site_ranking.h"
 #include "tools/diagnose/search/term_text.h"
 
@@ -41,7 +42,11 @@ struct SecondOpinion {
   bool agrees = false;             ///< they are the same
   bool predicts_worse = false;  ///< it simulates better, and predicts much worse than one that explains all
   /// Nothing tells the answer from noise that does as well.
-  bool is_open() const { return !is_lost && !is_not_asked && !is_answer && !agrees; }
+  bool is_open() const {
+    const bool is_much_worse =
+        error && (!other_error || *other_error > criteria::much_worse_opinion * *error);
+    return !is_lost && !is_not_asked && !is_answer && !agrees && !is_much_worse;
+  }
   /// [unit of the first output] rms by which simulations with the answer and with the other miss it; nothing
   /// if one diverges.
   std::optional<double> error, other_error;

@@ -57,7 +57,7 @@ class Climb {
   /// Of those that balance the forces alike the one with the fewest parameters.
   static Stage simplest_of_best(std::vector<Stage> stages) {
     const double least = std::ranges::min(stages, {}, &Stage::force).force;
-    std::erase_if(stages, [&](const Stage& stage) { return stage.force > criteria::same_balance * least; });
+    std::erase_if(stages, [&](const Stage& stage) { return stage.force > criteria::same_step * least; });
     const auto size = [](const Stage& stage) {
       size_t parameters = 0;
       for (const Member& member : stage.estimate.members) parameters += parameters_of(*member.candidate);
