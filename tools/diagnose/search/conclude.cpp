@@ -147,6 +147,16 @@ std::vector<double> sizes_of_members(const Trials& trials, const Conclusion& res
   return sizes;
 }
 
+/// The member furthest below the thresholds; of several that spoil the balance of the forces, the one that
+/// the record asks for least.
+size_t weakest_of(const std::vector<double>& sizes, const std::vector<Weight>& weights) {
+  const auto strength = [&](size_t m) { return std::pair(sizes[m], weights[m].wald); };
+  size_t weakest = 0;
+  for (size_t m = 1; m < sizes.size(); ++m)
+    if (strength(m) < strength(weakest)) weakest = m;
+  return weakest;
+}
+
 /// Fits all parameters and the noise together, and removes the members that are not material, one by one, the
 /// weakest first. The search judged them with noise that it knew only partly; a barely material member must
 /// explain more than noise that is fitted without it.
@@ -161,12 +171,7 @@ void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
       weigh_counts(trials, estimate, result.weights);
       sizes = sizes_of_members(trials, result);
     }
-    size_t weakest =
-        0;  // of several that spoil the balance of the forces, the one that the record asks for least
-    for (size_t m = 1; m < sizes.size(); ++m)
-      if (std::pair(sizes[m], result.weights[m].wald) <
-          std::pair(sizes[weakest], result.weights[weakest].wald))
-        weakest = m;
+    const size_t weakest = weakest_of(sizes, result.weights);
     const double least = sizes[weakest];
     if (least >= barely_material) return;
     std::vector<Member> members = estimate.members;
