@@ -57,7 +57,10 @@ SecondLook look_again(Trials& trials, const Estimate& estimate, const Evidence& 
       result.better = std::move(trial);
       return result;
     }
-    if (is_own_load(trial.members.back()) || is_error_of_model(trials, trial, weight)) continue;
+    // The answer of a controller to noise resembles a small delay.
+    const Member& small = trial.members.back();
+    if (is_own_load(small) || is_late_input(*small.candidate) || is_error_of_model(trials, trial, weight))
+      continue;
     result.small.push_back({trial.members.back().candidate, gain, weight.force_rms});
   }
   std::ranges::stable_sort(result.small, std::ranges::greater{}, &SmallEffect::gain);
