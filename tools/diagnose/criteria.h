@@ -27,15 +27,15 @@ constexpr double correction_after_rest = 10;
 /// [rows] The waits above are kept if they leave so many; otherwise, as in a fast oscillation, each is
 /// shortened by the factor until they do.
 constexpr double plenty_of_rows = 1000, shorter_wait = 0.7;
+/// [rows in motion] Nor may the waits leave fewer: fast motions would count only where nothing happens.
+constexpr double least_share_of_motion = 0.2;
 /// [top speed] Slower counts as at rest: the sign of friction is not certain there.
 constexpr double rest_speed = 0.005;
 /// [rows] Fewer fitted rows support no verdict: 40 lags and three noises are estimated from them.
 constexpr double least_rows = 200;
-
 /// [rows] Of a longer record, sampled faster than necessary, several rows become one of at most this length
 /// [s]: the search runs hundreds of shapes along all of them.
 constexpr double most_rows = 120000, thinned_sample_s = 2e-3;
-
 /// [rows] On both sides of a change of sign, where the sign of dry friction is not certain.
 constexpr size_t rows_of_a_turn = 1;
 /// [mean square of the whitened errors] A law explains the rows after the reversals. Where an axis sticks, or
@@ -45,6 +45,11 @@ constexpr double most_mean_square_at_reversals = 2;
 constexpr double rest_speeds_of_a_fall = 4;
 /// [criterion] Over all rows together, by which another law must do better than the present one.
 constexpr double least_gain_at_reversals = 50;
+/// [reversals] Of a record of less than two seconds that supports a verdict even with fewer than
+/// plenty_of_rows: an oscillation shows as much in a short time as other motions do in a long one.
+constexpr int plenty_of_reversals = 20;
+/// [rows that stand for several] A delay or a lag of fewer may be the other one.
+constexpr double rows_that_blur = 20;
 
 // Steps.
 
@@ -53,13 +58,9 @@ constexpr double least_gain_at_reversals = 50;
 constexpr double same_pole = 1e-4;
 /// [steps in a sample] A pole that would need more has settled within a sample anyway.
 constexpr int most_steps_a_sample = 64;
-
-/// [reversals] Of a record of less than two seconds that supports a verdict even with fewer than
-/// plenty_of_rows: an oscillation shows as much in a short time as other motions do in a long one.
-constexpr int plenty_of_reversals = 20;
-
-/// [rows that stand for several] A delay or a lag of fewer may be the other one.
-constexpr double rows_that_blur = 20;
+/// [driving force, root mean square] After a whole step and two halves it differs by less, if no step is so
+/// long that the force behind a fast pole grows without bound.
+constexpr double same_driving_force = 0.1;
 
 // Noise.
 
@@ -81,13 +82,15 @@ constexpr double most_slow_noise = 0.8;
 constexpr double quick_noise = 3;
 /// [white force] The slow force that remains when it is counted as white.
 constexpr double next_to_no_slow_noise = 0.01;
+/// [-2 ln L] What a slow force may lose that is counted as white: it is no more than two parameters that
+/// chance fits.
+constexpr double most_lost_as_white = 25;
 /// [factor] The likelihood looks for each noise within this of its start.
 constexpr double noise_reach = 30;
 /// [cosine] Input and force push the states in the same direction: noise of one is noise of the other.
 constexpr double same_push = 0.99;
 /// [greatest position] Numbers of a record have some nine digits.
 constexpr double least_sensor_noise = 1e-9;
-
 /// [gain of a late input] An input that is early by as much, and gains more than this share of it, has noise
 /// that any mean reduces. One that is truly late loses by being early.
 constexpr double least_gain_of_early_input = 0.5;
@@ -101,13 +104,14 @@ constexpr double portmanteau_lag_s = 1e-3;
 /// Above it the errors are not white. Counts at a steady speed alone give up to 170, if the sensor states no
 /// resolution.
 constexpr double most_portmanteau = 300;
+/// [rows] Above it a fifth of the squared errors, beside noise, repeats as a vibration does, and is none.
+constexpr double most_portmanteau_per_row = 1;
 /// The same where nothing is named and the counts are computed from the resolution that is stated, and their
 /// part is taken off: beside noise of the force clean records stay below 130. Without such noise they reach
 /// 171, and small errors of the law of a large effect give 206.
 constexpr double most_portmanteau_of_counted = 150;
 /// [what counts add] A line of their beat that is a fifth stronger adds half as much again.
 constexpr double reach_of_counts = 1.5;
-
 /// [force of the input, rms] A smaller force that remains, below 80 Hz, does not matter: a simulated record
 /// has no noise beside which the rest of a model's error could be judged.
 constexpr double negligible_force = 1e-3;
@@ -117,6 +121,8 @@ constexpr double negligible_force = 1e-3;
 /// Of the force of an effect, as far as the balance of forces along the smooth motion shows it: 1 if it is
 /// there, 0 if it is not, with a bias where a controller answers to noise.
 constexpr double least_force_share = 0.3;
+/// [force of a load on a spring] Of which the balance shows less, below its 80 Hz, it says nothing.
+constexpr double least_seen_of_load = 0.5;
 /// [standard deviations] By which the share must be below.
 constexpr double sure_deviations = 2;
 /// [force of the input, rms] What is as small in the errors of the predictor may be an error of the model, as
@@ -142,8 +148,7 @@ constexpr double least_help = 0.02;
 /// counts with the samples. Twice in amplitude.
 constexpr double clear_of_counts = 4;
 /// [s] Rows that are closer count as parts of one for these shares, and beside the noise of as long a mean: a
-/// small error of the model gains with the time of the record, not with its rate, as white force noise has
-/// it.
+/// small error of the model gains with the time of the record, not with its rate.
 constexpr double judged_row_s = 1e-3;
 /// [force of the input, rms] Of a material effect; and of the part of it that no other effect could replace.
 constexpr double least_force = 0.005, least_unique_force = 0.001;
@@ -250,7 +255,6 @@ constexpr double most_strokes = 10;
 constexpr double worse_deviations = 3;
 /// [mean square error] A smaller worsening has no consequence: the parameters' own uncertainty makes as much.
 constexpr double least_worsening = 0.01;
-
 /// [noise floor of compare] Above it the residual force is no noise, as repeats of the motion show it.
 constexpr double most_over_floor = 1.25;
 /// [numbers] Smooth functions of the motion and lines, as compare fits them, have so many levels. They follow
@@ -269,14 +273,12 @@ constexpr double least_excess = least_force;
 /// [residual force] Of two stages within this factor the one with fewer parameters is shown: Coulomb friction
 /// before friction that is smooth around rest.
 constexpr double same_step = 1.05;
-
 /// [residual force] A correction of the nominal mass or damping that leaves more than this share only trades
 /// with effects that are still to come, as damping does with eddy-current drag.
 constexpr double least_benefit_of_a_correction = 0.99;
 /// [criterion for each row] And one that saves less.
 constexpr double least_gain_of_a_correction_per_row = 0.02;
-/// [decrease of the error by all effects] Effects at the end that decrease it by less are optional: beyond
-/// the knee of the curve.
+/// [decrease of the error by all effects] Effects at the end that decrease it by less are optional.
 constexpr double knee = 0.05;
 /// [decrease of the simulation error by all effects] One that decreases it by more is not optional, however
 /// small its force: the noise of coarse counts hides in the force what a simulation shows.
@@ -287,8 +289,7 @@ constexpr double most_optional_simulation = 0.5;
 /// [force that the noise alone would leave] Forces that balance better than that contradict the noise: it was
 /// inflated by something that happened at some time.
 constexpr double least_residual_of_noise = 0.5;
-/// [squared errors of a record] If so much lies within so small a part of its rows, the remainder is an
-/// event.
+/// [squared errors of a record] So much within so small a part of its rows is an event.
 constexpr double most_of_remainder = 0.8, short_part_of_record = 0.25;
 /// [mean square of the remainder] What a function of a variable explains, on blocks to which it was not
 /// fitted; and what the direction must explain beyond the position alone.
@@ -314,8 +315,7 @@ constexpr double most_portmanteau_of_any_diagram = 120;
 /// Of a term to the signal at its site, root mean squares. Interpolation between the rows, and steps of the
 /// integration, leave this much on a record without noise.
 constexpr double least_share_of_site = 1e-3;
-/// Of a term to the signal at its site, root mean squares. A smaller one is written into the diagram on
-/// request.
+/// The same. A smaller one is written into the diagram on request.
 constexpr double material_share_of_site = 5e-3;
 /// Of a simulated error to the spread of its signal: a record without noise, of another solver or with other
 /// steps, agrees as closely as this with the right diagram.
@@ -376,7 +376,6 @@ constexpr double runaway_simulation = 10;
 constexpr double alike_responses = 0.98;
 /// [rows] A trial term keeps its value as long; about as effects change along a motion.
 constexpr size_t trial_hold = 20;
-
 /// [-2 ln L] By which an answer with fewer numbers, and all parameters as stated, may be behind and is
 /// declared: twice what a term must gain to be named.
 constexpr double most_lost_by_fewer_changes = 50;

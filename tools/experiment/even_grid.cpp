@@ -167,21 +167,40 @@ std::vector<double> at_even_instants(const std::vector<double>& values, const st
   return even;
 }
 
+std::vector<double> edges_of(const std::vector<double>& duration) {
+  std::vector<double> edges = instants(duration);
+  edges.push_back(edges.back() + duration.back());
+  return edges;
+}
+
+OverSamples over_other_intervals(const OverSamples& signal, const std::vector<double>& edges,
+                                 const std::vector<double>& others) {
+  const size_t count = others.size() - 1, last = signal.mean.size() - 1;
+  OverSamples result{std::vector<double>(count), std::vector<double>(count)};
+  for (size_t k = 0, i = 0; k < count; ++k) {
+    const double begin = others[k], end = others[k + 1], length = end - begin;
+    double area = 0, moment = 0;
+    for (double from = begin; from < end;) {
+      while (i < last && edges[i + 1] <= from) ++i;
+      const double to = i < last ? std::min(end, edges[i + 1]) : end, part = to - from;
+      const double slope = signal.change.empty() ? 0 : signal.change[i] / (edges[i + 1] - edges[i]);
+      const double centre = 0.5 * (from + to);
+      const double value = signal.mean[i] + slope * (centre - 0.5 * (edges[i] + edges[i + 1]));
+      area += part * value;
+      moment += part * value * (centre - 0.5 * (begin + end)) + slope * part * part * part / 12;
+      from = to;
+    }
+    result.mean[k] = area / length, result.change[k] = 12 * moment / (length * length);
+  }
+  return result;
+}
+
 std::vector<double> mean_over_even_samples(const std::vector<double>& means,
                                            const std::vector<double>& duration) {
   if (duration.empty()) return means;
-  const std::vector<double> at = instants(duration);
-  std::vector<double> mean(means.size());
-  for (size_t k = 0, i = 0; k < means.size(); ++k) {
-    const double end = double(k) + 1;
-    for (double now = double(k); now < end;) {
-      while (i + 1 < at.size() && at[i + 1] <= now) ++i;
-      const double until = i + 1 < at.size() ? std::min(end, at[i + 1]) : end;
-      mean[k] += (until - now) * means[i];
-      now = until;
-    }
-  }
-  return mean;
+  std::vector<double> even;
+  for (size_t k = 0; k <= means.size(); ++k) even.push_back(double(k));
+  return over_other_intervals({means, {}}, edges_of(duration), even).mean;
 }
 
 std::string too_many_missing(const Experiment& experiment) {

@@ -50,6 +50,12 @@ class EvenGrid {
 /// Values at samples of these durations as they were at even instants, by cubics through the four samples
 /// around each. Unchanged without durations.
 std::vector<double> at_even_instants(const std::vector<double>& values, const std::vector<double>& duration);
+/// [sample times] Where samples of these durations begin, and where the last one ends.
+std::vector<double> edges_of(const std::vector<double>& duration);
+/// A signal over samples with these edges, over intervals with others: over each the line with the same
+/// integral and the same first moment. Beyond its last sample the signal goes on along its line.
+OverSamples over_other_intervals(const OverSamples& signal, const std::vector<double>& edges,
+                                 const std::vector<double>& others);
 /// The mean over each even sample of a command with these means over the samples.
 std::vector<double> mean_over_even_samples(const std::vector<double>& means,
                                            const std::vector<double>& duration);

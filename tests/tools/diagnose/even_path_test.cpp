@@ -8,26 +8,6 @@ namespace {
 
 using namespace diagnosis;
 
-TEST(LinesOverIntervals, KeepAStraightLineIntegralsAndFirstMoments) {
-  // f(t) = 3 + 2 t over intervals of any lengths, as the mean and the change of each.
-  const std::vector<double> from{0, 0.7, 2.1, 3, 4.4}, to{0, 1, 2, 3, 4.4};
-  LinesOver lines{from, {}, {}};
-  for (size_t k = 0; k + 1 < from.size(); ++k) {
-    lines.mean.push_back(3 + from[k] + from[k + 1]);
-    lines.change.push_back(2 * (from[k + 1] - from[k]));
-  }
-  const LinesOver others = over(lines, to);
-  for (size_t k = 0; k + 1 < to.size(); ++k) {
-    EXPECT_NEAR(others.mean[k], 3 + to[k] + to[k + 1], 1e-12);
-    EXPECT_NEAR(others.change[k], 2 * (to[k + 1] - to[k]), 1e-12);
-  }
-  // A leap within an interval: 0 up to 0.25, then 1. Mean 3/4; 12 times the first moment about the middle
-  // 9/8.
-  const LinesOver leap = over({{0, 0.25, 1}, {0, 1}, {0, 0}}, {0, 1});
-  EXPECT_NEAR(leap.mean[0], 0.75, 1e-12);
-  EXPECT_NEAR(leap.change[0], 12 * (0.75 * 0.125), 1e-12);
-}
-
 /// x = sin(w t) sampled at times that are up to 0.3 samples off.
 TEST(EvenPath, FollowsAMotionSampledAtUnevenTimes) {
   constexpr double T = 1e-3, w = 40;

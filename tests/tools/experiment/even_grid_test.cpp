@@ -156,6 +156,28 @@ TEST(EvenGrid, TheMeanOfAHeldCommandOverEvenSamplesKeepsItsSum) {
   EXPECT_EQ(mean_over_even_samples(held, {}), held);
 }
 
+TEST(OverOtherIntervals, AStraightLineStaysOne) {
+  // f(t) = 3 + 2 t over intervals of any lengths, as the mean and the change of each.
+  const std::vector<double> from{0, 0.7, 2.1, 3, 4.4}, to{0, 1, 2, 3, 4.4};
+  OverSamples lines;
+  for (size_t k = 0; k + 1 < from.size(); ++k) {
+    lines.mean.push_back(3 + from[k] + from[k + 1]);
+    lines.change.push_back(2 * (from[k + 1] - from[k]));
+  }
+  const OverSamples others = over_other_intervals(lines, from, to);
+  for (size_t k = 0; k + 1 < to.size(); ++k) {
+    EXPECT_NEAR(others.mean[k], 3 + to[k] + to[k + 1], 1e-12);
+    EXPECT_NEAR(others.change[k], 2 * (to[k + 1] - to[k]), 1e-12);
+  }
+}
+
+/// 0 up to 0.25, then 1. Mean 3/4; 12 times the first moment about the middle 9/8.
+TEST(OverOtherIntervals, ALeapKeepsItsFirstMoment) {
+  const OverSamples leap = over_other_intervals({{0, 1}, {0, 0}}, {0, 0.25, 1}, {0, 1});
+  EXPECT_NEAR(leap.mean[0], 0.75, 1e-12);
+  EXPECT_NEAR(leap.change[0], 12 * (0.75 * 0.125), 1e-12);
+}
+
 TEST(EvenGrid, ARecordWithMoreGapsThanRowsIsRefused) {
   std::vector<double> times = with_losses(1000, {});
   times.push_back(1e6);

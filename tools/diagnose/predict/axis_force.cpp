@@ -155,16 +155,23 @@ std::vector<double> AxisModel::net_forces(std::span<const double> position, std:
   return net;
 }
 
-void AxisModel::work_out_driving_force(const std::optional<Unit>& force_unit) {
-  if (record_.input.empty()) return;
-  MeasuredMotion motion = measured_motion(record_);
+std::vector<double> AxisModel::force_of_input() {
+  if (record_.input.empty()) return {};
+  const MeasuredMotion motion = measured_motion(record_);
   const std::vector<double> none(record_.rows(), 0.0);
   const std::vector<double>& position = record_.is_map ? motion.raw_position : motion.position;
   const std::vector<double>& velocity = record_.is_map ? none : motion.velocity;
   const auto net = [&](const std::vector<double>& input) {
     return net_forces(position, velocity, input, At::from_there_on);
   };
-  motion.force = driving_force_ = loopwright::driving_force(net(record_.input), net(none));
+  return loopwright::driving_force(net(record_.input), net(none));
+}
+
+void AxisModel::work_out_driving_force(const std::optional<Unit>& force_unit) {
+  if (record_.input.empty()) return;
+  MeasuredMotion motion;
+  motion.input = record_.input, motion.input_unit = record_.input_unit;
+  motion.force = driving_force_ = force_of_input();
   force_unit_ = unit_of_force(force_unit, motion);
   double by_input = 0, squared_input = 0;
   for (size_t k = 0; k < record_.rows(); ++k)

@@ -150,8 +150,10 @@ AxisModel::AxisModel(const std::string& path, const std::string& experiment_path
   if (!inertia_parameter_.empty()) own_inertia_ = *run_->parameter(inertia_parameter_);
   for (int i = 0; i < plan_->states; ++i) seen_.push_back(i);
   look_between_input_and_force();
-  work_out_driving_force(force_unit);
+  follow_fast_forces(*changed);
+  driving_force_ = force_of_input();
   const LinearAxis linear = shorten_steps(*changed);
+  work_out_driving_force(force_unit);
   keep_seen_states(linear);
   nominal_inertia_ = linear.inertia, nominal_damping_ = linear.damping;
   if (std::isfinite(nominal_inertia_) && nominal_inertia_ > 0) return;
@@ -173,12 +175,29 @@ void AxisModel::run_with(const Plan& plan, int steps) {
   numbers_ = reinterpret_cast<double*>(run_->arena().data());
 }
 
+/// Until half a step leaves the size of the driving force: where a pole behind it is faster than a step can
+/// follow, it grows without bound.
+void AxisModel::follow_fast_forces(const Plan& plan) {
+  if (record_.is_map || !force_remembers_ || !plan_->steps_between_samples) return;
+  const auto size = [&] {
+    const std::vector<double> force = force_of_input();
+    return Eigen::VectorXd::Map(force.data(), Eigen::Index(force.size())).norm();
+  };
+  double once = size();
+  for (int steps = 1; steps < criteria::most_steps_a_sample; steps *= 2) {
+    run_with(plan, 2 * steps);
+    const double twice = size();
+    if (std::abs(once - twice) <= criteria::same_driving_force * twice) return run_with(plan, steps);
+    once = twice;
+  }
+}
+
 /// Until half a step leads to the same motion. Dry friction with memory remembers every step: linearized over
 /// several steps, it would be at another place each time.
 LinearAxis AxisModel::shorten_steps(const Plan& plan) {
   LinearAxis linear = linearize_motion();
   if (record_.is_map || !plan_->steps_between_samples || run_->has_accepted_memory()) return linear;
-  for (int steps = 1; steps < criteria::most_steps_a_sample; steps *= 2) {
+  for (int steps = steps_a_sample_; steps < criteria::most_steps_a_sample; steps *= 2) {
     run_with(plan, 2 * steps);
     LinearAxis shorter = linearize_motion();
     const auto poles = [](const LinearAxis& axis) {

@@ -30,9 +30,12 @@ struct LinearAxis {
   /// Without damping ∫ (T - τ)(τ/T - ½) dτ = -T²/12 is a sixth of ∫ (T - τ) dτ: the position changes by -1/6
   /// of the push, the velocity by nothing.
   Eigen::VectorXd slope_share;
-  Eigen::MatrixXd C;   ///< measured ports × n
-  double inertia = 0;  ///< force per acceleration, of the driven mass
-  double damping = 0;  ///< force per speed
+  Eigen::MatrixXd C;                          ///< measured ports × n
+  Eigen::Index position = -1, velocity = -1;  ///< among the states; -1: it is none
+  Eigen::Index load_states = 0;  ///< the last ones, of loads that effects hang on the axis: see with_load()
+  Eigen::VectorXd load_force;    ///< n; force that these loads consume; empty: none
+  double inertia = 0;            ///< force per acceleration, of the driven mass
+  double damping = 0;            ///< force per speed
 };
 
 /// The blocks on which these numbers depend, without those of `beyond` and those that only lie behind them.
@@ -114,6 +117,8 @@ class AxisModel {
 
  private:
   void look_between_input_and_force();
+  void follow_fast_forces(const Plan& plan);
+  std::vector<double> force_of_input();
   void work_out_driving_force(const std::optional<Unit>& force_unit);
   void let_inner_states_rest(double position, double velocity, double input);
   Eigen::VectorXd inner_states_after_sample(double position, double velocity, double input,

@@ -8,14 +8,6 @@
 
 namespace loopwright::diagnosis {
 
-/// Lines over intervals one after the other: the mean, and the change over the interval.
-struct LinesOver {
-  std::vector<double> edges;  ///< one more than intervals
-  std::vector<double> mean, change;
-};
-/// Over each of other intervals the line with the same integral and the same first moment.
-LinesOver over(const LinesOver& lines, std::vector<double> edges);
-
 /// The signals of a path at even instants, each from the row nearest to it.
 class EvenPath {
  public:

@@ -119,7 +119,7 @@ LinearAxis AxisModel::linearize_motion() {
     const auto found = std::ranges::find(seen_, number - plan_->signals);
     return number < 0 || found == seen_.end() ? Eigen::Index(-1) : Eigen::Index(found - seen_.begin());
   };
-  const Eigen::Index v = place_of(velocity_), x = place_of(position_);
+  const Eigen::Index v = linear.velocity = place_of(velocity_), x = linear.position = place_of(position_);
   std::vector<double> slopes;  // of the velocity over the position
   const double weight = 1.0 / double(rows.size());
   for (size_t k : rows) {

@@ -39,6 +39,9 @@ Gains gains_of(const LinearAxis& axis, const Noise& noise, double nominal_inerti
   Eigen::VectorXd unit(n + 1), output(ports);
   for (Eigen::Index i = 0; i < n; ++i)
     unit[i] = std::max(std::max(std::abs(push[i]), std::abs(axis.noise_push[i])) * noise.white, 1e-300);
+  const Eigen::Index own = n - axis.load_states;
+  for (Eigen::Index i = own; i < n; ++i)  // nothing but the motion of the axis moves a load
+    unit[i] = std::max(axis.A.row(i).head(own).cwiseAbs().dot(unit.head(own)), 1e-300);
   for (Eigen::Index p = 0; p < ports; ++p) output[p] = noise.measurement[size_t(p)];
   unit[n] = noise.white;
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n + 1, n + 1), C = Eigen::MatrixXd::Zero(ports, n + 1);

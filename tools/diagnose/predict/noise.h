@@ -1,6 +1,7 @@
 /// Noise of an axis, the corresponding Kalman gains, and its likelihood.
 #pragma once
 #include <Eigen/Dense>
+#include <cmath>
 #include <vector>
 #include "tools/diagnose/predict/axis_model.h"
 
@@ -17,6 +18,8 @@ struct Noise {
 
   /// Standard deviation of the slow force; infinite for a random walk.
   double slow() const;
+  /// [sample times] In which the slow force falls to 37 %.
+  double memory_samples() const { return -1 / std::log(memory); }
 };
 
 /// Steady-state Kalman predictor of the axis with the slow force as the last state.

@@ -242,11 +242,51 @@ Prediction balance(AxisModel& model, const Gains& gains, const Drives& drives) {
 }  // namespace
 
 double correction_time(const LinearAxis& axis, const Gains& gains) {
-  const Eigen::Index n = axis.A.rows();
+  const Eigen::Index n = axis.A.rows(), own = n - axis.load_states;
   const Eigen::MatrixXd closed = axis.A * (Eigen::MatrixXd::Identity(n, n) - gains.K.topRows(n) * axis.C);
-  const double slowest = closed.eigenvalues().cwiseAbs().maxCoeff();
+  const double slowest = closed.topLeftCorner(own, own).eigenvalues().cwiseAbs().maxCoeff();
   return slowest > 0 ? -1 / std::log(std::min(slowest, 1 - 1e-9)) : 0;
 }
+
+namespace {
+
+/// What loads of effects do besides what they do along the path on which they ran.
+class LoadDeviation {
+ public:
+  LoadDeviation(const LinearAxis& axis, const Gains& gains, const Path* along)
+      : along_(along),
+        own_(axis.load_states),
+        motion_(axis.A.rows() - own_),
+        axis_(axis),
+        correct_(gains.K.middleRows(motion_, own_)),
+        onward_(axis.A.bottomRows(own_)),
+        state_(Eigen::VectorXd::Zero(axis.A.rows())),
+        next_(own_) {}
+
+  void correct(size_t port, double error) {
+    if (own_ > 0) state_.tail(own_) += error * correct_.col(Eigen::Index(port));
+  }
+  /// Over the sample that begins at a row, there with this motion.
+  double force(size_t row, double position, double velocity) {
+    if (own_ == 0 || !along_) return 0;
+    state_[axis_.position] = position - along_->position[row];
+    state_[axis_.velocity] = velocity - along_->velocity[row];
+    const double consumed = axis_.load_force.dot(state_);
+    next_.noalias() = onward_ * state_;
+    state_.tail(own_) = next_;
+    return consumed;
+  }
+
+ private:
+  const Path* along_;
+  Eigen::Index own_, motion_;
+  const LinearAxis& axis_;
+  Eigen::MatrixXd correct_, onward_;
+  Eigen::VectorXd state_;  // of the axis: from the path; of the loads: from their motion along it
+  Eigen::VectorXd next_;
+};
+
+}  // namespace
 
 Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains, const Drives& drives,
                    const Pace& pace) {
@@ -273,6 +313,7 @@ Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains,
   double d = 0, passed = 0, left = 0;  // left: velocity error after the correction
   const bool follows_velocity = model.position_follows_velocity();
   int turning = 0;
+  LoadDeviation loads(axis, gains, drives.along);
   std::array<double, 2> e{};
   for (size_t k = 0; k < rows; ++k) {
     const double sensor = drives.sensor.empty() ? 0 : drives.sensor[k];
@@ -285,7 +326,8 @@ Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains,
     for (size_t p = 0; p < ports; ++p) {
       for (size_t i = 0; i < states.size(); ++i)
         model.correct(states[i], gains.K(Eigen::Index(i), Eigen::Index(p)) * e[p]);
-      d += gains.K(Eigen::Index(states.size()), Eigen::Index(p)) * e[p];
+      d += gains.K(gains.K.rows() - 1, Eigen::Index(p)) * e[p];
+      loads.correct(p, e[p]);
     }
     if (follows_velocity) {
       if (!record.is_missing(k)) model.shift_position(0.5 * passed * (left + e[0]));
@@ -300,7 +342,8 @@ Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains,
     if (path.forgets(k)) d = 0;
     result.slow[k] = d;
     const double duration = record.duration.empty() ? 1 : record.duration[k];
-    model.step(drives.input[k], d - drives.force[k], duration);
+    const double by_loads = loads.force(k, path.position[k], velocity_now);
+    model.step(drives.input[k], d - drives.force[k] - by_loads, duration);
     for (size_t i = 0; i < states.size(); ++i) {
       const Eigen::Index at = Eigen::Index(i);
       double by = 0;

@@ -10,12 +10,15 @@
 
 namespace loopwright::diagnosis {
 
+struct Path;
+
 /// The inputs of the model, one value per sample: means over the sample of the input and of `force`, which
 /// pushes backward (effects consume it); `sensor` is added to the predicted position. Slopes are changes
 /// within the sample, see Column; empty: none.
 struct Drives {
   std::vector<double> input, force, sensor;
   std::vector<double> input_slope, force_slope;
+  const Path* along = nullptr;  ///< the motion along which the forces are
 };
 
 /// The motion as estimated by the predictor: position and velocity at the start of each sample, and the

@@ -5,6 +5,7 @@
 #include <vector>
 #include "tools/diagnose/predict/predictor.h"
 #include "tools/effects/effect.h"
+#include "tools/effects/linear_effect.h"
 
 namespace loopwright::diagnosis {
 
@@ -53,6 +54,8 @@ struct Candidate {
   /// How much of the consumed force is a mass times the acceleration of the moving part; empty: none. This
   /// part is added to the model's own mass, where it acts without delay.
   std::function<double(const Member& member)> added_inertia;
+  /// One sample of a force with states of its own, if it is linear in them and the motion; empty: it is not.
+  std::function<SampleMap(const Member& member)> linear_load;
 };
 
 /// An effect taken into the model, with its parameters.

@@ -145,11 +145,20 @@ struct Compiled {
     if (!run) run = std::make_unique<EffectRun>(plan, int(sets));
     return *run;
   }
-  EffectValues values(const Member& member) const {
+  std::vector<double> fitted_of(const Member& member) const {
     std::vector<double> fitted(plan->fitted.size());
     for (size_t i = 0; i < linear.size(); ++i) fitted[linear[i]] = member.linear[i];
     for (size_t i = 0; i < nonlinear.size(); ++i) fitted[nonlinear[i]] = member.nonlinear[i];
-    return values_of(plan->effect, plan->sizes, fitted);
+    return fitted;
+  }
+  EffectValues values(const Member& member) const {
+    return values_of(plan->effect, plan->sizes, fitted_of(member));
+  }
+  /// At the values of a member.
+  SampleMap sample_map(const Member& member) const {
+    EffectSample sample(plan);
+    sample.start(fitted_of(member), 0, 0);
+    return sample.map();
   }
   double added_inertia(const Member& member) const {
     double sum = 0;
@@ -211,6 +220,8 @@ Candidate candidate_of(const Effect& effect, std::shared_ptr<const EffectPlan> p
   };
   if (std::ranges::any_of(effect.parameters, &EffectParameter::is_bounded))
     candidate.is_plausible = [compiled](const Member& member) { return compiled->is_plausible(member); };
+  if (candidate.acts == Acts::force && compiled->plan->is_linear)
+    candidate.linear_load = [compiled](const Member& member) { return compiled->sample_map(member); };
   if (std::ranges::any_of(effect.attachments, adds_inertia))
     candidate.added_inertia = [compiled](const Member& member) { return compiled->added_inertia(member); };
   return candidate;

@@ -263,9 +263,9 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
                                        estimate.members[m].candidate->name, result.weights[m].wald,
                                        result.weights[m].counts));
   result.portmanteau = portmanteau(trials, *estimate.fitted);
+  const bool is_noisy = estimate.noise.white > 2 * criteria::least_white_noise * trials.force_rms;
   if (result.portmanteau > criteria::most_portmanteau_of_counted)
     if (const WhitenedErrors errors = errors_of_counts(trials, estimate); !errors.empty()) {
-      const bool is_noisy = estimate.noise.white > 2 * criteria::least_white_noise * trials.force_rms;
       if (is_noisy && estimate.members.empty())
         result.most_portmanteau = criteria::most_portmanteau_of_counted;
       result.counts_portmanteau = portmanteau_of_counts(trials, errors);
@@ -275,9 +275,12 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
       fmt::format("portmanteau {:.0f}, of counts alone {:.0f}; noise: white {:.3g}, slow {:.3g} over {:.3g} "
                   "rows, sensor {:.3g}",
                   result.portmanteau, result.counts_portmanteau, noise.white, noise.slow(),
-                  -1 / std::log(noise.memory), noise.measurement.front()));
-  result.is_negligible = is_negligible(trials, estimate.members);
+                  noise.memory_samples(), noise.measurement.front()));
   const double n = double(fitted_numbers(trials));
+  // A small force below 80 Hz says nothing about a faster one.
+  const bool is_vibration = is_noisy && result.portmanteau_beside_counts() >
+                                            criteria::most_portmanteau_per_row * n / double(trials.ports());
+  result.is_negligible = !is_vibration && is_negligible(trials, estimate.members);
   const std::vector<Shape> periodic = periodic_shapes(trials, estimate, candidates, 1);
   std::vector<const Shape*> all;
   for (const auto* list : {&shapes, &periodic})
@@ -311,8 +314,8 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
     next.trail.insert(next.trail.begin(), result.trail.begin(), result.trail.end());
     return next;
   }
-  result.is_remainder_noise =
-      is_slow_force_noise(fit_noise(trials, *estimate.fitted, estimate.noise, FreeNoise::all));
+  widen_by_halves(trials, estimate);
+  result.is_remainder_noise = is_remainder_noise(trials, *estimate.fitted, estimate.noise);
   result.too_small = std::move(seen.small);
   return result;
 }

@@ -2,6 +2,7 @@
 #include <nlopt.h>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/maximum_likelihood.h"
 
@@ -15,15 +16,17 @@ struct Coordinates {
 
   std::vector<double> of(const Noise& noise) const {
     std::vector<double> x{std::log(noise.white)};
+    if (free == FreeNoise::white) return x;
     if (free == FreeNoise::white_and_slow) return x.push_back(std::log(noise.slow())), x;
     x.push_back(std::log(free == FreeNoise::with_random_walk ? noise.step : noise.slow()));
     for (double m : noise.measurement) x.push_back(std::log(m));
-    if (free == FreeNoise::all) x.push_back(std::log(-1 / std::log(noise.memory)));
+    if (free == FreeNoise::all) x.push_back(std::log(noise.memory_samples()));
     return x;
   }
   Noise at(const double* x) const {
     Noise noise = start;
     noise.white = std::exp(x[0]);
+    if (free == FreeNoise::white) return noise.step = start.step / start.white * noise.white, noise;
     if (free != FreeNoise::white_and_slow)
       for (size_t p = 0; p < noise.measurement.size(); ++p) noise.measurement[p] = std::exp(x[2 + p]);
     if (free == FreeNoise::with_random_walk) return noise.step = std::exp(x[1]), noise;
@@ -57,6 +60,22 @@ struct Objective {
     return std::isfinite(sum) ? sum : 1e300;
   }
 };
+
+bool is_slow_force_noise(const Noise& noise) {
+  return is_soon_forgotten(noise) || noise.slow() <= criteria::most_slow_noise * noise.white;
+}
+
+/// All of a slow force counted as white noise that does as much to a slow motion. Empty: it predicts worse.
+std::optional<Noise> as_white(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& noise) {
+  Noise white = noise;
+  const double spread = (1 + noise.memory) / (1 - noise.memory);  // spectral density at zero over variance
+  white.white = std::hypot(noise.white, noise.slow() * std::sqrt(spread));
+  white.step = criteria::next_to_no_slow_noise * white.white * std::sqrt(1 - noise.memory * noise.memory);
+  white = fit_noise(trials, fitted, white, FreeNoise::white);
+  Objective objective{trials, fitted, {FreeNoise::all, noise}};
+  const double lost = objective(white) - objective(noise);
+  return lost < criteria::most_lost_as_white ? std::optional(white) : std::nullopt;
+}
 
 double evaluate(unsigned, const double* x, double*, void* data) {
   Objective& objective = *static_cast<Objective*>(data);
@@ -98,9 +117,11 @@ Noise fit_noise(const Trials& trials, const std::vector<Fitted>& fitted, const N
   return objective.coordinates.at(x.data());
 }
 
-bool is_slow_force_noise(const Noise& noise) {
-  const bool is_quick = -1 / std::log(noise.memory) < criteria::quick_noise;
-  return is_quick || noise.slow() <= criteria::most_slow_noise * noise.white;
+bool is_soon_forgotten(const Noise& noise) { return noise.memory_samples() < criteria::quick_noise; }
+
+bool is_remainder_noise(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& start) {
+  const Noise noise = fit_noise(trials, fitted, start, FreeNoise::all);
+  return is_slow_force_noise(noise) || as_white(trials, fitted, noise);
 }
 
 Noise fit_noise_alone(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& start,
@@ -111,6 +132,7 @@ Noise fit_noise_alone(const Trials& trials, const std::vector<Fitted>& fitted, c
       std::max(from.step, criteria::usual_slow_noise * from.white * std::sqrt(1 - from.memory * from.memory));
   Noise noise = fit_noise(trials, fitted, from, free);
   if (is_slow_force_noise(noise)) return noise;
+  if (const auto white = as_white(trials, fitted, noise)) return *white;
   noise.white = std::hypot(noise.white, noise.slow());
   noise.step = criteria::next_to_no_slow_noise * noise.white * std::sqrt(1 - noise.memory * noise.memory);
   return noise;

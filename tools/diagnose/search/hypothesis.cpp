@@ -1,5 +1,6 @@
 #include "tools/diagnose/search/hypothesis.h"
 #include <algorithm>
+#include "tools/diagnose/predict/linear_load.h"
 #include <cmath>
 #include <numbers>
 
@@ -185,6 +186,7 @@ void set_value(std::vector<Member>& members, const FreeParameter& p, double valu
 
 Drives drives_of(const std::vector<Member>& members, const Path& path, const std::vector<double>& raw_input) {
   Drives drives;
+  drives.along = &path;
   ChangedInput changed = through(chain_of(members), path, raw_input);
   drives.input = std::move(changed.mean), drives.input_slope = std::move(changed.slope);
   drives.force.assign(raw_input.size(), 0.0);
@@ -213,11 +215,15 @@ std::vector<Fitted> run_members(Trials& trials, const std::vector<Member>& membe
     Fitted fitted;
     model.set_added_inertia(inertia);
     fitted.axis = model.linearize();
+    if (!model.record().is_map)
+      for (const Member& member : members)
+        if (member.candidate->linear_load)
+          fitted.axis = with_load(std::move(fitted.axis), member.candidate->linear_load(member));
     fitted.gains = gains_of(fitted.axis, noise, model.nominal_inertia());
     const std::vector<double>& raw = trials.list[t].input;
     Drives drives;
     if (motion.paths.empty())
-      drives = {raw, std::vector<double>(raw.size(), 0.0), {}, slope_of(model.record(), raw.size()), {}};
+      drives = {raw, std::vector<double>(raw.size(), 0.0), {}, slope_of(model.record(), raw.size())};
     else
       drives = drives_of(members, *motion.paths[t], raw);
     fitted.prediction = predict(model, fitted.axis, fitted.gains, drives, trials.list[t].pace);

@@ -112,6 +112,15 @@ Estimate evaluated(Trials& trials, std::vector<Member> members, const Noise& noi
   return estimate;
 }
 
+/// Of the rows that count before the hold-out, the first or the second half.
+void keep_half(Trial& trial, int half) {
+  const auto end = trial.usable.begin() + std::ptrdiff_t(trial.held_out_from);
+  const auto rows = std::count_if(trial.usable.begin(), end, [](char counts) { return counts != 0; });
+  std::ptrdiff_t seen = 0;
+  for (auto row = trial.usable.begin(); row != end; ++row)
+    if (*row && (2 * seen++ >= rows) != (half == 1)) *row = 0;
+}
+
 /// The motion that an estimate predicted replaces the one on which it ran, unless it explains the record
 /// worse with it: along its own wrong velocity, friction of the wrong sign confirms itself.
 void take_own_motion(Trials& trials, Estimate& estimate, double far) {
@@ -214,6 +223,28 @@ void widen_by_blocks(const Trials& trials, Estimate& estimate) {
   const Eigen::VectorXd alike = (C * between * C).diagonal(), independent = (C * within * C).diagonal();
   const Eigen::VectorXd factor = alike.cwiseQuotient(independent.cwiseMax(1e-300)).cwiseMax(1.0).cwiseSqrt();
   estimate.covariance = factor.asDiagonal() * C * factor.asDiagonal();
+}
+
+void widen_by_halves(Trials& trials, Estimate& estimate) {
+  if (std::ranges::none_of(estimate.members, is_own_load)) return;
+  constexpr int iterations = 6;
+  const std::vector<FreeParameter> free = free_parameters(estimate.members);
+  Eigen::MatrixXd value(Eigen::Index(free.size()), 2);
+  std::vector<std::vector<char>> usable;
+  for (const Trial& trial : trials.list) usable.push_back(trial.usable);
+  for (int half : {0, 1}) {
+    for (size_t t = 0; t < usable.size(); ++t) keep_half(trials.list[t], half);
+    Estimate of_half = fit_members(trials, estimate.members, estimate.noise, estimate.motion, iterations);
+    for (size_t i = 0; i < free.size(); ++i)
+      value(Eigen::Index(i), half) = value_of(of_half.members, free[i]);
+    for (size_t t = 0; t < usable.size(); ++t) trials.list[t].usable = usable[t];
+    if (!of_half.is_valid) return;
+  }
+  // Each of two alike halves has twice the variance of the whole, their difference four times.
+  const Eigen::VectorXd deviation = estimate.covariance.diagonal().cwiseMax(1e-300).cwiseSqrt();
+  const Eigen::VectorXd factor =
+      ((value.col(1) - value.col(0)).cwiseAbs().cwiseQuotient(2 * deviation)).cwiseMax(1.0);
+  estimate.covariance = factor.asDiagonal() * estimate.covariance * factor.asDiagonal();
 }
 
 /// From the phase at the middle of the record to that at zero, in which sine and cosine are told.

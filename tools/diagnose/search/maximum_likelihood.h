@@ -37,13 +37,16 @@ Estimate on_own_motion(Trials& trials, Estimate estimate);
 Noise search_noise(const Trials& trials);
 
 /// Which of its parameters may be changed.
-enum class FreeNoise { with_random_walk, white_and_slow, all };
+enum class FreeNoise { with_random_walk, white, white_and_slow, all };
 /// Maximizes the likelihood of the noise for the errors of the given estimate. Bounded: a factor of thirty
 /// around the start.
 Noise fit_noise(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& start, FreeNoise free);
 
-/// Whether the slow force is small or forgotten quickly; otherwise it is something that the model lacks.
-bool is_slow_force_noise(const Noise& noise);
+/// Whether the slow force lasts a few samples, and stands for white noise.
+bool is_soon_forgotten(const Noise& noise);
+/// Whether the slow force that the errors ask for is small, forgotten quickly, or as likely white: noise that
+/// lasts no longer than the sensor takes to show it. Otherwise it is something that the model lacks.
+bool is_remainder_noise(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& start);
 
 /// fit_noise; but if the slow force is more than noise, all of it is counted as white. Otherwise the
 /// predictor would follow what the model lacks, and effects fitted with it would lose their steady parts to
@@ -54,6 +57,11 @@ Noise fit_noise_alone(const Trials& trials, const std::vector<Fitted>& fitted, c
 /// Increases the covariance if errors in blocks of half a second are more correlated than independent errors:
 /// the sandwich estimator by blocks (Liang and Zeger 1986), a factor for each parameter, never less than one.
 void widen_by_blocks(const Trials& trials, Estimate& estimate);
+
+/// Increases the variance of each parameter until it covers what the two halves of the rows ask for by
+/// themselves, where a load moves by itself: what it does hangs on moments, such as a blow, that the
+/// likelihood of the whole takes for certain.
+void widen_by_halves(Trials& trials, Estimate& estimate);
 
 /// Jᵀ J and Jᵀ e for changes of the free parameters, over the fitted rows.
 struct NormalEquations {

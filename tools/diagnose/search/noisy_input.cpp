@@ -5,9 +5,7 @@
 namespace loopwright::diagnosis {
 namespace {
 
-bool is_late(const Member& member) {
-  return is_late_input(*member.candidate);
-}
+bool is_late(const Member& member) { return is_late_input(*member.candidate); }
 
 /// Takes a share of what the input is above its mean over some rows away from it.
 Candidate unfelt_noise(RowsOfMean side) {

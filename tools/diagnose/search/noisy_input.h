@@ -7,8 +7,8 @@ namespace loopwright::diagnosis {
 
 /// A lag or a delay that was found may only average the noise of a measured input: then an input of which a
 /// part of the fast changes is taken away, without any delay, explains the records better, because it is
-/// averaged over the rows after each as well; or an input that is too early by as much gains nearly as much as
-/// the late one. A command that the machine obeys loses by either. Empty: nothing is late, or it truly is.
+/// averaged over the rows after each as well; or an input that is too early by as much gains nearly as much
+/// as the late one. A command that the machine obeys loses by either. Empty: nothing is late, or it truly is.
 std::optional<InputNoise> noise_instead_of_late_input(Trials& trials, const Conclusion& conclusion,
                                                       size_t catalogue);
 

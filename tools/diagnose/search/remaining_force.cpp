@@ -125,6 +125,7 @@ ResidualSize residual_size(const Trials& trials, const std::vector<InverseDynami
 ForceShare share_of_force(const Trials& trials, const std::vector<InverseDynamics>& inverse,
                           const std::vector<Member>& with, const std::vector<Member>& without) {
   std::vector<std::array<double, 2>> blocks;  // Σ residual · force, Σ force²
+  double rows = 0;
   for (size_t t = 0; t < trials.list.size(); ++t) {
     const Trial& trial = trials.list[t];
     const std::vector<double> left = residual_with(trial, inverse[t], with),
@@ -135,7 +136,7 @@ ForceShare share_of_force(const Trials& trials, const std::vector<InverseDynamic
       if (k % block == 0) blocks.push_back({});
       if (!inverse[t].motion.counts[k]) continue;
       const double force = before[k] - left[k];
-      blocks.back()[0] += before[k] * force, blocks.back()[1] += force * force;
+      blocks.back()[0] += before[k] * force, blocks.back()[1] += force * force, rows += 1;
     }
   }
   double by_force = 0, squares = 0, scatter = 0;
@@ -143,7 +144,7 @@ ForceShare share_of_force(const Trials& trials, const std::vector<InverseDynamic
   if (squares <= 0) return {};
   const double slope = by_force / squares;
   for (const auto& [product, square] : blocks) scatter += std::pow(product - slope * square, 2);
-  return {slope, std::sqrt(scatter) / squares};
+  return {slope, std::sqrt(scatter) / squares, std::sqrt(squares / rows)};
 }
 
 bool spoils_balance(const Trials& trials, const Estimate& estimate, size_t member, const Weight& weight) {
@@ -156,6 +157,8 @@ bool spoils_balance(const Trials& trials, const Estimate& estimate, size_t membe
   std::vector<Member> others = estimate.members;
   others.erase(others.begin() + std::ptrdiff_t(member));
   const ForceShare share = share_of_force(trials, *trials.inverse, estimate.members, others);
+  const bool is_seen = share.force > criteria::least_seen_of_load * weight.force_rms;
+  if (!is_seen && is_own_load(estimate.members[member])) return false;
   return share.found + criteria::sure_deviations * share.deviation < criteria::least_force_share;
 }
 

@@ -36,6 +36,7 @@ ResidualSize residual_size(const Trials& trials, const std::vector<InverseDynami
 struct ForceShare {
   double found = 1;  ///< slope of the residual without it over the force: 1 if it is there, 0 if it is not
   double deviation = 0;  ///< standard deviation, from blocks of half a second
+  double force = 0;      ///< root mean square of that force
 };
 /// Over the fitted rows; `without` is a subset of `with`.
 ForceShare share_of_force(const Trials& trials, const std::vector<InverseDynamics>& inverse,
@@ -46,7 +47,8 @@ ForceShare share_of_force(const Trials& trials, const std::vector<InverseDynamic
 /// then predict a part of the noise, but does not fit the motion itself. Where noise drives the motion that
 /// the force of an effect follows, as beside a resonance, the balance is as wrong: an effect that is loud in
 /// the errors, and quieter than the noise in the balance, is not asked. Nor is a load that flies: the moments
-/// of its blows are not those of the smooth motion.
+/// of its blows are not those of the smooth motion. Nor is a load on a spring that swings faster than the
+/// balance shows.
 bool spoils_balance(const Trials& trials, const Estimate& estimate, size_t member, const Weight& weight);
 
 /// Whether the force that the members leave is too small to matter, in the fitted rows and in the others.

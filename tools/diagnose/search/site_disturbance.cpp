@@ -9,7 +9,7 @@ namespace loopwright::diagnosis {
 namespace {
 
 /// [in -2 ln L] Of a disturbance, which has two numbers.
-constexpr double least_help = 20;
+constexpr double least_gain_of_disturbance = 20;
 
 /// Along the rows in which the filter has settled.
 double root_mean_square(const SitePass& pass, size_t state) {
@@ -36,7 +36,7 @@ SiteHypothesis with_disturbances(SiteFitter& fitter, SiteHypothesis h, size_t mo
       fitter.fit_noise(trial);
       if (trial.objective < best.objective) best = std::move(trial);
     }
-    if (!(best.objective < h.objective - least_help)) break;
+    if (!(best.objective < h.objective - least_gain_of_disturbance)) break;
     h = std::move(best);
     fitter.refine(h, 4);
     fitter.fit_noise(h);
@@ -50,7 +50,7 @@ SiteHypothesis without_idle_disturbances(SiteFitter& fitter, SiteHypothesis h) {
     without.noise.slow.erase(without.noise.slow.begin() + std::ptrdiff_t(j));
     fitter.refine(without, 4);
     fitter.fit_noise(without);
-    if (without.objective - h.objective < least_help) h = std::move(without);
+    if (without.objective - h.objective < least_gain_of_disturbance) h = std::move(without);
   }
   return h;
 }

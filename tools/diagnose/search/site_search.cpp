@@ -47,7 +47,7 @@ class SiteSearch {
     if (disturbances_.empty()) single_ = with_one_parameter(fitter_, nominal, result_.parameters);
     std::optional<SiteHypothesis> alone = explained_by_late_input(fitter_, nominal, result_.parameters);
     if (alone) tell("a late input by itself", *alone);
-    if (!alone && explains_by_itself(single_)) tell("a parameter by itself", *(alone = single_.front()));
+    if (!alone && is_explained_by_one_parameter()) tell("a parameter by itself", *(alone = single_.front()));
     if (!alone && errors_ == ErrorsOf::predictions && disturbances_.empty())
       begin_beside_small_disturbances();
     SiteSearchResult first = searched_from(alone.value_or(result_.parameters), 0.2);
@@ -62,9 +62,9 @@ class SiteSearch {
   }
 
  private:
-  bool explains_by_itself(const std::vector<SiteHypothesis>& single) {
-    return !single.empty() && !leaves_something(single.front()) &&
-           whole_criterion(single.front()) < whole_criterion(result_.parameters);
+  bool is_explained_by_one_parameter() {
+    return !single_.empty() && !leaves_something(single_.front()) &&
+           whole_criterion(single_.front()) < whole_criterion(result_.parameters);
   }
   /// A small disturbance that explains all there is would otherwise cost a long search that follows it by
   /// terms. Unless a single term explains all there is, and more.

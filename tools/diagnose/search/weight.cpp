@@ -108,11 +108,9 @@ std::vector<double> change_of_input(std::vector<Member> members, size_t index, c
   return change;
 }
 
-/// The force by which an error of one standard deviation is counted. Slow noise with the memory of a few
-/// samples stands for white noise.
+/// The force by which an error of one standard deviation is counted.
 double force_of_an_error(const Noise& noise) {
-  const bool is_quick = -1 / std::log(noise.memory) < quick_noise;
-  return is_quick ? std::hypot(noise.white, noise.slow()) : noise.white;
+  return is_soon_forgotten(noise) ? std::hypot(noise.white, noise.slow()) : noise.white;
 }
 
 /// Root mean square of the force that a member consumes over the fitted rows.

@@ -6,11 +6,11 @@ namespace loopwright::diagnosis {
 
 /// The evidence for one member, and its size.
 struct Weight {
-  double wald = 0;    ///< χ²: squared distance from zero in standard deviations, its shape known
-  double counts = 0;  ///< χ² that noise and counts of the first sensor alone would give it; 0: not asked
-  double certainty = 0;     ///< the same with its shape estimated too, over the 95 % quantile; below 1 its
-                            ///< interval contains zero
-  double force_rms = 0;     ///< of the force it consumes, over the fitted rows; sensor: the equivalent force
+  double wald = 0;       ///< χ²: squared distance from zero in standard deviations, its shape known
+  double counts = 0;     ///< χ² that noise and counts of the first sensor alone would give it; 0: not asked
+  double certainty = 0;  ///< the same with its shape estimated too, over the 95 % quantile; below 1 its
+                         ///< interval contains zero
+  double force_rms = 0;  ///< of the force it consumes, over the fitted rows; sensor: the equivalent force
   double unique_force = 0;  ///< the part of it that no other member could replace
   double loss = 0;          ///< loss of the criterion without it
 };

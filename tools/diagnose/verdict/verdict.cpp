@@ -73,7 +73,10 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
   for (const Member& member : e.members)
     if (member.candidate->is_unknown) add_variables(diagnosis.remainder_variables, member.candidate->form);
   const bool has_unknown = !diagnosis.remainder_variables.empty();
-  bool is_not_white = !conclusion.is_white();
+  // What was refused had explained something that the counts of the sensor alone may not.
+  const bool is_left = !diagnosis.refused.empty() && e.members.empty() && !conclusion.is_negligible &&
+                       conclusion.portmanteau > criteria::most_portmanteau;
+  bool is_not_white = is_left || !conclusion.is_white();
   if (std::string why = force_above_noise(trials, inverse, e.members); !why.empty())
     diagnosis.contradictions.push_back(std::move(why));
   if (diagnosis.simulation_diverged)

@@ -1,0 +1,35 @@
+#include "tools/diagnose/predict/linear_load.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+Eigen::VectorXd longer(const Eigen::VectorXd& vector, Eigen::Index by) {
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(vector.size() + by);
+  result.head(vector.size()) = vector;
+  return result;
+}
+
+}  // namespace
+
+LinearAxis with_load(LinearAxis axis, const SampleMap& load) {
+  if (axis.position < 0 || axis.velocity < 0) return axis;
+  const Eigen::Index before = axis.A.rows(), own = Eigen::Index(load.states), all = before + own;
+  for (Eigen::VectorXd* vector : {&axis.push, &axis.input_push, &axis.noise_push, &axis.slope_share})
+    *vector = longer(*vector, own);
+  axis.load_force = longer(axis.load_force.size() > 0 ? axis.load_force : Eigen::VectorXd::Zero(before), own);
+  axis.C.conservativeResizeLike(Eigen::MatrixXd::Zero(axis.C.rows(), all));
+  axis.A.conservativeResizeLike(Eigen::MatrixXd::Zero(all, all));
+  Eigen::VectorXd force = Eigen::VectorXd::Zero(all);
+  const auto follows = [&](Eigen::Index state, const std::vector<double>& column) {
+    for (Eigen::Index i = 0; i < own; ++i) axis.A(before + i, state) = column[size_t(i)];
+    force[state] = column[load.states];
+  };
+  for (Eigen::Index i = 0; i < own; ++i) follows(before + i, load.columns[size_t(i)]);
+  follows(axis.position, load.columns[load.states + GivenSignals::position]);
+  follows(axis.velocity, load.columns[load.states + GivenSignals::velocity]);
+  axis.A.noalias() -= axis.push * force.transpose();
+  axis.load_force += force, axis.load_states += own;
+  return axis;
+}
+
+}  // namespace loopwright::diagnosis
