@@ -24,11 +24,9 @@ constexpr double slow_memory_s = 0.03;
 constexpr double after_rest = 5.0 / 3;
 /// [time constants of the predictor's motion] Nor less than this: at breakaway the velocity is wrong too.
 constexpr double correction_after_rest = 10;
-/// [rows] The waits above are kept if they leave so many; otherwise, as in a fast oscillation, each is
-/// shortened by the factor until they do.
+/// [rows] The waits above are kept if they leave so many, or a second of motion at a higher rate; otherwise,
+/// as in a fast oscillation, each is shortened by the factor until they do.
 constexpr double plenty_of_rows = 1000, shorter_wait = 0.7;
-/// [rows in motion] Nor may the waits leave fewer: fast motions would count only where nothing happens.
-constexpr double least_share_of_motion = 0.2;
 /// [top speed] Slower counts as at rest: the sign of friction is not certain there.
 constexpr double rest_speed = 0.005;
 /// [rows] Fewer fitted rows support no verdict: 40 lags and three noises are estimated from them.
@@ -58,8 +56,7 @@ constexpr double rows_that_blur = 20;
 constexpr double same_pole = 1e-4;
 /// [steps in a sample] A pole that would need more has settled within a sample anyway.
 constexpr int most_steps_a_sample = 64;
-/// [driving force, root mean square] After a whole step and two halves it differs by less, if no step is so
-/// long that the force behind a fast pole grows without bound.
+/// [driving force, rms] It changes less from a whole step to two halves unless a fast pole makes it grow.
 constexpr double same_driving_force = 0.1;
 
 // Noise.
@@ -82,8 +79,7 @@ constexpr double most_slow_noise = 0.8;
 constexpr double quick_noise = 3;
 /// [white force] The slow force that remains when it is counted as white.
 constexpr double next_to_no_slow_noise = 0.01;
-/// [-2 ln L] What a slow force may lose that is counted as white: it is no more than two parameters that
-/// chance fits.
+/// [-2 ln L] What a slow force that counts as white may lose: two parameters that chance fits.
 constexpr double most_lost_as_white = 25;
 /// [factor] The likelihood looks for each noise within this of its start.
 constexpr double noise_reach = 30;
@@ -104,12 +100,12 @@ constexpr double portmanteau_lag_s = 1e-3;
 /// Above it the errors are not white. Counts at a steady speed alone give up to 170, if the sensor states no
 /// resolution.
 constexpr double most_portmanteau = 300;
-/// [rows] Above it a fifth of the squared errors, beside noise, repeats as a vibration does, and is none.
-constexpr double most_portmanteau_per_row = 1;
 /// The same where nothing is named and the counts are computed from the resolution that is stated, and their
 /// part is taken off: beside noise of the force clean records stay below 130. Without such noise they reach
 /// 171, and small errors of the law of a large effect give 206.
 constexpr double most_portmanteau_of_counted = 150;
+/// [rows] Above it a fifth of the squared errors, beside noise, repeats as a vibration does, and is none.
+constexpr double most_portmanteau_per_row = 1;
 /// [what counts add] A line of their beat that is a fifth stronger adds half as much again.
 constexpr double reach_of_counts = 1.5;
 /// [force of the input, rms] A smaller force that remains, below 80 Hz, does not matter: a simulated record
@@ -144,8 +140,7 @@ constexpr double least_wald = 25, least_wald_per_row = 0.001, plain_wald_per_row
 /// [simulation error without the effect] By which it must fall with each effect where counts color the
 /// errors, and with each optional one beside a load that flies.
 constexpr double least_help = 0.02;
-/// [χ²] That errors of counts alone would give the effect: one that stands out less may be a beat of the
-/// counts with the samples. Twice in amplitude.
+/// [χ² that errors of counts alone would give] An effect must stand out of it: twice in amplitude.
 constexpr double clear_of_counts = 4;
 /// [s] Rows that are closer count as parts of one for these shares, and beside the noise of as long a mean: a
 /// small error of the model gains with the time of the record, not with its rate.
@@ -161,13 +156,11 @@ constexpr double barely_material = 2;
 constexpr double least_gain = 10, least_gain_per_row = 0.002;
 /// [criterion] The same for a function without a name, which adapts itself to small errors of an effect.
 constexpr double least_gain_without_name = 20, least_gain_without_name_per_row = 0.1;
-/// [criterion] The same where two or more names depend on the velocity alone: a wrong law of friction shows
-/// as several that sum up to it.
+/// [criterion] The same where several names depend on the velocity alone, as a wrong law of friction shows.
 constexpr double least_gain_over_stacked_names_per_row = 0.02;
 /// [criterion] A set is clearly better; two sets that state the same law of motion differ by the noise alone.
 constexpr double clearly_better = 3, same_law = 20;
-/// [twice the log-likelihood] A set that contains another one as a special case is always close to it: it
-/// must explain so much more to be an alternative.
+/// [-2 ln L] What a set that contains another one must explain beyond it to be an alternative.
 constexpr double least_gain_of_larger_set = 4;
 /// [reach of an alternative] A promising set may lose so much on its own motion.
 constexpr double most_promised_loss = 20;
@@ -175,8 +168,7 @@ constexpr double most_promised_loss = 20;
 constexpr double much_left = 8;
 /// A delay or a lag replaces a step from 0 to its shape; the step that the errors ask for must be near 1.
 constexpr double least_step_to_shape = 0.6, most_step_to_shape = 1.7;
-/// An effect is also tried with a shape that differs from its present one by more than this factor: beyond
-/// what a fit reaches, as a resonance at another frequency is.
+/// An effect is also tried with a shape that differs by more than this factor, beyond what a fit reaches.
 constexpr double other_shape = 1.5;
 /// [twice the log-likelihood] A smaller gain ends the iterations of a fit.
 constexpr double least_step_gain = 0.01;
@@ -205,8 +197,8 @@ constexpr double work_of_first_search = 0.4;
 
 /// [mean square in motion] Errors that the set does not explain occur at rest too.
 constexpr double worse_at_rest = 4;
-/// [s] Shorter rests contradict no answer: an axis that turns seems to rest for a moment, and longer if its
-/// sensor counts coarsely.
+/// [s] Shorter rests contradict no answer: an axis that turns seems to rest, the longer the coarser its
+/// counts.
 constexpr double least_rest_s = 0.1;
 /// [motion of a free axis under noise] Control reduces it; more is motion.
 constexpr double least_freedom = 0.4, most_freedom = 3;
@@ -228,8 +220,7 @@ constexpr double doubt_shifts_s[] = {1, 2};
 
 // Pitches of a rotary axis.
 
-/// [periods] By which a pitch drifts from a whole part of a turn over the whole record: a line whose height
-/// varies along the way is seen off its place by as much. More contradicts.
+/// [periods] A pitch that drifts further from a whole part of a turn, over the whole record, is another one.
 constexpr double most_drift = 0.2;
 /// [turns] On less, the next whole number is about as close, and the likelihood decides.
 constexpr double nearly_a_turn = 0.9;
@@ -242,16 +233,13 @@ constexpr double nearly_a_turn = 0.9;
 constexpr double horizon = 50;
 /// [rows] Nor fewer: an offset and a slope are estimated in each window.
 constexpr double least_horizon_rows = 20;
-/// [windows] The horizon is shorter if fewer fit into a record: their scatter decides.
-constexpr double plenty_of_windows = 15;
-/// [windows] Fewer decide nothing.
-constexpr double least_windows = 3;
+/// [windows] The horizon is shorter if fewer fit into a record: their scatter decides. And too few.
+constexpr double plenty_of_windows = 15, least_windows = 3;
 /// [steps in a time constant] Of a lag at the input: with less than one in 2.8 the method diverges.
 constexpr double steps_in_a_lag = 2;
 /// [strokes] A larger error in a window is a divergence: no friction and no stop is that far off.
 constexpr double most_strokes = 10;
-/// [standard errors] Of the mean difference of two simulations between windows: one record in a thousand
-/// calls the better one worse by chance.
+/// [standard errors] Of the mean difference between windows: chance exceeds it once in a thousand records.
 constexpr double worse_deviations = 3;
 /// [mean square error] A smaller worsening has no consequence: the parameters' own uncertainty makes as much.
 constexpr double least_worsening = 0.01;
@@ -270,8 +258,7 @@ constexpr double least_excess = least_force;
 
 // The staircase of effects.
 
-/// [residual force] Of two stages within this factor the one with fewer parameters is shown: Coulomb friction
-/// before friction that is smooth around rest.
+/// [residual force] Of two stages within this factor the one with fewer parameters is shown.
 constexpr double same_step = 1.05;
 /// [residual force] A correction of the nominal mass or damping that leaves more than this share only trades
 /// with effects that are still to come, as damping does with eddy-current drag.
@@ -280,14 +267,12 @@ constexpr double least_benefit_of_a_correction = 0.99;
 constexpr double least_gain_of_a_correction_per_row = 0.02;
 /// [decrease of the error by all effects] Effects at the end that decrease it by less are optional.
 constexpr double knee = 0.05;
-/// [decrease of the simulation error by all effects] One that decreases it by more is not optional, however
-/// small its force: the noise of coarse counts hides in the force what a simulation shows.
+/// [decrease of the simulation error by all effects] One that decreases it by more is never optional.
 constexpr double most_optional_simulation = 0.5;
 
 // The variables on which the remainder depends.
 
-/// [force that the noise alone would leave] Forces that balance better than that contradict the noise: it was
-/// inflated by something that happened at some time.
+/// [force that noise alone would leave] Forces that balance better contradict it: an event inflated it.
 constexpr double least_residual_of_noise = 0.5;
 /// [squared errors of a record] So much within so small a part of its rows is an event.
 constexpr double most_of_remainder = 0.8, short_part_of_record = 0.25;

@@ -76,6 +76,19 @@ TEST(Rows, APoleAsFastAsTheRowsIsSteppedFinely) {
   expect_nothing(diagnosis_of(machine));
 }
 
+/// Moves of 25 ms between rests: a load that swings at 150 Hz shows beside the reversals, and far above the
+/// frequencies at which the forces are balanced.
+TEST(Rows, OfFastMovesCount) {
+  FlawedMachine machine;
+  machine.sample_time = 2e-4, machine.stroke = 5e-3, machine.top_speed = 0.4, machine.duration = 5;
+  expect_nothing(diagnosis_of(machine));
+  machine.load_mass = 0.1, machine.load_hz = 150, machine.load_damping_ratio = 0.02;
+  const Diagnosis d = diagnosis_of(machine);
+  ASSERT_THAT(names(d), ElementsAre("flexible_mode")) << to_text(d);
+  expect_parameter(d.effects[0], "load_mass", 0.1, 0.01, "N*s^2/m");
+  expect_parameter(d.effects[0], "frequency", 150, 3, "Hz");
+}
+
 /// An oscillation turns more often in a second and a half than strokes do in a minute.
 TEST(Rows, AShortRecordOfAFastMotionIsEnough) {
   FlawedMachine machine;
@@ -232,6 +245,13 @@ TEST(LoudNoise, AResonanceIsFoundBesideFriction) {
   machine.coulomb = 0.6, machine.force_noise = 0.2;
   const Diagnosis d = diagnosis_of(machine);
   EXPECT_THAT(names(d), UnorderedElementsAre("coulomb_friction", "flexible_mode")) << to_text(d);
+}
+
+/// The load follows the counts of the motor's sensor, unless what is measured corrects it too.
+TEST(Counts, DoNotShakeTheLoadOfAResonance) {
+  FlawedMachine machine = with_resonance();
+  machine.sample_time = 2e-3, machine.resolution = 2e-5, machine.sensor_noise = 3e-6;
+  expect_resonance(diagnosis_of(machine));
 }
 
 TEST(Counts, FrictionThatBuildsUpOverFortyOfThemIsSeen) {

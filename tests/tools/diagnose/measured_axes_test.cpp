@@ -26,7 +26,8 @@ TEST(MeasuredAxes, EmpsLacksCoulombFrictionAndThenFrictionThatDiffersWithTheDire
   if (!has_data("emps/emps_train.csv")) GTEST_SKIP() << "no emps/emps_train.csv below $LOOPWRIGHT_DATA";
   const Diagnosis d = diagnosed("emps", "open_loop");
   ASSERT_GE(d.steps.size(), 3u);
-  EXPECT_THAT(d.steps[1].added, Contains(AnyOf("coulomb_friction", "presliding_hysteresis")));
+  EXPECT_THAT(d.steps[1].added,
+              Contains(AnyOf("coulomb_friction", "presliding_hysteresis", "smooth_friction")));
   EXPECT_THAT(d.steps[2].added, Contains("direction_dependent_friction"));
   EXPECT_GT(d.steps[0].held_out_force_rmse, 9) << "N";
   EXPECT_LT(d.steps[1].held_out_force_rmse, 4.2);

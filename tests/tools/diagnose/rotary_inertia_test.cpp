@@ -20,7 +20,8 @@ std::string record() {
     const double t = k * sample_time, current = 0.5 * std::sin(6.3 * t) + 0.2 * std::sin(31 * t);
     text += fmt::format("{:.6g},{:.12g},{:.12g}\n", t, current, angle + noise(random));
     for (int i = 0; i < substeps; ++i) {  // midpoint rule
-      const double h = sample_time / substeps, half = speed + h / 2 * (constant * current - damping * speed) / inertia;
+      const double h = sample_time / substeps,
+                   half = speed + h / 2 * (constant * current - damping * speed) / inertia;
       angle += h * half, speed += h * (constant * current - damping * half) / inertia;
     }
   }
@@ -29,14 +30,16 @@ std::string record() {
 
 TEST(RotaryInertia, IsNamedAndNotTakenForAGain) {
   DiagramFolder folder;
-  folder.with("axis.json", R"({"loopwright": 1, "solver": {"method": "rk4", "step": 0.0005, "stop": 6}, "blocks": {
+  folder.with("axis.json",
+              R"({"loopwright": 1, "solver": {"method": "rk4", "step": 0.0005, "stop": 6}, "blocks": {
  "kt":  {"type": "Gain", "gain": {"value": 0.5, "unit": "N*m/A"}, "in": {"u": "i.y"}},
  "i":   {"type": "Constant", "value": {"value": 0, "unit": "A"}},
  "net": {"type": "Sum", "signs": "+-", "in": {"terms": ["kt.y", "vis.force"]}},
  "vis": {"type": "ViscousFriction", "damping": {"value": 4, "unit": "mN*m*s/rad"}, "in": {"velocity": "m.velocity"}},
  "m":   {"type": "Inertia", "inertia": {"value": 0.7, "unit": "g*m^2"}, "in": {"torque": "net.sum"}}}})");
   folder.with("record.csv", record());
-  folder.with("e.json", R"({"loopwright": 1, "data": "record.csv", "time": "t", "drive": {"kt.u": {"column": "i"}},
+  folder.with("e.json",
+              R"({"loopwright": 1, "data": "record.csv", "time": "t", "drive": {"kt.u": {"column": "i"}},
  "compare": {"m.angle": {"column": "angle"}},
  "roles": {"position": "m.angle", "velocity": "m.velocity", "force": "net.sum", "input": "kt.u"}})");
   const Diagnosis found = diagnose(folder.path("axis.json"), {folder.path("e.json")}, {});

@@ -131,12 +131,28 @@ double AxisModel::net_force_at_rest(double position, double velocity, double inp
   return net_force_along(position, velocity, input, force);
 }
 
+/// The trapezoidal rule over the steps of the sample that begins now: behind a fast pole the force at the
+/// instant of a row is still that of the input before it.
+double AxisModel::mean_over_sample(double force_now, double input) {
+  const int64_t begin = run_->now().tick, end = begin + std::max<int64_t>(1, std::llround(sample_ticks_));
+  double sum = 0, before = force_now;
+  while (run_->now().tick < end) {
+    const int64_t from = run_->now().tick;
+    run_->step_fixed(end, false, [] {});
+    const double after = held_force(input);
+    sum += double(run_->now().tick - from) * (before + after) / 2;
+    before = after;
+  }
+  return sum / double(run_->now().tick - begin);
+}
+
 std::vector<double> AxisModel::net_forces(std::span<const double> position, std::span<const double> velocity,
                                           std::span<const double> input, At at) {
   std::vector<double> net;
   net.reserve(input.size());
   set_added_inertia(0);
   start(position[0], velocity[0]);
+  double last = 0;  // over the sample before
   for (size_t k = 0; k < input.size(); ++k) {
     const double before = input[k > 0 ? k - 1 : 0],
                  mean = at == At::mean ? (before + input[k]) / 2 : input[k];
@@ -145,11 +161,10 @@ std::vector<double> AxisModel::net_forces(std::span<const double> position, std:
     } else if (!force_remembers_) {
       net.push_back(net_force_along(position[k], velocity[k], mean, 0));
     } else {
-      place(position[k], velocity[k]);
-      const double still = held_force(before);
-      const double now = net_force_along(position[k], velocity[k], input[k], 0);
-      net.push_back(at == At::mean ? (still + now) / 2 : now);
-      step(input[k], 0);
+      const double over_sample =
+          mean_over_sample(net_force_along(position[k], velocity[k], input[k], 0), input[k]);
+      net.push_back(at == At::mean && k > 0 ? (last + over_sample) / 2 : over_sample);
+      last = over_sample;
     }
   }
   return net;

@@ -105,8 +105,8 @@ class AxisModel {
   /// At the instant of a row the input changes: the net force after it, or the mean of before and after.
   enum class At { from_there_on, mean };
   /// The net force at every row along a motion. The input is held from its row to the next. Lags and filters
-  /// between input and force follow it; in a map of balances each row is independent, and they are in steady
-  /// state.
+  /// between input and force follow it, and the force is the mean over the sample from there on, or over both
+  /// samples about the row; in a map of balances each row is independent, and they are in steady state.
   std::vector<double> net_forces(std::span<const double> position, std::span<const double> velocity,
                                  std::span<const double> input, At at);
   /// Whether a small force moves nothing at rest: something in the diagram holds the axis.
@@ -124,6 +124,7 @@ class AxisModel {
   Eigen::VectorXd inner_states_after_sample(double position, double velocity, double input,
                                             const Eigen::VectorXd& from);
   double held_force(double input);
+  double mean_over_sample(double force_now, double input);
   double net_force_along(double position, double velocity, double input, double force);
   void run_with(const Plan& plan, int steps);
   LinearAxis shorten_steps(const Plan& plan);

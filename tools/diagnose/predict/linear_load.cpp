@@ -32,4 +32,27 @@ LinearAxis with_load(LinearAxis axis, const SampleMap& load) {
   return axis;
 }
 
+LoadDeviation::LoadDeviation(const LinearAxis& axis, const Gains& gains, const Path* along)
+    : axis_(axis),
+      along_(along),
+      own_(along ? axis.load_states : 0),
+      correct_(gains.K.middleRows(axis.A.rows() - own_, own_)),
+      onward_(axis.A.bottomRows(own_)),
+      state_(Eigen::VectorXd::Zero(axis.A.rows())),
+      next_(own_) {}
+
+void LoadDeviation::correct(size_t port, double error) {
+  if (own_ > 0) state_.tail(own_) += error * correct_.col(Eigen::Index(port));
+}
+
+double LoadDeviation::force(size_t row, double position, double velocity) {
+  if (own_ == 0) return 0;
+  state_[axis_.position] = position - along_->position[row];
+  state_[axis_.velocity] = velocity - along_->velocity[row];
+  const double consumed = axis_.load_force.dot(state_);
+  next_.noalias() = onward_ * state_;
+  state_.tail(own_) = next_;
+  return consumed;
+}
+
 }  // namespace loopwright::diagnosis

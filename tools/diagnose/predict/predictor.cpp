@@ -1,5 +1,6 @@
 #include "tools/diagnose/predict/predictor.h"
 #include "tools/diagnose/predict/in_parallel.h"
+#include "tools/diagnose/predict/linear_load.h"
 #include "tools/diagnose/predict/sizes.h"
 #include <algorithm>
 #include <array>
@@ -247,46 +248,6 @@ double correction_time(const LinearAxis& axis, const Gains& gains) {
   const double slowest = closed.topLeftCorner(own, own).eigenvalues().cwiseAbs().maxCoeff();
   return slowest > 0 ? -1 / std::log(std::min(slowest, 1 - 1e-9)) : 0;
 }
-
-namespace {
-
-/// What loads of effects do besides what they do along the path on which they ran.
-class LoadDeviation {
- public:
-  LoadDeviation(const LinearAxis& axis, const Gains& gains, const Path* along)
-      : along_(along),
-        own_(axis.load_states),
-        motion_(axis.A.rows() - own_),
-        axis_(axis),
-        correct_(gains.K.middleRows(motion_, own_)),
-        onward_(axis.A.bottomRows(own_)),
-        state_(Eigen::VectorXd::Zero(axis.A.rows())),
-        next_(own_) {}
-
-  void correct(size_t port, double error) {
-    if (own_ > 0) state_.tail(own_) += error * correct_.col(Eigen::Index(port));
-  }
-  /// Over the sample that begins at a row, there with this motion.
-  double force(size_t row, double position, double velocity) {
-    if (own_ == 0 || !along_) return 0;
-    state_[axis_.position] = position - along_->position[row];
-    state_[axis_.velocity] = velocity - along_->velocity[row];
-    const double consumed = axis_.load_force.dot(state_);
-    next_.noalias() = onward_ * state_;
-    state_.tail(own_) = next_;
-    return consumed;
-  }
-
- private:
-  const Path* along_;
-  Eigen::Index own_, motion_;
-  const LinearAxis& axis_;
-  Eigen::MatrixXd correct_, onward_;
-  Eigen::VectorXd state_;  // of the axis: from the path; of the loads: from their motion along it
-  Eigen::VectorXd next_;
-};
-
-}  // namespace
 
 Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains, const Drives& drives,
                    const Pace& pace) {

@@ -5,6 +5,7 @@
 #include <numbers>
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/remembered_runs.h"
+#include "tools/diagnose/search/weight.h"
 #include "tools/diagnose/search/whiteness.h"
 #include "tools/experiment/experiment_ports.h"
 
@@ -101,15 +102,6 @@ void mark_usable(Trial& trial, const Path& path, bool is_map) {
   trial.usable = trial.moving;
 }
 
-/// Whether the waits leave many rows, or enough of those in motion.
-bool leaves_enough(const Trials& trials) {
-  double moving = 0;
-  for (const Trial& trial : trials.list)
-    for (size_t k = trial.settled_from; k < trial.held_out_from; ++k) moving += !trial.at_rest[k];
-  const double rows = double(fitted_numbers(trials)) / double(trials.ports());
-  return rows >= std::max(criteria::plenty_of_rows, criteria::least_share_of_motion * moving);
-}
-
 /// The rows that count along the nominal diagram's prediction. Where reversals follow each other so fast that
 /// the waits leave too few, these become shorter.
 std::vector<Fitted> mark_usable(Trials& trials) {
@@ -118,7 +110,7 @@ std::vector<Fitted> mark_usable(Trials& trials) {
     for (size_t t = 0; t < trials.list.size(); ++t)
       mark_usable(trials.list[t], nominal[t].prediction.path, trials.has_map());
     bool is_shorter = false;
-    if (!trials.has_map() && !leaves_enough(trials))
+    if (!trials.has_map() && judged_numbers(trials) < criteria::plenty_of_rows * double(trials.ports()))
       for (Trial& trial : trials.list) is_shorter |= shorten(trial.pace);
     if (!is_shorter) return nominal;
   }

@@ -8,6 +8,7 @@
 #include "tools/diagnose/search/conclude.h"
 #include "tools/diagnose/search/doubt.h"
 #include "tools/diagnose/search/law_swaps.h"
+#include "tools/diagnose/search/load_starts.h"
 #include "tools/diagnose/search/remaining_force.h"
 #include "tools/diagnose/search/spectrum.h"
 #include "tools/diagnose/search/whiteness.h"
@@ -120,24 +121,16 @@ class Search {
     return *evidence_;
   }
 
-  /// Before it is compared. Of a load on a spring, several starts: along a motion that does not show how the
-  /// load pushes back, it seems to swing as both do together, and to be lighter than it is.
+  /// Before it is compared; of a load on a spring, the best of its starts, once the large effects are found.
   Estimate first_fit(const Proposal& proposal) {
     const std::vector<Member> members = applied(proposal, best_.members);
-    const bool is_load = members.back().candidate->linear_load && is_own_load(members.back());
-    Estimate best = refined(members, is_load ? 1 : 2);
-    if (!is_load) return best;
     const double whole = trials_.list.front().model->nominal_inertia();
-    for (const double share : {0.1, 0.2, 0.4, 0.7}) {
-      std::vector<Member> other = members;
-      Member& load = other.back();
-      const double heavier = share * whole / -load.candidate->added_inertia(load);
-      for (double& amplitude : load.linear) amplitude *= heavier;
-      load.nonlinear[0] *= std::sqrt(1 - share);
-      if (Estimate trial = refined(other, 1); trial.is_valid && trial.profile < best.profile)
+    const auto starts = is_much_left() ? std::vector<std::vector<Member>>{} : starts_of_load(members, whole);
+    Estimate best = refined(members, starts.empty() ? 2 : 1);
+    for (const std::vector<Member>& start : starts)
+      if (Estimate trial = refined(start, 1); trial.is_valid && trial.profile < best.profile)
         best = std::move(trial);
-    }
-    return refined(best.members, 6);
+    return starts.empty() ? best : refined(best.members, 6);
   }
 
   bool is_spent() const { return trials_.work->is_spent(criteria::work_of_search); }

@@ -37,7 +37,7 @@ class Climb {
   Stage fitted(const std::vector<size_t>& members, const Estimate& near) {
     std::vector<Member> values;
     for (size_t m : members) values.push_back(conclusion_.estimate.members[m]);
-    Stage stage{members, fit_members(trials_, values, conclusion_.estimate.noise, near.motion, 3), 0};
+    Stage stage{members, fit_members(trials_, values, conclusion_.estimate.noise, near.motion, 8), 0};
     stage.criterion = criterion(trials_, stage.estimate, catalogue_);
     stage.force = residual_size(trials_, inverse_, stage.estimate.members).fitted;
     return stage;
@@ -69,7 +69,7 @@ class Climb {
   Stage with_own_noise(Stage stage) {
     const Estimate& e = stage.estimate;
     const Noise noise = fit_noise_alone(trials_, *e.fitted, e.noise, FreeNoise::white_and_slow);
-    stage.estimate = fit_members(trials_, e.members, noise, e.motion, 4);
+    stage.estimate = fit_members(trials_, e.members, noise, e.motion, 8);
     stage.force = residual_size(trials_, inverse_, stage.estimate.members).fitted;
     return stage;
   }
