@@ -146,6 +146,21 @@ class Stepper {
     run_.states()[size_t(machine_.position - first)] = position;
     run_.states()[size_t(machine_.velocity - first)] = velocity;
   }
+  /// The same along a motion: what hangs on the axis, as a load on a spring, is moved as much, so that
+  /// nothing is strained by it.
+  void restart(double position, double velocity) {
+    const double along[] = {position - this->position(), velocity - this->velocity()};
+    const Plan& plan = *machine_.plan;
+    const std::optional<Unit> units[] = {plan.unit_of(machine_.position), plan.unit_of(machine_.velocity)};
+    for (const Plan::Block& block : plan.blocks) {
+      if (block.states < 2) continue;  // of a body, position and velocity; a bristle has a deflection alone
+      for (int i = block.first_state; i < block.first_state + block.states; ++i)
+        for (const int kind : {0, 1})
+          if (units[kind] && plan.unit_of(plan.signals + i) == units[kind])
+            run_.states()[size_t(i)] += along[kind];
+    }
+    set(position, velocity);
+  }
   double position() const { return run_.number(machine_.position); }
   double sensed() const { return run_.number(machine_.sensor); }
   double velocity() const { return run_.number(machine_.velocity); }
@@ -340,7 +355,7 @@ std::vector<double> simulate_position(const Machine& machine, size_t horizon) {
   for (size_t k = 0; k < m.rows(); ++k) {
     const bool is_behind_gap = k > 0 && m.is_missing(k - 1) && !m.is_missing(k);
     if (k == 0 || is_behind_gap || (horizon > 0 && k % horizon == 0))
-      stepper.set(m.position[k], m.velocity[k]);
+      stepper.restart(m.position[k], m.velocity[k]);
     position.push_back(stepper.position());
     if (!stepper.step()) break;
   }

@@ -128,7 +128,8 @@ class Search {
     const auto starts = is_much_left() ? std::vector<std::vector<Member>>{} : starts_of_load(members, whole);
     Estimate best = refined(members, starts.empty() ? 2 : 1);
     for (const std::vector<Member>& start : starts)
-      if (Estimate trial = refined(start, 1); trial.is_valid && trial.profile < best.profile)
+      if (Estimate trial = refined(start, 1);
+          trial.is_valid && (!best.is_valid || trial.profile < best.profile))
         best = std::move(trial);
     return starts.empty() ? best : refined(best.members, 6);
   }
