@@ -1,8 +1,8 @@
 #include "tools/diagnose/search/hypothesis.h"
 #include <algorithm>
-#include "tools/diagnose/predict/linear_load.h"
 #include <cmath>
 #include <numbers>
+#include "tools/diagnose/predict/linear_load.h"
 
 namespace loopwright::diagnosis {
 namespace {
