@@ -9,63 +9,77 @@ import subprocess
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent / "conditions"))
-import outcome  # noqa: E402
-import scenario  # noqa: E402
+sys.path[:0] = [str(HERE), str(HERE.parent / "hidden_effects")]
 import score  # noqa: E402
 import variable_criteria  # noqa: E402
 
-# Quick development records of the conditions benchmark that are right with the thresholds as they are; three are clean.
-SEEDS = (100000, 100005, 100014, 100021, 100030, 100035, 100042)
+# Quick development records of the benchmark of other conditions, each of another kind, a third of them clean; and of the benchmark of
+# any diagram, a third of them clean, a third with a wrong parameter.
+WITH_ROLES = (901021, 901022, 901024, 901027, 901028, 901033, 901035, 901039, 901043, 901046, 901047, 901052, 901080, 901083, 901084,
+              901092, 901098, 901118, 901060, 901064, 901074, 901076, 901079, 901126)
+WITHOUT_ROLES = (120000, 120003, 120007, 120012, 120019, 120017, 120022, 120024, 120025, 120029)
 FACTORS = (0.5, 1.5)
 NONE = ("judged_row_s", 1.0)  # no threshold is changed
-WITHOUT_ROLES = "Any diagram."  # the section of thresholds that records with roles do not meet
+SECTION = "Any diagram."  # of the thresholds that records with roles do not meet
 
 
-def thresholds_with_roles(text):
-    """Names and values, in the order of the file."""
-    before, _, rest = text.partition(f"// {WITHOUT_ROLES}\n")
-    _, _, after = rest.partition("\n// ")
-    return [(name, value) for _, name, _, value in variable_criteria.thresholds(before + after)]
+class Benchmark:
+    """Records of one benchmark, and what its answers are worth."""
+
+    def __init__(self, without_roles, generator):
+        sys.path.insert(0, str(HERE.parent / ("any_diagram" if without_roles else "conditions")))
+        import outcome
+        import scenario
+        self.outcome = outcome
+        self.generate = scenario.generate if without_roles else lambda seed, folder: scenario.generate(generator, seed, folder)
+
+    def judged(self, folder, file):
+        truth = json.loads((folder / "truth.json").read_text())
+        answer = json.loads(file.read_text()) if file.exists() else None
+        result = {"truth": truth, "answer": answer, "exit": 0 if answer else 1, "over_limit": False, "text": "no answer"}
+        return self.outcome.classify(result), self.outcome.said(result)
 
 
-def answers(program, name, factor, folders):
+def thresholds(text, without_roles=False):
+    """Names and values that such records meet, in the order of the file."""
+    before, _, rest = text.partition(f"// {SECTION}\n")
+    section, _, after = rest.partition("\n// ")
+    return [(name, value) for _, name, _, value in variable_criteria.thresholds(section if without_roles else before + after)]
+
+
+def answers(benchmark, program, name, factor, folders):
     """Class of each record's answer, and the answer itself without its numbers."""
     files = [folder / f"answer.{name}.{factor}.json" for folder in folders]
     missing = [folder for folder, file in zip(folders, files) if not file.exists()]
     for folder in missing:  # one at a time: one that fails does not end the others
         subprocess.run([str(a) for a in (program, name, factor, folder)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    return [judged(folder, file) for folder, file in zip(folders, files)]
+    return [benchmark.judged(folder, file) for folder, file in zip(folders, files)]
 
 
-def judged(folder, file):
-    truth = json.loads((folder / "truth.json").read_text())
-    answer = json.loads(file.read_text()) if file.exists() else None
-    result = {"truth": truth, "answer": answer, "exit": 0 if answer else 1, "over_limit": False, "text": "no answer"}
-    return outcome.classify(result), outcome.said(result)
+RIGHT = ("exact", "declared")
 
 
 def cell(before, after):
     """"=" if every answer is the same, else what became of those that are not."""
-    is_right = [b[0] in ("exact", "declared") for b in before]
-    lost = [a[0] for b, a, right in zip(before, after, is_right) if right and a[0] not in ("exact", "declared")]
-    mended = sum(a[0] in ("exact", "declared") for a, right in zip(after, is_right) if not right)
+    is_right = [b[0] in RIGHT for b in before]
+    lost = [a[0] for a, right in zip(after, is_right) if right and a[0] not in RIGHT]
+    mended = sum(a[0] in RIGHT for a, right in zip(after, is_right) if not right)
     other = sum(b[1] != a[1] for b, a in zip(before, after)) - len(lost) - mended
-    parts = [f"{lost.count(c)} {c}" for c in outcome.CLASSES if c in lost]
+    parts = [f"{lost.count(c)} {c}" for c in dict.fromkeys(sorted(lost))]
     parts += [f"{mended} right"] if mended else []
     parts += [f"{other} said otherwise"] if other else []
     return ", ".join(parts) or "="
 
 
-def table(thresholds, results):
+def table(varied, results):
     rows, unchanged = [], []
-    for name, value in thresholds:
+    for name, value in varied:
         cells = [cell(results[NONE], results[name, factor]) for factor in FACTORS]
         if set(cells) == {"="}:
             unchanged.append(f"`{name}`")
         else:
             rows.append([f"`{name}`", value, *cells])
-    right = sum(c in ("exact", "declared") for c, _ in results[NONE])
+    right = sum(c in RIGHT for c, _ in results[NONE])
     return (f"{len(results[NONE])} records, {right} right with the thresholds as they are.\n\n"
             + score.table(["threshold", "value", "half", "one and a half"], rows)
             + f"\n\nNo answer changes with {', '.join(unchanged) or 'any of them'}.\n")
@@ -73,31 +87,34 @@ def table(thresholds, results):
 
 def main():
     parser = argparse.ArgumentParser(prog="tools/sensitivity.sh", description="Half and one and a half of each threshold of the diagnosis.")
-    parser.add_argument("--seeds", type=int, nargs="+", default=SEEDS, help="of the conditions benchmark")
-    parser.add_argument("--thresholds", nargs="+", help="names in criteria.h (default all that records with roles meet)")
+    parser.add_argument("--without-roles", action="store_true", help="the thresholds of any diagram, on records without roles")
+    parser.add_argument("--seeds", type=int, nargs="+", help="of the benchmark of other conditions, or of any diagram")
+    parser.add_argument("--thresholds", nargs="+", help="names in criteria.h (default all that such records meet)")
     parser.add_argument("--output", type=pathlib.Path, default=pathlib.Path("build/sensitivity"), help="answers there are not computed again")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--program", type=pathlib.Path, required=True, help=argparse.SUPPRESS)
     parser.add_argument("--generator", type=pathlib.Path, required=True, help=argparse.SUPPRESS)
     options = parser.parse_args()
-    folders = [options.output / str(seed) for seed in options.seeds]
-    for seed, folder in zip(options.seeds, folders):
+    benchmark = Benchmark(options.without_roles, options.generator)
+    seeds = options.seeds or (WITHOUT_ROLES if options.without_roles else WITH_ROLES)
+    folders = [options.output / str(seed) for seed in seeds]
+    for seed, folder in zip(seeds, folders):
         if not (folder / "truth.json").exists():
             folder.mkdir(parents=True, exist_ok=True)
-            scenario.generate(options.generator, seed, folder)
-    thresholds = thresholds_with_roles((HERE.parents[1] / "tools/diagnose/criteria.h").read_text())
+            benchmark.generate(seed, folder)
+    varied = thresholds((HERE.parents[1] / "tools/diagnose/criteria.h").read_text(), options.without_roles)
     if options.thresholds:
-        unknown = set(options.thresholds) - {name for name, _ in thresholds}
+        unknown = set(options.thresholds) - {name for name, _ in varied}
         if unknown:
             parser.error(f"no threshold {', '.join(sorted(unknown))}")
-        thresholds = [(name, value) for name, value in thresholds if name in options.thresholds]
-    runs = [NONE, *((name, factor) for name, _ in thresholds for factor in FACTORS)]
+        varied = [(name, value) for name, value in varied if name in options.thresholds]
+    runs = [NONE, *((name, factor) for name, _ in varied for factor in FACTORS)]
     results = {}
     with concurrent.futures.ThreadPoolExecutor(max_workers=options.jobs) as pool:
-        for run, result in zip(runs, pool.map(lambda r: answers(options.program, *r, folders), runs)):
+        for run, result in zip(runs, pool.map(lambda r: answers(benchmark, options.program, *r, folders), runs)):
             results[run] = result
             print(f"{len(results)}/{len(runs)} {run[0]} × {run[1]}", file=sys.stderr, flush=True)
-    print(table(thresholds, results), end="")
+    print(table(varied, results), end="")
 
 
 if __name__ == "__main__":

@@ -29,10 +29,16 @@ class Variables(unittest.TestCase):
             self.assertIn(line, text)
 
     def test_those_of_diagrams_without_roles_are_left_out(self):
-        names = [name for name, _ in sensitivity.thresholds_with_roles(CRITERIA)]
+        names = [name for name, _ in sensitivity.thresholds(CRITERIA)]
         self.assertIn("judged_row_s", names)
         self.assertIn("speed_span_s", names)
         self.assertNotIn("alike_responses", names)
+
+    def test_those_of_diagrams_without_roles_are_the_others(self):
+        all_names = {name for _, name, _, _ in variable_criteria.thresholds(CRITERIA)}
+        with_roles, without = ({n for n, _ in sensitivity.thresholds(CRITERIA, w)} for w in (False, True))
+        self.assertEqual(with_roles | without, all_names)
+        self.assertFalse(with_roles & without)
 
 
 class Table(unittest.TestCase):
