@@ -229,14 +229,16 @@ void tell_errors(const Trials& trials, const Conclusion& conclusion, const Inqui
     return result.holds_out ? step.held_out_force_rmse : step.force_rmse;
   };
   result.error_before = error(result.steps.front()), result.error_after = error(result.steps.back());
-  const Noise& noise = conclusion.estimate.noise;
-  result.noise_floor = residual_floor(trials, noise);
+  const AxisModel& model = *trials.list.front().model;
+  const double inertia = model.nominal_inertia() + added_inertia(conclusion.estimate.members);
+  const Noise noise = conclusion.estimate.noise.at_inertia(inertia / model.nominal_inertia());
+  result.noise_floor = residual_floor(trials, conclusion.estimate);
   result.rows = fitted_numbers(trials) / trials.ports();
   result.mean_square = conclusion.estimate.mean_square;
   result.held_out_mean_square = inquiry.held_out_mean_square();
   result.portmanteau = conclusion.portmanteau;
   result.white_force = noise.white, result.slow_force = noise.slow();
-  result.slow_force_time_s = -trials.list.front().model->record().sample_time / std::log(noise.memory);
+  result.slow_force_time_s = -model.record().sample_time / std::log(noise.memory);
   result.measurement_noise = noise.measurement;
 }
 

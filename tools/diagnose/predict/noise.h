@@ -20,6 +20,8 @@ struct Noise {
   double slow() const;
   /// [sample times] In which the slow force falls to 37 %.
   double memory_samples() const { return -1 / std::log(memory); }
+  /// The forces on an axis that has `factor` times the nominal inertia.
+  Noise at_inertia(double factor) const { return {factor * white, factor * step, memory, measurement}; }
 };
 
 /// Steady-state Kalman predictor of the axis with the slow force as the last state.

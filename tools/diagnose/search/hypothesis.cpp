@@ -7,13 +7,6 @@
 namespace loopwright::diagnosis {
 namespace {
 
-double added_inertia(const std::vector<Member>& members) {
-  double added = 0;
-  for (const Member& member : members)
-    if (member.candidate->added_inertia) added += member.candidate->added_inertia(member);
-  return added;
-}
-
 /// Members that change the input, in the order of the signal path.
 std::vector<const Member*> chain_of(const std::vector<Member>& members) {
   std::vector<const Member*> chain;
@@ -182,6 +175,13 @@ void set_value(std::vector<Member>& members, const FreeParameter& p, double valu
                      cosine * std::cos(ahead) - sine * std::sin(ahead)};
   }
   value_of(members, p) = value;
+}
+
+double added_inertia(const std::vector<Member>& members) {
+  double added = 0;
+  for (const Member& member : members)
+    if (member.candidate->added_inertia) added += member.candidate->added_inertia(member);
+  return added;
 }
 
 Drives drives_of(const std::vector<Member>& members, const Path& path, const std::vector<double>& raw_input) {

@@ -79,6 +79,9 @@ using Results = std::shared_ptr<const std::vector<Fitted>>;
 std::vector<Fitted> run_members(Trials& trials, const std::vector<Member>& members, const Motion& motion,
                                 const Noise& noise);
 
+/// What the members add to the mass of the model; that of a load of its own is negative.
+double added_inertia(const std::vector<Member>& members);
+
 /// The input after the members that change it, and the force that the others consume, along a path.
 Drives drives_of(const std::vector<Member>& members, const Path& path, const std::vector<double>& raw_input);
 

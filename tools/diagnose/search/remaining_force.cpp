@@ -30,6 +30,13 @@ std::vector<double> at_samples(const std::vector<double>& held, const AxisRecord
   return mean;
 }
 
+/// The mean over each sample of what is known at its start: as the effects expect an acceleration.
+std::vector<double> over_samples(const std::vector<double>& at_start) {
+  std::vector<double> mean = at_start;
+  for (size_t k = 0; k + 1 < mean.size(); ++k) mean[k] = (at_start[k] + at_start[k + 1]) / 2;
+  return mean;
+}
+
 /// For the model along a path, at the instants of its rows.
 std::vector<double> net_forces(AxisModel& model, const Path& path, const std::vector<double>& input) {
   return model.net_forces(path.position, path.velocity, input, AxisModel::At::mean);
@@ -49,7 +56,7 @@ InverseDynamics inverse_dynamics(Trial& trial) {
   } else {
     path.identity = Path::next_identity(), path.sample_time = record.sample_time;
     path.position = path.predicted_position = result.motion.position;
-    path.velocity = result.motion.velocity, path.acceleration = result.motion.acceleration;
+    path.velocity = result.motion.velocity, path.acceleration = over_samples(result.motion.acceleration);
     path.input = result.motion.input;
     path.rests.resize(record.rows()), path.turns.resize(record.rows());
     for (size_t k = 0; k < record.rows(); ++k)
@@ -57,15 +64,16 @@ InverseDynamics inverse_dynamics(Trial& trial) {
   }
   path.force = model.driving_force();
   result.net_force = net_forces(model, path, path.input);
+  const std::vector<double>& acceleration = record.is_map ? path.acceleration : result.motion.acceleration;
   for (size_t k = 0; k < record.rows(); ++k)
-    result.residual.push_back(result.net_force[k] - model.nominal_inertia() * path.acceleration[k]);
+    result.residual.push_back(result.net_force[k] - model.nominal_inertia() * acceleration[k]);
   return result;
 }
 
 std::vector<double> residual_with(const Trial& trial, const InverseDynamics& inverse,
                                   const std::vector<Member>& members) {
   const AxisRecord& record = trial.model->record();
-  const double T = record.sample_time, mass = trial.model->nominal_inertia();
+  const double T = record.sample_time, mass = trial.model->nominal_inertia() + added_inertia(members);
   std::vector<double> residual = inverse.residual;
   std::vector<double> consumed(record.rows(), 0.0);
   std::vector<Member> others;
@@ -152,7 +160,7 @@ bool spoils_balance(const Trials& trials, const Estimate& estimate, size_t membe
   if (estimate.members[member].candidate->flies) return false;
   const bool is_loud = weight.wald > criteria::loud_wald_per_row * double(fitted_numbers(trials));
   if (is_loud && estimate.members[member].candidate->acts == Acts::force &&
-      weight.force_rms < criteria::noise_that_drives * residual_floor(trials, estimate.noise))
+      weight.force_rms < criteria::noise_that_drives * residual_floor(trials, estimate))
     return false;
   std::vector<Member> others = estimate.members;
   others.erase(others.begin() + std::ptrdiff_t(member));
@@ -170,9 +178,9 @@ bool is_negligible(const Trials& trials, const std::vector<Member>& members) {
 
 namespace {
 
-/// Mean square of the residual that noise alone leaves along a record.
-double square_of_noise(const AxisModel& model, const Noise& noise) {
-  const double T = model.record().sample_time, mass = model.nominal_inertia();
+/// Mean square of the residual that noise alone leaves along a record of an axis with this mass.
+double square_of_noise(const AxisModel& model, double mass, const Noise& noise) {
+  const double T = model.record().sample_time;
   const bool from_position = model.record().measured.front().role == "position";
   const double motion_cutoff = std::min(200.0, 0.2 / T);
   constexpr int points = 2000;
@@ -191,11 +199,14 @@ double square_of_noise(const AxisModel& model, const Noise& noise) {
 
 }  // namespace
 
-double residual_floor(const Trials& trials, const Noise& noise) {
+double residual_floor(const Trials& trials, const Estimate& estimate) {
+  const double added = added_inertia(estimate.members);
   double sum = 0, rows = 0;
   for (const Trial& trial : trials.list) {
-    const double own = double(trial.model->record().rows());
-    sum += own * square_of_noise(*trial.model, noise), rows += own;
+    const AxisModel& model = *trial.model;
+    const double own = double(model.record().rows()), nominal = model.nominal_inertia(),
+                 mass = nominal + added;
+    sum += own * square_of_noise(model, mass, estimate.noise.at_inertia(mass / nominal)), rows += own;
   }
   return std::sqrt(sum / rows);
 }

@@ -10,7 +10,7 @@ namespace loopwright::diagnosis {
 /// Measured motion, filtered forward and backward, and the force that the nominal model lacks to explain it.
 struct InverseDynamics {
   MeasuredMotion motion;
-  Path path;                      ///< the same, as the effects use it
+  Path path;  ///< the same, as the effects use it: its acceleration is a mean over samples
   std::vector<double> net_force;  ///< of the nominal diagram, as recorded
   std::vector<double> residual;   ///< net force minus inertia × acceleration
 };
@@ -54,7 +54,7 @@ bool spoils_balance(const Trials& trials, const Estimate& estimate, size_t membe
 /// Whether the force that the members leave is too small to matter, in the fitted rows and in the others.
 bool is_negligible(const Trials& trials, const std::vector<Member>& members);
 
-/// The residual that the noise alone would leave, from its spectrum.
-double residual_floor(const Trials& trials, const Noise& noise);
+/// The residual that the noise alone would leave, from its spectrum, and the mass with that of the members.
+double residual_floor(const Trials& trials, const Estimate& estimate);
 
 }  // namespace loopwright::diagnosis

@@ -70,7 +70,7 @@ std::vector<DrawnVariable> variables_of(const InverseDynamics& inverse, bool is_
   std::vector<DrawnVariable> list{{"Position", units.position, &inverse.path.position}};
   if (is_map) return list;
   list.push_back({"Velocity", units.position + "/s", &inverse.path.velocity});
-  list.push_back({"Acceleration", units.position + "/s^2", &inverse.path.acceleration});
+  list.push_back({"Acceleration", units.position + "/s^2", &inverse.motion.acceleration});
   list.push_back({"Input", units.input, &inverse.path.input});
   list.push_back({"Time", "s", &inverse.motion.time});
   return list;
