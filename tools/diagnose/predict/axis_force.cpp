@@ -70,11 +70,11 @@ double AxisModel::net_force(double input, double force) {
 }
 
 /// Sampled blocks keep their outputs.
-double AxisModel::held_force(double input) {
+double AxisModel::held_force(double input, double push) {
   numbers_[input_] = input;
-  numbers_[injected_] = 0;
+  numbers_[injected_] = push;
   run_->evaluate(0, true);
-  return numbers_[force_];
+  return numbers_[force_] - push;
 }
 
 double AxisModel::net_force_along(double position, double velocity, double input, double force) {
@@ -133,13 +133,13 @@ double AxisModel::net_force_at_rest(double position, double velocity, double inp
 
 /// The trapezoidal rule over the steps of the sample that begins now: behind a fast pole the force at the
 /// instant of a row is still that of the input before it.
-double AxisModel::mean_over_sample(double force_now, double input) {
+double AxisModel::mean_over_sample(double force_now, double input, double push) {
   const int64_t begin = run_->now().tick, end = begin + std::max<int64_t>(1, std::llround(sample_ticks_));
   double sum = 0, before = force_now;
   while (run_->now().tick < end) {
     const int64_t from = run_->now().tick;
     run_->step_fixed(end, false, [] {});
-    const double after = held_force(input);
+    const double after = held_force(input, push);
     sum += double(run_->now().tick - from) * (before + after) / 2;
     before = after;
   }
@@ -152,7 +152,9 @@ std::vector<double> AxisModel::net_forces(std::span<const double> position, std:
   net.reserve(input.size());
   set_added_inertia(0);
   start(position[0], velocity[0]);
+  const double T = record_.sample_time;
   double last = 0;  // over the sample before
+  double push = 0;  // so that the axis keeps to the motion within a sample: what was missing in the last one
   for (size_t k = 0; k < input.size(); ++k) {
     const double before = input[k > 0 ? k - 1 : 0],
                  mean = at == At::mean ? (before + input[k]) / 2 : input[k];
@@ -161,8 +163,9 @@ std::vector<double> AxisModel::net_forces(std::span<const double> position, std:
     } else if (!force_remembers_) {
       net.push_back(net_force_along(position[k], velocity[k], mean, 0));
     } else {
-      const double over_sample =
-          mean_over_sample(net_force_along(position[k], velocity[k], input[k], 0), input[k]);
+      if (k > 0 && nominal_inertia_ > 0) push = nominal_inertia_ * (velocity[k] - velocity[k - 1]) / T - last;
+      const double now = net_force_along(position[k], velocity[k], input[k], push) - push;
+      const double over_sample = mean_over_sample(now, input[k], push);
       net.push_back(at == At::mean && k > 0 ? (last + over_sample) / 2 : over_sample);
       last = over_sample;
     }
@@ -197,7 +200,16 @@ void AxisModel::work_out_driving_force(const std::optional<Unit>& force_unit) {
 bool AxisModel::holds_at_rest(double small_force) {
   const MeasuredPort* position = record_.find("position");
   start(position ? std::optional(position->value[0]) : std::nullopt, 0);
-  return net_force(0, small_force) - net_force(0, -small_force) < small_force;
+  if (net_force(0, small_force) - net_force(0, -small_force) < small_force) return true;
+  if (!position) return false;
+  // What yields before it slides lets every force move the axis, but at the same place it holds back those
+  // that come from below and those that come from above.
+  const auto [low, high] = std::ranges::minmax(position->value);
+  const double middle = (low + high) / 2, creep = 1e-9 * (high - low);  // per second
+  net_force_along(low, creep, 0, 0);
+  const double from_below = net_force_along(middle, creep, 0, 0);
+  net_force_along(high, -creep, 0, 0);
+  return net_force_along(middle, -creep, 0, 0) - from_below > small_force;
 }
 
 }  // namespace loopwright::diagnosis

@@ -109,7 +109,8 @@ class AxisModel {
   /// samples about the row; in a map of balances each row is independent, and they are in steady state.
   std::vector<double> net_forces(std::span<const double> position, std::span<const double> velocity,
                                  std::span<const double> input, At at);
-  /// Whether a small force moves nothing at rest: something in the diagram holds the axis.
+  /// Whether something in the diagram holds the axis at rest: a small force moves nothing, or the force at a
+  /// place depends on the side from which the axis came.
   bool holds_at_rest(double small_force);
 
   /// Linearized around the recorded motion. For a map: the remaining sum of the forces, see balance_of.
@@ -123,8 +124,8 @@ class AxisModel {
   void let_inner_states_rest(double position, double velocity, double input);
   Eigen::VectorXd inner_states_after_sample(double position, double velocity, double input,
                                             const Eigen::VectorXd& from);
-  double held_force(double input);
-  double mean_over_sample(double force_now, double input);
+  double held_force(double input, double push);
+  double mean_over_sample(double force_now, double input, double push);
   double net_force_along(double position, double velocity, double input, double force);
   void run_with(const Plan& plan, int steps);
   LinearAxis shorten_steps(const Plan& plan);

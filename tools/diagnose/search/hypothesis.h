@@ -34,7 +34,7 @@ struct Trial {
 struct Trials {
   std::vector<Trial> list;
   Noise noise;
-  bool nominal_holds = false;  ///< the user's diagram has dry friction that holds the axis in a record
+  bool nominal_holds = false;  ///< the user's diagram has dry friction, in one of the records
   double force_rms = 0;        ///< the force produced by the recorded inputs
   bool noise_is_seen = false;  ///< the errors of the nominal diagram are white with the noise fitted to them
   double lowest_position = 0, highest_position = 0, longest_s = 0;  ///< as in the first prediction

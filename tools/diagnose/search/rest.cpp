@@ -1,7 +1,6 @@
 #include "tools/diagnose/search/rest.h"
 #include <algorithm>
 #include <cmath>
-#include <utility>
 #include "models/real/whole.h"
 #include "tools/diagnose/criteria.h"
 
@@ -44,28 +43,37 @@ double against_free(const Trials& trials, const std::vector<Fitted>& fitted, dou
   return count > 0 ? count * std::log(std::max(1.0, sum / count / (worse_at_rest * in_motion))) : 0;
 }
 
+/// Rows in which the axis was looked at while it rested.
+struct Glances {
+  size_t least_rest = 0, apart = 0, length = 0;  ///< [rows] before the first; of an increase; of a glance
+};
 /// Mean square of the increase of the motion of the axis at rest in `lag` samples over that in the previous
 /// `lag` samples: a creep at constant speed does not contribute. Median of means over short intervals,
-/// because a held axis slips now and then.
+/// because a held axis slips now and then; but an axis that moves on in one direction slides, and that a
+/// slide is free says nothing.
 struct Swerve {
   double square = 0;
   size_t glances = 0;
 };
-Swerve swerve_at_rest(const Trials& trials, size_t lag, size_t glance) {
+Swerve swerve_at_rest(const Trials& trials, size_t lag, const Glances& at) {
   constexpr double median_to_mean = 0.9;
   std::vector<double> glances;
   for (const Trial& trial : trials.list) {
     const MeasuredPort* position = trial.model->record().find("position");
     double sum = 0;
+    size_t forward = 0, backward = 0;
     for (size_t k = 0, resting = 0; position && k < trial.held_out_from; ++k) {
       resting = trial.at_rest[k] ? resting + 1 : 0;
-      if (resting <= 2 * lag) {
-        sum = 0;
+      if (resting <= at.least_rest + 2 * at.apart) {
+        sum = 0, forward = backward = 0;
         continue;
       }
       const double* x = position->value.data() + k;
-      sum += std::pow(*x - 2 * *(x - lag) + *(x - 2 * lag), 2) / double(glance);
-      if ((resting - 2 * lag) % glance == 0) glances.push_back(std::exchange(sum, 0));
+      sum += std::pow(*x - 2 * *(x - lag) + *(x - 2 * lag), 2) / double(at.length);
+      forward += size_t(*x > *(x - at.apart)), backward += size_t(*x < *(x - at.apart));
+      if ((resting - at.least_rest - 2 * at.apart) % at.length != 0) continue;
+      if (std::max(forward, backward) < at.length) glances.push_back(sum);
+      sum = 0, forward = backward = 0;
     }
   }
   if (glances.empty()) return {};
@@ -75,11 +83,12 @@ Swerve swerve_at_rest(const Trials& trials, size_t lag, size_t glance) {
 }
 
 /// The axis moves as if nothing held it.
-double against_held(const Trials& trials, const Noise& noise) {
+double against_held(const Trials& trials, const Noise& noise, double least_rest_s) {
   const AxisModel& model = *trials.list.front().model;
   const double T = model.record().sample_time;
-  const size_t apart = rows_in(deviation_s, T, 2), glance = rows_in(glance_s, T, 3 * apart);
-  const Swerve swerve = swerve_at_rest(trials, apart, glance);
+  const size_t apart = rows_in(deviation_s, T, 2);
+  const Glances glances{rows_in(least_rest_s, T, 0), apart, rows_in(glance_s, T, 3 * apart)};
+  const Swerve swerve = swerve_at_rest(trials, apart, glances);
   if (swerve.glances == 0) return 0;
   double square = 0;  // of 1/mass: its mean over the records
   for (const Trial& trial : trials.list)
@@ -87,10 +96,10 @@ double against_held(const Trials& trials, const Noise& noise) {
   const double kick = noise.white * std::sqrt(square) * T * T;
   // From sample to sample hardly anything but the sensor changes, including its steps.
   const double sensor =
-      std::max(swerve_at_rest(trials, 1, glance).square, 6 * std::pow(noise.measurement[0], 2));
+      std::max(swerve_at_rest(trials, 1, glances).square, 6 * std::pow(noise.measurement[0], 2));
   const double free = kick * kick * 2 * std::pow(double(apart), 3) / 3, seen = swerve.square - sensor;
   if (seen < least_freedom * free || seen > most_freedom * free || seen < sensor) return 0;
-  return double(swerve.glances * glance) / double(2 * apart) * std::log1p(seen / sensor);
+  return double(swerve.glances * glances.length) / double(2 * apart) * std::log1p(seen / sensor);
 }
 
 }  // namespace
@@ -102,7 +111,7 @@ double against_at_rest(const Trials& trials, const std::vector<Member>& members,
     case AtRest::free:
       return against_free(trials, fitted, least_rest_s);
     case AtRest::holds:
-      return against_held(trials, noise);
+      return against_held(trials, noise, least_rest_s);
     default:
       return 0;
   }

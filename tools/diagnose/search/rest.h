@@ -13,8 +13,8 @@ namespace loopwright::diagnosis {
 ///                              the position has the mean square d + s (median of means over 36 ms), s is the
 ///                              sensor's (the same from sample to sample), and d is about what noise alone
 ///                              causes on a free axis: nothing held it
-/// If the set or the user's own diagram yields at rest, both are undecided: 0. Of shorter rests than
-/// `least_rest_s` the first does not speak.
+/// If the set or the user's own diagram yields at rest, both are undecided: 0. Of a rest, what happens after
+/// `least_rest_s` counts: at first an axis that turns slowly seems to rest.
 double against_at_rest(const Trials& trials, const std::vector<Member>& members,
                        const std::vector<Fitted>& fitted, const Noise& noise, double least_rest_s = 0);
 
