@@ -36,8 +36,11 @@ std::vector<DiagnosedParameter> parameters_of_member(const Conclusion& conclusio
     const double value = value_of(members, free[i]);
     const double half =
         1.96 * std::sqrt(std::max(0.0, estimate.covariance(Eigen::Index(i), Eigen::Index(i))));
-    list.push_back({range.name, without_idle_brackets(unit_in(range.unit, units)), value, value - half,
-                    value + half, range.ends_at(value)});
+    double low = value - half, high = value + half;
+    // The fit looked for a shape nowhere else: what the rows do not determine may be anything within.
+    if (!free[i].is_linear) low = std::max(low, range.low), high = std::min(high, range.high);
+    list.push_back({range.name, without_idle_brackets(unit_in(range.unit, units)), value, low, high,
+                    range.ends_at(value)});
   }
   if (const Member& member = members[index]; member.is_part_of_turn) {
     const CandidateParameter& pitch = member.candidate->nonlinear[0];
