@@ -74,6 +74,13 @@ inline bool is_late_input(const Candidate& candidate) {
   return candidate.acts == Acts::input && candidate.amplitude_is_one;
 }
 
+/// A law of dry friction: its first amplitude is the level, as the effect file calls it. The drift of a level
+/// that is there anyway is none.
+inline bool is_dry_friction(const Candidate& candidate) {
+  return candidate.acts == Acts::force && candidate.at_rest != AtRest::free && !candidate.is_unknown &&
+         !candidate.linear.empty() && candidate.linear.front().name == "level";
+}
+
 /// Whether it makes a part of the mass move by itself.
 inline bool is_own_load(const Member& member) {
   const Candidate& candidate = *member.candidate;

@@ -32,14 +32,16 @@ bool contains(const std::vector<Proposal>& list, const Proposal& proposal) {
 
 /// Alternatives: every other candidate in place of a member, with its shape and all parameters fitted.
 /// `nothing`: what the criterion loses with nothing in its place; an alternative explains something.
-std::vector<Substitute> substitutes_of(Rivals& rivals, size_t member, const std::vector<Proposal>& exchanges,
-                                       double nothing) {
+std::vector<Substitute> substitutes_of(Rivals& rivals, size_t member, const Candidate& present,
+                                       const std::vector<Proposal>& exchanges, double nothing) {
   std::vector<Substitute> list;
   for (const Proposal& proposal : exchanges) {
     const bool is_one_for_one = proposal.removed == std::vector<size_t>{member} && proposal.added.size() == 1;
     if (!is_one_for_one || list.size() >= 3) continue;
-    if (const auto loss = rivals.loss_of(proposal); loss && *loss < nothing)
-      list.push_back({proposal.added.front().candidate, *loss});
+    const auto loss = rivals.loss_of(proposal);
+    const Candidate& other = *proposal.added.front().candidate;
+    // The effect itself from another start may become the better rival, but is no other effect.
+    if (loss && *loss < nothing && &other != &present) list.push_back({&other, *loss});
   }
   std::ranges::stable_sort(list, {}, &Substitute::loss);
   return list;
@@ -55,12 +57,11 @@ void add_if_new(std::vector<Substitute>& list, const Candidate* candidate) {
 void add_simpler_friction(std::vector<Substitute>& list, const Trials& trials, Rivals& rivals,
                           const Estimate& estimate, size_t member, const std::vector<Proposal>& exchanges) {
   const Candidate& shaped = *estimate.members[member].candidate;
-  if (!trials.inverse || shaped.at_rest == AtRest::free) return;
+  if (!trials.inverse || !is_dry_friction(shaped)) return;
   const auto is_simpler = [&](const Proposal& p) {
     if (p.removed != std::vector<size_t>{member} || p.added.size() != 1) return false;
     const Candidate& other = *p.added.front().candidate;
-    return other.at_rest != AtRest::free && !other.is_unknown && other.acts == Acts::force &&
-           parameters_of(other) < parameters_of(shaped);
+    return is_dry_friction(other) && parameters_of(other) < parameters_of(shaped);
   };
   const double left = residual_size(trials, *trials.inverse, estimate.members).fitted;
   for (const Proposal& proposal : exchanges) {
@@ -231,7 +232,8 @@ void ask_rivals(const Trials& trials, Conclusion& result, Evidence& evidence,
   const std::vector<double> removal = evidence.gains_of_removal(n);
   for (size_t m = 0; m < members.size(); ++m) {
     result.weights[m].loss = -removal[m];
-    result.substitutes.push_back(substitutes_of(rivals, m, near, result.weights[m].loss));
+    result.substitutes.push_back(
+        substitutes_of(rivals, m, *members[m].candidate, near, result.weights[m].loss));
     add_simpler_friction(result.substitutes.back(), trials, rivals, result.estimate, m, exchanges);
     for (const auto& [member, law] : at_reversals.not_excluded())
       if (member == m) add_if_new(result.substitutes.back(), law);

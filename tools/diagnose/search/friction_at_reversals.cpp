@@ -6,10 +6,6 @@
 namespace loopwright::diagnosis {
 namespace {
 
-bool is_dry(const Candidate& candidate) {
-  return candidate.at_rest != AtRest::free && candidate.acts == Acts::force && !candidate.is_unknown;
-}
-
 bool turns_at(const Path& path, size_t row) {
   return row > 0 && row < path.samples() && (path.velocity[row] > 0) != (path.velocity[row - 1] > 0);
 }
@@ -53,8 +49,8 @@ class OtherRows {
 std::vector<const Candidate*> other_laws(const Candidate& present, const std::vector<Shape>& shapes) {
   std::vector<const Candidate*> laws;
   for (const Shape& shape : shapes)
-    if (is_dry(present) && is_dry(*shape.candidate) && shape.candidate->name != present.name &&
-        (laws.empty() || laws.back() != shape.candidate))
+    if (is_dry_friction(present) && is_dry_friction(*shape.candidate) &&
+        shape.candidate->name != present.name && (laws.empty() || laws.back() != shape.candidate))
       laws.push_back(shape.candidate);
   return laws;
 }
@@ -79,7 +75,7 @@ std::vector<Member> exchanged(std::vector<Member> members, size_t at, const Cand
 FrictionAtReversals::FrictionAtReversals(Trials& trials, const Estimate& estimate,
                                          const std::vector<Shape>& shapes, size_t catalogue)
     : trials_(trials), estimate_(estimate), shapes_(shapes), catalogue_(catalogue) {
-  const auto is_dry_member = [](const Member& m) { return is_dry(*m.candidate); };
+  const auto is_dry_member = [](const Member& m) { return is_dry_friction(*m.candidate); };
   if (trials.has_map() || std::ranges::none_of(estimate.members, is_dry_member)) return;
   for (size_t t = 0; t < trials.list.size(); ++t)
     rows_.push_back(with_reversals(trials.list[t], (*estimate.fitted)[t].prediction.path));
@@ -168,7 +164,7 @@ std::optional<Estimate> FrictionAtReversals::better() {
 
 bool FrictionAtReversals::is_refuted(size_t member, const Candidate& law, const Estimate& other) {
   const Candidate& present = *estimate_.members[member].candidate;
-  if (after_reversals_ == 0 || !is_dry(present) || !is_dry(law)) return false;
+  if (after_reversals_ == 0 || !is_dry_friction(present) || !is_dry_friction(law)) return false;
   if (present_.mean_square > criteria::most_mean_square_at_reversals) return false;
   return other.is_valid && explains(present_, on_all_rows(other.members, iterations_of_a_law),
                                     criteria::least_gain_at_reversals);

@@ -23,6 +23,12 @@ bool may_be_told(const Trials& trials, const Estimate& trial, size_t member, con
          !is_blurred(trials, trial.members[member]) && !spoils_balance(trials, trial, member, weight);
 }
 
+/// A second law of dry friction, beside the one that was chosen where reversals show the difference.
+bool is_another_dry_friction(const Candidate& candidate, const std::vector<Member>& members) {
+  return is_dry_friction(candidate) &&
+         std::ranges::any_of(members, [](const Member& m) { return is_dry_friction(*m.candidate); });
+}
+
 /// Beside next to no noise the arithmetic of the diagram has effects too.
 bool is_error_of_model(const Trials& trials, const Estimate& trial, const Weight& weight) {
   const double error = criteria::error_of_model * trials.force_rms / trial.noise.white;
@@ -41,6 +47,9 @@ SecondLook look_again(Trials& trials, const Estimate& estimate, const Evidence& 
     return result;
   const double least = std::max(criteria::least_gain, criteria::least_gain_per_row * judged_numbers(trials));
   std::vector<Proposal> proposals = evidence.extensions(double(fitted_numbers(trials)));
+  std::erase_if(proposals, [&](const Proposal& p) {
+    return is_another_dry_friction(*p.added.front().candidate, estimate.members);
+  });
   if (proposals.size() > most_tried) proposals.resize(most_tried);
   for (const Proposal& proposal : proposals) {
     if (2 * proposal.gain < least || trials.work->is_spent(criteria::work_with_rivals)) break;
