@@ -119,7 +119,8 @@ FrictionAtReversals::Rows FrictionAtReversals::with_law(size_t member, const Can
 /// A fall within a few speeds at which the axis counts as at rest is what a step makes of a turn.
 bool FrictionAtReversals::is_resolved(const Member& law) const {
   const double least = criteria::rest_speeds_of_a_fall * trials_.list.front().pace.rest_speed;
-  return law.candidate->at_rest != AtRest::holds || law.nonlinear.empty() || law.nonlinear[0] > least;
+  return !is_dry_friction(*law.candidate) || law.candidate->at_rest != AtRest::holds ||
+         law.nonlinear.empty() || law.nonlinear[0] > least;
 }
 
 double FrictionAtReversals::gain(const Rows& from, const Rows& to) const {

@@ -23,6 +23,8 @@ class FrictionAtReversals {
     const Candidate* candidate;
   };
   const std::vector<Law>& not_excluded() const { return not_excluded_; }
+  /// Whether friction falls with speed so slowly that more than the first moments of a motion show it.
+  bool is_resolved(const Member& law) const;
   /// Whether the present law explains the rows after reversals, and that of `other` in its place does not.
   /// `other`: fitted to the rows that count, and like the estimate but for the law.
   bool is_refuted(size_t member, const Candidate& law, const Estimate& other);
@@ -35,7 +37,6 @@ class FrictionAtReversals {
   };
   Rows on_all_rows(const std::vector<Member>& members, int iterations);
   Rows with_law(size_t member, const Candidate& law);
-  bool is_resolved(const Member& law) const;
   double gain(const Rows& from, const Rows& to) const;
   bool explains(const Rows& one, const Rows& other, double least_gain) const;
 

@@ -45,7 +45,10 @@ bool Rivals::is_promised(const Proposal& proposal, const Estimate& other) const 
 
 std::optional<Estimate> Rivals::better(double doubt) {
   const auto at_limit = [](const Estimate& e) { return std::ranges::count_if(e.members, is_at_limit); };
+  const auto is_blurred = [&](const Member& m) { return !at_reversals_.is_resolved(m); };
+  const auto blurred = [&](const Estimate& e) { return std::ranges::count_if(e.members, is_blurred); };
   if (!best_.is_valid || at_limit(best_) > at_limit(estimate_) || is_spent()) return {};
+  if (blurred(best_) > blurred(estimate_)) return {};  // it is declared
   maximise(trials_, best_);
   const double gain = criterion_of(estimate_) - criterion_of(best_);
   return gain + preference(trials_, best_.members, estimate_.members) >
