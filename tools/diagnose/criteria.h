@@ -72,8 +72,10 @@ constexpr double usual_white_noise = 0.01, least_search_noise = 0.005, most_sear
 constexpr double loud_noise = 0.1, most_portmanteau_of_noise_seen = 120;
 /// [white force] Slow force of an amplifier.
 constexpr double usual_slow_noise = 0.3;
-/// [white force] A larger slow force is not noise but something that the model lacks.
-constexpr double most_slow_noise = 0.8;
+/// [white force; density of the white force at zero frequency] A slow force that exceeds both is not noise
+/// but something that the model lacks. The second counts where a sample is a large part of its memory: noise
+/// of an amplifier has about 5 at any rate.
+constexpr double most_slow_noise = 0.8, most_slow_density = 15;
 /// [sample times] A force that is forgotten sooner is noise, however large: the ripple of an amplifier. What
 /// a model lacks lasts as long as the motion, of which a record shows more samples.
 constexpr double quick_noise = 3;

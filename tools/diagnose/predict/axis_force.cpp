@@ -131,10 +131,12 @@ double AxisModel::net_force_at_rest(double position, double velocity, double inp
   return net_force_along(position, velocity, input, force);
 }
 
-/// The trapezoidal rule over the steps of the sample that begins now: behind a fast pole the force at the
-/// instant of a row is still that of the input before it.
+/// Over the sample that begins now: what has changed the velocity or, while the inertia is not known, by the
+/// trapezoidal rule over its steps. Behind a fast pole the force at the instant of a row is still that of the
+/// input before it.
 double AxisModel::mean_over_sample(double force_now, double input, double push) {
   const int64_t begin = run_->now().tick, end = begin + std::max<int64_t>(1, std::llround(sample_ticks_));
+  const double at_first = velocity();
   double sum = 0, before = force_now;
   while (run_->now().tick < end) {
     const int64_t from = run_->now().tick;
@@ -143,6 +145,7 @@ double AxisModel::mean_over_sample(double force_now, double input, double push) 
     sum += double(run_->now().tick - from) * (before + after) / 2;
     before = after;
   }
+  if (nominal_inertia_ > 0) return nominal_inertia_ * (velocity() - at_first) / record_.sample_time - push;
   return sum / double(run_->now().tick - begin);
 }
 

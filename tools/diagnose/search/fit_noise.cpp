@@ -61,15 +61,19 @@ struct Objective {
   }
 };
 
+/// Of a slow force: spectral density at zero frequency over variance, in sample times.
+double samples_alike(const Noise& noise) { return (1 + noise.memory) / (1 - noise.memory); }
+
 bool is_slow_force_noise(const Noise& noise) {
-  return is_soon_forgotten(noise) || noise.slow() <= criteria::most_slow_noise * noise.white;
+  const double slow = noise.slow() / noise.white;
+  return is_soon_forgotten(noise) || slow <= criteria::most_slow_noise ||
+         slow * slow * samples_alike(noise) <= criteria::most_slow_density;
 }
 
 /// All of a slow force counted as white noise that does as much to a slow motion. Empty: it predicts worse.
 std::optional<Noise> as_white(const Trials& trials, const std::vector<Fitted>& fitted, const Noise& noise) {
   Noise white = noise;
-  const double spread = (1 + noise.memory) / (1 - noise.memory);  // spectral density at zero over variance
-  white.white = std::hypot(noise.white, noise.slow() * std::sqrt(spread));
+  white.white = std::hypot(noise.white, noise.slow() * std::sqrt(samples_alike(noise)));
   white.step = criteria::next_to_no_slow_noise * white.white * std::sqrt(1 - noise.memory * noise.memory);
   white = fit_noise(trials, fitted, white, FreeNoise::white);
   Objective objective{trials, fitted, {FreeNoise::all, noise}};
