@@ -184,5 +184,19 @@ TEST(Acceptance, PitchesOfARotaryAxisAreWholePartsOfATurn) {
   EXPECT_NEAR(free->value, turn / 240.5, 1e-5);
 }
 
+/// Less damping than stated, and a delay. Without the delay the damping would have to be negative, and no
+/// block has that: this says nothing against the two together.
+TEST(Acceptance, AStepOfTheStaircaseThatCannotBeRunRefusesNoEffect) {
+  HiddenAxis axis;
+  Physics truth = axis.nominal();
+  truth.added_damping_n_s_per_m = -2.4, truth.delay_s = 4e-3;
+  WantedMotion motion;
+  motion.rest(0.2);
+  for (int i = 0; i < 60; ++i) motion.stroke(i % 2 ? -0.02 : 0.02, i % 4 < 2 ? 0.5 : 0.3, 0.05);
+  const Diagnosis d = diagnose(axis.diagram(), {axis.record("record", truth, motion)}, {});
+  EXPECT_THAT(names(d), testing::UnorderedElementsAre("input_delay", "viscous_friction")) << to_text(d);
+  EXPECT_THAT(d.refused, IsEmpty());
+}
+
 }  // namespace
 }  // namespace loopwright::acceptance_test

@@ -28,21 +28,28 @@ class Judge {
         const LoadOptions& load)
       : trials_(trials), inverse_(inverse), improver_(improver), load_(load) {}
 
+  /// A step of the staircase that cannot be run counts as one that diverges: where an effect is still
+  /// missing, another is fitted in its place. The last one must run.
   void run(Acceptance& state) {
-    state.runs.clear(), state.why_not_run.clear();
-    try {
-      for (const std::vector<Member>& members : state.staircase.members)
-        state.runs.push_back(
-            run_freely(members, improver_, load_, trials_, inverse_, state.conclusion.estimate.noise));
-    } catch (const InputError& error) {
-      state.why_not_run = "the diagram with the effects cannot be run: " + error.problems.text();
+    state.runs.clear(), state.why_not_run.clear(), runs_until_ = 0;
+    for (size_t i = 0; i < state.staircase.members.size(); ++i) {
+      state.runs.push_back(diverged());
+      try {
+        state.runs.back() = run_freely(state.staircase.members[i], improver_, load_, trials_, inverse_,
+                                       state.conclusion.estimate.noise);
+        state.why_not_run.clear(), runs_until_ = i + 1;
+      } catch (const InputError& error) {
+        state.why_not_run = "the diagram with the effects cannot be run: " + error.problems.text();
+      }
     }
   }
 
   std::optional<Refusal> refused(const Acceptance& state) {
     // A block has limits too: with less than no damping there is no such machine.
-    if (const size_t at = state.runs.size(); !state.why_not_run.empty() && at > 0)
-      return Refusal{state.staircase.added[at].front(), "the diagram cannot be run with it"};
+    if (!state.why_not_run.empty()) {
+      if (runs_until_ == 0) return {};
+      return Refusal{state.staircase.added[runs_until_].front(), "the diagram cannot be run with it"};
+    }
     for (size_t i = 1; i < state.runs.size(); ++i)
       if (is_worse(state.runs[i - 1], state.runs[i]) && is_judged_by_simulation(state, i) &&
           is_worse_without(state, state.staircase.added[i].front()))
@@ -94,10 +101,13 @@ class Judge {
     try {
       return run_freely(members, improver_, load_, trials_, inverse_, noise);
     } catch (const InputError&) {
-      FreeRun none;
-      none.diverged = true;
-      return none;
+      return diverged();
     }
+  }
+  static FreeRun diverged() {
+    FreeRun none;
+    none.diverged = true;
+    return none;
   }
   /// A load that moves by itself may begin a window wrongly. A late input moves it as it moves the motor.
   static bool is_judged_by_simulation(const Acceptance& state, size_t step) {
@@ -146,6 +156,7 @@ class Judge {
   const std::vector<InverseDynamics>& inverse_;
   const Improver& improver_;
   const LoadOptions& load_;
+  size_t runs_until_ = 0;  ///< steps, of which the last one runs
 };
 
 }  // namespace
