@@ -205,14 +205,18 @@ bool AxisModel::holds_at_rest(double small_force) {
   start(position ? std::optional(position->value[0]) : std::nullopt, 0);
   if (net_force(0, small_force) - net_force(0, -small_force) < small_force) return true;
   if (!position) return false;
-  // What yields before it slides lets every force move the axis, but at the same place it holds back those
-  // that come from below and those that come from above.
+  // What yields before it slides, or feels only some of the forces, lets every force move the axis. But at
+  // the same place it holds back those that come from below and those that come from above, at any speed.
   const auto [low, high] = std::ranges::minmax(position->value);
-  const double middle = (low + high) / 2, creep = 1e-9 * (high - low);  // per second
-  net_force_along(low, creep, 0, 0);
-  const double from_below = net_force_along(middle, creep, 0, 0);
-  net_force_along(high, -creep, 0, 0);
-  return net_force_along(middle, -creep, 0, 0) - from_below > small_force;
+  const double middle = (low + high) / 2;
+  const auto held_back = [&](double speed) {
+    net_force_along(low, speed, 0, 0);
+    const double from_below = net_force_along(middle, speed, 0, 0);
+    net_force_along(high, -speed, 0, 0);
+    return net_force_along(middle, -speed, 0, 0) - from_below;
+  };
+  const double slow = 0.1 * (high - low);                          // per second
+  return 2 * held_back(slow) - held_back(2 * slow) > small_force;  // without what grows with the speed
 }
 
 }  // namespace loopwright::diagnosis
