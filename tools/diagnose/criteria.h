@@ -110,9 +110,9 @@ constexpr double most_portmanteau_of_counted = 150;
 constexpr double most_portmanteau_per_row = 1;
 /// [what counts add] A line of their beat that is a fifth stronger adds half as much again.
 constexpr double reach_of_counts = 1.5;
-/// [force of the input, rms] A smaller force that remains, below 80 Hz, does not matter: a simulated record
-/// has no noise beside which the rest of a model's error could be judged.
-constexpr double negligible_force = 1e-3;
+/// [force of the input: rms, or what it exceeds in all but this share of the motion if that is less] A
+/// smaller force that remains, below 80 Hz, does not matter: without noise a model's error cannot be judged.
+constexpr double negligible_force = 1e-3, usual_share = 0.9;
 
 // Effects.
 

@@ -26,6 +26,21 @@ TEST(Rest, AnAxisIsHeldByDryFrictionThatYieldsTooButNotByViscousFriction) {
                      "in": {"position": "mass.position", "velocity": "mass.velocity"}})"));
 }
 
+/// A reference that leaps makes a controller kick: for a moment with thousands of newtons, beside which a force
+/// that drives the axis all the time looks small.
+TEST(Rest, KicksOfAControllerHideNoFriction) {
+  HiddenMachine machine;
+  machine.force_noise = 0.06;
+  HiddenAxis axis(machine);
+  Physics truth = axis.nominal();
+  truth.coulomb_n = 0.15;
+  WantedMotion motion;
+  motion.rest(0.3);
+  for (int i = 0; i < 16; ++i) motion.stroke(i % 2 ? -0.3 : 0.3, 0.5, 1.2);  // the ramps overlap: leaps
+  const Diagnosis d = diagnose(axis.diagram(), {axis.record("record", truth, motion)}, {});
+  EXPECT_NE(d.verdict, Verdict::nothing_missing) << to_text(d);
+}
+
 /// At each end the axis turns so slowly that it seems to rest for a tenth of a second, and moves there as a
 /// free one does.
 TEST(Rest, AnAxisThatTurnsSlowlyContradictsNoFriction) {
@@ -34,7 +49,7 @@ TEST(Rest, AnAxisThatTurnsSlowlyContradictsNoFriction) {
   truth.coulomb_n = 0.05;
   WantedMotion motion;
   motion.rest(0.3);
-  for (int i = 0; i < 16; ++i) motion.stroke(i % 2 ? -0.3 : 0.3, i % 4 < 2 ? 0.5 : 0.2, 0.8);
+  for (int i = 0; i < 16; ++i) motion.stroke(i % 2 ? -0.4 : 0.4, i % 4 < 2 ? 0.5 : 0.3, 0.8);
   const Diagnosis d = diagnose(axis.diagram(), {axis.record("record", truth, motion)}, {});
   EXPECT_THAT(names(d), testing::ElementsAre("coulomb_friction")) << to_text(d);
   EXPECT_EQ(d.verdict, Verdict::explained) << to_text(d);

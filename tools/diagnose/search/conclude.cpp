@@ -281,7 +281,7 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
   const double n = double(fitted_numbers(trials));
   // A small force below 80 Hz says nothing about a faster one.
   const bool is_vibration =
-      noise.white > criteria::negligible_force * trials.force_rms &&
+      noise.white > criteria::negligible_force * trials.usual_force &&
       result.portmanteau_beside_counts() > criteria::most_portmanteau_per_row * n / double(trials.ports());
   result.is_negligible = !is_vibration && is_negligible(trials, estimate.members);
   const std::vector<Shape> periodic = periodic_shapes(trials, estimate, candidates, 1);

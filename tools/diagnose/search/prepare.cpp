@@ -142,6 +142,18 @@ void reject_without_fitted_rows(const Trials& trials) {
   throw InputError(std::move(problems));
 }
 
+/// Kicks of a controller that is given a step are a large part of the rms, and no part of the motion.
+double usual_force(const Trials& trials) {
+  std::vector<double> sizes;
+  for (const Trial& trial : trials.list) {
+    const std::vector<double>& force = trial.model->driving_force();
+    for (size_t k = 0; k < force.size(); ++k)
+      if (trial.moving[k]) sizes.push_back(std::abs(force[k]));
+  }
+  return sizes.empty() ? trials.force_rms
+                       : std::min(trials.force_rms, quantile(std::move(sizes), criteria::usual_share));
+}
+
 /// The noise of a motion and that of a map are not related.
 void reject_mixed(const Trials& trials) {
   Problems problems;
@@ -189,6 +201,7 @@ Trials prepare(const std::string& diagram, const std::vector<std::string>& exper
   trials.nominal_holds = std::ranges::any_of(
       trials.list, [&](Trial& trial) { return trial.model->holds_at_rest(1e-3 * trials.force_rms); });
   std::vector<Fitted> nominal = mark_usable(trials);
+  trials.usual_force = usual_force(trials);
   trials.noise = fit_noise(trials, nominal, trials.noise, FreeNoise::with_random_walk);
   nominal = run_members(trials, {}, {}, trials.noise);
   look_where_noise_enters(trials, nominal);

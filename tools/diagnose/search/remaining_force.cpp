@@ -173,7 +173,7 @@ bool spoils_balance(const Trials& trials, const Estimate& estimate, size_t membe
 bool is_negligible(const Trials& trials, const std::vector<Member>& members) {
   if (!trials.inverse) return false;
   const ResidualSize left = residual_size(trials, *trials.inverse, members);
-  return std::max(left.fitted, left.held_out) <= criteria::negligible_force * trials.force_rms;
+  return std::max(left.fitted, left.held_out) <= criteria::negligible_force * trials.usual_force;
 }
 
 namespace {
