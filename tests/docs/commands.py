@@ -41,6 +41,8 @@ SHORTENED = [
     ("tools/hidden_effects.sh 20", "tools/hidden_effects.sh 2", "2 scenarios instead of 20"),
     ("tools/conditions.sh 500", "tools/conditions.sh 2", "2 scenarios instead of 500"),
     ("tools/conditions.sh 90", "tools/conditions.sh 2", "2 scenarios instead of 90"),
+    ("tools/sensitivity.sh --without-roles", "tools/sensitivity.sh --without-roles --seeds 120007 --thresholds least_share_of_site",
+     "one record and one threshold"),
     ("tools/sensitivity.sh", "tools/sensitivity.sh --seeds 100000 --thresholds judged_row_s", "one record and one threshold"),
     ("tools/any_diagram.sh 31", "tools/any_diagram.sh 2", "2 scenarios instead of 31"),
     ("--evaluations 300", "--evaluations 20", "20 runs of the search instead of 300"),
