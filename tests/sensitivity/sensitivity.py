@@ -13,8 +13,8 @@ sys.path[:0] = [str(HERE), str(HERE.parent / "hidden_effects")]
 import score  # noqa: E402
 import variable_criteria  # noqa: E402
 
-# Quick development records of the benchmark of other conditions, each of another kind, a third of them clean; and of the benchmark of
-# any diagram, a third of them clean, a third with a wrong parameter.
+# Quick development records of the benchmark of other conditions, a quarter of them clean; and of the benchmark of any diagram, three of
+# them clean, three with a wrong parameter.
 WITH_ROLES = (901021, 901022, 901024, 901027, 901028, 901033, 901035, 901039, 901043, 901046, 901047, 901052, 901080, 901083, 901084,
               901092, 901098, 901118, 901060, 901064, 901074, 901076, 901079, 901126)
 WITHOUT_ROLES = (120000, 120003, 120007, 120012, 120019, 120017, 120022, 120024, 120025, 120029)

@@ -9,8 +9,8 @@
 namespace loopwright::slow_noise_test {
 namespace {
 
-/// 0.5 kg with 7 N s/m at 200 Hz. A force of 18 ms is larger than the white one, which at this rate is small:
-/// the density of the two is as at 1 kHz, where it is a third.
+/// 0.5 kg with 7 N s/m at 200 Hz. A slow force of 18 ms is larger than the white one, which is small at this
+/// rate; its density at zero frequency is nine times that of the white one.
 std::string record() {
   constexpr double sample_time = 5e-3, mass = 0.5, damping = 7, white = 0.03, slow = 0.033, time = 0.018,
                    count = 1.5e-7;

@@ -12,7 +12,8 @@ namespace loopwright::diagnosis {
 ///   something in it holds:     n/12 ln(1 + d / s) where the second difference over twice 6 ms of
 ///                              the position has the mean square d + s (median of means over 36 ms), s is the
 ///                              sensor's (the same from sample to sample), and d is about what noise alone
-///                              causes on a free axis: nothing held it
+///                              causes on a free axis: nothing held it. Where it moves on in one direction
+///                              it slides, and says nothing
 /// If the set or the user's own diagram yields at rest, both are undecided: 0. Of a rest, what happens after
 /// `least_rest_s` counts: at first an axis that turns slowly seems to rest.
 double against_at_rest(const Trials& trials, const std::vector<Member>& members,
