@@ -14,8 +14,8 @@ namespace loopwright::diagnosis {
 ///                              sensor's (the same from sample to sample), and d is about what noise alone
 ///                              causes on a free axis: nothing held it. Where it moves on in one direction
 ///                              it slides, and says nothing
-/// If the set yields at rest, or the user's own diagram has dry friction, both are undecided: 0. Of a rest, what
-/// happens after `least_rest_s` counts: at first an axis that turns slowly seems to rest.
+/// If the set yields at rest, or the user's own diagram has dry friction, both are undecided: 0. Of a rest,
+/// what happens after `least_rest_s` counts: at first an axis that turns slowly seems to rest.
 double against_at_rest(const Trials& trials, const std::vector<Member>& members,
                        const std::vector<Fitted>& fitted, const Noise& noise, double least_rest_s = 0);
 
