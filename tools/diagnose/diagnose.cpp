@@ -292,7 +292,7 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   if (input_noise)
     result.findings.push_back(input_is_noisy(trials, *input_noise));
   else if (const auto noise =
-               noise_instead_of_late_input(trials, accepted.conclusion, catalogue.candidates.size()))
+               noise_instead_of_late_input(trials, accepted.conclusion.estimate, catalogue.candidates.size()))
     return diagnose_to_the_end(diagram, experiments, options, noise);
   if (trials.work->was_short()) result.findings.push_back(ended_at_limit(most_work));
   const Conclusion& conclusion = accepted.conclusion;

@@ -303,7 +303,7 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
   if (!instead) instead = simplified(rivals, estimate.members, exchanges);
   SecondLook seen;
   if (!instead) {
-    seen = look_again(trials, estimate, evidence, candidates.size());
+    seen = look_again(trials, estimate, result.portmanteau_beside_counts(), evidence, candidates.size());
     if (rounds > 0 && (instead = std::move(seen.better)))
       result.trail.push_back("with the noise known, more is seen");
   }

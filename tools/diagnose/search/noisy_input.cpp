@@ -77,9 +77,8 @@ class Smoothed {
 
 }  // namespace
 
-std::optional<InputNoise> noise_instead_of_late_input(Trials& trials, const Conclusion& conclusion,
+std::optional<InputNoise> noise_instead_of_late_input(Trials& trials, const Estimate& found,
                                                       size_t catalogue) {
-  const Estimate& found = conclusion.estimate;
   std::vector<Member> others = found.members;
   if (trials.has_map() || std::erase_if(others, is_late) == 0) return {};
   std::erase_if(others, is_own_load);  // which a wrong lag calls for

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/noisy_input.h"
 #include "tools/diagnose/search/remaining_force.h"
 #include "tools/diagnose/search/weight.h"
-#include "tools/diagnose/search/whiteness.h"
 
 namespace loopwright::diagnosis {
 
@@ -35,16 +35,26 @@ bool is_error_of_model(const Trials& trials, const Estimate& trial, const Weight
   return weight.wald < error * error * double(fitted_numbers(trials));
 }
 
+bool is_beat_of_counts(const Weight& weight) {
+  return weight.wald < criteria::clear_of_counts * weight.counts;
+}
+
+/// A small delay or lag, as which the answer of a controller to noise appears.
+bool is_answer_to_noise(Trials& trials, const Estimate& trial, size_t catalogue) {
+  return is_late_input(*trial.members.back().candidate) &&
+         noise_instead_of_late_input(trials, trial, catalogue).has_value();
+}
+
 }  // namespace
 
-SecondLook look_again(Trials& trials, const Estimate& estimate, const Evidence& evidence, size_t catalogue) {
+SecondLook look_again(Trials& trials, const Estimate& estimate, double portmanteau, const Evidence& evidence,
+                      size_t catalogue) {
   constexpr size_t most_tried = 3;
   constexpr int iterations = 8;
   SecondLook result;
   // In noise that is assumed, or errors that are not white, small effects are the errors of the model.
   const bool is_noisy = estimate.noise.white > 2 * criteria::least_white_noise * trials.force_rms;
-  if (!is_noisy || portmanteau(trials, *estimate.fitted) > criteria::most_portmanteau_of_counted)
-    return result;
+  if (!is_noisy || portmanteau > criteria::most_portmanteau_of_counted) return result;
   const double least = std::max(criteria::least_gain, criteria::least_gain_per_row * judged_numbers(trials));
   std::vector<Proposal> proposals = evidence.extensions(double(fitted_numbers(trials)));
   std::erase_if(proposals, [&](const Proposal& p) {
@@ -66,11 +76,11 @@ SecondLook look_again(Trials& trials, const Estimate& estimate, const Evidence& 
       result.better = std::move(trial);
       return result;
     }
-    // The answer of a controller to noise resembles a small delay.
     const Member& small = trial.members.back();
-    if (is_own_load(small) || is_late_input(*small.candidate) || is_error_of_model(trials, trial, weight))
+    if (is_own_load(small) || is_error_of_model(trials, trial, weight) || is_beat_of_counts(weight) ||
+        is_answer_to_noise(trials, trial, catalogue))
       continue;
-    result.small.push_back({trial.members.back().candidate, gain, weight.force_rms});
+    result.small.push_back({small.candidate, gain, weight.force_rms});
   }
   std::ranges::stable_sort(result.small, std::ranges::greater{}, &SmallEffect::gain);
   return result;

@@ -21,7 +21,9 @@ struct SecondLook {
   std::vector<SmallEffect> small;  ///< best first; those that do nearly as well are other names of the first
 };
 
-/// `evidence`: of the estimate, with the shapes of all candidates.
-SecondLook look_again(Trials& trials, const Estimate& estimate, const Evidence& evidence, size_t catalogue);
+/// `portmanteau`: of the estimate, without what the counts of the sensor add; `evidence`: of the estimate,
+/// with the shapes of all candidates.
+SecondLook look_again(Trials& trials, const Estimate& estimate, double portmanteau, const Evidence& evidence,
+                      size_t catalogue);
 
 }  // namespace loopwright::diagnosis
