@@ -72,7 +72,8 @@ void add_axes(Comparison& comparison, const Experiment& experiment) {
     std::vector<double> values;
     std::string source = "simulated", unit;
     for (const ComparedSignal& signal : comparison.signals)
-      if (signal.name == port) values = signal.measured, source = "measured", unit = signal.unit;
+      if (signal.name == port && signal.rows.are_all())
+        values = signal.measured, source = "measured", unit = signal.unit;
     if (const Column* column = comparison.run.recording.find(port); column && values.empty())
       values = at_times(comparison.run.recording, *column, comparison.time), unit = column->unit;
     (role == "position" ? comparison.position : comparison.velocity) = values;
@@ -171,14 +172,15 @@ Comparison compare_signals_of(const std::string& diagram_path, const Experiment&
   for (const RecordedSignal& compared : experiment.compared) {
     const Column& measured = *experiment.data.find(compared.port);
     ComparedSignal signal;
-    signal.name = compared.port, signal.unit = measured.unit, signal.measured = measured.values,
-    signal.resolution = compared.resolution;
-    signal.simulated =
-        at_times(comparison.run.recording, *comparison.run.recording.find(compared.port), comparison.time);
+    signal.name = compared.port, signal.unit = measured.unit, signal.resolution = compared.resolution;
+    signal.rows = compared.rows, signal.measured = picked(compared.rows, measured.values);
+    signal.simulated = at_times(comparison.run.recording, *comparison.run.recording.find(compared.port),
+                                picked(compared.rows, comparison.time));
     measure(signal, experiment.hold_out_fraction);
     comparison.signals.push_back(std::move(signal));
   }
-  const size_t reached = comparison.signals.front().simulated.size();
+  const Recording& simulated = comparison.run.recording;
+  const size_t reached = at_times(simulated, simulated.columns[0], comparison.time).size();
   comparison.lacks_held_out = experiment.hold_out_fraction > 0 && reached < comparison.time.size();
   comparison.time.resize(reached);
   add_axes(comparison, experiment);

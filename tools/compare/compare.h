@@ -8,10 +8,12 @@
 
 namespace loopwright {
 
-/// One compared signal: measured, simulated, and the difference simulated - measured, at the recorded times.
+/// One compared signal: measured, simulated, and the difference simulated - measured, at the recorded times
+/// that have a reading of it.
 struct ComparedSignal {
   std::string name, unit;  ///< SI
   std::vector<double> measured, simulated, error;
+  SlowerRows rows;  ///< of the record, at which these are
   double rmse = 0, max_abs = 0, mean = 0;
   double relative_percent = 0;  ///< 100 · rms(error) / rms(measured)
   double fit_percent = 0;       ///< 100 · (1 - ‖y - ŷ‖ / ‖y - mean y‖)
@@ -42,6 +44,7 @@ struct Comparison {
   std::vector<double> time;     ///< s
   int64_t missing_samples = 0;  ///< between rows of the recording: a held input was held there
   std::vector<ComparedSignal> signals;
+  /// Of each row: of a slower signal they are simulated.
   std::vector<double> position, velocity;  ///< measured or simulated, according to the roles; empty: unknown
   std::string position_unit, velocity_unit, position_source, velocity_source;
   RunResult run;

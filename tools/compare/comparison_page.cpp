@@ -22,11 +22,9 @@ report::Plot scatter(const ComparedSignal& s, std::string title, std::string axi
   plot.title = std::move(title);
   plot.x = {std::move(axis), shown_unit(unit), false};
   plot.y = {"Error of " + s.name, shown_unit(s.unit), false};
-  plot.series.push_back({"simulated − measured",
-                         {x.begin(), x.begin() + std::ptrdiff_t(std::min(x.size(), s.error.size()))},
-                         s.error,
-                         Series::Shape::points});
-  plot.series[0].y.resize(plot.series[0].x.size());
+  plot.series.push_back({"simulated − measured", picked(s.rows, x), s.error, Series::Shape::points});
+  Series& points = plot.series[0];
+  points.x.resize(std::min(points.x.size(), points.y.size())), points.y.resize(points.x.size());
   return plot;
 }
 
@@ -34,8 +32,9 @@ report::Plot overlay(const Comparison& c, const ComparedSignal& s) {
   report::Plot plot;
   plot.title = "Measured and simulated " + s.name;
   plot.x = {"Time", "s", false}, plot.y = {s.name, shown_unit(s.unit), false}, plot.group = "time";
-  plot.series = {{"measured", c.time, s.measured, Series::Shape::line},
-                 {"simulated", c.time, s.simulated, Series::Shape::line}};
+  const std::vector<double> time = picked(s.rows, c.time);
+  plot.series = {{"measured", time, s.measured, Series::Shape::line},
+                 {"simulated", time, s.simulated, Series::Shape::line}};
   return plot;
 }
 
@@ -81,7 +80,7 @@ report::Section signal_section(const Comparison& c, const ComparedSignal& s) {
   section.items.push_back(std::move(numbers));
   report::Plot error;
   error.x = {"Time", "s", false}, error.y = {"Error", shown_unit(s.unit), false}, error.group = "time";
-  error.series = {{"simulated − measured", c.time, s.error, Series::Shape::line}};
+  error.series = {{"simulated − measured", picked(s.rows, c.time), s.error, Series::Shape::line}};
   if (s.resolution > 0)
     error.caption = fmt::format("The sensor resolves {}.", report::shown(s.resolution, s.unit));
   section.items.push_back(overlay(c, s));

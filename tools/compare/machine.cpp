@@ -29,36 +29,50 @@ const RecordedSignal* recorded(const Experiment& experiment, const Plan& plan, c
   return nullptr;
 }
 
-bool measure_motion(const Experiment& experiment, const Plan& plan, MeasuredMotion& m, std::string& why) {
+/// The rows of the motion; empty: `why` says what is lacking.
+std::optional<SlowerRows> measure_motion(const Experiment& experiment, const Plan& plan, MeasuredMotion& m,
+                                         std::string& why) {
   const std::string* position = port_of(experiment, "position");
   const std::string* velocity = port_of(experiment, "velocity");
   const RecordedSignal* x = position ? recorded(experiment, plan, *position, false) : nullptr;
   const RecordedSignal* v = velocity ? recorded(experiment, plan, *velocity, false) : nullptr;
   if (!x && !v) {
     why = "neither the position nor the velocity of the roles is compared with a measurement";
-    return false;
+    return {};
   }
-  if (experiment.data.rows() < 50) {
+  const SlowerRows rows = (x ? x : v)->rows;
+  if (experiment.data.rows() < 50 * rows.every) {
     why = "the record is too short";
-    return false;
+    return {};
   }
   why = too_many_missing(experiment);
-  if (!why.empty()) return false;
+  if (!why.empty()) return {};
   const EvenGrid grid(experiment);
-  m.start = grid.start(), m.sample_time = grid.sample_time(), m.missing = grid.missing();
-  for (size_t k = 0; k < grid.rows(); ++k) m.time.push_back(m.start + double(k) * m.sample_time);
+  if (!rows.are_all() && !(grid.missing().empty() && grid.duration().empty())) {
+    why = fmt::format("\"{}\" has a reading in one of {} rows, and these are not evenly in time",
+                      (x ? x : v)->port, rows.every);
+    return {};
+  }
+  m.start = grid.start() + double(rows.first) * grid.sample_time();
+  m.sample_time = double(rows.every) * grid.sample_time(), m.missing = grid.missing();
+  const auto readings = [&](const RecordedSignal& of) {
+    return picked(rows,
+                  at_even_instants(grid.measured(experiment.data.find(of.port)->values), grid.duration()));
+  };
   if (x) {
-    m.raw_position = at_even_instants(grid.measured(experiment.data.find(x->port)->values), grid.duration());
+    m.raw_position = readings(*x);
     m.position_unit = experiment.data.find(x->port)->unit;
   } else {
-    m.velocity = at_even_instants(grid.measured(experiment.data.find(v->port)->values), grid.duration());
+    m.velocity = readings(*v);
     const std::string& unit = experiment.data.find(v->port)->unit;
     m.position_unit = unit == "Hz"           ? "1"
                       : unit.ends_with("/s") ? unit.substr(0, unit.size() - 2)
                                              : unit + "*s";
   }
+  for (size_t k = 0; k < (x ? m.raw_position : m.velocity).size(); ++k)
+    m.time.push_back(m.start + double(k) * m.sample_time);
   smooth_motion(m);
-  return true;
+  return rows;
 }
 
 /// The solver for the record: fixed steps that divide a sample.
@@ -259,7 +273,8 @@ std::optional<Machine> find_machine(const std::string& diagram, const Experiment
     return {};
   }
   Machine machine;
-  if (!measure_motion(experiment, *plan, machine.motion, why)) return {};
+  const auto rows = measure_motion(experiment, *plan, machine.motion, why);
+  if (!rows) return {};
   const bool is_driven =
       std::ranges::any_of(experiment.drives, [&](const auto& d) { return d.port == *input_port; });
   const RecordedSignal* input = recorded(experiment, *plan, *input_port, true);
@@ -269,10 +284,14 @@ std::optional<Machine> find_machine(const std::string& diagram, const Experiment
         *input_port);
     return {};
   }
+  if (!input->rows.are_all()) {
+    why = fmt::format("the input \"{}\" was recorded in one of {} rows only", *input_port, input->rows.every);
+    return {};
+  }
   const EvenGrid grid(experiment);
   const std::vector<double>& command = experiment.data.find(input->port)->values;
-  machine.motion.input =
-      mean_over_even_samples(grid.driving(command, input->between_rows).mean, grid.duration());
+  machine.motion.input = means_from(
+      *rows, mean_over_even_samples(grid.driving(command, input->between_rows).mean, grid.duration()));
   machine.motion.input_unit = experiment.data.find(input->port)->unit;
   machine.plan =
       driven_plan(diagram, experiment, options, *input, *input_port, is_driven, machine.motion, why);

@@ -178,7 +178,10 @@ class Loader {
     leave_out_repeats(file, data, *member);
     read_time(file, data, *member);
     for (auto* list : {&result_->drives, &result_->compared})
-      for (RecordedSignal& signal : *list) add_column(data, signal);
+      for (RecordedSignal& signal : *list) {
+        const bool may_be_slower = list == &result_->compared && !result_->is_map;
+        if (may_be_slower || !is_refused_as_slower(data, signal)) add_column(data, signal);
+      }
   }
   /// A row that a logger wrote twice, with the same time and the same numbers, is read once.
   void leave_out_repeats(const Value& file, Recording& data, const Value::Member& names_data) {
@@ -263,8 +266,10 @@ class Loader {
   }
   void add_column(const Recording& data, RecordedSignal& signal) {
     if (signal.column.empty()) return;  // already reported
-    if (is_refused_as_slower(data, signal)) return;
-    const Column* found = find_column(data, signal.column, error_at(signal.place, signal.pointer));
+    const Column* found = data.find(signal.column);
+    if (found) signal.rows = rows_of(*found);
+    if (signal.rows.are_all())
+      found = find_column(data, signal.column, error_at(signal.place, signal.pointer));
     if (!found) return;
     const auto unit = unit_of(*found, signal.unit, error_at(signal.place, signal.pointer));
     if (!unit) return;
@@ -275,17 +280,15 @@ class Loader {
     if (!result_->data.find(signal.port)) result_->data.columns.push_back(std::move(values));
   }
 
-  /// Between its samples a slower signal has no numbers, and what is written there instead would count as
-  /// measured.
+  /// What drives has a value at all times, and every balance of a map its numbers.
   bool is_refused_as_slower(const Recording& data, const RecordedSignal& signal) {
     const Column* column = data.find(signal.column);
-    if (!column || column->holes.count == 0) return false;
-    const auto [first, every] = rows_with_numbers(column->values);
+    const auto [first, every] = column ? rows_of(*column) : SlowerRows{};
     if (every == 1) return false;
     auto& p = problems_.error(signal.place, signal.pointer, "",
                               fmt::format("column \"{}\" has a number in one of {} rows, from row {} on",
                                           signal.column, every, first + 1));
-    p.expected = "signals of one rate: a number in every row that is used";
+    p.expected = "a number in every row that is used; what is compared may have a slower rate";
     p.found = column->origin;
     p.hint = fmt::format(
         "leave it out, or use the rows that have it: \"excerpt\": {{\"skip\": {}, \"decimate\": {}}}; inputs "

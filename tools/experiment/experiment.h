@@ -7,6 +7,7 @@
 #include "engine/record/recording.h"
 #include "engine/record/time_axis.h"
 #include "models/signal/between_rows.h"
+#include "tools/experiment/slower_rows.h"
 
 namespace loopwright {
 
@@ -17,6 +18,7 @@ struct RecordedSignal {
   std::string unit;       ///< as written in the experiment; numbers below are in SI
   double resolution = 0;  ///< SI; 0: not stated
   BetweenRows between_rows = BetweenRows::hold;
+  SlowerRows rows;  ///< of a compared signal: those with a reading; the numbers of all others are NaN
   Place place;
   std::string pointer;
 };

@@ -1,9 +1,16 @@
 #include "tools/experiment/repeated_records.h"
 #include <fmt/format.h>
 #include <algorithm>
+#include <cmath>
 
 namespace loopwright {
 namespace {
+
+/// Also where neither has a reading.
+bool are_same(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::ranges::equal(a, b,
+                            [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });
+}
 
 /// The same values of some compared signal, at the same times.
 bool have_same_rows(const Experiment& a, const Experiment& b) {
@@ -12,7 +19,7 @@ bool have_same_rows(const Experiment& a, const Experiment& b) {
   for (const RecordedSignal& signal : a.compared)
     for (const RecordedSignal& other : b.compared) {
       const Column *x = a.data.find(signal.port), *y = b.data.find(other.port);
-      if (x && y && x->values == y->values) return true;
+      if (x && y && are_same(x->values, y->values)) return true;
     }
   return false;
 }

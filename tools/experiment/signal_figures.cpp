@@ -127,18 +127,4 @@ size_t rows_between_changes(std::span<const double> value) {
   return changes < least_changes ? 0 : common;
 }
 
-SlowerRows rows_with_numbers(std::span<const double> value) {
-  constexpr size_t fewest = 5;  // fewer show no rate
-  const auto next = [&](size_t row) {
-    while (row < value.size() && std::isnan(value[row])) ++row;
-    return row;
-  };
-  const size_t first = next(0), second = next(first + 1);
-  const size_t every = second - first;
-  if (first + (fewest - 1) * every >= value.size()) return {};
-  for (size_t row = 0; row < value.size(); ++row)
-    if (std::isnan(value[row]) == (row % every == first % every)) return {};
-  return {first, every};
-}
-
 }  // namespace loopwright

@@ -35,11 +35,4 @@ double resolution_of(std::span<const double> value);
 /// 1 if it follows the rows; 0 if it changes less than ten times.
 size_t rows_between_changes(std::span<const double> value);
 
-/// The rows of a signal that is sampled more slowly than the others: numbers in every so many rows, and NaN
-/// in all between. `every` is 1 if its rows are not so.
-struct SlowerRows {
-  size_t first = 0, every = 1;
-};
-SlowerRows rows_with_numbers(std::span<const double> value);
-
 }  // namespace loopwright

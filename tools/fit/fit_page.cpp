@@ -93,13 +93,15 @@ report::Section record_section(const std::string& title, const FittedRecord& rec
   for (size_t s = 0; s < after.signals.size(); ++s) {
     const ComparedSignal &old = before.signals[s], &now = after.signals[s];
     report::Plot curves, errors;
+    const std::vector<double> time = picked(now.rows, after.time),
+                              time_before = picked(old.rows, before.time);
     curves.title = "Measured and simulated " + now.name;
     curves.x = errors.x = {"Time", "s", false};
     curves.y = {now.name, plain_unit(now.unit), false};
     curves.group = errors.group = title;
-    curves.series = {{"measured", after.time, now.measured},
-                     {"simulated before", before.time, old.simulated},
-                     {"simulated after", after.time, now.simulated}};
+    curves.series = {{"measured", time, now.measured},
+                     {"simulated before", time_before, old.simulated},
+                     {"simulated after", time, now.simulated}};
     errors.title = "Error of " + now.name;
     errors.y = {"Error", plain_unit(now.unit), false};
     errors.caption = "Simulated minus measured";
@@ -107,7 +109,7 @@ report::Section record_section(const std::string& title, const FittedRecord& rec
       errors.caption += fmt::format("; held-out rows at the end: {} rms before, {} after",
                                     report::shown(own.held_out_before, own.unit),
                                     report::shown(own.held_out_after, own.unit));
-    errors.series = {{"before", before.time, old.error}, {"after", after.time, now.error}};
+    errors.series = {{"before", time_before, old.error}, {"after", time, now.error}};
     for (report::Plot* plot : {&curves, &errors}) {
       for (report::Series& series : plot->series) series.x.resize(std::min(series.x.size(), series.y.size()));
       for (report::Series& series : plot->series) series.y.resize(series.x.size());

@@ -93,6 +93,8 @@ struct HiddenMachine {
   double unfelt_noise = 0;  ///< of the recorded input, that the machine does not feel
   /// What arrives of a command at a time; empty: all of it.
   std::function<double(double command, double time)> drive;
+  /// Of the rows, which have a reading; the cells of all others are empty.
+  size_t reads_position_every = 1, reads_velocity_every = 1;
   size_t loses_every = 0;  ///< one row in this number that a device would have lost; 0: none
   std::string position_port = "mass.position", velocity_port = "mass.velocity",
               damping_port = "viscous.force";
@@ -168,8 +170,9 @@ class HiddenAxis {
       const double felt = machine_.drive ? machine_.drive(force, t) : force;
       if (machine_.unfelt_noise > 0) force += machine_.unfelt_noise * random_normal(&random);
       if (t >= machine_.leaves_out_s && !is_lost)
-        out << fmt::format("{:.3f},{:.10g},{:.10g},{:.10g}\n", t, force / machine_.newtons_per_column, seen,
-                           velocity);
+        out << fmt::format("{:.3f},{:.10g},{},{}\n", t, force / machine_.newtons_per_column,
+                           k % machine_.reads_position_every == 0 ? fmt::format("{:.10g}", seen) : "",
+                           k % machine_.reads_velocity_every == 0 ? fmt::format("{:.10g}", velocity) : "");
       plant_sample(&plant, felt, scale * random_normal(&random) + slow);
       slow = memory * slow + 0.3 * scale * std::sqrt(1 - memory * memory) * random_normal(&random);
       square += force * force;

@@ -33,6 +33,7 @@ struct Plant {
   double sample_time = 0.01;
   double jitter = 0;  ///< [samples] of the time stamps, at which everything truly happens
   size_t rows = 2500;
+  std::vector<size_t> reads_every;  ///< [rows] of each output; empty: it is read in every row
   uint64_t seed = 1;
 };
 
@@ -82,8 +83,11 @@ class RecordedPlant {
       const double u = plant.input(t);
       text += fmt::format("\n{:.12g},{:.12g}", t, u);
       const Numbers y = plant.outputs(x);
-      for (size_t j = 0; j < y.size(); ++j)
-        text += fmt::format(",{:.12g}", y[j] + plant.measurement_noise[j] * normal(random));
+      for (size_t j = 0; j < y.size(); ++j) {
+        const double read = y[j] + plant.measurement_noise[j] * normal(random);
+        const bool is_read = plant.reads_every.empty() || k % plant.reads_every[j] == 0;
+        text += is_read ? fmt::format(",{:.12g}", read) : ",";
+      }
       Numbers w;
       for (double size : plant.process_noise) w.push_back(size * normal(random));
       for (size_t i = 0; i < slow.size(); ++i) {

@@ -93,7 +93,7 @@ TEST_F(Experiments, AUnitThatCannotBeReadIsAnError) {
 }
 
 /// x = t²/4, with a velocity in every third row alone.
-TEST_F(Experiments, ASlowerSignalIsRefusedWithTheRowsThatHaveIt) {
+TEST_F(Experiments, ASlowerSignalIsComparedAtItsOwnRows) {
   const auto record = [&](const char* none) {
     std::string text = "t,F,x_mm,v\n";
     for (int k = 0; k < 20; ++k) {
@@ -107,8 +107,14 @@ TEST_F(Experiments, ASlowerSignalIsRefusedWithTheRowsThatHaveIt) {
   for (const char* none : {"", "nan"}) {
     record(none);
     folder.experiment(drive, both);
-    expect_refusal({"column \"v\" has a number in one of 3 rows, from row 1 on",
-                    "e.json:", R"("excerpt": {"skip": 0, "decimate": 3})"});
+    const Comparison whole = folder.compared();
+    EXPECT_EQ(whole.time.size(), 20u);
+    const ComparedSignal &position = whole.signals[0], &velocity = whole.signals[1];
+    EXPECT_EQ(position.error.size(), 20u);
+    EXPECT_EQ(velocity.error.size(), 7u);
+    EXPECT_LT(position.rmse, 1e-9);
+    EXPECT_LT(velocity.max_abs, 1e-9);
+    EXPECT_NEAR(velocity.measured.back(), 0.05 * 18 / 2, 1e-12);
     folder.experiment(drive, both, R"(, "excerpt": {"skip": 0, "decimate": 3})");
     const Comparison c = folder.compared();
     EXPECT_EQ(c.time.size(), 7u);
@@ -116,6 +122,16 @@ TEST_F(Experiments, ASlowerSignalIsRefusedWithTheRowsThatHaveIt) {
     folder.experiment(drive, R"("stage.position": {"column": "x_mm", "unit": "mm"})");
     EXPECT_LT(folder.compared().signals[0].rmse, 1e-9) << "what is not used may have holes";
   }
+}
+
+/// What drives has a value at all times: nobody knows it between these rows.
+TEST_F(Experiments, ASlowerDriveIsRefusedWithTheRowsThatHaveIt) {
+  std::string text = "t,F,x_mm\n";
+  for (int k = 0; k < 20; ++k) text += fmt::format("{},{},{}\n", 0.05 * k, k % 3 == 1 ? "1" : "", k);
+  folder.with("data.csv", text);
+  folder.experiment(drive);
+  expect_refusal({"column \"F\" has a number in one of 3 rows, from row 2 on",
+                  "e.json:", R"("excerpt": {"skip": 1, "decimate": 3})"});
 }
 
 /// A single cell without a number is told at its place.

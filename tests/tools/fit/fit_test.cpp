@@ -60,7 +60,8 @@ class Fitted : public testing::Test {
       const UniformPair u = uniform_pair(seed, 1, uint64_t(k));
       const double noise = 1e-3 * std::sqrt(-2 * std::log(u.first)) * std::cos(2 * M_PI * u.second);
       if (loses_every > 0 && k % loses_every == loses_every - 1) continue;
-      text += fmt::format("{:.15g},{:.12g},{:.9g}\n", first_time + t / time_unit, std::sin(w * t), x + noise);
+      text += fmt::format("{:.15g},{:.12g},{}\n", first_time + t / time_unit, std::sin(w * t),
+                          k % reads_every == reads_every / 2 ? fmt::format("{:.9g}", x + noise) : "");
     }
     return text;
   }
@@ -72,6 +73,7 @@ class Fitted : public testing::Test {
   double time_unit = 1;  ///< s
   double first_time = 0;
   int loses_every = 0;  ///< rows; 0: none
+  int reads_every = 1;  ///< [rows] the sensor is read
   int last_row = 800;
 };
 
@@ -85,6 +87,20 @@ TEST_F(Fitted, LostRowsChangeNoParameterAndAreCounted) {
   EXPECT_NE(to_text(result).find("114 samples between the rows of the recording are missing"),
             std::string::npos)
       << to_text(result);
+}
+
+TEST_F(Fitted, AnOutputOfASlowerRateCountsWhereItIsRead) {
+  reads_every = 4;
+  record(1);
+  const Fit result = fitted({"mass", "damping"});
+  EXPECT_EQ(result.after[0].signals[0].error.size(), 200u);
+  for (const auto& [parameter, truth] : {std::pair(&result.parameters[0], 2.0), {&result.parameters[1], 3.0}}) {
+    EXPECT_NEAR(parameter->value, truth, 0.1);
+    EXPECT_LT(parameter->low, truth) << parameter->path;
+    EXPECT_GT(parameter->high, truth) << parameter->path;
+  }
+  EXPECT_NEAR(result.signals[0].after, 1e-3, 2e-4);
+  EXPECT_NEAR(result.signals[0].held_out_after, 1e-3, 3e-4);
 }
 
 TEST_F(Fitted, ThePageHasTheVerdictTheIntervalsAndTheCurves) {

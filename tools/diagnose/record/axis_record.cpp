@@ -65,6 +65,39 @@ void thin(AxisRecord& record, size_t every) {
   record.sample_time *= double(every), record.is_thinned = true;
 }
 
+/// The samples before the first reading are left out.
+void begin_at(AxisRecord& record, size_t first) {
+  const auto shorten = [&](auto& list) { list.erase(list.begin(), list.begin() + std::ptrdiff_t(first)); };
+  shorten(record.input);
+  if (!record.input_slope.empty()) shorten(record.input_slope);
+  for (MeasuredPort& port : record.measured) shorten(port.value);
+  record.start += double(first) * record.sample_time;
+}
+
+/// Samples are those of the sensor that is read most often. Another one is left out if it is read less often.
+void take_rows_of_sensors(AxisRecord& record, Problems& problems) {
+  if (record.measured.empty()) return;
+  const SlowerRows rows =
+      std::ranges::min(record.measured, {}, [](const MeasuredPort& port) { return port.rows.every; }).rows;
+  std::erase_if(record.measured, [&](const MeasuredPort& port) {
+    const bool is_other = port.rows != rows;
+    if (is_other) record.left_out = port.role;
+    return is_other;
+  });
+  if (rows.are_all()) return;
+  if (!record.missing.empty() || !record.duration.empty()) {
+    auto& p = problems.error(record.place, "/compare", "",
+                             fmt::format("the {} of the axis has a reading in one of {} rows, and these are "
+                                         "not evenly in time",
+                                         record.measured.front().role, rows.every));
+    p.expected = "rows of one sample time, none of them missing";
+    p.hint = "or \"excerpt\", which picks the rows that have a reading";
+    return;
+  }
+  begin_at(record, rows.first);
+  thin(record, rows.every);
+}
+
 /// A device that gives an old value now and then says nothing of the machine.
 void replace_false_readings(AxisRecord& record) {
   if (record.is_map) return;
@@ -145,6 +178,13 @@ Experiment cut_open(const Experiment& experiment, const Plan& plan, Problems& pr
   const auto take = [&](const RecordedSignal& signal) {
     const std::vector<Number> numbers = plan.find(signal.port);
     if (!cut.drives.empty() || numbers.size() != 1 || numbers[0] != wanted) return;
+    if (!signal.rows.are_all()) {
+      problems
+          .error(signal.place, signal.pointer, "",
+                 fmt::format("the input was recorded in one of {} rows only", signal.rows.every))
+          .expected = "a number in every row: what drives has a value at all times";
+      return;
+    }
     cut.drives.push_back(signal);
     cut.drives.back().port = *port;
     if (signal.port == *port) return;
@@ -189,9 +229,11 @@ AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Prob
       const loopwright::Column& column = *experiment.data.find(signal.port);
       const auto written = parse_unit(signal.unit);  // rad, not 1
       const std::string unit = written && written->scale == 1 ? signal.unit : column.unit;
-      record.measured.push_back({role, wanted, unit, signal.resolution, grid.measured(column.values)});
+      record.measured.push_back(
+          {role, wanted, unit, signal.resolution, grid.measured(column.values), signal.rows});
     }
   }
+  take_rows_of_sensors(record, problems);
   replace_false_readings(record);
   if (const size_t every = rows_for_one(record); every > 1) thin(record, every);
   record.held_out_from = whole_between<size_t>(

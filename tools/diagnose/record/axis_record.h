@@ -16,6 +16,7 @@ struct MeasuredPort {
   std::string unit;           ///< SI
   double resolution = 0;      ///< SI; 0: unknown
   std::vector<double> value;  ///< SI, one value per sample
+  SlowerRows rows{};          ///< of the file, which have a reading
 };
 
 struct AxisRecord {
@@ -39,7 +40,9 @@ struct AxisRecord {
   std::vector<char> false_rows;
   size_t false_readings = 0;  ///< of all sensors
   bool is_thinned = false;    ///< several recorded rows are one
-  size_t held_out_from = 0;   ///< first row held out of the identification; rows() without hold-out
+  /// Role of a sensor that is read less often than the other one, and left out; empty: none.
+  std::string left_out;
+  size_t held_out_from = 0;  ///< first row held out of the identification; rows() without hold-out
 
   size_t rows() const { return input.size(); }
   bool is_missing(size_t row) const { return !missing.empty() && missing[row]; }

@@ -1,5 +1,6 @@
 #include "tools/diagnose/search/noisy_input.h"
 #include <algorithm>
+#include <array>
 #include <limits>
 
 namespace loopwright::diagnosis {
@@ -26,15 +27,22 @@ Candidate unfelt_noise(RowsOfMean side) {
   return candidate;
 }
 
+/// One of each kind, for as long as the members that refer to it.
+const Candidate& smoothing(RowsOfMean side) {
+  static const Candidate about = unfelt_noise(RowsOfMean::about), after = unfelt_noise(RowsOfMean::after);
+  return side == RowsOfMean::about ? about : after;
+}
+
+double loss_of(const Trials& trials, const Estimate& e, size_t catalogue) {
+  return e.is_valid ? criterion(trials, e, catalogue) : std::numeric_limits<double>::infinity();
+}
+
 /// Sets of members beside a smoothed input, each with its own noise.
 class Smoothed {
  public:
   Smoothed(Trials& trials, const Estimate& found, std::vector<Member> others, size_t catalogue)
       : trials_(trials), found_(found), others_(std::move(others)), catalogue_(catalogue) {}
 
-  double criterion_of(const Estimate& e) const {
-    return e.is_valid ? criterion(trials_, e, catalogue_) : std::numeric_limits<double>::infinity();
-  }
   Estimate with(std::vector<Member> members) {
     members.insert(members.begin(), others_.begin(), others_.end());
     return fitted(members, found_);
@@ -47,7 +55,7 @@ class Smoothed {
       if (!start->is_valid) continue;
       std::vector<Member> others(start->members.begin(), start->members.end() - 1);
       Estimate trial = fit_members(trials_, std::move(others), start->noise, start->motion, iterations);
-      if (criterion_of(trial) < criterion_of(best)) best = std::move(trial);
+      if (loss_of(trials_, trial, catalogue_) < loss_of(trials_, best, catalogue_)) best = std::move(trial);
     }
     return best;
   }
@@ -56,7 +64,7 @@ class Smoothed {
     Estimate best;
     for (const double rows : smoothing.nonlinear[0].grid) {
       Estimate trial = with({Member{&smoothing, {0.5}, {rows}}});
-      if (criterion_of(trial) < criterion_of(best)) best = std::move(trial);
+      if (loss_of(trials_, trial, catalogue_) < loss_of(trials_, best, catalogue_)) best = std::move(trial);
     }
     return best;
   }
@@ -75,24 +83,51 @@ class Smoothed {
   size_t catalogue_;
 };
 
-}  // namespace
-
-std::optional<InputNoise> noise_instead_of_late_input(Trials& trials, const Estimate& found,
-                                                      size_t catalogue) {
+/// In place of what is late.
+struct Replacements {
+  Estimate nothing, about, after;  ///< the input as it is; smoothed about each row, or over those after it
+};
+/// Empty: nothing is late.
+std::optional<Replacements> replacements_of_late_input(Trials& trials, const Estimate& found,
+                                                       size_t catalogue) {
   std::vector<Member> others = found.members;
   if (trials.has_map() || std::erase_if(others, is_late) == 0) return {};
   std::erase_if(others, is_own_load);  // which a wrong lag calls for
   Smoothed smoothed(trials, found, std::move(others), catalogue);
-  const Candidate about = unfelt_noise(RowsOfMean::about), after = unfelt_noise(RowsOfMean::after);
-  const Estimate noise = smoothed.with(about);
-  if (!noise.is_valid) return {};
-  const Estimate early = smoothed.with(after);
-  const double of_late = criterion(trials, found, catalogue),
-               of_nothing = smoothed.criterion_of(smoothed.with_nothing({&noise, &early}));
-  const bool gains_early = of_nothing - smoothed.criterion_of(early) >
-                           criteria::least_gain_of_early_input * (of_nothing - of_late);
-  if (!gains_early && smoothed.criterion_of(noise) >= of_late) return {};
-  return InputNoise{noise.members.back().nonlinear[0], noise.members.back().linear[0]};
+  Replacements by;
+  by.about = smoothed.with(smoothing(RowsOfMean::about));
+  if (!by.about.is_valid) return {};
+  by.after = smoothed.with(smoothing(RowsOfMean::after));
+  by.nothing = smoothed.with_nothing({&by.about, &by.after});
+  return by;
+}
+
+/// Twice the negative log-likelihood, without the price of the parameters.
+double misfit(const Estimate& e) {
+  return e.is_valid ? e.profile + e.against_at_rest : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+std::optional<InputNoise> noise_instead_of_late_input(Trials& trials, const Estimate& found,
+                                                      size_t catalogue) {
+  const auto by = replacements_of_late_input(trials, found, catalogue);
+  if (!by) return {};
+  const auto loss = [&](const Estimate& e) { return loss_of(trials, e, catalogue); };
+  const double of_late = loss(found), of_nothing = loss(by->nothing);
+  const bool gains_early =
+      of_nothing - loss(by->after) > criteria::least_gain_of_early_input * (of_nothing - of_late);
+  if (!gains_early && loss(by->about) >= of_late) return {};
+  return InputNoise{by->about.members.back().nonlinear[0], by->about.members.back().linear[0]};
+}
+
+bool smoothing_gains(Trials& trials, const Estimate& found, size_t catalogue) {
+  const auto by = replacements_of_late_input(trials, found, catalogue);
+  if (!by) return false;
+  const double least = criteria::least_gain_of_early_input * (misfit(by->nothing) - misfit(found));
+  return std::ranges::any_of(std::array{&by->about, &by->after}, [&](const Estimate* smoothed) {
+    return misfit(by->nothing) - misfit(*smoothed) > least;
+  });
 }
 
 }  // namespace loopwright::diagnosis

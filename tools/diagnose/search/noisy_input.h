@@ -12,4 +12,8 @@ namespace loopwright::diagnosis {
 std::optional<InputNoise> noise_instead_of_late_input(Trials& trials, const Estimate& found,
                                                       size_t catalogue);
 
+/// Whether an input that is smoothed, and so reduces noise without being late, gains a large part of what the
+/// late one does: the answer of a controller to noise resembles a small delay.
+bool smoothing_gains(Trials& trials, const Estimate& found, size_t catalogue);
+
 }  // namespace loopwright::diagnosis

@@ -35,14 +35,16 @@ bool is_error_of_model(const Trials& trials, const Estimate& trial, const Weight
   return weight.wald < error * error * double(fitted_numbers(trials));
 }
 
-bool is_beat_of_counts(const Weight& weight) {
-  return weight.wald < criteria::clear_of_counts * weight.counts;
+/// A small delay or lag, which may be no more than a controller that answers noise. Beside a velocity sensor
+/// alone none is believed: a controller that measures the position knows more than the record.
+bool may_be_answer_to_noise(Trials& trials, const Estimate& trial, size_t catalogue) {
+  if (!is_late_input(*trial.members.back().candidate)) return false;
+  const auto measures_position = [](const Trial& t) { return t.model->record().find("position") != nullptr; };
+  return !std::ranges::all_of(trials.list, measures_position) || smoothing_gains(trials, trial, catalogue);
 }
 
-/// A small delay or lag, as which the answer of a controller to noise appears.
-bool is_answer_to_noise(Trials& trials, const Estimate& trial, size_t catalogue) {
-  return is_late_input(*trial.members.back().candidate) &&
-         noise_instead_of_late_input(trials, trial, catalogue).has_value();
+bool is_beat_of_counts(const Weight& weight) {
+  return weight.wald < criteria::clear_of_counts * weight.counts;
 }
 
 }  // namespace
@@ -78,7 +80,7 @@ SecondLook look_again(Trials& trials, const Estimate& estimate, double portmante
     }
     const Member& small = trial.members.back();
     if (is_own_load(small) || is_error_of_model(trials, trial, weight) || is_beat_of_counts(weight) ||
-        is_answer_to_noise(trials, trial, catalogue))
+        may_be_answer_to_noise(trials, trial, catalogue))
       continue;
     result.small.push_back({small.candidate, gain, weight.force_rms});
   }

@@ -79,6 +79,11 @@ std::vector<RecordFinding> look_at_records(const Trials& trials,
   std::vector<RecordFinding> findings;
   if (const size_t count = false_readings(trials); count > 0)
     findings.push_back(readings_are_false(count, "what their neighbours say was taken instead"));
+  for (const Trial& trial : trials.list)
+    if (const std::string& role = trial.model->record().left_out; !role.empty())
+      findings.push_back(
+          {fmt::format("the {} is read less often than what else is measured of the axis", role),
+           "it was left out: readings of two rates do not count together here"});
   for (const RecordFault& fault : faults_of(records)) {
     if (trials.has_map() && fault.name != "one_direction") continue;  // a map has no times and no speeds
     if (fault.name == "too_short" && shows_enough(trials, contents))

@@ -213,7 +213,7 @@ Json Session::preview(const Request& request) {
     const Comparison comparison = compare_signals(
         improved.file, with_moved_ports(*experiments.front(), improved.moved), stored->load, options);
     const ComparedSignal& signal = comparison.signals.front();
-    Json json = thinned_curve(comparison.time, signal.error, points);
+    Json json = thinned_curve(picked(signal.rows, comparison.time), signal.error, points);
     json["unit"] = signal.unit, json["rmse"] = signal.rmse, json["signal"] = signal.name;
     return json;
   });

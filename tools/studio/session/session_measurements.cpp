@@ -82,13 +82,16 @@ Json residuals(const Comparison& comparison, size_t points) {
   const ComparedSignal& signal = comparison.signals.front();
   const std::string of = "error of " + signal.name;
   list.push_back(residual_json("time", "s", of, signal.unit,
-                               thinned_curve(comparison.time, signal.error, points), false));
+                               thinned_curve(picked(signal.rows, comparison.time), signal.error, points),
+                               false));
   if (!comparison.position.empty())
-    list.push_back(residual_json("position", comparison.position_unit, of, signal.unit,
-                                 cloud(comparison.position, signal.error, nullptr, 2 * points), true));
+    list.push_back(residual_json(
+        "position", comparison.position_unit, of, signal.unit,
+        cloud(picked(signal.rows, comparison.position), signal.error, nullptr, 2 * points), true));
   if (!comparison.velocity.empty())
-    list.push_back(residual_json("velocity", comparison.velocity_unit, of, signal.unit,
-                                 cloud(comparison.velocity, signal.error, nullptr, 2 * points), true));
+    list.push_back(residual_json(
+        "velocity", comparison.velocity_unit, of, signal.unit,
+        cloud(picked(signal.rows, comparison.velocity), signal.error, nullptr, 2 * points), true));
   return list;
 }
 
@@ -154,15 +157,30 @@ Json tint(const Comparison& comparison, const Experiment& experiment) {
   return list;
 }
 
+/// Between the readings of a slower signal the lines with which it is drawn.
+std::vector<double> in_all_rows(const SlowerRows& rows, std::vector<double>&& readings, size_t count) {
+  if (rows.are_all() || readings.empty()) return std::move(readings);
+  std::vector<double> values;
+  for (size_t row = 0; row < count; ++row) {
+    const size_t since = row - std::min(row, rows.first), last = readings.size() - 1,
+                 before = std::min(since / rows.every, last);
+    const double part = before < last ? double(since % rows.every) / double(rows.every) : 0;
+    values.push_back(readings[before] + (part > 0 ? part * (readings[before + 1] - readings[before]) : 0));
+  }
+  return values;
+}
+
 /// Takes the samples: those of a long record are not in memory twice.
 std::shared_ptr<const Signals> signals_of(Comparison&& comparison) {
   Recording recording;
+  const size_t rows = comparison.time.size();
   recording.columns.push_back({"time", "s", std::move(comparison.time), ""});
-  for (ComparedSignal& signal : comparison.signals) {
-    recording.columns.push_back({"measured " + signal.name, signal.unit, std::move(signal.measured), ""});
-    recording.columns.push_back({"simulated " + signal.name, signal.unit, std::move(signal.simulated), ""});
-    recording.columns.push_back({"error " + signal.name, signal.unit, std::move(signal.error), ""});
-  }
+  for (ComparedSignal& signal : comparison.signals)
+    for (const auto& [what, values] : {std::pair("measured ", &signal.measured),
+                                       {"simulated ", &signal.simulated},
+                                       {"error ", &signal.error}})
+      recording.columns.push_back(
+          {what + signal.name, signal.unit, in_all_rows(signal.rows, std::move(*values), rows), ""});
   return std::make_shared<Signals>(std::move(recording));
 }
 
@@ -204,7 +222,7 @@ Json comparison_json(const Comparison& comparison, const Experiment& experiment,
                {"relative", signal.relative_percent},
                {"held_out", signal.held_out_rmse},
                {"resolution", signal.resolution}};
-    add_curves(comparison.time, signal, points, entry);
+    add_curves(picked(signal.rows, comparison.time), signal, points, entry);
     json["signals"].push_back(std::move(entry));
   }
   return json;

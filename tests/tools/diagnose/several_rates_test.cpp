@@ -1,0 +1,115 @@
+// Sensors that are read less often than the rows of the record, which the command fills.
+#include <gmock/gmock.h>
+#include "tests/tools/diagnose/diagnosed.h"
+#include "tests/tools/diagnose/hidden_axis.h"
+#include "tests/tools/diagnose/diagnosed_plant.h"
+#include "tools/compare/compare.h"
+
+namespace loopwright::several_rates_test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+Physics with_friction_and_cogging(const HiddenAxis& axis) {
+  Physics truth = axis.nominal();
+  truth.coulomb_n = 0.15, truth.cogging = {0.1, 0.0225, 0.5};
+  return truth;
+}
+
+void expect_friction_and_cogging(const Diagnosis& d) {
+  EXPECT_EQ(d.verdict, Verdict::explained) << to_text(d);
+  ASSERT_THAT(names(d), testing::UnorderedElementsAre("coulomb_friction", "cogging")) << to_text(d);
+  for (const DiagnosedEffect& effect : d.effects)
+    if (effect.name == "cogging")
+      expect_parameter(effect, "pitch", 0.0225, 2e-4, "m");
+    else
+      expect_parameter(effect, "level", 0.15, 0.01, "N");
+}
+
+TEST(SlowerSensor, OfTheOnlyOutputLosesNothingOfTheCommandBetween) {
+  HiddenMachine machine;
+  machine.reads_position_every = 5;
+  HiddenAxis axis(machine);
+  const WantedMotion motion = there_and_back(0.15, 0.4);
+  expect_friction_and_cogging(
+      diagnose(axis.diagram(), {axis.record("record", with_friction_and_cogging(axis), motion)}));
+  const Diagnosis right = diagnose(axis.diagram(), {axis.record("right", axis.nominal(), motion)});
+  EXPECT_EQ(right.verdict, Verdict::nothing_missing) << to_text(right);
+}
+
+TEST(SlowerSensor, BesideAFasterOneIsLeftOutOfAnAxis) {
+  HiddenMachine machine;
+  machine.velocity_noise = 2e-4, machine.reads_velocity_every = 10;
+  HiddenAxis axis(machine);
+  const Diagnosis d = diagnose(axis.diagram(), {axis.record("record", with_friction_and_cogging(axis),
+                                                            there_and_back(0.15, 0.4))});
+  expect_friction_and_cogging(d);
+  EXPECT_EQ(d.measurement_noise.size(), 1u);
+  EXPECT_THAT(to_text(d), HasSubstr("the velocity is read less often"));
+}
+
+TEST(SlowerSensor, PositionBesideAFasterVelocityIsLeftOut) {
+  HiddenMachine machine;
+  machine.velocity_noise = 2e-4, machine.reads_position_every = 10;
+  HiddenAxis axis(machine);
+  Physics truth = axis.nominal();
+  truth.coulomb_n = 0.15;
+  const Diagnosis d = diagnose(axis.diagram(), {axis.record("record", truth, there_and_back(0.15, 0.4))});
+  ASSERT_THAT(names(d), ElementsAre("coulomb_friction")) << to_text(d);
+  EXPECT_THAT(to_text(d), HasSubstr("the position is read less often"));
+}
+
+TEST(SlowerSensor, OfSeveralRecordsMayHaveARateOfItsOwnInEach) {
+  HiddenMachine machine;
+  machine.velocity_noise = 2e-4, machine.reads_velocity_every = 10;
+  HiddenAxis slow(machine);
+  const std::string first =
+      slow.record("slow", with_friction_and_cogging(slow), there_and_back(0.15, 0.4));
+  machine.reads_velocity_every = 1;
+  HiddenAxis fast(machine);
+  const std::string second =
+      fast.record("fast", with_friction_and_cogging(fast), there_and_back(0.12, 0.3));
+  try {
+    const Diagnosis d = diagnose(slow.diagram(), {first, second});
+    expect_friction_and_cogging(d);
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("the records do not measure the same"));
+  }
+}
+
+TEST(SlowerSensor, ShowsTheMissingForceAtItsOwnRate) {
+  HiddenMachine machine;
+  machine.reads_position_every = 5;
+  HiddenAxis axis(machine);
+  Physics truth = axis.nominal();
+  const WantedMotion motion = there_and_back(0.15, 0.4);
+  const Comparison right = compare(axis.diagram(), axis.record("right", truth, motion));
+  ASSERT_TRUE(right.force) << right.why_no_force;
+  EXPECT_NEAR(right.force->motion.sample_time, 5e-3, 1e-12);
+  EXPECT_LT(right.force->residual.rmse, 0.03);
+  EXPECT_EQ(right.signals[0].error.size(), (right.time.size() + 4) / 5);
+  truth.coulomb_n = 0.3;
+  const Comparison wrong = compare(axis.diagram(), axis.record("wrong", truth, motion));
+  ASSERT_TRUE(wrong.force) << wrong.why_no_force;
+  EXPECT_NEAR(wrong.force->residual.rmse, 0.3, 0.06);
+}
+
+TEST(SlowerSensor, OfAnyDiagramCountsWhereItIsRead) {
+  Plant clean = motor({}, 1);
+  clean.reads_every = {1, 10};
+  const Diagnosis right = diagnosed(clean);
+  EXPECT_EQ(right.verdict, Verdict::nothing_missing) << to_text(right);
+  Motor m;
+  m.resistance = 1.5;
+  Plant plant = motor(m, 2);
+  plant.reads_every = {10, 1};
+  const Diagnosis d = diagnosed(plant);
+  EXPECT_EQ(d.verdict, Verdict::explained) << to_text(d);
+  ASSERT_EQ(d.moved_parameters.size(), 1u) << to_text(d);
+  EXPECT_EQ(d.moved_parameters.front().name, "resistance");
+  EXPECT_NEAR(d.moved_parameters.front().value, 1.5, 0.03);
+}
+
+}  // namespace
+}  // namespace loopwright::several_rates_test
