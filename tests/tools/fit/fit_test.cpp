@@ -94,7 +94,8 @@ TEST_F(Fitted, AnOutputOfASlowerRateCountsWhereItIsRead) {
   record(1);
   const Fit result = fitted({"mass", "damping"});
   EXPECT_EQ(result.after[0].signals[0].error.size(), 200u);
-  for (const auto& [parameter, truth] : {std::pair(&result.parameters[0], 2.0), {&result.parameters[1], 3.0}}) {
+  for (const auto& [parameter, truth] :
+       {std::pair(&result.parameters[0], 2.0), {&result.parameters[1], 3.0}}) {
     EXPECT_NEAR(parameter->value, truth, 0.1);
     EXPECT_LT(parameter->low, truth) << parameter->path;
     EXPECT_GT(parameter->high, truth) << parameter->path;

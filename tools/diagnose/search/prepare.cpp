@@ -154,14 +154,31 @@ double usual_force(const Trials& trials) {
                        : std::min(trials.force_rms, quantile(std::move(sizes), criteria::usual_share));
 }
 
-/// The noise of a motion and that of a map are not related.
+std::string names_of_ports(const AxisRecord& record) {
+  std::string names;
+  for (const MeasuredPort& port : record.measured) names += (names.empty() ? "" : " and ") + port.role;
+  return names;
+}
+
+/// The noise of a motion and that of a map are not related, and every sensor has one noise in all records.
 void reject_mixed(const Trials& trials) {
   Problems problems;
+  const AxisRecord& first = trials.list.front().model->record();
   for (const Trial& trial : trials.list) {
     const AxisRecord& record = trial.model->record();
-    if (record.is_map == trials.has_map()) continue;
-    auto& p = problems.error(record.place, "/rows", "", "maps of balances and records of motion are mixed");
-    p.expected = "one kind at a time";
+    if (record.is_map != trials.has_map()) {
+      auto& p = problems.error(record.place, "/rows", "", "maps of balances and records of motion are mixed");
+      p.expected = "one kind at a time";
+    } else if (names_of_ports(record) != names_of_ports(first)) {
+      auto& p =
+          problems.error(record.place, "/compare", "", "the records do not measure the same of the axis");
+      p.expected = names_of_ports(first) + ", as in " + first.path;
+      p.found = names_of_ports(record);
+      if (!record.left_out.empty() || !first.left_out.empty())
+        p.hint =
+            "a sensor that is read less often than the other one is left out: leave it out of \"compare\" in "
+            "all";
+    }
   }
   if (problems.has_errors()) throw InputError(std::move(problems));
 }
