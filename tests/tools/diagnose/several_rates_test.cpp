@@ -1,6 +1,7 @@
 // Sensors that are read less often than the rows of the record, which the command fills.
 #include <gmock/gmock.h>
 #include "tests/tools/diagnose/diagnosed.h"
+#include "tests/tools/diagnose/flawed_axis.h"
 #include "tests/tools/diagnose/hidden_axis.h"
 #include "tests/tools/diagnose/diagnosed_plant.h"
 #include "tools/compare/compare.h"
@@ -108,6 +109,57 @@ TEST(SlowerSensor, OfAnyDiagramCountsWhereItIsRead) {
   ASSERT_EQ(d.moved_parameters.size(), 1u) << to_text(d);
   EXPECT_EQ(d.moved_parameters.front().name, "resistance");
   EXPECT_NEAR(d.moved_parameters.front().value, 1.5, 0.03);
+}
+
+/// A controller that sees every row answers noise between the rows of the record.
+class SlowerSensorThanTheController : public testing::TestWithParam<double> {};
+TEST_P(SlowerSensorThanTheController, MakesNoDelayOfItsAnswerToNoise) {
+  HiddenMachine machine;
+  machine.reads_position_every = 5, machine.force_noise = GetParam();
+  HiddenAxis axis(machine);
+  const WantedMotion motion = there_and_back(0.15, 0.4);
+  const Diagnosis right = diagnose(axis.diagram(), {axis.record("right", axis.nominal(), motion)});
+  EXPECT_EQ(right.verdict, Verdict::nothing_missing) << to_text(right);
+}
+INSTANTIATE_TEST_SUITE_P(Noise, SlowerSensorThanTheController, testing::Values(0.03, 0.1, 0.2));
+
+/// 4 kHz for more than two minutes: means of rows stand for them. Single readings let the answer of the
+/// controller, which reads them all, appear as a delay of 3 ms.
+TEST(LongRecord, MakesNoDelayOfTheAnswerToNoise) {
+  FlawedMachine machine;
+  machine.sample_time = 0.25e-3, machine.force_noise = 0.02, machine.duration = 130, machine.seed = 2;
+  const FlawedAxis axis(machine);
+  const Diagnosis d = diagnose(axis.diagram(), {axis.experiment()});
+  EXPECT_EQ(name_of(d.verdict), "nothing_missing") << to_text(d);
+}
+
+TEST(LongRecord, BesideAShortOneGivesItItsRate) {
+  FlawedMachine machine;
+  machine.sample_time = 0.25e-3, machine.force_noise = 0.02, machine.duration = 70, machine.coulomb = 0.2;
+  const std::string folder = testing::TempDir() + fmt::format("long_{}", getpid());
+  const FlawedAxis whole(machine, folder + "_whole");
+  machine.duration = 20, machine.seed = 2;
+  const FlawedAxis part(machine, folder + "_part");
+  const Diagnosis d = diagnose(whole.diagram(), {part.experiment(), whole.experiment()});
+  EXPECT_EQ(name_of(d.verdict), "explained") << to_text(d);
+  ASSERT_THAT(names(d), ElementsAre("coulomb_friction")) << to_text(d);
+  expect_parameter(d.effects[0], "level", 0.2, 0.01, "N");
+}
+
+TEST(RecordsOfTwoRates, AreRefused) {
+  FlawedMachine machine;
+  machine.duration = 5;
+  const std::string folder = testing::TempDir() + fmt::format("two_rates_{}", getpid());
+  const FlawedAxis slow(machine, folder + "_slow");
+  machine.sample_time *= 0.7;
+  const FlawedAxis fast(machine, folder + "_fast");
+  try {
+    diagnose(slow.diagram(), {slow.experiment(), fast.experiment()});
+    FAIL() << "one noise of a sample would count in both";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("the records have different rates"));
+    EXPECT_THAT(error.what(), HasSubstr("found: 0.0007 s"));
+  }
 }
 
 }  // namespace

@@ -52,9 +52,9 @@ double step_by_samples(Plan& plan, const AxisRecord& record, int steps);
 class AxisModel {
  public:
   /// The diagram at `path`, driven by the experiment's input alone, without noise that the machine does not
-  /// feel. Throws InputError with every problem.
+  /// feel. `rows_in_one`: see read_axis_record(). Throws InputError with every problem.
   AxisModel(const std::string& path, const std::string& experiment, const LoadOptions& options,
-            const std::optional<InputNoise>& noise = {});
+            const std::optional<InputNoise>& noise = {}, size_t rows_in_one = 0);
   ~AxisModel();
   AxisModel(AxisModel&&) noexcept;
 

@@ -98,6 +98,36 @@ void take_rows_of_sensors(AxisRecord& record, Problems& problems) {
   thin(record, rows.every);
 }
 
+/// Means about each row over as many rows, with half weights at the ends if they are an even number.
+std::vector<double> means_about(const std::vector<double>& values, size_t rows) {
+  const auto reach = std::ptrdiff_t(rows / 2), size = std::ptrdiff_t(values.size());
+  const double end_weight = rows % 2 == 0 ? 0.5 : 1;
+  std::vector<double> means(values.size());
+  for (std::ptrdiff_t k = 0; k < size; ++k) {
+    const std::ptrdiff_t here = std::min({reach, k, size - 1 - k});  // shorter at the ends of the record
+    double sum = 0, weights = 0;
+    for (std::ptrdiff_t i = -here; i <= here; ++i) {
+      const double weight = std::abs(i) == reach ? end_weight : 1;
+      sum += weight * values[size_t(k + i)], weights += weight;
+    }
+    means[size_t(k)] = sum / weights;
+  }
+  return means;
+}
+
+/// Before rows are put together: a linear plant answers the mean of its input by the mean of its position. If
+/// single readings stood for many, a controller would know more than the record, and what it does about it
+/// would look like a delay.
+void take_means(AxisRecord& record, size_t rows) {
+  record.rows_in_one = rows;
+  record.input = means_about(record.input, rows);
+  if (!record.input_slope.empty()) record.input_slope = means_about(record.input_slope, rows);
+  for (MeasuredPort& port : record.measured) {
+    port.value = means_about(port.value, rows);
+    port.resolution /= std::sqrt(double(rows));
+  }
+}
+
 /// A device that gives an old value now and then says nothing of the machine.
 void replace_false_readings(AxisRecord& record) {
   if (record.is_map) return;
@@ -202,7 +232,8 @@ Experiment cut_open(const Experiment& experiment, const Plan& plan, Problems& pr
   return cut;
 }
 
-AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Problems& problems) {
+AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Problems& problems,
+                            size_t rows_in_one) {
   AxisRecord record;
   record.title = experiment.title, record.path = experiment.path, record.place = experiment.place;
   const std::vector<double>& time = experiment.data.columns.front().values;
@@ -235,7 +266,9 @@ AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Prob
   }
   take_rows_of_sensors(record, problems);
   replace_false_readings(record);
-  if (const size_t every = rows_for_one(record); every > 1) thin(record, every);
+  if (rows_in_one == 0) rows_in_one = rows_for_one(record);
+  if (rows_in_one > 1 && !record.is_map && record.duration.empty())
+    take_means(record, rows_in_one), thin(record, rows_in_one);
   record.held_out_from = whole_between<size_t>(
       std::round(double(record.rows()) * (1 - experiment.hold_out_fraction)), 0, record.rows());
   if (record.measured.empty())

@@ -40,6 +40,7 @@ struct AxisRecord {
   std::vector<char> false_rows;
   size_t false_readings = 0;  ///< of all sensors
   bool is_thinned = false;    ///< several recorded rows are one
+  size_t rows_in_one = 1;     ///< of these, means over so many stand for them
   /// Role of a sensor that is read less often than the other one, and left out; empty: none.
   std::string left_out;
   size_t held_out_from = 0;  ///< first row held out of the identification; rows() without hold-out
@@ -71,8 +72,9 @@ std::vector<double> mean_over_rows(const std::vector<double>& values, double row
 void take_away(AxisRecord& record, const InputNoise& noise);
 
 /// The columns of the roles, on a uniform grid: see EvenGrid. Problems: missing roles or columns, units that
-/// differ from the diagram's.
-AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Problems& problems);
+/// differ from the diagram's. `rows_in_one` become one; 0: as many as its length asks for.
+AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Problems& problems,
+                            size_t rows_in_one = 0);
 
 /// The experiment with the axis cut open at its input: only the measured input drives the diagram.
 Experiment cut_open(const Experiment& experiment, const Plan& plan, Problems& problems);

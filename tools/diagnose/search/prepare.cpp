@@ -1,8 +1,10 @@
 #include "tools/diagnose/search/prepare.h"
-#include "models/real/whole.h"
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include "models/real/whole.h"
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/remembered_runs.h"
 #include "tools/diagnose/search/weight.h"
@@ -183,6 +185,28 @@ void reject_mixed(const Trials& trials) {
   if (problems.has_errors()) throw InputError(std::move(problems));
 }
 
+/// A sample has one noise in all records. If rows of a long one are put together, so are those of the others.
+/// `read` reads a record again with so many rows in one.
+void take_one_rate(Trials& trials, const std::function<std::unique_ptr<AxisModel>(size_t, size_t)>& read) {
+  constexpr double same_rate = 0.02;  // noise of a sample differs by half of it
+  size_t most = 1;
+  for (const Trial& trial : trials.list) most = std::max(most, trial.model->record().rows_in_one);
+  Problems problems;
+  for (size_t t = 0; t < trials.list.size() && !trials.has_map(); ++t) {
+    Trial& trial = trials.list[t];
+    if (trial.model->record().rows_in_one != most) trial.model = read(t, most);
+    const double wanted = trials.list.front().model->record().sample_time,
+                 found = trial.model->record().sample_time;
+    if (std::abs(found - wanted) <= same_rate * wanted) continue;
+    auto& p = problems.error(trial.model->record().place, "/data", "", "the records have different rates");
+    p.expected =
+        fmt::format("{:.6g} s from row to row, as in {}", wanted, trials.list.front().model->record().path);
+    p.found = fmt::format("{:.6g} s", found);
+    p.hint = "diagnose them one by one: noise of a sample is another one at another rate";
+  }
+  if (problems.has_errors()) throw InputError(std::move(problems));
+}
+
 }  // namespace
 
 Trials prepare(const std::string& diagram, const std::vector<std::string>& experiments,
@@ -192,21 +216,23 @@ Trials prepare(const std::string& diagram, const std::vector<std::string>& exper
   std::vector<double> speed;
   double square = 0;
   size_t n = 0;
-  for (const std::string& experiment : experiments) {
-    Trial trial;
+  const auto read = [&](size_t number, size_t rows_in_one) {
     try {
-      trial.model = std::make_unique<AxisModel>(diagram, experiment, options, noise);
+      return std::make_unique<AxisModel>(diagram, experiments[number], options, noise, rows_in_one);
     } catch (InputError& error) {
       explain_failure(diagram, experiments, options, std::move(error.problems));
     }
+  };
+  for (size_t i = 0; i < experiments.size(); ++i) trials.list.emplace_back().model = read(i, 0);
+  reject_mixed(trials);
+  take_one_rate(trials, read);
+  for (Trial& trial : trials.list) {
     const AxisRecord& record = trial.model->record();
     trial.held_out_from = record.held_out_from;
     const std::vector<double> own = speeds(record);
     speed.insert(speed.end(), own.begin(), own.end());
     for (double f : trial.model->driving_force()) square += f * f, ++n;
-    trials.list.push_back(std::move(trial));
   }
-  reject_mixed(trials);
   reject_without_fitted_rows(trials);
   trials.run_along(Trials::Rows::all);
   if (const MeasuredPort* position = trials.list.front().model->record().find("position"))
