@@ -62,6 +62,7 @@ EffectRun::EffectRun(std::shared_ptr<const EffectPlan> plan, int lanes) : plan_(
   sample_ticks_ = int64_t(whole_count(std::round(plan_->sizes.sample_time / plan_->plan.clock.time(1))));
   for (auto* list : {&value_, &slope_, &stated_slope_, &integral_, &second_, &area_})
     list->resize(size_t(run_->lanes()));
+  samples_.resize(size_t(run_->lanes()));
 }
 
 EffectRun::Wire EffectRun::wire(const char* role) {
@@ -77,30 +78,37 @@ EffectRun::Wire EffectRun::wire(const char* role) {
   return {setting("value"), setting("slope"), setting("bend"), setting("since")};
 }
 
-void EffectRun::Setting::set(double to, size_t from, size_t end) const {
-  if (is_row) return std::fill(lanes[from], lanes[from] + (end - from), to);
-  for (size_t lane = from; lane < end; ++lane) *lanes[lane] = to;
+void EffectRun::Setting::set(double to) const {
+  if (is_row)
+    std::fill_n(lanes.front(), lanes.size(), to);
+  else
+    for (double* lane : lanes) *lane = to;
 }
 
+double EffectRun::gain_of(const RoleSample& s) const {
+  return std::isnan(s.next_velocity) ? s.acceleration
+                                     : (s.next_velocity - s.velocity) / plan_->sizes.sample_time;
+}
+double EffectRun::jerk_of(const RoleSample& s) const {
+  return std::isnan(s.next_acceleration) ? 0.0
+                                         : (s.next_acceleration - s.acceleration) / plan_->sizes.sample_time;
+}
 GivenSignals EffectRun::given_at(const RoleSample& s) const {
-  const double period = plan_->sizes.sample_time;
-  const double gain = std::isnan(s.next_velocity) ? s.acceleration : (s.next_velocity - s.velocity) / period;
-  const double jerk = std::isnan(s.next_acceleration) ? 0.0 : (s.next_acceleration - s.acceleration) / period;
-  return {{s.position, s.velocity, gain, s.acceleration, jerk, s.input, s.force}};
+  return {{s.position, s.velocity, gain_of(s), s.acceleration, jerk_of(s), s.input, s.force}};
 }
 
-void EffectRun::give(const GivenSignals& given, double now, size_t from, size_t to) {
+void EffectRun::give(const GivenSignals& given, double now) {
   using enum GivenSignals::Index;
   const auto give_line = [&](const Wire& wire, double value, double slope) {
     if (wire.value.lanes.empty()) return;
-    wire.value.set(value, from, to), wire.slope.set(slope, from, to), wire.since.set(now, from, to);
+    wire.value.set(value), wire.slope.set(slope), wire.since.set(now);
   };
   const auto give_held = [&](const Wire& wire, double value) {
-    if (!wire.value.lanes.empty()) wire.value.set(value, from, to);
+    if (!wire.value.lanes.empty()) wire.value.set(value);
   };
   // Anything not set here stays zero.
   give_line(position_, given[position], given[velocity]);
-  if (!position_.bend.lanes.empty()) position_.bend.set(0.5 * given[velocity_slope], from, to);
+  if (!position_.bend.lanes.empty()) position_.bend.set(0.5 * given[velocity_slope]);
   give_line(velocity_, given[velocity], given[velocity_slope]);
   give_line(acceleration_, given[acceleration], given[acceleration_slope]);
   give_held(input_, given[input]), give_held(force_, given[force]);
@@ -152,21 +160,28 @@ void EffectRun::mean_from(double now) {
   }
 }
 
-/// Where the signals are at a fraction of a sample, with v = v₀ + a t + 6 b u (1 - u), u = t / T, for a bow
-/// b.
-GivenSignals EffectRun::given_at(const RoleSample& s, double u) const {
-  using enum GivenSignals::Index;
-  GivenSignals given = given_at(s);
-  const double T = plan_->sizes.sample_time, gain = given[velocity_slope] * T, bow = s.velocity_bow;
-  const double way = (s.velocity + 0.5 * gain * u) * u + bow * u * u * (3 - 2 * u);
-  given.value[position] = s.position + T * way;
-  given.value[velocity] = s.velocity + gain * u + 6 * bow * u * (1 - u);
-  given.value[acceleration] = s.acceleration + given[acceleration_slope] * T * u;
-  return given;
+/// Where the signals of some rows are at a fraction of their samples, each in a lane of its own, with v = v₀
+/// + a t + 6 b u (1 - u), u = t / T, for a bow b. They are held at the instant of evaluation.
+void EffectRun::give_at(double u, size_t rows) {
+  const double T = plan_->sizes.sample_time;
+  const auto give_each = [&](const Wire& wire, auto&& signal) {
+    if (wire.value.lanes.empty()) return;
+    for (size_t i = 0; i < rows; ++i) *wire.value.lanes[i] = signal(samples_[i], gain_of(samples_[i]) * T);
+  };
+  give_each(position_, [&](const RoleSample& s, double gain) {
+    const double way = (s.velocity + 0.5 * gain * u) * u + s.velocity_bow * u * u * (3 - 2 * u);
+    return s.position + T * way;
+  });
+  give_each(velocity_, [&](const RoleSample& s, double gain) {
+    return s.velocity + gain * u + 6 * s.velocity_bow * u * (1 - u);
+  });
+  give_each(acceleration_, [&](const RoleSample& s, double) { return s.acceleration + jerk_of(s) * T * u; });
+  give_each(input_, [](const RoleSample& s, double) { return s.input; });
+  give_each(force_, [](const RoleSample& s, double) { return s.force; });
 }
 
 /// ∫ f du and 12 ∫ (u - ½) f du over the sample, by two Gauss points in each part of it.
-void EffectRun::mean_of(std::span<const RoleSample> samples, double now) {
+void EffectRun::mean_of(size_t rows, double now) {
   const bool at_start = plan_->acts_on_sensor;
   const size_t parts = parts_of_a_sample(plan_->sizes), points = at_start ? 1 : 2 * parts;
   const double weight = 1.0 / double(points);
@@ -174,10 +189,10 @@ void EffectRun::mean_of(std::span<const RoleSample> samples, double now) {
   for (size_t point = 0; point < points; ++point) {
     const double in_part = point % 2 == 0 ? gauss_point : 1 - gauss_point;
     const double u = at_start ? 0 : (double(point / 2) + in_part) / double(parts);
-    for (size_t i = 0; i < samples.size(); ++i) give(given_at(samples[i], u), now, i, i + 1);
+    give_at(u, rows);
     run_->evaluate(now);
     read_held();
-    for (size_t i = 0; i < samples.size(); ++i) {
+    for (size_t i = 0; i < rows; ++i) {
       area_[i] += weight * value_[i];
       slope_[i] += weight * (12 * (u - 0.5) * value_[i] + stated_slope_[i]);
     }
@@ -210,7 +225,7 @@ void EffectRun::integrate_sample() {
 
 void EffectRun::step(const RoleSample& s) {
   const double now = run_->time();
-  give(given_at(s), now, 0, bound_.size());
+  give(given_at(s), now);
   if (plan_->integral >= 0) return integrate_sample();
   mean_from(now);
   run_->integrate(sample_ticks_);
@@ -226,11 +241,11 @@ void EffectRun::run_in_turn(const RoleSignals& signals, size_t rows, size_t lane
 
 template <class Take> void EffectRun::run_side_by_side(const RoleSignals& signals, size_t rows, Take&& take) {
   const double now = run_->time();
-  std::vector<RoleSample> samples(bound_.size());
+  give({}, now);  // nothing but the values changes from then on
   for (size_t first = 0; first < rows; first += bound_.size()) {
     const size_t count = std::min(bound_.size(), rows - first);
-    for (size_t i = 0; i < count; ++i) samples[i] = signals.at(first + i);
-    mean_of({samples.data(), count}, now);
+    for (size_t i = 0; i < count; ++i) samples_[i] = signals.at(first + i);
+    mean_of(count, now);
     for (size_t i = 0; i < count; ++i) take(size_t(0), first + i, value_[i], slope_[i]);
   }
 }

@@ -77,7 +77,7 @@ class EffectRun {
   struct Setting {  // a parameter of an ExternalSignal, in every lane
     std::vector<double*> lanes;
     bool is_row = false;  // lanes are adjacent
-    void set(double to, size_t from, size_t end) const;
+    void set(double to) const;
   };
   struct Wire {
     Setting value, slope, bend, since;
@@ -85,14 +85,17 @@ class EffectRun {
   Wire wire(const char* role);
   /// Back to rest at the first sample.
   void start(const RoleSample& first);
+  /// Slopes of velocity and acceleration within a sample.
+  double gain_of(const RoleSample& sample) const;
+  double jerk_of(const RoleSample& sample) const;
   GivenSignals given_at(const RoleSample& sample) const;
-  GivenSignals given_at(const RoleSample& sample, double fraction) const;
   /// Sets `value_` and `slope_` to those of the next sample, one per lane.
   void step(const RoleSample& sample);
   /// The same at the two Gauss points of the present sample, which begins `now`.
   void mean_from(double now);
-  /// The same of samples of an effect without memory, one per lane.
-  void mean_of(std::span<const RoleSample> samples, double now);
+  /// The same of the first `rows` of `samples_` for an effect without memory, one per lane.
+  void mean_of(size_t rows, double now);
+  void give_at(double fraction, size_t rows);
   void integrate_sample();
   /// Present output of its blocks: the value, and the slope that they state.
   void read_held();
@@ -101,8 +104,8 @@ class EffectRun {
   template <class Take> void run_in_turn(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take);
   template <class Take> void run_side_by_side(const RoleSignals& signals, size_t rows, Take&& take);
   template <class Take> void superpose(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take);
-  /// For the lanes from `from` up to `to`.
-  void give(const GivenSignals& given, double now, size_t from, size_t to);
+  /// To all lanes.
+  void give(const GivenSignals& given, double now);
   void read(Number number, std::vector<double>& to) const { run_->read({&number, 1}, to.data()); }
 
   std::shared_ptr<const EffectPlan> plan_;
@@ -113,6 +116,7 @@ class EffectRun {
   std::vector<std::vector<double*>> bound_;
   Wire position_, velocity_, acceleration_, input_, force_;
   int64_t sample_ticks_ = 1;
+  std::vector<RoleSample> samples_;                                              // one per lane
   std::vector<double> value_, slope_, stated_slope_, integral_, second_, area_;  // one per lane
 };
 
