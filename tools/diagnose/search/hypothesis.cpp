@@ -3,52 +3,10 @@
 #include <cmath>
 #include <numbers>
 #include "tools/diagnose/predict/linear_load.h"
+#include "tools/diagnose/search/input_chain.h"
 
 namespace loopwright::diagnosis {
 namespace {
-
-/// Members that change the input, in the order of the signal path.
-std::vector<const Member*> chain_of(const std::vector<Member>& members) {
-  std::vector<const Member*> chain;
-  for (const Member& member : members)
-    if (member.candidate->acts == Acts::input) chain.push_back(&member);
-  std::ranges::stable_sort(chain, {}, [](const Member* m) { return m->candidate->stage; });
-  return chain;
-}
-
-/// Adds `sign` times the force that a member consumes; a slope that is not needed stays empty.
-void add_columns(const Member& member, const Columns& columns, std::vector<double>& mean,
-                 std::vector<double>& slope, double sign = 1) {
-  for (size_t c = 0; c < columns.size(); ++c) {
-    const double amplitude = sign * member.linear[c];
-    const std::vector<float>& mean_of = *columns[c].mean;
-    for (size_t k = 0; k < mean.size(); ++k) mean[k] += amplitude * double(mean_of[k]);
-    if (!columns[c].slope) continue;
-    const std::vector<float>& slope_of = *columns[c].slope;
-    slope.resize(mean.size(), 0.0);
-    for (size_t k = 0; k < slope.size(); ++k) slope[k] += amplitude * double(slope_of[k]);
-  }
-}
-
-/// The input after a chain of effects, as mean and slope.
-struct ChangedInput {
-  std::vector<double> mean, slope;
-};
-ChangedInput through(const std::vector<const Member*>& chain, const Path& path,
-                     const std::vector<double>& raw_input) {
-  if (chain.empty()) return {raw_input, path.input_slope};
-  /// Of a path with the recorded input, which differs from the path's own behind such effects.
-  constexpr uint64_t with_recorded_input = uint64_t(1) << 63;
-  Path upstream = path;
-  upstream.input = raw_input;
-  if (path.identity != 0) upstream.identity = path.identity | with_recorded_input;
-  std::vector<double> slope = path.input_slope;
-  for (const Member* member : chain) {
-    add_columns(*member, member->candidate->columns(upstream, member->nonlinear), upstream.input, slope, -1);
-    upstream.identity = 0;
-  }
-  return {std::move(upstream.input), std::move(slope)};
-}
 
 /// A step in a nonlinear parameter for its derivative, within its range.
 double difference_step(const CandidateParameter& range, double at) {
@@ -88,16 +46,15 @@ Columns derivatives(const Member& member, const Path& path) {
 }
 
 /// The same for a member that changes the input, as consumed input at the end of the chain.
-Column input_derivative(std::vector<Member> members, const FreeParameter& parameter, const Path& path,
-                        const std::vector<double>& raw_input) {
+Column input_derivative(std::vector<Member> members, const FreeParameter& parameter, InputChain& chain) {
   const CandidateParameter& range = range_of(members, parameter);
   const double at = value_of(members, parameter),
                step = parameter.is_linear ? 1e-3 : difference_step(range, at);
   const double before = parameter.is_linear ? at - step : std::clamp(at - step, range.low, range.high);
   set_value(members, parameter, at + step);
-  ChangedInput change = through(chain_of(members), path, raw_input);
+  ChangedInput change = chain.through(members);
   set_value(members, parameter, before);
-  const ChangedInput low = through(chain_of(members), path, raw_input);
+  const ChangedInput low = chain.through(members);
   change.slope.resize(std::max(change.slope.size(), low.slope.size()), 0.0);
   for (size_t k = 0; k < change.mean.size(); ++k) change.mean[k] -= low.mean[k];
   for (size_t k = 0; k < low.slope.size(); ++k) change.slope[k] -= low.slope[k];
@@ -187,7 +144,7 @@ double added_inertia(const std::vector<Member>& members) {
 Drives drives_of(const std::vector<Member>& members, const Path& path, const std::vector<double>& raw_input) {
   Drives drives;
   drives.along = &path;
-  ChangedInput changed = through(chain_of(members), path, raw_input);
+  ChangedInput changed = InputChain(path, raw_input).through(members);
   drives.input = std::move(changed.mean), drives.input_slope = std::move(changed.slope);
   drives.force.assign(raw_input.size(), 0.0);
   const double inertia = added_inertia(members);
@@ -262,13 +219,14 @@ Sensitivity sensitivity(const std::vector<Member>& members, const Path& path, co
   Sensitivity result;
   const std::vector<FreeParameter> free = free_parameters(members);
   result.columns.resize(free.size());
+  InputChain chain(path, raw_input);
   for (const Acts acts : {Acts::force, Acts::input, Acts::sensor}) {
     Columns columns;
     std::vector<size_t> places;
     for (size_t i = 0; i < free.size(); ++i)
       if (members[free[i].member].candidate->acts == acts) {
         places.push_back(i);
-        if (acts == Acts::input) columns.push_back(input_derivative(members, free[i], path, raw_input));
+        if (acts == Acts::input) columns.push_back(input_derivative(members, free[i], chain));
       }
     for (const Member& member : members)
       if (acts != Acts::input && member.candidate->acts == acts)
