@@ -28,15 +28,18 @@ NormalEquations normal_equations_of(const Trials& trials, const Estimate& estima
     trials.work->add(white.size(), double(n * n) * Work::of_a_product);
     constexpr size_t chunk = 1024;
     Eigen::MatrixXd rows(Eigen::Index(chunk * ports), n + 1);
+    std::vector<size_t> counted;
     for (size_t start = 0; start < trial.held_out_from; start += chunk) {
-      Eigen::Index r = 0;
-      for (size_t k = start; k < std::min(start + chunk, trial.held_out_from); ++k) {
-        if (!trial.usable[k]) continue;
-        for (size_t p = 0; p < ports; ++p, ++r) {
-          for (Eigen::Index c = 0; c < n; ++c) rows(r, c) = s.columns[size_t(c)][k * ports + p];
-          rows(r, n) = white[k * ports + p];
-        }
-      }
+      counted.clear();
+      for (size_t k = start; k < std::min(start + chunk, trial.held_out_from); ++k)
+        if (trial.usable[k]) counted.push_back(k * ports);
+      const auto fill = [&](Eigen::Index column, const std::vector<double>& numbers) {
+        double* to = &rows(0, column);
+        for (const size_t first : counted) to = std::copy_n(numbers.data() + first, ports, to);
+      };
+      for (Eigen::Index c = 0; c < n; ++c) fill(c, s.columns[size_t(c)]);
+      fill(n, white);
+      const Eigen::Index r = Eigen::Index(counted.size() * ports);
       equations.G.noalias() += rows.topRows(r).leftCols(n).transpose() * rows.topRows(r).leftCols(n);
       equations.b.noalias() += rows.topRows(r).leftCols(n).transpose() * rows.topRows(r).col(n);
     }
