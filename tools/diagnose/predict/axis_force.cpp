@@ -188,11 +188,11 @@ std::vector<double> AxisModel::force_of_input() {
   return loopwright::driving_force(net(record_.input), net(none));
 }
 
-void AxisModel::work_out_driving_force(const std::optional<Unit>& force_unit) {
+void AxisModel::relate_force_to_input(const std::optional<Unit>& force_unit) {
   if (record_.input.empty()) return;
   MeasuredMotion motion;
   motion.input = record_.input, motion.input_unit = record_.input_unit;
-  motion.force = driving_force_ = force_of_input();
+  motion.force = driving_force_;
   force_unit_ = unit_of_force(force_unit, motion);
   double by_input = 0, squared_input = 0;
   for (size_t k = 0; k < record_.rows(); ++k)

@@ -152,8 +152,10 @@ AxisModel::AxisModel(const std::string& path, const std::string& experiment_path
   look_between_input_and_force();
   follow_fast_forces(*changed);
   driving_force_ = force_of_input();
+  const int steps = steps_a_sample_;
   const LinearAxis linear = shorten_steps(*changed);
-  work_out_driving_force(force_unit);
+  if (steps_a_sample_ != steps) driving_force_ = force_of_input();
+  relate_force_to_input(force_unit);
   keep_seen_states(linear);
   nominal_inertia_ = linear.inertia, nominal_damping_ = linear.damping;
   if (std::isfinite(nominal_inertia_) && nominal_inertia_ > 0) return;
@@ -235,12 +237,14 @@ void AxisModel::keep_seen_states(const LinearAxis& linear) {
 bool AxisModel::set_added_inertia(double added) {
   double* parameter = inertia_parameter_.empty() ? nullptr : run_->parameter(inertia_parameter_);
   if (!parameter) return false;
+  if (*parameter != own_inertia_ + added) linearized_.reset();
   *parameter = own_inertia_ + added;
   return true;
 }
 
 bool AxisModel::set_noise_enters_at_input(bool enters) {
   noise_enters_at_input_ = enters;
+  linearized_.reset();
   if (record_.is_map || force_per_input_ == 0) return noise_enters_at_input_ = false;
   const LinearAxis axis = linearize();
   const double size = axis.push.norm() * axis.noise_push.norm();

@@ -114,13 +114,13 @@ class AxisModel {
   bool holds_at_rest(double small_force);
 
   /// Linearized around the recorded motion. For a map: the remaining sum of the forces, see balance_of.
-  LinearAxis linearize();
+  const LinearAxis& linearize();
 
  private:
   void look_between_input_and_force();
   void follow_fast_forces(const Plan& plan);
   std::vector<double> force_of_input();
-  void work_out_driving_force(const std::optional<Unit>& force_unit);
+  void relate_force_to_input(const std::optional<Unit>& force_unit);
   void let_inner_states_rest(double position, double velocity, double input);
   Eigen::VectorXd inner_states_after_sample(double position, double velocity, double input,
                                             const Eigen::VectorXd& from);
@@ -144,11 +144,12 @@ class AxisModel {
   bool noise_enters_at_input_ = false;
   double own_inertia_ = 0, nominal_inertia_ = 0, nominal_damping_ = 0;
   std::vector<int> seen_;
-  std::vector<int> inner_states_;   // between input and force
-  bool input_is_filtered_ = false;  // by states, sampled blocks or delays
-  bool force_remembers_ = false;    // the net force now depends on more than motion and input
-  Eigen::MatrixXd inner_decay_;     // of the inner states over a sample; empty: not yet computed
-  std::vector<char> remembered_;    // the arena at an operating point
+  std::vector<int> inner_states_;         // between input and force
+  bool input_is_filtered_ = false;        // by states, sampled blocks or delays
+  bool force_remembers_ = false;          // the net force now depends on more than motion and input
+  Eigen::MatrixXd inner_decay_;           // of the inner states over a sample; empty: not yet computed
+  std::vector<char> remembered_;          // the arena at an operating point
+  std::optional<LinearAxis> linearized_;  // with the present inertia and noise
   std::vector<double> driving_force_;
   double force_per_input_ = 0;
   AxisRecord record_;

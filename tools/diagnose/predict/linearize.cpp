@@ -96,8 +96,10 @@ Eigen::VectorXd AxisModel::sample_from(const Eigen::VectorXd& states, double inp
   return next;
 }
 
-LinearAxis AxisModel::linearize() {
-  return record_.is_map ? balance_of(linearize_motion(), force_per_input_) : linearize_motion();
+const LinearAxis& AxisModel::linearize() {
+  if (!linearized_)
+    linearized_ = record_.is_map ? balance_of(linearize_motion(), force_per_input_) : linearize_motion();
+  return *linearized_;
 }
 
 LinearAxis AxisModel::linearize_motion() {
