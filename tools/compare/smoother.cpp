@@ -79,21 +79,62 @@ struct Line {
   double frequency = 0, sine = 0, cosine = 0, power = 0;
 };
 
-/// Least squares of a sine and a cosine on the rows of even or odd blocks.
-Line fit_line(const std::vector<double>& residual, const Rows& rows, const std::vector<double>& variable,
-              double frequency, int parity) {
-  double ss = 0, cc = 0, sc = 0, sr = 0, cr = 0;
-  for (size_t i = 0; i < residual.size(); ++i) {
-    if (parity >= 0 && rows.block[i] % 2 != parity) continue;
-    const double angle = 2 * pi * frequency * variable[i], s = std::sin(angle), c = std::cos(angle);
-    ss += s * s, cc += c * c, sc += s * c, sr += s * residual[i], cr += c * residual[i];
+/// Least squares of a sine and a cosine on some rows.
+class LineFit {
+ public:
+  LineFit(const std::vector<double>& residual, const std::vector<double>& variable, const Rows& rows,
+          int parity) {
+    for (size_t i = 0; i < residual.size(); ++i)
+      if (parity < 0 || rows.block[i] % 2 == parity)
+        residual_.push_back(residual[i]), variable_.push_back(variable[i]);
+    for (auto* list : {&now_, &onward_}) list->resize(residual_.size());
   }
-  const double determinant = ss * cc - sc * sc;
-  if (determinant <= 1e-9 * (ss + cc) * (ss + cc)) return {frequency};
-  Line line{frequency, (cc * sr - sc * cr) / determinant, (ss * cr - sc * sr) / determinant};
-  line.power = line.sine * sr + line.cosine * cr;
-  return line;
-}
+  Line at(double frequency) {
+    turn(frequency, now_);
+    return present(frequency);
+  }
+  /// The strongest at lowest, lowest + spacing, …: each phase turns on from one frequency to the next, which
+  /// costs a part of a sine and a cosine.
+  Line strongest(double lowest, double highest, double spacing) {
+    turn(lowest, now_), turn(spacing, onward_);
+    Line best;
+    for (double f = lowest; f <= highest; f += spacing) {
+      if (const Line line = present(f); line.power > best.power) best = line;
+      for (size_t i = 0; i < now_.size(); ++i) {
+        const auto [c, s] = now_[i];
+        const auto [turned_c, turned_s] = onward_[i];
+        now_[i] = {c * turned_c - s * turned_s, s * turned_c + c * turned_s};
+      }
+    }
+    return best;
+  }
+
+ private:
+  struct Phase {
+    double cosine = 1, sine = 0;
+  };
+  void turn(double frequency, std::vector<Phase>& phases) const {
+    for (size_t i = 0; i < phases.size(); ++i) {
+      const double angle = 2 * pi * frequency * variable_[i];
+      phases[i] = {std::cos(angle), std::sin(angle)};
+    }
+  }
+  Line present(double frequency) const {
+    double ss = 0, cc = 0, sc = 0, sr = 0, cr = 0;
+    for (size_t i = 0; i < now_.size(); ++i) {
+      const auto [c, s] = now_[i];
+      ss += s * s, cc += c * c, sc += s * c, sr += s * residual_[i], cr += c * residual_[i];
+    }
+    const double determinant = ss * cc - sc * sc;
+    if (determinant <= 1e-9 * (ss + cc) * (ss + cc)) return {frequency};
+    Line line{frequency, (cc * sr - sc * cr) / determinant, (ss * cr - sc * sr) / determinant};
+    line.power = line.sine * sr + line.cosine * cr;
+    return line;
+  }
+
+  std::vector<double> residual_, variable_;
+  std::vector<Phase> now_, onward_;
+};
 
 /// The strongest spectral line on rows of one parity (-1: all), from a uniform grid of frequencies and a
 /// refinement around the best one.
@@ -107,13 +148,11 @@ Line find_line(const std::vector<double>& residual, const Rows& rows, const std:
   std::ranges::nth_element(steps, steps.begin() + ptrdiff_t(steps.size() / 2));
   const double shortest = std::max(2.2 * steps[steps.size() / 2], extent / 3000);
   const double spacing = 0.5 / extent, highest = 1 / shortest;
-  Line best;
-  for (double f = 2 * spacing; f <= highest; f += spacing)
-    if (const Line line = fit_line(residual, rows, variable, f, parity); line.power > best.power) best = line;
+  LineFit fit(residual, variable, rows, parity);
+  Line best = fit.strongest(2 * spacing, highest, spacing);
   for (double width = 0.5 * spacing; width > 1e-3 * spacing; width *= 0.5)
     for (double f : {best.frequency - width, best.frequency + width})
-      if (const Line line = fit_line(residual, rows, variable, f, parity); line.power > best.power)
-        best = line;
+      if (const Line line = fit.at(f); line.power > best.power) best = line;
   return best;
 }
 
