@@ -243,7 +243,8 @@ class LastRead {
   std::optional<Recording> find(const SourceFile& source, const ReadOptions& options) {
     const std::lock_guard lock(mutex_);
     const bool is_same =
-        source_ && source_->name == source.name && options_ == options && source_->text == source.text;
+        source_ && options_ == options &&
+        (source_.get() == &source || (source_->name == source.name && source_->text == source.text));
     return is_same ? std::optional(recording_) : std::nullopt;
   }
   void keep(std::shared_ptr<const SourceFile> source, const ReadOptions& options,
