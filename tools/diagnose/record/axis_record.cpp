@@ -151,24 +151,40 @@ size_t rows_for_one(const AxisRecord& record) {
   return std::max<size_t>(1, whole_count(std::floor(std::min(std::ceil(wanted), allowed))));
 }
 
+/// Σ wⁱ x[k ± i] over i = 0 … `reach`, for every row k; beyond its ends a record stays as it is there. Each
+/// sum is made from that of its neighbour: what leaves it is taken away.
+std::vector<double> weighted_sums(const std::vector<double>& values, double weight, size_t reach,
+                                  bool ahead) {
+  const size_t rows = values.size();
+  const auto value = [&](size_t from_start) {  // in the direction of the sums
+    return values[ahead ? rows - 1 - from_start : from_start];
+  };
+  const double left = std::pow(weight, double(reach) + 1);
+  std::vector<double> sums(rows);
+  double sum = 0;
+  for (size_t i = 0; rows > 0 && i <= reach; ++i) sum = value(0) + weight * sum;
+  for (size_t k = 0; k < rows; ++k) {
+    if (k > 0) sum = value(k) + weight * sum - left * value(k > reach ? k - reach - 1 : 0);
+    sums[ahead ? rows - 1 - k : k] = sum;
+  }
+  return sums;
+}
+
 }  // namespace
 
 std::vector<double> mean_over_rows(const std::vector<double>& values, double rows, RowsOfMean side) {
   constexpr double widths = 5;  // beyond which the weights are below a hundredth
   const bool about = side == RowsOfMean::about;
-  std::vector<double> weights, means(values.size());
+  const double weight = std::exp(-1 / rows);
+  const size_t reach = whole_count(std::ceil(widths * rows));
+  std::vector<double> means = weighted_sums(values, weight, reach, true);
   double sum = 0;
-  for (size_t i = 0; double(i) < widths * rows + 1; ++i) {
-    weights.push_back(std::exp(-double(i) / rows));
-    sum += i > 0 && about ? 2 * weights[i] : weights[i];
+  for (size_t i = 0; i <= reach; ++i) sum += std::pow(weight, double(i)) * (about && i > 0 ? 2 : 1);
+  if (about) {
+    const std::vector<double> behind = weighted_sums(values, weight, reach, false);
+    for (size_t k = 0; k < means.size(); ++k) means[k] += behind[k] - values[k];
   }
-  const size_t last = values.empty() ? 0 : values.size() - 1;
-  for (size_t k = 0; k < values.size(); ++k) {
-    double mean = weights[0] * values[k];
-    for (size_t i = 1; i < weights.size(); ++i)
-      mean += weights[i] * (values[std::min(last, k + i)] + (about ? values[k < i ? 0 : k - i] : 0.0));
-    means[k] = mean / sum;
-  }
+  for (double& mean : means) mean /= sum;
   return means;
 }
 
