@@ -40,6 +40,7 @@ std::optional<std::string> why_not_run(const Improvement& improved,
                                        const std::shared_ptr<const SourceFile>& nominal,
                                        const std::vector<std::shared_ptr<const Experiment>>& experiments,
                                        const LoadOptions& load) {
+  if (improved.moved.empty() && improved.file->text == nominal->text) return {};
   for (const auto& experiment : experiments) {
     const size_t rows = experiment->data.columns.front().values.size();
     const Comparison before = compare_signals(nominal, *experiment, load);
