@@ -59,7 +59,13 @@ template <class Real> struct PreslidingFriction {
   }
   Real sliding_level(const Real& velocity) const {
     if (!any(rise != 0.0)) return level;
-    return level + rise * exponential(-power(absolute(velocity) * per_speed, exponent));
+    return level + rise * exponential(-raised(absolute(velocity) * per_speed));
+  }
+  /// To the exponent; the usual one is a square.
+  Real raised(const Real& speed) const {
+    const Real square = speed * speed;
+    if (!any(exponent != 2.0)) return square;
+    return select(exponent == 2.0, square, power(speed, exponent));
   }
   void outputs(const In& in, const Memory& memory, Out& out) const {
     out.fraction = fraction(in, memory);
