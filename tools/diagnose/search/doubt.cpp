@@ -1,9 +1,11 @@
 #include "tools/diagnose/search/doubt.h"
 #include "models/real/whole.h"
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <span>
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/predict/derived_identity.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -11,7 +13,7 @@ namespace {
 /// The path with a different, equally plausible estimation error.
 Path seen_otherwise(const Path& path, const Pace& pace, double shift_s) {
   Path other = path;
-  other.identity = 0;
+  other.identity = derived_identity(path.identity, std::bit_cast<uint64_t>(shift_s));
   const size_t rows = path.samples(), shift = whole_count(shift_s / path.sample_time);
   const double kept = std::pow(criteria::kept_velocity_error, 1.0 / pace.samples_to_correct);
   double error = 0;

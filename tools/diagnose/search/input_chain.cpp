@@ -1,6 +1,7 @@
 #include "tools/diagnose/search/input_chain.h"
 #include <algorithm>
 #include <bit>
+#include "tools/diagnose/predict/derived_identity.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -13,21 +14,11 @@ std::vector<const Member*> chain_of(const std::vector<Member>& members) {
   return chain;
 }
 
-/// Paths with a changed input are as many as sets of values, and are not counted: a digest of what determines
-/// them tells them apart, all but once in 10^18 times. The highest bit tells them from counted ones.
-uint64_t digest(uint64_t before, uint64_t number) {
-  constexpr uint64_t spread = 0x9e3779b97f4a7c15u, not_counted = uint64_t(1) << 63;
-  uint64_t mixed = (before ^ number) * spread;
-  mixed = (mixed ^ mixed >> 32) * spread;
-  return (mixed ^ mixed >> 29) | not_counted;
-}
-
-/// Of the path behind a member, from that of the path ahead of it; 0 if that may change.
+/// Of the path behind a member, from that of the path ahead of it.
 uint64_t identity_behind(uint64_t identity, const Member& member) {
-  if (identity == 0) return 0;
-  identity = digest(identity, std::bit_cast<uintptr_t>(member.candidate));
+  identity = derived_identity(identity, std::bit_cast<uintptr_t>(member.candidate));
   for (const auto* values : {&member.linear, &member.nonlinear})
-    for (const double value : *values) identity = digest(identity, std::bit_cast<uint64_t>(value));
+    for (const double value : *values) identity = derived_identity(identity, std::bit_cast<uint64_t>(value));
   return identity;
 }
 
@@ -51,7 +42,7 @@ ChangedInput InputChain::through(const std::vector<Member>& members) {
   if (chain.empty()) return {raw_input_, path_.input_slope};
   if (!upstream_) upstream_ = path_;
   upstream_->input = raw_input_;
-  upstream_->identity = path_.identity == 0 ? 0 : digest(path_.identity, 0);
+  upstream_->identity = derived_identity(path_.identity, 0);
   std::vector<double> slope = path_.input_slope;
   for (const Member* member : chain) {
     add_columns(*member, member->candidate->columns(*upstream_, member->nonlinear), upstream_->input, slope,
