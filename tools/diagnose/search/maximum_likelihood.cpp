@@ -13,6 +13,14 @@ namespace {
 
 using criteria::same_motion;
 
+/// The rows of a part of a record that are fitted.
+std::vector<size_t> fitted_rows(const Trial& trial, size_t first, size_t count) {
+  std::vector<size_t> rows;
+  for (size_t k = first; k < std::min(first + count, trial.held_out_from); ++k)
+    if (trial.usable[k]) rows.push_back(k);
+  return rows;
+}
+
 /// Jᵀ J and Jᵀ e over the fitted rows of all records; `error`: whitened, of a record.
 template <class Error>
 NormalEquations normal_equations_of(const Trials& trials, const Estimate& estimate, Error&& error) {
@@ -28,14 +36,11 @@ NormalEquations normal_equations_of(const Trials& trials, const Estimate& estima
     trials.work->add(white.size(), double(n * n) * Work::of_a_product);
     constexpr size_t chunk = 1024;
     Eigen::MatrixXd rows(Eigen::Index(chunk * ports), n + 1);
-    std::vector<size_t> counted;
     for (size_t start = 0; start < trial.held_out_from; start += chunk) {
-      counted.clear();
-      for (size_t k = start; k < std::min(start + chunk, trial.held_out_from); ++k)
-        if (trial.usable[k]) counted.push_back(k * ports);
+      const std::vector<size_t> counted = fitted_rows(trial, start, chunk);
       const auto fill = [&](Eigen::Index column, const std::vector<double>& numbers) {
         double* to = &rows(0, column);
-        for (const size_t first : counted) to = std::copy_n(numbers.data() + first, ports, to);
+        for (const size_t k : counted) to = std::copy_n(numbers.data() + k * ports, ports, to);
       };
       for (Eigen::Index c = 0; c < n; ++c) fill(c, s.columns[size_t(c)]);
       fill(n, white);
@@ -208,18 +213,21 @@ void widen_by_blocks(const Trials& trials, Estimate& estimate) {
     const Path& path = *estimate.motion.paths[t];
     const Sensitivity& s = (*sensitivities)[t];
     const size_t block = std::max<size_t>(1, whole_count(criteria::independent_block_s / path.sample_time));
-    Eigen::VectorXd sum(n), score(n);
+    Eigen::MatrixXd scores(Eigen::Index(block), n);
     for (size_t start = 0; start < trial.held_out_from; start += block) {
-      sum.setZero();
-      for (size_t k = start; k < std::min(start + block, trial.held_out_from); ++k) {
-        if (!trial.usable[k]) continue;
-        score.setZero();
-        for (size_t p = 0; p < ports; ++p)
-          for (Eigen::Index c = 0; c < n; ++c)
-            score[c] += s.columns[size_t(c)][k * ports + p] * fitted.white[k * ports + p];
-        sum += score, within += score * score.transpose();
-      }
-      between += sum * sum.transpose();
+      const std::vector<size_t> counted = fitted_rows(trial, start, block);
+      const auto score = [&](const std::vector<double>& column, size_t k) {
+        double sum = 0;
+        for (size_t p = k * ports; p < (k + 1) * ports; ++p) sum += column[p] * fitted.white[p];
+        return sum;
+      };
+      const Eigen::Index rows = Eigen::Index(counted.size());
+      for (Eigen::Index c = 0; c < n; ++c)
+        for (Eigen::Index r = 0; r < rows; ++r)
+          scores(r, c) = score(s.columns[size_t(c)], counted[size_t(r)]);
+      const Eigen::VectorXd sum = scores.topRows(rows).colwise().sum();
+      within.noalias() += scores.topRows(rows).transpose() * scores.topRows(rows);
+      between.noalias() += sum * sum.transpose();
     }
   }
   const Eigen::MatrixXd& C = estimate.covariance;
