@@ -38,17 +38,20 @@ NormalEquations normal_equations_of(const Trials& trials, const Estimate& estima
     Eigen::MatrixXd rows(Eigen::Index(chunk * ports), n + 1);
     for (size_t start = 0; start < trial.held_out_from; start += chunk) {
       const std::vector<size_t> counted = fitted_rows(trial, start, chunk);
+      if (counted.empty()) continue;  // the product expects rows
       const auto fill = [&](Eigen::Index column, const std::vector<double>& numbers) {
         double* to = &rows(0, column);
-        for (const size_t k : counted) to = std::copy_n(numbers.data() + k * ports, ports, to);
+        for (const size_t k : counted)
+          for (size_t p = k * ports; p < (k + 1) * ports; ++p) *to++ = numbers[p];
       };
       for (Eigen::Index c = 0; c < n; ++c) fill(c, s.columns[size_t(c)]);
       fill(n, white);
       const Eigen::Index r = Eigen::Index(counted.size() * ports);
-      equations.G.noalias() += rows.topRows(r).leftCols(n).transpose() * rows.topRows(r).leftCols(n);
+      equations.G.selfadjointView<Eigen::Lower>().rankUpdate(rows.topRows(r).leftCols(n).transpose());
       equations.b.noalias() += rows.topRows(r).leftCols(n).transpose() * rows.topRows(r).col(n);
     }
   }
+  equations.G = equations.G.selfadjointView<Eigen::Lower>().toDenseMatrix();
   return equations;
 }
 
@@ -216,6 +219,7 @@ void widen_by_blocks(const Trials& trials, Estimate& estimate) {
     Eigen::MatrixXd scores(Eigen::Index(block), n);
     for (size_t start = 0; start < trial.held_out_from; start += block) {
       const std::vector<size_t> counted = fitted_rows(trial, start, block);
+      if (counted.empty()) continue;
       const auto score = [&](const std::vector<double>& column, size_t k) {
         double sum = 0;
         for (size_t p = k * ports; p < (k + 1) * ports; ++p) sum += column[p] * fitted.white[p];
