@@ -43,15 +43,18 @@ double gain_at(const ErrorSystem& system, const Gains& gains, bool is_sensor, do
 /// A uniform grid of spatial frequencies: k / (samples · bin), k = 0 … samples / 2.
 struct SpatialGrid {
   static constexpr size_t most_bins = 1 << 24;  // finer than any record resolves
-  double low, bin;
+  double low, shortest, bin;
   size_t bins, samples;
 
-  SpatialGrid(double lowest, double highest, double shortest) : low(lowest), bin(shortest / 6) {
+  SpatialGrid(double lowest, double highest, double shortest_pitch)
+      : low(lowest), shortest(shortest_pitch), bin(shortest_pitch / 6) {
     bins = whole_between<size_t>((highest - lowest) / bin, 0, most_bins) + 1;
     samples = 1;
     while (samples < 4 * bins) samples *= 2;
   }
   double frequency(size_t k) const { return double(k) / (double(samples) * bin); }
+  /// Whether its pitch is at least the shortest one.
+  bool resolves(size_t k) const { return 1 / frequency(k) >= shortest; }
   size_t place(double position) const { return whole_index((position - low) / bin, bins); }
 };
 
@@ -72,7 +75,8 @@ Column::Numbers envelope(const Candidate& candidate, const Path& path, double st
 /// Of every record.
 using Weights = std::vector<std::vector<double>>;
 
-/// Explained squares at every spatial frequency, over all records.
+/// Explained squares at every spatial frequency whose pitch may be asked for, over all records; beyond them
+/// 0.
 std::vector<double> spectrum(const Trials& trials, const Estimate& estimate, const Candidate& candidate,
                              const Weights& weights, const SpatialGrid& grid, double stroke) {
   std::vector<Complex> density(grid.samples);
@@ -112,7 +116,7 @@ std::vector<double> spectrum(const Trials& trials, const Estimate& estimate, con
                              2));
   const double T = fitted.prediction.path.sample_time;
   std::vector<double> explained(grid.samples / 2);
-  for (size_t f = 0; f < explained.size(); ++f) {
+  for (size_t f = 0; f < explained.size() && grid.resolves(f); ++f) {
     double energy = 0;
     for (size_t s = 0; s < speeds; ++s) {
       const double per_sample =
