@@ -234,14 +234,22 @@ double floor_of_smooth_parts(const Rows& rows) {
     }
     at += f.count;
   }
+  // Of the columns so far: those that are added leave the products of the others as they are.
+  Matrix products = Matrix::Zero(columns, columns);
+  const auto add_products = [&](int from) {
+    products.block(0, from, at, at - from).noalias() =
+        design.leftCols(at).transpose() * design.middleCols(from, at - from);
+    products.block(from, 0, at - from, from) = products.block(0, from, from, at - from).transpose();
+  };
   const auto solve = [&] {
     const Eigen::Map<const Vector_> r(rows.residual.data(), Eigen::Index(n));
     const auto part = design.leftCols(at);
-    Matrix gram = part.transpose() * part;
+    Matrix gram = products.topLeftCorner(at, at);
     gram.diagonal().array() += 1e-6 * gram.trace() / at + 1e-12;
     const Vector_ remainder = r - part * gram.ldlt().solve(part.transpose() * r);
     std::copy_n(remainder.data(), n, left.begin());
   };
+  add_products(0);
   solve();
   // Of the top speed, so that all columns are alike in size whatever the unit of the position.
   const auto faster = [](double a, double b) { return std::abs(a) < std::abs(b); };
@@ -257,6 +265,7 @@ double floor_of_smooth_parts(const Rows& rows) {
       }
     }
     at += 6;
+    add_products(at - 6);
     solve();
   }
   double sum = 0;
