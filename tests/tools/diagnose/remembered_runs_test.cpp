@@ -2,6 +2,7 @@
 #include "tools/diagnose/search/remembered_runs.h"
 #include "tests/tools/diagnose/recorded_axis.h"
 #include "tools/diagnose/search/catalogue.h"
+#include "tools/diagnose/search/input_chain.h"
 #include "tools/diagnose/search/prepare.h"
 
 namespace loopwright::diagnosis::remembered_runs_test {
@@ -75,6 +76,44 @@ TEST_F(RememberedRunsTest, SensitivitiesAreThoseOfTheFreeParameters) {
   members_[1].is_part_of_turn = true;
   EXPECT_EQ(trials_.remembered->sensitivities(trials_, members_, motion_, results)->front().columns.size(),
             2u);
+}
+
+TEST_F(RememberedRunsTest, APathBehindAnEffectIsKnownByItsValues) {
+  std::vector<uint64_t> identities;
+  Candidate gain = constant_, behind = constant_;
+  gain.acts = behind.acts = Acts::input;
+  behind.stage = Attachment::Stage::magnets;
+  behind.columns_at = [&](const Path& path, const std::vector<std::vector<double>>& shapes) {
+    identities.push_back(path.identity);
+    return constant_.columns_at(path, shapes);
+  };
+  const std::vector<double>& input = trials_.list.front().input;
+  InputChain chain(*motion_.paths[0], input);
+  const ChangedInput first = chain.through({{&gain, {0.1}, {}}, {&behind, {0.3}, {}}});
+  EXPECT_DOUBLE_EQ(first.mean[5], input[5] - 0.4);
+  chain.through({{&gain, {0.1}, {}}, {&behind, {0.4}, {}}});
+  chain.through({{&gain, {0.2}, {}}, {&behind, {0.4}, {}}});
+  ASSERT_EQ(identities.size(), 3u);
+  EXPECT_EQ(identities[0], identities[1]) << "what comes after an effect changes nothing ahead of it";
+  EXPECT_NE(identities[1], identities[2]);
+  EXPECT_NE(identities[0], motion_.paths[0]->identity);
+}
+
+TEST(MeanOverRows, IsTheWeightedMeanOfTheRowsAboutEach) {
+  const std::vector<double> values{3, -1, 4, 1, -5, 9, 2, -6, 5, 3, -5, 8};
+  for (const double rows : {0.3, 1.0, 1.7})
+    for (const RowsOfMean side : {RowsOfMean::about, RowsOfMean::after}) {
+      const std::vector<double> means = mean_over_rows(values, rows, side);
+      for (int k = 0; k < int(values.size()); ++k) {
+        double sum = 0, weights = 0;
+        for (int i = side == RowsOfMean::about ? -100 : 0; i <= 100; ++i) {
+          if (std::abs(i) >= 5 * rows + 1) continue;
+          const double weight = std::exp(-std::abs(i) / rows);
+          sum += weight * values[size_t(std::clamp(k + i, 0, int(values.size()) - 1))], weights += weight;
+        }
+        EXPECT_NEAR(means[size_t(k)], sum / weights, 1e-12) << k << " over " << rows;
+      }
+    }
 }
 
 }  // namespace
