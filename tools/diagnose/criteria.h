@@ -193,7 +193,7 @@ constexpr double most_work_at_sites = 50e9;
 /// [most_work] Used up, the search accepts no further effect; and no further rival is compared. What was
 /// found is fitted, weighed and simulated in any case.
 constexpr double work_of_search = 0.6, work_with_rivals = 0.8;
-/// [most_work_at_sites] Used up, there is no second search from the parameters as they are stated.
+/// [most_work_at_sites] Used up, there is no second search, with all parameters free from its beginning.
 constexpr double work_of_first_search = 0.4;
 
 // Rest.

@@ -42,7 +42,7 @@ class SiteSearch {
     readings_ = *readings;
     tell("the diagram as it is", nominal);
     progress_("fitting parameters", 0.1);
-    result_.parameters = with_free_parameters(nominal);
+    result_.parameters = with_free_parameters(fitter_, nominal);
     tell("parameters free", result_.parameters);
     if (disturbances_.empty()) single_ = with_one_parameter(fitter_, nominal, result_.parameters);
     std::optional<SiteHypothesis> alone = explained_by_late_input(fitter_, nominal, result_.parameters);
@@ -50,11 +50,14 @@ class SiteSearch {
     if (!alone && is_explained_by_one_parameter()) tell("a parameter by itself", *(alone = single_.front()));
     if (!alone && errors_ == ErrorsOf::predictions && disturbances_.empty())
       begin_beside_small_disturbances();
-    SiteSearchResult first = searched_from(alone.value_or(result_.parameters), 0.2);
+    // A term that is missing bends parameters that are free, and they cost a run of the model each: what can
+    // be found without them is found first.
+    SiteSearchResult first = searched_from(alone.value_or(nominal), 0.2);
     if (!is_doubtful(first.found) || is_spent(criteria::work_of_first_search)) return first;
     result_.trail = std::move(first.trail);
-    result_.trail.push_back("again, from the parameters as they are stated");
-    SiteSearchResult second = searched_from(nominal, 0.6);
+    result_.trail.push_back(alone ? "again, from the parameters as they are stated"
+                                  : "again, from parameters that are free");
+    SiteSearchResult second = searched_from(alone ? nominal : result_.parameters, 0.6);
     const bool is_better = whole_criterion(second.found) < whole_criterion(first.found) - least_improvement;
     second.trail.push_back(is_better ? "the second is better" : "the first is better");
     if (!is_better) first.trail = std::move(second.trail);
@@ -88,8 +91,10 @@ class SiteSearch {
     SiteSearchResult before = result_;
     begin_ = progress;
     add_terms(at);
+    std::optional<SiteHypothesis> stated;
     if (at.free_parameters() == 0) {
-      at = with_free_parameters(std::move(at));
+      stated = at;
+      at = with_free_parameters(fitter_, std::move(at));
       tell("parameters free beside the terms", at);
       add_terms(at);
     }
@@ -101,6 +106,11 @@ class SiteSearch {
     remove_idle(at);
     progress_("deciding which parameters moved", begin_ + 0.3);
     decide_parameters(at);
+    if (stated && whole_criterion(*stated) < whole_criterion(at) - least_exchange) {
+      at = *stated;
+      tell("as it was before parameters were free", at);
+      result_.rivals.clear(), result_.parameter_rivals.clear();
+    }
     if (remove_idle(at)) decide_parameters(at);
     compare_with_stated_parameters(at);
     compare_with_one_parameter(at);
@@ -141,19 +151,6 @@ class SiteSearch {
     double sum = h.objective + double(size_of(h)) * std::log(readings_);
     for (const SiteTerm& term : h.terms) sum += 2 * cost_of(model(), term) + 2 * std::log(double(keys_));
     return sum;
-  }
-
-  /// Those parameters free that the record sees at all.
-  SiteHypothesis with_free_parameters(SiteHypothesis h) {
-    std::fill(h.is_free.begin(), h.is_free.end(), true);
-    if (!fitter_.pass(h, false, pass_)) return h;
-    const Eigen::MatrixXd J = fitter_.jacobian(h, pass_);
-    constexpr double least_response = 1e-3;  // in whitened errors, for a change by all of the parameter
-    for (size_t i = 0; i < h.is_free.size(); ++i)
-      h.is_free[i] = J.col(Eigen::Index(i)).norm() > least_response;
-    fitter_.refine(h, 8);
-    fitter_.anneal(h);
-    return h;
   }
 
   /// Real fits of the best candidates; the best of them with its own noise.
@@ -354,7 +351,7 @@ class SiteSearch {
     tell("it is better than parameters that moved", at);
     result_.rivals.clear(), result_.parameter_rivals.clear(), result_.steps.push_back(at);
     exchange(at);
-    decide_parameters(at = with_free_parameters(at));
+    decide_parameters(at = with_free_parameters(fitter_, at));
   }
 
   /// Terms and parameters that do what a single parameter does are that parameter.
@@ -381,7 +378,6 @@ class SiteSearch {
   const std::function<void(const char*, double)>& progress_;
   SiteSearchResult result_;
   std::vector<SiteHypothesis> single_;  ///< see with_one_parameter()
-  SitePass pass_;
   double readings_ = 0, begin_ = 0.2;
   size_t keys_ = 10;
   const ErrorsOf errors_;
