@@ -1,6 +1,7 @@
 """The plants of the benchmark, against what their equations must satisfy."""
 
 import json
+import math
 import pathlib
 import random
 import tempfile
@@ -41,6 +42,10 @@ class Generator(unittest.TestCase):
         gain, of_mass = simulate.gains(filter_, p, [cube], {"mass": 0.2}, list(p), 400)
         self.assertGreater(gain, scenario.LEAST_GAIN)
         self.assertGreater(of_mass, scenario.LEAST_GAIN)
+
+    def test_a_hysteresis_reaches_its_size_within_the_motion(self):
+        speeds = [math.cos(2 * math.pi * k / 100) for k in range(1000)]  # 1 m/s over 100 samples of 5 ms
+        self.assertAlmostEqual(scenario.displacement(speeds, 5e-3), 0.5 / (2 * math.pi) / math.sqrt(2), delta=1e-4)
 
     def test_a_seed_always_gives_the_same_files(self):
         texts = []

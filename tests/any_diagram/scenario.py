@@ -43,7 +43,7 @@ def have_one_name(place, other):
     return place.names == other.names or LAWS[place.law].is_distortion or laws == {"constant", "radiation"}
 
 
-def sized(place, nominal, memory, draw):
+def sized(place, nominal, memory, draw, sample_time):
     """The hidden law, so large that it has a share of the site's rms along the run without it."""
     law = LAWS[place.law]
     values = nominal.sites[place.site] if law.is_distortion else [place.signal(x, u) for x, u in zip(nominal.x, nominal.u)]
@@ -54,14 +54,14 @@ def sized(place, nominal, memory, draw):
     sign = place.sign or draw.choice((-1, 1))
     size = sign * share * rms(nominal.sites[place.site])
     if law.rate:  # q is a share of the displacement, z is near ±1
-        return simulate.Hidden(place, q * displacement(values), size, memory)
+        return simulate.Hidden(place, q * displacement(values, sample_time), size, memory)
     return simulate.Hidden(place, q, size / rms([law.phi(v, q) for v in values]))
 
 
-def displacement(speeds):
+def displacement(speeds, sample_time):
     total, path = 0.0, []
     for v in speeds:
-        total += v
+        total += v * sample_time
         path.append(total)
     mean = sum(path) / len(path)
     return rms([s - mean for s in path])
@@ -91,7 +91,7 @@ def attempt(seed, retry, disturbance):
     hidden = []
     for place in chosen_places(plant, kind, draw):
         memory = len(plant.initial) + sum(e.memory >= 0 for e in hidden)
-        hidden.append(sized(place, nominal, memory, draw))
+        hidden.append(sized(place, nominal, memory, draw, plant.sample_time))
     noise = {site: size * rms(nominal.sites[site]) for site, size in plant.noise.items()}
     sensor = [size * rms([x[i] - plant.initial[i] for x in nominal.x]) for size, (_, _, i) in zip(plant.sensor, plant.outputs)]
     slow = disturbances(seed, noise, nominal, disturbance) if disturbance else {}
