@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/beyond_start.h"
 #include "tools/diagnose/search/late_input.h"
 #include "tools/diagnose/search/moved_parameters.h"
 #include "tools/diagnose/search/one_parameter.h"
@@ -50,15 +51,15 @@ class SiteSearch {
     if (!alone && is_explained_by_one_parameter()) tell("a parameter by itself", *(alone = single_.front()));
     if (!alone && errors_ == ErrorsOf::predictions && disturbances_.empty())
       begin_beside_small_disturbances();
-    // A term that is missing bends parameters that are free, and they cost a run of the model each: what can
-    // be found without them is found first.
+    // What is missing bends parameters that are free, and each costs runs of the model: they come second.
     SiteSearchResult first = searched_from(alone.value_or(nominal), 0.2);
     if (!is_doubtful(first.found) || is_spent(criteria::work_of_first_search)) return first;
     result_.trail = std::move(first.trail);
-    result_.trail.push_back(alone ? "again, from the parameters as they are stated"
-                                  : "again, from parameters that are free");
+    result_.trail.push_back(alone ? "again, from stated parameters" : "again, from free parameters");
     SiteSearchResult second = searched_from(alone ? nominal : result_.parameters, 0.6);
-    const bool is_better = whole_criterion(second.found) < whole_criterion(first.found) - least_improvement;
+    // Terms may stand for parameters: only clearly better ones take the place of what free parameters leave.
+    const double needed = alone ? least_improvement : -least_improvement;
+    const bool is_better = whole_criterion(second.found) < whole_criterion(first.found) - needed;
     second.trail.push_back(is_better ? "the second is better" : "the first is better");
     if (!is_better) first.trail = std::move(second.trail);
     return is_better ? std::move(second) : std::move(first);
@@ -121,8 +122,7 @@ class SiteSearch {
   /// A strong term bends the parameters that are fitted without it, and other terms then mend that. Such an
   /// answer has several terms, or moved parameters beside terms, or leaves something.
   bool is_doubtful(const SiteHypothesis& found) {
-    const size_t changes = found.terms.size() + found.free_parameters();
-    if (changes > 1) return true;
+    if (found.terms.size() + found.free_parameters() > 1) return true;
     if (!found.terms.empty() && is_unknown_function(*found.terms.front().shape)) return true;
     return leaves_something(found);
   }
@@ -207,9 +207,8 @@ class SiteSearch {
       std::vector<SiteHypothesis> tried = fits(at, candidates(at));
       if (tried.empty()) return;
       SiteHypothesis best = std::move(tried.front());
-      const bool gains = at.objective - best.objective >= gain_needed() &&
-                         criterion(at) - criterion(best) >= least_improvement;
-      tell(fmt::format("{} {}", gains ? "+" : "not enough:", describe(model(), best.terms.back())), best);
+      const bool gains = is_worth_adding(best, at);
+      tell((gains ? "+ " : "not enough: ") + describe(model(), best.terms.back()), best);
       if (!gains) return;
       fitter_.anneal(best);
       tell("  annealed", best);
@@ -218,6 +217,14 @@ class SiteSearch {
       merge_stacked_names(at, 2);
       result_.steps.push_back(at);
     }
+  }
+
+  /// The start of the record by itself is no reason for a term.
+  bool is_worth_adding(const SiteHypothesis& with, const SiteHypothesis& at) {
+    const double price = criterion(with) - with.objective - (criterion(at) - at.objective);
+    const double gain = std::min(at.objective - with.objective,
+                                 objective_beyond_start(fitter_, at) - objective_beyond_start(fitter_, with));
+    return gain >= gain_needed() && gain - price >= least_improvement;
   }
 
   /// Names that pile up at one site for one signal may stand for a function without a name.
@@ -332,9 +339,7 @@ class SiteSearch {
   void compare_with_stated_parameters(SiteHypothesis& at) {
     std::optional<SiteHypothesis> better;
     if (at.free_parameters() == 0 || is_spent(criteria::work_with_rivals)) return;
-    const auto fit = [&](const SiteHypothesis& h, std::span<const SiteCandidate> list) {
-      return fits(h, list);
-    };
+    const auto fit = [&](const auto& h, auto list) { return fits(h, list); };
     for (StatedParameters& other : with_stated_parameters(fitter_, at, result_.nominal, fit)) {
       const double worse = criterion(other.hypothesis) - whole_criterion(at),
                    lost = other.hypothesis.objective - at.objective;
