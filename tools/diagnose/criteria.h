@@ -14,9 +14,8 @@ constexpr double settling_s = 0.1;
 /// [time constants of the predictor's motion] After a reversal, or an impact. Dry friction changes its sign
 /// within a sample or two of it; after five time constants a hundredth of that error is left.
 constexpr double correction = 5;
-/// [s] Nor less than this: what the controller does about the error is over by then.
+/// [s; rows] Nor less: the controller's answer to the error is over, and three states have been measured.
 constexpr double correction_s = 15e-3;
-/// [rows] The fewest of them: position, velocity and force must be measured once each.
 constexpr int least_correction = 3;
 /// [s] Memory of a slow force of amplifiers and cables, as the predictor assumes it.
 constexpr double slow_memory_s = 0.03;
@@ -89,9 +88,8 @@ constexpr double noise_reach = 30;
 constexpr double same_push = 0.99;
 /// [greatest position] Numbers of a record have some nine digits.
 constexpr double least_sensor_noise = 1e-9;
-/// [gain of a late input] An input that is early by as much, and gains more than this share of it, has noise
-/// that any mean reduces. One that is truly late loses by being early. Beside a small late input the same
-/// holds of a mean about each row.
+/// [gain of a late input] Of which an input that is early by as much, or smoothed beside a small one, has
+/// more if it has noise that any mean reduces. One that is truly late loses by either.
 constexpr double least_gain_of_early_input = 0.5;
 
 // Whiteness of the prediction errors.
@@ -386,11 +384,10 @@ constexpr double least_share_of_replaced = 0.5;
 /// [of a gain] Two that differ less respond alike, down to the rounding of differences. [nats] By which the
 /// dearer one of two such laws is no rival.
 constexpr double same_gain = 1e-4, dearer = 5;
-/// [of the gain that a term needs] What is still missing after the first steps without a term, for which the
-/// other steps do not make up.
+/// [of the gain that a term needs] For what is missing after the first steps without it, others do not make
+/// up.
 constexpr double far_from_idle = 20;
-/// [-2 ln L] By which a single parameter that moves is behind the best set, by the quadratic form: twenty
-/// times what a parameter must gain.
+/// [-2 ln L] A single parameter so far behind the best set, by the quadratic form, is not fitted.
 constexpr double hopeless_parameter = 500;
 
 // Sizes of the motion.
