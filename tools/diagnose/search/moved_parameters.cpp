@@ -10,7 +10,7 @@ namespace {
 
 /// [of the parameter] Smaller changes are none.
 constexpr double least_change = 2e-3;
-constexpr size_t fitted_sets = 4;
+constexpr size_t fitted_sets = 4, fitted_singles = 3;
 /// Sets of them are bits of a word.
 constexpr size_t most_free = 31;
 /// More free parameters are taken one at a time.
@@ -89,8 +89,9 @@ std::vector<uint32_t> promising_sets(const Eigen::MatrixXd& covariance, const Ei
   std::set<uint32_t> sets{0};
   for (size_t i = 0; i < std::min(fitted_sets, ranked.size()); ++i) sets.insert(ranked[i].second);
   const double most = ranked.front().first + criteria::hopeless_parameter;
+  size_t singles = 0;  // the form is far off where parameters have moved together along what they leave open
   for (const auto& [cost, set] : ranked)
-    if (std::has_single_bit(set) && cost < most) sets.insert(set);
+    if (std::has_single_bit(set) && (cost < most || singles++ < fitted_singles)) sets.insert(set);
   return {sets.begin(), sets.end()};
 }
 
