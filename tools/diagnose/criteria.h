@@ -244,8 +244,8 @@ constexpr double most_strokes = 10;
 constexpr double worse_deviations = 3;
 /// [mean square error] A smaller worsening has no consequence: the parameters' own uncertainty makes as much.
 constexpr double least_worsening = 0.01;
-/// [noise floor of compare] Above it the residual force is no noise, as repeats of the motion show it.
-constexpr double most_over_floor = 1.25;
+/// [noise floor of compare; that of the estimated noise] Above it the residual force is no noise.
+constexpr double most_over_floor = 1.25, far_over_noise = 5;
 /// [numbers] Smooth functions of the motion and lines, as compare fits them, have so many levels. They follow
 /// that share of the noise of a record that has one independent value in each memory of the slow force.
 constexpr double levels_of_smooth_functions = 134;

@@ -242,6 +242,10 @@ void tell_errors(const Trials& trials, const Conclusion& conclusion, const Inqui
   result.measurement_noise = noise.measurement;
 }
 
+bool controller_may_know_more(const AxisModel* model) {
+  return model->record().acts_between_readings || !model->record().left_out.empty();
+}
+
 /// `input_noise`: see AxisModel.
 Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std::string>& experiments,
                               const DiagnoseOptions& options,
@@ -266,6 +270,8 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   const auto why_not = [&](const Effect& effect) {
     std::string why = trials.has_map() ? not_in_a_map(effect) : std::string();
     if (why.empty() && input_noise) why = hidden_by_input_noise(effect);
+    if (why.empty() && std::ranges::any_of(models, controller_may_know_more))
+      why = hidden_by_controller(effect);
     return why.empty() ? cannot_be_added(effect) : why;
   };
   const Catalogue catalogue = make_catalogue(folders, units, sizes, why_not);

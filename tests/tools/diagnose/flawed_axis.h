@@ -37,7 +37,8 @@ struct FlawedMachine {
   double stamp_jitter = 0;    ///< greatest error of a stamp alone, in sample times
   double stamp_quantum = 0;   ///< s; stamps are rounded to it
   size_t loses_every = 0, repeats_every = 0;  ///< one row in this number
-  size_t stale_every = 0;  ///< one reading in this number is that of the row before, for the controller too
+  size_t stale_every = 0;   ///< one reading in this number is that of the row before, for the controller too
+  size_t holding_rows = 0;  ///< behind each, in which the command is held and nothing is read
   bool input_is_linear = false;  ///< the force between two rows; otherwise held
   double measured_late = 0;      ///< of a sample time: the position is older than its row
   double outlier = 0;            ///< added to the position of every thousandth row
@@ -193,6 +194,9 @@ class FlawedAxis {
       line = fmt::format("{:.9f},{:.15g},{:.15g},{:.15g}\n", std::max(stamp, 0.0), told(begin), told(place),
                          told(speed));
       if (!is_lost) out << line;
+      for (size_t i = 1; i <= machine_.holding_rows; ++i)
+        out << fmt::format("{:.9f},{:.15g},,\n", stamp + double(i) * T / double(machine_.holding_rows + 1),
+                           command);
       if (repeats) out << line;
       const double push = machine_.force_noise * normal();
       const double decays = machine_.damping / machine_.mass * step;

@@ -111,17 +111,44 @@ TEST(SlowerSensor, OfAnyDiagramCountsWhereItIsRead) {
   EXPECT_NEAR(d.moved_parameters.front().value, 1.5, 0.03);
 }
 
-/// A controller that sees every row answers noise between the rows of the record.
-class SlowerSensorThanTheController : public testing::TestWithParam<double> {};
-TEST_P(SlowerSensorThanTheController, MakesNoDelayOfItsAnswerToNoise) {
+bool is_looked_for(const Diagnosis& d, const std::string& effect) {
+  return std::ranges::none_of(d.not_looked_for, [&](const NotLookedFor& entry) {
+    return std::ranges::find(entry.effects, effect) != entry.effects.end();
+  });
+}
+
+/// A controller that sees every row answers noise before the record shows it, which looks like a delay.
+TEST(SlowerSensorThanTheController, ShowsNoDelays) {
   HiddenMachine machine;
-  machine.reads_position_every = 5, machine.force_noise = GetParam();
+  machine.reads_position_every = 4, machine.force_noise = 0.2;
   HiddenAxis axis(machine);
   const WantedMotion motion = there_and_back(0.15, 0.4);
   const Diagnosis right = diagnose(axis.diagram(), {axis.record("right", axis.nominal(), motion)});
   EXPECT_EQ(right.verdict, Verdict::nothing_missing) << to_text(right);
+  EXPECT_FALSE(is_looked_for(right, "input_delay")) << to_text(right);
+  EXPECT_FALSE(is_looked_for(right, "actuator_lag")) << to_text(right);
+  EXPECT_TRUE(is_looked_for(right, "coulomb_friction")) << to_text(right);
 }
-INSTANTIATE_TEST_SUITE_P(Noise, SlowerSensorThanTheController, testing::Values(0.03, 0.1, 0.2));
+
+TEST(SlowerSensorThanTheController, ThatIsLeftOutShowsNoDelays) {
+  HiddenMachine machine;
+  machine.velocity_noise = 2e-3, machine.reads_position_every = 4, machine.force_noise = 0.2;
+  HiddenAxis axis(machine);
+  const Diagnosis right =
+      diagnose(axis.diagram(), {axis.record("right", axis.nominal(), there_and_back(0.15, 0.4))});
+  EXPECT_EQ(right.verdict, Verdict::nothing_missing) << to_text(right);
+  EXPECT_FALSE(is_looked_for(right, "input_delay")) << to_text(right);
+}
+
+/// A command that changes with the readings alone hides nothing.
+TEST(SlowerSensor, BesideACommandOfItsOwnRateShowsALag) {
+  FlawedMachine machine;
+  machine.lag = 8e-3, machine.sample_time = 4e-3, machine.holding_rows = 3;
+  const FlawedAxis axis(machine);
+  const Diagnosis d = diagnose(axis.diagram(), {axis.experiment()});
+  EXPECT_TRUE(is_looked_for(d, "actuator_lag")) << to_text(d);
+  EXPECT_THAT(names(d), ElementsAre(testing::AnyOf("actuator_lag", "input_delay"))) << to_text(d);
+}
 
 /// 4 kHz for more than two minutes: means of rows stand for them. Single readings let the answer of the
 /// controller, which reads them all, appear as a delay of 3 ms.

@@ -74,6 +74,13 @@ void begin_at(AxisRecord& record, size_t first) {
   record.start += double(first) * record.sample_time;
 }
 
+bool changes_between(const AxisRecord& record, const SlowerRows& rows) {
+  if (!record.input_slope.empty()) return true;
+  for (size_t k = rows.first + 1; k < record.input.size(); ++k)
+    if ((k - rows.first) % rows.every != 0 && record.input[k] != record.input[k - 1]) return true;
+  return false;
+}
+
 /// Samples are those of the sensor that is read most often. Another one is left out if it is read less often.
 void take_rows_of_sensors(AxisRecord& record, Problems& problems) {
   if (record.measured.empty()) return;
@@ -94,6 +101,7 @@ void take_rows_of_sensors(AxisRecord& record, Problems& problems) {
     p.hint = "or \"excerpt\", which picks the rows that have a reading";
     return;
   }
+  record.acts_between_readings = changes_between(record, rows);
   begin_at(record, rows.first);
   thin(record, rows.every);
 }

@@ -43,6 +43,9 @@ struct AxisRecord {
   size_t rows_in_one = 1;     ///< of these, means over so many stand for them
   /// Role of a sensor that is read less often than the other one, and left out; empty: none.
   std::string left_out;
+  /// The input changes while the sensor is not read: a controller then answers to what the record does not
+  /// show yet.
+  bool acts_between_readings = false;
   size_t held_out_from = 0;  ///< first row held out of the identification; rows() without hold-out
 
   size_t rows() const { return input.size(); }

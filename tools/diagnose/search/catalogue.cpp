@@ -303,9 +303,23 @@ std::string not_in_a_map(const Effect& effect) {
   return needs_motion ? "a map of balances has neither speeds nor times" : "";
 }
 
+namespace {
+
+bool is_late(const Effect& effect) {
+  return acts(effect) == Acts::input && std::ranges::none_of(effect.parameters, &EffectParameter::is_linear);
+}
+
+}  // namespace
+
 std::string hidden_by_input_noise(const Effect& effect) {
-  const bool is_shape = std::ranges::none_of(effect.parameters, &EffectParameter::is_linear);
-  return acts(effect) == Acts::input && is_shape ? "the noise of the recorded input hides when it acts" : "";
+  return is_late(effect) ? "the noise of the recorded input hides when it acts" : "";
+}
+
+std::string hidden_by_controller(const Effect& effect) {
+  return is_late(effect)
+             ? "a controller has readings that the rows of the record lack, and what it does about noise "
+               "that they do not show yet looks like it"
+             : "";
 }
 
 Catalogue make_catalogue(const std::vector<std::string>& folders, const MachineUnits& units,

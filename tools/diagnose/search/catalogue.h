@@ -27,6 +27,10 @@ std::string not_in_a_map(const Effect& effect);
 /// told.
 std::string hidden_by_input_noise(const Effect& effect);
 
+/// Why an effect cannot be told from a controller that knows more than the record, by readings that the
+/// record lacks; empty: it can.
+std::string hidden_by_controller(const Effect& effect);
+
 /// Effects that cannot be added, and effects whose numbers cannot be computed for these records, are left
 /// out. Throws InputError with every problem of the effect files.
 Catalogue make_catalogue(const std::vector<std::string>& folders, const MachineUnits& units,

@@ -155,6 +155,23 @@ ForceShare share_of_force(const Trials& trials, const std::vector<InverseDynamic
   return {slope, std::sqrt(scatter) / squares, std::sqrt(squares / rows)};
 }
 
+bool is_held_out(const Trials& trials, const std::vector<InverseDynamics>& inverse,
+                 const std::vector<Member>& members, size_t member) {
+  constexpr double least_share = 1e-3;  // of its force; less is what the filter spreads
+  std::vector<Member> others = members;
+  others.erase(others.begin() + std::ptrdiff_t(member));
+  double square[2] = {}, rows[2] = {};  // fitted, held out
+  for (size_t t = 0; t < trials.list.size(); ++t) {
+    const std::vector<double> with = residual_with(trials.list[t], inverse[t], members),
+                              without = residual_with(trials.list[t], inverse[t], others);
+    for (size_t k = 0; k < with.size(); ++k) {
+      const int side = k >= trials.list[t].held_out_from;
+      square[side] += std::pow(without[k] - with[k], 2), rows[side] += 1;
+    }
+  }
+  return rows[1] > 0 && square[1] * rows[0] > least_share * least_share * square[0] * rows[1];
+}
+
 bool spoils_balance(const Trials& trials, const Estimate& estimate, size_t member, const Weight& weight) {
   if (!trials.inverse) return false;
   if (estimate.members[member].candidate->flies) return false;

@@ -42,6 +42,10 @@ struct ForceShare {
 ForceShare share_of_force(const Trials& trials, const std::vector<InverseDynamics>& inverse,
                           const std::vector<Member>& with, const std::vector<Member>& without);
 
+/// Whether the force of a member occurs in the held-out rows: an end stop may be touched in others alone.
+bool is_held_out(const Trials& trials, const std::vector<InverseDynamics>& inverse,
+                 const std::vector<Member>& members, size_t member);
+
 /// Whether a member makes the balance of the forces along the smooth motion worse. In a closed loop the input
 /// answers to disturbances that the record of the motion does not yet show: a delay, a lag or a mode can
 /// then predict a part of the noise, but does not fit the motion itself. Where noise drives the motion that

@@ -138,9 +138,18 @@ class Judge {
     return are_larger(errors(without, others.members),
                       errors(state.runs.back(), state.conclusion.estimate.members));
   }
+  /// In the simulation of the held-out rows; where its force does not occur there, in the balance of the
+  /// forces.
   bool helps(const Acceptance& state, size_t member) {
-    const FreeRun without = without_member(state, member).second;
-    return without.diverged || state.runs.back().rmse() < (1 - criteria::least_help) * without.rmse();
+    const auto [others, without] = without_member(state, member);
+    const std::vector<Member>& all = state.conclusion.estimate.members;
+    const auto helps_by = [](double after, double before) {
+      return after < (1 - criteria::least_help) * before;
+    };
+    if (without.diverged || helps_by(state.runs.back().rmse(), without.rmse())) return true;
+    return !is_held_out(trials_, inverse_, all, member) &&
+           helps_by(residual_size(trials_, inverse_, all).fitted,
+                    residual_size(trials_, inverse_, others.members).fitted);
   }
   Refusal why_worse(const Acceptance& state, size_t step) {
     const std::string& unit = trials_.list.front().model->record().measured.front().unit;

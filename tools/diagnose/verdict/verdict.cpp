@@ -65,6 +65,20 @@ bool is_noise_inflated(const Trials& trials, const std::vector<Member>& members,
          diagnosis.steps.back().force_rmse < criteria::least_residual_of_noise * floor;
 }
 
+/// Where no motion repeats and few rows are left, noise_floor() of compare says nothing; the noise that was
+/// estimated does.
+std::string force_far_above_noise(const Trials& trials, const std::vector<Member>& members,
+                                  const Diagnosis& diagnosis) {
+  const double left = diagnosis.steps.back().force_rmse, floor = diagnosis.noise_floor;
+  const bool is_asked = !trials.has_map() && !may_be_doubtful(members) &&
+                        std::ranges::none_of(members, [](const Member& m) { return is_own_load(m); });
+  const double excess = std::sqrt(std::max(0.0, left * left - floor * floor));
+  if (!is_asked || left <= criteria::far_over_noise * floor ||
+      excess <= criteria::least_excess * trials.force_rms)
+    return {};
+  return fmt::format("the residual force is {:.1f} times what the estimated noise leaves", left / floor);
+}
+
 }  // namespace
 
 void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, const Noise& tight,
@@ -78,6 +92,8 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
                        conclusion.portmanteau > criteria::most_portmanteau;
   bool is_not_white = is_left || !conclusion.is_white();
   if (std::string why = force_above_noise(trials, inverse, e.members); !why.empty())
+    diagnosis.contradictions.push_back(std::move(why));
+  else if (why = force_far_above_noise(trials, e.members, diagnosis); !why.empty())
     diagnosis.contradictions.push_back(std::move(why));
   if (diagnosis.simulation_diverged)
     diagnosis.contradictions.push_back("the diagram with these effects diverges when it is simulated");
