@@ -65,13 +65,16 @@ bool is_noise_inflated(const Trials& trials, const std::vector<Member>& members,
          diagnosis.steps.back().force_rmse < criteria::least_residual_of_noise * floor;
 }
 
-/// Where no motion repeats and few rows are left, noise_floor() of compare says nothing; the noise that was
-/// estimated does.
+/// Between the readings of a slower sensor several names can share one law: dry friction and drags that
+/// cancel. Where noise_floor() of compare says nothing of that, the noise that was estimated does. A record
+/// with few rows between its turns is not asked otherwise, because its smoothed motion is not that of the
+/// axis.
 std::string force_far_above_noise(const Trials& trials, const std::vector<Member>& members,
                                   const Diagnosis& diagnosis) {
   const double left = diagnosis.steps.back().force_rmse, floor = diagnosis.noise_floor;
-  const bool is_asked = !trials.has_map() && !may_be_doubtful(members) &&
-                        std::ranges::none_of(members, [](const Member& m) { return is_own_load(m); });
+  const auto is_read_too_seldom = [](const Trial& t) { return t.model->record().acts_between_readings; };
+  const bool is_asked = std::ranges::any_of(trials.list, is_read_too_seldom) && !may_be_doubtful(members) &&
+                        std::ranges::none_of(members, is_own_load);
   const double excess = std::sqrt(std::max(0.0, left * left - floor * floor));
   if (!is_asked || left <= criteria::far_over_noise * floor ||
       excess <= criteria::least_excess * trials.force_rms)
