@@ -91,15 +91,13 @@ void CsvReader::explain_length(std::string_view line, const std::vector<csv::Fie
 bool CsvReader::read_cell(const csv::Field& field, size_t column) {
   nameless_is_used_ = nameless_is_used_ || (column + 1 == row_.size() && !field.text.empty());
   if (field.text.empty())
-    return refuse(field, column, "an empty cell", "a number",
-                  "leave out rows with holes, or fill them before");
+    return refuse(field, column, "an empty cell", "a number", "leave out the rows with holes");
   std::optional<double> number = csv::parse_number(field.text);
   if (number) note_decimal_point(field.text);
   if (!number) number = decimal_commas_.read(field.text);
   if (!number || field.open_quote) return explain_text(field, column);
   if (!std::isfinite(*number) && !options_.allow_not_finite)
-    return refuse(field, column, "not a finite number", "a number",
-                  "leave out rows with holes, or fill them before");
+    return refuse(field, column, "not a finite number", "a number", "leave out the rows with holes");
   row_[column] = *number;
   return true;
 }

@@ -190,7 +190,7 @@ void Assembly::check(Column& column) {
                                 count_of(std::ranges::count_if(column.values, is_not_finite), "value"),
                                 first - column.values.begin() + 1);
   problem.expected = "numbers", problem.found = fmt::format("{}", *first);
-  problem.hint = "leave out rows with holes, or fill them before";
+  problem.hint = "leave out the rows with holes";
   if (options_.allow_holes)
     column.holes = {1, {std::move(problem)}};  // told together: rows of a MAT file have no places
   else

@@ -137,8 +137,11 @@ Plan logging(const Plan& plan, const Experiment& experiment, Problems& problems)
     if (const auto known = plan.unit_of(*number)) logged.unit = *known, logged.unit_is_known = true;
     changed.log.push_back(std::move(logged));
   };
-  for (const RecordedSignal& signal : experiment.compared)
-    log(signal.port, signal.unit, signal.place, signal.pointer);
+  for (const RecordedSignal& signal : experiment.compared) {
+    const bool is_read =
+        experiment.data.find(signal.port) != nullptr;  // else its unit may be that of the heading
+    log(signal.port, is_read ? std::optional(signal.unit) : std::nullopt, signal.place, signal.pointer);
+  }
   for (const RecordedSignal& signal : experiment.drives)
     find_port(plan, signal.port, signal.unit, signal.place, signal.pointer, problems);
   for (size_t i = 0; i < experiment.roles.ports.size(); ++i)

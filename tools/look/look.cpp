@@ -234,7 +234,9 @@ void Looker::question(const LookedColumn& column) {
     find("not_finite",
          fmt::format("\"{}\" has no number in {}{}", column.name, counted(column.not_finite, "row"),
                      column.first_hole.empty() ? "" : ", first " + column.first_hole),
-         "readers refuse this column where it is used: leave out the rows, or fill them");
+         "readers refuse this column where it is used, unless it is compared and has a number in every n-th "
+         "row: "
+         "leave out the rows");
   else if (column.is_constant())
     find("constant", fmt::format("\"{}\" is {:g} in all rows", column.name, column.least),
          "a channel that was not connected?");
