@@ -29,10 +29,12 @@ class Measurements : public testing::Test {
       "log": ["axis.position"]})");
   }
   /// Time in ms, position in mm with steps of 5 um, force in N.
-  void record(const std::string& heading) {
+  void record(const std::string& heading, int reads_every = 1) {
     std::string text = heading + "\n";
-    for (int i = 0; i <= 300; ++i)
-      text += fmt::format("{},{},1\n", i, 0.005 * std::round(200 * 1000 * std::pow(i * 1e-3, 2) / 4));
+    for (int i = 0; i <= 300; ++i) {
+      const double x_mm = 0.005 * std::round(200 * 1000 * std::pow(i * 1e-3, 2) / 4);
+      text += fmt::format("{},{},1\n", i, i % reads_every == 0 ? fmt::format("{}", x_mm) : "");
+    }
     folder_.write("top/log.csv", text);
   }
   Json columns() {
@@ -85,6 +87,19 @@ TEST_F(Measurements, UnitsInParenthesesAreThoseOfTheHeading) {
   EXPECT_EQ(column(found, "SetForce")["use"], "drive");
   EXPECT_EQ(column(found, "SetForce")["port"], "axis.force");
   expect_right(found);
+}
+
+/// Drawn at its own rows.
+TEST_F(Measurements, ASensorMayBeReadLessOften) {
+  record("Time (ms),ActPos (mm),SetForce (N)", 3);
+  Json found = columns();
+  Json& position = column(found, "ActPos");
+  position["use"] = "compare", position["port"] = "axis.position", position["resolution"] = "0.005";
+  expect_right(found);
+  const Json comparison =
+      page_.ask({{"do", "compare"}, {"path", "top/stage.json"}, {"experiment", "top/log.experiment.json"}});
+  EXPECT_EQ(comparison["signals"][0]["x"].size(), 101u);
+  EXPECT_EQ(comparison["signals"][0]["measured"].size(), 101u);
 }
 
 /// What this record is known to have is nothing that the page asks for.
