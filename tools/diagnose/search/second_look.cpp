@@ -43,6 +43,12 @@ bool may_be_answer_to_noise(Trials& trials, const Estimate& trial, size_t catalo
   return !std::ranges::all_of(trials.list, measures_position) || smoothing_gains(trials, trial, catalogue);
 }
 
+/// A force that matters by its size, of which members that are there leave little: another name for a part of
+/// theirs.
+bool is_another_name(const Trials& trials, const Weight& weight) {
+  return weight.force_rms > criteria::force_that_matters * trials.force_rms;
+}
+
 bool is_beat_of_counts(const Weight& weight) {
   return weight.wald < criteria::clear_of_counts * weight.counts;
 }
@@ -79,8 +85,8 @@ SecondLook look_again(Trials& trials, const Estimate& estimate, double portmante
       return result;
     }
     const Member& small = trial.members.back();
-    if (is_own_load(small) || is_error_of_model(trials, trial, weight) || is_beat_of_counts(weight) ||
-        may_be_answer_to_noise(trials, trial, catalogue))
+    if (is_own_load(small) || is_another_name(trials, weight) || is_error_of_model(trials, trial, weight) ||
+        is_beat_of_counts(weight) || may_be_answer_to_noise(trials, trial, catalogue))
       continue;
     result.small.push_back({small.candidate, gain, weight.force_rms});
   }
