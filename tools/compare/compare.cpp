@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include "engine/diagram/in_memory.h"
 #include "models/real/whole.h"
 #include "tools/experiment/experiment_ports.h"
@@ -17,20 +18,28 @@ double same_instant(double time, double row_s) {
   return share_of_row * row_s + roundings * std::numeric_limits<double>::epsilon() * std::abs(time);
 }
 
+/// Recorded times that a run reached. Stamps are rounded, and the last row is not lost for that.
+size_t reached_rows(const Recording& simulated, const std::vector<double>& times) {
+  const std::vector<double>& t = simulated.columns[0].values;
+  if (t.empty()) return 0;
+  const double last_row_s = t.size() > 1 ? t.back() - t[t.size() - 2] : 0;
+  const auto beyond = std::ranges::find_if(times, [&](double time) {
+    return t.back() < time - 0.01 * last_row_s - same_instant(time, last_row_s);
+  });
+  return size_t(beyond - times.begin());
+}
+
 /// Values of a simulated column at the recorded times: the row's value where the times coincide, otherwise
 /// linear interpolation.
 std::vector<double> at_times(const Recording& simulated, const Column& column,
                              const std::vector<double>& times) {
   const std::vector<double>& t = simulated.columns[0].values;
   std::vector<double> values;
-  if (t.empty()) return values;
-  values.reserve(times.size());
-  const double last_row_s = t.size() > 1 ? t.back() - t[t.size() - 2] : 0;
+  const size_t reached = reached_rows(simulated, times);
+  values.reserve(reached);
   size_t i = 0;
-  for (double time : times) {
+  for (double time : std::span(times).first(reached)) {
     while (i + 1 < t.size() && t[i + 1] <= time + same_instant(time, t[i + 1] - t[i])) ++i;
-    // The run ended earlier; but stamps are rounded, and the last row is not lost for that.
-    if (t.back() < time - 0.01 * last_row_s - same_instant(time, last_row_s)) break;
     const bool coincides = i + 1 == t.size() || std::abs(t[i] - time) <= same_instant(time, t[i + 1] - t[i]);
     const double s = coincides ? 0 : (time - t[i]) / (t[i + 1] - t[i]);
     values.push_back(coincides ? column.values[i] : (1 - s) * column.values[i] + s * column.values[i + 1]);
@@ -179,8 +188,7 @@ Comparison compare_signals_of(const std::string& diagram_path, const Experiment&
     measure(signal, experiment.hold_out_fraction);
     comparison.signals.push_back(std::move(signal));
   }
-  const Recording& simulated = comparison.run.recording;
-  const size_t reached = at_times(simulated, simulated.columns[0], comparison.time).size();
+  const size_t reached = reached_rows(comparison.run.recording, comparison.time);
   comparison.lacks_held_out = experiment.hold_out_fraction > 0 && reached < comparison.time.size();
   comparison.time.resize(reached);
   add_axes(comparison, experiment);

@@ -29,12 +29,6 @@ void take_offset_out(ComparedSignal& signal, size_t fitted) {
 
 double scale_of(const DiagramNumber& number) { return number.value != 0 ? std::abs(number.value) : 1.0; }
 
-std::vector<SlowerRows> FitModel::Record::rows_of_signals() const {
-  std::vector<SlowerRows> list;
-  for (const RecordedSignal& signal : experiment->compared) list.push_back(signal.rows);
-  return list;
-}
-
 size_t FitModel::Record::fitted_rows(size_t rows) const {
   if (is_held_out) return 0;
   return rows - whole_between<size_t>(double(rows) * experiment->hold_out_fraction, 0, rows);
@@ -234,7 +228,8 @@ std::vector<double> FitModel::errors(const std::vector<double>& values, const We
     all.insert(all.end(), own.begin(), own.end());
     errors_of_record_[r] = own.size();
     const size_t rows = records_[r].experiment->data.rows(), fitted = records_[r].fitted_rows(rows);
-    for (const auto& [first, every] : records_[r].rows_of_signals()) {
+    for (const RecordedSignal& signal : records_[r].experiment->compared) {
+      const auto& [first, every] = signal.rows;
       const size_t readings = (rows - first + every - 1) / every;
       for (size_t k = 0; k < records_[r].fitted_rows(readings); ++k)
         rows_of_errors_.push_back(before + std::min(first + k * every, fitted - 1));

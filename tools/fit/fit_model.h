@@ -33,7 +33,6 @@ class FitModel {
     bool is_held_out = false;
     /// Of a signal with so many rows.
     size_t fitted_rows(size_t rows) const;
-    std::vector<SlowerRows> rows_of_signals() const;
   };
   const std::vector<Record>& records() const { return records_; }
   /// Errors of a record, without their offsets if that is wanted. Throws InputError when the blocks reject

@@ -195,13 +195,11 @@ void take_one_rate(Trials& trials, const std::function<std::unique_ptr<AxisModel
   for (size_t t = 0; t < trials.list.size() && !trials.has_map(); ++t) {
     Trial& trial = trials.list[t];
     if (trial.model->record().rows_in_one != most) trial.model = read(t, most);
-    const double wanted = trials.list.front().model->record().sample_time,
-                 found = trial.model->record().sample_time;
-    if (std::abs(found - wanted) <= same_rate * wanted) continue;
-    auto& p = problems.error(trial.model->record().place, "/data", "", "the records have different rates");
-    p.expected =
-        fmt::format("{:.6g} s from row to row, as in {}", wanted, trials.list.front().model->record().path);
-    p.found = fmt::format("{:.6g} s", found);
+    const AxisRecord &first = trials.list.front().model->record(), &record = trial.model->record();
+    if (std::abs(record.sample_time - first.sample_time) <= same_rate * first.sample_time) continue;
+    auto& p = problems.error(record.place, "/data", "", "the records have different rates");
+    p.expected = fmt::format("{:.6g} s from row to row, as in {}", first.sample_time, first.path);
+    p.found = fmt::format("{:.6g} s", record.sample_time);
     p.hint = "diagnose them one by one: noise of a sample is another one at another rate";
   }
   if (problems.has_errors()) throw InputError(std::move(problems));
