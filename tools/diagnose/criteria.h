@@ -191,7 +191,7 @@ constexpr double most_work_at_sites = 50e9;
 /// [most_work] Used up, the search accepts no further effect; and no further rival is compared. What was
 /// found is fitted, weighed and simulated in any case.
 constexpr double work_of_search = 0.6, work_with_rivals = 0.8;
-/// [most_work_at_sites] Used up, there is no second search from the parameters as they are stated.
+/// [most_work_at_sites] Used up, there is no second search, with all parameters free from its beginning.
 constexpr double work_of_first_search = 0.4;
 
 // Rest.
@@ -358,6 +358,9 @@ constexpr double far_simulation = 5;
 constexpr size_t many_changes = 5;
 /// [spread of the signal] A diagram that misses a signal by more is no plant that can be simulated by itself.
 constexpr double runaway_simulation = 10;
+/// [variances] Squares by which a term changes the predictions of held-out rows: from so many on, chance lets
+/// these speak against a term that is there once in seven hundred.
+constexpr double least_change_of_held_out = 36;
 /// [cosine between responses] Beyond it no shape of the catalogue tells two sites apart.
 constexpr double alike_responses = 0.98;
 /// [rows] A trial term keeps its value as long; about as effects change along a motion.

@@ -147,8 +147,8 @@ class TermInserter {
     parameters_.add(level_, parameter, 1, "", term_.title + ": 1; 0 takes it out");
     inserted_.taken_out_by.push_back(joined(level_.prefix, parameter));
     share_ =
-        add_block(base_ + "_share",
-                  fmt::format(R"("type": "Gain", "gain": "={}", "in": {{"u": "{}"}})", parameter, acts)) +
+        add_block(base_ + "_share", fmt::format(R"("type": "Gain", "gain": "={}{}", "in": {{"u": "{}"}})",
+                                                term_.is_subtracted ? "-" : "", parameter, acts)) +
         ".y";
   }
 

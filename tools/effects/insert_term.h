@@ -17,6 +17,7 @@ struct Term {
   std::string settings;             ///< of the block, with its type, as JSON members
   std::string input, output = "y";  ///< its ports; the input is a list if it ends with "[]"
   bool is_change = false;           ///< what acts is the output minus what the block reads
+  bool is_subtracted = false;       ///< what acts is minus the output
 };
 
 /// What earlier insertions changed in a diagram. Ports are those of the diagram as it was.

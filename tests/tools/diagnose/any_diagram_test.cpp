@@ -201,6 +201,20 @@ TEST(AnyDiagram, ADeadZoneBeforeAValveThatIsNotMeasuredIsNoOtherLawWithOtherGain
   expect_explained(d);
 }
 
+/// Beside gains that are free, four other laws come first, and use up so little work.
+TEST(AnyDiagram, ALimitOfAValveBesideADragIsFoundBeforeFreeGainsHideIt) {
+  const auto drag = [](double content, double) { return 0.12 * content * std::abs(content); };
+  const RecordedPlant files(valve({.limit = 0.83, .lost = drag}, 31));
+  DiagnoseOptions options;
+  options.most_work = 20e9;
+  const Diagnosis d = diagnose(files.diagram(), {files.experiment()}, options);
+  ASSERT_EQ(answer(d), (std::vector<std::string>{"command.u: saturation(command.u)",
+                                                 "net.sum: signed_square(vessel.y)"}))
+      << to_text(d);
+  expect_parameter(d.effects[0], "limit", 0.83, 0.01, "1");
+  expect_explained(d);
+}
+
 /// In one direction dry friction and a constant torque are the same. Each record has states of its own.
 TEST(AnyDiagram, RecordsOfBothDirectionsTogetherTellDryFrictionFromAConstantTorque) {
   Motor m;

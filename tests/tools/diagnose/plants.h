@@ -214,8 +214,8 @@ inline Plant drive_train(const DriveTrain& m, uint64_t seed) {
 
 /// A valve with a lag before a vessel; only the vessel is measured.
 struct Valve {
-  double dead_zone = 0;  ///< of the command
-  Law lost = nothing;    ///< from the vessel, of its content and the valve
+  double dead_zone = 0, limit = 1e3;  ///< of the command
+  Law lost = nothing;                 ///< from the vessel, of its content and the valve
 };
 inline Plant valve(const Valve& m, uint64_t seed) {
   Plant plant;
@@ -236,7 +236,7 @@ inline Plant valve(const Valve& m, uint64_t seed) {
   plant.drive = R"("command.u": {"column": "u", "unit": "1"})";
   plant.compare = R"("vessel.y": {"column": "y0", "unit": "1"})";
   plant.rate = [m](const Numbers& x, double u, const Numbers& w) {
-    const double passed = u - std::clamp(u, -m.dead_zone, m.dead_zone);
+    const double passed = std::clamp(u - std::clamp(u, -m.dead_zone, m.dead_zone), -m.limit, m.limit);
     return Numbers{8 * (passed + w[0] - x[0]), 2 * x[0] + w[1] - 1.5 * x[1] - m.lost(x[1], x[0])};
   };
   plant.outputs = [](const Numbers& x) { return Numbers{x[1]}; };

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <utility>
 #include "engine/run/run.h"
 
@@ -40,12 +41,14 @@ std::string SiteModel::state_name(int state) const {
 void SiteModel::use(std::span<const double> factors, std::span<const SiteTerm> terms) {
   for (const OwnRun& own : runs_)
     for (size_t i = 0; i < own.parameters.size(); ++i) own.parameters[i].set(factors[i]);
-  for (SiteSignal& signal : signals_) signal.terms.clear(), signal.held = signal.ramp = 0;
+  for (SiteSignal& signal : signals_)
+    signal.terms.clear(), signal.held = signal.ramp = 0, signal.remembering = -1;
   if (std::exchange(is_late_, false)) draw_all_lines();
   for (const SiteTerm& term : terms) {
     if (term.shape->of != TermShape::Of::past) {
-      signals_[size_t(term.site)].terms.emplace_back(
-          term, term.variable < 0 ? SiteVariable{} : variables_[size_t(term.variable)]);
+      SiteSignal& signal = signals_[size_t(term.site)];
+      if (term.shape->remembered) signal.remembering = int(signal.terms.size());
+      signal.terms.emplace_back(term, term.variable < 0 ? SiteVariable{} : variables_[size_t(term.variable)]);
       continue;
     }
     InputLines& lines = lines_[size_t(input_of(term.site))];
@@ -73,11 +76,13 @@ SiteModel::OwnRun& SiteModel::run_of(size_t row) {
 std::vector<double> SiteModel::initial_states(size_t row) {
   const OwnRun& own = run_of(row);
   own.run->reset({own.plan->seed, 0});
+  for (SiteSignal& signal : signals_) signal.memory = 0;
   return {own.run->states().begin(), own.run->states().end()};
 }
 
 SiteModel::OwnRun& SiteModel::driven_at(size_t row) {
   OwnRun& own = run_of(row);
+  for (SiteSignal& signal : signals_) signal.since = record_.time[row];
   for (size_t i = 0; i < own.inputs.size(); ++i) {
     const InputLine& line = lines_[i][row];
     const Input& input = own.inputs[i];
@@ -88,11 +93,15 @@ SiteModel::OwnRun& SiteModel::driven_at(size_t row) {
 
 void SiteModel::keep_modes(size_t row, char* to) {
   for (const std::span<char> mode : run_of(row).modes) to = std::ranges::copy(mode, to).out;
+  for (const SiteSignal& signal : signals_)
+    std::memcpy(std::exchange(to, to + sizeof signal.memory), &signal.memory, sizeof signal.memory);
 }
 
 void SiteModel::put_modes_back(size_t row, const char* from) {
   for (const std::span<char> mode : run_of(row).modes)
     std::copy_n(from, mode.size(), mode.data()), from += mode.size();
+  for (SiteSignal& signal : signals_)
+    std::memcpy(&signal.memory, std::exchange(from, from + sizeof signal.memory), sizeof signal.memory);
 }
 
 bool SiteModel::flow(size_t row, const double* from, double* to, double* middle) {
@@ -114,7 +123,10 @@ bool SiteModel::flow(size_t row, const double* from, double* to, double* middle)
       const double part = k == 3 ? h : 0.5 * h;
       for (size_t i = 0; i < n; ++i) stage_[i] = to[i] + part * slope_[k - 1][i];
       good &= run.derivatives_at(t + part, stage_.data(), slope_[k].data());
+      if (k == 2)  // in the middle of the step
+        for (SiteSignal& signal : signals_) signal.foresee(t + h);
     }
+    for (SiteSignal& signal : signals_) signal.go_on(t + h);
     for (size_t i = 0; i < n; ++i)
       to[i] += h / 6 * (slope_[0][i] + 2 * (slope_[1][i] + slope_[2][i]) + slope_[3][i]);
     if (!good || run.failed()) {

@@ -62,13 +62,32 @@ struct SiteSignal {
   double ramp = 0, begin = 0, length = 1;  ///< from -ramp to ramp within [begin, begin + length] s
   std::vector<std::pair<SiteTerm, SiteVariable>> terms;
   const double* numbers = nullptr;  ///< of the run
+  int remembering = -1;             ///< the law with a memory, of which a site has one at most
+  double memory = 0, since = 0;     ///< what it remembers at this time in s
+  double foreseen = 0;              ///< at the end of the step
 
   double value(double time) const {
     double sum = held;
     if (ramp != 0) sum += ramp * (2 * (time - begin) / length - 1);
-    for (const auto& [term, variable] : terms)
-      sum += term.value(term.variable < 0 ? 0 : variable.at(numbers));
+    for (size_t t = 0; t < terms.size(); ++t) {
+      const auto& [term, variable] = terms[t];
+      sum += int(t) == remembering ? term.coefficient[0] * remembered(time)
+                                   : term.value(term.variable < 0 ? 0 : variable.at(numbers));
+    }
     return sum;
+  }
+  /// What its law remembers at this time, if the signal stays as it is now.
+  double remembered(double time) const {
+    const auto& [term, variable] = terms[size_t(remembering)];
+    return term.shape->remembered(memory, variable.at(numbers), time - since, term.nonlinear.data());
+  }
+  /// The signal in the middle of a step stands for all of it: it is looked at there, and the memory goes on
+  /// where the step ends.
+  void foresee(double end) {
+    if (remembering >= 0) foreseen = remembered(end);
+  }
+  void go_on(double end) {
+    if (remembering >= 0) memory = foreseen, since = end;
   }
 };
 
@@ -123,8 +142,8 @@ class SiteModel {
   /// The states at the next time stamp; false if they become non-finite or a block stops. `middle`: also
   /// those in the middle of the sample.
   bool flow(size_t row, const double* from, double* to, double* middle = nullptr);
-  /// Modes of blocks, such as the state of a relay, change with every flow, look and outputs: who only tries
-  /// a way keeps them before and puts them back. In bytes.
+  /// Modes of blocks, such as the state of a relay, change with every flow, look and outputs, and so does
+  /// what laws remember: who only tries a way keeps them before and puts them back. In bytes.
   size_t mode_bytes() const { return mode_bytes_; }
   void keep_modes(size_t row, char* to);
   void put_modes_back(size_t row, const char* from);

@@ -249,6 +249,7 @@ void SiteModel::build(const std::string& path, const LoadOptions& options, const
   for (auto& slope : slope_) slope.resize(size_t(plan_->states));
   stage_.resize(size_t(plan_->states));
   for (const std::span<char> mode : runs_.front().modes) mode_bytes_ += mode.size();
+  mode_bytes_ += signals_.size() * sizeof(SiteSignal::memory);
 }
 
 /// Only what the outputs need is computed.

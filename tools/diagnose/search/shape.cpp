@@ -27,6 +27,7 @@ bool smooth(Quantity site, Quantity) { return site != flow && site != heat; }
 bool moving(Quantity site, Quantity s) {
   return site != flow && site != heat && (s == velocity || s == other);
 }
+bool resisting(Quantity site, Quantity s) { return (site == force || site == other) && s == velocity; }
 bool placed(Quantity site, Quantity s) {
   return site != flow && site != heat && (s == position || s == other);
 }
@@ -84,6 +85,29 @@ Starts waits(std::span<const double> input) {
   return list;
 }
 
+/// Of displacements, from the velocity: how far it goes from its mean path, in samples.
+double displacement(std::span<const double> velocity) {
+  double place = 0, sum = 0, square = 0;
+  for (double v : velocity) place += v, sum += place, square += place * place;
+  const double count = double(std::max<size_t>(1, velocity.size())), mean = sum / count;
+  return std::sqrt(std::max(0.0, square / count - mean * mean));
+}
+Starts distances(std::span<const double> velocity) {
+  Starts list;
+  for (double part : {0.03, 0.1, 0.3, 1.0, 3.0, 10.0}) list.push_back({part * displacement(velocity), 0});
+  return list;
+}
+/// Over a much longer distance it is a spring.
+TermShape::Ranges ranges_of_distance(std::span<const double> velocity) {
+  const double size = displacement(velocity);
+  return {{2e-3 * size, 0}, {30 * size, 0}};
+}
+/// dz = (dx - |dx| z) / distance, from z before to z after a path at a constant velocity.
+double dahl(double before, double velocity, double time, const double* p) {
+  const double end = velocity < 0 ? -1 : 1;
+  return end + (before - end) * std::exp(-std::abs(velocity) * time / p[0]);
+}
+
 double sign_of(double s) { return s < 0 ? -1 : 1; }
 double clipped(double s, double limit) { return std::clamp(s, -std::abs(limit), std::abs(limit)); }
 
@@ -137,6 +161,15 @@ const TermShape known_shapes[] = {
      {"width", "fall_speed"},
      moving,
      stribeck_speeds},
+    {.name = "hysteresis",
+     .title = "Dry friction that builds up over a distance after each reversal (Dahl)",
+     .cost = 3,
+     .coefficients = {"level"},
+     .nonlinear = {"transition_distance"},
+     .fits = resisting,
+     .starts = distances,
+     .ranges = ranges_of_distance,
+     .remembered = dahl},
     {"signed_square",
      "The square with the sign of the signal, as drag",
      "coefficient*signal*abs(signal)",
@@ -349,7 +382,9 @@ const TermShape unknown_shapes[] = {unknown_of(9), unknown_of(17), unknown_of(mo
 
 std::span<const TermShape> named_shapes() { return known_shapes; }
 std::span<const TermShape> unknown_functions() { return unknown_shapes; }
-bool is_dry_friction(const TermShape& shape) { return shape.name == "sign" || shape.name == "stribeck"; }
+bool is_dry_friction(const TermShape& shape) {
+  return shape.name == "sign" || shape.name == "stribeck" || shape.remembered;
+}
 bool is_unknown_function(const TermShape& shape) {
   return std::ranges::any_of(unknown_shapes, [&](const TermShape& known) { return &known == &shape; });
 }

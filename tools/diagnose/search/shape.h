@@ -36,7 +36,7 @@ struct TermShape {
   std::array<std::string_view, most_nonlinear> nonlinear{};
   std::function<bool(Quantity site, Quantity signal)> fits = nullptr;
   /// Values of its own parameters to begin with, from the largest size and the range of the signal; those of
-  /// the past are in samples.
+  /// the past are in samples, and those of a law with a memory in the signal's unit times samples.
   std::function<std::vector<std::array<double, most_nonlinear>>(std::span<const double> signal)> starts =
       nullptr;
   /// Within which its own parameters are fitted; empty: about as large as the signal.
@@ -50,6 +50,10 @@ struct TermShape {
   /// Of the past: what the machine gets of an input. The input `before` the record is fitted with the time.
   std::function<InputLines(const SignalRecord&, const InputLines& input, double time, double before)> late =
       nullptr;
+
+  /// Of a law with a memory, which is its only column: what it remembers after so many seconds in which the
+  /// signal stays as it is.
+  std::function<double(double before, double signal, double time, const double* p)> remembered = nullptr;
 
   bool has_coefficients() const { return of != Of::own && of != Of::past; }
   int nonlinear_count() const { return int(nonlinear[0] != "") + int(nonlinear[1] != ""); }

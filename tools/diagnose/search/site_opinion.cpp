@@ -86,12 +86,17 @@ double criterion_with_noise(SiteFitter& fitter, SiteHypothesis h) {
   return sum;
 }
 
+/// Whether there is something that slow disturbances could explain.
+bool leaves_room_for_disturbances(SiteFitter& fitter, const SiteHypothesis& h) {
+  const auto is_unknown = [](const SiteTerm& term) { return is_unknown_function(*term.shape); };
+  return std::ranges::any_of(h.terms, is_unknown) || !leaves_white_errors(fitter, h);
+}
+
 /// The answer with slow disturbances in the place of what has no name; nothing if they do not explain it. A
 /// function that follows a disturbance is told from one of the machine by its size.
 std::optional<SiteHypothesis> disturbed_instead(SiteFitter& fitter, SiteHypothesis h) {
   const size_t functions =
       std::erase_if(h.terms, [](const SiteTerm& term) { return is_unknown_function(*term.shape); });
-  if (functions == 0 && leaves_white_errors(fitter, h)) return {};
   if (functions > 0) fitter.refine(h, 6), fitter.fit_noise(h);
   h = with_disturbances(fitter, std::move(h), criteria::most_slow_disturbances);
   const bool explain =
@@ -105,6 +110,7 @@ std::optional<SiteHypothesis> disturbed_instead(SiteFitter& fitter, SiteHypothes
 SiteSearchResult beside_disturbances(SiteFitter& fitter, SiteSearchResult first,
                                      const std::function<void(const char*, double)>& progress) {
   if (!first.found.noise.slow.empty() || fitter.is_interrupted() ||
+      !leaves_room_for_disturbances(fitter, first.found) ||
       fitter.model().work().is_spent(criteria::work_of_first_search))
     return first;
   const std::optional<SiteHypothesis> disturbed = disturbed_instead(fitter, first.found);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/remembered_path.h"
 #include "tools/diagnose/search/state_behind.h"
 
 namespace loopwright::diagnosis {
@@ -117,10 +118,12 @@ class Ranking {
   }
   bool is_sensor(int site) const { return fitter_.model().sites()[size_t(site)].kind == Site::Kind::sensor; }
   /// A function without a name contains all laws of its signal. A second law of dry friction would only mend
-  /// how the first one turns around rest.
+  /// how the first one turns around rest, and a site has one memory.
   bool is_there(const TermShape& shape, int site, int variable) const {
     return std::ranges::any_of(at_.terms, [&](const SiteTerm& t) {
-      if (t.site != site || t.variable != variable) return false;
+      if (t.site != site) return false;
+      if (t.shape->remembered && shape.remembered) return true;
+      if (t.variable != variable) return false;
       if (is_unknown_function(*t.shape)) return true;
       const bool is_same = t.shape == &shape || (is_dry_friction(*t.shape) && is_dry_friction(shape));
       return is_same && shape.name != "periodic";
@@ -160,6 +163,9 @@ class Ranking {
       const TermShape::Ranges ranges = shape.ranges(values);
       term.low = ranges.low, term.high = ranges.high;
     }
+    if (shape.remembered)  // from samples to seconds
+      for (auto* list : {&term.nonlinear, &term.low, &term.high})
+        for (double& number : *list) number *= fitter_.model().record().sample_time;
     return term;
   }
   /// The responses of the errors to the term's columns, at coefficients of one.
@@ -169,10 +175,14 @@ class Ranking {
         term.variable < 0 ? none : fitter_.model().variables()[size_t(term.variable)];
     const size_t count = size_t(term.shape->columns), rows = pass_.rows;
     for (auto& list : phi_) list.resize(count * rows);
+    if (term.shape->remembered) phi_ = remembered_along(fitter_.model(), pass_, term);
     std::array<double, most_columns> square{}, all;
     for (size_t part = 0; part < 3; ++part)
       for (size_t k = 0; k < rows; ++k) {
-        term.columns(term.variable < 0 ? 0 : variable.at(&pass_.path[part][k * pass_.numbers]), all.data());
+        if (term.shape->remembered)
+          all[0] = phi_[part][k];
+        else
+          term.columns(term.variable < 0 ? 0 : variable.at(&pass_.path[part][k * pass_.numbers]), all.data());
         for (size_t c = 0; c < count; ++c) phi_[part][c * rows + k] = all[c], square[c] += all[c] * all[c];
       }
     Eigen::MatrixXd columns(Eigen::Index(pass_.error.size()), term.shape->columns);

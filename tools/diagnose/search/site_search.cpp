@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/beyond_start.h"
 #include "tools/diagnose/search/late_input.h"
 #include "tools/diagnose/search/moved_parameters.h"
 #include "tools/diagnose/search/one_parameter.h"
@@ -42,7 +43,7 @@ class SiteSearch {
     readings_ = *readings;
     tell("the diagram as it is", nominal);
     progress_("fitting parameters", 0.1);
-    result_.parameters = with_free_parameters(nominal);
+    result_.parameters = with_free_parameters(fitter_, nominal);
     tell("parameters free", result_.parameters);
     if (disturbances_.empty()) single_ = with_one_parameter(fitter_, nominal, result_.parameters);
     std::optional<SiteHypothesis> alone = explained_by_late_input(fitter_, nominal, result_.parameters);
@@ -50,12 +51,15 @@ class SiteSearch {
     if (!alone && is_explained_by_one_parameter()) tell("a parameter by itself", *(alone = single_.front()));
     if (!alone && errors_ == ErrorsOf::predictions && disturbances_.empty())
       begin_beside_small_disturbances();
-    SiteSearchResult first = searched_from(alone.value_or(result_.parameters), 0.2);
+    // What is missing bends parameters that are free, and each costs runs of the model: they come second.
+    SiteSearchResult first = searched_from(alone.value_or(nominal), 0.2);
     if (!is_doubtful(first.found) || is_spent(criteria::work_of_first_search)) return first;
     result_.trail = std::move(first.trail);
-    result_.trail.push_back("again, from the parameters as they are stated");
-    SiteSearchResult second = searched_from(nominal, 0.6);
-    const bool is_better = whole_criterion(second.found) < whole_criterion(first.found) - least_improvement;
+    result_.trail.push_back(alone ? "again, from stated parameters" : "again, from free parameters");
+    SiteSearchResult second = searched_from(alone ? nominal : result_.parameters, 0.6);
+    // Terms may stand for parameters: only clearly better ones take the place of what free parameters leave.
+    const double needed = alone ? least_improvement : -least_improvement;
+    const bool is_better = whole_criterion(second.found) < whole_criterion(first.found) - needed;
     second.trail.push_back(is_better ? "the second is better" : "the first is better");
     if (!is_better) first.trail = std::move(second.trail);
     return is_better ? std::move(second) : std::move(first);
@@ -88,8 +92,10 @@ class SiteSearch {
     SiteSearchResult before = result_;
     begin_ = progress;
     add_terms(at);
+    std::optional<SiteHypothesis> stated;
     if (at.free_parameters() == 0) {
-      at = with_free_parameters(std::move(at));
+      stated = at;
+      at = with_free_parameters(fitter_, std::move(at));
       tell("parameters free beside the terms", at);
       add_terms(at);
     }
@@ -101,6 +107,11 @@ class SiteSearch {
     remove_idle(at);
     progress_("deciding which parameters moved", begin_ + 0.3);
     decide_parameters(at);
+    if (stated && whole_criterion(*stated) < whole_criterion(at) - least_exchange) {
+      at = *stated;
+      tell("as it was before parameters were free", at);
+      result_.rivals.clear(), result_.parameter_rivals.clear();
+    }
     if (remove_idle(at)) decide_parameters(at);
     compare_with_stated_parameters(at);
     compare_with_one_parameter(at);
@@ -111,8 +122,7 @@ class SiteSearch {
   /// A strong term bends the parameters that are fitted without it, and other terms then mend that. Such an
   /// answer has several terms, or moved parameters beside terms, or leaves something.
   bool is_doubtful(const SiteHypothesis& found) {
-    const size_t changes = found.terms.size() + found.free_parameters();
-    if (changes > 1) return true;
+    if (found.terms.size() + found.free_parameters() > 1) return true;
     if (!found.terms.empty() && is_unknown_function(*found.terms.front().shape)) return true;
     return leaves_something(found);
   }
@@ -141,19 +151,6 @@ class SiteSearch {
     double sum = h.objective + double(size_of(h)) * std::log(readings_);
     for (const SiteTerm& term : h.terms) sum += 2 * cost_of(model(), term) + 2 * std::log(double(keys_));
     return sum;
-  }
-
-  /// Those parameters free that the record sees at all.
-  SiteHypothesis with_free_parameters(SiteHypothesis h) {
-    std::fill(h.is_free.begin(), h.is_free.end(), true);
-    if (!fitter_.pass(h, false, pass_)) return h;
-    const Eigen::MatrixXd J = fitter_.jacobian(h, pass_);
-    constexpr double least_response = 1e-3;  // in whitened errors, for a change by all of the parameter
-    for (size_t i = 0; i < h.is_free.size(); ++i)
-      h.is_free[i] = J.col(Eigen::Index(i)).norm() > least_response;
-    fitter_.refine(h, 8);
-    fitter_.anneal(h);
-    return h;
   }
 
   /// Real fits of the best candidates; the best of them with its own noise.
@@ -210,9 +207,8 @@ class SiteSearch {
       std::vector<SiteHypothesis> tried = fits(at, candidates(at));
       if (tried.empty()) return;
       SiteHypothesis best = std::move(tried.front());
-      const bool gains = at.objective - best.objective >= gain_needed() &&
-                         criterion(at) - criterion(best) >= least_improvement;
-      tell(fmt::format("{} {}", gains ? "+" : "not enough:", describe(model(), best.terms.back())), best);
+      const bool gains = is_worth_adding(best, at);
+      tell((gains ? "+ " : "not enough: ") + describe(model(), best.terms.back()), best);
       if (!gains) return;
       fitter_.anneal(best);
       tell("  annealed", best);
@@ -221,6 +217,14 @@ class SiteSearch {
       merge_stacked_names(at, 2);
       result_.steps.push_back(at);
     }
+  }
+
+  /// The start of the record by itself is no reason for a term.
+  bool is_worth_adding(const SiteHypothesis& with, const SiteHypothesis& at) {
+    const double price = criterion(with) - with.objective - (criterion(at) - at.objective);
+    const double gain = std::min(at.objective - with.objective,
+                                 objective_beyond_start(fitter_, at) - objective_beyond_start(fitter_, with));
+    return gain >= gain_needed() && gain - price >= least_improvement;
   }
 
   /// Names that pile up at one site for one signal may stand for a function without a name.
@@ -335,9 +339,7 @@ class SiteSearch {
   void compare_with_stated_parameters(SiteHypothesis& at) {
     std::optional<SiteHypothesis> better;
     if (at.free_parameters() == 0 || is_spent(criteria::work_with_rivals)) return;
-    const auto fit = [&](const SiteHypothesis& h, std::span<const SiteCandidate> list) {
-      return fits(h, list);
-    };
+    const auto fit = [&](const auto& h, auto list) { return fits(h, list); };
     for (StatedParameters& other : with_stated_parameters(fitter_, at, result_.nominal, fit)) {
       const double worse = criterion(other.hypothesis) - whole_criterion(at),
                    lost = other.hypothesis.objective - at.objective;
@@ -354,7 +356,7 @@ class SiteSearch {
     tell("it is better than parameters that moved", at);
     result_.rivals.clear(), result_.parameter_rivals.clear(), result_.steps.push_back(at);
     exchange(at);
-    decide_parameters(at = with_free_parameters(at));
+    decide_parameters(at = with_free_parameters(fitter_, at));
   }
 
   /// Terms and parameters that do what a single parameter does are that parameter.
@@ -381,7 +383,6 @@ class SiteSearch {
   const std::function<void(const char*, double)>& progress_;
   SiteSearchResult result_;
   std::vector<SiteHypothesis> single_;  ///< see with_one_parameter()
-  SitePass pass_;
   double readings_ = 0, begin_ = 0.2;
   size_t keys_ = 10;
   const ErrorsOf errors_;

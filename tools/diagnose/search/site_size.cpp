@@ -1,6 +1,7 @@
 #include "tools/diagnose/search/site_size.h"
 #include <algorithm>
 #include <cmath>
+#include "tools/diagnose/search/remembered_path.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -37,6 +38,12 @@ double size_of_term(const SiteModel& model, const SitePass& pass, const SiteTerm
     double square = 0;
     for (const InputLine& change : model.change_of_input(term)) square += change.value * change.value;
     return std::sqrt(square / double(model.record().rows()));
+  }
+  if (term.shape->remembered) {
+    const auto along = remembered_along(model, pass, term);
+    double square = 0;
+    for (double memory : along[0]) square += memory * memory;
+    return std::abs(term.coefficient[0]) * std::sqrt(square / double(pass.rows));
   }
   return root_mean_square(pass, [&](const double* at) {
     return term.value(term.variable < 0 ? 0 : model.variables()[size_t(term.variable)].at(at));

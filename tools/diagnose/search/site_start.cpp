@@ -1,4 +1,5 @@
 #include "tools/diagnose/search/site_start.h"
+#include <algorithm>
 
 namespace loopwright::diagnosis {
 namespace {
@@ -38,6 +39,18 @@ std::optional<double> start_from_stated(SiteFitter& fitter, ErrorsOf errors,
   }
   fitter.fit_noise(h);
   return fitter.pass(h, false, pass) ? std::optional(double(pass.readings)) : std::nullopt;
+}
+
+SiteHypothesis with_free_parameters(SiteFitter& fitter, SiteHypothesis h) {
+  constexpr double least_response = 1e-3;  // in whitened errors, for a change by all of the parameter
+  std::fill(h.is_free.begin(), h.is_free.end(), true);
+  SitePass pass;
+  if (!fitter.pass(h, false, pass)) return h;
+  const Eigen::MatrixXd J = fitter.jacobian(h, pass);
+  for (size_t i = 0; i < h.is_free.size(); ++i) h.is_free[i] = J.col(Eigen::Index(i)).norm() > least_response;
+  fitter.refine(h, 8);
+  fitter.anneal(h);
+  return h;
 }
 
 }  // namespace loopwright::diagnosis

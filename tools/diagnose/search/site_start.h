@@ -1,4 +1,5 @@
-/// The diagram as it is, with which a search at the sites begins: sizes of its states, and its best noise.
+/// With what a search at the sites begins: the diagram as it is, sizes of its states and its best noise; and
+/// the same with its parameters fitted.
 #pragma once
 #include <optional>
 #include <vector>
@@ -10,5 +11,8 @@ namespace loopwright::diagnosis {
 /// record.
 std::optional<double> start_from_stated(SiteFitter& fitter, ErrorsOf errors,
                                         const std::vector<SlowNoise>& disturbances, SiteHypothesis& h);
+
+/// Those parameters free that the record sees at all.
+SiteHypothesis with_free_parameters(SiteFitter& fitter, SiteHypothesis h);
 
 }  // namespace loopwright::diagnosis

@@ -1,6 +1,7 @@
 #include "tools/diagnose/verdict/site_additions.h"
 #include <fmt/format.h>
 #include <algorithm>
+#include <cmath>
 #include "engine/json/reader.h"
 #include "tools/diagnose/verdict/site_units.h"
 #include "tools/diagnose/wording.h"
@@ -36,6 +37,8 @@ class Writer {
     term.input = "u";
     if (shape_.of == TermShape::Of::past)
       add_late_input(term);
+    else if (shape_.remembered)
+      add_friction_with_memory(term);
     else if (shape_.of == TermShape::Of::nothing)
       term.settings =
           fmt::format(R"("type": "Constant", "value": {})", quantity(coefficient(0), unit_of_site()));
@@ -59,10 +62,19 @@ class Writer {
     const bool is_delay = shape_.name == "delay";
     const RecordedInput& input = model_.record().inputs[size_t(model_.input_of(term_.site))];
     term.reads = {input.port}, term.is_change = true;
-    term.settings = fmt::format(R"("type": "{}", "{}": {}, "initial": {})",
-                                is_delay ? "TransportDelay" : "ActuatorLag", shape_.nonlinear[0],
-                                quantity(term_.nonlinear[0], "s"), quantity(term_.nonlinear[1], unit_of_site()));
+    term.settings = fmt::format(
+        R"("type": "{}", "{}": {}, "initial": {})", is_delay ? "TransportDelay" : "ActuatorLag",
+        shape_.nonlinear[0], quantity(term_.nonlinear[0], "s"), quantity(term_.nonlinear[1], unit_of_site()));
     if (!is_delay) term.input = "command", term.output = "force";
+  }
+
+  /// Its block states a resistance.
+  void add_friction_with_memory(Term& term) const {
+    term.is_subtracted = coefficient(0) < 0;
+    term.settings = fmt::format(R"("type": "DahlFriction", "level": {}, "transition_distance": {})",
+                                quantity(std::abs(coefficient(0)), unit_of_site()),
+                                quantity(term_.nonlinear[0], unit_of_own_parameter(model_, term_, 0)));
+    term.input = "velocity", term.output = "force";
   }
 
   static std::vector<std::string> split(const std::string& name, std::string_view by) {
@@ -82,8 +94,7 @@ class Writer {
         add(shape_.coefficients[size_t(c)], coefficient(size_t(c)), unit_of_coefficient(model_, term_));
     for (int p = 0; p < shape_.nonlinear_count(); ++p)
       add(shape_.nonlinear[size_t(p)], term_.nonlinear[size_t(p)], unit_of_signal());
-    if (shape_.name == "radiation")
-      add("reference", reference_temperature, unit_of_signal());
+    if (shape_.name == "radiation") add("reference", reference_temperature, unit_of_signal());
     return fmt::format(R"("type": "Expression", "formula": "{}", "names": ["signal"], "constants": [{}])",
                        shape_.formula, constants);
   }

@@ -9,6 +9,7 @@
 #include "tools/diagnose/verdict/site_opinion_text.h"
 #include "tools/diagnose/wording.h"
 #include "tools/diagnose/verdict/alike_sites.h"
+#include "tools/diagnose/verdict/held_out_terms.h"
 #include "tools/diagnose/verdict/site_additions.h"
 #include "tools/diagnose/verdict/site_errors.h"
 #include "tools/diagnose/verdict/site_inputs.h"
@@ -262,6 +263,17 @@ class Telling {
     return is_any;
   }
 
+  /// What only the fitted rows ask for follows something else in them.
+  bool has_contradicted_terms() {
+    if (found_.noise.is_of_simulation) return false;
+    const std::vector<size_t> contradicted = contradicted_terms(whole_, found_);
+    for (size_t t : contradicted)
+      result_.findings.push_back({fmt::format("the held-out rows are predicted better without {}",
+                                              describe(model_, found_.terms[t])),
+                                  "its name stands for something in the fitted rows alone", true, false});
+    return !contradicted.empty();
+  }
+
   /// Whether the simulation misses the record by no more than the arithmetic does.
   bool is_exact() const {
     if (errors_.diverges) return false;
@@ -299,7 +311,7 @@ class Telling {
     const bool worse = names && simulates_worse();
     const bool is_open =
         (names && search_.second_opinion && search_.second_opinion->is_open() && missed_by_far()) ||
-        has_untold_terms() || are_many_changes_in_vain();
+        has_untold_terms() || are_many_changes_in_vain() || has_contradicted_terms();
     const bool is_nothing = !names && (is_left_out_ || is_exact());
     const bool misses_held_out =
         result_.holds_out && !errors_.diverges &&
