@@ -301,7 +301,9 @@ constexpr double most_portmanteau_of_any_diagram = 120;
 /// Of a term to the signal at its site, root mean squares. Interpolation between the rows, and steps of the
 /// integration, leave this much on a record without noise.
 constexpr double least_share_of_site = 1e-3;
-/// The same. A smaller one is written into the diagram on request.
+/// Of a function without a name to a named law of its signal there, which is smooth as machines may not be.
+constexpr double least_share_of_law = 0.02;
+/// [of a term to the signal at its site] A smaller one is written into the diagram on request.
 constexpr double material_share_of_site = 5e-3;
 /// Of a simulated error to the spread of its signal: a record without noise, of another solver or with other
 /// steps, agrees as closely as this with the right diagram.
@@ -363,7 +365,7 @@ constexpr double runaway_simulation = 10;
 constexpr double least_change_of_held_out = 36;
 /// [cosine between responses] Beyond it no shape of the catalogue tells two sites apart.
 constexpr double alike_responses = 0.98;
-/// [rows] A trial term keeps its value as long; about as effects change along a motion.
+/// [rows] A trial term keeps its value as long: effects change about as fast.
 constexpr size_t trial_hold = 20;
 /// [-2 ln L] By which an answer with fewer numbers, and all parameters as stated, may be behind and is
 /// declared: twice what a term must gain to be named.
@@ -381,11 +383,9 @@ constexpr double behind_after_first_steps = 0.5, behind_after_all_steps = 0.15, 
 /// [of the gain of the term that it would replace] Linearized about the same hypothesis, a smaller gain is
 /// one that no fit makes up for.
 constexpr double least_share_of_replaced = 0.5;
-/// [of a gain] Two that differ less respond alike, down to the rounding of differences. [nats] By which the
-/// dearer one of two such laws is no rival.
+/// [of a gain] Two that differ less respond alike. [nats] By which the dearer of two such laws is no rival.
 constexpr double same_gain = 1e-4, dearer = 5;
-/// [of the gain that a term needs] For what is missing after the first steps without it, others do not make
-/// up.
+/// [of the gain that a term needs] Others do not make up for so much after the first steps without it.
 constexpr double far_from_idle = 20;
 /// [-2 ln L] A single parameter so far behind the best set, by the quadratic form, is not fitted.
 constexpr double hopeless_parameter = 500;

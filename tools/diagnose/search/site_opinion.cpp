@@ -68,6 +68,17 @@ std::vector<std::string> named_in(const SiteModel& model, const SiteHypothesis& 
   return list;
 }
 
+/// The other search agrees if it names the same, or the same and more that does not help its simulation.
+void compare_names(SecondOpinion& opinion, std::vector<std::string> own) {
+  std::vector<std::string> other = opinion.other;
+  std::ranges::sort(other), std::ranges::sort(own);
+  opinion.agrees = other == own;
+  const bool is_helped = !opinion.error || (opinion.other_error && *opinion.other_error < *opinion.error);
+  if (opinion.agrees || own.empty() || is_helped || !std::ranges::includes(other, own)) return;
+  opinion.agrees = true;
+  std::ranges::set_difference(other, own, std::back_inserter(opinion.idle));
+}
+
 /// One of two answers, with the trails of both.
 SiteSearchResult one_of(SiteSearchResult first, SiteSearchResult second, bool takes_second) {
   std::vector<std::string> trail = std::move(first.trail);
@@ -179,10 +190,8 @@ std::optional<SiteSearchResult> search_with_second_opinion(
   opinion.other = named_in(fitter.model(), (is_answer ? first : second)->found);
   if (const auto& errors = is_answer ? of_second : of_first) opinion.error = errors->judged()[0];
   if (const auto& errors = is_answer ? of_first : of_second) opinion.other_error = errors->judged()[0];
-  std::vector<std::string> other = opinion.other,
-                           own = named_in(fitter.model(), (is_answer ? second : first)->found);
-  std::ranges::sort(other), std::ranges::sort(own);
-  opinion.agrees = other == own, opinion.predicts_worse = is_better && !is_answer;
+  compare_names(opinion, named_in(fitter.model(), (is_answer ? second : first)->found));
+  opinion.predicts_worse = is_better && !is_answer;
   SiteSearchResult answer = one_of(std::move(*first), std::move(*second), is_answer);
   answer.second_opinion = std::move(opinion);
   return answer;

@@ -297,7 +297,8 @@ class SiteSearch {
         std::max(least_gain_of_term + least_gain_of_unknown, least_gain_of_unknown_per_reading * readings_);
     tell("best unknown: " + describe(model(), tried.front().terms.back()), tried.front());
     if (at.objective - tried.front().objective < needed ||
-        criterion(at) - criterion(tried.front()) < least_improvement)
+        criterion(at) - criterion(tried.front()) < least_improvement ||
+        is_detail_of_named_law(fitter_, tried.front()))
       return;
     at = tried.front();
     result_.steps.push_back(at);
@@ -329,16 +330,15 @@ class SiteSearch {
     tell("parameters decided", at);
     result_.parameter_rivals.clear();
     for (size_t i = 1; i < choices.size(); ++i)
-      if (choices[i].criterion - choices.front().criterion < rival_within)
-        result_.parameter_rivals.push_back(
-            {choices[i].moved(), {}, choices[i].criterion - choices.front().criterion});
+      if (const double worse = choices[i].criterion - choices.front().criterion; worse < rival_within)
+        result_.parameter_rivals.push_back({choices[i].moved(), {}, worse});
   }
 
-  /// What explains nearly as much with all parameters as the diagram states them. Where one of these explains
-  /// more, terms were added beside parameters that the missing law had bent: it is the answer.
+  /// What explains nearly as much with all parameters as stated. Where one of these explains more, terms were
+  /// added beside parameters that the missing law had bent: it is the answer.
   void compare_with_stated_parameters(SiteHypothesis& at) {
-    std::optional<SiteHypothesis> better;
     if (at.free_parameters() == 0 || is_spent(criteria::work_with_rivals)) return;
+    std::optional<SiteHypothesis> better;
     const auto fit = [&](const auto& h, auto list) { return fits(h, list); };
     for (StatedParameters& other : with_stated_parameters(fitter_, at, result_.nominal, fit)) {
       const double worse = criterion(other.hypothesis) - whole_criterion(at),

@@ -39,7 +39,8 @@ struct SecondOpinion {
   bool is_not_asked = false;       ///< no work was left for it
   bool is_answer = false;          ///< what was found by simulation is the answer
   std::vector<std::string> other;  ///< terms and parameters that are not the answer
-  bool agrees = false;             ///< they are the same
+  bool agrees = false;             ///< they are the same, but for these that help no simulation:
+  std::vector<std::string> idle = {};
   bool predicts_worse = false;  ///< it simulates better, and predicts much worse than one that explains all
   /// Nothing tells the answer from noise that does as well.
   bool is_open() const {

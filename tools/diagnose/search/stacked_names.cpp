@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/site_ranking.h"
+#include "tools/diagnose/search/site_size.h"
 #include "tools/diagnose/search/state_behind.h"
 
 namespace loopwright::diagnosis {
@@ -72,6 +74,18 @@ bool are_periods(const SiteHypothesis& at, const StackedNames& names, double ran
   return std::ranges::all_of(names.terms, [&](size_t t) {
     const SiteTerm& term = at.terms[t];
     return term.shape->name == "periodic" && fewest_repeats * term.nonlinear[0] < range;
+  });
+}
+
+bool is_detail_of_named_law(SiteFitter& fitter, SiteHypothesis h) {
+  SitePass pass;
+  if (!fitter.pass(h, true, pass)) return false;
+  const SiteModel& model = fitter.model();
+  const SiteTerm function = h.terms.back();
+  const double size = size_of_term(model, pass, function);
+  return std::any_of(h.terms.begin(), h.terms.end() - 1, [&](const SiteTerm& law) {
+    return law.site == function.site && law.variable == function.variable &&
+           size < criteria::least_share_of_law * size_of_term(model, pass, law);
   });
 }
 

@@ -25,6 +25,10 @@ bool are_usual_together(const SiteHypothesis& at, const StackedNames& names);
 /// Periods that each repeat often within the range of the signal.
 bool are_periods(const SiteHypothesis& at, const StackedNames& names, double range);
 
+/// Whether the last term, a function without a name, hardly changes a named law of its signal at its site: it
+/// tells how exactly the law holds.
+bool is_detail_of_named_law(SiteFitter& fitter, SiteHypothesis h);
+
 /// The hypothesis with a function without a name in their place, of as many nodes as the criterion prefers.
 /// Nothing if it cannot be fitted.
 std::optional<SiteHypothesis> with_function(SiteFitter& fitter, const SiteHypothesis& at,

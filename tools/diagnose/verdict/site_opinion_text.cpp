@@ -34,8 +34,11 @@ void tell_second_opinion(const SiteModel& model, const SecondOpinion& opinion, D
         "the answer is that of free simulations, with which one {}; by predictions of one sample {} would be "
         "named, with which it {}",
         missed(opinion.error, unit), other, missed(opinion.other_error, unit));
-  else if (opinion.agrees)
+  else if (opinion.agrees && opinion.idle.empty())
     finding.cost = "free simulations ask for the same";
+  else if (opinion.agrees)
+    finding.cost = fmt::format("free simulations ask for the same, and for {}, with which they miss no less",
+                               loopwright::joined(opinion.idle, " + "));
   else
     finding.cost = fmt::format(
         "free simulations would name {}; with that one {}, with the answer it {}: {}", other,
