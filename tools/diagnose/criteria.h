@@ -45,13 +45,14 @@ constexpr double least_gain_at_reversals = 50;
 /// [reversals] Of a record of less than two seconds that supports a verdict even with fewer than
 /// plenty_of_rows: an oscillation shows as much in a short time as other motions do in a long one.
 constexpr int plenty_of_reversals = 20;
+/// [gain of a late input] By which the other shape may be behind where only a velocity is measured.
+constexpr double share_of_controller = 0.05;
 /// [rows that stand for several] A delay or a lag of fewer may be the other one.
 constexpr double rows_that_blur = 20;
 
 // Steps.
 
-/// [poles of a sample] Their sizes after a whole step and two halves differ by less if the step is short
-/// enough: an error of a thousandth of the velocity is a missing force.
+/// [poles of a sample] Sizes after a whole step and after two halves that differ by less: it is short enough.
 constexpr double same_pole = 1e-4;
 /// [steps in a sample] A pole that would need more has settled within a sample anyway.
 constexpr int most_steps_a_sample = 64;
@@ -349,8 +350,7 @@ constexpr double most_growth = 1e3;
 constexpr double least_gain_of_unknown = 60, least_gain_of_unknown_per_reading = 0.005;
 /// [of what unusual names gain] A function without a name that gains this much is what they stand for.
 constexpr double least_share_of_function = 0.95;
-/// [free simulation of the nominal diagram, rms error] A simulation that misses by more, and by more than the
-/// signal spreads, diverges.
+/// [rms error of the nominal diagram] A simulation that misses by more, and by more than the spread, diverges.
 constexpr double diverging_simulation = 10;
 /// [rms error] A second opinion whose simulation misses by so much more questions nothing.
 constexpr double much_worse_opinion = 5;

@@ -39,6 +39,25 @@ TEST(MeasuredVelocity, IsEnoughToFindMassAndToFindNothing) {
   EXPECT_EQ(right.verdict, Verdict::nothing_missing) << to_text(right);
 }
 
+/// The controller measures the position, the record the velocity alone: which shape a late input has is not
+/// certain.
+TEST(MeasuredVelocity, DeclaresALagBesideADelay) {
+  HiddenMachine machine = with_velocity(false);
+  machine.velocity_noise = 2e-3;
+  HiddenAxis axis(machine);
+  Physics truth = axis.nominal();
+  truth.lag_s = 2.2e-3;
+  WantedMotion motion;
+  motion.rest(0.2);
+  for (int stroke = 0; stroke < 100; ++stroke)
+    motion.stroke(stroke % 2 == 0 ? 0.15 : -0.15, 0.2 + 0.004 * stroke, 0.06).rest(0.05);
+  const Diagnosis d = diagnose(axis.diagram(), {axis.record("record", truth, motion)});
+  ASSERT_EQ(d.effects.size(), 1u) << to_text(d);
+  std::vector<std::string> told = d.effects[0].alternatives;
+  told.push_back(d.effects[0].name);
+  EXPECT_THAT(told, testing::UnorderedElementsAre("actuator_lag", "input_delay")) << to_text(d);
+}
+
 TEST(MeasuredVelocity, FindsCoggingBesidePosition) {
   HiddenAxis axis(with_velocity(true));
   Physics truth = axis.nominal();

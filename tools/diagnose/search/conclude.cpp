@@ -6,6 +6,7 @@
 #include <set>
 #include "tools/diagnose/search/doubt.h"
 #include "tools/diagnose/search/law_swaps.h"
+#include "tools/diagnose/search/noisy_input.h"
 #include "tools/diagnose/search/remaining_force.h"
 #include "tools/diagnose/search/rivals.h"
 #include "tools/diagnose/search/spectrum.h"
@@ -211,6 +212,23 @@ void add_blurred_shapes(const Trials& trials, Conclusion& result, const std::vec
   }
 }
 
+/// Where only a velocity is measured, the other shape of a late input: see measure_position().
+void add_late_shapes(const Trials& trials, Conclusion& result, Rivals& rivals,
+                     const std::vector<Proposal>& swaps, size_t catalogue) {
+  if (measure_position(trials)) return;
+  const double own = criterion(trials, result.estimate, catalogue);
+  for (const Proposal& swap : swaps) {
+    const Candidate& other = *swap.added.front().candidate;
+    if (swap.removed.size() != 1 || swap.added.size() != 1 || !is_late_input(other) || rivals.is_spent())
+      continue;
+    const size_t m = swap.removed.front();
+    const Estimate fitted = rivals.fitted(swap);
+    if (fitted.is_valid &&
+        criterion(trials, fitted, catalogue) - own < criteria::share_of_controller * result.weights[m].loss)
+      add_if_new(result.substitutes[m], &other);
+  }
+}
+
 /// Computes the alternatives, and from them the probability of each member.
 void ask_rivals(const Trials& trials, Conclusion& result, Evidence& evidence,
                 const std::vector<Proposal>& exchanges, const std::vector<Candidate>& candidates,
@@ -242,6 +260,7 @@ void ask_rivals(const Trials& trials, Conclusion& result, Evidence& evidence,
     result.inclusion.push_back(0.995 / (1 + others));
   }
   add_blurred_shapes(trials, result, candidates);
+  add_late_shapes(trials, result, rivals, swaps, candidates.size());
 }
 
 /// Joint maximum likelihood, repeated with a simpler set that is as good, or at most `rounds` times with a
@@ -304,6 +323,7 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
   SecondLook seen;
   if (!instead) {
     seen = look_again(trials, estimate, result.portmanteau_beside_counts(), evidence, candidates.size());
+    std::ranges::copy(seen.trail, std::back_inserter(result.trail));
     if (rounds > 0 && (instead = std::move(seen.better)))
       result.trail.push_back("with the noise known, more is seen");
   }

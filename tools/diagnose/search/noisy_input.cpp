@@ -121,6 +121,11 @@ std::optional<InputNoise> noise_instead_of_late_input(Trials& trials, const Esti
   return InputNoise{by->about.members.back().nonlinear[0], by->about.members.back().linear[0]};
 }
 
+bool measure_position(const Trials& trials) {
+  return std::ranges::all_of(trials.list,
+                             [](const Trial& t) { return t.model->record().find("position") != nullptr; });
+}
+
 bool smoothing_gains(Trials& trials, const Estimate& found, size_t catalogue) {
   const auto by = replacements_of_late_input(trials, found, catalogue);
   if (!by) return false;

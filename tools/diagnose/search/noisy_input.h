@@ -12,6 +12,10 @@ namespace loopwright::diagnosis {
 std::optional<InputNoise> noise_instead_of_late_input(Trials& trials, const Estimate& found,
                                                       size_t catalogue);
 
+/// Whether every record measures the position. A controller that does knows more than a record of the
+/// velocity alone, and what it answers to noise resembles an input that is late.
+bool measure_position(const Trials& trials);
+
 /// Whether an input that is smoothed, and so reduces noise without being late, gains a large part of what the
 /// late one does: the answer of a controller to noise resembles a small delay.
 bool smoothing_gains(Trials& trials, const Estimate& found, size_t catalogue);

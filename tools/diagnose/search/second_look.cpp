@@ -1,4 +1,5 @@
 #include "tools/diagnose/search/second_look.h"
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include "tools/diagnose/criteria.h"
@@ -36,11 +37,10 @@ bool is_error_of_model(const Trials& trials, const Estimate& trial, const Weight
 }
 
 /// A small delay or lag, which may be no more than a controller that answers noise. Beside a velocity sensor
-/// alone none is believed: a controller that measures the position knows more than the record.
+/// alone none is believed.
 bool may_be_answer_to_noise(Trials& trials, const Estimate& trial, size_t catalogue) {
   if (!is_late_input(*trial.members.back().candidate)) return false;
-  const auto measures_position = [](const Trial& t) { return t.model->record().find("position") != nullptr; };
-  return !std::ranges::all_of(trials.list, measures_position) || smoothing_gains(trials, trial, catalogue);
+  return !measure_position(trials) || smoothing_gains(trials, trial, catalogue);
 }
 
 /// A force that matters by its size, of which members that are there leave little: another name for a part of
@@ -77,6 +77,8 @@ SecondLook look_again(Trials& trials, const Estimate& estimate, double portmante
     if (!trial.is_valid) continue;
     const double gain = criterion(trials, estimate, catalogue) - criterion(trials, trial, catalogue);
     const size_t member = trial.members.size() - 1;
+    const std::string& name = trial.members.back().candidate->name;
+    result.trail.push_back(fmt::format("with the noise known, {}: criterion {:+.1f}", name, -gain));
     if (gain < least) continue;
     const Weight weight = weigh_all(trials, trial).back();
     if (!may_be_told(trials, trial, member, weight)) continue;

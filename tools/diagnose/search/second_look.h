@@ -18,6 +18,7 @@ bool is_blurred(const Trials& trials, const Member& member);
 
 struct SecondLook {
   std::optional<Estimate> better;  ///< with a further member that is material
+  std::vector<std::string> trail;
   std::vector<SmallEffect> small;  ///< best first; those that do nearly as well are other names of the first
 };
 
