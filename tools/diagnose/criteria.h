@@ -99,8 +99,7 @@ constexpr double least_gain_of_early_input = 0.5;
 constexpr size_t portmanteau_lags = 40;
 /// [s] Errors that are closer are added up first, so that the lags cover 40 ms at any rate.
 constexpr double portmanteau_lag_s = 1e-3;
-/// Above it the errors are not white. Counts at a steady speed alone give up to 170, if the sensor states no
-/// resolution.
+/// Above it the errors are not white. Counts at a steady speed give up to 170 if no resolution is stated.
 constexpr double most_portmanteau = 300;
 /// The same where nothing is named and the counts are computed from the resolution that is stated, and their
 /// part is taken off: beside noise of the force clean records stay below 130. Without such noise they reach
@@ -108,10 +107,13 @@ constexpr double most_portmanteau = 300;
 constexpr double most_portmanteau_of_counted = 150;
 /// [rows] Above it a fifth of the squared errors, beside noise, repeats as a vibration does, and is none.
 constexpr double most_portmanteau_per_row = 1;
+/// The same of the squares of the errors, [rows] and at least: rattling loads have 0.3 to 1.8 a row, right
+/// answers 0.25 at most.
+constexpr double most_bursts_per_row = 0.3, least_bursts = 500;
 /// [what counts add] A line of their beat that is a fifth stronger adds half as much again.
 constexpr double reach_of_counts = 1.5;
-/// [force of the input: rms, or what it exceeds in all but this share of the motion if that is less] A
-/// smaller force that remains, below 80 Hz, does not matter: without noise a model's error cannot be judged.
+/// [force of the input: rms, or what it exceeds in all but this share of the motion if that is less] Less that
+/// remains, below 80 Hz, does not matter: without noise a model's error cannot be judged.
 constexpr double negligible_force = 1e-3, usual_share = 0.9;
 
 // Effects.
@@ -123,8 +125,7 @@ constexpr double least_force_share = 0.3;
 constexpr double least_seen_of_load = 0.5;
 /// [standard deviations] By which the share must be below.
 constexpr double sure_deviations = 2;
-/// [force of the input, rms] What is as small in the errors of the predictor may be an error of the model, as
-/// that of forces between the rows. It is no effect that is too small to matter.
+/// [force of the input, rms] What is as small in the errors of the predictor may be one of the model.
 constexpr double error_of_model = 2.5e-4;
 /// [χ² a row] An effect as loud as this is no answer of a controller to noise; and [residual that the noise
 /// leaves] its force up to which the motion that it follows may be driven by the noise.
@@ -306,8 +307,7 @@ constexpr double least_share_of_site = 1e-3;
 constexpr double least_share_of_law = 0.02;
 /// [of a term to the signal at its site] A smaller one is written into the diagram on request.
 constexpr double material_share_of_site = 5e-3;
-/// Of a simulated error to the spread of its signal: a record without noise, of another solver or with other
-/// steps, agrees as closely as this with the right diagram.
+/// Of a simulated error to the spread of its signal: other solvers and steps agree as closely without noise.
 constexpr double error_of_arithmetic = 1e-5;
 /// [simulated rms error of the nominal diagram] A simulation with the terms that is worse contradicts them.
 constexpr double worse_simulation_of_any_diagram = 1.05;

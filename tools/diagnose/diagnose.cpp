@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include "tools/diagnose/any_diagram.h"
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/catalogue.h"
@@ -223,6 +224,12 @@ void tell_effects(const Conclusion& conclusion, const Staircase& staircase, cons
   }
 }
 
+void forget_residual_force(Diagnosis& result) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  for (DiagnosisStep& step : result.steps) step.force_rmse = step.held_out_force_rmse = unknown;
+  result.error_before = result.error_after = unknown;
+}
+
 void tell_errors(const Trials& trials, const Conclusion& conclusion, const Inquiry& inquiry,
                  Diagnosis& result) {
   const auto error = [&](const DiagnosisStep& step) {
@@ -322,6 +329,7 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   tell_errors(trials, conclusion, inquiry, result);
   trials.run_along(Trials::Rows::all);
   judge(trials, conclusion, inquiry.motion_of_all_rows(), search_noise(trials), inverse, result);
+  if (!balances_forces(inverse)) forget_residual_force(result);
   const auto members_of = [&](size_t steps) { return staircase.members[steps - 1]; };
   result.additions = improver.additions(members_of(staircase.necessary()));
   result.all_additions = improver.additions(members_of(staircase.steps.size()));

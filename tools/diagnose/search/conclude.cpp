@@ -292,12 +292,17 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
       result.counts_portmanteau = portmanteau_of_counts(trials, errors);
     }
   const Noise& noise = estimate.noise;
-  result.trail.push_back(
-      fmt::format("portmanteau {:.0f}, of counts alone {:.0f}; noise: white {:.3g}, slow {:.3g} over {:.3g} "
-                  "rows, sensor {:.3g}",
-                  result.portmanteau, result.counts_portmanteau, noise.white, noise.slow(),
-                  noise.memory_samples(), noise.measurement.front()));
   const double n = double(fitted_numbers(trials));
+  const double of_squares = portmanteau_of_squares(trials, *estimate.fitted);
+  result.comes_in_bursts =
+      is_noisy && of_squares - reach_of_counts * result.counts_portmanteau >
+                      std::max(least_bursts, most_bursts_per_row * n / double(trials.ports()));
+  result.trail.push_back(
+      fmt::format("portmanteau {:.0f}, of counts alone {:.0f}, of squares {:.0f}; noise: white {:.3g}, slow "
+                  "{:.3g} over {:.3g} "
+                  "rows, sensor {:.3g}",
+                  result.portmanteau, result.counts_portmanteau, of_squares, noise.white, noise.slow(),
+                  noise.memory_samples(), noise.measurement.front()));
   // A small force below 80 Hz says nothing about a faster one.
   const bool is_vibration =
       noise.white > criteria::negligible_force * trials.usual_force &&

@@ -30,6 +30,7 @@ struct Conclusion {
   double portmanteau = 0;  ///< n Σ ρ², 40 lags of the whitened errors; 40 when white
   double most_portmanteau = criteria::most_portmanteau;  ///< of errors that pass for white
   double counts_portmanteau = 0;   ///< what the counts of the sensor add to it, along this motion
+  bool comes_in_bursts = false;    ///< large errors keep together in time, beyond what counts make of it
   bool is_negligible = false;      ///< the force that remains is not material, whatever its color
   std::vector<std::string> trail;  ///< what was removed, and why
 

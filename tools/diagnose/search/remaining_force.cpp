@@ -117,6 +117,12 @@ MeasuredMotion away_from_turns(const InverseDynamics& inverse) {
   return motion;
 }
 
+bool balances_forces(const std::vector<InverseDynamics>& inverse) {
+  return std::ranges::any_of(inverse, [](const InverseDynamics& record) {
+    return std::ranges::any_of(record.motion.counts, [](bool counts) { return counts; });
+  });
+}
+
 ResidualSize residual_size(const Trials& trials, const std::vector<InverseDynamics>& inverse,
                            const std::vector<Member>& members) {
   double sum[2] = {}, n[2] = {};

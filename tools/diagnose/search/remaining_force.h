@@ -26,6 +26,10 @@ std::vector<double> residual_with(const Trial& trial, const InverseDynamics& inv
 /// or a rest: there the force of dry friction leaps, at an instant that the motion shows only roughly.
 MeasuredMotion away_from_turns(const InverseDynamics& inverse);
 
+/// Whether any row of the motion counts. A motion that is over within the period of the filter has none, and
+/// the balance of forces says nothing of it.
+bool balances_forces(const std::vector<InverseDynamics>& inverse);
+
 struct ResidualSize {
   double fitted = 0, held_out = 0;  ///< root mean square; held_out 0 without held-out rows
 };

@@ -130,6 +130,23 @@ double portmanteau(const Trials& trials, const std::vector<Fitted>& fitted) {
   return most;
 }
 
+double portmanteau_of_squares(const Trials& trials, const std::vector<Fitted>& fitted) {
+  constexpr double largest = 3;  // [standard deviations] a single outlier is no burst
+  std::vector<Fitted> squares(fitted.size());
+  double sum = 0, n = 0;
+  for (size_t t = 0; t < fitted.size(); ++t) {
+    const Trial& trial = trials.list[t];
+    squares[t].white = fitted[t].white;
+    for (double& e : squares[t].white) e = std::min(e * e, largest * largest);
+    for (size_t k = 0; k < trial.held_out_from; ++k)
+      for (size_t p = k * trials.ports(); trial.usable[k] && p < (k + 1) * trials.ports(); ++p)
+        sum += squares[t].white[p], ++n;
+  }
+  for (Fitted& record : squares)
+    for (double& e : record.white) e -= sum / std::max(1.0, n);
+  return portmanteau(trials, squares);
+}
+
 WhitenedErrors errors_of_counts(const Trials& trials, const Estimate& estimate) {
   WhitenedErrors covered, bare;
   for (size_t t = 0; t < trials.list.size(); ++t) {

@@ -19,6 +19,10 @@ size_t rows_in_a_lag(const Trials& trials);
 /// millisecond. Near 40 when the errors are white.
 double portmanteau(const Trials& trials, const std::vector<Fitted>& fitted);
 
+/// The same of the squares of the errors: how much large errors keep together in time. Noise makes none of
+/// it; a load that rattles, or anything that happens now and then, does.
+double portmanteau_of_squares(const Trials& trials, const std::vector<Fitted>& fitted);
+
 /// Whitened errors of each record, samples × ports.
 using WhitenedErrors = std::vector<std::vector<double>>;
 /// Those that the counts of the first sensor and the noise of this estimate would give if nothing were

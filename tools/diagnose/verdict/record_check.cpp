@@ -1,5 +1,7 @@
 /// Faults of records and missing excitation, with their consequences.
 #include <fmt/format.h>
+#include <algorithm>
+#include <iterator>
 #include "tools/compare/excitation.h"
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/verdict/verdict.h"
@@ -59,10 +61,9 @@ bool shows_enough(const Trials& trials, const std::vector<RecordContent>& conten
   return rows >= criteria::plenty_of_rows || reversals >= criteria::plenty_of_reversals;
 }
 
-}  // namespace
-
-std::vector<RecordFinding> look_at_records(const Trials& trials,
-                                           const std::vector<InverseDynamics>& inverse) {
+/// Faults that the balance of forces shows.
+std::vector<RecordFinding> faults_in_balance(const Trials& trials,
+                                             const std::vector<InverseDynamics>& inverse) {
   std::vector<ForceResidual> residuals(trials.list.size());
   std::vector<RecordContent> contents;
   std::vector<RecordView> records;
@@ -77,13 +78,6 @@ std::vector<RecordFinding> look_at_records(const Trials& trials,
   for (size_t t = 0; t < trials.list.size(); ++t)
     records.push_back({inverse[t].motion, residuals[t], contents[t]});
   std::vector<RecordFinding> findings;
-  if (const size_t count = false_readings(trials); count > 0)
-    findings.push_back(readings_are_false(count, "what their neighbours say was taken instead"));
-  for (const Trial& trial : trials.list)
-    if (const std::string& role = trial.model->record().left_out; !role.empty())
-      findings.push_back(
-          {fmt::format("the {} is read less often than what else is measured of the axis", role),
-           "it was left out: readings of two rates do not count together here"});
   for (const RecordFault& fault : faults_of(records)) {
     if (trials.has_map() && fault.name != "one_direction") continue;  // a map has no times and no speeds
     if (fault.name == "too_short" && shows_enough(trials, contents))
@@ -91,6 +85,26 @@ std::vector<RecordFinding> look_at_records(const Trials& trials,
     else
       findings.push_back({fault.text, fault.cost, fault.is_fatal, fault.may_be_physics});
   }
+  return findings;
+}
+
+}  // namespace
+
+std::vector<RecordFinding> look_at_records(const Trials& trials,
+                                           const std::vector<InverseDynamics>& inverse) {
+  std::vector<RecordFinding> findings;
+  if (const size_t count = false_readings(trials); count > 0)
+    findings.push_back(readings_are_false(count, "what their neighbours say was taken instead"));
+  for (const Trial& trial : trials.list)
+    if (const std::string& role = trial.model->record().left_out; !role.empty())
+      findings.push_back(
+          {fmt::format("the {} is read less often than what else is measured of the axis", role),
+           "it was left out: readings of two rates do not count together here"});
+  if (balances_forces(inverse))
+    std::ranges::move(faults_in_balance(trials, inverse), std::back_inserter(findings));
+  else
+    findings.push_back({"every motion is too short for the filter of the residual force",
+                        "that force is not known, and neither direction, speed nor duration were checked"});
   return findings;
 }
 

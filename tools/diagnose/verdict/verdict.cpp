@@ -103,17 +103,21 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
   else if (diagnosis.simulation_is_worse)
     diagnosis.contradictions.push_back("the diagram simulates worse with these effects than without them");
   for (const Member& member : e.members) {
-    if (!is_own_load(member)) continue;
     const std::string& name = member.candidate->name;
-    if (is_at_limit(member))
+    if (!member.candidate->is_unknown && is_at_limit(member))
       diagnosis.contradictions.push_back("a parameter of " + name +
                                          " is at the limit of its range, where it stands for something else");
+    if (!is_own_load(member)) continue;
     // What the counts excuse may also be a load that moves otherwise: neither whiteness nor simulation can
     // tell.
     if (conclusion.counts_portmanteau > criteria::most_portmanteau_of_counted)
       diagnosis.contradictions.push_back("the counts of the sensor are too coarse to show how the load of " +
                                          name + " moves: its parameters are not certain");
   }
+  if (conclusion.comes_in_bursts)
+    diagnosis.contradictions.push_back(
+        "large errors keep together in time: something happens now and then that is not explained, as the "
+        "blows of a load that rattles");
   if (is_noise_inflated(trials, e.members, diagnosis))
     diagnosis.contradictions.push_back(
         "the errors ask for more noise than the forces show: they are not alike over the record, so that "
