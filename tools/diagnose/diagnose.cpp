@@ -5,6 +5,7 @@
 #include <limits>
 #include "tools/diagnose/any_diagram.h"
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/record/doubts_about_time.h"
 #include "tools/diagnose/search/catalogue.h"
 #include "tools/diagnose/search/conclude.h"
 #include "tools/diagnose/search/doubt.h"
@@ -370,9 +371,12 @@ bool have_roles(const std::vector<std::string>& experiments) {
 
 Diagnosis diagnose(const std::string& diagram, const std::vector<std::string>& experiments,
                    const DiagnoseOptions& options) {
-  if (!have_roles(experiments)) return diagnose_any_diagram(diagram, experiments, options);
   try {
-    return diagnose_to_the_end(diagram, experiments, options);
+    Diagnosis result = have_roles(experiments) ? diagnose_to_the_end(diagram, experiments, options)
+                                               : diagnose_any_diagram(diagram, experiments, options);
+    std::ranges::move(doubts_about_time(diagram, experiments, options.load),
+                      std::back_inserter(result.findings));
+    return result;
   } catch (const Interrupted&) {
     Diagnosis result;
     result.was_interrupted = true;

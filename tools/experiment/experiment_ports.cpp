@@ -53,33 +53,22 @@ std::optional<Number> find_port(const Plan& plan, const std::string& port,
   return numbers[0];
 }
 
-/// Rows that are a thousand samples of the diagram apart, to a hundredth of that, while no sample time is
-/// near them: such a time is rather in ms than in s. It may also be a slow log, so that this is no error.
-void check_unit_of_time(const Plan& plan, const Experiment& experiment, Problems& problems) {
-  constexpr double near = 20, alike = 0.01;  // times; of the factor
-  struct Scale {
-    double factor;
-    std::string_view unit;
-  };
-  constexpr Scale scales[] = {{1e3, "ms"}, {1e6, "us"}, {1e9, "ns"}, {1e-3, "s"}, {1e-6, "s"}};
-  const double step = experiment.time.sample_time;
-  if (step <= 0) return;
-  const Scale* found = nullptr;
-  double sample_time = 0;
-  for (const Plan::Block& block : plan.blocks) {
-    if (block.sample_time <= 0) continue;
-    const double ratio = step / block.sample_time;
-    if (ratio < near && ratio > 1 / near) return;
-    for (const Scale& scale : scales)
-      if (std::abs(ratio / scale.factor - 1) < alike) found = &scale, sample_time = block.sample_time;
-  }
-  if (!found) return;
-  auto& p = problems.warning(
-      experiment.place, "/data", "",
-      fmt::format("the rows are {:.6g} s apart, and the diagram has samples of {:.6g} s", step, sample_time));
-  p.hint = found->factor > 1 ? fmt::format("is the time \"{0}\" in {1}? then its heading is \"{0} [{1}]\"",
-                                           experiment.time_column, found->unit)
-                             : fmt::format("is the unit of the time \"{}\" right?", experiment.time_column);
+std::string hint_at_unit(const Experiment& experiment, std::string_view unit) {
+  return fmt::format("is the time \"{0}\" in {1}? then its heading is \"{0} [{1}]\"", experiment.time_column,
+                     unit);
+}
+
+/// The same of a diagram without samples, whose rows are far more steps of its solver apart than anyone
+/// needs.
+void check_against_steps(const Plan& plan, const Experiment& experiment, Problems& problems) {
+  constexpr double most_steps = 2000;  // in a row; an accurate simulation has some tens
+  const double step = plan.clock.time(plan.step_ticks), row = experiment.time.sample_time;
+  if (plan.step_ticks <= 0 || !plan.steps_between_samples || row <= most_steps * step) return;
+  problems
+      .warning(experiment.place, std::string(time_of_rows), "",
+               fmt::format("the rows are {:.6g} s apart, which is {:.0f} steps of the diagram's solver", row,
+                           row / step))
+      .hint = hint_at_unit(experiment, "ms");
 }
 
 /// A constant in place of a recorded column, whether that exists or not.
@@ -122,6 +111,37 @@ LoadOptions with_drives(const std::string& diagram, const Experiment& experiment
 }
 
 }  // namespace
+
+/// Rows that are a thousand samples of the diagram apart, to a hundredth of that, while no sample time is
+/// near them: such a time is rather in ms than in s. It may also be a slow log, so that this is no error.
+void check_unit_of_time(const Plan& plan, const Experiment& experiment, Problems& problems) {
+  constexpr double near = 20, alike = 0.01;  // times; of the factor
+  struct Scale {
+    double factor;
+    std::string_view unit;
+  };
+  constexpr Scale scales[] = {{1e3, "ms"}, {1e6, "us"}, {1e9, "ns"}, {1e-3, "s"}, {1e-6, "s"}};
+  const double step = experiment.time.sample_time;
+  if (step <= 0) return;
+  const Scale* found = nullptr;
+  double sample_time = 0;
+  bool is_sampled = false;
+  for (const Plan::Block& block : plan.blocks) {
+    if (block.sample_time <= 0) continue;
+    is_sampled = true;
+    const double ratio = step / block.sample_time;
+    if (ratio < near && ratio > 1 / near) return;
+    for (const Scale& scale : scales)
+      if (std::abs(ratio / scale.factor - 1) < alike) found = &scale, sample_time = block.sample_time;
+  }
+  if (!is_sampled) return check_against_steps(plan, experiment, problems);
+  if (!found) return;
+  auto& p = problems.warning(
+      experiment.place, std::string(time_of_rows), "",
+      fmt::format("the rows are {:.6g} s apart, and the diagram has samples of {:.6g} s", step, sample_time));
+  p.hint = found->factor > 1 ? hint_at_unit(experiment, found->unit)
+                             : fmt::format("is the unit of the time \"{}\" right?", experiment.time_column);
+}
 
 Plan logging(const Plan& plan, const Experiment& experiment, Problems& problems) {
   check_unit_of_time(plan, experiment, problems);

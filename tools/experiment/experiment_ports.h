@@ -1,13 +1,19 @@
 /// The diagram ports that an experiment names.
 #pragma once
+#include <string_view>
 #include "engine/plan/plan.h"
 #include "tools/experiment/experiment.h"
 
 namespace loopwright {
 
 /// The plan with a log of the compared signals and the roles. Reports a problem for every port that does not
-/// exist or has another dimension than its column, and a warning if rows and samples are a thousand times apart.
+/// exist or has another dimension than its column, and the warning of check_unit_of_time().
 Plan logging(const Plan& plan, const Experiment& experiment, Problems& problems);
+
+/// A warning at this place of the experiment if rows and samples are a thousand times apart, or rows many steps
+/// of the solver of a diagram without samples: such a time is rather in ms than in s.
+constexpr std::string_view time_of_rows = "/data";
+void check_unit_of_time(const Plan& plan, const Experiment& experiment, Problems& problems);
 
 /// The experiment with its compared columns in the units of their ports: hertz become radians per second, and
 /// vice versa. Incompatible units are left unchanged; logging() reports them.

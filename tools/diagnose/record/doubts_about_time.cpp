@@ -1,0 +1,24 @@
+#include "tools/diagnose/record/doubts_about_time.h"
+#include "tools/experiment/experiment_ports.h"
+
+namespace loopwright::diagnosis {
+
+std::vector<RecordFinding> doubts_about_time(const std::string& diagram,
+                                             const std::vector<std::string>& experiments,
+                                             const LoadOptions& options) {
+  Problems problems;
+  for (const std::string& path : experiments) {
+    const auto experiment = load_experiment(path, problems);
+    const auto loaded =
+        experiment ? load_diagram(diagram, with_own_values(*experiment, options), problems) : nullptr;
+    if (const auto plan = loaded ? compile(*loaded, problems) : nullptr)
+      check_unit_of_time(*plan, *experiment, problems);
+  }
+  std::vector<RecordFinding> findings;
+  for (const Problem& problem : problems.list())
+    if (problem.severity == Problem::Severity::warning && problem.pointer == time_of_rows)
+      findings.push_back({problem.message, problem.hint, false, false});
+  return findings;
+}
+
+}  // namespace loopwright::diagnosis

@@ -1,0 +1,16 @@
+/// Whether the rows are as far apart in time as their file says.
+#pragma once
+#include <string>
+#include <vector>
+#include "engine/diagram/diagram.h"
+#include "tools/diagnose/diagnosis.h"
+
+namespace loopwright::diagnosis {
+
+/// A finding for each experiment whose rows are so far apart that the unit of their time is doubtful: see
+/// check_unit_of_time(). Nothing for files that cannot be read.
+std::vector<RecordFinding> doubts_about_time(const std::string& diagram,
+                                             const std::vector<std::string>& experiments,
+                                             const LoadOptions& options);
+
+}  // namespace loopwright::diagnosis
