@@ -28,6 +28,8 @@ constexpr double correction_after_rest = 10;
 constexpr double plenty_of_rows = 1000, shorter_wait = 0.7;
 /// [top speed] Slower counts as at rest: the sign of friction is not certain there.
 constexpr double rest_speed = 0.005;
+/// [rows that are used] Of which so many move in the smoothed motion, or that is not the motion of the axis.
+constexpr double least_share_in_balance = 0.5;
 /// [rows] Fewer fitted rows support no verdict: 40 lags and three noises are estimated from them.
 constexpr double least_rows = 200;
 /// [rows] Of a longer record, sampled faster than necessary, several rows become one of at most this length
@@ -318,14 +320,12 @@ constexpr size_t settling_part = 20;
 /// [signal at its site, rms] Noise held over a sample, as the best predictions ask for. More of it may stand
 /// for a missing effect. Machines, heat and tanks have a hundredth.
 constexpr double most_process_noise = 0.05;
-/// [signal at its site, rms] Slow disturbance that is taken for noise. More of it may stand for a missing
-/// effect: those that matter begin at a twentieth.
+/// [signal at its site, rms] Slow disturbance that is taken for noise: effects that matter have a twentieth.
 constexpr double most_slow_disturbance = 0.03;
 /// [sites] Of slow disturbances beside what was found; and beside nothing but parameters, where a missing
 /// effect would be taken for several of them.
 constexpr size_t most_slow_disturbances = 3, most_first_disturbances = 1;
-/// [-2 ln L, and for each reading] By which an input must suit the record better, if it does something else
-/// between its rows, before the experiment's statement is questioned: as much as a term must gain.
+/// [-2 ln L, and for each reading] By which an input that is another one between its rows must suit better.
 constexpr double least_gain_of_other_input = 25, least_gain_of_other_input_per_reading = 0.02;
 /// [rms error of simulation] An answer by simulation stands only if it leaves at most this of the other's,
 /// also over the held-out rows; without them chance has a larger part.

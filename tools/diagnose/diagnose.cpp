@@ -330,7 +330,7 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   tell_errors(trials, conclusion, inquiry, result);
   trials.run_along(Trials::Rows::all);
   judge(trials, conclusion, inquiry.motion_of_all_rows(), search_noise(trials), inverse, result);
-  if (!balances_forces(inverse)) forget_residual_force(result);
+  if (!balances_forces(trials, inverse)) forget_residual_force(result);
   const auto members_of = [&](size_t steps) { return staircase.members[steps - 1]; };
   result.additions = improver.additions(members_of(staircase.necessary()));
   result.all_additions = improver.additions(members_of(staircase.steps.size()));

@@ -1,6 +1,7 @@
 // Records that cannot support a verdict are named, with the consequence.
 #include <gmock/gmock.h>
 #include "tests/tools/diagnose/diagnosed_plant.h"
+#include "tests/tools/diagnose/flawed_axis.h"
 #include "tests/tools/diagnose/hidden_axis.h"
 #include "tests/tools/diagnose/recorded_axis.h"
 #include "tools/diagnose/diagnose.h"
@@ -11,6 +12,7 @@ namespace {
 using testing::Contains;
 using testing::Field;
 using testing::HasSubstr;
+using testing::Not;
 
 Diagnosis spoilt(const std::function<void(std::vector<double>&, std::vector<double>&)>& how,
                  double duration_s = 6) {
@@ -88,6 +90,52 @@ TEST(BadRecord, LostSamplesAreCountedAndTakenForNoDeadTime) {
     expect_parameter(d.effects[0], "damping", 2, 0.5, "N*s/m");
     EXPECT_THAT(d.findings, finds("missing at"));
   }
+}
+
+auto says(const char* words) { return Contains(HasSubstr(words)); }
+
+TEST(BadRecord, ErrorsThatComeInBurstsAreNotNoise) {
+  HiddenMachine machine;
+  uint64_t bits = 1;  // a linear congruential generator
+  machine.drive = [&](double command, double time) {
+    bits = bits * 6364136223846793005u + 1442695040888963407u;
+    const double shake = double(bits >> 33) / 2147483648.0 - 0.5;
+    return command + (std::fmod(time, 0.13) < 0.012 ? 0.5 * shake : 0.0);
+  };
+  HiddenAxis axis(machine);
+  WantedMotion motion;
+  for (int repeat = 0; repeat < 2; ++repeat)
+    for (const double speed : {0.1, -0.1, 0.3, -0.3, 0.2, -0.2})
+      motion.stroke(std::copysign(0.15, speed), std::abs(speed), 0.1).rest(0.1);
+  const Diagnosis d = diagnose(axis.diagram(), {axis.record("record", axis.nominal(), motion)});
+  EXPECT_EQ(d.verdict, Verdict::unexplained) << to_text(d);
+  EXPECT_THAT(d.contradictions, says("keep together in time")) << to_text(d);
+}
+
+/// Sixty reversals a second: dry friction is named as one that is smooth below the lowest speed asked for.
+TEST(BadRecord, AParameterAtTheLimitOfItsRangeStandsForSomethingElse) {
+  FlawedMachine machine;
+  machine.oscillation_hz = 60, machine.stroke = 1e-3, machine.sample_time = 1e-4, machine.duration = 3;
+  machine.coulomb = 0.3;
+  const FlawedAxis axis(machine);
+  const Diagnosis d = diagnose(axis.diagram(), {axis.experiment()});
+  const bool is_any_at_limit = std::ranges::any_of(d.effects, [](const DiagnosedEffect& effect) {
+    return std::ranges::any_of(effect.parameters, &DiagnosedParameter::at_limit);
+  });
+  ASSERT_TRUE(is_any_at_limit) << to_text(d);
+  EXPECT_EQ(d.verdict, Verdict::partly_explained) << to_text(d);
+  EXPECT_THAT(d.contradictions, says("at the limit of its range")) << to_text(d);
+}
+
+TEST(BadRecord, OfMotionsThatAreTooShortTheResidualForceIsNotKnown) {
+  FlawedMachine machine;
+  machine.oscillation_hz = 200, machine.stroke = 1e-3, machine.sample_time = 5e-5, machine.duration = 1;
+  machine.added_mass = 0.1;
+  const FlawedAxis axis(machine);
+  const Diagnosis d = diagnose(axis.diagram(), {axis.experiment()});
+  EXPECT_THAT(d.findings, finds("too short for the filter of the residual force")) << to_text(d);
+  EXPECT_THAT(d.findings, Not(finds("one way"))) << to_text(d);
+  for (const DiagnosisStep& step : d.steps) EXPECT_TRUE(std::isnan(step.force_rmse)) << to_text(d);
 }
 
 }  // namespace

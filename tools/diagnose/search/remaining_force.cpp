@@ -117,10 +117,14 @@ MeasuredMotion away_from_turns(const InverseDynamics& inverse) {
   return motion;
 }
 
-bool balances_forces(const std::vector<InverseDynamics>& inverse) {
-  return std::ranges::any_of(inverse, [](const InverseDynamics& record) {
-    return std::ranges::any_of(record.motion.counts, [](bool counts) { return counts; });
-  });
+bool balances_forces(const Trials& trials, const std::vector<InverseDynamics>& inverse) {
+  double moving = 0, used = 0;
+  for (size_t t = 0; t < inverse.size(); ++t) {
+    moving +=
+        double(std::ranges::count_if(inverse[t].motion.counts, [](auto counts) { return bool(counts); }));
+    used += double(std::ranges::count_if(trials.list[t].usable, [](auto usable) { return bool(usable); }));
+  }
+  return moving >= criteria::least_share_in_balance * used;
 }
 
 ResidualSize residual_size(const Trials& trials, const std::vector<InverseDynamics>& inverse,

@@ -26,9 +26,9 @@ std::vector<double> residual_with(const Trial& trial, const InverseDynamics& inv
 /// or a rest: there the force of dry friction leaps, at an instant that the motion shows only roughly.
 MeasuredMotion away_from_turns(const InverseDynamics& inverse);
 
-/// Whether any row of the motion counts. A motion that is over within the period of the filter has none, and
-/// the balance of forces says nothing of it.
-bool balances_forces(const std::vector<InverseDynamics>& inverse);
+/// Whether its motion is that of the axis: most of the rows that the trials use move in it. Of a motion that is
+/// over within the period of the filter it shows a wobble or nothing, and no balance of forces.
+bool balances_forces(const Trials& trials, const std::vector<InverseDynamics>& inverse);
 
 struct ResidualSize {
   double fitted = 0, held_out = 0;  ///< root mean square; held_out 0 without held-out rows

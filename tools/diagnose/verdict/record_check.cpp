@@ -100,10 +100,10 @@ std::vector<RecordFinding> look_at_records(const Trials& trials,
       findings.push_back(
           {fmt::format("the {} is read less often than what else is measured of the axis", role),
            "it was left out: readings of two rates do not count together here"});
-  if (balances_forces(inverse))
+  if (balances_forces(trials, inverse))
     std::ranges::move(faults_in_balance(trials, inverse), std::back_inserter(findings));
   else
-    findings.push_back({"every motion is too short for the filter of the residual force",
+    findings.push_back({"most of the motion is too short for the filter of the residual force",
                         "that force is not known, and neither direction, speed nor duration were checked"});
   return findings;
 }
