@@ -53,7 +53,6 @@ constexpr double share_of_controller = 0.05;
 constexpr double rows_that_blur = 20;
 
 // Steps.
-
 /// [poles of a sample] Sizes after a whole step and after two halves that differ by less: it is short enough.
 constexpr double same_pole = 1e-4;
 /// [steps in a sample] A pole that would need more has settled within a sample anyway.
@@ -99,8 +98,7 @@ constexpr double least_gain_of_early_input = 0.5;
 
 /// [lags] n Σ ρ² over them is near their number if the errors are white.
 constexpr size_t portmanteau_lags = 40;
-/// [s] Errors that are closer are added up first, so that the lags cover 40 ms at any rate.
-constexpr double portmanteau_lag_s = 1e-3;
+constexpr double portmanteau_lag_s = 1e-3;  ///< errors that are closer are added up first
 /// Above it the errors are not white. Counts at a steady speed give up to 170 if no resolution is stated.
 constexpr double most_portmanteau = 300;
 /// The same where nothing is named and the counts are computed from the resolution that is stated, and their
@@ -112,6 +110,8 @@ constexpr double most_portmanteau_per_row = 1;
 /// The same of the squares of the errors, [rows] and at least: rattling loads have 0.3 to 1.8 a row, right
 /// answers 0.25 at most.
 constexpr double most_bursts_per_row = 0.3, least_bursts = 500;
+/// [noise force] That coarse counts leave of what they feign.
+constexpr double calmer_force = 0.1;
 /// [what counts add] A line of their beat that is a fifth stronger adds half as much again.
 constexpr double reach_of_counts = 1.5;
 /// [force of the input: rms, or what it exceeds in all but this share of the motion if that is less] Less that

@@ -248,6 +248,20 @@ TEST(LoudNoise, AResonanceIsFoundBesideFriction) {
 }
 
 /// The load follows the counts of the motor's sensor, unless what is measured corrects it too.
+/// They are the only noise of a heavy axis that nothing shakes: taken for noise of the force, they would hide
+/// their own beat.
+TEST(Counts, AtSteadySpeedsAreNoMissingEffectWithoutForceNoise) {
+  for (const double mass : {20.0, 60.0}) {
+    FlawedMachine machine;
+    machine.mass = mass, machine.damping = 60, machine.force_noise = 1e-3;
+    machine.sensor_noise = 0, machine.resolution = 1e-6;
+    machine.steady_speeds = {0.08, 0.19, 0.04};
+    const FlawedAxis axis(machine);
+    const Diagnosis d = diagnose(axis.diagram(), {axis.experiment()});
+    EXPECT_EQ(name_of(d.verdict), "nothing_missing") << mass << to_text(d);
+  }
+}
+
 TEST(Counts, DoNotShakeTheLoadOfAResonance) {
   FlawedMachine machine = with_resonance();
   machine.sample_time = 2e-3, machine.resolution = 2e-5, machine.sensor_noise = 3e-6;

@@ -263,6 +263,29 @@ void ask_rivals(const Trials& trials, Conclusion& result, Evidence& evidence,
   add_late_shapes(trials, result, rivals, swaps, candidates.size());
 }
 
+/// Whether the errors are white and of one size, beside what the counts of the sensor make of them.
+void judge_errors(const Trials& trials, Conclusion& result) {
+  const Estimate& estimate = result.estimate;
+  const Noise& noise = estimate.noise;
+  const bool is_noisy = noise.white > 2 * criteria::least_white_noise * trials.force_rms;
+  const double rows = double(fitted_numbers(trials)) / double(trials.ports());
+  const double most_bursts = std::max(least_bursts, most_bursts_per_row * rows);
+  const double of_squares = portmanteau_of_squares(trials, *estimate.fitted);
+  result.portmanteau = portmanteau(trials, *estimate.fitted);
+  result.comes_in_bursts = is_noisy && of_squares > most_bursts;
+  if (result.portmanteau > most_portmanteau_of_counted || result.comes_in_bursts)
+    if (const WhitenedErrors errors = errors_of_counts(trials, estimate); !errors.empty()) {
+      if (is_noisy && estimate.members.empty()) result.most_portmanteau = most_portmanteau_of_counted;
+      result.counts_portmanteau = portmanteau_of_counts(trials, errors);
+      result.comes_in_bursts &= of_squares - reach_of_counts * bursts_of_counts(trials, errors) > most_bursts;
+    }
+  result.trail.push_back(fmt::format(
+      "portmanteau {:.0f}, of counts alone {:.0f}, of squares {:.0f}{}; noise: white {:.3g}, slow "
+      "{:.3g} over {:.3g} rows, sensor {:.3g}",
+      result.portmanteau, result.counts_portmanteau, of_squares, result.comes_in_bursts ? " (bursts)" : "",
+      noise.white, noise.slow(), noise.memory_samples(), noise.measurement.front()));
+}
+
 /// Joint maximum likelihood, repeated with a simpler set that is as good, or at most `rounds` times with a
 /// better one.
 Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
@@ -283,26 +306,9 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
     result.trail.push_back(fmt::format("kept: {}, χ² {:.0f} (of counts {:.0f})",
                                        estimate.members[m].candidate->name, result.weights[m].wald,
                                        result.weights[m].counts));
-  result.portmanteau = portmanteau(trials, *estimate.fitted);
-  const bool is_noisy = estimate.noise.white > 2 * criteria::least_white_noise * trials.force_rms;
-  if (result.portmanteau > criteria::most_portmanteau_of_counted)
-    if (const WhitenedErrors errors = errors_of_counts(trials, estimate); !errors.empty()) {
-      if (is_noisy && estimate.members.empty())
-        result.most_portmanteau = criteria::most_portmanteau_of_counted;
-      result.counts_portmanteau = portmanteau_of_counts(trials, errors);
-    }
+  judge_errors(trials, result);
   const Noise& noise = estimate.noise;
   const double n = double(fitted_numbers(trials));
-  const double of_squares = portmanteau_of_squares(trials, *estimate.fitted);
-  result.comes_in_bursts =
-      is_noisy && of_squares - reach_of_counts * result.counts_portmanteau >
-                      std::max(least_bursts, most_bursts_per_row * n / double(trials.ports()));
-  result.trail.push_back(
-      fmt::format("portmanteau {:.0f}, of counts alone {:.0f}, of squares {:.0f}; noise: white {:.3g}, slow "
-                  "{:.3g} over {:.3g} "
-                  "rows, sensor {:.3g}",
-                  result.portmanteau, result.counts_portmanteau, of_squares, noise.white, noise.slow(),
-                  noise.memory_samples(), noise.measurement.front()));
   // A small force below 80 Hz says nothing about a faster one.
   const bool is_vibration =
       noise.white > criteria::negligible_force * trials.usual_force &&

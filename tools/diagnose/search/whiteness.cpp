@@ -41,6 +41,19 @@ std::vector<double> smoothed(const Fitted& fitted, const MeasuredPort& sensor, s
   return motion;
 }
 
+/// The same predictions with noise forces that are smaller by a factor. Where counts are coarse, what they
+/// add is taken for noise forces, and a motion that these shake has no beat.
+Fitted with_calmer_force(const Fitted& fitted, const Noise& noise, double factor, double nominal_inertia) {
+  Fitted calm = fitted;
+  calm.gains =
+      gains_of(fitted.axis, {factor * noise.white, factor * noise.step, noise.memory, noise.measurement},
+               nominal_inertia);
+  with_gains(fitted.axis, fitted.prediction, fitted.gains, calm.gains, calm.prediction.error);
+  calm.white = calm.prediction.error;
+  whiten(calm.white, calm.gains);
+  return calm;
+}
+
 /// What is measured minus what is, at the first port: a motion counted anew, and the other noise of the
 /// sensor. `dithers`: the noise comes before the counting, and covers its pattern.
 std::vector<double> errors_of_counting(const std::vector<double>& motion, double count, double noise,
@@ -87,6 +100,28 @@ std::vector<double> filtered(const Fitted& fitted, const Noise& noise, double sc
     }
   });
   return white;
+}
+
+/// Of one record, see errors_of_counts().
+std::vector<double> errors_of_counts_along(const Trials& trials, const Estimate& estimate, size_t record,
+                                           double calm, bool dithers) {
+  const AxisModel& model = *trials.list[record].model;
+  const MeasuredPort& sensor = model.record().measured.front();
+  const Fitted& fitted = (*estimate.fitted)[record];
+  const Noise& noise = estimate.noise;
+  const std::vector<double> motion =
+      calm < 1
+          ? smoothed(with_calmer_force(fitted, noise, calm, model.nominal_inertia()), sensor, trials.ports())
+          : smoothed(fitted, sensor, trials.ports());
+  return filtered(fitted, noise, fitted.axis.inertia / model.nominal_inertia(),
+                  errors_of_counting(motion, sensor.resolution, noise.measurement[0], dithers, record),
+                  record);
+}
+
+std::vector<Fitted> feigned(const WhitenedErrors& errors) {
+  std::vector<Fitted> records(errors.size());
+  for (size_t t = 0; t < errors.size(); ++t) records[t].white = errors[t];
+  return records;
 }
 
 }  // namespace
@@ -148,29 +183,27 @@ double portmanteau_of_squares(const Trials& trials, const std::vector<Fitted>& f
 }
 
 WhitenedErrors errors_of_counts(const Trials& trials, const Estimate& estimate) {
-  WhitenedErrors covered, bare;
-  for (size_t t = 0; t < trials.list.size(); ++t) {
-    const AxisModel& model = *trials.list[t].model;
-    const MeasuredPort& sensor = model.record().measured.front();
-    if (!(sensor.resolution > 0) || trials.has_map()) return {};
-    const Fitted& fitted = (*estimate.fitted)[t];
-    const std::vector<double> motion = smoothed(fitted, sensor, trials.ports());
-    const double scale = fitted.axis.inertia / model.nominal_inertia();
-    const auto errors = [&](bool dithers) {
-      return filtered(
-          fitted, estimate.noise, scale,
-          errors_of_counting(motion, sensor.resolution, estimate.noise.measurement[0], dithers, t), t);
-    };
-    covered.push_back(errors(true)), bare.push_back(errors(false));
-  }
-  return portmanteau_of_counts(trials, bare) > portmanteau_of_counts(trials, covered) ? bare : covered;
+  WhitenedErrors most;
+  for (const Trial& trial : trials.list)
+    if (!(trial.model->record().measured.front().resolution > 0) || trials.has_map()) return {};
+  for (const double calm : {1.0, criteria::calmer_force})
+    for (const bool dithers : {true, false}) {
+      WhitenedErrors errors;
+      for (size_t t = 0; t < trials.list.size(); ++t)
+        errors.push_back(errors_of_counts_along(trials, estimate, t, calm, dithers));
+      if (most.empty() || portmanteau_of_counts(trials, errors) > portmanteau_of_counts(trials, most))
+        most = std::move(errors);
+    }
+  return most;
 }
 
 double portmanteau_of_counts(const Trials& trials, const WhitenedErrors& errors) {
   if (errors.empty()) return 0;
-  std::vector<Fitted> feigned(errors.size());
-  for (size_t t = 0; t < errors.size(); ++t) feigned[t].white = errors[t];
-  return std::max(0.0, portmanteau(trials, feigned) - double(criteria::portmanteau_lags));
+  return std::max(0.0, portmanteau(trials, feigned(errors)) - double(criteria::portmanteau_lags));
+}
+
+double bursts_of_counts(const Trials& trials, const WhitenedErrors& errors) {
+  return errors.empty() ? 0 : portmanteau_of_squares(trials, feigned(errors));
 }
 
 }  // namespace loopwright::diagnosis

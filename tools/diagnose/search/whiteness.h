@@ -28,10 +28,12 @@ using WhitenedErrors = std::vector<std::vector<double>>;
 /// Those that the counts of the first sensor and the noise of this estimate would give if nothing were
 /// missing. At slow or steady speeds counts are not white, and resemble a pattern or a mode: the smoothed
 /// motion is counted anew, and goes through the predictor with random noise of every other kind. Noise of the
-/// sensor may cover the pattern of the counts or not, whichever leaves more of it. Empty if the sensor states
-/// no resolution.
+/// sensor may cover the pattern of the counts or not, and the noise forces may be smaller than they seem beside
+/// coarse counts, whichever leaves more of it. Empty if the sensor states no resolution.
 WhitenedErrors errors_of_counts(const Trials& trials, const Estimate& estimate);
 /// What they add to the portmanteau.
 double portmanteau_of_counts(const Trials& trials, const WhitenedErrors& errors);
+/// The portmanteau of their squares: at steady speeds they may be none, and large between these.
+double bursts_of_counts(const Trials& trials, const WhitenedErrors& errors);
 
 }  // namespace loopwright::diagnosis

@@ -31,8 +31,9 @@ void add_variables(std::vector<std::string>& list, std::string_view joined) {
 }
 
 /// Why the residual force is no noise, in words; empty: it may be.
+/// `repeating`: the force that coarse counts feign, which is the same in every repeat of a motion.
 std::string force_above_noise(const Trials& trials, const std::vector<InverseDynamics>& inverse,
-                              const std::vector<Member>& members) {
+                              const std::vector<Member>& members, double repeating) {
   // An impact that is predicted a moment too late leaves a large force for a moment.
   if (trials.has_map() || may_be_doubtful(members)) return {};
   for (size_t t = 0; t < trials.list.size(); ++t) {
@@ -43,10 +44,11 @@ std::string force_above_noise(const Trials& trials, const std::vector<InverseDyn
       if (motion.counts[k]) square += residual[k] * residual[k], n += 1;
     if (n < criteria::least_rows) continue;
     const double rms = std::sqrt(square / n);
-    const NoiseFloor floor = noise_floor(motion, residual);
+    NoiseFloor floor = noise_floor(motion, residual);
     const double independent = n * motion.sample_time / criteria::slow_memory_s,
                  followed = floor.repeat_s > 0 ? 0 : criteria::levels_of_smooth_functions / independent;
     if (floor.value <= 0 || followed > criteria::most_levels) continue;
+    floor.value = std::max(floor.value, repeating);
     const double most = criteria::most_over_floor / std::sqrt(1 - followed);
     const double excess = std::sqrt(std::max(0.0, rms * rms - floor.value * floor.value));
     if (rms > most * floor.value && excess > criteria::least_excess * trials.force_rms)
@@ -94,7 +96,9 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
   const bool is_left = !diagnosis.refused.empty() && e.members.empty() && !conclusion.is_negligible &&
                        conclusion.portmanteau > criteria::most_portmanteau;
   bool is_not_white = is_left || !conclusion.is_white();
-  if (std::string why = force_above_noise(trials, inverse, e.members); !why.empty())
+  const bool is_counted = conclusion.counts_portmanteau > criteria::most_portmanteau_of_counted;
+  const double repeating = is_counted ? diagnosis.noise_floor : 0;
+  if (std::string why = force_above_noise(trials, inverse, e.members, repeating); !why.empty())
     diagnosis.contradictions.push_back(std::move(why));
   else if (why = force_far_above_noise(trials, e.members, diagnosis); !why.empty())
     diagnosis.contradictions.push_back(std::move(why));
@@ -110,7 +114,7 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
     if (!is_own_load(member)) continue;
     // What the counts excuse may also be a load that moves otherwise: neither whiteness nor simulation can
     // tell.
-    if (conclusion.counts_portmanteau > criteria::most_portmanteau_of_counted)
+    if (is_counted)
       diagnosis.contradictions.push_back("the counts of the sensor are too coarse to show how the load of " +
                                          name + " moves: its parameters are not certain");
   }
