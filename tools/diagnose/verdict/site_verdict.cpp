@@ -152,7 +152,11 @@ class Telling {
       if (rival.of) other.in_place_of.emplace_back(search_.found.terms[*rival.of].shape->name);
       if (rival.of_all_terms)
         for (const SiteTerm& term : found_.terms) other.in_place_of.emplace_back(term.shape->name);
-      result_.other_explanations.push_back(std::move(other));
+      const auto is_told = [&](const OtherExplanation& known) {  // of the two that look for single parameters
+        return known.in_place_of == other.in_place_of && known.effects == other.effects;
+      };
+      if (std::ranges::none_of(result_.other_explanations, is_told))
+        result_.other_explanations.push_back(std::move(other));
     }
     // Beside terms it may stand for what these do not do exactly, or for an effect that is not named.
     for (const MovedParameter& p : result_.moved_parameters)
