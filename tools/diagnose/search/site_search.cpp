@@ -108,6 +108,7 @@ class SiteSearch : JudgedFits {
       result_.rivals.clear(), result_.parameter_rivals.clear();
     }
     if (remove_idle(at)) decide_parameters(at);
+    if (leave_out_detail(at)) decide_parameters(at);
     compare_levels(at);
     compare_with_parameters_of_same_response(at);
     compare_with_stated_parameters(at);
@@ -246,6 +247,19 @@ class SiteSearch : JudgedFits {
       at = std::move(without), is_any_removed = true;
     }
     return is_any_removed;
+  }
+
+  /// Beside parameters that were bent, a function may have seemed more than a detail of its law.
+  bool leave_out_detail(SiteHypothesis& at) {
+    if (at.terms.empty() || !is_unknown_function(*at.terms.back().shape) ||
+        !is_detail_of_named_law(fitter_, at))
+      return false;
+    at.terms.pop_back();
+    std::erase_if(result_.rivals, [&](const SiteRival& r) { return r.of == at.terms.size(); });
+    fitter_.refine(at, further_steps + 1);
+    fitter_.fit_noise(at);
+    tell("without the function, a detail of its law", at);
+    return true;
   }
 
   void decide_parameters(SiteHypothesis& at) {
