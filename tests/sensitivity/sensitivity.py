@@ -102,7 +102,7 @@ def main():
         if not (folder / "truth.json").exists():
             folder.mkdir(parents=True, exist_ok=True)
             benchmark.generate(seed, folder)
-    varied = thresholds((HERE.parents[1] / "tools/diagnose/criteria.h").read_text(), options.without_roles)
+    varied = thresholds(variable_criteria.criteria(HERE.parents[1] / "tools/diagnose/criteria.h"), options.without_roles)
     if options.thresholds:
         unknown = set(options.thresholds) - {name for name, _ in varied}
         if unknown:

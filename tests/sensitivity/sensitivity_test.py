@@ -8,7 +8,7 @@ import unittest
 import sensitivity
 import variable_criteria
 
-CRITERIA = pathlib.Path(sys.argv[1]).read_text()
+CRITERIA = variable_criteria.criteria(pathlib.Path(sys.argv[1]))
 
 
 class Variables(unittest.TestCase):

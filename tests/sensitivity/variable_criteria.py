@@ -1,4 +1,5 @@
-"""The thresholds of tools/diagnose/criteria.h as variables, for the sensitivity run alone: in the product they are constants.
+"""The thresholds of tools/diagnose/criteria.h, and of the file that it includes, as variables, for the sensitivity run alone: in the product
+they are constants.
 
     variable_criteria.py CRITERIA VARIABLE_CRITERIA
 
@@ -28,6 +29,14 @@ inline std::vector<Threshold> all_thresholds() {
 """
 
 
+INCLUDED = re.compile(r'^#include "tools/diagnose/(\w+\.h)"\n', re.MULTILINE)
+
+
+def criteria(path):
+    """The text of the file, with those that it includes in their places."""
+    return INCLUDED.sub(lambda match: (path.parent / match[1]).read_text(), path.read_text())
+
+
 def thresholds(text):
     """(type, name, whether it is a list, value) in the order of the file."""
     return [(kind, name, bool(is_list), value) for kind, entries in DECLARATION.findall(text)
@@ -53,4 +62,4 @@ def variable(text):
 if __name__ == "__main__":
     constants, variables = map(pathlib.Path, sys.argv[1:])
     variables.parent.mkdir(parents=True, exist_ok=True)
-    variables.write_text(variable(constants.read_text()))
+    variables.write_text(variable(criteria(constants)))

@@ -3,6 +3,7 @@
 #include "engine/json/json.h"
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/improvement.h"
+#include "tools/diagnose/predict/divergence.h"
 #include "tools/diagnose/search/own_shapes.h"
 #include "tools/diagnose/search/site_opinion.h"
 #include "tools/diagnose/verdict/plots.h"
@@ -84,7 +85,9 @@ Diagnosis diagnose_any_diagram(const std::string& diagram, const std::vector<std
   }
   if (!found) {
     result.verdict = Verdict::unexplained;
-    result.findings.push_back({"the diagram diverges along the record, although it is corrected at every row",
+    const std::string where = told_divergence(filter);
+    result.findings.push_back({"the diagram diverges along the record, although it is corrected at every row" +
+                                   (where.empty() ? "" : ", " + where),
                                "nothing can be said: units, signs or parameters are far off", true, false});
     return result;
   }

@@ -37,17 +37,19 @@ report::Section what_was_found(const Diagnosis& d) {
       text += fmt::format(" It might as well be {}: this record cannot tell.", other);
     section.items.push_back(report::Paragraph{std::move(text)});
     report::Table table{{"Parameter", "Value", "95 % interval"}, {}, "Parameters of " + effect.name + "."};
-    for (const DiagnosedParameter& p : effect.parameters)
-      table.rows.push_back(
-          {p.name, shown(p.value, p.unit), shown(p.low, p.unit) + " … " + shown(p.high, p.unit)});
+    for (const DiagnosedParameter& p : effect.parameters) {
+      const ShownInterval shown_here = shown_interval(p.value, p.low, p.high, p.unit);
+      table.rows.push_back({p.name, shown_here.value, shown_here.range()});
+    }
     section.items.push_back(std::move(table));
   }
   if (!d.moved_parameters.empty()) {
     report::Table table{
         {"Parameter", "Stated", "Found", "95 % interval"}, {}, "Parameters of the diagram that moved."};
-    for (const MovedParameter& p : d.moved_parameters)
-      table.rows.push_back({p.name, shown(p.stated, p.unit), shown(p.value, p.unit),
-                            shown(p.low, p.unit) + " … " + shown(p.high, p.unit)});
+    for (const MovedParameter& p : d.moved_parameters) {
+      const ShownInterval shown_here = shown_interval(p.value, p.low, p.high, p.unit);
+      table.rows.push_back({p.name, shown(p.stated, p.unit), shown_here.value, shown_here.range()});
+    }
     section.items.push_back(std::move(table));
   }
   for (const OtherExplanation& other : d.other_explanations)

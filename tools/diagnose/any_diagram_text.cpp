@@ -23,7 +23,8 @@ std::string verdict_of(const Diagnosis& d) {
 }
 
 std::string with_interval(double value, double low, double high, const std::string& unit) {
-  return fmt::format("{}  ({} … {})", shown(value, unit), shown(low, unit), shown(high, unit));
+  const ShownInterval text = shown_interval(value, low, high, unit);
+  return fmt::format("{}  ({})", text.value, text.range());
 }
 
 }  // namespace

@@ -103,11 +103,13 @@ report::Section what_is_missing(const Diagnosis& d) {
     section.items.push_back(report::Paragraph{std::move(text)});
     report::Table table{
         {"Parameter", "Value", "95 % interval", ""}, {}, "Parameters of " + words(effect.name) + "."};
-    for (const DiagnosedParameter& p : told_parameters(effect))
-      table.rows.push_back({words(p.name), shown(p.value, p.unit),
-                            p.times_a_turn > 0 ? fmt::format("{:.0f} times a turn", p.times_a_turn)
-                                               : shown(p.low, p.unit) + " … " + shown(p.high, p.unit),
-                            p.at_limit ? "at the limit of its range: a warning, not a result" : ""});
+    for (const DiagnosedParameter& p : told_parameters(effect)) {
+      const ShownInterval told = shown_interval(p.value, p.low, p.high, p.unit);
+      table.rows.push_back(
+          {words(p.name), p.times_a_turn > 0 ? shown(p.value, p.unit) : told.value,
+           p.times_a_turn > 0 ? fmt::format("{:.0f} times a turn", p.times_a_turn) : told.range(),
+           p.at_limit ? "at the limit of its range: a warning, not a result" : ""});
+    }
     section.items.push_back(std::move(table));
   }
   for (const OtherExplanation& other : d.other_explanations)

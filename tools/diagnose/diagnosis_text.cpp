@@ -59,13 +59,15 @@ std::string to_text(const Diagnosis& d) {
                      effect.form.empty() ? "" : " of the " + effect.form, effect.title,
                      shown(effect.force_rms, d.force_unit), effect.inclusion,
                      effect.is_optional ? ", optional" : ""));
-    for (const DiagnosedParameter& p : told_parameters(effect))
+    for (const DiagnosedParameter& p : told_parameters(effect)) {
+      const ShownInterval told = shown_interval(p.value, p.low, p.high, p.unit);
       if (p.times_a_turn > 0)
         line(fmt::format("    {} = {}  ({:.0f} times a turn)", p.name, shown(p.value, p.unit),
                          p.times_a_turn));
       else
-        line(fmt::format("    {} = {}  ({} … {}){}", p.name, shown(p.value, p.unit), shown(p.low, p.unit),
-                         shown(p.high, p.unit), p.at_limit ? "  at the limit of its range" : ""));
+        line(fmt::format("    {} = {}  ({}){}", p.name, told.value, told.range(),
+                         p.at_limit ? "  at the limit of its range" : ""));
+    }
     for (const std::string& other : effect.alternatives)
       line(fmt::format("    or {}: these two cannot be told apart by this record", other));
   }

@@ -17,6 +17,25 @@ inline std::string shown(double value, const std::string& unit) {
   return q.unit.empty() ? q.value : fmt::format("{} {}", q.value, q.unit);
 }
 
+struct ShownInterval {
+  std::string value, low, high;
+  std::string range() const { return low + " … " + high; }
+};
+/// With as many digits as tell the ends from the value.
+inline ShownInterval shown_interval(double value, double low, double high, const std::string& unit) {
+  constexpr int usual = 4, most = 10;
+  const auto with = [&](double number, int digits) {
+    return std::isfinite(number) ? report::shown(number, unit, digits) : shown(number, unit);
+  };
+  ShownInterval text{shown(value, unit), shown(low, unit), shown(high, unit)};
+  const auto is_told = [&] {
+    return (text.low != text.value || low == value) && (text.high != text.value || high == value);
+  };
+  for (int digits = usual + 1; digits <= most && !is_told(); ++digits)
+    text = {with(value, digits), with(low, digits), with(high, digits)};
+  return text;
+}
+
 /// The effect's name in the catalogue, as words.
 inline std::string words(std::string name) {
   std::ranges::replace(name, '_', ' ');

@@ -1,6 +1,7 @@
 #include "tools/effects/insert_term.h"
 #include <fmt/format.h>
 #include <algorithm>
+#include <charconv>
 #include "engine/block/registry.h"
 #include "tools/effects/nest.h"
 #include "tools/effects/setting_change.h"
@@ -13,9 +14,27 @@ namespace {
 using Kind = Value::Kind;
 using Level = Nest::Level;
 
+/// "terms" of "terms[0]".
+std::string_view name_of_port(std::string_view port) { return port.substr(0, port.find('[')); }
+
 bool is_input_of(const std::string& type, const std::string& port) {
   const BlockType* found = find_block(type);
-  return found && std::ranges::any_of(found->info.inputs, [&](const PortInfo& i) { return i.name == port; });
+  return found && std::ranges::any_of(found->info.inputs,
+                                      [&](const PortInfo& i) { return i.name == name_of_port(port); });
+}
+
+/// What feeds an input of a block, or one wire of its list as "terms[0]" does; null: nothing.
+const Value* wire_at(const Value::Member& block, const std::string& port) {
+  const Value::Member* in = block.value.find("in");
+  const Value::Member* wires = in ? in->value.find(name_of_port(port)) : nullptr;
+  if (!wires) return nullptr;
+  const size_t bracket = port.find('[');
+  if (wires->value.kind != Kind::list)
+    return bracket == port.npos || port.ends_with("[0]") ? &wires->value : nullptr;
+  if (bracket == port.npos) return nullptr;
+  size_t index = 0;
+  std::from_chars(port.data() + bracket + 1, port.data() + port.size(), index);
+  return index < wires->value.items.size() ? &wires->value.items[index] : nullptr;
 }
 
 class TermInserter {
@@ -114,17 +133,16 @@ class TermInserter {
   /// What is fed to an input. If an experiment drives it, a Gain of one in front of it, which the experiment
   /// then drives in its place.
   std::string signal_of_input(const Value::Member& block, const std::string& port, const std::string& path) {
-    const Value::Member* in = block.value.find("in");
-    const Value::Member* wire = in ? in->value.find(port) : nullptr;
-    if (!wire || wire->value.kind != Kind::text) {
+    const Value* wire = wire_at(block, port);
+    if (!wire || wire->kind != Kind::text) {
       error(fmt::format("nothing is wired to \"{}\"", path));
       return "";
     }
-    if (!inserted_.driven.contains(path)) return wire->value.text;
+    if (!inserted_.driven.contains(path)) return wire->text;
     const std::string tap =
         add_block(free_name(block.name + "_input"),
-                  fmt::format(R"("type": "Gain", "gain": 1, "in": {{"u": "{}"}})", wire->value.text));
-    redirected_[&wire->value] = tap + ".y";
+                  fmt::format(R"("type": "Gain", "gain": 1, "in": {{"u": "{}"}})", wire->text));
+    redirected_[wire] = tap + ".y";
     inserted_.signal_at[path] = joined(level_.prefix, tap + ".y");
     inserted_.moved.push_back({path, {joined(level_.prefix, tap + ".u")}});
     return tap + ".y";
@@ -181,8 +199,9 @@ class TermInserter {
   }
   void before_input() {
     const Value::Member* in = block_->value.find("in");
-    const Value::Member* wire = in ? in->value.find(at_.port) : nullptr;
+    const Value* wire = wire_at(*block_, at_.port);
     TextEdits& edits = level_.document->edits;
+    if (!wire && in && in->value.find(name_of_port(at_.port))) return error("no single wire is there");
     if (!wire) {  // an unwired force
       const std::string member = fmt::format(R"("{}": "{}")", at_.port, share_);
       if (in && !in->value.members.empty())
@@ -194,7 +213,7 @@ class TermInserter {
                       "{" + member + "}");
       return;
     }
-    std::string fed = wire->value.text;
+    std::string fed = wire->text;
     if (const auto known = inserted_.signal_at.find(term_.port); known != inserted_.signal_at.end())
       fed = known->second.substr(level_.prefix.empty() ? 0 : level_.prefix.size() + 1);
     else if (inserted_.driven.contains(term_.port))
@@ -202,7 +221,7 @@ class TermInserter {
     if (failed_) return;
     const std::string sum = add_sum(base_ + "_sum", "++", fed, share_);
     inserted_.sum_at[term_.port] = joined(level_.prefix, sum);
-    redirected_[&wire->value] = sum;
+    redirected_[wire] = sum;
   }
   void after_output(const std::string& source) {
     const std::string sum = add_sum(base_ + "_sum", "++", source, share_);

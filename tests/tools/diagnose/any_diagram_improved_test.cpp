@@ -73,6 +73,19 @@ TEST(AnyDiagramImproved, HasTheTermAtItsSumAndTheParameterThatMoved) {
       w.simulated({.set = {{"with_overflow_at_balance1", "0"}, {"second_outlet", "0.005"}}});
   EXPECT_NEAR(without, before, 1e-6 * before);
 }
+TEST(AnyDiagramImproved, AWireOfASumThatIsDrivenMayHaveAnotherGain) {
+  Plant plant = tanks({}, 5);
+  plant.drive = R"("balance1.terms[0]": {"column": "u", "unit": "m^3/s"})";
+  plant.input = [volts = plant.input](double t) { return 1e-3 * volts(t); };
+  plant.rate = [rate = plant.rate](const Numbers& x, double u, const Numbers& w) {
+    return rate(x, 0.9 * u / 1e-3, w);
+  };
+  const Written w(plant);
+  ASSERT_THAT(names(w.answer), ElementsAre("linear")) << to_text(w.answer);
+  expect_all_units(w.answer.improved);
+  EXPECT_THAT(w.answer.improved_experiments, SizeIs(1)) << "the wire is now that of a Gain in front of it";
+  EXPECT_LT(w.simulated(), 0.3 * w.simulated_before());
+}
 TEST(AnyDiagramImproved, ADistortionOfTheInputStandsBeforeItAndTheExperimentFollows) {
   const Written w(valve({.dead_zone = 0.13}, 1));
   ASSERT_THAT(names(w.answer), ElementsAre("dead_zone")) << to_text(w.answer);

@@ -47,6 +47,14 @@ TEST(InputBetweenRows, AHeldInputThatIsReadAsLinesIsTold) {
   const Diagnosis d = diagnosed(shaken(BetweenRows::hold, BetweenRows::linear));
   EXPECT_THAT(findings(d), Contains(HasSubstr(R"("interpolation": "hold")"))) << to_text(d);
 }
+/// What was found beside a wrong statement may stand for it.
+TEST(InputBetweenRows, NothingIsExplainedBesideAStatementThatTheRecordContradicts) {
+  Plant plant = shaken(BetweenRows::hold, BetweenRows::linear);
+  plant.rate = oscillator({.stiffness = 240}, 41).rate;
+  const Diagnosis d = diagnosed(plant);
+  EXPECT_THAT(findings(d), Contains(HasSubstr(R"(first state "interpolation": "hold")"))) << to_text(d);
+  EXPECT_EQ(d.verdict, Verdict::partly_explained) << to_text(d);
+}
 TEST(InputBetweenRows, ASmoothInputThatIsReadOtherwiseIsTold) {
   for (const BetweenRows says : {BetweenRows::hold, BetweenRows::linear}) {
     const Diagnosis d = diagnosed(shaken_fast(says));

@@ -122,6 +122,22 @@ TEST(InsertTerm, ADrivenInputIsDrivenBeforeTheTermThatReadsIt) {
   EXPECT_EQ(i.terms.moved.size(), 1u) << "the experiment names one port";
   i.expect_sound();
 }
+TEST(InsertTerm, ADrivenWireOfAListIsDrivenBeforeTheTermThatReadsIt) {
+  Inserted i;
+  i.terms.driven = {"net.terms[0]"};
+  Term gain = push("net.terms[0]");
+  gain.name = "gain", gain.reads = {"net.terms[0]"}, gain.input = "u";
+  gain.settings = R"("type": "Gain", "gain": -0.5)";
+  i.add(gain);
+  EXPECT_EQ(i.problems, "");
+  EXPECT_THAT(i.block("net")["in"]["terms"], ElementsAre("gain_sum.sum", "spring.force"));
+  EXPECT_THAT(i.block("gain_sum")["in"]["terms"], ElementsAre("net_input.y", "gain_share.y"));
+  EXPECT_EQ(i.block("net_input")["in"]["u"], "motor.y");
+  ASSERT_EQ(i.terms.moved.size(), 1u);
+  EXPECT_EQ(i.terms.moved[0].from, "net.terms[0]");
+  EXPECT_THAT(i.terms.moved[0].to, ElementsAre("net_input.u"));
+  i.expect_sound();
+}
 TEST(InsertTerm, ADifferenceIsASumBeforeTheTerm) {
   Inserted i;
   Term slip = drag("net.sum", "mass.velocity");

@@ -57,13 +57,20 @@ ModelParameter::Number dependence(double* at, double before, double after) {
 
 }  // namespace
 
-double ModelParameter::Number::at_factor(double factor) const {
-  if (factor == 1) return nominal;
-  return nominal * (is_share ? 1 + power * (factor - 1) : std::pow(factor, power));
-}
-
-void ModelParameter::set(double factor) const {
-  for (const Number& number : numbers) *number.at = number.at_factor(factor);
+void set_parameters(std::span<const ModelParameter> parameters, std::span<const double> factors) {
+  for (const ModelParameter& parameter : parameters)
+    for (const ModelParameter::Number& number : parameter.numbers) *number.at = number.nominal;
+  for (const bool of_shares : {true, false})  // sums are multiplied as a whole
+    for (size_t i = 0; i < parameters.size(); ++i) {
+      if (factors[i] == 1) continue;
+      for (const ModelParameter::Number& number : parameters[i].numbers) {
+        if (number.is_share != of_shares) continue;
+        if (of_shares)
+          *number.at += number.nominal * number.power * (factors[i] - 1);
+        else
+          *number.at *= std::pow(factors[i], number.power);
+      }
+    }
 }
 
 void ModelParameter::refer_to(double other) {

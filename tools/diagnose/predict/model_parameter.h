@@ -1,6 +1,7 @@
 /// The tunable numbers of a diagram, as the user names them.
 #pragma once
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 #include "engine/diagram/diagram.h"
@@ -22,15 +23,17 @@ struct ModelParameter {
     double* at;
     double nominal, power;
     bool is_share = false;
-    double at_factor(double factor) const;
   };
   std::vector<Number> numbers;
 
-  void set(double factor) const;
   /// The factor refers to this value: of a setting that differs between records, what it lacks is the same in
   /// all of them.
   void refer_to(double nominal);
 };
+
+/// Gives all numbers the values that follow from these factors. Several parameters may determine one number,
+/// as "=bulk_modulus/volume" does.
+void set_parameters(std::span<const ModelParameter> parameters, std::span<const double> factors);
 
 /// Of all blocks with an output; parameters of the outermost diagram are followed into the expressions that
 /// read them, by loading the diagram with a slightly different value.

@@ -12,6 +12,8 @@ using ConstMap = Eigen::Map<const Eigen::VectorXd>;
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 /// [of the size of a state] What is known about it before the first row.
 constexpr double initial_deviation = 10;
+/// Where the model is not finite after a correction, it is halved, and left out when so little is left of it.
+constexpr double least_share_of_correction = 0.01;
 
 }  // namespace
 
@@ -130,6 +132,13 @@ void SiteFilter::begin_at(size_t row) {
   const std::vector<double> initial = initial_states(row);
   x_.setZero();
   x_.head(Eigen::Index(model_states_)) = ConstMap(initial.data(), Eigen::Index(model_states_));
+  if (model_.flow(row, initial.data(), next_.data())) {
+    model_.put_modes_back(row, start_modes_.data());
+    return;
+  }
+  // The noise of a reading may be where no state can be, as a level below an empty tank.
+  const std::vector<double> stated = model_.initial_states(row);
+  x_.head(Eigen::Index(model_states_)) = ConstMap(stated.data(), Eigen::Index(model_states_));
 }
 
 double SiteFilter::initial_variance(const SiteNoise& noise, size_t state) const {
@@ -165,6 +174,24 @@ bool SiteFilter::advance(size_t row, const SiteNoise& noise, double* middle) {
   return good;
 }
 
+bool SiteFilter::advance_from_correction(size_t row, const SitePass& pass, double* middle, double& share) {
+  const Eigen::VectorXd corrected = x_;
+  for (share = 1; share > least_share_of_correction; share /= 2) {
+    x_ = corrected - (1 - share) * delta_;
+    if (advance(row, pass.noise, middle)) return true;
+    model_.put_modes_back(row, &pass.modes[row * model_.mode_bytes()]);
+  }
+  x_ = corrected - delta_, share = 0;
+  return advance(row, pass.noise, middle);
+}
+
+void SiteFilter::shorten_correction(size_t row, double share, SitePass& pass) const {
+  const auto n = Eigen::Index(pass.states);
+  Map(&pass.gain[row * pass.outputs * pass.states], Eigen::Index(pass.outputs) * n) *= share;
+  Map(&pass.correction[row * pass.states], n) *= share;
+  Map(&pass.filtered[row * pass.states], n) = x_;
+}
+
 bool SiteFilter::try_flow(size_t row, const SitePass& pass, const double* from, double* to) {
   model_.put_modes_back(row, &pass.modes[row * model_.mode_bytes()]);
   return model_.flow(row, from, to);
@@ -191,36 +218,6 @@ void SiteFilter::choose_substeps(const SitePass& pass) {
     while (size_t(model_.substeps()) < most && differs(row)) model_.set_substeps(2 * model_.substeps());
 }
 
-bool SiteFilter::slopes_of_outputs(size_t row, SitePass& pass) {
-  const size_t n = pass.states;
-  double* const C = &pass.C[row * pass.outputs * n];
-  bool are_all_known = true;
-  for (size_t j = 0; j < pass.outputs; ++j) {
-    std::fill_n(C + j * n, n, 0.0);
-    if (const int state = model_.measured_state(j); state >= 0 && !model_.is_distorted(j))
-      C[j * n + size_t(state)] = 1;
-    else
-      are_all_known = false;
-    for (size_t s = 0; s < pass.noise.slow.size(); ++s)
-      if (pass.noise.slow[s].output == int(j)) C[j * n + model_states_ + s] = 1;
-  }
-  if (are_all_known) return true;
-  moved_ = x_;
-  model_.keep_modes(row, modes_.data());
-  for (size_t i = 0; i < model_states_; ++i) {
-    const double change = difference_step * state_scale_[i];
-    moved_[Eigen::Index(i)] += change;
-    model_.put_modes_back(row, modes_.data());
-    if (!model_.outputs(row, moved_.data(), y_moved_.data())) return false;
-    moved_[Eigen::Index(i)] = x_[Eigen::Index(i)];
-    for (size_t j = 0; j < pass.outputs; ++j)
-      if (model_.measured_state(j) < 0 || model_.is_distorted(j))
-        C[j * n + i] = (y_moved_[j] - y_[j]) / change;
-  }
-  model_.put_modes_back(row, modes_.data());
-  return true;
-}
-
 bool SiteFilter::correct(size_t row, const SiteNoise& noise, SitePass& pass) {
   const Eigen::Index n = Eigen::Index(pass.states);
   if (!model_.outputs(row, x_.data(), y_.data()) || !slopes_of_outputs(row, pass)) return false;
@@ -232,6 +229,7 @@ bool SiteFilter::correct(size_t row, const SiteNoise& noise, SitePass& pass) {
     Map K(&pass.gain[at * pass.states], n);
     const double innovation = record_.outputs[j].value[row] - y_[j];
     pass.innovation[at] = innovation;
+    if (!std::isfinite(y_[j])) return false;
     if (!std::isfinite(innovation)) {
       pass.error[at] = missing, pass.variance[at] = 1;
       K.setZero();
@@ -251,72 +249,6 @@ bool SiteFilter::correct(size_t row, const SiteNoise& noise, SitePass& pass) {
   Map(&pass.correction[row * pass.states], n) = delta_;
   Map(&pass.filtered[row * pass.states], n) = x_;
   return true;
-}
-
-bool SiteFilter::respond_to(int site, bool ramp, size_t row, SitePass& pass, std::span<double> to) {
-  if (model_.output_of_sensor(site) >= 0) {
-    std::ranges::fill(to, 0.0);
-    return true;
-  }
-  SiteSignal& signal = model_.at_site(site);
-  const double size = site_scale_[size_t(site)], held = signal.held;
-  if (ramp)
-    signal.ramp = size, signal.begin = record_.time[row], signal.length = record_.step(row);
-  else
-    signal.held += size;
-  const bool good = try_flow(row, pass, x_.data(), moved_next_.data());
-  signal.held = held, signal.ramp = 0;
-  for (size_t i = 0; i < to.size(); ++i)  // slow noise stays as it is
-    to[i] = (moved_next_[Eigen::Index(i)] - next_[Eigen::Index(i)]) / size;
-  return good;
-}
-
-bool SiteFilter::linearize(size_t row, const SiteNoise& noise, SitePass& pass) {
-  hold_disturbances(noise);
-  const bool good = differences(row, noise, pass);
-  release_disturbances(noise);
-  for (size_t j = 0; good && j < noise.slow.size(); ++j) {
-    const size_t n = pass.states, state = model_states_ + j;
-    double* const column = &pass.A[(row * n + state) * n];
-    if (const int site = noise.slow[j].site; site >= 0)
-      std::copy_n(&pass.G[(row * pass.sites + size_t(site)) * n], model_states_, column);
-    column[state] = noise.slow[j].kept(record_.step(row));
-  }
-  return good;
-}
-
-bool SiteFilter::differences(size_t row, const SiteNoise& noise, SitePass& pass) {
-  const size_t n = pass.states;
-  moved_ = x_, moved_next_ = next_;
-  model_.keep_modes(row, modes_.data());  // where the next row goes on
-  Map(&pass.A[row * n * n], Eigen::Index(n * n)).setZero();
-  for (size_t i = 0; i < model_states_; ++i) {
-    const double change = difference_step * state_scale_[i];
-    moved_[Eigen::Index(i)] += change;
-    if (!try_flow(row, pass, moved_.data(), moved_next_.data())) return false;
-    moved_[Eigen::Index(i)] = x_[Eigen::Index(i)];
-    Map(&pass.A[(row * n + i) * n], Eigen::Index(n)) = (moved_next_ - next_) / change;
-  }
-  const auto G = [&](int site) { return std::span(&pass.G[(row * pass.sites + size_t(site)) * n], n); };
-  if (!pass.has_columns) {
-    for (int site : noise.sites)
-      if (!respond_to(site, false, row, pass, G(site))) return false;
-    model_.put_modes_back(row, modes_.data());
-    return true;
-  }
-  for (int site = 0; site < int(pass.sites); ++site) {
-    const std::span ramp(&pass.ramp[(row * pass.sites + size_t(site)) * n], n);
-    if (!respond_to(site, false, row, pass, G(site)) || !respond_to(site, true, row, pass, ramp))
-      return false;
-  }
-  const double begin = record_.time[row], step = record_.step(row);
-  const auto numbers = [&](size_t k) { return &pass.path[k][row * pass.numbers]; };
-  model_.put_modes_back(row, modes_at(pass, row));
-  const bool good = model_.look(row, begin, x_.data(), numbers(0)) &&
-                    model_.look(row, begin + step / 2, middle_.data(), numbers(1)) &&
-                    model_.look(row, begin + step, next_.data(), numbers(2));
-  model_.put_modes_back(row, modes_.data());
-  return good;
 }
 
 void SiteFilter::predict_covariance(const SitePass& pass, size_t row, const SiteNoise& noise) {
@@ -348,9 +280,13 @@ bool SiteFilter::run(size_t rows, const SiteNoise& noise, bool with_columns, Sit
       for (size_t i = 0; i < pass.states; ++i)
         P_(Eigen::Index(i), Eigen::Index(i)) = initial_variance(noise, i);
     }
+    end_ = {row, x_};  // until the row is left
     if (!correct(row, noise, pass)) return false;
     model_.keep_modes(row, modes_at(pass, row));
-    if (!advance(row, noise, with_columns ? middle_.data() : nullptr)) return false;
+    end_.states = x_;
+    double share = 1;
+    if (!advance_from_correction(row, pass, with_columns ? middle_.data() : nullptr, share)) return false;
+    if (share < 1) shorten_correction(row, share, pass);
     if (!linearize(row, noise, pass)) return false;
     predict_covariance(pass, row, noise);
     x_ = next_;
@@ -377,7 +313,8 @@ bool SiteFilter::run_frozen(const SitePass& gains, std::span<double> error) {
       delta_ += error[at] * ConstMap(&gains.gain[at * n], Eigen::Index(n));
     }
     x_ += delta_;
-    if (!advance(row, gains.noise, nullptr)) return false;
+    double share = 1;
+    if (!advance_from_correction(row, gains, nullptr, share)) return false;
     x_ = next_;
   }
   return true;

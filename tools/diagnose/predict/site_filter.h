@@ -98,6 +98,12 @@ class SiteFilter {
   /// of each sample.
   void respond(const SitePass& pass, int site, std::span<const double> start, std::span<const double> middle,
                std::span<const double> end, std::span<double> column) const;
+  /// The row at which the last pass has ended, and the states from which it was stepped last.
+  struct End {
+    size_t row = 0;
+    Eigen::VectorXd states;
+  };
+  const End& end() const { return end_; }
   /// As many steps of the integration in a sample as make no difference, at rows along the pass.
   void choose_substeps(const SitePass& pass);
 
@@ -115,6 +121,10 @@ class SiteFilter {
   void release_disturbances(const SiteNoise& noise);
   /// next_ from x_.
   bool advance(size_t row, const SiteNoise& noise, double* middle);
+  /// The same after the correction delta_, or the share of it after which the model is finite: the noise of a
+  /// reading may lead where no state can be.
+  bool advance_from_correction(size_t row, const SitePass& pass, double* middle, double& share);
+  void shorten_correction(size_t row, double share, SitePass& pass) const;
   bool correct(size_t row, const SiteNoise& noise, SitePass& pass);
   bool slopes_of_outputs(size_t row, SitePass& pass);
   /// A, G, ramps and the path at the row, from x_ and next_.
@@ -141,6 +151,7 @@ class SiteFilter {
   Eigen::MatrixXd P_, product_;
   Eigen::VectorXd x_, next_, moved_, moved_next_, middle_, gain_, delta_, difference_;
   std::vector<double> y_, y_moved_;
+  End end_;
   std::vector<char> modes_, start_modes_;  // after a flow; at the beginning of a record
 };
 

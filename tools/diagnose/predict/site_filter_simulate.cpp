@@ -95,9 +95,13 @@ bool SiteFilter::simulate_freely(size_t from, size_t to, std::span<double> error
     Eigen::MatrixXd J(rest.size(), best.size());
     for (Eigen::Index i = 0; i < best.size(); ++i) {  // for a change by the size of the state
       Eigen::VectorXd moved = best;
-      moved[i] += difference_step * scale[i];
-      if (!simulate_from(moved, from, to, trial)) return true;
-      J.col(i) = (weighted(trial, weights) - rest) / difference_step;
+      double change = difference_step;
+      moved[i] += change * scale[i];
+      if (!simulate_from(moved, from, to, trial)) {  // an empty tank is left on one side only
+        change = -change, moved[i] = best[i] + change * scale[i];
+        if (!simulate_from(moved, from, to, trial)) return true;
+      }
+      J.col(i) = (weighted(trial, weights) - rest) / change;
     }
     Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
     solver.setThreshold(weakest_direction);

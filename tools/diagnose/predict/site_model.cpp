@@ -39,8 +39,7 @@ std::string SiteModel::state_name(int state) const {
 }
 
 void SiteModel::use(std::span<const double> factors, std::span<const SiteTerm> terms) {
-  for (const OwnRun& own : runs_)
-    for (size_t i = 0; i < own.parameters.size(); ++i) own.parameters[i].set(factors[i]);
+  for (const OwnRun& own : runs_) set_parameters(own.parameters, factors);
   for (SiteSignal& signal : signals_)
     signal.terms.clear(), signal.held = signal.ramp = 0, signal.remembering = -1;
   if (std::exchange(is_late_, false)) draw_all_lines();

@@ -1,13 +1,15 @@
 #include "tools/diagnose/search/site_search.h"
-#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/beyond_start.h"
+#include "tools/diagnose/search/judged_fits.h"
 #include "tools/diagnose/search/late_input.h"
 #include "tools/diagnose/search/moved_parameters.h"
 #include "tools/diagnose/search/one_parameter.h"
+#include "tools/diagnose/search/same_law.h"
+#include "tools/diagnose/search/same_response.h"
 #include "tools/diagnose/search/simpler_friction.h"
 #include "tools/diagnose/search/site_disturbance.h"
 #include "tools/diagnose/search/site_screening.h"
@@ -18,23 +20,16 @@
 namespace loopwright::diagnosis {
 namespace {
 
-constexpr size_t fitted_keys = 5, fitted_pairs = 2;  // candidates that are confirmed by real fits
 constexpr size_t most_terms = 5;
-/// Gauss-Newton steps of a candidate: after the first ones it shows which are hopeless.
-constexpr int first_steps = 2, further_steps = 3;
-/// In -2 ln L: what a term must gain, also per reading.
-constexpr double least_gain_of_term = 25, least_gain_per_reading = 0.002;
 /// In the criterion: what an added term and an exchange must gain, and within what a rival is declared.
 constexpr double least_improvement = 10, least_exchange = 3, rival_within = 10;
-/// [of the gain needed, and of the best candidate's] A smaller linearized gain is not worth a real fit.
-constexpr double promising = 0.4, promising_beside_best = 0.2;
 using criteria::least_gain_of_unknown, criteria::least_gain_of_unknown_per_reading;
 
-class SiteSearch {
+class SiteSearch : JudgedFits {
  public:
   SiteSearch(SiteFitter& fitter, const std::function<void(const char*, double)>& progress, ErrorsOf errors,
              const std::vector<SlowNoise>& disturbances)
-      : fitter_(fitter), progress_(progress), errors_(errors), disturbances_(disturbances) {}
+      : JudgedFits(fitter), progress_(progress), errors_(errors), disturbances_(disturbances) {}
 
   std::optional<SiteSearchResult> run() {
     SiteHypothesis& nominal = result_.nominal;
@@ -113,7 +108,11 @@ class SiteSearch {
       result_.rivals.clear(), result_.parameter_rivals.clear();
     }
     if (remove_idle(at)) decide_parameters(at);
+    if (leave_out_detail(at)) decide_parameters(at);
+    compare_levels(at);
+    compare_with_parameters_of_same_response(at);
     compare_with_stated_parameters(at);
+    declare_offsets_of_sensors(at);
     compare_with_one_parameter(at);
     if (errors_ == ErrorsOf::predictions) at = without_idle_disturbances(fitter_, std::move(at));
     result_.found = std::move(at);
@@ -127,80 +126,6 @@ class SiteSearch {
     return leaves_something(found);
   }
   bool leaves_something(const SiteHypothesis& h) { return !leaves_white_errors(fitter_, h); }
-  /// With the cost of parameters that moved.
-  double whole_criterion(const SiteHypothesis& h) {
-    return criterion(h) + cost_of_parameter * double(h.free_parameters());
-  }
-  SiteModel& model() { return fitter_.model(); }
-  bool is_spent(double share) { return model().work().is_spent(share); }
-  double gain_needed() const { return std::max(least_gain_of_term, least_gain_per_reading * readings_); }
-  void tell(const std::string& what, const SiteHypothesis& at) {
-    std::string noise;
-    for (double s : at.noise.process) noise += fmt::format(" {:.3g}", s);
-    noise += " |";
-    for (double r : at.noise.measurement) noise += fmt::format(" {:.3g}", r);
-    for (const SlowNoise& slow : at.noise.slow)
-      noise += fmt::format(" | slow {:.3g} {:.3g} s", slow.size, slow.time);
-    result_.trail.push_back(fmt::format("{}: -2 ln L {:.1f}, criterion {:.1f}, noise{}, after {}", what,
-                                        at.objective, criterion(at), noise,
-                                        told_operations(model().work().done())));
-  }
-
-  /// -2 ln L + p ln n + twice the cost of the prior.
-  double criterion(const SiteHypothesis& h) {
-    double sum = h.objective + double(size_of(h)) * std::log(readings_);
-    for (const SiteTerm& term : h.terms) sum += 2 * cost_of(model(), term) + 2 * std::log(double(keys_));
-    return sum;
-  }
-
-  /// Real fits of the best candidates; the best of them with its own noise.
-  std::vector<SiteHypothesis> fits(const SiteHypothesis& at, std::span<const SiteCandidate> candidates) {
-    std::vector<SiteHypothesis> list;
-    double most = 0;
-    for (const SiteCandidate& candidate : candidates) most = std::max(most, candidate.gain);
-    for (const SiteCandidate& candidate : candidates) {
-      if (candidate.gain < std::max(promising * gain_needed(), promising_beside_best * most)) continue;
-      SiteHypothesis trial = at;
-      if (candidate.constant) trial.terms.push_back(*candidate.constant);
-      trial.terms.push_back(candidate.term);
-      if (candidate.term.shape->of == TermShape::Of::own) trial.terms.back().coefficient[0] = 1;
-      fitter_.refine(trial, first_steps);
-      if (std::isfinite(trial.objective)) list.push_back(std::move(trial));
-    }
-    keep_best(list, at, criteria::behind_after_first_steps);
-    for (SiteHypothesis& h : list) fitter_.refine(h, further_steps);
-    keep_best(list, at, criteria::behind_after_all_steps);
-    for (SiteHypothesis& h : list) {
-      fitter_.fit_noise(h);
-      fitter_.refine(h, 3);
-    }
-    std::ranges::sort(list, {}, [&](const SiteHypothesis& h) { return criterion(h); });
-    return list;
-  }
-  /// The best candidates after parameters and terms, at first also those about the nominal parameters: a
-  /// strong term bends the parameters that are fitted without it.
-  std::vector<SiteCandidate> candidates(const SiteHypothesis& at) {
-    std::vector<SiteCandidate> ranked = rank_terms(fitter_, at, fitter_.shapes(), true), pairs;
-    std::ranges::copy_if(ranked, std::back_inserter(pairs), [](const auto& c) { return bool(c.constant); });
-    std::erase_if(ranked, [](const auto& c) { return bool(c.constant); });
-    keys_ = std::max<size_t>(keys_, ranked.size());
-    leave_out_twins(ranked), leave_out_twins(pairs);
-    pairs.resize(std::min(fitted_pairs, pairs.size()));
-    std::vector<SiteCandidate> list(ranked.begin(),
-                                    ranked.begin() + std::ptrdiff_t(std::min(fitted_keys, ranked.size())));
-    for (const SiteCandidate& c : list)
-      result_.trail.push_back(
-          fmt::format("  ranked {}: {:.1f}, cost {:.1f}", describe(model(), c.term), c.gain, c.cost));
-    for (const SiteCandidate& c : ranked)  // the best distortion is judged with the others
-      if (c.term.shape->of == TermShape::Of::own) {
-        if (std::ranges::none_of(list, [&](const auto& known) { return known.is_same_key(c.term); }))
-          list.push_back(c);
-        break;
-      }
-    std::ranges::copy(pairs, std::back_inserter(list));
-    return list;
-  }
-
   void add_terms(SiteHypothesis& at) {
     while (at.terms.size() < most_terms && !is_spent(criteria::work_of_search)) {
       progress_("searching", begin_ + 0.05 * double(at.terms.size()));
@@ -230,7 +155,7 @@ class SiteSearch {
   /// Names that pile up at one site for one signal may stand for a function without a name.
   void merge_stacked_names(SiteHypothesis& at, size_t fewest) {
     for (const StackedNames& names : stacked_names(fitter_, at, fewest)) {
-      if (fewest > 1 && are_usual_together(at, names)) continue;
+      if (fewest > 1 && are_usual_together(at, names) && !cancel(fitter_, at, names)) continue;
       const auto function = with_function(fitter_, at, names, [&](const auto& h) { return criterion(h); });
       if (!function) continue;
       tell("in the place of " + std::to_string(names.terms.size()) +
@@ -248,9 +173,8 @@ class SiteSearch {
     const double needed = std::max(least_gain_of_unknown, least_gain_of_unknown_per_reading * readings_);
     if (criterion(function) < criterion(at) - needed) return true;
     const auto& range = function.terms.back().nonlinear;
-    if (names.terms.size() < 2 || are_usual_together(at, names) ||
-        are_periods(at, names, range[1] - range[0]))
-      return false;
+    const bool are_usual = are_usual_together(at, names) && !cancel(fitter_, at, names);
+    if (names.terms.size() < 2 || are_usual || are_periods(at, names, range[1] - range[0])) return false;
     SiteHypothesis nothing = without(at, names);
     fitter_.refine(nothing, 6);
     fitter_.fit_noise(nothing);
@@ -259,7 +183,9 @@ class SiteSearch {
   }
 
   /// In the criterion: a worse term is no rival.
-  double most_of_rival() const { return std::max(rival_within, least_gain_per_reading * readings_); }
+  double most_of_rival() const {
+    return std::max(rival_within, criteria::least_gain_of_term_per_reading * readings_);
+  }
 
   /// Each term is replaced by the best other one in its place.
   void exchange(SiteHypothesis& at) {
@@ -293,8 +219,8 @@ class SiteSearch {
     ranked.resize(std::min<size_t>(2, ranked.size()));
     std::vector<SiteHypothesis> tried = fits(at, ranked);
     if (tried.empty()) return;
-    const double needed =
-        std::max(least_gain_of_term + least_gain_of_unknown, least_gain_of_unknown_per_reading * readings_);
+    const double needed = std::max(criteria::least_gain_of_term + least_gain_of_unknown,
+                                   least_gain_of_unknown_per_reading * readings_);
     tell("best unknown: " + describe(model(), tried.front().terms.back()), tried.front());
     if (at.objective - tried.front().objective < needed ||
         criterion(at) - criterion(tried.front()) < least_improvement ||
@@ -323,6 +249,19 @@ class SiteSearch {
     return is_any_removed;
   }
 
+  /// Beside parameters that were bent, a function may have seemed more than a detail of its law.
+  bool leave_out_detail(SiteHypothesis& at) {
+    if (at.terms.empty() || !is_unknown_function(*at.terms.back().shape) ||
+        !is_detail_of_named_law(fitter_, at))
+      return false;
+    at.terms.pop_back();
+    std::erase_if(result_.rivals, [&](const SiteRival& r) { return r.of == at.terms.size(); });
+    fitter_.refine(at, further_steps + 1);
+    fitter_.fit_noise(at);
+    tell("without the function, a detail of its law", at);
+    return true;
+  }
+
   void decide_parameters(SiteHypothesis& at) {
     std::vector<MovedParameters> choices = moved_parameters(fitter_, at, readings_);
     if (choices.empty()) return;
@@ -332,6 +271,67 @@ class SiteSearch {
     for (size_t i = 1; i < choices.size(); ++i)
       if (const double worse = choices[i].criterion - choices.front().criterion; worse < rival_within)
         result_.parameter_rivals.push_back({choices[i].moved(), {}, worse});
+  }
+
+  /// Takes an answer in the place of one that it is no part of.
+  void take(SiteHypothesis& at, const SiteHypothesis& other, const std::string& what) {
+    at = other;
+    tell(what, at);
+    result_.rivals.clear(), result_.parameter_rivals.clear(), result_.steps.push_back(at);
+  }
+
+  /// A level at the edge of the record is a name for a constant and a proportion.
+  void compare_levels(SiteHypothesis& at) {
+    for (size_t t = 0; t < at.terms.size() && !is_spent(criteria::work_with_rivals); ++t) {
+      const std::optional<SiteHypothesis> other = with_constant_and_proportion(fitter_, at, t);
+      if (!other) continue;
+      tell("a constant and a proportion in the place of " + describe(model(), at.terms[t]), *other);
+      const double worse = criterion(*other) - criterion(at);
+      const bool is_as_good = is_at_edge(at.terms[t]) && other->objective - at.objective < rival_within;
+      if (is_as_good || worse < -least_exchange) {
+        take(at, *other, "the level is none");
+        if (at.free_parameters() > 0) decide_parameters(at);
+        return compare_levels(at);
+      }
+      if (worse < most_of_rival())
+        result_.parameter_rivals.push_back(
+            {{}, {*(other->terms.end() - 2), other->terms.back()}, worse, t, false, true});
+    }
+  }
+
+  /// A parameter that does what a term does is the simpler explanation, and so is one that does what several
+  /// parameters do together. One that does what a single other one does is declared.
+  void compare_with_parameters_of_same_response(SiteHypothesis& at) {
+    if (is_spent(criteria::work_with_rivals)) return;
+    for (const SameResponse& other : parameters_of_same_response(fitter_, at, result_.parameters.is_free)) {
+      const double worse = whole_criterion(other.hypothesis) - whole_criterion(at);
+      tell("in the place of " + (other.of ? describe(model(), at.terms[*other.of]) : "what moved") + ": " +
+               model().parameters()[size_t(other.parameter)].name,
+           other.hypothesis);
+      const bool is_simpler = other.of || at.free_parameters() > 1;
+      if (worse < (is_simpler ? least_exchange : -least_exchange)) {
+        take(at, other.hypothesis, "it does as well");
+        return compare_with_parameters_of_same_response(at);
+      }
+      if (worse < rival_within)
+        result_.parameter_rivals.push_back(
+            {{other.parameter}, {}, worse, other.of, false, other.of.has_value()});
+    }
+  }
+
+  /// Sensors are not looked at unless the experiment says so, but what one that is off does is no constant of
+  /// the machine.
+  void declare_offsets_of_sensors(const SiteHypothesis& at) {
+    if (is_spent(criteria::work_with_rivals)) return;
+    for (const OffsetOfSensor& other : offsets_of_sensors(fitter_, at)) {
+      const double worse = criterion(other.hypothesis) - whole_criterion(at);
+      tell("in the place of " + describe(model(), at.terms[other.of]) + ": " +
+               describe(model(), other.hypothesis.terms.back()),
+           other.hypothesis);
+      if (worse < rival_within || (size_of(other.hypothesis) <= size_of(at) &&
+                                   other.hypothesis.objective - at.objective < rival_within))
+        result_.parameter_rivals.push_back({{}, {other.hypothesis.terms.back()}, worse, other.of});
+    }
   }
 
   /// What explains nearly as much with all parameters as stated. Where one of these explains more, terms were
@@ -346,15 +346,14 @@ class SiteSearch {
       tell("in the place of parameters: " + describe(model(), other.terms().back()), other.hypothesis);
       const size_t numbers = size_of(other.hypothesis);
       const double most_lost = numbers < size_of(at) ? criteria::most_lost_by_fewer_changes : rival_within;
+      const bool is_of_several = other.of || at.free_parameters() > 1;
       if (worse < -least_exchange && (!better || criterion(other.hypothesis) < criterion(*better)))
         better = other.hypothesis;
-      if (worse < rival_within || (other.of && numbers <= size_of(at) && lost < most_lost))
+      if (worse < rival_within || (is_of_several && numbers <= size_of(at) && lost < most_lost))
         result_.parameter_rivals.push_back({{}, other.terms(), worse, other.of});
     }
     if (!better) return;
-    at = *better;
-    tell("it is better than parameters that moved", at);
-    result_.rivals.clear(), result_.parameter_rivals.clear(), result_.steps.push_back(at);
+    take(at, *better, "it is better than parameters that moved");
     exchange(at);
     decide_parameters(at = with_free_parameters(fitter_, at));
   }
@@ -379,12 +378,9 @@ class SiteSearch {
     }
   }
 
-  SiteFitter& fitter_;
   const std::function<void(const char*, double)>& progress_;
-  SiteSearchResult result_;
   std::vector<SiteHypothesis> single_;  ///< see with_one_parameter()
-  double readings_ = 0, begin_ = 0.2;
-  size_t keys_ = 10;
+  double begin_ = 0.2;
   const ErrorsOf errors_;
   const std::vector<SlowNoise> disturbances_;
 };

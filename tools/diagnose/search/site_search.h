@@ -24,6 +24,7 @@ struct ParameterRival {
   double worse = 0;
   std::optional<size_t> of = std::nullopt;  ///< and of this found term
   bool of_all_terms = false;                ///< and of all of them
+  bool keeps_parameters = false;            ///< those that moved stay so
 };
 
 /// A site at which noise of this share of its size was found.

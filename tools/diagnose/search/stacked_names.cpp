@@ -70,6 +70,25 @@ bool are_usual_together(const SiteHypothesis& at, const StackedNames& names) {
          });
 }
 
+bool cancel(SiteFitter& fitter, SiteHypothesis at, const StackedNames& names) {
+  SitePass pass;
+  if (names.terms.size() < 2 || !fitter.pass(at, true, pass)) return false;
+  const std::vector<SiteVariable>& variables = fitter.model().variables();
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(Eigen::Index(pass.rows)), value = sum;
+  double largest = 0;
+  for (const size_t t : names.terms) {
+    const SiteTerm& term = at.terms[t];
+    if (term.shape->remembered) continue;
+    for (size_t k = 0; k < pass.rows; ++k)
+      value[Eigen::Index(k)] =
+          term.value(variables[size_t(term.variable)].at(&pass.path[0][k * pass.numbers]));
+    value.array() -= value.mean();  // heat that is in proportion to kelvins cancels a constant
+    largest = std::max(largest, value.norm());
+    sum += value;
+  }
+  return largest > criteria::most_cancelling * sum.norm();
+}
+
 bool are_periods(const SiteHypothesis& at, const StackedNames& names, double range) {
   return std::ranges::all_of(names.terms, [&](size_t t) {
     const SiteTerm& term = at.terms[t];

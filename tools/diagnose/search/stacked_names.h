@@ -22,6 +22,8 @@ SiteHypothesis without(const SiteHypothesis& at, const StackedNames& names);
 /// Names that occur together in machines. Other sums of laws resemble any function, as a series of sines
 /// does. Laws of friction or of cooling, at most one of each kind.
 bool are_usual_together(const SiteHypothesis& at, const StackedNames& names);
+/// Whether one of them is much larger than what they make together: each then says nothing by itself.
+bool cancel(SiteFitter& fitter, SiteHypothesis at, const StackedNames& names);
 /// Periods that each repeat often within the range of the signal.
 bool are_periods(const SiteHypothesis& at, const StackedNames& names, double range);
 

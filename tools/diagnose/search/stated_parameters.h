@@ -24,7 +24,8 @@ using FitsOfCandidates =
 
 /// A law that is a little wrong bends parameters, and a bent parameter makes room for a wrong law. Each term
 /// is therefore replaced together with all parameters that moved, by one or by a constant and one; where
-/// there is no term, one stands for the parameters alone. `nominal` has the noise of the diagram as it is.
+/// there is no term, or several parameters moved, one stands for the parameters alone. `nominal` has the
+/// noise of the diagram as it is.
 std::vector<StatedParameters> with_stated_parameters(SiteFitter& fitter, const SiteHypothesis& found,
                                                      const SiteHypothesis& nominal,
                                                      const FitsOfCandidates& fits);

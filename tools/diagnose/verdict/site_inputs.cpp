@@ -27,8 +27,10 @@ double objective_with(SiteFitter& fitter, SiteHypothesis found, size_t input, Be
 
 }  // namespace
 
-void question_inputs(SiteFitter& fitter, const SiteHypothesis& found, std::vector<RecordFinding>& findings) {
+bool question_inputs(SiteFitter& fitter, const SiteHypothesis& found, std::vector<RecordFinding>& findings) {
   SiteModel& model = fitter.model();
+  const bool is_any_found = !found.terms.empty() || found.free_parameters() > 0;
+  bool is_any_questioned = false;
   const double needed =
       std::max(criteria::least_gain_of_other_input,
                criteria::least_gain_of_other_input_per_reading * double(model.record().held_out_from));
@@ -44,16 +46,19 @@ void question_inputs(SiteFitter& fitter, const SiteHypothesis& found, std::vecto
     }
     model.suppose_between_rows(i, stated);
     if (!(gain > needed)) continue;
+    is_any_questioned = true;
     findings.push_back(
         {fmt::format(
              "with {} {} between its rows it is predicted better than with it {} (-2 ln L falls by {:.0f})",
              input.port, wording_of(best), wording_of(stated), gain),
          fmt::format(
-             "what was found may stand for the difference; state \"interpolation\": \"{}\" for it in the "
-             "experiment, unless the machine is known to do otherwise",
-             names_of(best)[size_t(best)]),
-         false, false});
+             "{}state \"interpolation\": \"{}\" for it in the experiment, unless the machine is known to "
+             "do otherwise{}",
+             is_any_found ? "what was found may stand for the difference; first " : "",
+             names_of(best)[size_t(best)], is_any_found ? ", and diagnose again" : ""),
+         is_any_found, false});
   }
+  return is_any_questioned;
 }
 
 }  // namespace loopwright::diagnosis

@@ -6,6 +6,7 @@
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/site_disturbance.h"
 #include "tools/diagnose/search/site_size.h"
+#include "tools/diagnose/search/stacked_names.h"
 #include "tools/diagnose/verdict/site_opinion_text.h"
 #include "tools/diagnose/wording.h"
 #include "tools/diagnose/verdict/alike_sites.h"
@@ -65,9 +66,9 @@ class Telling {
     for (size_t t = 0; t < optional.size(); ++t) optional[t] = result_.effects[t].is_optional;
     result_.additions = site_additions(model_, found_, optional);
     result_.all_additions = site_additions(model_, found_, none);
+    is_input_questioned_ = question_inputs(fitted_, found_, result_.findings);
     judge();
     tell_sensors_not_looked_at();
-    question_inputs(fitted_, found_, result_.findings);
     add_site_plots(fitted_, search_.nominal, found_, result_);
   }
 
@@ -145,13 +146,17 @@ class Telling {
     std::vector<std::string> moved;
     for (const MovedParameter& p : result_.moved_parameters) moved.push_back(p.name);
     for (const ParameterRival& rival : search_.parameter_rivals) {
-      OtherExplanation other{moved, {}};
+      OtherExplanation other{rival.keeps_parameters ? std::vector<std::string>{} : moved, {}};
       for (int i : rival.moved) other.effects.push_back(model_.parameters()[size_t(i)].name);
       for (const SiteTerm& term : rival.terms) other.effects.push_back(describe(model_, term));
       if (rival.of) other.in_place_of.emplace_back(search_.found.terms[*rival.of].shape->name);
       if (rival.of_all_terms)
         for (const SiteTerm& term : found_.terms) other.in_place_of.emplace_back(term.shape->name);
-      result_.other_explanations.push_back(std::move(other));
+      const auto is_told = [&](const OtherExplanation& known) {  // of the two that look for single parameters
+        return known.in_place_of == other.in_place_of && known.effects == other.effects;
+      };
+      if (std::ranges::none_of(result_.other_explanations, is_told))
+        result_.other_explanations.push_back(std::move(other));
     }
     // Beside terms it may stand for what these do not do exactly, or for an effect that is not named.
     for (const MovedParameter& p : result_.moved_parameters)
@@ -174,8 +179,8 @@ class Telling {
   void tell_steps() {
     const auto add = [&](const SiteHypothesis& h, std::vector<std::string> added) {
       const SiteErrors errors = errors_of(whole_, h);
-      DiagnosisStep step;
-      step.added = std::move(added);
+      constexpr double none = std::numeric_limits<double>::quiet_NaN();
+      DiagnosisStep step{std::move(added), none, none, none};
       if (!errors.diverges)
         step.force_rmse = errors.predicted[0], step.held_out_force_rmse = errors.held_out[0],
         step.simulation_rmse = errors.simulated[0];
@@ -195,7 +200,10 @@ class Telling {
     result_.holds_out = model_.record().held_out_from < model_.record().rows();
     const bool held = result_.holds_out;
     if (!nominal_.diverges) result_.error_before = held ? nominal_.held_out[0] : nominal_.predicted[0];
-    if (errors_.diverges) return;
+    if (errors_.diverges) {
+      result_.error_after = result_.steps.back().force_rmse;
+      return;
+    }
     result_.error_after = held ? errors_.held_out[0] : errors_.predicted[0];
     result_.noise_floor = errors_.noise[0];
     result_.mean_square = errors_.mean_square, result_.held_out_mean_square = errors_.held_out_mean_square;
@@ -263,6 +271,21 @@ class Telling {
     return is_any;
   }
 
+  /// Laws of one signal that oppose each other are a series for a function that none of them is.
+  bool has_cancelling_names() {
+    bool is_any = false;
+    for (const StackedNames& names : stacked_names(fitted_, found_, 2)) {
+      if (!cancel(fitted_, found_, names)) continue;
+      is_any = true;
+      std::vector<std::string> list;
+      for (const size_t t : names.terms) list.push_back(describe(model_, found_.terms[t]));
+      result_.findings.push_back(
+          {fmt::format("{} cancel but for a small rest", loopwright::joined(list, " and ")),
+           "together they stand for one function that nothing here names", true, false});
+    }
+    return is_any;
+  }
+
   /// What only the fitted rows ask for follows something else in them.
   bool has_contradicted_terms() {
     if (found_.noise.is_of_simulation) return false;
@@ -311,7 +334,8 @@ class Telling {
     const bool worse = names && simulates_worse();
     const bool is_open =
         (names && search_.second_opinion && search_.second_opinion->is_open() && missed_by_far()) ||
-        has_untold_terms() || are_many_changes_in_vain() || has_contradicted_terms();
+        has_untold_terms() || are_many_changes_in_vain() || has_contradicted_terms() ||
+        has_cancelling_names() || (names && is_input_questioned_);
     const bool is_nothing = !names && (is_left_out_ || is_exact());
     const bool misses_held_out =
         result_.holds_out && !errors_.diverges &&
@@ -353,7 +377,7 @@ class Telling {
   const SiteSearchResult& search_;
   SiteHypothesis found_;
   std::vector<size_t> place_;  ///< of each of its terms among those of the search
-  bool is_left_out_ = false;
+  bool is_left_out_ = false, is_input_questioned_ = false;
   Diagnosis& result_;
   SiteFitter fitted_, whole_;
   Eigen::MatrixXd covariance_;

@@ -1,0 +1,133 @@
+// One law under several names: which of them is the answer, and which is declared.
+#include <gmock/gmock.h>
+#include <cmath>
+#include "tests/tools/diagnose/diagnosed_plant.h"
+#include "tools/diagnose/search/same_response.h"
+#include "tools/diagnose/search/stacked_names.h"
+#include "tools/diagnose/wording.h"
+
+namespace loopwright::same_law_test {
+namespace {
+
+using testing::Contains, testing::ElementsAre, testing::HasSubstr, testing::IsEmpty, testing::Not;
+using namespace diagnosis;
+
+const TermShape& shape(std::string_view name) {
+  return *std::ranges::find(named_shapes(), name, &TermShape::name);
+}
+std::vector<std::string> others(const Diagnosis& d) {
+  std::vector<std::string> list;
+  for (const OtherExplanation& other : d.other_explanations)
+    list.push_back(
+        fmt::format("{} for {}", fmt::join(other.effects, " + "), fmt::join(other.in_place_of, " + ")));
+  return list;
+}
+void put(Plant& plant, const std::string& before, const std::string& after) {
+  const size_t at = plant.diagram.find(before);
+  ASSERT_NE(at, std::string::npos);
+  plant.diagram.replace(at, before.size(), after);
+}
+/// The spring is stated by a product of two parameters.
+Plant shared_stiffness(double true_one) {
+  Plant plant = oscillator({.stiffness = true_one}, 71);
+  put(plant, R"("parameters": {)", R"("parameters": {"share": 1, )");
+  put(plant, R"("stiffness": "=stiffness")", R"("stiffness": "=stiffness*share")");
+  return plant;
+}
+
+class FittedOscillator : public testing::Test {
+ protected:
+  FittedOscillator() {
+    at.factors.assign(model.parameters().size(), 1.0), at.is_free.assign(at.factors.size(), false);
+    at.noise = filter.guess_noise();
+    SitePass pass;
+    EXPECT_TRUE(fitter.pass(at, true, pass));
+    filter.learn_scales(pass);
+    at.noise = filter.guess_noise();
+    fitter.fit_noise(at);
+  }
+  int parameter(const std::string& name) const {
+    return int(std::ranges::find(model.parameters(), name, &ModelParameter::name) -
+               model.parameters().begin());
+  }
+  SiteTerm term(std::string_view name, const std::string& of, double coefficient) const {
+    SiteTerm t;
+    t.shape = &shape(name), t.coefficient[0] = coefficient, t.unit[0] = std::abs(coefficient);
+    t.variable =
+        int(std::ranges::find(model.variables(), of, &SiteVariable::name) - model.variables().begin());
+    t.site = int(std::ranges::find(model.sites(), "net.sum", &Site::name) - model.sites().begin());
+    return t;
+  }
+  std::vector<bool> all() const { return std::vector<bool>(model.parameters().size(), true); }
+
+  RecordedPlant files{shared_stiffness(220)};
+  SiteModel model{files.diagram(), {files.experiment()}, {}};
+  SiteFilter filter{model};
+  SiteFitter fitter{filter, model.record().held_out_from, [] { return false; }};
+  SiteHypothesis at;
+};
+
+TEST_F(FittedOscillator, AProportionOfThePositionIsTheStiffnessOfItsSpring) {
+  at.terms = {term("linear", "mass.position", -20)};
+  const std::vector<SameResponse> list = parameters_of_same_response(fitter, at, all());
+  const auto found =
+      std::ranges::find(list, parameter("stiffness"), [](const SameResponse& s) { return s.parameter; });
+  ASSERT_NE(found, list.end());
+  EXPECT_EQ(found->of, 0u);
+  EXPECT_THAT(found->hypothesis.terms, IsEmpty());
+  EXPECT_NEAR(found->hypothesis.factors[size_t(found->parameter)], 1.1, 0.01);
+}
+TEST_F(FittedOscillator, OneOfTwoParametersThatAreMultipliedDoesWhatTheOtherDoes) {
+  at.is_free[size_t(parameter("stiffness"))] = true;
+  at.factors[size_t(parameter("stiffness"))] = 1.1;
+  const std::vector<SameResponse> list = parameters_of_same_response(fitter, at, all());
+  const auto found =
+      std::ranges::find(list, parameter("share"), [](const SameResponse& s) { return s.parameter; });
+  ASSERT_NE(found, list.end());
+  EXPECT_EQ(found->of, std::nullopt);
+  EXPECT_NEAR(found->hypothesis.factors[size_t(found->parameter)], 1.1, 0.01);
+  EXPECT_EQ(found->hypothesis.free_parameters(), 1u);
+}
+TEST_F(FittedOscillator, LawsThatOpposeEachOtherCancelAndOthersDoNot) {
+  const auto cancels = [&](double first, double second) {
+    at.terms = {term("linear", "mass.velocity", first), term("linear", "mass.velocity", second)};
+    const std::vector<StackedNames> names = stacked_names(fitter, at, 2);
+    return names.size() == 1 && cancel(fitter, at, names[0]);
+  };
+  EXPECT_TRUE(cancels(1, -0.8));
+  EXPECT_FALSE(cancels(1, -0.5));
+  EXPECT_FALSE(cancels(1, 1));
+}
+
+/// The flow out of a tank as a power of its level that no law here has: a level that nearly every row exceeds
+/// would be a name for a constant and a proportion.
+TEST(SameLaw, ALevelAtTheEdgeOfTheRecordIsNone) {
+  Tanks m;
+  m.lost = [](double level, double) { return 0.006 * (std::pow(level, 0.65) - std::sqrt(level)); };
+  Plant plant = tanks(m, 72);
+  plant.input = [steps = random_steps(60, 72)](double t) { return 4 + 1.2 * steps(t); };
+  const Diagnosis d = diagnosed(plant);
+  for (const std::string& name : terms(d)) EXPECT_THAT(name, Not(HasSubstr("flow("))) << to_text(d);
+}
+TEST(SameLaw, OneOfTwoParametersThatAreMultipliedIsDeclaredForTheOther) {
+  const Diagnosis d = diagnosed(shared_stiffness(220));
+  ASSERT_EQ(d.moved_parameters.size(), 1u) << to_text(d);
+  const bool is_stiffness = d.moved_parameters[0].name == "stiffness";
+  EXPECT_THAT(others(d), Contains(is_stiffness ? "share for stiffness" : "stiffness for share"))
+      << to_text(d);
+}
+TEST(SameLaw, AnOffsetOfASensorIsDeclaredWhereAConstantWasFound) {
+  Plant plant = tanks({}, 73);
+  plant.outputs = [](const Numbers& x) { return Numbers{x[0], x[1] + 0.03}; };
+  const Diagnosis d = diagnosed(plant);
+  EXPECT_THAT(others(d), Contains(HasSubstr("level2.y (sensor): constant for"))) << to_text(d);
+}
+TEST(SameLaw, AnIntervalHasEnoughDigitsToBeOne) {
+  const ShownInterval told = shown_interval(1.38, 1.379992, 1.380008, "N");
+  EXPECT_EQ(told.range(), "1.37999 N … 1.38001 N");
+  EXPECT_EQ(shown_interval(1.5, 1.4, 1.6, "N").range(), "1.4 N … 1.6 N");
+  EXPECT_EQ(shown_interval(1.5, 1.5, 1.5, "N").range(), "1.5 N … 1.5 N");
+}
+
+}  // namespace
+}  // namespace loopwright::same_law_test

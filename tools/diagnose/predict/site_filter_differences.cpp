@@ -1,0 +1,129 @@
+/// The derivatives of a sample and of the outputs, by differences of the model.
+#include <algorithm>
+#include <cmath>
+#include "tools/diagnose/predict/site_filter.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+using Map = Eigen::Map<Eigen::VectorXd>;
+
+/// The first length at whose end the model is finite; 0 if there is none. A square root ends at an empty tank,
+/// and what moves a state by a notable amount is unknown at first: steps to the other side and shorter ones
+/// are tried then.
+template <class IsFiniteAt> double first_finite(IsFiniteAt&& is_finite_at) {
+  for (double length = 1; length > 1e-9; length /= 10) {
+    if (is_finite_at(length)) return length;
+    if (is_finite_at(-length)) return -length;
+  }
+  return 0;
+}
+
+}  // namespace
+
+bool SiteFilter::slopes_of_outputs(size_t row, SitePass& pass) {
+  const size_t n = pass.states;
+  double* const C = &pass.C[row * pass.outputs * n];
+  bool are_all_known = true;
+  for (size_t j = 0; j < pass.outputs; ++j) {
+    std::fill_n(C + j * n, n, 0.0);
+    if (const int state = model_.measured_state(j); state >= 0 && !model_.is_distorted(j))
+      C[j * n + size_t(state)] = 1;
+    else
+      are_all_known = false;
+    for (size_t s = 0; s < pass.noise.slow.size(); ++s)
+      if (pass.noise.slow[s].output == int(j)) C[j * n + model_states_ + s] = 1;
+  }
+  if (are_all_known) return true;
+  moved_ = x_;
+  model_.keep_modes(row, modes_.data());
+  for (size_t i = 0; i < model_states_; ++i) {
+    const double change = difference_step * state_scale_[i] * first_finite([&](double length) {
+      moved_[Eigen::Index(i)] = x_[Eigen::Index(i)] + length * difference_step * state_scale_[i];
+      model_.put_modes_back(row, modes_.data());
+      return model_.outputs(row, moved_.data(), y_moved_.data()) &&
+             std::ranges::all_of(y_moved_, [](double y) { return std::isfinite(y); });
+    });
+    if (change == 0) return false;
+    moved_[Eigen::Index(i)] = x_[Eigen::Index(i)];
+    for (size_t j = 0; j < pass.outputs; ++j)
+      if (model_.measured_state(j) < 0 || model_.is_distorted(j))
+        C[j * n + i] = (y_moved_[j] - y_[j]) / change;
+  }
+  model_.put_modes_back(row, modes_.data());
+  return true;
+}
+
+bool SiteFilter::respond_to(int site, bool ramp, size_t row, SitePass& pass, std::span<double> to) {
+  if (model_.output_of_sensor(site) >= 0) {
+    std::ranges::fill(to, 0.0);
+    return true;
+  }
+  SiteSignal& signal = model_.at_site(site);
+  const double held = signal.held;
+  const double size = site_scale_[size_t(site)] * first_finite([&](double length) {
+    const double tried = length * site_scale_[size_t(site)];
+    if (ramp)
+      signal.ramp = tried, signal.begin = record_.time[row], signal.length = record_.step(row);
+    else
+      signal.held = held + tried;
+    return try_flow(row, pass, x_.data(), moved_next_.data());
+  });
+  signal.held = held, signal.ramp = 0;
+  if (size == 0) return false;
+  for (size_t i = 0; i < to.size(); ++i)  // slow noise stays as it is
+    to[i] = (moved_next_[Eigen::Index(i)] - next_[Eigen::Index(i)]) / size;
+  return true;
+}
+
+bool SiteFilter::linearize(size_t row, const SiteNoise& noise, SitePass& pass) {
+  hold_disturbances(noise);
+  const bool good = differences(row, noise, pass);
+  release_disturbances(noise);
+  for (size_t j = 0; good && j < noise.slow.size(); ++j) {
+    const size_t n = pass.states, state = model_states_ + j;
+    double* const column = &pass.A[(row * n + state) * n];
+    if (const int site = noise.slow[j].site; site >= 0)
+      std::copy_n(&pass.G[(row * pass.sites + size_t(site)) * n], model_states_, column);
+    column[state] = noise.slow[j].kept(record_.step(row));
+  }
+  return good;
+}
+
+bool SiteFilter::differences(size_t row, const SiteNoise& noise, SitePass& pass) {
+  const size_t n = pass.states;
+  moved_ = x_, moved_next_ = next_;
+  model_.keep_modes(row, modes_.data());  // where the next row goes on
+  Map(&pass.A[row * n * n], Eigen::Index(n * n)).setZero();
+  for (size_t i = 0; i < model_states_; ++i) {
+    const double change = difference_step * state_scale_[i] * first_finite([&](double length) {
+      moved_[Eigen::Index(i)] = x_[Eigen::Index(i)] + length * difference_step * state_scale_[i];
+      return try_flow(row, pass, moved_.data(), moved_next_.data());
+    });
+    if (change == 0) return false;
+    moved_[Eigen::Index(i)] = x_[Eigen::Index(i)];
+    Map(&pass.A[(row * n + i) * n], Eigen::Index(n)) = (moved_next_ - next_) / change;
+  }
+  const auto G = [&](int site) { return std::span(&pass.G[(row * pass.sites + size_t(site)) * n], n); };
+  if (!pass.has_columns) {
+    for (int site : noise.sites)
+      if (!respond_to(site, false, row, pass, G(site))) return false;
+    model_.put_modes_back(row, modes_.data());
+    return true;
+  }
+  for (int site = 0; site < int(pass.sites); ++site) {
+    const std::span ramp(&pass.ramp[(row * pass.sites + size_t(site)) * n], n);
+    if (!respond_to(site, false, row, pass, G(site)) || !respond_to(site, true, row, pass, ramp))
+      return false;
+  }
+  const double begin = record_.time[row], step = record_.step(row);
+  const auto numbers = [&](size_t k) { return &pass.path[k][row * pass.numbers]; };
+  model_.put_modes_back(row, modes_at(pass, row));
+  const bool good = model_.look(row, begin, x_.data(), numbers(0)) &&
+                    model_.look(row, begin + step / 2, middle_.data(), numbers(1)) &&
+                    model_.look(row, begin + step, next_.data(), numbers(2));
+  model_.put_modes_back(row, modes_.data());
+  return good;
+}
+
+}  // namespace loopwright::diagnosis

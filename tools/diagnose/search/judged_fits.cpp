@@ -1,0 +1,90 @@
+#include "tools/diagnose/search/judged_fits.h"
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/moved_parameters.h"
+#include "tools/diagnose/search/site_screening.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+constexpr size_t fitted_keys = 5, fitted_pairs = 2;  // candidates that are confirmed by real fits
+/// [of the gain needed, and of the best candidate's] A smaller linearized gain is not worth a real fit.
+constexpr double promising = 0.4, promising_beside_best = 0.2;
+
+}  // namespace
+
+double JudgedFits::gain_needed() const {
+  return std::max(criteria::least_gain_of_term, criteria::least_gain_of_term_per_reading * readings_);
+}
+
+double JudgedFits::whole_criterion(const SiteHypothesis& h) {
+  return criterion(h) + cost_of_parameter * double(h.free_parameters());
+}
+
+void JudgedFits::tell(const std::string& what, const SiteHypothesis& at) {
+  std::string noise;
+  for (double s : at.noise.process) noise += fmt::format(" {:.3g}", s);
+  noise += " |";
+  for (double r : at.noise.measurement) noise += fmt::format(" {:.3g}", r);
+  for (const SlowNoise& slow : at.noise.slow)
+    noise += fmt::format(" | slow {:.3g} {:.3g} s", slow.size, slow.time);
+  result_.trail.push_back(fmt::format("{}: -2 ln L {:.1f}, criterion {:.1f}, noise{}, after {}", what,
+                                      at.objective, criterion(at), noise,
+                                      told_operations(model().work().done())));
+}
+
+double JudgedFits::criterion(const SiteHypothesis& h) {
+  double sum = h.objective + double(size_of(h)) * std::log(readings_);
+  for (const SiteTerm& term : h.terms) sum += 2 * cost_of(model(), term) + 2 * std::log(double(keys_));
+  return sum;
+}
+
+std::vector<SiteHypothesis> JudgedFits::fits(const SiteHypothesis& at,
+                                             std::span<const SiteCandidate> candidates) {
+  std::vector<SiteHypothesis> list;
+  double most = 0;
+  for (const SiteCandidate& candidate : candidates) most = std::max(most, candidate.gain);
+  for (const SiteCandidate& candidate : candidates) {
+    if (candidate.gain < std::max(promising * gain_needed(), promising_beside_best * most)) continue;
+    SiteHypothesis trial = at;
+    if (candidate.constant) trial.terms.push_back(*candidate.constant);
+    trial.terms.push_back(candidate.term);
+    if (candidate.term.shape->of == TermShape::Of::own) trial.terms.back().coefficient[0] = 1;
+    fitter_.refine(trial, first_steps);
+    if (std::isfinite(trial.objective)) list.push_back(std::move(trial));
+  }
+  keep_best(list, at, criteria::behind_after_first_steps);
+  for (SiteHypothesis& h : list) fitter_.refine(h, further_steps);
+  keep_best(list, at, criteria::behind_after_all_steps);
+  for (SiteHypothesis& h : list) {
+    fitter_.fit_noise(h);
+    fitter_.refine(h, 3);
+  }
+  std::ranges::sort(list, {}, [&](const SiteHypothesis& h) { return criterion(h); });
+  return list;
+}
+std::vector<SiteCandidate> JudgedFits::candidates(const SiteHypothesis& at) {
+  std::vector<SiteCandidate> ranked = rank_terms(fitter_, at, fitter_.shapes(), true), pairs;
+  std::ranges::copy_if(ranked, std::back_inserter(pairs), [](const auto& c) { return bool(c.constant); });
+  std::erase_if(ranked, [](const auto& c) { return bool(c.constant); });
+  keys_ = std::max<size_t>(keys_, ranked.size());
+  leave_out_twins(ranked), leave_out_twins(pairs);
+  pairs.resize(std::min(fitted_pairs, pairs.size()));
+  std::vector<SiteCandidate> list(ranked.begin(),
+                                  ranked.begin() + std::ptrdiff_t(std::min(fitted_keys, ranked.size())));
+  for (const SiteCandidate& c : list)
+    result_.trail.push_back(
+        fmt::format("  ranked {}: {:.1f}, cost {:.1f}", describe(model(), c.term), c.gain, c.cost));
+  for (const SiteCandidate& c : ranked)  // the best distortion is judged with the others
+    if (c.term.shape->of == TermShape::Of::own) {
+      if (std::ranges::none_of(list, [&](const auto& known) { return known.is_same_key(c.term); }))
+        list.push_back(c);
+      break;
+    }
+  std::ranges::copy(pairs, std::back_inserter(list));
+  return list;
+}
+
+}  // namespace loopwright::diagnosis

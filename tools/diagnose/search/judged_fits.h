@@ -1,0 +1,41 @@
+/// What all steps of a search at the sites share: real fits of candidates, and the criterion that judges
+/// them.
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+#include "tools/diagnose/search/site_search.h"
+
+namespace loopwright::diagnosis {
+
+class JudgedFits {
+ protected:
+  /// Gauss-Newton steps of a candidate: after the first ones it shows which are hopeless.
+  static constexpr int first_steps = 2, further_steps = 3;
+
+  explicit JudgedFits(SiteFitter& fitter) : fitter_(fitter) {}
+
+  SiteModel& model() { return fitter_.model(); }
+  bool is_spent(double share) { return model().work().is_spent(share); }
+  /// In -2 ln L, of a term.
+  double gain_needed() const;
+  void tell(const std::string& what, const SiteHypothesis& at);
+  /// -2 ln L + p ln n + twice the cost of the prior.
+  double criterion(const SiteHypothesis& h);
+  /// With the cost of parameters that moved.
+  double whole_criterion(const SiteHypothesis& h);
+  /// Real fits of the best candidates; the best of them with its own noise.
+  std::vector<SiteHypothesis> fits(const SiteHypothesis& at, std::span<const SiteCandidate> candidates);
+  /// The best candidates after parameters and terms, at first also those about the nominal parameters: a
+  /// strong term bends the parameters that are fitted without it.
+  std::vector<SiteCandidate> candidates(const SiteHypothesis& at);
+
+  SiteFitter& fitter_;
+  SiteSearchResult result_;
+  double readings_ = 0;
+
+ private:
+  size_t keys_ = 10;
+};
+
+}  // namespace loopwright::diagnosis

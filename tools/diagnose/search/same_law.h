@@ -1,0 +1,25 @@
+/// Other names for what a term does: a constant and a proportion for a law beyond a level, and an offset of a
+/// sensor for a constant.
+#pragma once
+#include <optional>
+#include <vector>
+#include "tools/diagnose/search/site_fit.h"
+
+namespace loopwright::diagnosis {
+
+/// Whether the term's level is where the shape's range ends.
+bool is_at_edge(const SiteTerm& term);
+
+/// The hypothesis with a constant and a proportion, its last terms, in the place of a law beyond a level.
+/// Nothing if the term is none.
+std::optional<SiteHypothesis> with_constant_and_proportion(SiteFitter& fitter, const SiteHypothesis& at,
+                                                           size_t term);
+
+struct OffsetOfSensor {
+  SiteHypothesis hypothesis;  ///< all parameters as stated; its last term is the offset
+  size_t of;                  ///< the constant in whose place
+};
+/// Of sensors that the search does not look at, for each constant that was found.
+std::vector<OffsetOfSensor> offsets_of_sensors(SiteFitter& fitter, const SiteHypothesis& at);
+
+}  // namespace loopwright::diagnosis
