@@ -46,7 +46,7 @@ std::vector<DiagnosedParameter> parameters_of_member(const Conclusion& conclusio
     const CandidateParameter& pitch = member.candidate->nonlinear[0];
     const double value = member.nonlinear[0];
     list.push_back({pitch.name, without_idle_brackets(unit_in(pitch.unit, units)), value, value, value, false,
-                    conclusion.turn / value});
+                    std::round(conclusion.turn / value)});
   }
   return list;
 }
