@@ -19,6 +19,17 @@ class Experiments : public ::testing::Test {
     const std::string text = folder.refusal();
     for (const char* part : parts) EXPECT_TRUE(has(text, part)) << part << "\n" << text;
   }
+  /// Of a comparison with rows that are a step apart by their clock.
+  std::string warnings(const char* heading, double step) {
+    std::string text = std::string(heading) + ",F,x_mm\n";
+    for (int i = 0; i < 5; ++i) text += fmt::format("{},1,0\n", i * step);
+    folder.with("data.csv", text);
+    folder.with("e.json", R"({"loopwright": 1, "data": "data.csv", "drive": {"stage.force": {"column": "F"}},
+      "compare": {"stage.position": {"column": "x_mm", "unit": "mm"}}})");
+    std::string all;
+    for (const std::string& warning : folder.compared().warnings) all += warning;
+    return all;
+  }
   ExperimentFolder folder;
 };
 constexpr const char* drive = R"("stage.force": {"column": "F", "unit": "N"})";
@@ -172,16 +183,6 @@ TEST_F(Experiments, RowsAThousandSamplesApartAreAWarning) {
       "hold": {"type": "ZeroOrderHold", "sample_time": {"value": 1.25, "unit": "ms"}, "in": {"u": "push.y"}},
       "stage": {"type": "Mass", "mass": {"value": 2, "unit": "kg"}, "in": {"force": "push.y"}})",
                                     R"("method": "rk4", "step": 0.00125, "stop": 1)"));
-  const auto warnings = [&](const char* heading, double step) {
-    std::string text = std::string(heading) + ",F,x_mm\n";
-    for (int i = 0; i < 5; ++i) text += fmt::format("{},1,0\n", i * step);
-    folder.with("data.csv", text);
-    folder.with("e.json", R"({"loopwright": 1, "data": "data.csv", "drive": {"stage.force": {"column": "F"}},
-      "compare": {"stage.position": {"column": "x_mm", "unit": "mm"}}})");
-    std::string all;
-    for (const std::string& warning : folder.compared().warnings) all += warning;
-    return all;
-  };
   EXPECT_TRUE(
       has(warnings("clock", 1.25), "the rows are 1.25 s apart, and the diagram has samples of 0.00125 s"));
   EXPECT_TRUE(has(warnings("clock", 1.25), "its heading is \"clock [ms]\""));
@@ -193,17 +194,8 @@ TEST_F(Experiments, RowsThousandsOfStepsApartAreAWarningWithoutSamples) {
   folder.with("stage.json", diagram(R"("push": {"type": "Constant", "value": {"value": 0, "unit": "N"}},
       "stage": {"type": "Mass", "mass": {"value": 2, "unit": "kg"}, "in": {"force": "push.y"}})",
                                     R"("method": "rk4", "step": 0.0005, "stop": 1)"));
-  const auto warnings = [&](const char* heading, double step) {
-    std::string text = std::string(heading) + ",F,x_mm\n";
-    for (int i = 0; i < 5; ++i) text += fmt::format("{},1,0\n", i * step);
-    folder.with("data.csv", text);
-    folder.with("e.json", R"({"loopwright": 1, "data": "data.csv", "drive": {"stage.force": {"column": "F"}},
-      "compare": {"stage.position": {"column": "x_mm", "unit": "mm"}}})");
-    std::string all;
-    for (const std::string& warning : folder.compared().warnings) all += warning;
-    return all;
-  };
-  EXPECT_TRUE(has(warnings("clock", 2), "the rows are 2 s apart, which is 4000 steps of the diagram's solver"));
+  EXPECT_TRUE(
+      has(warnings("clock", 2), "the rows are 2 s apart, which is 4000 steps of the diagram's solver"));
   EXPECT_TRUE(has(warnings("clock", 2), "its heading is \"clock [ms]\""));
   EXPECT_FALSE(has(warnings("clock [ms]", 2), "apart"));
   EXPECT_FALSE(has(warnings("clock", 0.1), "apart")) << "a slow log";
