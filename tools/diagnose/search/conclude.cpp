@@ -118,6 +118,21 @@ std::optional<Estimate> simplified(Rivals& rivals, const std::vector<Member>& me
   return {};
 }
 
+/// The same law without its gain, if another member is idle in it: a mass alone is simpler than a gain and a
+/// damping that make up for it.
+std::optional<Estimate> without_gain(Trials& trials, Rivals& rivals, const std::vector<Member>& members,
+                                     const std::vector<Candidate>& candidates) {
+  if (!has_gain(members)) return {};
+  for (const Proposal& swap : law_swaps(members, candidates, trials)) {
+    if (rivals.is_spent()) return {};
+    Estimate other = rivals.fitted(swap);
+    if (has_gain(other.members) || !rivals.loss_of(swap, other)) continue;
+    for (const Weight& weight : weigh_all(trials, other))
+      if (material(trials, other, weight) < 1) return other;
+  }
+  return {};
+}
+
 /// A law of the catalogue in place of a function without a name, if it leaves nothing that matters: the one
 /// with the fewest parameters. Beside next to no noise a function that adapts itself to small errors of a law
 /// predicts better in any case.
@@ -331,6 +346,8 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
     result.trail.push_back("after reversals another law of dry friction does better");
   if (!instead) instead = named(trials, rivals, estimate.members, exchanges);
   if (!instead) instead = simplified(rivals, estimate.members, exchanges);
+  if (!instead && (instead = without_gain(trials, rivals, estimate.members, candidates)))
+    result.trail.push_back("the same law without a gain needs less");
   SecondLook seen;
   if (!instead) {
     seen = look_again(trials, estimate, result.portmanteau_beside_counts(), evidence, candidates.size());
