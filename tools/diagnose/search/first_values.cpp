@@ -1,7 +1,6 @@
 #include "tools/diagnose/search/first_values.h"
 #include <algorithm>
 #include <cmath>
-#include "tools/diagnose/criteria.h"
 
 namespace loopwright::diagnosis::first_values {
 namespace {
@@ -61,13 +60,6 @@ Starts levels_above(std::span<const double> signal) {
   for (double part : {0.03, 0.06, 0.12, 0.2, 0.3, 0.45, 0.6, 0.75, 0.9})
     list.push_back({quantile(signal, part), 0});
   return list;
-}
-/// With hardly a row where the law is zero it would be a proportion and a constant under another name.
-TermShape::Ranges range_of_level(std::span<const double> signal) {
-  return {{quantile(signal, criteria::least_share_before_level), 0}, {std::ranges::max(signal), 0}};
-}
-TermShape::Ranges range_of_level_above(std::span<const double> signal) {
-  return {{std::ranges::min(signal), 0}, {quantile(signal, 1 - criteria::least_share_before_level), 0}};
 }
 /// From two periods in the range of the signal up; neighbours differ by a quarter of a period at the end of
 /// the range.

@@ -14,8 +14,6 @@ Starts knees(std::span<const double> signal);
 Starts stribeck_speeds(std::span<const double> signal);
 Starts levels(std::span<const double> signal);
 Starts levels_above(std::span<const double> signal);
-TermShape::Ranges range_of_level(std::span<const double> signal);
-TermShape::Ranges range_of_level_above(std::span<const double> signal);
 Starts pitches(std::span<const double> signal);
 Starts waits(std::span<const double> input);
 Starts distances(std::span<const double> velocity);
