@@ -109,8 +109,8 @@ constexpr double hopeless_parameter = 500;
 
 /// [-2 ln L, and for each reading] What a term must gain.
 constexpr double least_gain_of_term = 25, least_gain_of_term_per_reading = 0.002;
-/// [of the range of its signal] So close to an end a level up to which a law is zero is a name for a constant and
-/// a proportion.
+/// [of the range of its signal] So close to an end a level up to which a law is zero is a name for a constant
+/// and a proportion.
 constexpr double edge_of_level = 0.1;
 /// [cosine between responses] From it on, a parameter is tried in the place of a term or of parameters: a
 /// change of 10 % to 50 % bends its response so much.

@@ -287,7 +287,9 @@ void judge_errors(const Trials& trials, Conclusion& result) {
   const double most_bursts = std::max(least_bursts, most_bursts_per_row * rows);
   const double of_squares = portmanteau_of_squares(trials, *estimate.fitted);
   result.portmanteau = portmanteau(trials, *estimate.fitted);
-  result.comes_in_bursts = noise.white > negligible_force * trials.usual_force && of_squares > most_bursts;
+  // Beside less noise the arithmetic of the diagram comes in bursts too.
+  const bool matters = std::hypot(noise.white, noise.slow()) > least_excess * trials.force_rms;
+  result.comes_in_bursts = matters && of_squares > most_bursts;
   if (result.portmanteau > most_portmanteau_of_counted || result.comes_in_bursts)
     if (const WhitenedErrors errors = errors_of_counts(trials, estimate); !errors.empty()) {
       if (is_noisy && estimate.members.empty()) result.most_portmanteau = most_portmanteau_of_counted;
