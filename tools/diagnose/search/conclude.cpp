@@ -118,17 +118,18 @@ std::optional<Estimate> simplified(Rivals& rivals, const std::vector<Member>& me
   return {};
 }
 
-/// The same law without its gain, if another member is idle in it: a mass alone is simpler than a gain and a
-/// damping that make up for it.
-std::optional<Estimate> without_gain(Trials& trials, Rivals& rivals, const std::vector<Member>& members,
-                                     const std::vector<Candidate>& candidates) {
-  if (!has_gain(members)) return {};
+/// The same law by fewer members: a mass alone is simpler than a gain and a damping that make up for it, and
+/// a gain is simpler than a mass and a damping in proportion.
+std::optional<Estimate> same_law_by_fewer(Trials& trials, Rivals& rivals, const std::vector<Member>& members,
+                                          const std::vector<Candidate>& candidates) {
   for (const Proposal& swap : law_swaps(members, candidates, trials)) {
     if (rivals.is_spent()) return {};
     Estimate other = rivals.fitted(swap);
-    if (has_gain(other.members) || !rivals.loss_of(swap, other)) continue;
-    for (const Weight& weight : weigh_all(trials, other))
-      if (material(trials, other, weight) < 1) return other;
+    if (!rivals.loss_of(swap, other)) continue;
+    const size_t needed = size_t(std::ranges::count_if(weigh_all(trials, other), [&](const Weight& weight) {
+      return material(trials, other, weight) >= 1;
+    }));
+    if (needed < members.size()) return other;
   }
   return {};
 }
@@ -348,8 +349,8 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
     result.trail.push_back("after reversals another law of dry friction does better");
   if (!instead) instead = named(trials, rivals, estimate.members, exchanges);
   if (!instead) instead = simplified(rivals, estimate.members, exchanges);
-  if (!instead && (instead = without_gain(trials, rivals, estimate.members, candidates)))
-    result.trail.push_back("the same law without a gain needs less");
+  if (!instead && (instead = same_law_by_fewer(trials, rivals, estimate.members, candidates)))
+    result.trail.push_back("fewer members state the same law");
   SecondLook seen;
   if (!instead) {
     seen = look_again(trials, estimate, result.portmanteau_beside_counts(), evidence, candidates.size());
