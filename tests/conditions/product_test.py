@@ -18,12 +18,12 @@ GENERATOR, LOOPWRIGHT = (pathlib.Path(a).resolve() for a in sys.argv[1:3])
 # call for less mass. In 900598 a held command comes a tenth of a sample late; in 900652 a resonance hides in loud noise beside friction.
 # The load of 900776 is measured, and noise moves its motor. In 900590 friction builds up over 56 counts. The resonance of 900823 is
 # sampled at uneven times. Of 901681, a third of the gain and of the damping state the law of three times the mass; that of
-# 901751, a gain, is also that of a mass and a damping. The record of 100162 has 400 Hz, at which dry friction is Coulomb friction or presliding hysteresis.
+# 901751, a gain, is also that of a mass and a damping. The record of 100162 has 400 Hz, at which dry friction is Coulomb friction or
+# presliding hysteresis.
 RIGHT = {100162: "rate", 100318: "between_samples", 100179: "few_rows_between_turns", 100359: "few_rows_between_turns", 100000: "mass",
          100008: "voltage", 100014: "known_nominal", 100035: "weak_beside_strong", 100044: "rounded_stamps",
          100052: "loud", 100070: "counts", 900598: "between_samples", 900652: "loud", 900776: "load_side", 900590: "counts",
-         900823: "jitter", 901681: "rotary",
-         901751: "no_noise"}
+         900823: "jitter", 901681: "rotary", 901751: "no_noise"}
 # Short records of conditions at which the diagnosis may fail.
 ANY = [100004, 100005, 100011, 100019, 100042, 100047, 100049]
 

@@ -108,9 +108,9 @@ constexpr double most_portmanteau = 300;
 constexpr double most_portmanteau_of_counted = 150;
 /// [rows] Above it a fifth of the squared errors, beside noise, repeats as a vibration does, and is none.
 constexpr double most_portmanteau_per_row = 1;
-/// The same of the squares of the errors, [rows] and at least: rattling loads have 0.3 to 1.8 a row, right
-/// answers 0.25 at most.
-constexpr double most_bursts_per_row = 0.3, least_bursts = 500;
+/// The same of the squares of the errors, [rows] and at least: rattling loads have 0.5 to 1.8 a row, right
+/// answers 0.42 at most.
+constexpr double most_bursts_per_row = 0.45, least_bursts = 500;
 /// [noise force] That coarse counts leave of what they feign.
 constexpr double calmer_force = 0.1;
 /// [what counts add] A line of their beat that is a fifth stronger adds half as much again.
