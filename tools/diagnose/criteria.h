@@ -115,8 +115,8 @@ constexpr double most_bursts_per_row = 0.45, least_bursts = 500;
 constexpr double calmer_force = 0.1;
 /// [what counts add] A line of their beat that is a fifth stronger adds half as much again.
 constexpr double reach_of_counts = 1.5;
-/// [force of the input: rms, or what it exceeds in all but this share of the motion if that is less] Less that
-/// remains, below 80 Hz, does not matter: without noise a model's error cannot be judged.
+/// [force of the input: rms, or what it exceeds in all but this share of the motion if that is less] Less
+/// that remains, below 80 Hz, does not matter: without noise a model's error cannot be judged.
 constexpr double negligible_force = 1e-3, usual_share = 0.9;
 
 // Effects.
