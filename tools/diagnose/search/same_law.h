@@ -7,7 +7,7 @@
 
 namespace loopwright::diagnosis {
 
-/// Whether the term's level is where the shape's range ends.
+/// Whether the term's level is near an end of the range of its signal: see criteria::edge_of_level.
 bool is_at_edge(const SiteTerm& term);
 
 /// The hypothesis with a constant and a proportion, its last terms, in the place of a law beyond a level.
