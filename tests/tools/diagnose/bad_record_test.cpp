@@ -112,10 +112,16 @@ TEST(BadRecord, ErrorsThatComeInBurstsAreNotNoise) {
   EXPECT_THAT(d.contradictions, says("keep together in time")) << to_text(d);
 }
 
+FlawedMachine oscillating(double hz, double sample_time, double duration) {
+  FlawedMachine machine;
+  machine.oscillation_hz = hz, machine.sample_time = sample_time, machine.duration = duration;
+  machine.stroke = 1e-3;
+  return machine;
+}
+
 /// Sixty reversals a second: dry friction is named as one that is smooth below the lowest speed asked for.
 TEST(BadRecord, AParameterAtTheLimitOfItsRangeStandsForSomethingElse) {
-  FlawedMachine machine;
-  machine.oscillation_hz = 60, machine.stroke = 1e-3, machine.sample_time = 1e-4, machine.duration = 3;
+  FlawedMachine machine = oscillating(60, 1e-4, 3);
   machine.coulomb = 0.3;
   const FlawedAxis axis(machine);
   const Diagnosis d = diagnose(axis.diagram(), {axis.experiment()});
@@ -128,8 +134,7 @@ TEST(BadRecord, AParameterAtTheLimitOfItsRangeStandsForSomethingElse) {
 }
 
 TEST(BadRecord, OfMotionsThatAreTooShortTheResidualForceIsNotKnown) {
-  FlawedMachine machine;
-  machine.oscillation_hz = 200, machine.stroke = 1e-3, machine.sample_time = 5e-5, machine.duration = 1;
+  FlawedMachine machine = oscillating(200, 5e-5, 1);
   machine.added_mass = 0.1;
   const FlawedAxis axis(machine);
   const Diagnosis d = diagnose(axis.diagram(), {axis.experiment()});

@@ -21,11 +21,6 @@ SiteTerm plain_term(SiteFitter& fitter, std::string_view shape, int site, int va
   return term;
 }
 
-SiteHypothesis without(SiteHypothesis at, size_t term) {
-  at.terms.erase(at.terms.begin() + std::ptrdiff_t(term));
-  return at;
-}
-
 void fit(SiteFitter& fitter, SiteHypothesis& h) {
   fitter.refine(h, 6);
   fitter.fit_noise(h);

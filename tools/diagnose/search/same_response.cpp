@@ -29,9 +29,7 @@ class Responses {
     for (size_t i = 0; i < numbers_.size(); ++i)
       if (numbers_[i].kind == Kind::coefficient && numbers_[i].owner == int(term))
         change += J_.col(Eigen::Index(i)) * at_.terms[term].coefficient[size_t(numbers_[i].index)];
-    SiteHypothesis base = at_;
-    base.terms.erase(base.terms.begin() + std::ptrdiff_t(term));
-    try_parameters(change, base, term);
+    try_parameters(change, without(at_, term), term);
   }
   void try_in_place_of_parameters() {
     Eigen::VectorXd change = Eigen::VectorXd::Zero(J_.rows());

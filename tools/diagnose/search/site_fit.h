@@ -20,6 +20,12 @@ struct SiteHypothesis {
   size_t free_parameters() const { return size_t(std::count(is_free.begin(), is_free.end(), true)); }
 };
 
+/// The hypothesis without one of its terms, not fitted again.
+inline SiteHypothesis without(SiteHypothesis at, size_t term) {
+  at.terms.erase(at.terms.begin() + std::ptrdiff_t(term));
+  return at;
+}
+
 /// One number of a hypothesis that is fitted.
 struct FittedNumber {
   enum class Kind { factor, coefficient, nonlinear };

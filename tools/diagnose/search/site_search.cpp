@@ -190,13 +190,12 @@ class SiteSearch : JudgedFits {
   /// Each term is replaced by the best other one in its place.
   void exchange(SiteHypothesis& at) {
     for (size_t t = 0; t < at.terms.size() && !is_spent(criteria::work_with_rivals); ++t) {
-      SiteHypothesis without = at;
       const SiteTerm term = at.terms[t];
-      without.terms.erase(without.terms.begin() + std::ptrdiff_t(t));
-      std::vector<SiteCandidate> others = rank_terms(fitter_, without, fitter_.shapes());
+      const SiteHypothesis rest = without(at, t);
+      std::vector<SiteCandidate> others = rank_terms(fitter_, rest, fitter_.shapes());
       leave_out_hopeless(others, term);
       others.resize(std::min<size_t>(3, others.size()));
-      for (SiteHypothesis& other : fits(without, others)) {
+      for (SiteHypothesis& other : fits(rest, others)) {
         const double needed = size_of(other) > size_of(at) ? 20 : least_exchange;
         const double worse = criterion(other) - criterion(at);
         if (worse < -needed) {
@@ -234,17 +233,16 @@ class SiteSearch : JudgedFits {
   bool remove_idle(SiteHypothesis& at) {
     bool is_any_removed = false;
     for (size_t t = at.terms.size(); t-- > 0;) {
-      SiteHypothesis without = at;
-      without.terms.erase(without.terms.begin() + std::ptrdiff_t(t));
-      fitter_.refine(without, first_steps);
-      if (without.scaled_objective - at.scaled_objective >= criteria::far_from_idle * gain_needed()) continue;
-      fitter_.refine(without, further_steps + 1);
-      fitter_.fit_noise(without);
-      if (without.objective - at.objective >= gain_needed()) continue;
-      tell("- " + describe(model(), at.terms[t]), without);
+      SiteHypothesis rest = without(at, t);
+      fitter_.refine(rest, first_steps);
+      if (rest.scaled_objective - at.scaled_objective >= criteria::far_from_idle * gain_needed()) continue;
+      fitter_.refine(rest, further_steps + 1);
+      fitter_.fit_noise(rest);
+      if (rest.objective - at.objective >= gain_needed()) continue;
+      tell("- " + describe(model(), at.terms[t]), rest);
       std::erase_if(result_.rivals, [&](const SiteRival& r) { return r.of == t; });
       for (SiteRival& r : result_.rivals) r.of -= r.of > t;
-      at = std::move(without), is_any_removed = true;
+      at = std::move(rest), is_any_removed = true;
     }
     return is_any_removed;
   }

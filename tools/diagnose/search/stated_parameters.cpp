@@ -53,10 +53,9 @@ std::vector<StatedParameters> with_stated_parameters(SiteFitter& fitter, const S
   stated.is_free.assign(stated.is_free.size(), false);
   if (have_several_moved) replacement.try_at(stated, {}, true);
   for (size_t t = 0; t < found.terms.size(); ++t) {
-    SiteHypothesis without = stated;
-    without.terms.erase(without.terms.begin() + std::ptrdiff_t(t));
-    replacement.try_at(without, t, true);
-    if (found.terms[t].variable >= 0) replacement.try_with_constant(without, t, found.terms[t].site);
+    const SiteHypothesis rest = without(stated, t);
+    replacement.try_at(rest, t, true);
+    if (found.terms[t].variable >= 0) replacement.try_with_constant(rest, t, found.terms[t].site);
   }
   return replacement.take();
 }
