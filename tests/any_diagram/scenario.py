@@ -136,13 +136,20 @@ def write_record(path, plant, record):
             rows.writerow([f"{v:.12g}" for v in (k * plant.sample_time, *u, *y)])
 
 
+def judged_attempt(seed, retry, disturbance):
+    drawn = attempt(seed, retry, disturbance)
+    try:
+        return drawn and (drawn, truth_of(seed, *drawn))
+    except simulate.Diverged:
+        return None
+
+
 def generate(seed, folder, disturbance=0.0):
     """`disturbance` is the size of a slow one, as a share of the signal where it acts."""
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    drawn = next(d for d in (attempt(seed, retry, disturbance) for retry in range(20)) if d)
+    drawn, truth = next(d for d in (judged_attempt(seed, retry, disturbance) for retry in range(20)) if d)
     plant, _, _, stated, *_, record = drawn
-    truth = truth_of(seed, *drawn)
     write_record(folder / "record.csv", plant, record)
     for name, content in {"diagram": diagram(plant, stated), "record.experiment": experiment(plant), "truth": truth}.items():
         (folder / f"{name}.json").write_text(json.dumps(content, indent=1) + "\n")

@@ -7,6 +7,8 @@ import numpy as np
 
 from laws import LAWS
 
+MOST_STATE = 1e9  # of any state, in its unit: more is a divergence
+
 
 @dataclasses.dataclass
 class Hidden:
@@ -112,9 +114,13 @@ def run(plant, p, hidden, drive, random, process=None, sensor=None, slow=None):
             motion.ports.noise[site] = motion.ports.noise.get(site, 0.0) + d
             disturbed[site] = slow[site].kept * d + random.gauss(0, slow[site].step)
         x = motion.flow(x, u)
-        if not all(math.isfinite(s) and abs(s) < 1e9 for s in x):
+        if not all(math.isfinite(s) and abs(s) < MOST_STATE for s in x):
             return None
     return record
+
+
+class Diverged(Exception):
+    """Of the filter with the true equations: what the record shows of them cannot be measured."""
 
 
 class Filter:
@@ -147,6 +153,8 @@ class Filter:
             P = P - K @ S @ K.T
             self.filtered.append(x)
             P, x = self.predicted(P, x, u, scale)
+            if not np.all(np.abs(x) < MOST_STATE):
+                raise Diverged
 
     def beginning(self, motion):
         return np.array([*motion.initial(), *(0.0 for _ in self.slow)])

@@ -6,6 +6,7 @@
 #include "engine/json/reader.h"
 #include "engine/run/run.h"
 #include "tools/effects/linear_effect.h"
+#include "tools/effects/switched_effect.h"
 
 namespace loopwright {
 namespace {
@@ -227,6 +228,7 @@ std::shared_ptr<const EffectPlan> compile_effect(const Effect& effect, const Mac
                     });
     check_bindings(*result, own);
     if (!own.has_errors()) result->is_linear = is_linear(result);
+    if (!own.has_errors()) result->is_switched = is_switched(result);
   }
   for (Problem problem : own.list()) {  // what lies between the blocks and their bench has no file of its own
     if (!problem.place.file) problem.place = effect.blocks.place;

@@ -27,6 +27,7 @@ struct EffectPlan {
   /// Has states, which and whose force are linear in the signals and in themselves, and nothing else that
   /// remembers: see EffectRun.
   bool is_linear = false;
+  bool is_switched = false;  ///< linear in the same way as long as nothing is decided: see switched_effect.h
 };
 
 /// Null after a problem: blocks that do not exist, units incompatible with the machine's.

@@ -96,6 +96,9 @@ EffectSample::EffectSample(std::shared_ptr<const EffectPlan> plan)
   wire("input", input, input, false, 0), wire("force", force, force, false, 0);
   for (int i = 0; i < plan_->plan.states; ++i)
     if (plan_->plan.signals + i != plan_->integral) states_.push_back(size_t(i));
+  for (size_t block = 0; block < plan_->plan.blocks.size(); ++block)
+    if (const size_t size = plan_->plan.blocks[block].type->kernels.mode_size)
+      modes_.push_back({static_cast<const char*>(run_.call(int(block)).mode), size});
 }
 
 void EffectSample::wire(const char* role, GivenSignals::Index value, GivenSignals::Index slope, bool is_line,
@@ -123,15 +126,82 @@ std::vector<double> EffectSample::states() {
   return list;
 }
 
-std::vector<double> EffectSample::from(const std::vector<double>& states, const GivenSignals& given) {
+void EffectSample::note_decisions(bool is_start) {
+  if (is_start) decided_.clear();
+  size_t at = 0;
+  for (const Mode& mode : modes_) {
+    if (is_start)
+      decided_.append(mode.bytes, mode.size);
+    else
+      decided_anew_ |= decided_.compare(at, mode.size, mode.bytes, mode.size) != 0;
+    at += mode.size;
+  }
+  if (is_start) decided_anew_ = false;
+}
+
+void EffectSample::set_states(const std::vector<double>& states) {
   std::ranges::fill(run_.states(), 0.0);
   for (size_t i = 0; i < states_.size(); ++i) run_.states()[states_[i]] = states[i];
+}
+
+void EffectSample::give(const GivenSignals& given) {
   for (const Wire& wire : wires_) *wire.number = wire.factor * given[wire.signal];
   for (double* since : since_) *since = run_.now().time;
+}
+
+void EffectSample::evaluate() {
+  const uint64_t due = run_.due();
+  run_.evaluate(due, true), run_.accept(), run_.update(due);
+}
+
+const std::string& EffectSample::decide(const std::vector<double>& states, const GivenSignals& given) {
+  set_states(states), give(given), evaluate();
+  note_decisions(true);
+  return decided_;
+}
+
+std::vector<double> EffectSample::against(const Body& body, const std::vector<double>& states,
+                                          const GivenSignals& given) {
+  constexpr int rounds = 2;  // the force of a step and the acceleration in it depend on each other
+  using enum GivenSignals::Index;
+  GivenSignals now = given;
+  const double free = given[acceleration], period = plan_->sizes.sample_time;
+  double momentum = 0, moment = 0, push = 0;  // push: mean force on the body over the last step
+  set_states(states);
+  for (int64_t left = sample_ticks_; left > 0;) {
+    const int64_t passed = std::min(plan_->plan.step_ticks, left), begins = run_.now().tick;
+    const double step = period * double(passed) / double(sample_ticks_);
+    const std::vector<double> before(run_.states().begin(), run_.states().end());
+    for (int round = 0; round < rounds; ++round) {
+      if (round > 0) std::ranges::copy(before, run_.states().begin()), run_.move_to(begins);
+      now.value[acceleration] = now.value[velocity_slope] = free - push / body.inertia;
+      give(now);
+      evaluate();
+      if (round == 0) note_decisions(left == sample_ticks_);
+      run_.integrate(passed);
+      const double consumed =
+          run_.number(plan_->integral) - before[size_t(plan_->integral - plan_->plan.signals)];
+      push = consumed / step - body.added_inertia * now[acceleration];
+    }
+    const double gain = free - push / body.inertia;
+    now.value[position] += step * (now[velocity] + 0.5 * step * gain), now.value[velocity] += step * gain;
+    momentum += push * step;
+    // ∫ (u - ½) f du: the push of each step acts at its middle.
+    moment += push * (double(sample_ticks_ - left) + 0.5 * double(passed)) / double(sample_ticks_) * step;
+    left -= passed;
+  }
+  evaluate(), note_decisions(false);
+  std::vector<double> result = this->states();
+  result.push_back(momentum / period), result.push_back(12 * (moment - 0.5 * momentum) / period);
+  return result;
+}
+
+std::vector<double> EffectSample::from(const std::vector<double>& states, const GivenSignals& given) {
+  set_states(states), give(given);
   double integral = 0, area = 0, stated_slope = 0;
   for (int64_t left = sample_ticks_; left > 0;) {
-    const uint64_t due = run_.due();
-    run_.evaluate(due, true), run_.accept(), run_.update(due);
+    evaluate();
+    note_decisions(left == sample_ticks_);
     if (left == sample_ticks_)
       for (const Number slope : plan_->slopes) stated_slope += run_.number(slope);
     const int64_t passed = std::min(plan_->plan.step_ticks, left);

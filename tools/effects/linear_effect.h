@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 #include "engine/run/run.h"
 #include "tools/effects/effect_plan.h"
@@ -55,8 +56,22 @@ class EffectSample {
   std::vector<double> states();
   /// The states after a sample from given states, then mean and slope of the force.
   std::vector<double> from(const std::vector<double>& states, const GivenSignals& given);
+  /// What it pushes against, if it is not moved as the given signals say: they are those of the motion
+  /// without the effect, and its force, consumed, gives this body an acceleration within the sample.
+  struct Body {
+    double inertia;        ///< force per acceleration
+    double added_inertia;  ///< what the effect consumes of it per acceleration is part of the body already
+  };
+  /// The states after a sample, then mean and slope of the force on the body.
+  std::vector<double> against(const Body& body, const std::vector<double>& states, const GivenSignals& given);
   /// By superposition; valid for linear effects.
   SampleMap map();
+  /// What the blocks decide at an instant: the bytes of their modes.
+  const std::string& decide(const std::vector<double>& states, const GivenSignals& given);
+  /// What they had decided at the start of the last sample.
+  const std::string& decided() const { return decided_; }
+  /// Whether they decided otherwise within it or at its end.
+  bool decided_anew() const { return decided_anew_; }
 
  private:
   struct Wire {  // a parameter of an ExternalSignal
@@ -64,6 +79,14 @@ class EffectSample {
     GivenSignals::Index signal;
     double factor;
   };
+  struct Mode {
+    const char* bytes;
+    size_t size;
+  };
+  void note_decisions(bool is_start);
+  void evaluate();
+  void set_states(const std::vector<double>& states);
+  void give(const GivenSignals& given);
   void wire(const char* role, GivenSignals::Index value, GivenSignals::Index slope, bool is_line,
             double bend_factor);
 
@@ -72,6 +95,9 @@ class EffectSample {
   std::vector<double*> bound_, since_;
   std::vector<Wire> wires_;
   std::vector<size_t> states_;  // without the integral
+  std::vector<Mode> modes_;
+  std::string decided_;
+  bool decided_anew_ = false;
   int64_t sample_ticks_ = 1;
 };
 

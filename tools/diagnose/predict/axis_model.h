@@ -12,12 +12,15 @@
 #include "engine/diagram/diagram.h"
 #include "engine/plan/plan.h"
 #include "tools/diagnose/record/axis_record.h"
+#include "tools/effects/switched_effect.h"
 
 namespace loopwright {
 template <class Real> class Run;
 }
 
 namespace loopwright::diagnosis {
+
+struct AxisSteps;
 
 /// x[k+1] = A x[k] + push F (a force held over the sample), y = C x; small deviations from the recorded
 /// motion. Unobservable states are left out.
@@ -36,7 +39,21 @@ struct LinearAxis {
   Eigen::VectorXd load_force;    ///< n; force that these loads consume; empty: none
   double inertia = 0;            ///< force per acceleration, of the driven mass
   double damping = 0;            ///< force per speed
+  /// Null: each row is the same. Otherwise A is that of a row on which the last load acts.
+  std::shared_ptr<const AxisSteps> steps;
+  const Eigen::MatrixXd& A_at(size_t row) const;
 };
+
+/// An axis with a load that touches and flies changes from row to row. Its states are the last ones.
+struct AxisSteps {
+  LinearAxis without;                         ///< this load
+  std::vector<SwitchedSample::Follows> load;  ///< how its states begin with those of the axis
+  std::vector<Eigen::MatrixXd> A;             ///< n×n
+  std::vector<uint32_t> of_row;
+};
+inline const Eigen::MatrixXd& LinearAxis::A_at(size_t row) const {
+  return steps ? steps->A[steps->of_row[row]] : A;
+}
 
 /// The blocks on which these numbers depend, without those of `beyond` and those that only lie behind them.
 std::vector<bool> blocks_behind(const Plan& plan, const std::vector<Number>& wanted,

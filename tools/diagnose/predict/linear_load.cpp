@@ -32,17 +32,17 @@ LinearAxis with_load(LinearAxis axis, const SampleMap& load) {
   return axis;
 }
 
-LoadDeviation::LoadDeviation(const LinearAxis& axis, const Gains& gains, const Path* along)
+LoadDeviation::LoadDeviation(const LinearAxis& axis, const Path* along)
     : axis_(axis),
       along_(along),
       own_(along ? axis.load_states : 0),
-      correct_(gains.K.middleRows(axis.A.rows() - own_, own_)),
       onward_(axis.A.bottomRows(own_)),
       state_(Eigen::VectorXd::Zero(axis.A.rows())),
       next_(own_) {}
 
-void LoadDeviation::correct(size_t port, double error) {
-  if (own_ > 0) state_.tail(own_) += error * correct_.col(Eigen::Index(port));
+void LoadDeviation::correct(const double* gains, double error) {
+  const Eigen::Index n = state_.size();
+  for (Eigen::Index i = n - own_; i < n; ++i) state_[i] += error * gains[i];
 }
 
 double LoadDeviation::force(size_t row, double position, double velocity) {

@@ -16,9 +16,9 @@ LinearAxis with_load(LinearAxis axis, const SampleMap& load);
 class LoadDeviation {
  public:
   /// `along`: that path; null: there are no loads.
-  LoadDeviation(const LinearAxis& axis, const Gains& gains, const Path* along);
-  /// By the error of a measured port.
-  void correct(size_t port, double error);
+  LoadDeviation(const LinearAxis& axis, const Path* along);
+  /// By the error of a measured port, and its column of the gains.
+  void correct(const double* gains, double error);
   /// The force consumed over the sample that begins at a row, there with this motion.
   double force(size_t row, double position, double velocity);
 
@@ -26,7 +26,7 @@ class LoadDeviation {
   const LinearAxis& axis_;
   const Path* along_;
   Eigen::Index own_;
-  Eigen::MatrixXd correct_, onward_;
+  Eigen::MatrixXd onward_;
   Eigen::VectorXd state_;  // of the axis: from the path; of the loads: from their motion along it
   Eigen::VectorXd next_;
 };

@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Dense>
 #include <cmath>
+#include <memory>
 #include <vector>
 #include "tools/diagnose/predict/axis_model.h"
 
@@ -30,9 +31,35 @@ struct Gains {
   Eigen::MatrixXd whiten;      ///< ports × ports, lower: whiten · e has unit covariance
   double log_determinant = 0;  ///< of the covariance of e
   double memory = 1;
+  /// Of each row, one after the other, where the axis changes from row to row.
+  struct Rows {
+    std::vector<double> K, whiten, log_determinant;
+  };
+  std::shared_ptr<const Rows> rows;  ///< null: all rows have the same; then those above are of a typical row
+  /// By columns.
+  const double* K_at(size_t row) const { return rows ? &rows->K[row * size_t(K.size())] : K.data(); }
+  const double* whiten_at(size_t row) const {
+    return rows ? &rows->whiten[row * size_t(whiten.size())] : whiten.data();
+  }
+  double log_determinant_at(size_t row) const { return rows ? rows->log_determinant[row] : log_determinant; }
 };
 
-/// Solves the Riccati equation by doubling. `nominal_inertia` scales the noise forces: see Noise.
+/// Solves the Riccati equation by doubling; where the axis changes from row to row, by a step for each row.
+/// `nominal_inertia` scales the noise forces: see Noise.
 Gains gains_of(const LinearAxis& axis, const Noise& noise, double nominal_inertia);
+
+/// The gains of an axis with a load that touches and flies, row by row.
+class GainSteps {
+ public:
+  /// `axis` is without the load; see AxisSteps.
+  static std::unique_ptr<GainSteps> of(const LinearAxis& axis,
+                                       const std::vector<SwitchedSample::Follows>& load, const Noise& noise,
+                                       double nominal_inertia);
+  virtual ~GainSteps() = default;
+  /// Adds those of the next row, and returns its K.
+  virtual const double* correct(Gains::Rows& rows) = 0;
+  /// To the row after it, with the A of the axis and the load.
+  virtual void advance(const Eigen::MatrixXd& A) = 0;
+};
 
 }  // namespace loopwright::diagnosis

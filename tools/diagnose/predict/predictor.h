@@ -1,9 +1,7 @@
-/// One-step predictions of the measured signals by the user's own diagram, and their response to additional
-/// forces.
+/// One-step predictions of the measured signals by the user's own diagram.
 #pragma once
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <vector>
 #include "tools/diagnose/predict/axis_model.h"
 #include "tools/diagnose/predict/noise.h"
@@ -67,10 +65,15 @@ struct Pace {
 /// [samples] The slowest time constant in which the predictor corrects position and velocity.
 double correction_time(const LinearAxis& axis, const Gains& gains);
 
+class FlyingLoad;
+
 /// Steps the diagram along the record, as far as the drives extend: correct with the measurement, predict the
 /// next sample.
 Prediction predict(AxisModel& model, const LinearAxis& axis, const Gains& gains, const Drives& drives,
                    const Pace& pace);
+/// The same with a load whose force the drives do not contain. It brings its gains.
+Prediction predict(AxisModel& model, const LinearAxis& axis, const Drives& drives, const Pace& pace,
+                   FlyingLoad& load);
 
 /// The errors that other gains would give on the same record, without stepping the diagram again.
 void with_gains(const LinearAxis& axis, const Prediction& prediction, const Gains& from, const Gains& to,
@@ -78,37 +81,5 @@ void with_gains(const LinearAxis& axis, const Prediction& prediction, const Gain
 
 /// z[k] = whiten · e[k], in place.
 void whiten(std::vector<double>& error, const Gains& gains);
-
-/// Where an effect acts.
-enum class Acts {
-  force,   ///< consumes a force
-  input,   ///< replaces the input
-  sensor,  ///< adds an error to the measured position
-};
-
-/// The consumed force, or the error added to the measured position: a mean over each sample, and the change
-/// from its start to its end, as far as that moves the axis (see EffectRun). No slope: null. Copies share the
-/// numbers.
-struct Column {
-  using Numbers = std::shared_ptr<const std::vector<float>>;
-  Numbers mean, slope;
-
-  Column() = default;
-  explicit Column(std::vector<float> mean_, std::vector<float> slope_ = {})
-      : mean(std::make_shared<const std::vector<float>>(std::move(mean_))) {
-    if (!slope_.empty()) slope = std::make_shared<const std::vector<float>>(std::move(slope_));
-  }
-};
-/// Columns of an effect at given nonlinear parameters, per unit of each linear parameter.
-using Columns = std::vector<Column>;
-
-/// What each column adds to the whitened errors, samples × ports; eight together cost as much as two alone.
-std::vector<std::vector<double>> responses(const LinearAxis& axis, const Gains& gains, const Path& path,
-                                           Acts acts, std::span<const Column* const> columns);
-/// The same at some rows, ascending, each with its ports, written from to[column] on.
-void responses(const LinearAxis& axis, const Gains& gains, const Path& path, Acts acts,
-               std::span<const Column* const> columns, std::span<const size_t> rows,
-               std::span<double* const> to);
-std::vector<const Column*> pointers(const Columns& columns);
 
 }  // namespace loopwright::diagnosis

@@ -5,17 +5,19 @@
 namespace loopwright::diagnosis {
 
 /// Calls f<states, ports>() with the sizes of usual axes: measured by velocity, by position, or by both; with
-/// a load on a spring. For any other it calls f<0, 0>().
-template <class F> void with_sizes(const LinearAxis& axis, F&& f) {
-  const auto are = [&](Eigen::Index states, Eigen::Index ports) {
-    return axis.A.rows() == states && axis.C.rows() == ports;
-  };
+/// a load of its own and a lag. For any other it calls f<0, 0>().
+template <class F> void with_sizes(Eigen::Index states, Eigen::Index ports, F&& f) {
+  const auto are = [&](Eigen::Index n, Eigen::Index p) { return states == n && ports == p; };
   if (are(1, 1)) return f.template operator()<1, 1>();
   if (are(2, 1)) return f.template operator()<2, 1>();
   if (are(2, 2)) return f.template operator()<2, 2>();
   if (are(3, 1)) return f.template operator()<3, 1>();
   if (are(4, 1)) return f.template operator()<4, 1>();
+  if (are(5, 1)) return f.template operator()<5, 1>();
   f.template operator()<0, 0>();
+}
+template <class F> void with_sizes(const LinearAxis& axis, F&& f) {
+  with_sizes(axis.A.rows(), axis.C.rows(), std::forward<F>(f));
 }
 
 }  // namespace loopwright::diagnosis

@@ -1,11 +1,12 @@
 /// An effect as the diagnosis uses it: columns along a path, and the admissible values of its parameters.
 #pragma once
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
-#include "tools/diagnose/predict/predictor.h"
+#include "tools/diagnose/predict/responses.h"
 #include "tools/effects/effect.h"
-#include "tools/effects/linear_effect.h"
+#include "tools/effects/switched_effect.h"
 
 namespace loopwright::diagnosis {
 
@@ -56,6 +57,8 @@ struct Candidate {
   std::function<double(const Member& member)> added_inertia;
   /// One sample of a force with states of its own, if it is linear in them and the motion; empty: it is not.
   std::function<SampleMap(const Member& member)> linear_load;
+  /// The same for a load that is linear only from one blow to the next.
+  std::function<std::unique_ptr<SwitchedSample>(const Member& member)> switched_load;
 };
 
 /// An effect taken into the model, with its parameters.

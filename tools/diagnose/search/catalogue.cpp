@@ -220,6 +220,10 @@ Candidate candidate_of(const Effect& effect, std::shared_ptr<const EffectPlan> p
   };
   if (std::ranges::any_of(effect.parameters, &EffectParameter::is_bounded))
     candidate.is_plausible = [compiled](const Member& member) { return compiled->is_plausible(member); };
+  if (candidate.acts == Acts::force && compiled->plan->is_switched)
+    candidate.switched_load = [compiled](const Member& member) {
+      return std::make_unique<SwitchedSample>(compiled->plan, compiled->fitted_of(member));
+    };
   if (candidate.acts == Acts::force && compiled->plan->is_linear)
     candidate.linear_load = [compiled](const Member& member) { return compiled->sample_map(member); };
   if (std::ranges::any_of(effect.attachments, adds_inertia))

@@ -304,6 +304,18 @@ void judge_errors(const Trials& trials, Conclusion& result) {
       noise.white, noise.slow(), noise.memory_samples(), noise.measurement.front()));
 }
 
+/// As long as it exists.
+class FollowingFlights {
+ public:
+  explicit FollowingFlights(Trials& trials) : trials_(trials) { trials_.follows_flights = true; }
+  ~FollowingFlights() { trials_.follows_flights = false; }
+  FollowingFlights(const FollowingFlights&) = delete;
+  FollowingFlights& operator=(const FollowingFlights&) = delete;
+
+ private:
+  Trials& trials_;
+};
+
 /// Joint maximum likelihood, repeated with a simpler set that is as good, or at most `rounds` times with a
 /// better one.
 Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
@@ -380,6 +392,7 @@ Conclusion conclude(Trials& trials, const std::vector<Candidate>& candidates,
                     const std::vector<Shape>& shapes, Estimate found,
                     const std::vector<const Candidate*>& refused) {
   constexpr int rounds = 2;
+  const FollowingFlights following(trials);
   return concluded(trials, candidates, shapes, std::move(found), rounds, refused);
 }
 

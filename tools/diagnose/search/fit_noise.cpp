@@ -53,7 +53,7 @@ struct Objective {
       trials.work->add(error.size(), 3 * Work::of_a_response);
       for (size_t k = 0; k < std::min(trial.held_out_from, error.size() / ports); ++k) {
         if (!trial.usable[k]) continue;
-        sum += gains.log_determinant;
+        sum += gains.log_determinant_at(k);
         for (size_t p = 0; p < ports; ++p) sum += error[k * ports + p] * error[k * ports + p];
       }
     }

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
+#include "tools/diagnose/predict/flying_load.h"
 #include "tools/diagnose/predict/linear_load.h"
 #include "tools/diagnose/search/input_chain.h"
 
@@ -45,6 +47,31 @@ Columns derivatives(const Member& member, const Path& path) {
   return result;
 }
 
+/// The load of a member against the axis as it is at given parameters.
+std::unique_ptr<SwitchedSample> load_of(const Member& member, const Member& given, const LinearAxis& axis) {
+  auto load = member.candidate->switched_load(member);
+  load->set_body({axis.inertia, given.candidate->added_inertia(given)});
+  return load;
+}
+
+/// The same for the load that is a state of the predictor.
+Columns flying_derivatives(const Member& member, const Fitted& fitted) {
+  std::vector<std::unique_ptr<SwitchedSample>> changed;
+  std::vector<double> steps;
+  std::vector<Member> stepped{member};
+  for (const FreeParameter& parameter : free_parameters({member})) {
+    const CandidateParameter& range = range_of(stepped, parameter);
+    const double at = value_of(stepped, parameter);
+    steps.push_back(parameter.is_linear ? 1e-3 * std::max(std::abs(at), std::abs(range.start))
+                                        : difference_step(range, at));
+    set_value(stepped, parameter, at + steps.back());
+    changed.push_back(load_of(stepped.front(), member, fitted.axis));
+    stepped.front() = member;
+  }
+  const auto load = load_of(member, member, fitted.axis);
+  return load_derivatives(*load, changed, steps, fitted.prediction.path, *fitted.flight);
+}
+
 /// The same for a member that changes the input, as consumed input at the end of the chain.
 Column input_derivative(std::vector<Member> members, const FreeParameter& parameter, InputChain& chain) {
   const CandidateParameter& range = range_of(members, parameter);
@@ -69,8 +96,18 @@ void for_counted_rows(const Trials& trials, const std::vector<Fitted>& fitted, b
     const size_t from = held_out ? trial.held_out_from : 0;
     const size_t to = held_out ? trial.usable.size() : trial.held_out_from;
     for (size_t k = from; k < to; ++k)
-      if (trial.usable[k]) f(fitted[t], std::span(fitted[t].white).subspan(k * ports, ports));
+      if (trial.usable[k]) f(fitted[t], k, std::span(fitted[t].white).subspan(k * ports, ports));
   }
+}
+
+/// The first member with a load that the predictor can follow through its flights.
+const Member* flying_member(const std::vector<Member>& members, const AxisModel& model,
+                            const LinearAxis& axis) {
+  const AxisRecord& record = model.record();
+  if (record.is_map || !record.duration.empty() || axis.position < 0 || axis.velocity < 0) return nullptr;
+  const auto flies = std::ranges::find_if(
+      members, [](const Member& m) { return m.candidate->switched_load && m.candidate->added_inertia; });
+  return flies == members.end() ? nullptr : &*flies;
 }
 
 std::vector<double> slope_of(const AxisRecord& record, size_t rows) {
@@ -141,17 +178,20 @@ double added_inertia(const std::vector<Member>& members) {
   return added;
 }
 
-Drives drives_of(const std::vector<Member>& members, const Path& path, const std::vector<double>& raw_input) {
+Drives drives_of(const std::vector<Member>& members, const Path& path, const std::vector<double>& raw_input,
+                 const Member* without) {
   Drives drives;
   drives.along = &path;
   ChangedInput changed = InputChain(path, raw_input).through(members);
   drives.input = std::move(changed.mean), drives.input_slope = std::move(changed.slope);
   drives.force.assign(raw_input.size(), 0.0);
-  const double inertia = added_inertia(members);
+  double inertia = added_inertia(members);
+  if (without) inertia -= without->candidate->added_inertia(*without);
   if (inertia != 0)
     for (size_t k = 0; k < drives.force.size(); ++k) drives.force[k] = -inertia * path.acceleration[k];
   for (const Member& member : members) {
     const Candidate& candidate = *member.candidate;
+    if (&member == without) continue;
     if (candidate.acts == Acts::force)
       add_columns(member, candidate.columns(path, member.nonlinear), drives.force, drives.force_slope);
     if (candidate.acts != Acts::sensor) continue;
@@ -176,14 +216,24 @@ std::vector<Fitted> run_members(Trials& trials, const std::vector<Member>& membe
       for (const Member& member : members)
         if (member.candidate->linear_load)
           fitted.axis = with_load(std::move(fitted.axis), member.candidate->linear_load(member));
-    fitted.gains = gains_of(fitted.axis, noise, model.nominal_inertia());
     const std::vector<double>& raw = trials.list[t].input;
-    Drives drives;
-    if (motion.paths.empty())
-      drives = {raw, std::vector<double>(raw.size(), 0.0), {}, slope_of(model.record(), raw.size())};
-    else
-      drives = drives_of(members, *motion.paths[t], raw);
-    fitted.prediction = predict(model, fitted.axis, fitted.gains, drives, trials.list[t].pace);
+    const Pace& pace = trials.list[t].pace;
+    const bool may_follow = trials.follows_flights && !motion.paths.empty();
+    if (const Member* flies = may_follow ? flying_member(members, model, fitted.axis) : nullptr) {
+      FlyingLoad load(load_of(*flies, *flies, fitted.axis), fitted.axis, noise, model.nominal_inertia());
+      fitted.prediction =
+          predict(model, fitted.axis, drives_of(members, *motion.paths[t], raw, flies), pace, load);
+      fitted.flight = std::make_shared<const Flight>(load.take()), fitted.flying = flies->candidate;
+      std::tie(fitted.axis, fitted.gains) =
+          along_flight(fitted.axis, fitted.flight, noise, model.nominal_inertia());
+    } else {
+      fitted.gains = gains_of(fitted.axis, noise, model.nominal_inertia());
+      const Drives drives =
+          motion.paths.empty()
+              ? Drives{raw, std::vector<double>(raw.size(), 0.0), {}, slope_of(model.record(), raw.size())}
+              : drives_of(members, *motion.paths[t], raw);
+      fitted.prediction = predict(model, fitted.axis, fitted.gains, drives, pace);
+    }
     fitted.white = fitted.prediction.error;
     whiten(fitted.white, fitted.gains);
     result.push_back(std::move(fitted));
@@ -194,7 +244,7 @@ std::vector<Fitted> run_members(Trials& trials, const std::vector<Member>& membe
 double mean_square(const Trials& trials, const std::vector<Fitted>& fitted, bool held_out) {
   double sum = 0;
   size_t n = 0;
-  for_counted_rows(trials, fitted, held_out, [&](const Fitted&, std::span<const double> white) {
+  for_counted_rows(trials, fitted, held_out, [&](const Fitted&, size_t, std::span<const double> white) {
     for (double e : white) sum += e * e, ++n;
   });
   return n ? sum / double(n) : 0;
@@ -202,8 +252,9 @@ double mean_square(const Trials& trials, const std::vector<Fitted>& fitted, bool
 
 double profile(const Trials& trials, const std::vector<Fitted>& fitted) {
   double sum = 0;
-  for_counted_rows(trials, fitted, false,
-                   [&](const Fitted& f, std::span<const double>) { sum += f.gains.log_determinant; });
+  for_counted_rows(trials, fitted, false, [&](const Fitted& f, size_t row, std::span<const double>) {
+    sum += f.gains.log_determinant_at(row);
+  });
   return sum + double(fitted_numbers(trials)) * std::log(mean_square(trials, fitted));
 }
 
@@ -230,7 +281,9 @@ Sensitivity sensitivity(const std::vector<Member>& members, const Path& path, co
       }
     for (const Member& member : members)
       if (acts != Acts::input && member.candidate->acts == acts)
-        std::ranges::move(derivatives(member, path), std::back_inserter(columns));
+        std::ranges::move(member.candidate == fitted.flying ? flying_derivatives(member, fitted)
+                                                            : derivatives(member, path),
+                          std::back_inserter(columns));
     auto response = responses(fitted.axis, fitted.gains, path, acts, pointers(columns));
     for (size_t i = 0; i < places.size(); ++i) result.columns[places[i]] = std::move(response[i]);
   }

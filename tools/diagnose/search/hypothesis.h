@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include "tools/diagnose/predict/flying_load.h"
 #include "tools/diagnose/search/candidate.h"
 #include "tools/diagnose/predict/work.h"
 
@@ -40,6 +41,9 @@ struct Trials {
   bool noise_is_seen = false;  ///< the errors of the nominal diagram are white with the noise fitted to them
   double lowest_position = 0, highest_position = 0, longest_s = 0;  ///< as in the first prediction
   const std::vector<InverseDynamics>* inverse = nullptr;            ///< of each record; null: not yet known
+  /// Loads that fly are states of the predictor, as fits with the parameters nearly known need it. Otherwise
+  /// they move along the path: a set in search of them would lose its other errors to where the load is.
+  bool follows_flights = false;
   double turn = 0;  ///< [position] after which everything on a rotary axis repeats; 0: not rotary
   const std::atomic<bool>* interrupt =
       nullptr;  ///< once true, the next run along the records throws Interrupted
@@ -70,7 +74,9 @@ struct Fitted {
   LinearAxis axis;
   Gains gains;
   Prediction prediction;
-  std::vector<double> white;  ///< whitened errors
+  std::vector<double> white;          ///< whitened errors
+  const Candidate* flying = nullptr;  ///< the member whose load is a state of the predictor
+  std::shared_ptr<const Flight> flight;
 };
 /// Of every record. They do not change, and estimates share them.
 using Results = std::shared_ptr<const std::vector<Fitted>>;
@@ -84,7 +90,9 @@ std::vector<Fitted> run_members(Trials& trials, const std::vector<Member>& membe
 double added_inertia(const std::vector<Member>& members);
 
 /// The input after the members that change it, and the force that the others consume, along a path.
-Drives drives_of(const std::vector<Member>& members, const Path& path, const std::vector<double>& raw_input);
+/// `without`: one of them that the predictor itself follows.
+Drives drives_of(const std::vector<Member>& members, const Path& path, const std::vector<double>& raw_input,
+                 const Member* without = nullptr);
 
 /// Mean of the squared whitened errors over the usable rows before the hold-out, or in it.
 double mean_square(const Trials& trials, const std::vector<Fitted>& fitted, bool held_out = false);

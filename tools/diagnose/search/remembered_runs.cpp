@@ -24,6 +24,7 @@ RememberedRuns::Question RememberedRuns::question_of(const Trials& trials, const
   question.numbers.insert(question.numbers.end(), noise.measurement.begin(), noise.measurement.end());
   for (const auto& path : motion.paths) question.paths.push_back(path->identity);
   for (const Trial& trial : trials.list) question.rows.push_back(trial.rows());
+  question.rows.push_back(trials.follows_flights);
   return question;
 }
 

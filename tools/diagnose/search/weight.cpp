@@ -139,9 +139,24 @@ double force_rms(const Trials& trials, const Estimate& estimate, size_t index) {
   return std::sqrt(sum / std::max(n, 1.0));
 }
 
-Weight weigh(const Trials& trials, Estimate& estimate, size_t member) {
+/// Of a load that is a state of the predictor: what is lost without it. Where it is known from moment to
+/// moment, its mass alone shows little of what the load as a whole explains.
+double gain_of_load(Trials& trials, const Estimate& estimate, size_t member) {
+  std::vector<Member> others = estimate.members;
+  others.erase(others.begin() + std::ptrdiff_t(member));
+  constexpr int iterations = 2;
+  const Estimate without =
+      fit_members(trials, std::move(others), estimate.noise, estimate.motion, iterations);
+  return without.is_valid ? std::max(0.0, without.profile - estimate.profile) : 0;
+}
+
+Weight weigh(Trials& trials, Estimate& estimate, size_t member) {
   Weight weight;
-  const auto [among_others, alone, with_own_shape, parameters] = wald(estimate, member);
+  auto [among_others, alone, with_own_shape, parameters] = wald(estimate, member);
+  if (estimate.fitted->front().flying == estimate.members[member].candidate) {
+    const double as_a_whole = std::max(1.0, gain_of_load(trials, estimate, member) / among_others);
+    among_others *= as_a_whole, alone *= as_a_whole;
+  }
   weight.wald = among_others;
   weight.certainty = with_own_shape / chi_square_95(double(parameters));
   weight.force_rms = force_rms(trials, estimate, member);

@@ -30,12 +30,18 @@ double normal(size_t record, size_t source, size_t row) {
 /// counts from step to step, and would not find them again.
 std::vector<double> smoothed(const Fitted& fitted, const MeasuredPort& sensor, size_t ports) {
   const ErrorSystem system(fitted, false);
-  const Eigen::MatrixXd covariance = (fitted.gains.whiten.transpose() * fitted.gains.whiten).inverse();
-  const Eigen::VectorXd per_error = (fitted.gains.K * covariance).col(0);
+  const Eigen::Index n = system.enter.size(), p = system.C.rows();
+  const auto per_error_at = [&](size_t row) -> Eigen::VectorXd {  // P Cᵀ = K S
+    const Eigen::Map<const Eigen::MatrixXd> K(fitted.gains.K_at(row), n, p),
+        whiten(fitted.gains.whiten_at(row), p, p);
+    return (K * (whiten.transpose() * whiten).inverse()).col(0);
+  };
+  Eigen::VectorXd per_error = per_error_at(0);
   std::vector<double> motion(fitted.prediction.path.samples());
   run_backward(
       system, fitted, [](size_t) { return true; },
       [&](size_t k, const auto&, const auto& before, const auto&, const auto&) {
+        if (fitted.gains.rows) per_error = per_error_at(k);
         motion[k] = sensor.value[k] - fitted.prediction.error[k * ports] + per_error.dot(before);
       });
   return motion;
@@ -75,26 +81,24 @@ std::vector<double> filtered(const Fitted& fitted, const Noise& noise, double sc
   const size_t ports = size_t(system.C.rows());
   std::vector<double> white(first_port.size() * ports);
   with_sizes(fitted.axis, [&]<int States, int Ports>() {
-    constexpr int states = States ? States + 1 : Eigen::Dynamic, outputs = Ports ? Ports : Eigen::Dynamic;
-    using State = Eigen::Matrix<double, states, 1>;
-    using Port = Eigen::Matrix<double, outputs, 1>;
-    const Eigen::Matrix<double, states, states> onward = system.onward;
-    const Eigen::Matrix<double, states, outputs> correct = system.correct;
-    const Eigen::Matrix<double, outputs, states> seen = system.C;
-    const Eigen::Matrix<double, outputs, outputs> whiten = fitted.gains.whiten;
+    using Sized = SizedErrorSystem<States, Ports>;
+    using State = Eigen::Matrix<double, Sized::states, 1>;
+    using Port = Eigen::Matrix<double, Sized::ports, 1>;
+    Sized now(system);
     const Eigen::Index slow = system.enter.size() - 1, p = Eigen::Index(ports);
     State push = State::Zero(slow + 1), x = push, next(slow + 1);
     push.head(slow) = scale * noise.white * fitted.axis.noise_push;
     Port e(p);
     for (size_t k = 0; k < first_port.size(); ++k) {
-      e.noalias() = seen * x;
+      now.take_row(fitted, k);
+      e.noalias() = now.C * x;
       e[0] += first_port[k];
       for (size_t port = 1; port < ports; ++port)
         e[Eigen::Index(port)] += noise.measurement[port] * normal(record, port, k);
-      Eigen::Map<Port>(&white[k * ports], p).noalias() = whiten * e;
-      x.noalias() -= correct * e;
+      Eigen::Map<Port>(&white[k * ports], p).noalias() = now.whiten * e;
+      x.noalias() -= now.correct * e;
       if (fitted.prediction.path.forgets(k)) x[slow] = 0;
-      next.noalias() = onward * x;
+      next.noalias() = now.onward * x;
       x = next + push * normal(record, ports, k);
       x[slow] += scale * noise.step * normal(record, ports + 1, k);
     }

@@ -1,0 +1,62 @@
+/// Effects with states of their own that are linear as long as nothing is decided anew: a load that is driven
+/// through a gap flies free or touches a flank, and each is linear.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+#include "tools/effects/effect_run.h"
+
+namespace loopwright {
+
+/// Such an effect, one sample at a time from any states, with derivatives.
+class SwitchedSample {
+ public:
+  /// `fitted`: all its parameters in SI.
+  SwitchedSample(std::shared_ptr<const EffectPlan> plan, const std::vector<double>& fitted);
+
+  /// Its states at the start of a motion.
+  std::vector<double> start(double position, double velocity);
+  /// How these follow the position and the velocity with which the motion starts.
+  struct Follows {
+    double position = 0, velocity = 0;
+  };
+  const std::vector<Follows>& follows() const { return follows_; }
+  /// The body against which it acts; its added inertia is that of the effect.
+  void set_body(const EffectSample::Body& body) { body_ = body; }
+  /// The states after a sample, then mean and slope of the force: see EffectSample::against().
+  const std::vector<double>& from(const std::vector<double>& states, const GivenSignals& given);
+  /// Index in maps() of the derivatives of the sample that was asked for last, for states, position and
+  /// velocity. Samples in which nothing is decided anew share the map of their mode.
+  uint32_t map_of(const std::vector<double>& states, const GivenSignals& given);
+  const std::vector<SampleMap>& maps() const { return maps_; }
+
+ private:
+  friend bool is_switched(const std::shared_ptr<const EffectPlan>& plan);
+  /// A sample in which nothing is decided anew: the map about one of them.
+  struct Mode {
+    std::vector<double> states;
+    GivenSignals given;
+    std::vector<double> result;
+    uint32_t map;
+  };
+  /// By differences to both sides; whether all of them decided as the sample did.
+  bool differ(const std::vector<double>& states, const GivenSignals& given, double size, SampleMap& map);
+  /// Sets the result by the map of a mode; whether the blocks still decide so at the end of the sample.
+  bool follow(const Mode& mode, const std::vector<double>& states, const GivenSignals& given);
+
+  std::shared_ptr<const EffectPlan> plan_;
+  std::vector<double> fitted_;
+  EffectSample sample_;
+  EffectSample::Body body_{1, 0};
+  std::vector<Follows> follows_;
+  std::vector<SampleMap> maps_;
+  std::map<std::string, Mode> modes_;
+  const Mode* followed_ = nullptr;  // that of the last sample; null: it was integrated
+  std::vector<double> result_, ends_;
+};
+
+/// Whether the blocks of an effect remember nothing but states, decide something, and are linear in between.
+bool is_switched(const std::shared_ptr<const EffectPlan>& plan);
+
+}  // namespace loopwright
