@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include "tools/diagnose/search/doubt.h"
+#include "tools/diagnose/search/flights.h"
 #include "tools/diagnose/search/law_swaps.h"
 #include "tools/diagnose/search/noisy_input.h"
 #include "tools/diagnose/search/remaining_force.h"
@@ -304,18 +305,6 @@ void judge_errors(const Trials& trials, Conclusion& result) {
       noise.white, noise.slow(), noise.memory_samples(), noise.measurement.front()));
 }
 
-/// As long as it exists.
-class FollowingFlights {
- public:
-  explicit FollowingFlights(Trials& trials) : trials_(trials) { trials_.follows_flights = true; }
-  ~FollowingFlights() { trials_.follows_flights = false; }
-  FollowingFlights(const FollowingFlights&) = delete;
-  FollowingFlights& operator=(const FollowingFlights&) = delete;
-
- private:
-  Trials& trials_;
-};
-
 /// Joint maximum likelihood, repeated with a simpler set that is as good, or at most `rounds` times with a
 /// better one.
 Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
@@ -326,6 +315,7 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
   result.turn = trials.turn;
   estimate = snap_to_turn(trials, std::move(found));
   leave_out_doubtful(trials, estimate);
+  estimate = fitted_in_flight(trials, std::move(estimate));
   const bool was_doubtful = may_be_doubtful(estimate.members);
   keep_material(trials, result, candidates.size());
   if (was_doubtful && !may_be_doubtful(estimate.members)) {  // all rows count again
