@@ -94,6 +94,9 @@ constexpr double least_sensor_noise = 1e-9;
 /// [gain of a late input] Of which an input that is early by as much, or smoothed beside a small one, has
 /// more if it has noise that any mean reduces. One that is truly late loses by either.
 constexpr double least_gain_of_early_input = 0.5;
+/// [its fast changes] Of the input that is taken for noise that the machine does not feel. Less takes nothing
+/// away, and something else looks like an input that is early and late.
+constexpr double least_unfelt_share = 0.02;
 
 // Whiteness of the prediction errors.
 

@@ -15,6 +15,9 @@ using Kind = Value::Kind;
 
 /// Steps of the solver within a sample, for blocks with states of their own.
 constexpr int steps_per_sample = 4;
+/// The same where something is decided, which happens at the start of a step: a contact that begins late by a
+/// step is too weak, and would seem to be harder.
+constexpr int steps_per_decision = 16;
 
 Value text_value(std::string words, const Place& place = {}) {
   Value value;
@@ -228,7 +231,12 @@ std::shared_ptr<const EffectPlan> compile_effect(const Effect& effect, const Mac
                     });
     check_bindings(*result, own);
     if (!own.has_errors()) result->is_linear = is_linear(result);
-    if (!own.has_errors()) result->is_switched = is_switched(result);
+    if (!own.has_errors() && (result->is_switched = is_switched(result))) {
+      auto finer = std::make_shared<EffectPlan>(*result);
+      if (const auto diagram = read_diagram(bench.diagram(steps_per_decision), effect.path, {}, own))
+        if (const auto shorter = compile(*diagram, own)) finer->plan = *shorter;
+      result->finer = std::move(finer);
+    }
   }
   for (Problem problem : own.list()) {  // what lies between the blocks and their bench has no file of its own
     if (!problem.place.file) problem.place = effect.blocks.place;

@@ -28,6 +28,8 @@ struct EffectPlan {
   /// remembers: see EffectRun.
   bool is_linear = false;
   bool is_switched = false;  ///< linear in the same way as long as nothing is decided: see switched_effect.h
+  /// Of a switched effect: the same with shorter steps, for the few samples in which something is decided.
+  std::shared_ptr<const EffectPlan> finer;
 };
 
 /// Null after a problem: blocks that do not exist, units incompatible with the machine's.

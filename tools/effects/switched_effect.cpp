@@ -33,7 +33,7 @@ bool are_alike(const std::map<std::string, std::vector<SampleMap>>& modes) {
 }  // namespace
 
 SwitchedSample::SwitchedSample(std::shared_ptr<const EffectPlan> plan, const std::vector<double>& fitted)
-    : plan_(std::move(plan)), fitted_(fitted), sample_(plan_) {
+    : plan_(plan->finer ? plan->finer : std::move(plan)), fitted_(fitted), sample_(plan_) {
   const std::vector<double> origin = start(0, 0), ahead = start(1, 0), faster = start(0, 1);
   for (size_t i = 0; i < origin.size(); ++i)
     follows_.push_back({ahead[i] - origin[i], faster[i] - origin[i]});

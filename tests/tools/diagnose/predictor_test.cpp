@@ -1,5 +1,5 @@
 // The prediction errors, and the filters that describe their response to forces.
-#include "tools/diagnose/predict/predictor.h"
+#include "tools/diagnose/predict/responses.h"
 #include <cmath>
 #include "engine/run/run.h"
 #include "tests/engine/written_diagram.h"

@@ -118,7 +118,9 @@ std::optional<InputNoise> noise_instead_of_late_input(Trials& trials, const Esti
   const bool gains_early =
       of_nothing - loss(by->after) > criteria::least_gain_of_early_input * (of_nothing - of_late);
   if (!gains_early && loss(by->about) >= of_late) return {};
-  return InputNoise{by->about.members.back().nonlinear[0], by->about.members.back().linear[0]};
+  const Member& smoothing = by->about.members.back();
+  if (smoothing.linear[0] < criteria::least_unfelt_share) return {};
+  return InputNoise{smoothing.nonlinear[0], smoothing.linear[0]};
 }
 
 bool measure_position(const Trials& trials) {

@@ -1,0 +1,124 @@
+// A load that is driven through a gap, one sample at a time.
+#include "tools/effects/switched_effect.h"
+#include <gtest/gtest.h>
+#include <cmath>
+#include "tests/tools/effects/axis_sizes.h"
+
+namespace loopwright::switched_effect_test {
+namespace {
+
+constexpr double sample_time = 1e-3, load = 0.12, gap = 3e-4, frequency = 60, ratio = 0.2;
+const double stiffness = load * std::pow(2 * M_PI * frequency, 2),
+             flank_damping = 2 * ratio * load * 2 * M_PI * frequency,
+             drag = axis_sizes().machine_damping * load / axis_sizes().machine_mass,
+             body = axis_sizes().machine_mass - load;
+
+std::shared_ptr<const EffectPlan> compiled(const std::string& name) {
+  RecordSizes sizes = axis_sizes();
+  sizes.sample_time = sample_time;
+  Problems problems;
+  auto plan = compile_effect(effect_named(name), {}, sizes, problems);
+  EXPECT_EQ(problems.text(), "");
+  return plan;
+}
+
+struct Backlash : SwitchedSample {
+  Backlash() : SwitchedSample(compiled("backlash"), {load, gap, frequency, ratio}) {
+    set_body({body, -load});
+  }
+};
+
+/// What happens in a sample to a body that would move freely with this acceleration.
+struct Happens {
+  double load_position, load_velocity, mean, slope;
+};
+/// Semi-implicit Euler in steps of 10 ns. The drag that the load takes along is missed at the body.
+Happens integrated(double x, double v, double free, double load_x, double load_v) {
+  constexpr int steps = 100000;
+  constexpr double h = sample_time / steps;
+  double impulse = 0, moment = 0;
+  for (int i = 0; i < steps; ++i) {
+    const double d = x - load_x, rate = v - load_v;
+    double contact = 0;
+    if (d > gap / 2) contact = std::max(0.0, stiffness * (d - gap / 2) + flank_damping * rate);
+    if (d < -gap / 2) contact = std::min(0.0, stiffness * (d + gap / 2) + flank_damping * rate);
+    const double push = contact - drag * v;
+    impulse += push * h, moment += push * h * ((i + 0.5) / steps - 0.5);
+    v += h * (free - push / body), load_v += h * (contact - drag * load_v) / load;
+    x += h * v, load_x += h * load_v;
+  }
+  return {load_x, load_v, impulse / sample_time, 12 * moment / sample_time};
+}
+
+/// `decided_at`: approach at which a flank is met within the sample; a sixteenth of it passes unnoticed.
+void expect_as_integrated(SwitchedSample& sample, double x, double v, double free, double load_x,
+                          double load_v, double decided_at = 0) {
+  const Happens expected = integrated(x, v, free, load_x, load_v);
+  const std::vector<double> states{load_x, load_v};
+  const std::vector<double> result = sample.from(states, {{x, v, free, free, 0, 0, 0}});
+  const double missed = flank_damping * decided_at / 16;
+  const double size = 0.01 * (std::abs(expected.mean) + drag * std::abs(v)) + missed;
+  EXPECT_NEAR(result[0], expected.load_position, size * sample_time * sample_time / load + 1e-9);
+  EXPECT_NEAR(result[1], expected.load_velocity, size * sample_time / load);
+  EXPECT_NEAR(result[2], expected.mean, size);
+  EXPECT_NEAR(result[3], expected.slope, 6 * size);
+}
+
+TEST(SwitchedEffect, OfTheCatalogueOnlyTheBacklashIsOne) {
+  for (const Effect& effect : whole_catalogue()) {
+    RecordSizes sizes = axis_sizes();
+    sizes.sample_time = sample_time;
+    Problems problems;
+    const auto plan = compile_effect(effect, {}, sizes, problems);
+    ASSERT_TRUE(plan) << effect.name;
+    EXPECT_EQ(plan->is_switched, effect.name == "backlash") << effect.name;
+  }
+}
+
+TEST(SwitchedEffect, FliesTouchesAndLeavesAsTwoBodiesDo) {
+  Backlash sample;
+  for (int round = 0; round < 2; ++round) {  // at first integrated, then by the map of the mode
+    expect_as_integrated(sample, 0.3, 0.2, 0.7, 0.3 + 0.2e-4, 0.18);
+    expect_as_integrated(sample, 0.3 + gap / 2 + 3e-5, 0.2, -4, 0.3, 0.18);
+    expect_as_integrated(sample, 0.1 - gap / 2 - 3e-5, -0.2, 4, 0.1, -0.18);
+  }
+  expect_as_integrated(sample, 0.3 + gap / 2 - 1e-5, 0.2, 0, 0.3, 0.18, 0.02);    // touches within it
+  expect_as_integrated(sample, 0.3 + gap / 2 + 4e-6, 0.2, -20, 0.3, 0.2 + 4e-3);  // leaves within it
+}
+
+TEST(SwitchedEffect, TheMapOfASampleIsItsDerivative) {
+  Backlash sample;
+  const double x = 0.3 + gap / 2 + 3e-5, v = 0.2, free = -4, load_x = 0.3, load_v = 0.18;
+  const std::vector<double> states{load_x, load_v};
+  const GivenSignals given{{x, v, free, free, 0, 0, 0}};
+  sample.from(states, given);
+  const SampleMap& map = sample.maps()[sample.map_of(states, given)];
+  constexpr double by = 1e-6;
+  const Happens low = integrated(x - by, v, free, load_x, load_v),
+                high = integrated(x + by, v, free, load_x, load_v);
+  const std::vector<double>& of_position = map.columns[2 + GivenSignals::position];
+  EXPECT_NEAR(of_position[2], (high.mean - low.mean) / (2 * by), 0.01 * stiffness);
+  EXPECT_NEAR(of_position[1], (high.load_velocity - low.load_velocity) / (2 * by),
+              0.01 * stiffness * sample_time / load);
+  const Happens slow = integrated(x, v, free, load_x, load_v - by),
+                fast = integrated(x, v, free, load_x, load_v + by);
+  EXPECT_NEAR(map.columns[1][2], (fast.mean - slow.mean) / (2 * by), 0.01 * flank_damping);
+}
+
+TEST(SwitchedEffect, SamplesOfOneModeShareTheirMap) {
+  Backlash sample;
+  const auto map_at = [&](double x, double load_x) {
+    const std::vector<double> states{load_x, 0.2};
+    const GivenSignals given{{x, 0.2, 0, 0, 0, 0, 0}};
+    sample.from(states, given);
+    return sample.map_of(states, given);
+  };
+  const uint32_t flying = map_at(0.1, 0.1), pushing = map_at(0.1 + gap, 0.1);
+  EXPECT_NE(flying, pushing);
+  EXPECT_EQ(map_at(0.5 + gap / 4, 0.5), flying);
+  EXPECT_EQ(map_at(0.5 + 0.8 * gap, 0.5), pushing);
+  EXPECT_EQ(sample.maps().size(), 2U);
+}
+
+}  // namespace
+}  // namespace loopwright::switched_effect_test
