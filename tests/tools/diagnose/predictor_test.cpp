@@ -113,6 +113,21 @@ TEST(Predictor, OtherGainsNeedNoOtherRun) {
   EXPECT_LT(off, 1e-3 * size) << "the same but for samples near rest, where the two see other speeds";
 }
 
+TEST(Predictor, GainsFoundRowByRowAreTheSteadyOnesWhereNothingChanges) {
+  Predicted p(short_record());
+  const auto steps = GainSteps::of(p.axis, {}, noise_of_record(), p.model.nominal_inertia());
+  Gains::Rows rows;
+  constexpr size_t count = 2000;
+  for (size_t k = 0; k < count; ++k) steps->correct(rows), steps->advance(p.axis.A);
+  const size_t size = size_t(p.gains.K.size());
+  for (const size_t row : {size_t(0), count - 1}) {
+    for (size_t i = 0; i < size; ++i)
+      EXPECT_NEAR(rows.K[row * size + i] / p.gains.K.data()[i], 1, 1e-6) << "row " << row << ", " << i;
+    EXPECT_NEAR(rows.whiten[row] / p.gains.whiten(0, 0), 1, 1e-6);
+    EXPECT_NEAR(rows.log_determinant[row], p.gains.log_determinant, 1e-6);
+  }
+}
+
 /// A record may need several steps in a sample, or have samples of any length. A delayed command still
 /// arrives.
 TEST(Predictor, SampledBlocksRunAtTheirSamplesWhateverTheStep) {
