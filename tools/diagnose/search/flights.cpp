@@ -23,9 +23,8 @@ bool begin_anew(Member& load) {
 }  // namespace
 
 Estimate fitted_in_flight(Trials& trials, Estimate found) {
-  const auto flies = std::ranges::find_if(found.members, [](const Member& m) {
-    return bool(m.candidate->switched_load);
-  });
+  const auto flies =
+      std::ranges::find_if(found.members, [](const Member& m) { return bool(m.candidate->switched_load); });
   if (flies == found.members.end()) return found;
   std::vector<Member> members = found.members;
   const bool was_far = begin_anew(members[size_t(flies - found.members.begin())]);
