@@ -42,6 +42,8 @@ Results RememberedRuns::run(Trials& trials, const std::vector<Member>& members, 
   for (const Trial& trial : trials.list)
     trials.work->add(trial.rows(), double(1 + members.size()) * Work::of_a_sample);
   runs_.push_back({std::move(question), anew()});
+  for (const Fitted& fitted : *runs_.back().results)
+    if (fitted.flying) trials.work->add(fitted.prediction.path.samples(), Work::of_a_flight);
   if (runs_.size() > most_runs) runs_.pop_front();
   return runs_.back().results;
 }
@@ -56,6 +58,11 @@ std::shared_ptr<const std::vector<Sensitivity>> RememberedRuns::sensitivities(
   for (size_t t = 0; t < trials.list.size(); ++t) {
     trials.work->add(trials.list[t].rows(),
                      double(free.size()) * Work::of_a_response + double(members.size()) * Work::of_a_sample);
+    const auto flies = [&](const FreeParameter& p) {
+      return members[p.member].candidate == (*results)[t].flying;
+    };
+    trials.work->add(trials.list[t].rows(),
+                     double(std::ranges::count_if(free, flies)) * Work::of_a_changed_flight);
     list->push_back(sensitivity(members, *motion.paths[t], (*results)[t], trials.list[t].input));
   }
   keep({results, std::move(free), list});
