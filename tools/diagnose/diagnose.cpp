@@ -79,11 +79,14 @@ class Inquiry {
         unknown_(unknown_forces(sizes, trials.has_map())),
         progress_(progress) {}
 
-  /// From the fitted rows.
-  Conclusion with_names() {
+  /// From the fitted rows. `before`: what was concluded from fewer of them, and is kept where no work is
+  /// left.
+  Conclusion with_names(const Conclusion* before = nullptr) {
     const std::vector<Shape>& shapes = shapes_along_fitted_rows();
     progress_("searching", 0.4);
-    SearchResult searched = search(trials_, catalogue_.candidates, shapes, unknown_, fitted_motion_);
+    SearchResult searched = before && trials_.work->is_spent(criteria::work_of_search)
+                                ? found_again(before->estimate)
+                                : search(trials_, catalogue_.candidates, shapes, unknown_, fitted_motion_);
     progress_("fitting effects and noise together", 0.7);
     Conclusion conclusion = conclude(trials_, catalogue_.candidates, shapes, std::move(searched.estimate));
     std::ranges::move(conclusion.trail, std::back_inserter(searched.trail));
@@ -122,6 +125,11 @@ class Inquiry {
   const Motion& motion_of_all_rows() const { return on_all_rows_.motion; }
 
  private:
+  /// On the rows that are fitted now.
+  SearchResult found_again(const Estimate& e) {
+    constexpr int iterations = 8;
+    return {fit_members(trials_, e.members, e.noise, fitted_motion_, iterations), {}};
+  }
   /// They are computed again only if other rows are fitted.
   const std::vector<Shape>& shapes_along_fitted_rows() {
     trials_.run_along(Trials::Rows::fitted);
@@ -166,7 +174,7 @@ Conclusion conclusion_from(Inquiry& inquiry, std::vector<RecordFinding>& finding
     inquiry.fit_all_rows();
     findings.push_back({"the part that was to be held out shows something that the other part does not",
                         "it was used for the fit too, and no error is held out"});
-    conclusion = inquiry.with_names();
+    conclusion = inquiry.with_names(&conclusion);
   }
   if (explains_lead(conclusion))
     std::erase_if(findings, is_doubtful);

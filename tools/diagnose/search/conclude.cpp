@@ -382,7 +382,6 @@ Conclusion conclude(Trials& trials, const std::vector<Candidate>& candidates,
                     const std::vector<Shape>& shapes, Estimate found,
                     const std::vector<const Candidate*>& refused) {
   constexpr int rounds = 2;
-  const FollowingFlights following(trials);
   return concluded(trials, candidates, shapes, std::move(found), rounds, refused);
 }
 

@@ -4,13 +4,13 @@
 
 namespace loopwright::diagnosis {
 
-/// As long as it exists, runs along the records follow such loads: see Trials::follows_flights.
-class FollowingFlights {
+/// As long as it exists, runs along the records do not follow such loads: see Trials::follows_flights.
+class WithoutFlights {
  public:
-  explicit FollowingFlights(Trials& trials) : trials_(trials) { trials_.follows_flights = true; }
-  ~FollowingFlights() { trials_.follows_flights = false; }
-  FollowingFlights(const FollowingFlights&) = delete;
-  FollowingFlights& operator=(const FollowingFlights&) = delete;
+  explicit WithoutFlights(Trials& trials) : trials_(trials) { trials_.follows_flights = false; }
+  ~WithoutFlights() { trials_.follows_flights = true; }
+  WithoutFlights(const WithoutFlights&) = delete;
+  WithoutFlights& operator=(const WithoutFlights&) = delete;
 
  private:
   Trials& trials_;

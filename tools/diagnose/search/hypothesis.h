@@ -41,9 +41,9 @@ struct Trials {
   bool noise_is_seen = false;  ///< the errors of the nominal diagram are white with the noise fitted to them
   double lowest_position = 0, highest_position = 0, longest_s = 0;  ///< as in the first prediction
   const std::vector<InverseDynamics>* inverse = nullptr;            ///< of each record; null: not yet known
-  /// Loads that fly are states of the predictor, as fits with the parameters nearly known need it. Otherwise
-  /// they move along the path: a set in search of them would lose its other errors to where the load is.
-  bool follows_flights = false;
+  /// Loads that fly are states of the predictor. During the search they move along the path instead: a set
+  /// in search of them would lose its other errors to where the load is.
+  bool follows_flights = true;
   double turn = 0;  ///< [position] after which everything on a rotary axis repeats; 0: not rotary
   const std::atomic<bool>* interrupt =
       nullptr;  ///< once true, the next run along the records throws Interrupted

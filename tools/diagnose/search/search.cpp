@@ -7,6 +7,7 @@
 #include <ranges>
 #include "tools/diagnose/search/conclude.h"
 #include "tools/diagnose/search/doubt.h"
+#include "tools/diagnose/search/flights.h"
 #include "tools/diagnose/search/law_swaps.h"
 #include "tools/diagnose/search/load_starts.h"
 #include "tools/diagnose/search/remaining_force.h"
@@ -394,6 +395,7 @@ class Search {
 SearchResult search(Trials& trials, const std::vector<Candidate>& candidates,
                     const std::vector<Shape>& shapes, const std::vector<Candidate>& unknown,
                     const Motion& motion) {
+  const WithoutFlights without(trials);
   return Search(trials, candidates, shapes, unknown, motion).run();
 }
 
