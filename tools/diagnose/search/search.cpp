@@ -89,9 +89,8 @@ class Search {
   }
 
   void take(Estimate better) {
-    best_ = std::move(better);
+    best_ = std::move(better), evidence_.reset();
     leave_out_doubtful(trials_, best_);
-    evidence_.reset();
   }
 
   /// Improvement of the criterion of a trial over the best set, on the same rows.
@@ -371,8 +370,7 @@ class Search {
     const Noise louder = fit_noise_alone(trials_, *best_.fitted, noise_, FreeNoise::white_and_slow);
     Estimate trial = fit_members(trials_, best_.members, louder, best_.motion, 4);
     if (!trial.is_valid || portmanteau(trials_, *trial.fitted) > criteria::most_portmanteau) return false;
-    noise_ = louder;
-    take(std::move(trial));
+    noise_ = louder, take(std::move(trial));
     note("with louder noise");
     prune();
     return true;
