@@ -21,20 +21,7 @@ size_t parts_of_a_sample(const RecordSizes& sizes) {
   return std::min(most, whole_count(std::ceil(way / (farthest * sizes.stroke))));
 }
 
-/// Slopes of velocity and acceleration within a sample.
-double gain_of(const RoleSample& s, double sample_time) {
-  return std::isnan(s.next_velocity) ? s.acceleration : (s.next_velocity - s.velocity) / sample_time;
-}
-double jerk_of(const RoleSample& s, double sample_time) {
-  return std::isnan(s.next_acceleration) ? 0.0 : (s.next_acceleration - s.acceleration) / sample_time;
-}
-
 }  // namespace
-
-GivenSignals given_at(const RoleSample& s, double sample_time) {
-  return {{s.position, s.velocity, gain_of(s, sample_time), s.acceleration, jerk_of(s, sample_time), s.input,
-           s.force}};
-}
 
 size_t RoleSignals::rows() const {
   return std::max({position.size(), velocity.size(), acceleration.size(), input.size(), force.size()});
@@ -96,6 +83,18 @@ void EffectRun::Setting::set(double to) const {
     std::fill_n(lanes.front(), lanes.size(), to);
   else
     for (double* lane : lanes) *lane = to;
+}
+
+double EffectRun::gain_of(const RoleSample& s) const {
+  return std::isnan(s.next_velocity) ? s.acceleration
+                                     : (s.next_velocity - s.velocity) / plan_->sizes.sample_time;
+}
+double EffectRun::jerk_of(const RoleSample& s) const {
+  return std::isnan(s.next_acceleration) ? 0.0
+                                         : (s.next_acceleration - s.acceleration) / plan_->sizes.sample_time;
+}
+GivenSignals EffectRun::given_at(const RoleSample& s) const {
+  return {{s.position, s.velocity, gain_of(s), s.acceleration, jerk_of(s), s.input, s.force}};
 }
 
 void EffectRun::give(const GivenSignals& given, double now) {
@@ -167,7 +166,7 @@ void EffectRun::give_at(double u, size_t rows) {
   const double T = plan_->sizes.sample_time;
   const auto give_each = [&](const Wire& wire, auto&& signal) {
     if (wire.value.lanes.empty()) return;
-    for (size_t i = 0; i < rows; ++i) *wire.value.lanes[i] = signal(samples_[i], gain_of(samples_[i], T) * T);
+    for (size_t i = 0; i < rows; ++i) *wire.value.lanes[i] = signal(samples_[i], gain_of(samples_[i]) * T);
   };
   give_each(position_, [&](const RoleSample& s, double gain) {
     const double way = (s.velocity + 0.5 * gain * u) * u + s.velocity_bow * u * u * (3 - 2 * u);
@@ -176,8 +175,7 @@ void EffectRun::give_at(double u, size_t rows) {
   give_each(velocity_, [&](const RoleSample& s, double gain) {
     return s.velocity + gain * u + 6 * s.velocity_bow * u * (1 - u);
   });
-  give_each(acceleration_,
-            [&](const RoleSample& s, double) { return s.acceleration + jerk_of(s, T) * T * u; });
+  give_each(acceleration_, [&](const RoleSample& s, double) { return s.acceleration + jerk_of(s) * T * u; });
   give_each(input_, [](const RoleSample& s, double) { return s.input; });
   give_each(force_, [](const RoleSample& s, double) { return s.force; });
 }
@@ -227,7 +225,7 @@ void EffectRun::integrate_sample() {
 
 void EffectRun::step(const RoleSample& s) {
   const double now = run_->time();
-  give(given_at(s, plan_->sizes.sample_time), now);
+  give(given_at(s), now);
   if (plan_->integral >= 0) return integrate_sample();
   mean_from(now);
   run_->integrate(sample_ticks_);
@@ -263,7 +261,7 @@ void EffectRun::superpose(const RoleSignals& signals, size_t rows, size_t lanes,
   }
   SampleMaps side_by_side(maps, states);
   for (size_t row = 0; row < rows; ++row) {
-    side_by_side.step(given_at(signals.at(row), plan_->sizes.sample_time));
+    side_by_side.step(given_at(signals.at(row)));
     for (size_t lane = 0; lane < lanes; ++lane)
       take(lane, row, side_by_side.mean(lane), side_by_side.slope(lane));
   }

@@ -18,8 +18,6 @@ struct RoleSample {
   double velocity_bow = 0;  ///< see RoleSignals
 };
 
-GivenSignals given_at(const RoleSample& sample, double sample_time);
-
 /// Columns of a record, or of a predictor; empty if the effect does not read them.
 struct RoleSignals {
   std::span<const double> position, velocity, acceleration, input, force;
@@ -87,6 +85,10 @@ class EffectRun {
   Wire wire(const char* role);
   /// Back to rest at the first sample.
   void start(const RoleSample& first);
+  /// Slopes of velocity and acceleration within a sample.
+  double gain_of(const RoleSample& sample) const;
+  double jerk_of(const RoleSample& sample) const;
+  GivenSignals given_at(const RoleSample& sample) const;
   /// Sets `value_` and `slope_` to those of the next sample, one per lane.
   void step(const RoleSample& sample);
   /// The same at the two Gauss points of the present sample, which begins `now`.

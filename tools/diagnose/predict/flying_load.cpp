@@ -57,8 +57,6 @@ Columns load_derivatives(SwitchedSample& load, std::span<const std::unique_ptr<S
   const size_t rows = path.samples(), own = load.follows().size();
   std::vector<std::vector<float>> numbers(changed.size() * (own + 2), std::vector<float>(rows));
   std::vector<double> now(own);
-  load.start(path.position[0], path.velocity[0]);
-  for (const auto& other : changed) other->start(path.position[0], path.velocity[0]);
   for (size_t k = 0; k < rows; ++k) {
     std::copy_n(flight.states.begin() + std::ptrdiff_t(k * own), own, now.begin());
     const double free = flight.free_acceleration[k];

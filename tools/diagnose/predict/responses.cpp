@@ -109,8 +109,6 @@ template <int States, int Ports, bool Changes> class ErrorFilter {
 /// Some rows of the columns, row by row: scalar stores followed by a vector load would stall the processor.
 constexpr size_t rows_at_a_time = 64;
 using Block = std::array<Side, rows_at_a_time>;
-/// Of a load that flies: a position and a velocity.
-constexpr size_t most_load_states = 2;
 
 [[gnu::always_inline]] inline void gather(const Column::Numbers& from, size_t row, size_t count, size_t place,
                                           Block& to) {
@@ -147,7 +145,7 @@ template <class Filter>
       if (acts == Acts::sensor) e[0] = e[0] + drive[r];
       for (size_t p = 0; p < ports; ++p) white[p][r] = filter.white(e, int(p));
       Side moved[most_load_states];
-      for (size_t i = 0; i < most_load_states; ++i) moved[i] = load[i][r];
+      for (size_t i = 0; i < size_t(most_load_states); ++i) moved[i] = load[i][r];
       filter.step(e, acts == Acts::sensor ? Side{} : drive[r], slope[r], moved, path.forgets(first + r));
     }
     const size_t begin = next;

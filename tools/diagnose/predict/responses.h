@@ -7,6 +7,9 @@
 
 namespace loopwright::diagnosis {
 
+/// Of a load that is a state of the predictor and flies: a position and a velocity.
+constexpr int most_load_states = 2;
+
 /// Where an effect acts.
 enum class Acts {
   force,   ///< consumes a force

@@ -220,7 +220,8 @@ Candidate candidate_of(const Effect& effect, std::shared_ptr<const EffectPlan> p
   };
   if (std::ranges::any_of(effect.parameters, &EffectParameter::is_bounded))
     candidate.is_plausible = [compiled](const Member& member) { return compiled->is_plausible(member); };
-  if (candidate.acts == Acts::force && compiled->plan->is_switched)
+  const int own_states = compiled->plan->plan.states - 1;  // without the integral of the force
+  if (candidate.acts == Acts::force && compiled->plan->is_switched && own_states <= most_load_states)
     candidate.switched_load = [compiled](const Member& member) {
       return std::make_unique<SwitchedSample>(compiled->plan, compiled->fitted_of(member));
     };
