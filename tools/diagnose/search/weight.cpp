@@ -98,12 +98,16 @@ std::vector<double> sum_of_columns(const Member& member, const Path& path) {
   return sum;
 }
 
+std::vector<Member> without_one(std::vector<Member> members, size_t index) {
+  members.erase(members.begin() + std::ptrdiff_t(index));
+  return members;
+}
+
 /// The input of a path is what the members made of the recorded one: a limit would find nothing above it.
-std::vector<double> change_of_input(std::vector<Member> members, size_t index, const Path& path,
+std::vector<double> change_of_input(const std::vector<Member>& members, size_t index, const Path& path,
                                     const std::vector<double>& raw) {
   std::vector<double> change = drives_of(members, path, raw).input;
-  members.erase(members.begin() + std::ptrdiff_t(index));
-  const std::vector<double> without = drives_of(members, path, raw).input;
+  const std::vector<double> without = drives_of(without_one(members, index), path, raw).input;
   for (size_t k = 0; k < change.size(); ++k) change[k] -= without[k];
   return change;
 }
@@ -142,11 +146,9 @@ double force_rms(const Trials& trials, const Estimate& estimate, size_t index) {
 /// Of a load that is a state of the predictor: what is lost without it. Where it is known from moment to
 /// moment, its mass alone shows little of what the load as a whole explains.
 double gain_of_load(Trials& trials, const Estimate& estimate, size_t member) {
-  std::vector<Member> others = estimate.members;
-  others.erase(others.begin() + std::ptrdiff_t(member));
   constexpr int iterations = 2;
-  const Estimate without =
-      fit_members(trials, std::move(others), estimate.noise, estimate.motion, iterations);
+  const Estimate without = fit_members(trials, without_one(estimate.members, member), estimate.noise,
+                                       estimate.motion, iterations);
   return without.is_valid ? std::max(0.0, without.profile - estimate.profile) : 0;
 }
 
