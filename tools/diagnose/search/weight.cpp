@@ -147,8 +147,8 @@ double force_rms(const Trials& trials, const Estimate& estimate, size_t index) {
 /// moment, its mass alone shows little of what the load as a whole explains.
 double gain_of_load(Trials& trials, const Estimate& estimate, size_t member) {
   constexpr int iterations = 2;
-  const Estimate without = fit_members(trials, without_one(estimate.members, member), estimate.noise,
-                                       estimate.motion, iterations);
+  const Estimate without =
+      fit_members(trials, without_one(estimate.members, member), estimate.noise, estimate.motion, iterations);
   return without.is_valid ? std::max(0.0, without.profile - estimate.profile) : 0;
 }
 
