@@ -22,19 +22,22 @@ FASTEST, SLOWEST = 20, 300  # [samples] time constants of disturbances
 
 def chosen_places(plant, kind, draw):
     outside = [p for p in plant.places if not LAWS[p.law].shapes]
-    inside = [p for p in plant.places if LAWS[p.law].shapes]
-    count = {"clean": 0, "parameter": 0, "outside": 0, "one": 1, "one_and_parameter": 1, "two": 2, "three": 3}[kind]
-    if kind == "outside":
-        if not outside:
-            count = 1
-        else:
-            return [draw.choice(outside)] + ([draw.choice(inside)] if draw.random() < 0.3 else [])
-    places, draw_from = [], list(inside)
+    draw_from, places = [p for p in plant.places if LAWS[p.law].shapes], []
+    count = {"clean": 0, "parameter": 0, "outside": 1, "one": 1, "one_and_parameter": 1, "two": 2, "three": 3}[kind]
+    if kind == "outside" and outside:
+        places = [draw.choice(outside)]
+        draw_from = beside(places[0], draw_from)
+        count = 2 if draw.random() < 0.3 else 1
     while len(places) < count and draw_from:
         place = draw.choice(draw_from)
         places.append(place)
-        draw_from = [p for p in draw_from if not (p.site == place.site and have_one_name(p, place))]
+        draw_from = beside(place, draw_from)
     return places
+
+
+def beside(place, others):
+    """Those that can be told from it."""
+    return [p for p in others if not (p.site == place.site and have_one_name(p, place))]
 
 
 def have_one_name(place, other):
