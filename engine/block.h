@@ -26,6 +26,7 @@
 ///     std::vector<UnitClaim> unit_claims() const;           // units that come from files (engine/block/instance_units.h)
 ///     double unit_power(int wire) const;                    // the output's unit is the product of the wires' units to these powers
 ///     FormulaUnit formula_unit(std::span<const Unit>) const;  // the output's unit as a function of the wires' units
+///     static constexpr bool decides_anew = true;            // decide() is given an empty Mode: the one before does not matter
 ///     static constexpr bool has_side_effects = true;        // acts on the external world: never several runs at a time
 ///   };
 ///   LOOPWRIGHT_BLOCK(MyBlock)

@@ -19,6 +19,7 @@ template <class Real> struct MotionFeedforward {
   struct Crossings {
     Real forwards, backwards;
   };
+  static constexpr bool decides_anew = true;
   static constexpr auto describe() {
     using B = MotionFeedforward;
     return block("The command that a nominal mass with friction needs for a motion.",

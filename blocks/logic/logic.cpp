@@ -25,6 +25,7 @@ template <class Real> struct Logic {
   struct Crossings {
     Real change;
   };
+  static constexpr bool decides_anew = true;
   static constexpr auto describe() {
     return block("Combines logic values.",
                  parameter(&Logic::combine, "operator", "", "How the terms are combined"),

@@ -17,6 +17,7 @@ template <class Real> struct MultiportSwitch {
   struct Crossings {
     Real lower, upper;
   };
+  static constexpr bool decides_anew = true;
   static constexpr auto describe() {
     return block(
         "Chooses one of several signals by its number.",

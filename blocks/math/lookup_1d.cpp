@@ -28,6 +28,7 @@ struct Lookup1D {
   struct Crossings {
     double lower, upper;
   };
+  static constexpr bool decides_anew = true;
   static constexpr auto describe() {
     return block(
         "Reads a table with one input.",

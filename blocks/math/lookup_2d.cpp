@@ -22,6 +22,7 @@ struct Lookup2D {
   struct Crossings {
     double row_lower, row_upper, column_lower, column_upper;
   };
+  static constexpr bool decides_anew = true;
   static constexpr auto describe() {
     return block(
         "Reads a table with two inputs.",

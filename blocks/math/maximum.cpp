@@ -16,6 +16,7 @@ template <class Real> struct Maximum {
   struct Crossings {
     Real change;
   };
+  static constexpr bool decides_anew = true;
   static constexpr auto describe() {
     return block("The greatest of any number of signals.",
                  input(&In::terms, "terms", "$greatest", "Signals of one unit"),

@@ -16,6 +16,7 @@ template <class Real> struct Minimum {
   struct Crossings {
     Real change;
   };
+  static constexpr bool decides_anew = true;
   static constexpr auto describe() {
     return block(
         "The least of any number of signals.", input(&In::terms, "terms", "$least", "Signals of one unit"),

@@ -19,6 +19,7 @@ template <class Real> struct Modulo {
   struct Crossings {
     Real lower, upper;
   };
+  static constexpr bool decides_anew = true;
   static constexpr auto describe() {
     return block("The rest of a signal after a division.",
                  parameter(&Modulo::divisor, "divisor", "$u", "What is taken away as often as it fits")

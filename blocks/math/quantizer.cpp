@@ -21,6 +21,7 @@ template <class Real> struct Quantizer {
   struct Crossings {
     Real lower, upper;
   };
+  static constexpr bool decides_anew = true;
   static constexpr auto describe() {
     return block(
         "Rounds a signal to multiples of a resolution.",

@@ -25,6 +25,7 @@ template <class Real> struct Rounding {
   struct Crossings {
     Real lower, upper;
   };
+  static constexpr bool decides_anew = true;
   static constexpr auto describe() {
     return block("Rounds a number to a whole one.",
                  parameter(&Rounding::rule, "rule", "", "To which whole number").optional(),

@@ -19,6 +19,7 @@ template <class Real> struct Sign {
   struct Crossings {
     Real above, below;
   };
+  static constexpr bool decides_anew = true;
   static constexpr auto describe() {
     return block("The sign of a signal.", input(&In::u, "u", "$u", "Signal"),
                  output(&Out::y, "y", "", "1, -1 or 0"), crossing(&Crossings::above, "above"),

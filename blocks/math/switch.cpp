@@ -17,6 +17,7 @@ template <class Real> struct Switch {
   struct Crossings {
     Real control;
   };
+  static constexpr bool decides_anew = true;
   static constexpr auto describe() {
     return block(
         "Chooses one of two signals by a third.",

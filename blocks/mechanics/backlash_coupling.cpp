@@ -21,6 +21,7 @@ template <class Real> struct BacklashCoupling {
   struct Crossings {
     Real backward, forward;
   };
+  static constexpr bool decides_anew = true;
   static constexpr auto describe() {
     return block(
         "Couples a motor and a load through a gap with elastic contact.",

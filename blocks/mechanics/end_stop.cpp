@@ -21,6 +21,7 @@ template <class Real> struct EndStop {
   struct Crossings {
     Real low, high;
   };
+  static constexpr bool decides_anew = true;
   static constexpr auto describe() {
     return block(
         "Elastic stops at the ends of the travel; subtract their force in the sum of forces.",

@@ -34,6 +34,7 @@ template <class Real> struct Encoder {
   struct Crossings {
     Real count;
   };
+  static constexpr bool decides_anew = true;
   static constexpr auto describe() {
     return block(
         "Measures a position in counts, with offset and periodic error.",

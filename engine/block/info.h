@@ -34,6 +34,7 @@ struct BlockInfo {
   bool uses_time = false;  ///< its outputs depend on time
   bool outputs_read_mode = false;
   bool decision_reads_inputs = false;
+  bool decides_anew = false;        ///< its decision does not depend on the one before
   bool is_sampled = false;          ///< has discrete memory: requires a sample time
   bool is_continuous = false;       ///< has states, or modes of its own: must not have a sample time
   std::vector<int> memory_numbers;  ///< words of Memory, 8 bytes each, that are numbers; others are indices
@@ -127,6 +128,7 @@ template <class B> BlockInfo info_of(std::string_view type) {
   if constexpr (!std::is_same_v<Memory<B>, None>) info.memory_numbers = number_words<Memory<B>>();
   info.is_continuous = requires { &B::derivatives; }
   || requires { &B::accept; };
+  info.decides_anew = decides_anew<B>;
   if constexpr (requires { B::has_side_effects; }) info.has_side_effects = B::has_side_effects;
   info.read = [](void* p, const Value& settings, const std::string& path, Problems& problems) {
     read_fields(*static_cast<B*>(p), settings, path, problems);

@@ -194,6 +194,14 @@ template <class B, class Real, auto method> [[gnu::flatten]] uint64_t step_memor
         return fault;
       });
 }
+/// Whether the block states that its decision does not depend on the one before.
+template <class B> consteval bool states_to_decide_anew() {
+  if constexpr (requires { B::decides_anew; })
+    return B::decides_anew;
+  else
+    return false;
+}
+template <class B> constexpr bool decides_anew = states_to_decide_anew<B>();
 template <class B, class Real> uint64_t step_decide(const Call<Real>& c) {
   return guard<B>(
       c, [&](const B& block) __attribute__((always_inline)) {
@@ -203,6 +211,7 @@ template <class B, class Real> uint64_t step_decide(const Call<Real>& c) {
         with_memory<B>(
             c, false, [&](const Memory<B>& memory) __attribute__((always_inline)) {
               auto& mode = stored_mode<B>(c);
+              if constexpr (decides_anew<B>) mode = {};
               fault = invoke(&B::decide, block, *c.now, in, state, memory, mode, mode);
               return uint64_t(0);
             });

@@ -166,8 +166,11 @@ std::vector<EffectPlan::Binding> bindings_of(const Effect& effect) {
 /// Whether anything in it depends on more than its parameters and inputs. The given signals count time from
 /// the sample.
 bool remembers(const Plan& plan) {
-  const bool decides = std::ranges::any_of(
-      plan.order, [](const Plan::Entry& e) { return e.kind != Plan::Entry::Kind::outputs; });
+  const bool decides = std::ranges::any_of(plan.order, [&](const Plan::Entry& e) {
+    const bool forgets =
+        e.kind == Plan::Entry::Kind::decide && plan.blocks[size_t(e.block)].type->info.decides_anew;
+    return e.kind != Plan::Entry::Kind::outputs && !forgets;
+  });
   return decides || std::ranges::any_of(plan.blocks, [](const Plan::Block& block) {
            const BlockInfo& info = block.type->info;
            if (info.type == "ExternalSignal") return false;
@@ -197,6 +200,16 @@ void find_slopes(EffectPlan& result, Problems& problems) {
           a.place, a.place.pointer(), "",
           fmt::format("the slope \"{}\" of the attachment is no output, or not a number", a.slope));
   }
+}
+
+/// The same in so many steps a sample.
+std::shared_ptr<const EffectPlan> with_steps(const EffectPlan& effect, Bench& bench, int steps,
+                                             Problems& problems) {
+  auto result = std::make_shared<EffectPlan>(effect);
+  result->finer = result->coarser = nullptr;
+  if (const auto diagram = read_diagram(bench.diagram(steps), effect.effect.path, {}, problems))
+    if (const auto plan = compile(*diagram, problems)) result->plan = *plan;
+  return result;
 }
 
 }  // namespace
@@ -232,10 +245,8 @@ std::shared_ptr<const EffectPlan> compile_effect(const Effect& effect, const Mac
     check_bindings(*result, own);
     if (!own.has_errors()) result->is_linear = is_linear(result);
     if (!own.has_errors() && (result->is_switched = is_switched(result))) {
-      auto finer = std::make_shared<EffectPlan>(*result);
-      if (const auto diagram = read_diagram(bench.diagram(steps_per_decision), effect.path, {}, own))
-        if (const auto shorter = compile(*diagram, own)) finer->plan = *shorter;
-      result->finer = std::move(finer);
+      result->finer = with_steps(*result, bench, steps_per_decision, own);
+      result->coarser = with_steps(*result, bench, 1, own);
     }
   }
   for (Problem problem : own.list()) {  // what lies between the blocks and their bench has no file of its own

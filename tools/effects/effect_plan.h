@@ -30,6 +30,8 @@ struct EffectPlan {
   bool is_switched = false;  ///< linear in the same way as long as nothing is decided: see switched_effect.h
   /// Of a switched effect: the same with shorter steps, for the few samples in which something is decided.
   std::shared_ptr<const EffectPlan> finer;
+  /// Of a switched effect: the same with one step a sample, to rank shapes by.
+  std::shared_ptr<const EffectPlan> coarser;
 };
 
 /// Null after a problem: blocks that do not exist, units incompatible with the machine's.

@@ -5,11 +5,15 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include "tools/effects/switched_effect.h"
 
 namespace loopwright {
 namespace {
 
 constexpr double gauss_point = 0.21132486540518712;  // (1 - 1/√3) / 2
+
+/// A complete arena of lanes costs about as much as four scalar runs.
+constexpr int sets_of_scalar_runs = 4;
 
 /// An end stop or a short pitch is met somewhere within a sample. With few rows in a motion, a sample in
 /// which the axis may go farther than a part of its stroke is divided.
@@ -46,8 +50,12 @@ EffectRun::EffectRun(std::shared_ptr<const EffectPlan> plan, int lanes) : plan_(
     linear_ = std::make_unique<EffectSample>(plan_);
     return;
   }
-  // A complete arena of lanes costs about as much as four scalar runs.
-  const bool is_wide = lanes > 4 || !plan_->remembers;
+  const bool is_wide = lanes > sets_of_scalar_runs || !plan_->remembers;
+  if (plan_->is_switched && !is_wide) {
+    fitted_.assign(size_t(std::max(1, lanes)), starts_);
+    return;
+  }
+  if (plan_->coarser) plan_ = plan_->coarser;
   const InstructionSet set = is_wide ? widest_instruction_set() : InstructionSet::scalar;
   const int width = lanes_in_arena(set);
   const int sets = set == InstructionSet::scalar || !plan_->remembers ? 1 : std::min(lanes, most_lanes);
@@ -268,6 +276,20 @@ void EffectRun::superpose(const RoleSignals& signals, size_t rows, size_t lanes,
 }
 
 template <class Take>
+void EffectRun::follow_modes(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take) {
+  const RoleSample first = signals.at(0);
+  for (size_t lane = 0; lane < lanes; ++lane) {
+    SwitchedSample sample(plan_, fitted_[lane]);
+    std::vector<double> states = sample.start(first.position, first.velocity);
+    for (size_t row = 0; row < rows; ++row) {
+      const std::vector<double>& result = sample.from(states, given_at(signals.at(row)));
+      std::copy_n(result.begin(), states.size(), states.begin());
+      take(lane, row, result[states.size()], result[states.size() + 1]);
+    }
+  }
+}
+
+template <class Take>
 void EffectRun::run_lanes(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take) {
   for (const std::string& role : plan_->effect.reads) {
     const std::span<const double> column = role == "position"       ? signals.position
@@ -281,6 +303,7 @@ void EffectRun::run_lanes(const RoleSignals& signals, size_t rows, size_t lanes,
   }
   if (rows == 0) return;
   if (linear_) return superpose(signals, rows, std::min(lanes, fitted_.size()), take);
+  if (!run_) return follow_modes(signals, rows, std::min(lanes, fitted_.size()), take);
   start(signals.at(0));
   if (plan_->remembers)
     run_in_turn(signals, rows, std::min(lanes, value_.size()), take);

@@ -44,7 +44,8 @@ struct RoleSignals {
 /// integrator. In addition to the mean there is a slope: the change over the sample of the straight line with
 /// the same first moment. A rapidly oscillating force moves the axis by its slope as well as by its mean.
 /// Of a linear effect with states only one sample is integrated for each state and signal; the others follow
-/// by superposition.
+/// by superposition. Of a switched one (see switched_effect.h) only those are integrated in which something is
+/// decided; many sets at a time, as for a grid of shapes, take the coarser steps of EffectPlan::coarser.
 class EffectRun {
  public:
   /// `lanes`: requested number of sets; see lanes().
@@ -104,6 +105,7 @@ class EffectRun {
   template <class Take> void run_in_turn(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take);
   template <class Take> void run_side_by_side(const RoleSignals& signals, size_t rows, Take&& take);
   template <class Take> void superpose(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take);
+  template <class Take> void follow_modes(const RoleSignals& signals, size_t rows, size_t lanes, Take&& take);
   /// To all lanes.
   void give(const GivenSignals& given, double now);
   void read(Number number, std::vector<double>& to) const { run_->read({&number, 1}, to.data()); }
@@ -111,8 +113,8 @@ class EffectRun {
   std::shared_ptr<const EffectPlan> plan_;
   std::vector<double> starts_;               // of each fitted parameter
   std::vector<std::vector<double>> fitted_;  // of each set
-  std::unique_ptr<EffectSample> linear_;     // of a linear effect; all following is empty then
-  std::unique_ptr<LaneRun> run_;
+  std::unique_ptr<EffectSample> linear_;     // of a linear effect
+  std::unique_ptr<LaneRun> run_;             // empty, as all that follows, where samples have maps
   std::vector<std::vector<double*>> bound_;
   Wire position_, velocity_, acceleration_, input_, force_;
   int64_t sample_ticks_ = 1;

@@ -210,6 +210,7 @@ std::vector<double> EffectSample::from(const std::vector<double>& states, const 
     integral = run_.number(plan_->integral);
     area += 0.5 * double(passed) / double(sample_ticks_) * (before + integral);
   }
+  evaluate(), note_decisions(false);
   std::vector<double> result = this->states();
   const double period = plan_->sizes.sample_time;  // mean and slope as in EffectRun::integrate_sample
   result.push_back(integral / period);

@@ -10,23 +10,24 @@ namespace {
 /// the sample is linear enough for it, and rounding is far smaller.
 constexpr double small_share = 1e-3;
 /// Samples that are tried, from states and signals of every size, and how well the maps of a mode agree: of
-/// the largest number of their kind.
+/// what the usual differences change most.
 constexpr int tried_for_modes = 200;
 constexpr double agreement = 1e-5;
 
-/// Whether the maps of each mode are the same, each number compared with the largest of its kind.
-bool are_alike(const std::map<std::string, std::vector<SampleMap>>& modes) {
-  const SampleMap& any = modes.begin()->second.front();
-  for (size_t c = 0; c < any.columns.size(); ++c)
-    for (size_t i = 0; i < any.columns[c].size(); ++i) {
-      double largest = 0, farthest = 0;
-      for (const auto& [mode, maps] : modes)
-        for (const SampleMap& map : maps) {
-          largest = std::max(largest, std::abs(map.columns[c][i]));
-          farthest = std::max(farthest, std::abs(map.columns[c][i] - maps.front().columns[c][i]));
+/// Whether the maps of each mode are the same, by what these differences of states and signals change.
+bool are_alike(const std::map<std::string, std::vector<SampleMap>>& modes,
+               const std::vector<double>& differences) {
+  for (size_t i = 0; i < modes.begin()->second.front().states + 2; ++i) {
+    double largest = 0, farthest = 0;
+    for (const auto& [mode, maps] : modes)
+      for (const SampleMap& map : maps)
+        for (size_t c = 0; c < differences.size(); ++c) {
+          const double changed = map.columns[c][i], first = maps.front().columns[c][i];
+          largest = std::max(largest, std::abs(differences[c] * changed));
+          farthest = std::max(farthest, std::abs(differences[c] * (changed - first)));
         }
-      if (!(farthest <= agreement * largest)) return false;
-    }
+    if (!(farthest <= agreement * largest)) return false;
+  }
   return true;
 }
 
@@ -44,36 +45,57 @@ std::vector<double> SwitchedSample::start(double position, double velocity) {
   return sample_.states();
 }
 
-bool SwitchedSample::differ(const std::vector<double>& states, const GivenSignals& given, double size,
-                            SampleMap& map) {
+std::vector<double> SwitchedSample::integrated(const std::vector<double>& states, const GivenSignals& given) {
+  return body_ ? sample_.against(*body_, states, given) : sample_.from(states, given);
+}
+
+GivenSignals SwitchedSample::at_end(const GivenSignals& given, double mean_force) const {
   using enum GivenSignals::Index;
-  const double period = plan_->sizes.sample_time, of_velocity = size, of_position = size * period;
+  const double period = plan_->sizes.sample_time;
+  const double gain = body_ ? given[acceleration] - mean_force / body_->inertia : given[velocity_slope];
+  GivenSignals end = given;
+  end.value[position] += period * (given[velocity] + 0.5 * period * gain);
+  end.value[velocity] += period * gain;
+  if (!body_) end.value[acceleration] += period * given[acceleration_slope];
+  return end;
+}
+
+std::vector<double> SwitchedSample::differences(double size) const {
+  using enum GivenSignals::Index;
+  const double period = plan_->sizes.sample_time;
+  std::vector<double> list;
+  for (const Follows& state : follows_)
+    list.push_back((std::abs(state.position) * period + std::abs(state.velocity)) * size);
+  GivenSignals given;
+  given.value[position] = size * period, given.value[velocity] = size;
+  given.value[acceleration] = size / period;
+  if (!body_) {  // against() derives them
+    given.value[velocity_slope] = size / period;
+    given.value[acceleration_slope] = size / (period * period);
+  }
+  list.insert(list.end(), given.value.begin(), given.value.end());
+  return list;
+}
+
+bool SwitchedSample::differ(const std::vector<double>& states, const GivenSignals& given,
+                            const std::vector<double>& result, double size, SampleMap& map) {
   std::vector<double> changed = states;
   GivenSignals changed_given = given;
   const std::string decided = sample_.decided();
   bool decides_alike = !sample_.decided_anew();
-  map = {states.size(), std::vector(states.size() + count, std::vector<double>(states.size() + 2))};
-  const auto take = [&](double& number, double by, std::vector<double>& column) {
-    if (by == 0) return;
+  map = {states.size(), {}};
+  for (const double by : differences(size)) {
+    const size_t c = map.columns.size(), own = states.size();
+    std::vector<double>& column = map.columns.emplace_back(own + 2);
+    if (by == 0) continue;
+    double& number = c < own ? changed[c] : changed_given.value[c - own];
     const double before = number;
-    const auto at = [&](double value) {
-      number = value;
-      std::vector<double> result = sample_.against(body_, changed, changed_given);
-      decides_alike &= sample_.decided() == decided && !sample_.decided_anew();
-      return result;
-    };
-    column = at(before + by);
-    const std::vector<double> low = at(before - by);
+    number += by;
+    column = integrated(changed, changed_given);
     number = before;
-    for (size_t i = 0; i < column.size(); ++i) column[i] = (column[i] - low[i]) / (2 * by);
-  };
-  for (size_t i = 0; i < states.size(); ++i)
-    take(changed[i],
-         std::abs(follows_[i].position) * of_position + std::abs(follows_[i].velocity) * of_velocity,
-         map.columns[i]);
-  take(changed_given.value[position], of_position, map.columns[states.size() + position]);
-  take(changed_given.value[velocity], of_velocity, map.columns[states.size() + velocity]);
-  take(changed_given.value[acceleration], of_velocity / period, map.columns[states.size() + acceleration]);
+    decides_alike &= sample_.decided() == decided && !sample_.decided_anew();
+    for (size_t i = 0; i < column.size(); ++i) column[i] = (column[i] - result[i]) / by;
+  }
   return decides_alike;
 }
 
@@ -83,18 +105,14 @@ bool SwitchedSample::follow(const Mode& mode, const std::vector<double>& states,
   const size_t own = states.size();
   result_ = mode.result;
   const auto add = [&](const std::vector<double>& column, double by) {
+    if (by == 0) return;
     for (size_t i = 0; i < result_.size(); ++i) result_[i] += by * column[i];
   };
   for (size_t i = 0; i < own; ++i) add(columns[i], states[i] - mode.states[i]);
-  for (const auto signal : {position, velocity, acceleration})
-    add(columns[own + signal], given[signal] - mode.given[signal]);
+  for (size_t i = 0; i < given.value.size(); ++i) add(columns[own + i], given.value[i] - mode.given.value[i]);
   ends_.assign(result_.begin(), result_.begin() + std::ptrdiff_t(own));
-  const double period = plan_->sizes.sample_time, gain = given[acceleration] - result_[own] / body_.inertia;
-  GivenSignals at_end = given;
-  at_end.value[position] += period * (given[velocity] + 0.5 * period * gain);
-  at_end.value[velocity] += period * gain;
   const std::string decided = sample_.decided();
-  return sample_.decide(ends_, at_end) == decided;
+  return sample_.decide(ends_, at_end(given, result_[own])) == decided;
 }
 
 const std::vector<double>& SwitchedSample::from(const std::vector<double>& states,
@@ -105,11 +123,11 @@ const std::vector<double>& SwitchedSample::from(const std::vector<double>& state
     followed_ = &mode->second;
     return result_;
   }
-  result_ = sample_.against(body_, states, given);
+  result_ = integrated(states, given);
   if (mode != modes_.end() || sample_.decided_anew()) return result_;
   const std::string decided = sample_.decided();
   SampleMap map;
-  if (!differ(states, given, small_share * plan_->sizes.top_speed, map)) return result_;
+  if (!differ(states, given, result_, small_share * plan_->sizes.top_speed, map)) return result_;
   maps_.push_back(std::move(map));
   followed_ =
       &modes_.try_emplace(decided, Mode{states, given, result_, uint32_t(maps_.size() - 1)}).first->second;
@@ -118,12 +136,15 @@ const std::vector<double>& SwitchedSample::from(const std::vector<double>& state
 
 uint32_t SwitchedSample::map_of(const std::vector<double>& states, const GivenSignals& given) {
   if (followed_) return followed_->map;
-  differ(states, given, small_share * plan_->sizes.top_speed, maps_.emplace_back());
+  differ(states, given, result_, small_share * plan_->sizes.top_speed, maps_.emplace_back());
   return uint32_t(maps_.size() - 1);
 }
 
 bool is_switched(const std::shared_ptr<const EffectPlan>& plan) {
-  if (!plan->flies || plan->is_linear || plan->acts_on_sensor) return false;
+  const std::vector<std::string>& reads = plan->effect.reads;
+  const bool is_moved_alone =
+      std::ranges::find(reads, "input") == reads.end() && std::ranges::find(reads, "force") == reads.end();
+  if (!plan->flies || plan->is_linear || plan->acts_on_sensor || !is_moved_alone) return false;
   std::vector<double> fitted;
   for (const EffectParameter& p : plan->effect.parameters)
     if (p.is_fitted) fitted.push_back(range_of(p, plan->sizes).start);
@@ -141,12 +162,13 @@ bool is_switched(const std::shared_ptr<const EffectPlan>& plan) {
     std::vector<double> states(sample.follows().size());
     for (double& x : states) x = size * share(random);
     for (double& u : given.value) u = size * share(random);
-    sample.sample_.against(sample.body_, states, given);
+    const std::vector<double> result = sample.integrated(states, given);
     const std::string decided = sample.sample_.decided();
     SampleMap map;
-    if (sample.differ(states, given, small_share * size, map)) modes[decided].push_back(std::move(map));
+    if (sample.differ(states, given, result, small_share * size, map))
+      modes[decided].push_back(std::move(map));
   }
-  return modes.size() > 1 && are_alike(modes);
+  return modes.size() > 1 && are_alike(modes, sample.differences(1));
 }
 
 }  // namespace loopwright

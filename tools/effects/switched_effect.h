@@ -3,9 +3,10 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
-#include "tools/effects/effect_run.h"
+#include "tools/effects/linear_effect.h"
 
 namespace loopwright {
 
@@ -22,12 +23,13 @@ class SwitchedSample {
     double position = 0, velocity = 0;
   };
   const std::vector<Follows>& follows() const { return follows_; }
-  /// The body against which it acts; its added inertia is that of the effect.
+  /// The body against which it acts; its added inertia is that of the effect. Without one it is moved as the
+  /// given signals say.
   void set_body(const EffectSample::Body& body) { body_ = body; }
-  /// The states after a sample, then mean and slope of the force: see EffectSample::against().
+  /// The states after a sample, then mean and slope of the force: see EffectSample::from() and against().
   const std::vector<double>& from(const std::vector<double>& states, const GivenSignals& given);
-  /// Index in maps() of the derivatives of the sample that was asked for last, for states, position and
-  /// velocity. Samples in which nothing is decided anew share the map of their mode.
+  /// Index in maps() of the derivatives of the sample that was asked for last. Samples in which nothing is
+  /// decided anew share the map of their mode.
   uint32_t map_of(const std::vector<double>& states, const GivenSignals& given);
   const std::vector<SampleMap>& maps() const { return maps_; }
 
@@ -40,15 +42,21 @@ class SwitchedSample {
     std::vector<double> result;
     uint32_t map;
   };
-  /// By differences to both sides; whether all of them decided as the sample did.
-  bool differ(const std::vector<double>& states, const GivenSignals& given, double size, SampleMap& map);
+  std::vector<double> integrated(const std::vector<double>& states, const GivenSignals& given);
+  GivenSignals at_end(const GivenSignals& given, double mean_force) const;
+  /// Of each state and signal, for a change of the velocity of this size; zero: the sample does not depend on
+  /// it.
+  std::vector<double> differences(double size) const;
+  /// Derivatives of the last integrated sample, with this result; whether all differences decided as it did.
+  bool differ(const std::vector<double>& states, const GivenSignals& given, const std::vector<double>& result,
+              double size, SampleMap& map);
   /// Sets the result by the map of a mode; whether the blocks still decide so at the end of the sample.
   bool follow(const Mode& mode, const std::vector<double>& states, const GivenSignals& given);
 
   std::shared_ptr<const EffectPlan> plan_;
   std::vector<double> fitted_;
   EffectSample sample_;
-  EffectSample::Body body_{1, 0};
+  std::optional<EffectSample::Body> body_;
   std::vector<Follows> follows_;
   std::vector<SampleMap> maps_;
   std::map<std::string, Mode> modes_;
