@@ -61,6 +61,10 @@ constexpr int most_steps_a_sample = 64;
 /// [driving force, rms] It changes less from a whole step to two halves unless a fast pole makes it grow.
 constexpr double same_driving_force = 0.1;
 
+/// [mean force of the input] By which it changes at least: a share of a force that is all but constant would be
+/// smaller than the error of any model.
+constexpr double least_change = 0.05;
+
 // Noise.
 
 /// [force of the input, rms] A fiftieth of the smallest material force. If the sensor's counts are the only

@@ -36,7 +36,7 @@ struct Trials {
   std::vector<Trial> list;
   Noise noise;
   bool nominal_holds = false;  ///< the user's diagram has dry friction, in one of the records
-  double force_rms = 0;        ///< the force produced by the recorded inputs
+  double force_rms = 0;        ///< of the force that the recorded inputs produce, about its mean
   double usual_force = 0;      ///< what it exceeds in a tenth of the motion; where that is more, its rms
   bool noise_is_seen = false;  ///< the errors of the nominal diagram are white with the noise fitted to them
   double lowest_position = 0, highest_position = 0, longest_s = 0;  ///< as in the first prediction

@@ -144,13 +144,30 @@ void reject_without_fitted_rows(const Trials& trials) {
   throw InputError(std::move(problems));
 }
 
+/// A weight that the input holds drives nothing.
+double mean_force(const Trials& trials) {
+  double sum = 0;
+  size_t n = 0;
+  for (const Trial& trial : trials.list)
+    for (double f : trial.model->driving_force()) sum += f, ++n;
+  return sum / double(std::max<size_t>(n, 1));
+}
+
+double force_rms(const Trials& trials, double held) {
+  double square = 0;
+  size_t n = 0;
+  for (const Trial& trial : trials.list)
+    for (double f : trial.model->driving_force()) square += (f - held) * (f - held), ++n;
+  return std::sqrt(square / double(std::max<size_t>(n, 1)));
+}
+
 /// Kicks of a controller that is given a step are a large part of the rms, and no part of the motion.
-double usual_force(const Trials& trials) {
+double usual_force(const Trials& trials, double held) {
   std::vector<double> sizes;
   for (const Trial& trial : trials.list) {
     const std::vector<double>& force = trial.model->driving_force();
     for (size_t k = 0; k < force.size(); ++k)
-      if (trial.moving[k]) sizes.push_back(std::abs(force[k]));
+      if (trial.moving[k]) sizes.push_back(std::abs(force[k] - held));
   }
   return sizes.empty() ? trials.force_rms
                        : std::min(trials.force_rms, quantile(std::move(sizes), criteria::usual_share));
@@ -212,8 +229,6 @@ Trials prepare(const std::string& diagram, const std::vector<std::string>& exper
   Trials trials;
   trials.remembered = std::make_shared<RememberedRuns>();
   std::vector<double> speed;
-  double square = 0;
-  size_t n = 0;
   const auto read = [&](size_t number, size_t rows_in_one) {
     try {
       return std::make_unique<AxisModel>(diagram, experiments[number], options, noise, rows_in_one);
@@ -229,20 +244,20 @@ Trials prepare(const std::string& diagram, const std::vector<std::string>& exper
     trial.held_out_from = record.held_out_from;
     const std::vector<double> own = speeds(record);
     speed.insert(speed.end(), own.begin(), own.end());
-    for (double f : trial.model->driving_force()) square += f * f, ++n;
   }
   reject_without_fitted_rows(trials);
   trials.run_along(Trials::Rows::all);
   if (const MeasuredPort* position = trials.list.front().model->record().find("position"))
     if (position->unit == "rad") trials.turn = 2 * std::numbers::pi;
-  trials.force_rms = std::sqrt(square / double(std::max<size_t>(n, 1)));
+  const double held = mean_force(trials);
+  trials.force_rms = std::max(force_rms(trials, held), criteria::least_change * std::abs(held));
   trials.noise = first_guess(trials);
   const double rest_speed = criteria::rest_speed * quantile(speed, 0.99);
   for (Trial& trial : trials.list) trial.pace = pace_of(*trial.model, trials.noise, rest_speed);
   trials.nominal_holds = std::ranges::any_of(
       trials.list, [&](Trial& trial) { return trial.model->holds_at_rest(1e-3 * trials.force_rms); });
   std::vector<Fitted> nominal = mark_usable(trials);
-  trials.usual_force = usual_force(trials);
+  trials.usual_force = usual_force(trials, held);
   trials.noise = fit_noise(trials, nominal, trials.noise, FreeNoise::with_random_walk);
   nominal = run_members(trials, {}, {}, trials.noise);
   look_where_noise_enters(trials, nominal);
