@@ -209,7 +209,7 @@ std::vector<int64_t> sample_numbers(std::span<const double> times, double sample
   for (size_t row = 1; row < times.size(); ++row) {
     expected += sample_time;
     double skipped = longest_gap;
-    for (size_t i = row; i < std::min(row + looked_ahead, times.size()); ++i)
+    for (size_t i = row; i < std::min(row + looked_ahead, times.size()) && skipped > 0.5; ++i)
       skipped = std::min(skipped, (times[i] - expected) / sample_time - double(i - row));
     skipped = skipped > 0.5 ? std::round(skipped) : 0;
     sample[row] = sample[row - 1] + 1 + int64_t(skipped);

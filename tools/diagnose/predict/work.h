@@ -16,7 +16,7 @@ class Work {
   /// product of two numbers, a block evaluated once, a load that is followed in flight, and its derivative by
   /// a parameter. An operation takes about a nanosecond.
   static constexpr double of_a_sample = 250, of_a_response = 4, of_a_product = 0.25, of_a_block = 4,
-                          of_a_flight = 1200, of_a_changed_flight = 500;
+                          of_a_flight = 700, of_a_changed_flight = 300;
 
   Work() = default;
   explicit Work(double most) : most_(most) {}

@@ -51,11 +51,15 @@ struct Objective {
       with_gains(fitted[t].axis, fitted[t].prediction, fitted[t].gains, gains, error);
       whiten(error, gains);
       trials.work->add(error.size(), 3 * Work::of_a_response);
+      size_t rows = 0;
+      double squares = 0, log_determinants = 0;
       for (size_t k = 0; k < std::min(trial.held_out_from, error.size() / ports); ++k) {
         if (!trial.usable[k]) continue;
-        sum += gains.log_determinant_at(k);
-        for (size_t p = 0; p < ports; ++p) sum += error[k * ports + p] * error[k * ports + p];
+        ++rows;
+        if (gains.rows) log_determinants += gains.log_determinant_at(k);
+        for (size_t p = 0; p < ports; ++p) squares += error[k * ports + p] * error[k * ports + p];
       }
+      sum += squares + (gains.rows ? log_determinants : double(rows) * gains.log_determinant);
     }
     return std::isfinite(sum) ? sum : 1e300;
   }

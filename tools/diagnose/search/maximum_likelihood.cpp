@@ -68,8 +68,19 @@ Eigen::VectorXd solve(const Eigen::MatrixXd& G, const Eigen::VectorXd& b) {
   return scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * b);
 }
 
-/// The step within the ranges of all amplitudes: an amplitude that would leave its range is set to its end,
-/// and the others are solved again. Clipping it alone would disturb all amplitudes that balance it.
+/// Where a parameter may be after a step: within its range, and shapes move at most by a third at a time.
+std::pair<double, double> reach_of(std::vector<Member>& members, const FreeParameter& parameter) {
+  const CandidateParameter& range = range_of(members, parameter);
+  if (parameter.is_linear) return {range.low, range.high};
+  const double value = value_of(members, parameter);
+  const double most = range.span > 0      ? 0.2 * value * value / range.span
+                      : range.logarithmic ? std::abs(value) / 3
+                                          : (range.high - range.low) / 6;
+  return {std::max(range.low, value - most), std::min(range.high, value + most)};
+}
+
+/// The step within the reach of all parameters: one that would go farther is set to its end, and the others
+/// are solved again. Clipping it alone would disturb all that balance it.
 Eigen::VectorXd step_in_range(const NormalEquations& e, std::vector<Member> members,
                               const std::vector<FreeParameter>& free) {
   Eigen::VectorXd step = Eigen::VectorXd::Zero(e.b.size());
@@ -81,9 +92,9 @@ Eigen::VectorXd step_in_range(const NormalEquations& e, std::vector<Member> memb
     const size_t before = held.size();
     for (const Eigen::Index i : std::vector(open)) {
       const FreeParameter& p = free[size_t(i)];
-      const CandidateParameter& range = range_of(members, p);
-      const double value = value_of(members, p), inside = std::clamp(value + step[i], range.low, range.high);
-      if (!p.is_linear || inside == value + step[i]) continue;
+      const auto [low, high] = reach_of(members, p);
+      const double value = value_of(members, p), inside = std::clamp(value + step[i], low, high);
+      if (inside == value + step[i]) continue;
       step[i] = inside - value, held.push_back(i), std::erase(open, i);
     }
     if (held.size() == before) break;
@@ -91,20 +102,13 @@ Eigen::VectorXd step_in_range(const NormalEquations& e, std::vector<Member> memb
   return step;
 }
 
-/// The members after a step, within their ranges; shapes move at most by a third at a time.
+/// The members after a part of a step.
 std::vector<Member> moved(std::vector<Member> members, const std::vector<FreeParameter>& free,
                           const Eigen::VectorXd& step, double fraction) {
   for (size_t i = 0; i < free.size(); ++i) {
     const CandidateParameter& range = range_of(members, free[i]);
-    const double value = value_of(members, free[i]);
-    double by = fraction * step[Eigen::Index(i)];
-    if (!free[i].is_linear) {
-      const double most = range.span > 0      ? 0.2 * value * value / range.span
-                          : range.logarithmic ? std::abs(value) / 3
-                                              : (range.high - range.low) / 6;
-      by = std::clamp(by, -most, most);
-    }
-    set_value(members, free[i], std::clamp(value + by, range.low, range.high));
+    const double value = value_of(members, free[i]) + fraction * step[Eigen::Index(i)];
+    set_value(members, free[i], std::clamp(value, range.low, range.high));
   }
   return members;
 }
@@ -152,15 +156,16 @@ Estimate on_own_motion(Trials& trials, Estimate estimate) {
 }
 
 Estimate fit_members(Trials& trials, std::vector<Member> members, const Noise& noise, const Motion& motion,
-                     int iterations) {
+                     int iterations, double worst) {
   Estimate best = evaluated(trials, std::move(members), noise, motion);
   const std::vector<FreeParameter> free = free_parameters(best.members);
   const double far = same_motion * double(fitted_numbers(trials));
   for (int i = 0; i < iterations && best.is_valid && !free.empty(); ++i) {
     const NormalEquations equations = normal_equations(trials, best);
     const Eigen::VectorXd step = step_in_range(equations, best.members, free);
-    if (step.dot(equations.b) < criteria::least_step_gain * best.mean_square)
-      break;  // predicted gain of the step
+    const double promised = step.dot(equations.b) / best.mean_square;
+    if (promised < criteria::least_step_gain || best.profile - double(iterations - i) * promised > worst)
+      break;
     const double before = best.profile;
     double fraction = 1;
     for (int shorter = 0; shorter < 4 && best.profile == before; ++shorter, fraction *= 0.35) {

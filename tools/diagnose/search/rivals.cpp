@@ -10,6 +10,15 @@ void maximise(Trials& trials, Estimate& estimate) {
   estimate = with_own_noise(trials, std::move(estimate), iterations);
 }
 
+Estimate Rivals::fitted(const Proposal& proposal) const {
+  constexpr int iterations = 4;
+  Estimate other;
+  other.members = applied(proposal, estimate_.members);
+  const double price = criterion_of(other);
+  return fit_members(trials_, std::move(other.members), estimate_.noise, estimate_.motion, iterations,
+                     criterion_of(estimate_) + criteria::most_promised_loss * reach_ - price);
+}
+
 std::optional<double> Rivals::loss_of(const Proposal& proposal, const Estimate& other) const {
   if (!other.is_valid) return {};
   size_t before = 0, now = 0;

@@ -26,10 +26,8 @@ class Rivals {
   double reach() const { return reach_; }
   /// No further rival is fitted.
   bool is_spent() const { return trials_.work->is_spent(criteria::work_with_rivals); }
-  /// With a proposal applied and all parameters fitted.
-  Estimate fitted(const Proposal& proposal) {
-    return fit_members(trials_, applied(proposal, estimate_.members), estimate_.noise, estimate_.motion, 4);
-  }
+  /// With a proposal applied and all parameters fitted, as long as it may come within reach.
+  Estimate fitted(const Proposal& proposal) const;
   /// How much worse its criterion is; empty: out of reach. A larger set that contains this one as a special
   /// case is always close, so it must explain more to be a rival.
   std::optional<double> loss_of(const Proposal& proposal, const Estimate& other) const;

@@ -1,5 +1,6 @@
 #include "tools/diagnose/verdict/staircase.h"
 #include <algorithm>
+#include <cmath>
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/evidence.h"
 
@@ -65,10 +66,13 @@ class Climb {
     };
     return std::move(*std::ranges::min_element(stages, {}, size));
   }
-  /// The force that this stage lacks is larger than the final noise.
+  /// The force that this stage lacks is larger than the final noise, and no slow force of an amplifier: one
+  /// that followed it would leave nothing of it to the members that could explain a part.
   Stage with_own_noise(Stage stage) {
     const Estimate& e = stage.estimate;
-    const Noise noise = fit_noise_alone(trials_, *e.fitted, e.noise, FreeNoise::white_and_slow);
+    Noise noise = e.noise;
+    noise.step = criteria::next_to_no_slow_noise * noise.white * std::sqrt(1 - noise.memory * noise.memory);
+    noise = fit_noise(trials_, *e.fitted, noise, FreeNoise::white);
     stage.estimate = fit_members(trials_, e.members, noise, e.motion, 8);
     stage.force = residual_size(trials_, inverse_, stage.estimate.members).fitted;
     return stage;
