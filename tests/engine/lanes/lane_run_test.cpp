@@ -210,6 +210,39 @@ TEST_P(LaneRunTest, RefusesMoreLanesThanAMaskHolds) {
   EXPECT_THROW(make_lane_run(*plan, GetParam(), 0), std::runtime_error);
 }
 
+/// A block that counts its decisions, though it says that the one before does not matter.
+template <class Real> struct Tally {
+  static constexpr bool decides_anew = true;
+  struct In {
+    Real u;
+  };
+  struct Out {
+    Real y;
+  };
+  struct Mode {
+    Real count;
+  };
+  static constexpr auto describe() {
+    return block("Counts.", input(&In::u, "u", "", "Not used"), output(&Out::y, "y", "", "The count"));
+  }
+  void decide(const In&, Mode& mode) const { mode.count = mode.count + 1.0; }
+  void outputs(const Mode& mode, Out& out) const { out.y = mode.count; }
+};
+LOOPWRIGHT_BLOCK(Tally)
+
+TEST_P(LaneRunTest, ADecisionAnewBeginsWithAnEmptyMode) {
+  const auto plan = plan_of(diagram(R"("one": {"type": "Constant", "value": 1},
+    "tally": {"type": "Tally", "in": {"u": "one.y"}})"));
+  const auto run = make_lane_run(*plan, GetParam(), 1);
+  const Number tally = plan->find("tally.y").at(0);
+  std::vector<double> count(size_t(run->lanes()));
+  for (double time : {0.0, 0.1, 0.2}) {
+    run->evaluate(time);
+    run->read({&tally, 1}, count.data());
+    for (double counted : count) EXPECT_EQ(counted, 1) << time;
+  }
+}
+
 /// A block that would act on the outside world.
 struct Lamp {
   static constexpr bool has_side_effects = true;

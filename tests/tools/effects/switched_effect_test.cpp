@@ -1,8 +1,10 @@
 // A load that is driven through a gap, one sample at a time.
 #include "tools/effects/switched_effect.h"
 #include <gtest/gtest.h>
+#include <array>
 #include <cmath>
 #include "tests/tools/effects/axis_sizes.h"
+#include "tools/effects/effect_run.h"
 
 namespace loopwright::switched_effect_test {
 namespace {
@@ -84,6 +86,46 @@ TEST(SwitchedEffect, FliesTouchesAndLeavesAsTwoBodiesDo) {
   }
   expect_as_integrated(sample, 0.3 + gap / 2 - 1e-5, 0.2, 0, 0.3, 0.18, 0.02);    // touches within it
   expect_as_integrated(sample, 0.3 + gap / 2 + 4e-6, 0.2, -20, 0.3, 0.2 + 4e-3);  // leaves within it
+}
+
+/// Relative deviations of the mean forces along a measured motion that rattles, with so many sets at a time.
+double deviation_along_a_motion(int sets) {
+  constexpr size_t rows = 3000;
+  constexpr double amplitude = 0.02, turning = 2 * M_PI * 2;  // rad/s
+  std::vector<double> x, v, a, force(rows);
+  for (size_t k = 0; k < rows; ++k) {
+    const double phase = turning * double(k) * sample_time;
+    x.push_back(amplitude * std::sin(phase)), v.push_back(turning * amplitude * std::cos(phase));
+    a.push_back(-turning * turning * x.back());
+  }
+  EffectRun run(compiled("backlash"), sets);
+  for (int lane = 0; lane < run.lanes(); ++lane)
+    for (size_t i = 0; i < 4; ++i) run.set(i, std::array{load, gap, frequency, ratio}[i], lane);
+  RoleSignals signals;
+  signals.position = x, signals.velocity = v, signals.acceleration = a;
+  run.run(signals, force);
+  double load_x = x[0], load_v = v[0], square = 0, apart = 0;
+  for (size_t k = 0; k < rows; ++k) {
+    constexpr int steps = 1000;
+    constexpr double h = sample_time / steps;
+    double mean = -load * a[k];
+    for (int i = 0; i < steps; ++i) {
+      const double t = (i + 0.5) * h, rate = v[k] + a[k] * t - load_v;
+      const double d = x[k] + (v[k] + 0.5 * a[k] * t) * t - load_x;
+      double contact = 0;
+      if (d > gap / 2) contact = std::max(0.0, stiffness * (d - gap / 2) + flank_damping * rate);
+      if (d < -gap / 2) contact = std::min(0.0, stiffness * (d + gap / 2) + flank_damping * rate);
+      mean += (contact - drag * (v[k] + a[k] * t)) / steps;
+      load_v += h * (contact - drag * load_v) / load, load_x += h * load_v;
+    }
+    square += mean * mean, apart += (force[k] - mean) * (force[k] - mean);
+  }
+  return std::sqrt(apart / square);
+}
+
+TEST(SwitchedEffect, AlongAMeasuredMotionTheLoadFollowsItsModes) {
+  EXPECT_LT(deviation_along_a_motion(1), 0.05) << "a blow begins late by up to a sixteenth of a sample";
+  EXPECT_LT(deviation_along_a_motion(8), 0.5) << "by up to a sample: a grid of shapes";
 }
 
 TEST(SwitchedEffect, TheMapOfASampleIsItsDerivative) {
