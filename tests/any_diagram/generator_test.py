@@ -47,6 +47,16 @@ class Generator(unittest.TestCase):
         speeds = [math.cos(2 * math.pi * k / 100) for k in range(1000)]  # 1 m/s over 100 samples of 5 ms
         self.assertAlmostEqual(scenario.displacement(speeds, 5e-3), 0.5 / (2 * math.pi) / math.sqrt(2), delta=1e-4)
 
+    def test_a_function_without_a_name_hides_with_nothing_that_it_contains(self):
+        for make in scenario.PLANTS:
+            for draw in range(200):
+                unnamed, *others = scenario.chosen_places(make(), "outside", random.Random(draw))
+                if LAWS[unnamed.law].shapes:  # nothing of this plant is outside the catalogue
+                    continue
+                for other in others:
+                    at_the_same_port = other.site == unnamed.site
+                    self.assertFalse(at_the_same_port and (other.law == "constant" or other.names == unnamed.names), (unnamed, other))
+
     def test_a_seed_always_gives_the_same_files(self):
         texts = []
         for _ in range(2):

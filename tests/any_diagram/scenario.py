@@ -41,9 +41,11 @@ def beside(place, others):
 
 
 def have_one_name(place, other):
-    """Two laws at one port whose sum may have another name: of the same variable, distortions, or a constant that radiation contains."""
+    """Two laws at one port whose sum may have another name: of the same variable, distortions, or a constant that the other one contains, as
+    radiation and a function without a name do."""
     laws = {place.law, other.law}
-    return place.names == other.names or LAWS[place.law].is_distortion or laws == {"constant", "radiation"}
+    contains_a_constant = "radiation" in laws or any(not LAWS[law].shapes for law in laws)
+    return place.names == other.names or LAWS[place.law].is_distortion or ("constant" in laws and contains_a_constant)
 
 
 def sized(place, nominal, memory, draw, sample_time):

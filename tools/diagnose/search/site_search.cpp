@@ -52,8 +52,10 @@ class SiteSearch : JudgedFits {
     result_.trail = std::move(first.trail);
     result_.trail.push_back(alone ? "again, from stated parameters" : "again, from free parameters");
     SiteSearchResult second = searched_from(alone ? nominal : result_.parameters, 0.6);
-    // Terms may stand for parameters: only clearly better ones take the place of what free parameters leave.
-    const double needed = alone ? least_improvement : -least_improvement;
+    // Terms may stand for parameters: only clearly better ones take the place of what free parameters leave,
+    // unless that has even more of them.
+    const bool has_more_terms = second.found.terms.size() > first.found.terms.size();
+    const double needed = alone ? least_improvement : has_more_terms ? 0 : -least_improvement;
     const bool is_better = whole_criterion(second.found) < whole_criterion(first.found) - needed;
     second.trail.push_back(is_better ? "the second is better" : "the first is better");
     if (!is_better) first.trail = std::move(second.trail);
