@@ -203,8 +203,8 @@ void find_slopes(EffectPlan& result, Problems& problems) {
 }
 
 /// The same in so many steps a sample.
-std::shared_ptr<const EffectPlan> with_steps(const EffectPlan& effect, Bench& bench, int steps,
-                                             Problems& problems) {
+std::shared_ptr<EffectPlan> with_steps(const EffectPlan& effect, Bench& bench, int steps,
+                                       Problems& problems) {
   auto result = std::make_shared<EffectPlan>(effect);
   result->finer = result->coarser = nullptr;
   if (const auto diagram = read_diagram(bench.diagram(steps), effect.effect.path, {}, problems))
@@ -246,7 +246,9 @@ std::shared_ptr<const EffectPlan> compile_effect(const Effect& effect, const Mac
     if (!own.has_errors()) result->is_linear = is_linear(result);
     if (!own.has_errors() && (result->is_switched = is_switched(result))) {
       result->finer = with_steps(*result, bench, steps_per_decision, own);
-      result->coarser = with_steps(*result, bench, 1, own);
+      auto coarser = with_steps(*result, bench, 1, own);
+      coarser->is_switched = false;
+      if (resolves(coarser, result)) result->coarser = std::move(coarser);
     }
   }
   for (Problem problem : own.list()) {  // what lies between the blocks and their bench has no file of its own

@@ -12,9 +12,6 @@ namespace {
 
 constexpr double gauss_point = 0.21132486540518712;  // (1 - 1/√3) / 2
 
-/// A complete arena of lanes costs about as much as four scalar runs.
-constexpr int sets_of_scalar_runs = 4;
-
 /// An end stop or a short pitch is met somewhere within a sample. With few rows in a motion, a sample in
 /// which the axis may go farther than a part of its stroke is divided.
 size_t parts_of_a_sample(const RecordSizes& sizes) {
@@ -50,12 +47,12 @@ EffectRun::EffectRun(std::shared_ptr<const EffectPlan> plan, int lanes) : plan_(
     linear_ = std::make_unique<EffectSample>(plan_);
     return;
   }
-  const bool is_wide = lanes > sets_of_scalar_runs || !plan_->remembers;
-  if (plan_->is_switched && !is_wide) {
+  if (plan_->is_switched) {
     fitted_.assign(size_t(std::max(1, lanes)), starts_);
     return;
   }
-  if (plan_->coarser) plan_ = plan_->coarser;
+  // A complete arena of lanes costs about as much as four scalar runs.
+  const bool is_wide = lanes > 4 || !plan_->remembers;
   const InstructionSet set = is_wide ? widest_instruction_set() : InstructionSet::scalar;
   const int width = lanes_in_arena(set);
   const int sets = set == InstructionSet::scalar || !plan_->remembers ? 1 : std::min(lanes, most_lanes);

@@ -44,8 +44,8 @@ struct RoleSignals {
 /// integrator. In addition to the mean there is a slope: the change over the sample of the straight line with
 /// the same first moment. A rapidly oscillating force moves the axis by its slope as well as by its mean.
 /// Of a linear effect with states only one sample is integrated for each state and signal; the others follow
-/// by superposition. Of a switched one (see switched_effect.h) only those are integrated in which something is
-/// decided; many sets at a time, as for a grid of shapes, take the coarser steps of EffectPlan::coarser.
+/// by superposition. Of a switched one (see switched_effect.h) only those are integrated in which something
+/// is decided, of one set after the other.
 class EffectRun {
  public:
   /// `lanes`: requested number of sets; see lanes().

@@ -1,6 +1,7 @@
 #include "tools/effects/switched_effect.h"
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 namespace loopwright {
@@ -13,23 +14,8 @@ constexpr double small_share = 1e-3;
 /// what the usual differences change most.
 constexpr int tried_for_modes = 200;
 constexpr double agreement = 1e-5;
-
-/// Whether the maps of each mode are the same, by what these differences of states and signals change.
-bool are_alike(const std::map<std::string, std::vector<SampleMap>>& modes,
-               const std::vector<double>& differences) {
-  for (size_t i = 0; i < modes.begin()->second.front().states + 2; ++i) {
-    double largest = 0, farthest = 0;
-    for (const auto& [mode, maps] : modes)
-      for (const SampleMap& map : maps)
-        for (size_t c = 0; c < differences.size(); ++c) {
-          const double changed = map.columns[c][i], first = maps.front().columns[c][i];
-          largest = std::max(largest, std::abs(differences[c] * changed));
-          farthest = std::max(farthest, std::abs(differences[c] * (changed - first)));
-        }
-    if (!(farthest <= agreement * largest)) return false;
-  }
-  return true;
-}
+/// The same for steps that are long, but resolve the effect.
+constexpr double long_steps = 0.3;
 
 }  // namespace
 
@@ -140,35 +126,63 @@ uint32_t SwitchedSample::map_of(const std::vector<double>& states, const GivenSi
   return uint32_t(maps_.size() - 1);
 }
 
-bool is_switched(const std::shared_ptr<const EffectPlan>& plan) {
-  const std::vector<std::string>& reads = plan->effect.reads;
-  const bool is_moved_alone =
-      std::ranges::find(reads, "input") == reads.end() && std::ranges::find(reads, "force") == reads.end();
-  if (!plan->flies || plan->is_linear || plan->acts_on_sensor || !is_moved_alone) return false;
+SwitchedSample::Modes SwitchedSample::modes_of(const std::shared_ptr<const EffectPlan>& plan) {
   std::vector<double> fitted;
   for (const EffectParameter& p : plan->effect.parameters)
     if (p.is_fitted) fitted.push_back(range_of(p, plan->sizes).start);
   SwitchedSample sample(plan, fitted);
+  Modes modes{sample.follows().size(), sample.differences(1), {}};
   const bool follows = std::ranges::all_of(
       sample.follows(), [](const auto& state) { return state.position != 0 || state.velocity != 0; });
-  if (!follows) return false;
+  if (!follows) return modes;
   sample.start(0, 0);
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> magnitude(-8, 0), share(-1, 1);
-  std::map<std::string, std::vector<SampleMap>> modes;
   for (int i = 0; i < tried_for_modes; ++i) {
     const double size = std::pow(10, magnitude(random));
     GivenSignals given;
-    std::vector<double> states(sample.follows().size());
+    std::vector<double> states(modes.states);
     for (double& x : states) x = size * share(random);
     for (double& u : given.value) u = size * share(random);
     const std::vector<double> result = sample.integrated(states, given);
     const std::string decided = sample.sample_.decided();
     SampleMap map;
     if (sample.differ(states, given, result, small_share * size, map))
-      modes[decided].push_back(std::move(map));
+      modes.maps[decided].push_back(std::move(map));
   }
-  return modes.size() > 1 && are_alike(modes, sample.differences(1));
+  return modes;
+}
+
+double SwitchedSample::Modes::apart(const Modes& other) const {
+  double most = 0;
+  for (size_t i = 0; i < states + 1; ++i) {
+    double largest = 0, farthest = 0;
+    for (const auto& [mode, own] : maps) {
+      const auto there = other.maps.find(mode);
+      if (there == other.maps.end()) return std::numeric_limits<double>::infinity();
+      for (const SampleMap& map : own)
+        for (size_t c = 0; c < differences.size(); ++c) {
+          const double reference = there->second.front().columns[c][i];
+          largest = std::max(largest, std::abs(differences[c] * reference));
+          farthest = std::max(farthest, std::abs(differences[c] * (map.columns[c][i] - reference)));
+        }
+    }
+    most = std::max(most, largest > 0 ? farthest / largest : 0);
+  }
+  return most;
+}
+
+bool is_switched(const std::shared_ptr<const EffectPlan>& plan) {
+  const std::vector<std::string>& reads = plan->effect.reads;
+  const bool is_moved_alone =
+      std::ranges::find(reads, "input") == reads.end() && std::ranges::find(reads, "force") == reads.end();
+  if (!plan->flies || plan->is_linear || plan->acts_on_sensor || !is_moved_alone) return false;
+  const SwitchedSample::Modes modes = SwitchedSample::modes_of(plan);
+  return modes.maps.size() > 1 && modes.apart(modes) <= agreement;
+}
+
+bool resolves(const std::shared_ptr<const EffectPlan>& steps, const std::shared_ptr<const EffectPlan>& plan) {
+  return SwitchedSample::modes_of(steps).apart(SwitchedSample::modes_of(plan)) <= long_steps;
 }
 
 }  // namespace loopwright

@@ -35,6 +35,18 @@ class SwitchedSample {
 
  private:
   friend bool is_switched(const std::shared_ptr<const EffectPlan>& plan);
+  friend bool resolves(const std::shared_ptr<const EffectPlan>& steps,
+                       const std::shared_ptr<const EffectPlan>& plan);
+  /// Maps of samples that decide alike, at the first values of the parameters.
+  struct Modes {
+    size_t states;
+    std::vector<double> differences;  ///< of states and signals
+    std::map<std::string, std::vector<SampleMap>> maps;
+    /// By how much the states and the mean force differ from the first of the other's maps of the same mode,
+    /// as a share of what the differences change most.
+    double apart(const Modes& other) const;
+  };
+  static Modes modes_of(const std::shared_ptr<const EffectPlan>& plan);
   /// A sample in which nothing is decided anew: the map about one of them.
   struct Mode {
     std::vector<double> states;
@@ -66,5 +78,7 @@ class SwitchedSample {
 
 /// Whether the blocks of an effect remember nothing but states, decide something, and are linear in between.
 bool is_switched(const std::shared_ptr<const EffectPlan>& plan);
+/// Whether these steps, longer than those of the plan, are short enough to compare shapes by.
+bool resolves(const std::shared_ptr<const EffectPlan>& steps, const std::shared_ptr<const EffectPlan>& plan);
 
 }  // namespace loopwright

@@ -80,13 +80,17 @@ class Remembered {
   std::deque<Entry> entries_;  // the one used last at the end
 };
 
+/// So many shapes at a time are a grid, of which only the best are run again.
+constexpr size_t least_grid = 8;
+
 /// An effect with the indices of its parameters.
 struct Compiled {
   std::shared_ptr<const EffectPlan> plan;
   std::vector<size_t> linear, nonlinear;  // in EffectPlan::fitted
   Acts acts;
   Remembered remembered;
-  std::map<size_t, std::unique_ptr<EffectRun>> runs;  // by the number of sets that was asked for
+  std::map<size_t, std::unique_ptr<EffectRun>>
+      runs;  // by the number of sets that was asked for: a grid or not
 
   /// Runs only the shapes that are not cached.
   std::vector<Columns> columns(const Path& path, const std::vector<std::vector<double>>& shapes) {
@@ -102,7 +106,7 @@ struct Compiled {
     if (others.empty()) return result;
     std::vector<Columns> computed = run(path, others);
     for (size_t i = 0; i < others.size(); ++i) {
-      if (others.size() < 8) remembered.keep(path, others[i], computed[i]);  // not complete grids
+      if (others.size() < least_grid) remembered.keep(path, others[i], computed[i]);
       result[places[i]] = std::move(computed[i]);
     }
     return result;
@@ -119,7 +123,7 @@ struct Compiled {
     const size_t rows = even ? even->rows() : path.samples(), per_shape = std::max<size_t>(1, linear.size());
     const size_t wanted = shapes.size() * per_shape;
     std::vector<Columns> result(shapes.size());
-    EffectRun& run = run_for(wanted);
+    EffectRun& run = run_for(wanted, shapes.size() >= least_grid);
     const size_t lanes = size_t(run.lanes());
     for (size_t first = 0; first < wanted; first += lanes) {
       std::vector<EffectRun::Output> outputs(std::min(lanes, wanted - first));
@@ -140,9 +144,9 @@ struct Compiled {
     }
     return result;
   }
-  EffectRun& run_for(size_t sets) {
+  EffectRun& run_for(size_t sets, bool is_grid) {
     std::unique_ptr<EffectRun>& run = runs[sets];
-    if (!run) run = std::make_unique<EffectRun>(plan, int(sets));
+    if (!run) run = std::make_unique<EffectRun>(is_grid && plan->coarser ? plan->coarser : plan, int(sets));
     return *run;
   }
   std::vector<double> fitted_of(const Member& member) const {
