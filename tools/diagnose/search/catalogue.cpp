@@ -89,8 +89,7 @@ struct Compiled {
   std::vector<size_t> linear, nonlinear;  // in EffectPlan::fitted
   Acts acts;
   Remembered remembered;
-  std::map<size_t, std::unique_ptr<EffectRun>>
-      runs;  // by the number of sets that was asked for: a grid or not
+  std::map<size_t, std::unique_ptr<EffectRun>> runs;  // by the number of sets that was asked for
 
   /// Runs only the shapes that are not cached.
   std::vector<Columns> columns(const Path& path, const std::vector<std::vector<double>>& shapes) {
