@@ -30,6 +30,12 @@ struct Backlash : SwitchedSample {
   }
 };
 
+double force_of_flank(double way, double rate) {
+  if (way > gap / 2) return std::max(0.0, stiffness * (way - gap / 2) + flank_damping * rate);
+  if (way < -gap / 2) return std::min(0.0, stiffness * (way + gap / 2) + flank_damping * rate);
+  return 0;
+}
+
 /// What happens in a sample to a body that would move freely with this acceleration.
 struct Happens {
   double load_position, load_velocity, mean, slope;
@@ -41,10 +47,7 @@ Happens integrated(double x, double v, double free, double load_x, double load_v
   double impulse = 0, moment = 0;
   for (int i = 0; i < steps; ++i) {
     const double d = x - load_x, rate = v - load_v;
-    double contact = 0;
-    if (d > gap / 2) contact = std::max(0.0, stiffness * (d - gap / 2) + flank_damping * rate);
-    if (d < -gap / 2) contact = std::min(0.0, stiffness * (d + gap / 2) + flank_damping * rate);
-    const double push = contact - drag * v;
+    const double contact = force_of_flank(d, rate), push = contact - drag * v;
     impulse += push * h, moment += push * h * ((i + 0.5) / steps - 0.5);
     v += h * (free - push / body), load_v += h * (contact - drag * load_v) / load;
     x += h * v, load_x += h * load_v;
@@ -112,9 +115,7 @@ double deviation_along_a_motion(const std::shared_ptr<const EffectPlan>& plan, i
     for (int i = 0; i < steps; ++i) {
       const double t = (i + 0.5) * h, rate = v[k] + a[k] * t - load_v;
       const double d = x[k] + (v[k] + 0.5 * a[k] * t) * t - load_x;
-      double contact = 0;
-      if (d > gap / 2) contact = std::max(0.0, stiffness * (d - gap / 2) + flank_damping * rate);
-      if (d < -gap / 2) contact = std::min(0.0, stiffness * (d + gap / 2) + flank_damping * rate);
+      const double contact = force_of_flank(d, rate);
       mean += (contact - drag * (v[k] + a[k] * t)) / steps;
       load_v += h * (contact - drag * load_v) / load, load_x += h * load_v;
     }

@@ -207,32 +207,28 @@ void change_gains(const LinearAxis& axis, const Prediction& prediction, const Ga
   }
 }
 
-/// The same where all rows have the same gains: with matrices that are products, so that a row waits for one
-/// product of the row before it, not for four. For the difference x of the states and the slow force d,
+/// The same for known sizes where all rows have the same gains: with matrices that are products, so that a
+/// row waits for one product of the row before it, not for four. For the difference x of the states and the
+/// slow force d,
 ///   x' = (A (I - K C) - b kᵀ C) x + b d + (A (K - K₀) + b kᵀ) e₀ - b d₀,   d' = φ (d - kᵀ C x + kᵀ e₀)
 template <int States, int Ports>
 void change_constant_gains(const LinearAxis& axis, const Prediction& prediction, const Gains& from,
                            const Gains& to, std::vector<double>& error) {
-  constexpr int states = States ? States : Eigen::Dynamic, ports = Ports ? Ports : Eigen::Dynamic;
-  using State = Eigen::Matrix<double, states, 1>;
-  using Port = Eigen::Matrix<double, ports, 1>;
-  const Eigen::Index n = axis.A.rows(), p = axis.C.rows();
-  const Eigen::Matrix<double, ports, states> C = axis.C;
-  const State push = axis.push;
-  const Eigen::Matrix<double, 1, ports> slow_gain = to.K.row(n);
-  const Eigen::Matrix<double, 1, states> of_slow = slow_gain * C;
-  const Eigen::Matrix<double, states, states> A =
-      axis.A * (Eigen::MatrixXd::Identity(n, n) - to.K.topRows(n) * axis.C) -
-      axis.push * (to.K.row(n) * axis.C);
-  const Eigen::Matrix<double, states, ports> B =
-      axis.A * (to.K.topRows(n) - from.K.topRows(n)) + axis.push * to.K.row(n);
-  State difference = State::Zero(n), next(n);
-  Port e(p);
+  using Port = Eigen::Matrix<double, Ports, 1>;
+  const Eigen::Matrix<double, Ports, States> C = axis.C;
+  const Eigen::Matrix<double, 1, Ports> slow_gain = to.K.row(States);
+  const Eigen::Matrix<double, 1, States> of_slow = slow_gain * C;
+  const Eigen::Matrix<double, States, States> A =
+      axis.A * (Eigen::MatrixXd::Identity(States, States) - to.K.topRows(States) * axis.C) -
+      axis.push * (to.K.row(States) * axis.C);
+  const Eigen::Matrix<double, States, Ports> B =
+      axis.A * (to.K.topRows(States) - from.K.topRows(States)) + axis.push * to.K.row(States);
+  const Eigen::Matrix<double, States, 1> push = axis.push;
+  Eigen::Matrix<double, States, 1> difference = Eigen::Matrix<double, States, 1>::Zero(), next;
   double d = 0;
   for (size_t k = 0; k < prediction.slow.size(); ++k) {
-    const Eigen::Map<const Port> before(prediction.error.data() + k * size_t(p), p);
-    e.noalias() = before - C * difference;
-    Eigen::Map<Port>(error.data() + k * size_t(p), p) = e;
+    const Port before = Eigen::Map<const Port>(prediction.error.data() + k * Ports);
+    Eigen::Map<Port>(error.data() + k * Ports) = before - C * difference;
     const double corrected = d + (slow_gain.dot(before.transpose()) - of_slow.dot(difference.transpose()));
     next.noalias() = A * difference + (B * before + push * (d - prediction.slow[k]));
     if (prediction.path.forgets(k))
@@ -249,10 +245,10 @@ void with_gains(const LinearAxis& axis, const Prediction& prediction, const Gain
                 std::vector<double>& error) {
   error.resize(prediction.error.size());
   with_sizes(axis, [&]<int States, int Ports>() {
-    if (States == 0 || axis.steps || from.rows || to.rows)
-      change_gains<States, Ports>(axis, prediction, from, to, error);
-    else
-      change_constant_gains<States, Ports>(axis, prediction, from, to, error);
+    if constexpr (States > 0)
+      if (!axis.steps && !from.rows && !to.rows)
+        return change_constant_gains<States, Ports>(axis, prediction, from, to, error);
+    change_gains<States, Ports>(axis, prediction, from, to, error);
   });
 }
 
