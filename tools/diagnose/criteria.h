@@ -61,8 +61,8 @@ constexpr int most_steps_a_sample = 64;
 /// [driving force, rms] It changes less from a whole step to two halves unless a fast pole makes it grow.
 constexpr double same_driving_force = 0.1;
 
-/// [mean force of the input] By which it changes at least: a share of a force that is all but constant would be
-/// smaller than the error of any model.
+/// [mean force of the input] By which it changes at least: a share of a force that is all but constant would
+/// be smaller than the error of any model.
 constexpr double least_change = 0.05;
 
 // Noise.
@@ -135,6 +135,9 @@ constexpr double least_force_share = 0.3;
 constexpr double least_seen_of_load = 0.5;
 /// [standard deviations] By which the share must be below.
 constexpr double sure_deviations = 2;
+/// [frequency of the balance] By so much slower ones show what noise of a sensor drowns in the usual one: it
+/// grows with the square of the frequency.
+constexpr double slower_balances[] = {4, 16};
 /// [force of the input, rms] What is as small in the errors of the predictor may be one of the model.
 constexpr double error_of_model = 2.5e-4;
 /// [χ² a row] An effect as loud as this is no answer of a controller to noise; and [residual that the noise

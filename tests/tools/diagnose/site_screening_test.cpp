@@ -100,16 +100,44 @@ TEST(StackedNames, OfALevelAndOfItsRootStandForOneFunctionOfTheLevel) {
 
 TEST(SiteFitter, AChangeIsJudgedBesideAPassAsByItself) {
   FittedTanks tanks;
-  SitePass pass;
+  SitePass pass, there;
   ASSERT_TRUE(tanks.fitter.pass(tanks.at, false, pass));
-  EXPECT_NEAR(tanks.fitter.scaled_objective_beside(tanks.at, pass), pass.scaled_objective(), 1e-6);
+  const Eigen::VectorXd own = tanks.fitter.whitened(pass);
+  EXPECT_LT((*tanks.fitter.whitened_beside(tanks.at, pass) - own).norm(), 1e-9 * own.norm());
   SiteHypothesis moved = tanks.at;
   moved.factors[0] = 1.01;
-  const double beside = tanks.fitter.scaled_objective_beside(moved, pass);
-  SitePass there;
+  const double squares = tanks.fitter.whitened_beside(moved, pass)->squaredNorm();
   ASSERT_TRUE(tanks.fitter.pass(moved, false, there));
-  EXPECT_NEAR(beside - pass.scaled_objective(), there.scaled_objective() - pass.scaled_objective(),
-              0.05 * std::abs(there.scaled_objective() - pass.scaled_objective()));
+  const double gain = there.scaled_objective() - pass.scaled_objective();
+  EXPECT_NEAR(double(pass.readings) * std::log(squares / own.squaredNorm()), gain, 0.05 * std::abs(gain));
+}
+
+TEST(SiteScreening, TheBestDistortionIsFittedWithTheFirstOfTheList) {
+  const std::vector<SiteCandidate> list{
+      candidate(shape("cube"), 0, 900, 0), candidate(shape("square"), 1, 800, 0),
+      candidate(shape("saturation"), 2, 300, 0), candidate(shape("dead_zone"), 3, 200, 0)};
+  EXPECT_THAT(sites(worth_fitting(list, 1)), testing::ElementsAre(0, 2));
+  EXPECT_THAT(sites(worth_fitting(list, 3)), testing::ElementsAre(0, 1, 2));
+  EXPECT_THAT(sites(worth_fitting({list[0]}, 3)), testing::ElementsAre(0));
+}
+
+TEST(StackedNames, AFunctionTakesTheConstantsOfItsSiteAndPredictsTheSame) {
+  FittedTanks tanks;
+  SiteTerm constant = tanks.term("constant", "level1.y"), function = tanks.term("square", "level1.y"),
+           other = constant;
+  constant.variable = other.variable = -1, constant.coefficient[0] = 2e-5, other.coefficient[0] = 1e-5;
+  other.site = (constant.site + 1) % int(tanks.model.sites().size());
+  function.shape = &unknown_functions().front(), function.nonlinear = {0.1, 0.6};
+  for (size_t c = 0; c < 9; ++c) function.coefficient[c] = 1e-5 * double(c % 3);
+  tanks.at.terms = {constant, other, function};
+  SitePass before, after;
+  ASSERT_TRUE(tanks.fitter.pass(tanks.at, false, before));
+  EXPECT_EQ(add_constant_to_function(tanks.at), 0u);
+  ASSERT_EQ(tanks.at.terms.size(), 2u);
+  EXPECT_EQ(tanks.at.terms[0].site, other.site) << "a function of another site does not contain it";
+  ASSERT_TRUE(tanks.fitter.pass(tanks.at, false, after));
+  for (size_t i = 0; i < before.error.size(); ++i) ASSERT_NEAR(after.error[i], before.error[i], 1e-12) << i;
+  EXPECT_FALSE(add_constant_to_function(tanks.at));
 }
 
 }  // namespace

@@ -72,17 +72,10 @@ std::vector<SiteCandidate> JudgedFits::candidates(const SiteHypothesis& at) {
   keys_ = std::max<size_t>(keys_, ranked.size());
   leave_out_twins(ranked), leave_out_twins(pairs);
   pairs.resize(std::min(fitted_pairs, pairs.size()));
-  std::vector<SiteCandidate> list(ranked.begin(),
-                                  ranked.begin() + std::ptrdiff_t(std::min(fitted_keys, ranked.size())));
+  std::vector<SiteCandidate> list = worth_fitting(ranked, fitted_keys);
   for (const SiteCandidate& c : list)
     result_.trail.push_back(
         fmt::format("  ranked {}: {:.1f}, cost {:.1f}", describe(model(), c.term), c.gain, c.cost));
-  for (const SiteCandidate& c : ranked)  // the best distortion is judged with the others
-    if (c.term.shape->of == TermShape::Of::own) {
-      if (std::ranges::none_of(list, [&](const auto& known) { return known.is_same_key(c.term); }))
-        list.push_back(c);
-      break;
-    }
   std::ranges::copy(pairs, std::back_inserter(list));
   return list;
 }

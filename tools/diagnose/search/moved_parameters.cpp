@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <set>
 #include "tools/diagnose/criteria.h"
 
 namespace loopwright::diagnosis {
@@ -60,6 +59,7 @@ double cost_of_fixing(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& 
   return by.dot(part.ldlt().solve(by));
 }
 
+/// The most promising first; the empty one is among them.
 std::vector<uint32_t> promising_sets(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& deviation,
                                      double readings) {
   const auto count = size_t(deviation.size());
@@ -73,6 +73,7 @@ std::vector<uint32_t> promising_sets(const Eigen::MatrixXd& covariance, const Ei
   if (count <= most_for_all_subsets) {
     for (uint32_t set = 0; set <= full; ++set) add(set);
   } else {
+    add(0);
     for (size_t i = 0; i < count; ++i) add(1u << i);
     for (uint32_t set = full; set;) {  // the least important first
       add(set);
@@ -86,13 +87,14 @@ std::vector<uint32_t> promising_sets(const Eigen::MatrixXd& covariance, const Ei
     }
   }
   std::ranges::sort(ranked);
-  std::set<uint32_t> sets{0};
-  for (size_t i = 0; i < std::min(fitted_sets, ranked.size()); ++i) sets.insert(ranked[i].second);
+  std::vector<uint32_t> sets;
   const double most = ranked.front().first + criteria::hopeless_parameter;
   size_t singles = 0;  // the form is far off where parameters have moved together along what they leave open
-  for (const auto& [cost, set] : ranked)
-    if (std::has_single_bit(set) && (cost < most || singles++ < fitted_singles)) sets.insert(set);
-  return {sets.begin(), sets.end()};
+  for (const auto& [cost, set] : ranked) {
+    const bool is_promising_single = std::has_single_bit(set) && (cost < most || singles++ < fitted_singles);
+    if (sets.size() < fitted_sets || is_promising_single || set == 0) sets.push_back(set);
+  }
+  return sets;
 }
 
 void put_back(SiteHypothesis& h, int parameter) {
@@ -121,7 +123,8 @@ double significance(const MovedParameters& choice, size_t i) {
 /// Sets are proposed by a quadratic form about one point, far from which it may miss the simpler one: the
 /// best is fitted again without its least certain parameter as long as that is not sure to have moved.
 void put_idle_ones_back(std::vector<MovedParameters>& list, SiteFitter& fitter, double readings) {
-  while (!list.empty() && !list.front().moved().empty() && !fitter.is_interrupted()) {
+  while (!list.empty() && !list.front().moved().empty() && !fitter.is_interrupted() &&
+         !fitter.model().work().is_spent(1)) {
     const MovedParameters best = list.front();
     std::vector<int> without = best.moved();
     size_t idle = 0;
@@ -185,6 +188,7 @@ std::vector<MovedParameters> moved_parameters(SiteFitter& fitter, const SiteHypo
   }
   std::vector<MovedParameters> list;
   for (uint32_t set : sets) {
+    if (!list.empty() && fitter.model().work().is_spent(1)) break;
     SiteHypothesis h = start;
     for (size_t i = 0; i < free.size(); ++i)
       if (!(set >> i & 1)) put_back(h, free[i]);

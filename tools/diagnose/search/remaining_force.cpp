@@ -71,7 +71,7 @@ InverseDynamics inverse_dynamics(Trial& trial) {
 }
 
 std::vector<double> residual_with(const Trial& trial, const InverseDynamics& inverse,
-                                  const std::vector<Member>& members) {
+                                  const std::vector<Member>& members, double slower) {
   const AxisRecord& record = trial.model->record();
   const double T = record.sample_time, mass = trial.model->nominal_inertia() + added_inertia(members);
   std::vector<double> residual = inverse.residual;
@@ -97,7 +97,7 @@ std::vector<double> residual_with(const Trial& trial, const InverseDynamics& inv
   if (!changed.sensor.empty())
     for (size_t k = 1; k + 1 < residual.size(); ++k)
       residual[k] += mass * (changed.sensor[k + 1] - 2 * changed.sensor[k] + changed.sensor[k - 1]) / (T * T);
-  return zero_phase_low_pass(residual, force_cutoff(T), T);
+  return zero_phase_low_pass(residual, force_cutoff(T) / slower, T);
 }
 
 MeasuredMotion away_from_turns(const InverseDynamics& inverse) {
@@ -141,13 +141,14 @@ ResidualSize residual_size(const Trials& trials, const std::vector<InverseDynami
 }
 
 ForceShare share_of_force(const Trials& trials, const std::vector<InverseDynamics>& inverse,
-                          const std::vector<Member>& with, const std::vector<Member>& without) {
+                          const std::vector<Member>& with, const std::vector<Member>& without,
+                          double slower) {
   std::vector<std::array<double, 2>> blocks;  // Σ residual · force, Σ force²
   double rows = 0;
   for (size_t t = 0; t < trials.list.size(); ++t) {
     const Trial& trial = trials.list[t];
-    const std::vector<double> left = residual_with(trial, inverse[t], with),
-                              before = residual_with(trial, inverse[t], without);
+    const std::vector<double> left = residual_with(trial, inverse[t], with, slower),
+                              before = residual_with(trial, inverse[t], without, slower);
     const size_t block =
         std::max<size_t>(1, whole_count(criteria::independent_block_s / inverse[t].motion.sample_time));
     for (size_t k = 0; k < std::min(trial.held_out_from, left.size()); ++k) {
@@ -194,7 +195,11 @@ bool spoils_balance(const Trials& trials, const Estimate& estimate, size_t membe
   const ForceShare share = share_of_force(trials, *trials.inverse, estimate.members, others);
   const bool is_seen = share.force > criteria::least_seen_of_load * weight.force_rms;
   if (!is_seen && is_own_load(estimate.members[member])) return false;
-  return share.found + criteria::sure_deviations * share.deviation < criteria::least_force_share;
+  if (share.found + criteria::sure_deviations * share.deviation >= criteria::least_force_share) return false;
+  return std::ranges::none_of(criteria::slower_balances, [&](double slower) {
+    const ForceShare slow = share_of_force(trials, *trials.inverse, estimate.members, others, slower);
+    return slow.found - criteria::sure_deviations * slow.deviation > criteria::least_force_share;
+  });
 }
 
 bool is_negligible(const Trials& trials, const std::vector<Member>& members) {

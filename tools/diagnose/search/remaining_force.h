@@ -18,16 +18,16 @@ struct InverseDynamics {
 InverseDynamics inverse_dynamics(Trial& trial);
 
 /// The nominal residual minus the force that the members consume, filtered below 80 Hz (or a tenth of the
-/// sampling rate).
+/// sampling rate), or below a frequency that is so many times lower.
 std::vector<double> residual_with(const Trial& trial, const InverseDynamics& inverse,
-                                  const std::vector<Member>& members);
+                                  const std::vector<Member>& members, double slower = 1);
 
 /// The measured motion, in which only rows count that the filter of the residual does not mix with a reversal
 /// or a rest: there the force of dry friction leaps, at an instant that the motion shows only roughly.
 MeasuredMotion away_from_turns(const InverseDynamics& inverse);
 
-/// Whether its motion is that of the axis: most of the rows that the trials use move in it. Of a motion that is
-/// over within the period of the filter it shows a wobble or nothing, and no balance of forces.
+/// Whether its motion is that of the axis: most of the rows that the trials use move in it. Of a motion that
+/// is over within the period of the filter it shows a wobble or nothing, and no balance of forces.
 bool balances_forces(const Trials& trials, const std::vector<InverseDynamics>& inverse);
 
 struct ResidualSize {
@@ -44,7 +44,8 @@ struct ForceShare {
 };
 /// Over the fitted rows; `without` is a subset of `with`.
 ForceShare share_of_force(const Trials& trials, const std::vector<InverseDynamics>& inverse,
-                          const std::vector<Member>& with, const std::vector<Member>& without);
+                          const std::vector<Member>& with, const std::vector<Member>& without,
+                          double slower = 1);
 
 /// Whether the force of a member occurs in the held-out rows: an end stop may be touched in others alone.
 bool is_held_out(const Trials& trials, const std::vector<InverseDynamics>& inverse,
@@ -56,7 +57,8 @@ bool is_held_out(const Trials& trials, const std::vector<InverseDynamics>& inver
 /// the force of an effect follows, as beside a resonance, the balance is as wrong: an effect that is loud in
 /// the errors, and quieter than the noise in the balance, is not asked. Nor is a load that flies: the moments
 /// of its blows are not those of the smooth motion. Nor is a load on a spring that swings faster than the
-/// balance shows.
+/// balance shows. Nor does one spoil the balance that a slower one shows to be there: what a controller makes
+/// of the noise of a sensor is fast.
 bool spoils_balance(const Trials& trials, const Estimate& estimate, size_t member, const Weight& weight);
 
 /// Whether the force that the members leave is too small to matter, in the fitted rows and in the others.

@@ -117,14 +117,15 @@ class Ranking {
     return kind == Site::Kind::input || kind == Site::Kind::block || kind == Site::Kind::sensor;
   }
   bool is_sensor(int site) const { return fitter_.model().sites()[size_t(site)].kind == Site::Kind::sensor; }
-  /// A function without a name contains all laws of its signal. A second law of dry friction would only mend
-  /// how the first one turns around rest, and a site has one memory.
+  /// A function without a name contains all laws of its signal, and constants. A second law of dry friction
+  /// would only mend how the first one turns around rest, and a site has one memory.
   bool is_there(const TermShape& shape, int site, int variable) const {
     return std::ranges::any_of(at_.terms, [&](const SiteTerm& t) {
       if (t.site != site) return false;
       if (t.shape->remembered && shape.remembered) return true;
+      const bool is_in_function = shape.of == TermShape::Of::nothing || t.variable == variable;
+      if (is_unknown_function(*t.shape) && is_in_function) return true;
       if (t.variable != variable) return false;
-      if (is_unknown_function(*t.shape)) return true;
       const bool is_same = t.shape == &shape || (is_dry_friction(*t.shape) && is_dry_friction(shape));
       return is_same && shape.name != "periodic";
     });
@@ -254,10 +255,15 @@ class Ranking {
       if (eigen.eigenvalues()[i] > 1e-6)
         coefficient +=
             eigen.eigenvectors().col(i) * (eigen.eigenvectors().col(i).dot(right) / eigen.eigenvalues()[i]);
-    const double before = rest_.squaredNorm(), after = (rest_ - unit * coefficient).squaredNorm();
+    const Eigen::VectorXd left = rest_ - unit * coefficient;
     coefficient = weight.asDiagonal() * coefficient;
     for (Eigen::Index c = 0; c < norm.size(); ++c) term.coefficient[size_t(c)] = coefficient[c];
-    return double(pass_.readings) * std::log(before / std::max(after, 1e-12 * before));
+    return gain_of(left);
+  }
+  /// In -2 ln L, of what leaves these of the remaining errors.
+  double gain_of(const Eigen::VectorXd& left) const {
+    const double before = rest_.squaredNorm();
+    return double(pass_.readings) * std::log(before / std::max(left.squaredNorm(), 1e-12 * before));
   }
   /// A distortion of what is measured moves no state, so that its response is nearly linear.
   bool is_promising(const TermShape& shape, int site, int own, const std::vector<double>& values) {
@@ -271,7 +277,8 @@ class Ranking {
     }
     return most > least_gain_of_second;
   }
-  /// A strong distortion is far from linear: every first value is judged by a pass of the model.
+  /// A strong distortion is far from linear: every first value is judged by a pass of the model. What is free
+  /// already moves with it, as it does with other terms.
   void try_distortion(const TermShape& shape, int site, std::vector<SiteCandidate>& list) {
     const int own = fitter_.model().own_variable(site);
     if (own < 0 || is_there(shape, site, own)) return;
@@ -284,7 +291,9 @@ class Ranking {
       SiteHypothesis trial = at_;
       trial.terms.push_back(term_of(shape, site, own, values, start));
       trial.terms.back().coefficient[0] = 1;
-      const double gain = pass_.scaled_objective() - fitter_.scaled_objective_beside(trial, pass_);
+      const std::optional<Eigen::VectorXd> errors = fitter_.whitened_beside(trial, pass_);
+      if (!errors) continue;
+      const double gain = gain_of(*errors - basis_ * (basis_.transpose() * *errors));
       if (gain > best.gain) best.gain = gain, best.term = trial.terms.back();
     }
     if (best.gain <= 0) return;

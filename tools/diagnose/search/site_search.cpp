@@ -196,8 +196,7 @@ class SiteSearch : JudgedFits {
       const SiteHypothesis rest = without(at, t);
       std::vector<SiteCandidate> others = rank_terms(fitter_, rest, fitter_.shapes());
       leave_out_hopeless(others, term);
-      others.resize(std::min<size_t>(3, others.size()));
-      for (SiteHypothesis& other : fits(rest, others)) {
+      for (SiteHypothesis& other : fits(rest, worth_fitting(others, 3))) {
         const double needed = size_of(other) > size_of(at) ? 20 : least_exchange;
         const double worse = criterion(other) - criterion(at);
         if (worse < -needed) {
@@ -216,9 +215,8 @@ class SiteSearch : JudgedFits {
 
   void add_unknown(SiteHypothesis& at) {
     if (is_spent(criteria::work_with_rivals)) return;
-    std::vector<SiteCandidate> ranked = rank_terms(fitter_, at, unknown_functions().first(1));
-    ranked.resize(std::min<size_t>(2, ranked.size()));
-    std::vector<SiteHypothesis> tried = fits(at, ranked);
+    const std::vector<SiteCandidate> ranked = rank_terms(fitter_, at, unknown_functions().first(1));
+    const auto tried = fits(at, std::span(ranked).first(std::min<size_t>(2, ranked.size())));
     if (tried.empty()) return;
     const double needed = std::max(criteria::least_gain_of_term + least_gain_of_unknown,
                                    least_gain_of_unknown_per_reading * readings_);
@@ -228,7 +226,14 @@ class SiteSearch : JudgedFits {
         is_detail_of_named_law(fitter_, tried.front()))
       return;
     at = tried.front();
+    while (const std::optional<size_t> constant = add_constant_to_function(at)) forget_rivals_of(*constant);
     result_.steps.push_back(at);
+  }
+
+  /// Of a term that is left out; the places of later ones move.
+  void forget_rivals_of(size_t term) {
+    std::erase_if(result_.rivals, [&](const SiteRival& r) { return r.of == term; });
+    for (SiteRival& r : result_.rivals) r.of -= r.of > term;
   }
 
   /// Terms without which the likelihood hardly falls.
@@ -242,8 +247,7 @@ class SiteSearch : JudgedFits {
       fitter_.fit_noise(rest);
       if (rest.objective - at.objective >= gain_needed()) continue;
       tell("- " + describe(model(), at.terms[t]), rest);
-      std::erase_if(result_.rivals, [&](const SiteRival& r) { return r.of == t; });
-      for (SiteRival& r : result_.rivals) r.of -= r.of > t;
+      forget_rivals_of(t);
       at = std::move(rest), is_any_removed = true;
     }
     return is_any_removed;
@@ -255,7 +259,7 @@ class SiteSearch : JudgedFits {
         !is_detail_of_named_law(fitter_, at))
       return false;
     at.terms.pop_back();
-    std::erase_if(result_.rivals, [&](const SiteRival& r) { return r.of == at.terms.size(); });
+    forget_rivals_of(at.terms.size());
     fitter_.refine(at, further_steps + 1);
     fitter_.fit_noise(at);
     tell("without the function, a detail of its law", at);
@@ -367,9 +371,8 @@ class SiteSearch : JudgedFits {
       if (changes == 1 && at.is_free[size_t(moved)]) continue;
       const double worse = whole_criterion(one) - whole_criterion(at);
       if (changes > 1 && worse < -least_exchange) {
-        tell("a single parameter does better", one);
-        at = one;
-        result_.rivals.clear(), result_.parameter_rivals.clear(), result_.steps.clear();
+        take(at, one, "a single parameter does better");
+        result_.steps.clear();
         return compare_with_one_parameter(at);
       }
       const double lost = one.objective - at.objective;

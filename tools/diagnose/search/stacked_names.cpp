@@ -108,6 +108,22 @@ bool is_detail_of_named_law(SiteFitter& fitter, SiteHypothesis h) {
   });
 }
 
+std::optional<size_t> add_constant_to_function(SiteHypothesis& at) {
+  for (size_t t = 0; t < at.terms.size(); ++t) {
+    const SiteTerm& constant = at.terms[t];
+    if (constant.shape->of != TermShape::Of::nothing) continue;
+    const auto function = std::ranges::find_if(at.terms, [&](const SiteTerm& other) {
+      return other.site == constant.site && is_unknown_function(*other.shape);
+    });
+    if (function == at.terms.end()) continue;
+    for (int c = 0; c < function->shape->columns; ++c)
+      function->coefficient[size_t(c)] += constant.coefficient[0];
+    at = without(std::move(at), t);
+    return t;
+  }
+  return {};
+}
+
 std::optional<SiteHypothesis> with_function(SiteFitter& fitter, const SiteHypothesis& at,
                                             const StackedNames& names,
                                             const std::function<double(const SiteHypothesis&)>& criterion) {
@@ -117,6 +133,8 @@ std::optional<SiteHypothesis> with_function(SiteFitter& fitter, const SiteHypoth
        rank_terms_at(fitter, rest, unknown_functions(), names.site, names.variable)) {
     SiteHypothesis trial = rest;
     trial.terms.push_back(candidate.term);
+    while (add_constant_to_function(trial)) {
+    }
     fitter.refine(trial, refinements);
     fitter.fit_noise(trial);
     fitter.refine(trial, refinements);

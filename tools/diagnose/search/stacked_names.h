@@ -31,6 +31,10 @@ bool are_periods(const SiteHypothesis& at, const StackedNames& names, double ran
 /// tells how exactly the law holds.
 bool is_detail_of_named_law(SiteFitter& fitter, SiteHypothesis h);
 
+/// A function without a name contains a constant of its site: it is added to the function's levels and left
+/// out, which changes no error. Its place before; nothing if there is none.
+std::optional<size_t> add_constant_to_function(SiteHypothesis& at);
+
 /// The hypothesis with a function without a name in their place, of as many nodes as the criterion prefers.
 /// Nothing if it cannot be fitted.
 std::optional<SiteHypothesis> with_function(SiteFitter& fitter, const SiteHypothesis& at,
