@@ -23,6 +23,7 @@ const std::vector<NamedSize> record_sizes = {
     {"sample_time", "s", &RecordSizes::sample_time},
     {"initial_position", "$position", &RecordSizes::initial_position},
     {"initial_velocity", "$position/s", &RecordSizes::initial_velocity},
+    {"second", "s", &RecordSizes::second},
 };
 
 const EffectParameter* Effect::find(std::string_view parameter) const {

@@ -37,6 +37,7 @@ struct RecordSizes {
   double sample_time = 1e-3;    ///< [s]
   double initial_position = 0;  ///< [position] first sample
   double initial_velocity = 0;  ///< [position/s]
+  double second = 1;            ///< [s] for times of machines, which do not depend on the record
 };
 
 /// Every quantity with its name in expressions and its unit by role.

@@ -37,9 +37,9 @@ bool adds_inertia(const Attachment& attachment) {
 
 constexpr double linear_points = 8;
 constexpr double grid_ratio = 1.7;  // between neighbors on a logarithmic scale, at most
-/// [times the smallest of the grid] The longest delay or lag: 20 samples, and a fifteenth of one. A held
-/// force that changes from sample to sample shows a delay of a tenth.
-constexpr double ranges_of_delays = 303.75;
+/// [samples] The shortest delay or lag of the grid: a held force that changes from sample to sample shows a
+/// delay of a tenth.
+constexpr double shortest_delay = 20 / 303.75;
 
 /// Initial values of the search. Later shapes of an effect start in the middle: the fit moves them.
 std::vector<double> grid_of(const CandidateParameter& p, bool is_first, int points) {
@@ -212,7 +212,9 @@ Candidate candidate_of(const Effect& effect, std::shared_ptr<const EffectPlan> p
     std::vector<double>& grid = candidate.nonlinear.front().grid;
     const double high = candidate.nonlinear.front().high;
     grid.clear();
-    for (double value = high / ranges_of_delays; value < high; value *= 1.5) grid.push_back(value);
+    const double low =
+        std::max(candidate.nonlinear.front().low, shortest_delay * compiled->plan->sizes.sample_time);
+    for (double value = low; value < high; value *= 1.5) grid.push_back(value);
   }
   candidate.is_repeatable = effect.is_repeatable, candidate.at_rest = effect.at_rest;
   candidate.flies = candidate.acts == Acts::force && compiled->plan->flies;

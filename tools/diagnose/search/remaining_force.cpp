@@ -42,6 +42,11 @@ std::vector<double> net_forces(AxisModel& model, const Path& path, const std::ve
   return model.net_forces(path.position, path.velocity, input, AxisModel::At::mean);
 }
 
+std::vector<Member> without(std::vector<Member> members, size_t member) {
+  members.erase(members.begin() + std::ptrdiff_t(member));
+  return members;
+}
+
 }  // namespace
 
 InverseDynamics inverse_dynamics(Trial& trial) {
@@ -169,8 +174,7 @@ ForceShare share_of_force(const Trials& trials, const std::vector<InverseDynamic
 bool is_held_out(const Trials& trials, const std::vector<InverseDynamics>& inverse,
                  const std::vector<Member>& members, size_t member) {
   constexpr double least_share = 1e-3;  // of its force; less is what the filter spreads
-  std::vector<Member> others = members;
-  others.erase(others.begin() + std::ptrdiff_t(member));
+  const std::vector<Member> others = without(members, member);
   double square[2] = {}, rows[2] = {};  // fitted, held out
   for (size_t t = 0; t < trials.list.size(); ++t) {
     const std::vector<double> with = residual_with(trials.list[t], inverse[t], members),
@@ -183,23 +187,37 @@ bool is_held_out(const Trials& trials, const std::vector<InverseDynamics>& inver
   return rows[1] > 0 && square[1] * rows[0] > least_share * least_share * square[0] * rows[1];
 }
 
+namespace {
+
+ForceShare slow_share(const Trials& trials, const std::vector<Member>& members, size_t member) {
+  return share_of_force(trials, *trials.inverse, members, without(members, member), criteria::slower_balance);
+}
+
+}  // namespace
+
+bool is_late_in_slow_balance(const Trials& trials, const std::vector<Member>& members, size_t member) {
+  if (!trials.inverse || !is_late_input(*members[member].candidate)) return false;
+  const ForceShare share = slow_share(trials, members, member);
+  return share.found - criteria::sure_deviations * share.deviation > criteria::least_force_share;
+}
+
 bool spoils_balance(const Trials& trials, const Estimate& estimate, size_t member, const Weight& weight) {
   if (!trials.inverse) return false;
-  if (estimate.members[member].candidate->flies) return false;
+  const Candidate& candidate = *estimate.members[member].candidate;
+  if (candidate.flies) return false;
   const bool is_loud = weight.wald > criteria::loud_wald_per_row * double(fitted_numbers(trials));
-  if (is_loud && estimate.members[member].candidate->acts == Acts::force &&
+  if (is_loud && candidate.acts == Acts::force &&
       weight.force_rms < criteria::noise_that_drives * residual_floor(trials, estimate))
     return false;
-  std::vector<Member> others = estimate.members;
-  others.erase(others.begin() + std::ptrdiff_t(member));
-  const ForceShare share = share_of_force(trials, *trials.inverse, estimate.members, others);
+  if (is_late_input(candidate))
+    if (const ForceShare slow = slow_share(trials, estimate.members, member);
+        criteria::sure_deviations * slow.deviation < criteria::least_force_share)
+      return slow.found < criteria::least_force_share;
+  const ForceShare share =
+      share_of_force(trials, *trials.inverse, estimate.members, without(estimate.members, member));
   const bool is_seen = share.force > criteria::least_seen_of_load * weight.force_rms;
   if (!is_seen && is_own_load(estimate.members[member])) return false;
-  if (share.found + criteria::sure_deviations * share.deviation >= criteria::least_force_share) return false;
-  return std::ranges::none_of(criteria::slower_balances, [&](double slower) {
-    const ForceShare slow = share_of_force(trials, *trials.inverse, estimate.members, others, slower);
-    return slow.found - criteria::sure_deviations * slow.deviation > criteria::least_force_share;
-  });
+  return share.found + criteria::sure_deviations * share.deviation < criteria::least_force_share;
 }
 
 bool is_negligible(const Trials& trials, const std::vector<Member>& members) {

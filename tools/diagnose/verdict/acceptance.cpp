@@ -1,6 +1,7 @@
 #include "tools/diagnose/verdict/acceptance.h"
 #include <fmt/format.h>
 #include <algorithm>
+#include <numeric>
 #include <optional>
 #include <utility>
 #include "tools/diagnose/criteria.h"
@@ -52,16 +53,16 @@ class Judge {
     }
     for (size_t i = 1; i < state.runs.size(); ++i)
       if (is_worse(state.runs[i - 1], state.runs[i]) && is_judged_by_simulation(state, i) &&
-          is_worse_without(state, state.staircase.added[i].front()))
+          !is_answered(state, i) && is_worse_without(state, state.staircase.added[i].front()))
         return why_worse(state, i);
     for (size_t i = 1; i < state.runs.size(); ++i)
-      if (helps_nowhere(state, i) && !brings_own_load(state, i) &&
+      if (helps_nowhere(state, i) && !brings_own_load(state, i) && !is_answered(state, i) &&
           helps_nowhere_beside_all(state, state.staircase.added[i].front()))
         return Refusal{state.staircase.added[i].front(),
                        "neither does the diagram simulate better with it, nor do the forces balance better"};
     if (state.conclusion.counts_portmanteau > criteria::most_portmanteau_of_counted && !state.runs.empty())
       for (size_t m = 0; m < state.conclusion.estimate.members.size(); ++m)
-        if (!helps(state, m))
+        if (!helps(state, m) && !is_late(state, m))
           return Refusal{
               m,
               "the counts of the sensor beat with the samples, which resembles it, and the diagram "
@@ -81,7 +82,27 @@ class Judge {
     return {};
   }
 
+  bool is_worse_than_nominal(const Acceptance& state) {
+    std::vector<size_t> all(state.conclusion.estimate.members.size());
+    std::iota(all.begin(), all.end(), size_t(0));
+    const FreeRun &before = state.runs.front(), &after = state.runs.back();
+    return is_worse(before, after) && !is_answered(state, all, before, after);
+  }
+
  private:
+  bool is_late(const Acceptance& state, size_t member) const {
+    return is_late_in_slow_balance(trials_, state.conclusion.estimate.members, member);
+  }
+  /// What the controller answered to noise is in the recorded input, but not in the motion that is simulated:
+  /// beside it, an input that is late for sure may simulate a little worse.
+  bool is_answered(const Acceptance& state, const std::vector<size_t>& added, const FreeRun& before,
+                   const FreeRun& after) const {
+    return after.rmse() < criteria::most_worse_by_answers * before.rmse() &&
+           std::ranges::any_of(added, [&](size_t m) { return is_late(state, m); });
+  }
+  bool is_answered(const Acceptance& state, size_t step) const {
+    return is_answered(state, state.staircase.added[step], state.runs[step - 1], state.runs[step]);
+  }
   /// Whether all effects together simulate worse than all others. In the middle of the staircase an effect
   /// may only lack its companion: friction that is fitted beside a drift without a name spoils other rows.
   bool is_worse_without(const Acceptance& state, size_t member) {
@@ -214,7 +235,7 @@ Acceptance accept(Conclusion conclusion, Trials& trials, const std::vector<Inver
     state.staircase.steps[i].simulation_rmse = state.runs[i].rmse();
   if (!has_own_load(state.conclusion.estimate.members)) need_what_simulates_better(state.staircase.steps);
   if (!state.runs.empty() && !has_own_load(state.staircase.members.back())) {
-    state.is_worse = is_worse(state.runs.front(), state.runs.back());
+    state.is_worse = judge.is_worse_than_nominal(state);
     state.diverges = state.runs.back().diverged;
   }
   return state;
