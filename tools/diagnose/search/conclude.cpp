@@ -126,7 +126,9 @@ std::optional<Estimate> same_law_by_fewer(Trials& trials, Rivals& rivals, const 
   for (const Proposal& swap : law_swaps(members, candidates, trials)) {
     if (rivals.is_spent()) return {};
     Estimate other = rivals.fitted(swap);
-    if (!rivals.loss_of(swap, other)) continue;
+    // Beside no noise the arithmetic of a law decides how well it predicts.
+    const bool leaves_nothing = other.is_valid && is_negligible(trials, other.members);
+    if (!leaves_nothing && !rivals.loss_of(swap, other)) continue;
     const size_t needed = size_t(std::ranges::count_if(weigh_all(trials, other), [&](const Weight& weight) {
       return material(trials, other, weight) >= 1;
     }));
