@@ -44,6 +44,9 @@ constexpr double least_gain_of_other_input = 25, least_gain_of_other_input_per_r
 /// [rms error of simulation] An answer by simulation stands only if it leaves at most this of the other's,
 /// also over the held-out rows; without them chance has a larger part.
 constexpr double better_simulation_held_out = 0.9, better_simulation_without_hold_out = 0.8;
+/// [for each term and parameter more] The errors of a simulation are slow: a record of ten of their stretches
+/// gives a number a twentieth of them by chance.
+constexpr double better_simulation_per_change = 0.95;
 /// [of the strongest] Directions of a fit that are weaker are left out.
 constexpr double weakest_direction = 1e-7;
 /// [of the parameter] Standard deviation of what a diagram states, as a prior of its parameters: they are not

@@ -76,20 +76,21 @@ bool SiteFitter::pass(SiteHypothesis& h, bool with_columns, SitePass& to) {
   return good;
 }
 
-Eigen::VectorXd SiteFitter::whitened(const SitePass& pass) const { return whitened(pass.error, pass); }
-
-Eigen::VectorXd SiteFitter::whitened(const std::vector<double>& errors, const SitePass& by) const {
-  Eigen::VectorXd e(Eigen::Index(errors.size()));
-  for (size_t i = 0; i < errors.size(); ++i)
-    e[Eigen::Index(i)] = std::isnan(by.error[i]) ? 0 : errors[i] / std::sqrt(by.variance[i]);
+Eigen::VectorXd SiteFitter::whitened(const SitePass& pass) const {
+  Eigen::VectorXd e(Eigen::Index(pass.error.size()));
+  for (size_t i = 0; i < pass.error.size(); ++i)
+    e[Eigen::Index(i)] = std::isnan(pass.error[i]) ? 0 : pass.error[i] / std::sqrt(pass.variance[i]);
   return e;
 }
 
-std::optional<Eigen::VectorXd> SiteFitter::whitened_beside(const SiteHypothesis& h, const SitePass& about) {
+double SiteFitter::scaled_objective_beside(const SiteHypothesis& h, const SitePass& about) {
   use(h);
-  if (!filter_.run_frozen(about, errors_)) return {};
-  Eigen::VectorXd e = whitened(errors_, about);
-  return e.allFinite() ? std::optional(std::move(e)) : std::nullopt;
+  if (!filter_.run_frozen(about, errors_)) return infinite;
+  double squares = 0;
+  for (size_t k = 0; k < errors_.size(); ++k)
+    if (!std::isnan(about.error[k])) squares += squared(errors_[k]) / about.variance[k];
+  const double count = double(about.readings);
+  return std::isfinite(squares) ? about.log_variances + count * std::log(squares / count) + count : infinite;
 }
 
 double SiteFitter::step_of(const SiteHypothesis& h, const FittedNumber& number) const {

@@ -63,9 +63,9 @@ class SiteFitter {
   /// Parameters are biased in the wrong one. Noise in the states is therefore made small, parameters and
   /// noise are fitted, as long as the likelihood improves.
   void anneal(SiteHypothesis& hypothesis);
-  /// The whitened errors with the gains and variances of a pass: what a change does, in one run of the model
-  /// in the place of one for each state. Nothing if the model diverges.
-  std::optional<Eigen::VectorXd> whitened_beside(const SiteHypothesis& hypothesis, const SitePass& about);
+  /// The scaled objective with the gains and variances of a pass: what a change gains, in one run of the
+  /// model in the place of one for each state. Infinite if the model diverges.
+  double scaled_objective_beside(const SiteHypothesis& hypothesis, const SitePass& about);
   /// Derivatives of the whitened errors with respect to all fitted numbers, as columns; a missing reading is
   /// zero. At the edge of what the diagram can be run with, the difference is taken on the other side; zero
   /// if it cannot be run on either.
@@ -79,7 +79,6 @@ class SiteFitter {
   void solve(const SiteHypothesis& hypothesis, const std::vector<FittedNumber>& numbers,
              Normal& normal) const;
   void use(const SiteHypothesis& hypothesis);
-  Eigen::VectorXd whitened(const std::vector<double>& errors, const SitePass& by) const;
   SiteNoise best_noise(const SitePass& pass, const SiteNoise& from) const;
   std::optional<SiteNoise> evened(const SiteNoise& noise) const;
   /// [s] Of slow noise: what is faster is white noise, what is slower takes out what offsets and drifts would

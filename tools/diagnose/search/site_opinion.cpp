@@ -44,14 +44,19 @@ double log_ratio(const std::vector<double>& one, const std::vector<double>& othe
   return sum / double(one.size());
 }
 
-/// Both in what was fitted and in what was held out: a term may fit the slow errors of a record by chance.
-bool is_clearly_better(const SimulationErrors& simulation, const SimulationErrors& predictions) {
+/// Both in what was fitted and in what was held out: a term may fit the slow errors of a record by chance,
+/// and so may each change that it has more than the other answer.
+bool is_clearly_better(const SimulationErrors& simulation, const SimulationErrors& predictions,
+                       size_t more_changes) {
   const bool has_held_out = !simulation.held_out.empty();
   const double needed = std::log(has_held_out ? criteria::better_simulation_held_out
-                                              : criteria::better_simulation_without_hold_out);
+                                              : criteria::better_simulation_without_hold_out) +
+                        double(more_changes) * std::log(criteria::better_simulation_per_change);
   return log_ratio(simulation.fitted, predictions.fitted) < needed &&
          (!has_held_out || log_ratio(simulation.held_out, predictions.held_out) < needed);
 }
+
+size_t changes_of(const SiteHypothesis& h) { return h.terms.size() + h.free_parameters(); }
 
 /// A simulation that misses more than one of the diagram as it is names no cause.
 bool is_worse_than_stated(SiteFitter& fitter, const SimulationErrors& simulation,
@@ -177,8 +182,10 @@ std::optional<SiteSearchResult> search_with_second_opinion(
   if (!second || fitter.is_interrupted()) return first;
   const auto of_first = simulation_errors(fitter, first->found),
              of_second = simulation_errors(fitter, second->found);
-  const bool is_better = of_second && !is_worse_than_stated(fitter, *of_second, first->nominal) &&
-                         (!of_first || is_clearly_better(*of_second, *of_first));
+  const size_t changes = changes_of(first->found), more = changes_of(second->found);
+  const bool is_better =
+      of_second && !is_worse_than_stated(fitter, *of_second, first->nominal) &&
+      (!of_first || is_clearly_better(*of_second, *of_first, more - std::min(more, changes)));
   const bool is_answer =
       is_better && !predicts_much_worse(fitter, second->found, first->found, second->trail);
   for (const auto& [name, errors] : {std::pair{"predictions", of_first}, {"simulation", of_second}})

@@ -255,15 +255,10 @@ class Ranking {
       if (eigen.eigenvalues()[i] > 1e-6)
         coefficient +=
             eigen.eigenvectors().col(i) * (eigen.eigenvectors().col(i).dot(right) / eigen.eigenvalues()[i]);
-    const Eigen::VectorXd left = rest_ - unit * coefficient;
+    const double before = rest_.squaredNorm(), after = (rest_ - unit * coefficient).squaredNorm();
     coefficient = weight.asDiagonal() * coefficient;
     for (Eigen::Index c = 0; c < norm.size(); ++c) term.coefficient[size_t(c)] = coefficient[c];
-    return gain_of(left);
-  }
-  /// In -2 ln L, of what leaves these of the remaining errors.
-  double gain_of(const Eigen::VectorXd& left) const {
-    const double before = rest_.squaredNorm();
-    return double(pass_.readings) * std::log(before / std::max(left.squaredNorm(), 1e-12 * before));
+    return double(pass_.readings) * std::log(before / std::max(after, 1e-12 * before));
   }
   /// A distortion of what is measured moves no state, so that its response is nearly linear.
   bool is_promising(const TermShape& shape, int site, int own, const std::vector<double>& values) {
@@ -277,8 +272,7 @@ class Ranking {
     }
     return most > least_gain_of_second;
   }
-  /// A strong distortion is far from linear: every first value is judged by a pass of the model. What is free
-  /// already moves with it, as it does with other terms.
+  /// A strong distortion is far from linear: every first value is judged by a pass of the model.
   void try_distortion(const TermShape& shape, int site, std::vector<SiteCandidate>& list) {
     const int own = fitter_.model().own_variable(site);
     if (own < 0 || is_there(shape, site, own)) return;
@@ -291,9 +285,7 @@ class Ranking {
       SiteHypothesis trial = at_;
       trial.terms.push_back(term_of(shape, site, own, values, start));
       trial.terms.back().coefficient[0] = 1;
-      const std::optional<Eigen::VectorXd> errors = fitter_.whitened_beside(trial, pass_);
-      if (!errors) continue;
-      const double gain = gain_of(*errors - basis_ * (basis_.transpose() * *errors));
+      const double gain = pass_.scaled_objective() - fitter_.scaled_objective_beside(trial, pass_);
       if (gain > best.gain) best.gain = gain, best.term = trial.terms.back();
     }
     if (best.gain <= 0) return;

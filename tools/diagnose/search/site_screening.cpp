@@ -35,14 +35,14 @@ void leave_out_hopeless(std::vector<SiteCandidate>& list, const SiteTerm& term) 
   leave_out_twins(list);
 }
 
-std::vector<SiteCandidate> worth_fitting(const std::vector<SiteCandidate>& ranked, size_t count) {
-  const auto rest = ranked.begin() + std::ptrdiff_t(std::min(count, ranked.size()));
-  std::vector<SiteCandidate> list(ranked.begin(), rest);
+std::vector<SiteCandidate> worth_fitting(std::vector<SiteCandidate> ranked, size_t count) {
   const auto is_distortion = [](const SiteCandidate& c) { return c.term.shape->of == TermShape::Of::own; };
-  const auto best = std::ranges::find_if(ranked, is_distortion);
-  if (best >= rest && best != ranked.end() &&
-      std::ranges::none_of(list, [&](const SiteCandidate& c) { return c.is_same_key(best->term); }))
-    list.push_back(*best);
+  const auto distortions =
+      std::ranges::stable_partition(ranked, [&](const SiteCandidate& c) { return !is_distortion(c); });
+  std::vector<SiteCandidate> list(distortions.begin(), distortions.begin() + (distortions.empty() ? 0 : 1));
+  ranked.erase(distortions.begin(), ranked.end());
+  ranked.resize(std::min(count, ranked.size()));
+  std::ranges::move(ranked, std::back_inserter(list));
   return list;
 }
 

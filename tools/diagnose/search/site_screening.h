@@ -17,8 +17,7 @@ void leave_out_twins(std::vector<SiteCandidate>& list);
 /// twins.
 void leave_out_hopeless(std::vector<SiteCandidate>& list, const SiteTerm& term);
 
-/// The first of a ranked list, and the best distortion beside them: it was judged at a few first values
-/// alone.
-std::vector<SiteCandidate> worth_fitting(const std::vector<SiteCandidate>& ranked, size_t count);
+/// The best distortion of a ranked list, which was judged at a few first values alone, and so many others.
+std::vector<SiteCandidate> worth_fitting(std::vector<SiteCandidate> ranked, size_t count);
 
 }  // namespace loopwright::diagnosis
