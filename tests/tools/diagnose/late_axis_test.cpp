@@ -1,0 +1,55 @@
+// A command that gets to an axis late, beside a controller that answers to the noise of the sensor: that
+// answer resembles a delay in the errors, and hides a true one in a simulation by what the controller
+// commanded.
+#include <gmock/gmock.h>
+#include "tests/tools/diagnose/diagnosed.h"
+#include "tests/tools/diagnose/flawed_axis.h"
+
+namespace loopwright::late_axis_test {
+namespace {
+
+Diagnosis diagnosed(const FlawedMachine& machine) {
+  const FlawedAxis axis(machine);
+  return diagnose(axis.diagram(), {axis.experiment()});
+}
+
+FlawedMachine with_counts_of(double metres) {
+  FlawedMachine machine;
+  machine.resolution = metres, machine.sensor_noise = metres / 3;
+  machine.damping = 3, machine.added_damping = 1;
+  return machine;
+}
+
+/// The diagram with the lag simulates up to a fifth worse, and the balance of the forces up to 80 Hz speaks
+/// against it; the slow one does not.
+TEST(LateAxis, IsToldBesideCoarseCounts) {
+  for (const double count : {2e-5, 5e-5, 2e-4})
+    for (const double lag : {2e-3, 4e-3}) {
+      FlawedMachine machine = with_counts_of(count);
+      machine.lag = lag;
+      const Diagnosis d = diagnosed(machine);
+      EXPECT_THAT(names(d), testing::UnorderedElementsAre("viscous_friction", "actuator_lag"))
+          << count << " " << lag << "\n"
+          << to_text(d);
+      EXPECT_EQ(d.verdict, Verdict::explained) << to_text(d);
+    }
+}
+
+TEST(LateAxis, IsNotInvented) {
+  for (const double count : {2e-5, 2e-4}) {
+    const Diagnosis d = diagnosed(with_counts_of(count));
+    EXPECT_EQ(names(d), std::vector<std::string>{"viscous_friction"}) << to_text(d);
+  }
+}
+
+/// Fifty rows: a range in rows alone would end before.
+TEST(LateAxis, MayBeLateByManyRowsOfAFastRecord) {
+  FlawedMachine machine;
+  machine.sample_time = 5e-5, machine.duration = 2, machine.lag = 2.5e-3, machine.top_speed = 1;
+  const Diagnosis d = diagnosed(machine);
+  ASSERT_EQ(names(d), std::vector<std::string>{"actuator_lag"}) << to_text(d);
+  expect_parameter(d.effects[0], "time_constant", 2.5e-3, 4e-4, "s");
+}
+
+}  // namespace
+}  // namespace loopwright::late_axis_test
