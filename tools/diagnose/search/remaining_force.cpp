@@ -201,6 +201,13 @@ bool is_late_in_slow_balance(const Trials& trials, const std::vector<Member>& me
   return share.found - criteria::sure_deviations * share.deviation > criteria::least_force_share;
 }
 
+bool is_feigned_by_noise(const Trials& trials, const std::vector<Member>& members, size_t member) {
+  if (!trials.inverse || !is_late_input(*members[member].candidate)) return false;
+  const ForceShare share = slow_share(trials, members, member);
+  const bool can_tell = criteria::sure_deviations * share.deviation < criteria::least_force_share;
+  return can_tell && share.found < criteria::least_force_share;
+}
+
 bool spoils_balance(const Trials& trials, const Estimate& estimate, size_t member, const Weight& weight) {
   if (!trials.inverse) return false;
   const Candidate& candidate = *estimate.members[member].candidate;
@@ -209,15 +216,12 @@ bool spoils_balance(const Trials& trials, const Estimate& estimate, size_t membe
   if (is_loud && candidate.acts == Acts::force &&
       weight.force_rms < criteria::noise_that_drives * residual_floor(trials, estimate))
     return false;
-  if (is_late_input(candidate))
-    if (const ForceShare slow = slow_share(trials, estimate.members, member);
-        criteria::sure_deviations * slow.deviation < criteria::least_force_share)
-      return slow.found < criteria::least_force_share;
   const ForceShare share =
       share_of_force(trials, *trials.inverse, estimate.members, without(estimate.members, member));
   const bool is_seen = share.force > criteria::least_seen_of_load * weight.force_rms;
   if (!is_seen && is_own_load(estimate.members[member])) return false;
-  return share.found + criteria::sure_deviations * share.deviation < criteria::least_force_share;
+  return share.found + criteria::sure_deviations * share.deviation < criteria::least_force_share &&
+         !is_late_in_slow_balance(trials, estimate.members, member);
 }
 
 bool is_negligible(const Trials& trials, const std::vector<Member>& members) {

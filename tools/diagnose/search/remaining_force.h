@@ -57,13 +57,17 @@ bool is_held_out(const Trials& trials, const std::vector<InverseDynamics>& inver
 /// the force of an effect follows, as beside a resonance, the balance is as wrong: an effect that is loud in
 /// the errors, and quieter than the noise in the balance, is not asked. Nor is a load that flies: the moments
 /// of its blows are not those of the smooth motion. Nor is a load on a spring that swings faster than the
-/// balance shows. Of an input that is late the slow balance decides, where it can tell: noise is fast.
+/// balance shows. Nor does an input spoil it that the slow balance shows to be late.
 bool spoils_balance(const Trials& trials, const Estimate& estimate, size_t member, const Weight& weight);
 
 /// Whether a member is an input that the slow part of the motion surely shows to be late. What a controller
 /// makes of the noise of a sensor is fast: there the balance, and a simulation by what it commanded, may
 /// speak against what is true.
 bool is_late_in_slow_balance(const Trials& trials, const std::vector<Member>& members, size_t member);
+
+/// Whether it is one of which the slow part of the motion shows nothing, although it can tell. The search may
+/// pass over such an answer to noise on its way to a load in a gap; it is no finding.
+bool is_feigned_by_noise(const Trials& trials, const std::vector<Member>& members, size_t member);
 
 /// Whether the force that the members leave is too small to matter, in the fitted rows and in the others.
 bool is_negligible(const Trials& trials, const std::vector<Member>& members);

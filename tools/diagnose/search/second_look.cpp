@@ -21,7 +21,8 @@ namespace {
 bool may_be_told(const Trials& trials, const Estimate& trial, size_t member, const Weight& weight) {
   const Candidate& candidate = *trial.members[member].candidate;
   return !candidate.is_unknown && !candidate.flies && !is_at_limit(trial.members[member]) &&
-         !is_blurred(trials, trial.members[member]) && !spoils_balance(trials, trial, member, weight);
+         !is_blurred(trials, trial.members[member]) && !spoils_balance(trials, trial, member, weight) &&
+         !is_feigned_by_noise(trials, trial.members, member);
 }
 
 /// A second law of dry friction, beside the one that was chosen where reversals show the difference.
