@@ -57,6 +57,10 @@ class Generator(unittest.TestCase):
                     at_the_same_port = other.site == unnamed.site
                     self.assertFalse(at_the_same_port and (other.law == "constant" or other.names == unnamed.names), (unnamed, other))
 
+    def test_a_motion_that_runs_away_within_a_step_is_drawn_again(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scenario.generate(900460, folder)  # whose first draw has a cube that pushes
+
     def test_a_seed_always_gives_the_same_files(self):
         texts = []
         for _ in range(2):

@@ -113,7 +113,10 @@ def run(plant, p, hidden, drive, random, process=None, sensor=None, slow=None):
         for site, d in disturbed.items():
             motion.ports.noise[site] = motion.ports.noise.get(site, 0.0) + d
             disturbed[site] = slow[site].kept * d + random.gauss(0, slow[site].step)
-        x = motion.flow(x, u)
+        try:
+            x = motion.flow(x, u)
+        except OverflowError:  # within the step
+            return None
         if not all(math.isfinite(s) and abs(s) < MOST_STATE for s in x):
             return None
     return record
