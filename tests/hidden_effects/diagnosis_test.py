@@ -47,11 +47,6 @@ class Diagnosis(unittest.TestCase):
                 self.assertTrue(score.exact(result), f"{effects} hidden, {score.found_names(result)} named")
                 self.assertEqual(result["answer"]["verdict"], "explained" if effects else "nothing_missing")
 
-    def test_where_all_motion_goes_one_way_friction_may_be_a_constant_force(self):
-        answer = diagnosed(1, "forward", ["cogging", "coulomb_friction"])["answer"]
-        alternatives = {effect["effect"]: effect["alternatives"] for effect in answer["effects"]}
-        self.assertEqual(alternatives, {"cogging": [], "coulomb_friction": ["constant_force"]})
-
     def test_finds_the_gap_although_the_moments_of_the_blows_are_hardly_known(self):
         result = diagnosed(62, "constant_speeds", ["backlash"])  # few impacts; their exact moments cannot be predicted
         self.assertEqual(score.found_names(result), ["backlash"])

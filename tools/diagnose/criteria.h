@@ -182,8 +182,6 @@ constexpr double least_gain_over_stacked_names_per_row = 0.02;
 constexpr double clearly_better = 3, same_law = 20;
 /// [-2 ln L] What a set that contains another one must explain beyond it to be an alternative.
 constexpr double least_gain_of_larger_set = 4;
-/// [in -2 ln L] By which the loss that a linearization predicts far from its operating point may be wrong.
-constexpr double far_of_linearization = 100;
 /// [reach of an alternative] A promising set may lose so much on its own motion.
 constexpr double most_promised_loss = 20;
 /// [mean square] The search starts again from functions without a name.
