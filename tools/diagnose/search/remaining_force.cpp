@@ -42,11 +42,6 @@ std::vector<double> net_forces(AxisModel& model, const Path& path, const std::ve
   return model.net_forces(path.position, path.velocity, input, AxisModel::At::mean);
 }
 
-std::vector<Member> without(std::vector<Member> members, size_t member) {
-  members.erase(members.begin() + std::ptrdiff_t(member));
-  return members;
-}
-
 }  // namespace
 
 InverseDynamics inverse_dynamics(Trial& trial) {
@@ -174,7 +169,7 @@ ForceShare share_of_force(const Trials& trials, const std::vector<InverseDynamic
 bool is_held_out(const Trials& trials, const std::vector<InverseDynamics>& inverse,
                  const std::vector<Member>& members, size_t member) {
   constexpr double least_share = 1e-3;  // of its force; less is what the filter spreads
-  const std::vector<Member> others = without(members, member);
+  const std::vector<Member> others = without_one(members, member);
   double square[2] = {}, rows[2] = {};  // fitted, held out
   for (size_t t = 0; t < trials.list.size(); ++t) {
     const std::vector<double> with = residual_with(trials.list[t], inverse[t], members),
@@ -190,7 +185,8 @@ bool is_held_out(const Trials& trials, const std::vector<InverseDynamics>& inver
 namespace {
 
 ForceShare slow_share(const Trials& trials, const std::vector<Member>& members, size_t member) {
-  return share_of_force(trials, *trials.inverse, members, without(members, member), criteria::slower_balance);
+  return share_of_force(trials, *trials.inverse, members, without_one(members, member),
+                        criteria::slower_balance);
 }
 
 }  // namespace
@@ -217,7 +213,7 @@ bool spoils_balance(const Trials& trials, const Estimate& estimate, size_t membe
       weight.force_rms < criteria::noise_that_drives * residual_floor(trials, estimate))
     return false;
   const ForceShare share =
-      share_of_force(trials, *trials.inverse, estimate.members, without(estimate.members, member));
+      share_of_force(trials, *trials.inverse, estimate.members, without_one(estimate.members, member));
   const bool is_seen = share.force > criteria::least_seen_of_load * weight.force_rms;
   if (!is_seen && is_own_load(estimate.members[member])) return false;
   return share.found + criteria::sure_deviations * share.deviation < criteria::least_force_share &&

@@ -8,6 +8,11 @@ namespace loopwright::diagnosis {
 
 using namespace criteria;
 
+std::vector<Member> without_one(std::vector<Member> members, size_t index) {
+  members.erase(members.begin() + std::ptrdiff_t(index));
+  return members;
+}
+
 namespace {
 
 /// The 95 % quantile of χ² with so many degrees of freedom (Wilson and Hilferty 1931).
@@ -96,11 +101,6 @@ std::vector<double> sum_of_columns(const Member& member, const Path& path) {
   for (size_t c = 0; c < columns.size(); ++c)
     for (size_t k = 0; k < sum.size(); ++k) sum[k] += member.linear[c] * double((*columns[c].mean)[k]);
   return sum;
-}
-
-std::vector<Member> without_one(std::vector<Member> members, size_t index) {
-  members.erase(members.begin() + std::ptrdiff_t(index));
-  return members;
 }
 
 /// The input of a path is what the members made of the recorded one: a limit would find nothing above it.

@@ -27,4 +27,7 @@ double judged_numbers(const Trials& trials);
 /// accepted.
 double material(const Trials& trials, const Estimate& estimate, const Weight& weight);
 
+/// The members without one of them.
+std::vector<Member> without_one(std::vector<Member> members, size_t index);
+
 }  // namespace loopwright::diagnosis

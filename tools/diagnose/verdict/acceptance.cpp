@@ -111,9 +111,7 @@ class Judge {
   /// The others, fitted again, and their simulation.
   std::pair<Estimate, FreeRun> without_member(const Acceptance& state, size_t member) {
     const Estimate& e = state.conclusion.estimate;
-    std::vector<Member> members = e.members;
-    members.erase(members.begin() + std::ptrdiff_t(member));
-    Estimate others = fit_members(trials_, std::move(members), e.noise, e.motion, iterations);
+    Estimate others = fit_members(trials_, without_one(e.members, member), e.noise, e.motion, iterations);
     FreeRun run = run_of(others.members, e.noise);
     return {std::move(others), std::move(run)};
   }
