@@ -186,6 +186,10 @@ constexpr double least_gain_of_larger_set = 4;
 constexpr double most_promised_loss = 20;
 /// [mean square] The search starts again from functions without a name.
 constexpr double much_left = 8;
+/// [mean square] Below it the shapes that were found are the right ones.
+constexpr double well_explained = 1.2;
+/// [force of dry friction] Less than this share of it is not contained in another member's free constant.
+constexpr double share_beside_constant = 1e-3;
 /// A delay or a lag replaces a step from 0 to its shape; the step that the errors ask for must be near 1.
 constexpr double least_step_to_shape = 0.6, most_step_to_shape = 1.7;
 /// An effect is also tried with a shape that differs by more than this factor, beyond what a fit reaches.

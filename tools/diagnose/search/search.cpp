@@ -1,17 +1,18 @@
 #include "tools/diagnose/search/search.h"
 #include <fmt/format.h>
 #include <algorithm>
-#include <limits>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <ranges>
 #include "tools/diagnose/search/conclude.h"
 #include "tools/diagnose/search/doubt.h"
 #include "tools/diagnose/search/flights.h"
 #include "tools/diagnose/search/law_swaps.h"
-#include "tools/diagnose/search/load_starts.h"
+#include "tools/diagnose/search/other_starts.h"
 #include "tools/diagnose/search/remaining_force.h"
 #include "tools/diagnose/search/spectrum.h"
+#include "tools/diagnose/search/trail.h"
 #include "tools/diagnose/search/whiteness.h"
 
 namespace loopwright::diagnosis {
@@ -21,8 +22,7 @@ constexpr size_t most_effects = 8;
 /// A map shows a motor's lines one by one, and little else. Functions of position without a name, which can
 /// stand for any long line, come after all of them.
 constexpr size_t most_steps_in_a_map = 16;
-constexpr size_t tried_extensions = 4;
-constexpr size_t tried_exchanges = 3;
+constexpr size_t tried_extensions = 4, tried_exchanges = 3;
 
 class Search {
  public:
@@ -58,35 +58,10 @@ class Search {
   }
 
   void note(const char* what) {
-    std::string line =
-        fmt::format("{}: mean square {:.5g}, criterion {:.1f}:", what, best_.mean_square, score(best_));
-    for (const Member& member : best_.members) {
-      line += fmt::format(" {}", member.candidate->name);
-      if (member.candidate->is_unknown) line += " of " + member.candidate->form;
-      for (double v : member.linear)
-        if (!member.candidate->is_unknown) line += fmt::format(" {:.5g}", v);
-      for (double v : member.nonlinear) line += fmt::format(" | {:.5g}", v);
-      line += ",";
-    }
-    trail_.push_back(std::move(line));
+    trail_.push_back(described(what, best_, score(best_)));
     if (trials_.found) trials_.found(best_.members);
   }
-
-  /// Predictions of the linearization, best first.
-  void note(const std::vector<Proposal>& proposals) {
-    std::string line = "promised:";
-    for (const Proposal& proposal : proposals | std::views::take(8))
-      line += fmt::format(" {} {:.0f},", names_of(proposal.added), proposal.gain);
-    trail_.push_back(std::move(line));
-  }
-  static std::string names_of(const std::vector<Member>& members) {
-    std::string names;
-    for (const Member& member : members) {
-      names += (names.empty() ? "" : " + ") + member.candidate->name;
-      if (!member.candidate->form.empty()) names += " of " + member.candidate->form;
-    }
-    return names;
-  }
+  void note(const std::vector<Proposal>& proposals) { trail_.push_back(described(proposals)); }
 
   void take(Estimate better) {
     best_ = std::move(better), evidence_.reset();
@@ -142,7 +117,7 @@ class Search {
     for (size_t step = 0; step < most && !is_spent(); ++step) {
       if (!extend()) return false;
       sharpen_noise();
-      exchange();
+      if (exchange()) sharpen_noise();
       prune();
     }
     return true;
@@ -173,7 +148,19 @@ class Search {
     if (!best.is_valid) return note("no extension"), false;
     take(snap_to_turn(trials_, fit_members(trials_, best.members, noise_, best.motion, 6)));
     note("extended");
+    leave_narrow_maximum();
     return true;
+  }
+
+  /// Beside a true maximum of how far back friction remembers there are narrow ones.
+  void leave_narrow_maximum() {
+    if (best_.mean_square < criteria::well_explained) return;
+    for (const std::vector<Member>& start : starts_of_hysteresis(best_.members)) {
+      Estimate trial = refined(start, 6);
+      if (!trial.is_valid || score(best_) - score(trial) < criteria::clearly_better) continue;
+      take(std::move(trial));
+      note("from another start");
+    }
   }
 
   /// A member that would be removed at the end is not accepted.
@@ -304,9 +291,10 @@ class Search {
   }
 
   /// A member, or two, for another: also an equally good one, if it makes others unnecessary.
-  void exchange() {
+  bool exchange() {
+    bool any = false;
     for (int round = 0; round < 4; ++round) {
-      if (best_.members.empty() || is_spent()) return;
+      if (best_.members.empty() || is_spent()) return any;
       const std::vector<Proposal> proposals = evidence().exchanges();
       std::vector<std::vector<Member>> others;
       for (size_t i = 0; i < std::min(tried_exchanges, proposals.size()); ++i)
@@ -327,10 +315,22 @@ class Search {
         if (preferred <= best_gain) continue;
         best_gain = preferred, best = std::move(trial);
       }
-      if (!best.is_valid) return;
-      take(std::move(best));
+      if (!best.is_valid) return any;
+      if (best.members.size() > best_.members.size() && is_surpassed_by_extension(best_gain)) return any;
+      take(std::move(best)), any = true;
       note("exchanged");
     }
+    return any;
+  }
+
+  /// Whether one more member gains more than an exchange for as many does: it comes next.
+  bool is_surpassed_by_extension(double gain) {
+    std::vector<Proposal> proposals = evidence().extensions();
+    if (proposals.size() > 2) proposals.resize(2);
+    return std::ranges::any_of(proposals, [&](const Proposal& proposal) {
+      Estimate trial = refined(applied(proposal, best_.members), 4);
+      return trial.is_valid && gain_of(trial) > gain && adds_material(trial);
+    });
   }
 
   void prune() {
