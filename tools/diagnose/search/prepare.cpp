@@ -100,8 +100,7 @@ void mark_usable(Trial& trial, const Path& path, bool is_map) {
     trial.moving[k] = since_rest > trial.pace.samples_after_rest && !path.turns[k] &&
                       k >= trial.settled_from && !record.is_false(k);
     // The velocity of an axis that rests is guessed rightly.
-    trial.at_rest[k] =
-        path.rests[k] && k >= size_t(trial.pace.samples_to_correct) && !record.is_false(k);
+    trial.at_rest[k] = path.rests[k] && k >= size_t(trial.pace.samples_to_correct) && !record.is_false(k);
   }
   trial.usable = trial.moving;
 }
