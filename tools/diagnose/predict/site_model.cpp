@@ -118,12 +118,13 @@ bool SiteModel::flow(size_t row, const double* from, double* to, double* middle)
       run.reuse_signals();
     }
     bool good = run.derivatives_at(t, to, slope_[0].data());
+    for (SiteSignal& signal : signals_) signal.go_on(t);
     for (int k = 1; k < 4; ++k) {
       const double part = k == 3 ? h : 0.5 * h;
       for (size_t i = 0; i < n; ++i) stage_[i] = to[i] + part * slope_[k - 1][i];
       good &= run.derivatives_at(t + part, stage_.data(), slope_[k].data());
       if (k == 2)  // in the middle of the step
-        for (SiteSignal& signal : signals_) signal.foresee(t + h);
+        for (SiteSignal& signal : signals_) signal.go_on(t + part);
     }
     for (SiteSignal& signal : signals_) signal.go_on(t + h);
     for (size_t i = 0; i < n; ++i)
@@ -142,6 +143,8 @@ bool SiteModel::look(size_t row, double time, const double* states, double* numb
   Run<double>& run = *own.run;
   run.look_at(time, states);
   run.evaluate(0, true);
+  if (time == record_.time[row])
+    for (SiteSignal& signal : signals_) signal.go_on(time);
   const bool good = !run.failed();
   if (!good) run.restored(run.now());
   std::copy_n(own.numbers, this->numbers(), numbers);

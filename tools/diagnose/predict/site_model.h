@@ -64,7 +64,7 @@ struct SiteSignal {
   const double* numbers = nullptr;  ///< of the run
   int remembering = -1;             ///< the law with a memory, of which a site has one at most
   double memory = 0, since = 0;     ///< what it remembers at this time in s
-  double foreseen = 0;              ///< at the end of the step
+  double signal = 0;                ///< of that law, at the same time
 
   double value(double time) const {
     double sum = held;
@@ -76,18 +76,17 @@ struct SiteSignal {
     }
     return sum;
   }
-  /// What its law remembers at this time, if the signal stays as it is now.
+  /// What its law remembers at this time, if its signal has changed evenly.
   double remembered(double time) const {
     const auto& [term, variable] = terms[size_t(remembering)];
-    return term.shape->remembered(memory, variable.at(numbers), time - since, term.nonlinear.data());
+    const double now = variable.at(numbers), passed = time - since;
+    return passed > 0 ? term.shape->remembered(memory, signal, now, passed, term.nonlinear.data()) : memory;
   }
-  /// The signal in the middle of a step stands for all of it: it is looked at there, and the memory goes on
-  /// where the step ends.
-  void foresee(double end) {
-    if (remembering >= 0) foreseen = remembered(end);
-  }
-  void go_on(double end) {
-    if (remembering >= 0) memory = foreseen, since = end;
+  /// From here on it changes evenly again. Turns within a step count: they are where the force changes most.
+  void go_on(double time) {
+    if (remembering < 0) return;
+    memory = remembered(time), since = time;
+    signal = terms[size_t(remembering)].second.at(numbers);
   }
 };
 

@@ -14,8 +14,8 @@ std::array<std::vector<double>, 3> remembered_along(const SiteModel& model, cons
     const auto signal = [&](size_t part) { return variable.at(&pass.path[part][k * pass.numbers]); };
     along[0][k] = memory;
     for (size_t part : {size_t{1}, size_t{2}}) {
-      const double mean = 0.5 * (signal(part - 1) + signal(part));
-      memory = term.shape->remembered(memory, mean, record.step(k) / 2, term.nonlinear.data());
+      memory = term.shape->remembered(memory, signal(part - 1), signal(part), record.step(k) / 2,
+                                      term.nonlinear.data());
       along[part][k] = memory;
     }
   }

@@ -32,10 +32,17 @@ bool outflow(Quantity site, Quantity s) {
 bool nowhere(Quantity, Quantity) { return false; }
 bool warm(Quantity site, Quantity s) { return site == heat && s == temperature; }
 
-/// dz = (dx - |dx| z) / distance, from z before to z after a path at a constant velocity.
-double dahl(double before, double velocity, double time, const double* p) {
-  const double end = velocity < 0 ? -1 : 1;
-  return end + (before - end) * std::exp(-std::abs(velocity) * time / p[0]);
+/// dz = (dx - |dx| z) / distance, from z before to z after a path in one direction.
+double dahl_along(double before, double path, double distance) {
+  const double end = path < 0 ? -1 : 1;
+  return end + (before - end) * std::exp(-std::abs(path) / distance);
+}
+
+/// The same while the velocity changes evenly `from` one value `to` another; it may turn on the way.
+double dahl(double before, double from, double to, double time, const double* p) {
+  if (from * to >= 0) return dahl_along(before, (from + to) / 2 * time, p[0]);
+  const double until_turn = from / (from - to) * time;
+  return dahl_along(dahl_along(before, from / 2 * until_turn, p[0]), to / 2 * (time - until_turn), p[0]);
 }
 
 double sign_of(double s) { return s < 0 ? -1 : 1; }

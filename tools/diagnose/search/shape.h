@@ -52,8 +52,9 @@ struct TermShape {
       nullptr;
 
   /// Of a law with a memory, which is its only column: what it remembers after so many seconds in which the
-  /// signal stays as it is.
-  std::function<double(double before, double signal, double time, const double* p)> remembered = nullptr;
+  /// signal changes evenly.
+  std::function<double(double before, double from, double to, double time, const double* p)> remembered =
+      nullptr;
 
   bool has_coefficients() const { return of != Of::own && of != Of::past; }
   int nonlinear_count() const { return int(nonlinear[0] != "") + int(nonlinear[1] != ""); }
