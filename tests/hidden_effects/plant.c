@@ -152,9 +152,8 @@ static void settle_direction(Plant* plant, Held held) {
   plant->direction = fabs(force) <= dry ? 0 : force > 0 ? 1 : -1;
 }
 
-/// One step of at most h, shorter if an event occurs inside; returns its length.
-static double step(Plant* plant, double h, Held held) {
-  const double least_s = 1e-9;
+/// One step of at most h, shorter if an event occurs inside, but at least least_s; returns its length.
+static double step(Plant* plant, double h, double least_s, Held held) {
   double before[WATCHES], after[WATCHES], reached[STATES];
   if (plant->direction == 0) settle_direction(plant, held);
   watch(plant, plant->state, plant->time_s, held, before);
@@ -182,11 +181,16 @@ static double step(Plant* plant, double h, Held held) {
   return h;
 }
 
+/// Steps between two commands after which events chatter, as at a slide that just begins.
+enum { OFTEN = 2000 };
+
 static void advance(Plant* plant, double duration_s, Held held) {
   if (duration_s <= 0) return;
   const int steps = (int)ceil(plant->substeps * duration_s / plant->sample_time_s);
-  for (int i = 0; i < steps; ++i)
-    for (double left = duration_s / steps; left > 1e-15;) left -= step(plant, left, held);
+  const double whole = duration_s / steps;
+  for (int i = 0, taken = 0; i < steps; ++i)
+    for (double left = whole; left > 1e-15; ++taken)
+      left -= step(plant, left, taken < OFTEN ? 1e-9 : fmin(left, whole / 50), held);
 }
 
 void plant_advance(Plant* plant, double duration_s, double input_n, double noise_n) {

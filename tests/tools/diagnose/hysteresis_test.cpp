@@ -44,6 +44,27 @@ TEST(Hysteresis, OverALongDistanceIsNoStiffness) {
   const Friction friction{12, 0.6};
   expect_found(diagnosed(with_friction(friction, 52)), friction);
 }
+/// The motion turns within a step of the integration, where the force changes most.
+TEST(Hysteresis, AtEightSamplesAPeriodIsNotOnePercentWrong) {
+  const Friction friction{4, 0.01};
+  Plant plant = with_friction(friction, 55);
+  plant.sample_time = 0.04, plant.process_noise = {2e-3}, plant.measurement_noise = {1e-5};
+  expect_found(diagnosed(plant), friction);
+}
+TEST(Hysteresis, TurnsWhereTheVelocityDoes) {
+  const auto& law = std::ranges::find(diagnosis::named_shapes(), "hysteresis", &diagnosis::TermShape::name);
+  const double distance[] = {0.01};
+  for (const auto& [from, to] : {std::pair{0.3, -0.1}, {-0.02, 0.5}, {0.2, 0.4}, {-0.1, 0.0}, {0.0, 0.0}}) {
+    constexpr int steps = 100000;
+    constexpr double time = 0.1, h = time / steps;
+    double z = 0.4;
+    for (int i = 0; i < steps; ++i) {
+      const double v = from + (i + 0.5) / steps * (to - from), middle = z + h / 2 * (v - std::abs(v) * z) / 0.01;
+      z += h * (v - std::abs(v) * middle) / 0.01;
+    }
+    EXPECT_NEAR(law->remembered(0.4, from, to, time, distance), z, 1e-6) << from << " to " << to;
+  }
+}
 TEST(Hysteresis, DryFrictionWithoutADistanceIsNone) {
   Oscillator m;
   m.force = [](double, double velocity) { return 2 * std::tanh(velocity / 0.02); };
@@ -102,7 +123,7 @@ TEST_F(RememberedFriction, GoesOnWithTheFilteredMotionAlone) {
   ASSERT_TRUE(filter.run_frozen(pass, errors));
   for (size_t k = 0; k < errors.size(); ++k) ASSERT_NEAR(errors[k], pass.error[k], 1e-12);
 }
-/// By exact integration along the same velocities, which stay as they are within each half of a sample.
+/// By exact integration along the same velocities, which change evenly within each half of a sample.
 TEST_F(RememberedFriction, IsRankedByWhatItRemembersAlongThePath) {
   at.terms = {term};
   ASSERT_TRUE(fitter.pass(at, true, pass));
@@ -115,8 +136,9 @@ TEST_F(RememberedFriction, IsRankedByWhatItRemembersAlongThePath) {
         return model.variables()[size_t(term.variable)].at(&pass.path[p][k * pass.numbers]);
       };
       constexpr int steps = 200;
-      const double v = 0.5 * (velocity(part) + velocity(part + 1)), h = model.record().step(k) / 2 / steps;
+      const double from = velocity(part), to = velocity(part + 1), h = model.record().step(k) / 2 / steps;
       for (int i = 0; i < steps; ++i) {
+        const double v = from + (i + 0.5) / steps * (to - from);
         const double middle = z + h / 2 * (v - std::abs(v) * z) / 0.03;
         z += h * (v - std::abs(v) * middle) / 0.03;
       }

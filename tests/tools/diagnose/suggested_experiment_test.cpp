@@ -101,6 +101,36 @@ TEST(AtRest, FrictionHoldsAndAConstantForceDoesNotThoughAllMotionGoesOneWay) {
   EXPECT_THAT(with_force.effects[0].alternatives, Not(testing::Contains("coulomb_friction")));
 }
 
+/// A controller that keeps the axis where it is pushes it with all that friction holds.
+TEST(AtRest, FrictionHoldsWithinTheFirstTenthOfASecondToo) {
+  HiddenAxis axis;
+  Physics truth = axis.nominal();
+  truth.coulomb_n = 0.15;
+  WantedMotion motion;
+  motion.rest(0.09);
+  for (double speed : {0.2, 0.4, 0.1, 0.3}) motion.stroke(0.15, speed, 0.1);
+  const Diagnosis d = diagnose(axis.diagram(), {axis.record("short", truth, motion)});
+  EXPECT_THAT(names(d), ElementsAre("coulomb_friction")) << to_text(d);
+}
+
+Diagnosis with_spring_and_friction(const WantedMotion& motion) {
+  HiddenAxis axis;
+  Physics truth = axis.nominal();
+  truth.coulomb_n = 0.12, truth.spring_n_per_m = 1.5;
+  return diagnose(axis.diagram(), {axis.record("record", truth, motion)});
+}
+TEST(ContainedFriction, IsDeclaredWhereThePreloadOfASpringPullsAsItDoes) {
+  const Diagnosis d = with_spring_and_friction(one_way_without_rest(1));
+  EXPECT_THAT(names(d), ElementsAre("spring")) << to_text(d);
+  EXPECT_THAT(to_text(d),
+              HasSubstr("or spring + coulomb_friction in the place of spring: this record cannot tell"));
+}
+TEST(ContainedFriction, IsNamedWhereTheMotionGoesBothWays) {
+  const Diagnosis d = with_spring_and_friction(there_and_back(0.15, 0.3));
+  EXPECT_THAT(names(d), testing::UnorderedElementsAre("coulomb_friction", "spring")) << to_text(d);
+  EXPECT_THAT(to_text(d), Not(HasSubstr("in the place of spring")));
+}
+
 TEST(SuggestedExperiment, TellsAConstantForceFromCoulombFriction) {
   HiddenAxis axis;
   Physics truth = axis.nominal();

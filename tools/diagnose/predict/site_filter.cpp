@@ -197,9 +197,8 @@ bool SiteFilter::try_flow(size_t row, const SitePass& pass, const double* from, 
   return model_.flow(row, from, to);
 }
 
-void SiteFilter::choose_substeps(const SitePass& pass) {
+void SiteFilter::choose_substeps(const SitePass& pass, double difference) {
   constexpr size_t places = 40, most = 64;
-  constexpr double difference = 1e-6;  // [of the size of a state]
   const auto differs = [&](size_t row) {
     const double* from = &pass.filtered[row * pass.states];
     const int count = model_.substeps();

@@ -297,9 +297,19 @@ void SiteFitter::fit_noise(SiteHypothesis& h) {
   }
 }
 
+/// A law with a memory changes fastest where the motion turns, and needs shorter steps there than the diagram
+/// by itself.
+void SiteFitter::shorten_steps(SiteHypothesis& h) {
+  constexpr double difference = 1e-5;  // [of the size of a state] in a sample, below a tenth of usual noise
+  const auto remembers = [](const SiteTerm& term) { return term.shape->remembered != nullptr; };
+  SitePass there;
+  if (std::ranges::any_of(h.terms, remembers) && pass(h, false, there)) filter_.choose_substeps(there, difference);
+}
+
 void SiteFitter::anneal(SiteHypothesis& h) {
   constexpr double colder = 5, most_colder = 1e4;
   constexpr double better = 2, same_optimum = 0.5;  // in -2 ln L
+  shorten_steps(h);
   fit_noise(h);
   if (!std::isfinite(h.objective)) return;
   if (h.noise.is_of_simulation) {  // there is but one optimum

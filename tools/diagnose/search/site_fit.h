@@ -79,6 +79,7 @@ class SiteFitter {
   void solve(const SiteHypothesis& hypothesis, const std::vector<FittedNumber>& numbers,
              Normal& normal) const;
   void use(const SiteHypothesis& hypothesis);
+  void shorten_steps(SiteHypothesis& hypothesis);
   SiteNoise best_noise(const SitePass& pass, const SiteNoise& from) const;
   std::optional<SiteNoise> evened(const SiteNoise& noise) const;
   /// [s] Of slow noise: what is faster is white noise, what is slower takes out what offsets and drifts would
