@@ -106,19 +106,19 @@ void take_rows_of_sensors(AxisRecord& record, Problems& problems) {
   thin(record, rows.every);
 }
 
-/// Means about each row over as many rows, with half weights at the ends if they are an even number.
+/// Means over `rows` rows about each one; of an even number, the one that is left over lies behind it. Without
+/// weights, so that no reading counts in two rows that stand for several: its noise would be seen in both.
 std::vector<double> means_about(const std::vector<double>& values, size_t rows) {
-  const auto reach = std::ptrdiff_t(rows / 2), size = std::ptrdiff_t(values.size());
-  const double end_weight = rows % 2 == 0 ? 0.5 : 1;
+  const auto before = std::ptrdiff_t((rows - 1) / 2), after = std::ptrdiff_t(rows / 2),
+             size = std::ptrdiff_t(values.size());
   std::vector<double> means(values.size());
   for (std::ptrdiff_t k = 0; k < size; ++k) {
-    const std::ptrdiff_t here = std::min({reach, k, size - 1 - k});  // shorter at the ends of the record
-    double sum = 0, weights = 0;
-    for (std::ptrdiff_t i = -here; i <= here; ++i) {
-      const double weight = std::abs(i) == reach ? end_weight : 1;
-      sum += weight * values[size_t(k + i)], weights += weight;
-    }
-    means[size_t(k)] = sum / weights;
+    const bool is_whole = k >= before && k + after < size;  // shorter at the ends of the record
+    const std::ptrdiff_t shorter = std::min({before, k, size - 1 - k}), first = k - shorter,
+                         last = is_whole ? k + after : k + shorter;
+    double sum = 0;
+    for (std::ptrdiff_t i = first; i <= last; ++i) sum += values[size_t(i)];
+    means[size_t(k)] = sum / double(last - first + 1);
   }
   return means;
 }
