@@ -160,6 +160,15 @@ TEST(LongRecord, MakesNoDelayOfTheAnswerToNoise) {
   EXPECT_EQ(name_of(d.verdict), "nothing_missing") << to_text(d);
 }
 
+/// Means of two rows: what a reading errs shows in one of them.
+TEST(LongRecord, SeesTheNoiseOfAReadingOnce) {
+  FlawedMachine machine;
+  machine.sample_time = 50e-6, machine.duration = 8, machine.sensor_noise = 2e-7;
+  const FlawedAxis axis(machine);
+  const Diagnosis d = diagnose(axis.diagram(), {axis.experiment()});
+  EXPECT_EQ(name_of(d.verdict), "nothing_missing") << to_text(d);
+}
+
 TEST(LongRecord, BesideAShortOneGivesItItsRate) {
   FlawedMachine machine;
   machine.sample_time = 0.25e-3, machine.force_noise = 0.02, machine.duration = 70, machine.coulomb = 0.2;
