@@ -81,6 +81,8 @@ struct NotLookedFor {
 /// An effect that the prediction errors asked for, but that does not stand.
 struct RefusedEffect {
   std::string effect, why;
+  bool is_blurred =
+      false;  ///< late by so few rows, each of which stands for several, that nothing is left of it
 };
 
 /// An effect that the records show with certainty, and that is too small to matter.
@@ -150,7 +152,7 @@ struct Diagnosis {
   std::vector<MovedParameter> moved_parameters;  ///< without roles
   std::vector<std::string> not_observable;       ///< without roles: sentences
   std::vector<RefusedEffect> refused;
-  std::vector<TooSmallEffect> too_small;  ///< best first; all of them stand for one
+  std::vector<TooSmallEffect> too_small;    ///< best first; all of them stand for one
   std::vector<std::string> contradictions;  ///< why the records are not explained although errors are white
   std::vector<std::string> remainder_variables;  ///< on which the remainder depends
   std::vector<RemainderShare> dependence;

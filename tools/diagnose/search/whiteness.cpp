@@ -61,14 +61,27 @@ Fitted with_calmer_force(const Fitted& fitted, const Noise& noise, double factor
 }
 
 /// What is measured minus what is, at the first port: a motion counted anew, and the other noise of the
-/// sensor. `dithers`: the noise comes before the counting, and covers its pattern.
-std::vector<double> errors_of_counting(const std::vector<double>& motion, double count, double noise,
-                                       bool dithers, size_t record) {
-  const double other = std::sqrt(std::max(0.0, noise * noise - count * count / 12));
+/// sensor. `dithers`: the noise comes before the counting, and covers its pattern. Of a row that stands for
+/// several, each reading is counted: slow motion has them all in one count.
+std::vector<double> errors_of_counting(const std::vector<double>& motion, const AxisRecord& axis,
+                                       double noise, bool dithers, size_t record) {
+  const size_t readings = axis.rows_in_one;
+  const double count_of_mean = axis.measured.front().resolution, of_one = std::sqrt(double(readings)),
+               count = of_one * count_of_mean,
+               other = of_one * std::sqrt(std::max(0.0, noise * noise - count_of_mean * count_of_mean / 12));
+  const auto motion_at = [&](size_t row, double rows_later) {
+    const size_t next =
+        rows_later > 0 ? std::min(row + 1, motion.size() - 1) : row - std::min<size_t>(row, 1);
+    return motion[row] + std::abs(rows_later) * (motion[next] - motion[row]);
+  };
   std::vector<double> error(motion.size());
   for (size_t k = 0; k < error.size(); ++k) {
-    const double shaken = other * normal(record, 0, k), seen = motion[k] + (dithers ? shaken : 0.0);
-    error[k] = std::round(seen / count) * count - motion[k] + (dithers ? 0.0 : shaken);
+    for (size_t i = 0; i < readings; ++i) {
+      const double at = motion_at(k, (double(i) + 0.5) / double(readings) - 0.5),
+                   shaken = other * normal(record, 0, k * readings + i), seen = at + (dithers ? shaken : 0.0);
+      error[k] += std::round(seen / count) * count - at + (dithers ? 0.0 : shaken);
+    }
+    error[k] /= double(readings);
   }
   return error;
 }
@@ -118,8 +131,7 @@ std::vector<double> errors_of_counts_along(const Trials& trials, const Estimate&
           ? smoothed(with_calmer_force(fitted, noise, calm, model.nominal_inertia()), sensor, trials.ports())
           : smoothed(fitted, sensor, trials.ports());
   return filtered(fitted, noise, fitted.axis.inertia / model.nominal_inertia(),
-                  errors_of_counting(motion, sensor.resolution, noise.measurement[0], dithers, record),
-                  record);
+                  errors_of_counting(motion, model.record(), noise.measurement[0], dithers, record), record);
 }
 
 std::vector<Fitted> feigned(const WhitenedErrors& errors) {

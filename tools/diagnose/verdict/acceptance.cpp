@@ -221,8 +221,9 @@ Acceptance accept(Conclusion conclusion, Trials& trials, const std::vector<Inver
     const std::optional<Refusal> refusal = judge.refused(state);
     if (!state.why_not_run.empty()) state.runs.clear();
     if (!refusal) break;
-    const std::string name = shown_name(*state.conclusion.estimate.members[refusal->member].candidate);
-    state.refused.push_back({name, refusal->why});
+    const Member& member = state.conclusion.estimate.members[refusal->member];
+    const std::string name = shown_name(*member.candidate);
+    state.refused.push_back({name, refusal->why, is_blurred(trials, member)});
     std::vector<std::string> trail = state.conclusion.trail;
     trail.push_back(name + ": " + refusal->why);
     state.conclusion = without(state.conclusion, refusal->member);

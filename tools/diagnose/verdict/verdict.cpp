@@ -93,7 +93,8 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
     if (member.candidate->is_unknown) add_variables(diagnosis.remainder_variables, member.candidate->form);
   const bool has_unknown = !diagnosis.remainder_variables.empty();
   // What was refused had explained something that the counts of the sensor alone may not.
-  const bool is_left = !diagnosis.refused.empty() && e.members.empty() && !conclusion.is_negligible &&
+  const bool is_left = !std::ranges::all_of(diagnosis.refused, &RefusedEffect::is_blurred) &&
+                       e.members.empty() && !conclusion.is_negligible &&
                        conclusion.portmanteau > criteria::most_portmanteau;
   bool is_not_white = is_left || !conclusion.is_white();
   const bool is_counted = conclusion.counts_portmanteau > criteria::most_portmanteau_of_counted;
