@@ -188,8 +188,9 @@ constexpr double most_promised_loss = 20;
 constexpr double much_left = 8;
 /// [mean square] Below it the shapes that were found are the right ones.
 constexpr double well_explained = 1.2;
-/// [force of dry friction] Less than this share of it is not contained in another member's free constant.
-constexpr double share_beside_constant = 1e-3;
+/// [force of dry friction] A free constant of another member contains it up to this share: what it does as it
+/// builds up over a distance, where most rows of a stroke lie behind that.
+constexpr double share_beside_constant = 0.05;
 /// A delay or a lag replaces a step from 0 to its shape; the step that the errors ask for must be near 1.
 constexpr double least_step_to_shape = 0.6, most_step_to_shape = 1.7;
 /// An effect is also tried with a shape that differs by more than this factor, beyond what a fit reaches.

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <optional>
 #include <set>
-#include "tools/diagnose/search/contained_friction.h"
 #include "tools/diagnose/search/doubt.h"
 #include "tools/diagnose/search/flights.h"
 #include "tools/diagnose/search/law_swaps.h"
 #include "tools/diagnose/search/noisy_input.h"
+#include "tools/diagnose/search/one_direction.h"
 #include "tools/diagnose/search/remaining_force.h"
 #include "tools/diagnose/search/rivals.h"
 #include "tools/diagnose/search/spectrum.h"
@@ -366,7 +366,7 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
   }
   if (!instead) {
     ask_rivals(trials, result, evidence, exchanges, candidates, rivals, at_reversals, n);
-    std::ranges::move(friction_in_constants(trials, estimate, candidates),
+    std::ranges::move(alike_in_one_direction(trials, estimate, candidates),
                       std::back_inserter(result.other_sets));
     if (rounds > 0 && (instead = rivals.better(unexplained(result.portmanteau_beside_counts()))))
       result.trail.push_back("with noise of its own another set does better");

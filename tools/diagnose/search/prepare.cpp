@@ -86,6 +86,18 @@ bool shorten(Pace& pace) {
          pace.samples_after_rest < before.samples_after_rest;
 }
 
+/// Whether the measured position stays where it is for some time about a row: it moves less than at the speed
+/// that counts as rest.
+bool stays(const AxisRecord& record, size_t row, double rest_speed) {
+  const MeasuredPort* position = record.find("position");
+  const size_t reach =
+      std::max<size_t>(2, whole_count(std::round(criteria::deviation_s / record.sample_time)));
+  if (!position || record.is_map || row < reach || row + reach >= record.rows()) return false;
+  const double* at = position->value.data() + row;
+  const auto [low, high] = std::minmax_element(at - reach, at + reach + 1);
+  return *high - *low <= rest_speed * double(2 * reach) * record.sample_time;
+}
+
 /// Rows while moving, some time after the last rest or reversal; and rows at rest.
 void mark_usable(Trial& trial, const Path& path, bool is_map) {
   const AxisRecord& record = trial.model->record();
@@ -99,8 +111,9 @@ void mark_usable(Trial& trial, const Path& path, bool is_map) {
     since_rest = path.rests[k] ? 0 : since_rest + 1;
     trial.moving[k] = since_rest > trial.pace.samples_after_rest && !path.turns[k] &&
                       k >= trial.settled_from && !record.is_false(k);
-    // The velocity of an axis that rests is guessed rightly.
-    trial.at_rest[k] = path.rests[k] && k >= size_t(trial.pace.samples_to_correct) && !record.is_false(k);
+    // The velocity of an axis that rests is guessed rightly. Where a force is missing, the predictor drifts.
+    trial.at_rest[k] = (path.rests[k] || stays(record, k, trial.pace.rest_speed)) &&
+                       k >= size_t(trial.pace.samples_to_correct) && !record.is_false(k);
   }
   trial.usable = trial.moving;
 }
