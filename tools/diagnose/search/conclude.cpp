@@ -180,9 +180,15 @@ size_t weakest_of(const std::vector<double>& sizes, const std::vector<Weight>& w
   return weakest;
 }
 
+/// The number of members: there is none.
+size_t late_input_among(const std::vector<Member>& members) {
+  const auto is_late = [](const Member& m) { return is_late_input(*m.candidate); };
+  return size_t(std::ranges::find_if(members, is_late) - members.begin());
+}
+
 /// Fits all parameters and the noise together, and removes the members that are not material, one by one, the
-/// weakest first. The search judged them with noise that it knew only partly; a barely material member must
-/// explain more than noise that is fitted without it.
+/// weakest first. The search judged them with noise that it knew only partly; a barely material member, and
+/// what a controller that answers to noise may feign, must explain more than noise that is fitted without it.
 void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
   Estimate& estimate = result.estimate;
   for (;;) {
@@ -194,12 +200,12 @@ void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
       weigh_counts(trials, estimate, result.weights);
       sizes = sizes_of_members(trials, result);
     }
-    const size_t weakest = weakest_of(sizes, result.weights);
+    size_t weakest = weakest_of(sizes, result.weights);
+    if (sizes[weakest] >= barely_material) weakest = late_input_among(estimate.members);
+    if (weakest == estimate.members.size()) return;
     const double least = sizes[weakest];
-    if (least >= barely_material) return;
-    std::vector<Member> members = estimate.members;
-    members.erase(members.begin() + std::ptrdiff_t(weakest));
-    Estimate without = fit_members(trials, members, estimate.noise, estimate.motion, 4);
+    Estimate without =
+        fit_members(trials, without_one(estimate.members, weakest), estimate.noise, estimate.motion, 4);
     if (least >= 1) {
       maximise(trials, without);
       if (criterion(trials, without, catalogue) > criterion(trials, estimate, catalogue)) return;

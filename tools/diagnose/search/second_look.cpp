@@ -83,13 +83,14 @@ SecondLook look_again(Trials& trials, const Estimate& estimate, double portmante
     if (gain < least) continue;
     const Weight weight = weigh_all(trials, trial).back();
     if (!may_be_told(trials, trial, member, weight)) continue;
+    if (may_be_answer_to_noise(trials, trial, catalogue)) continue;
     if (material(trials, trial, weight) >= 1) {
       result.better = std::move(trial);
       return result;
     }
     const Member& small = trial.members.back();
     if (is_own_load(small) || is_another_name(trials, weight) || is_error_of_model(trials, trial, weight) ||
-        is_beat_of_counts(weight) || may_be_answer_to_noise(trials, trial, catalogue))
+        is_beat_of_counts(weight))
       continue;
     result.small.push_back({small.candidate, gain, weight.force_rms});
   }
