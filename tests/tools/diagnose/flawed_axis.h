@@ -43,6 +43,7 @@ struct FlawedMachine {
   double measured_late = 0;      ///< of a sample time: the position is older than its row
   double outlier = 0;            ///< added to the position of every thousandth row
   double last_bits = 0;          ///< relative error of every number
+  double controller_hz = 12;     ///< where it begins to follow
   uint64_t seed = 1;
 };
 
@@ -156,7 +157,8 @@ class FlawedAxis {
     constexpr double finest = 2e-5, steps_a_decay = 500;
     const double T = machine_.sample_time;
     const size_t rows = size_t(machine_.duration / T);
-    const double cutoff = 2 * std::numbers::pi * std::min(12.0, 0.04 / T), gain = cutoff * cutoff;
+    const double cutoff = 2 * std::numbers::pi * std::min(machine_.controller_hz, 0.04 / T),
+                 gain = cutoff * cutoff;
     double x = 0, v = 0, slow = 0, seen_speed = 0, last_seen = 0, last_time = 0, command = 0;
     std::ofstream out(folder_ / "record.csv");
     out << "t_s,force,position,velocity\n";

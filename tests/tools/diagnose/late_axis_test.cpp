@@ -42,6 +42,18 @@ TEST(LateAxis, IsNotInvented) {
   }
 }
 
+/// A fast controller answers to every count. Noise that is fitted beside a delay may seem smaller and slower
+/// than it is, and the delay certain; without the delay it is as it is, and does better.
+TEST(LateAxis, IsNotInventedUnderAFastController) {
+  for (const uint64_t seed : {1, 2, 3, 4, 5, 6, 7, 8}) {
+    FlawedMachine machine;
+    machine.mass = 1.2, machine.damping = 4, machine.force_noise = 0.05, machine.controller_hz = 40;
+    machine.duration = 6.6, machine.stroke = 0.1, machine.top_speed = 0.3, machine.seed = seed;
+    const Diagnosis d = diagnosed(machine);
+    EXPECT_EQ(name_of(d.verdict), "nothing_missing") << "seed " << seed << "\n" << to_text(d);
+  }
+}
+
 /// Fifty rows: a range in rows alone would end before.
 TEST(LateAxis, MayBeLateByManyRowsOfAFastRecord) {
   FlawedMachine machine;

@@ -125,6 +125,24 @@ TEST(ContainedFriction, IsDeclaredWhereThePreloadOfASpringPullsAsItDoes) {
   EXPECT_THAT(to_text(d),
               HasSubstr("or spring + coulomb_friction in the place of spring: this record cannot tell"));
 }
+/// The axis is pushed forward all the time, and brakes itself.
+Diagnosis with_force_and_friction(double offset_n, double coulomb_n, const WantedMotion& motion) {
+  HiddenAxis axis;
+  Physics truth = axis.nominal();
+  truth.offset_n = offset_n, truth.coulomb_n = coulomb_n;
+  return diagnose(axis.diagram(), {axis.record("record", truth, motion)});
+}
+TEST(ContainedFriction, IsDeclaredBesideAConstantForceThatIsLarger) {
+  const Diagnosis d = with_force_and_friction(-0.4, 0.15, one_way(1));
+  EXPECT_THAT(names(d), ElementsAre("constant_force")) << to_text(d);
+  EXPECT_THAT(to_text(d), HasSubstr("or constant_force + coulomb_friction in the place of constant_force"));
+}
+TEST(ContainedFriction, IsNotDeclaredWhereRestShowsThatNothingHolds) {
+  const Diagnosis d = with_force_and_friction(-0.4, 0, one_way(1));
+  EXPECT_THAT(names(d), ElementsAre("constant_force")) << to_text(d);
+  EXPECT_THAT(to_text(d), Not(HasSubstr("coulomb_friction in the place of")));
+  EXPECT_EQ(d.verdict, Verdict::explained);
+}
 TEST(ContainedFriction, IsNamedWhereTheMotionGoesBothWays) {
   const Diagnosis d = with_spring_and_friction(there_and_back(0.15, 0.3));
   EXPECT_THAT(names(d), testing::UnorderedElementsAre("coulomb_friction", "spring")) << to_text(d);
