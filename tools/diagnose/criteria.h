@@ -221,7 +221,7 @@ constexpr double work_of_first_search = 0.4;
 // Rest.
 
 /// [mean square in motion] Errors that the set does not explain occur at rest too.
-constexpr double worse_at_rest = 4;
+constexpr double worse_at_rest = 8;
 /// [s] Shorter rests contradict no answer: an axis that turns seems to rest, the longer the coarser its
 /// counts.
 constexpr double least_rest_s = 0.1;

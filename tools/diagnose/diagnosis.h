@@ -81,8 +81,7 @@ struct NotLookedFor {
 /// An effect that the prediction errors asked for, but that does not stand.
 struct RefusedEffect {
   std::string effect, why;
-  bool is_blurred =
-      false;  ///< late by so few rows, each of which stands for several, that nothing is left of it
+  bool is_blurred = false;  ///< late by a few rows, each of which stands for several: nothing is left of it
 };
 
 /// An effect that the records show with certainty, and that is too small to matter.

@@ -180,11 +180,7 @@ size_t weakest_of(const std::vector<double>& sizes, const std::vector<Weight>& w
   return weakest;
 }
 
-/// The number of members: there is none.
-size_t late_input_among(const std::vector<Member>& members) {
-  const auto is_late = [](const Member& m) { return is_late_input(*m.candidate); };
-  return size_t(std::ranges::find_if(members, is_late) - members.begin());
-}
+bool is_late_member(const Member& member) { return is_late_input(*member.candidate); }
 
 /// Fits all parameters and the noise together, and removes the members that are not material, one by one, the
 /// weakest first. The search judged them with noise that it knew only partly; a barely material member, and
@@ -201,14 +197,18 @@ void keep_material(Trials& trials, Conclusion& result, size_t catalogue) {
       sizes = sizes_of_members(trials, result);
     }
     size_t weakest = weakest_of(sizes, result.weights);
-    if (sizes[weakest] >= barely_material) weakest = late_input_among(estimate.members);
-    if (weakest == estimate.members.size()) return;
+    if (sizes[weakest] >= barely_material) {
+      weakest = size_t(std::ranges::find_if(estimate.members, is_late_member) - estimate.members.begin());
+      if (weakest == estimate.members.size()) return;
+    }
     const double least = sizes[weakest];
     Estimate without =
         fit_members(trials, without_one(estimate.members, weakest), estimate.noise, estimate.motion, 4);
     if (least >= 1) {
       maximise(trials, without);
-      if (criterion(trials, without, catalogue) > criterion(trials, estimate, catalogue)) return;
+      const double doubt =
+          is_late_member(estimate.members[weakest]) ? unexplained(portmanteau(trials, *estimate.fitted)) : 0;
+      if (criterion(trials, without, catalogue) > criterion(trials, estimate, catalogue) + doubt) return;
     }
     const Weight& weight = result.weights[weakest];
     result.trail.push_back(

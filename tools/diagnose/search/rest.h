@@ -7,8 +7,8 @@ namespace loopwright::diagnosis {
 
 /// How strongly the rows at rest speak against a set of members, as twice a log-likelihood. They are not
 /// fitted to any set.
-///   nothing in the set holds:  n ln(m / 4) where the mean square m of the whitened errors at rest is more
-///                              than four times that in motion: a force was there and moved nothing
+///   nothing in the set holds:  n ln(m / 8) where the mean square m of the whitened errors at rest is more
+///                              than eight times that in motion: a force was there and moved nothing
 ///   something in it holds:     n/12 ln(1 + d / s) where the second difference over twice 6 ms of
 ///                              the position has the mean square d + s (median of means over 36 ms), s is the
 ///                              sensor's (the same from sample to sample), and d is about what noise alone

@@ -303,7 +303,8 @@ void SiteFitter::shorten_steps(SiteHypothesis& h) {
   constexpr double difference = 1e-5;  // [of the size of a state] in a sample, below a tenth of usual noise
   const auto remembers = [](const SiteTerm& term) { return term.shape->remembered != nullptr; };
   SitePass there;
-  if (std::ranges::any_of(h.terms, remembers) && pass(h, false, there)) filter_.choose_substeps(there, difference);
+  if (std::ranges::any_of(h.terms, remembers) && pass(h, false, there))
+    filter_.choose_substeps(there, difference);
 }
 
 void SiteFitter::anneal(SiteHypothesis& h) {
