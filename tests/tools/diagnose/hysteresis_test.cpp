@@ -59,7 +59,8 @@ TEST(Hysteresis, TurnsWhereTheVelocityDoes) {
     constexpr double time = 0.1, h = time / steps;
     double z = 0.4;
     for (int i = 0; i < steps; ++i) {
-      const double v = from + (i + 0.5) / steps * (to - from), middle = z + h / 2 * (v - std::abs(v) * z) / 0.01;
+      const double v = from + (i + 0.5) / steps * (to - from),
+                   middle = z + h / 2 * (v - std::abs(v) * z) / 0.01;
       z += h * (v - std::abs(v) * middle) / 0.01;
     }
     EXPECT_NEAR(law->remembered(0.4, from, to, time, distance), z, 1e-6) << from << " to " << to;
