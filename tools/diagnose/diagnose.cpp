@@ -228,8 +228,13 @@ void tell_effects(const Conclusion& conclusion, const Staircase& staircase, cons
     OtherExplanation& explanation = result.other_explanations.emplace_back();
     for (const Candidate* c : other.replaced) explanation.in_place_of.push_back(c->name);
     for (const Candidate* c : other.by) explanation.effects.push_back(c->name);
+    const auto is_new = [&](const Candidate* c) {
+      return std::ranges::find(other.replaced, c) == other.replaced.end();
+    };
+    const auto rival = std::ranges::find_if(other.by, is_new);
     suggest(result.suggested,
-            separating_experiment(effect_of(catalogue, other.replaced.front()), other.by.front()->name));
+            separating_experiment(effect_of(catalogue, other.replaced.front()),
+                                  (rival == other.by.end() ? other.by.front() : *rival)->name));
   }
 }
 

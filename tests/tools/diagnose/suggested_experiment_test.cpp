@@ -124,6 +124,8 @@ TEST(ContainedFriction, IsDeclaredWhereThePreloadOfASpringPullsAsItDoes) {
   EXPECT_THAT(names(d), ElementsAre("spring")) << to_text(d);
   EXPECT_THAT(to_text(d),
               HasSubstr("or spring + coulomb_friction in the place of spring: this record cannot tell"));
+  EXPECT_THAT(to_text(d),
+              HasSubstr("To tell spring from coulomb_friction: Repeat the motion in both directions"));
 }
 /// The axis is pushed forward all the time, and brakes itself.
 Diagnosis with_force_and_friction(double offset_n, double coulomb_n, const WantedMotion& motion) {
