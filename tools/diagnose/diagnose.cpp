@@ -104,12 +104,11 @@ class Inquiry {
   /// The same without a member, which is refused from now on. What was found beside it may have needed it.
   Conclusion without(const Conclusion& conclusion, size_t member) {
     const std::vector<Shape>& shapes = shapes_along_fitted_rows();
-    std::vector<Member> members = conclusion.estimate.members;
-    members.erase(members.begin() + std::ptrdiff_t(member));
     const Estimate& e = conclusion.estimate;
     refused_.push_back(e.members[member].candidate);
-    Conclusion rest = conclude(trials_, catalogue_.candidates, shapes,
-                               fit_members(trials_, members, e.noise, e.motion, 8), refused_);
+    Conclusion rest =
+        conclude(trials_, catalogue_.candidates, shapes,
+                 fit_members(trials_, without_one(e.members, member), e.noise, e.motion, 8), refused_);
     look_at_all_rows(rest);
     return rest;
   }

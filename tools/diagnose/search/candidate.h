@@ -1,5 +1,6 @@
 /// An effect as the diagnosis uses it: columns along a path, and the admissible values of its parameters.
 #pragma once
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <string>
@@ -82,6 +83,11 @@ inline bool is_late_input(const Candidate& candidate) {
 inline bool is_dry_friction(const Candidate& candidate) {
   return candidate.acts == Acts::force && candidate.at_rest != AtRest::free && !candidate.is_unknown &&
          !candidate.linear.empty() && candidate.linear.front().name == "level";
+}
+
+inline bool is_late_member(const Member& member) { return is_late_input(*member.candidate); }
+inline bool has_dry_friction(const std::vector<Member>& members) {
+  return std::ranges::any_of(members, [](const Member& m) { return is_dry_friction(*m.candidate); });
 }
 
 /// Whether it makes a part of the mass move by itself.

@@ -180,8 +180,6 @@ size_t weakest_of(const std::vector<double>& sizes, const std::vector<Weight>& w
   return weakest;
 }
 
-bool is_late_member(const Member& member) { return is_late_input(*member.candidate); }
-
 /// Fits all parameters and the noise together, and removes the members that are not material, one by one, the
 /// weakest first. The search judged them with noise that it knew only partly; a barely material member, and
 /// what a controller that answers to noise may feign, must explain more than noise that is fitted without it.

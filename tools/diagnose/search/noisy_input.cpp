@@ -6,8 +6,6 @@
 namespace loopwright::diagnosis {
 namespace {
 
-bool is_late(const Member& member) { return is_late_input(*member.candidate); }
-
 /// Takes a share of what the input is above its mean over some rows away from it.
 Candidate unfelt_noise(RowsOfMean side) {
   Candidate candidate;
@@ -91,7 +89,7 @@ struct Replacements {
 std::optional<Replacements> replacements_of_late_input(Trials& trials, const Estimate& found,
                                                        size_t catalogue) {
   std::vector<Member> others = found.members;
-  if (trials.has_map() || std::erase_if(others, is_late) == 0) return {};
+  if (trials.has_map() || std::erase_if(others, is_late_member) == 0) return {};
   std::erase_if(others, is_own_load);  // which a wrong lag calls for
   Smoothed smoothed(trials, found, std::move(others), catalogue);
   Replacements by;

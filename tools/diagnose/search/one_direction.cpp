@@ -49,10 +49,6 @@ bool may_pull_evenly(const Candidate& candidate) {
          (is_dry_friction(candidate) || candidate.nonlinear.empty());
 }
 
-bool has_dry_friction(const std::vector<Member>& members) {
-  return std::ranges::any_of(members, [](const Member& m) { return is_dry_friction(*m.candidate); });
-}
-
 }  // namespace
 
 std::vector<OtherSet> alike_in_one_direction(Trials& trials, const Estimate& estimate,

@@ -347,9 +347,8 @@ class Search {
       const std::vector<double> gains = evidence.gains_of_removal(double(fitted_numbers(trials_)));
       const size_t worst = size_t(std::ranges::max_element(gains) - gains.begin());
       if (gains[worst] < -10) break;
-      std::vector<Member> members = estimate.members;
-      members.erase(members.begin() + std::ptrdiff_t(worst));
-      Estimate without = fit_members(trials_, members, noise_, estimate.motion, 4);
+      Estimate without =
+          fit_members(trials_, without_one(estimate.members, worst), noise_, estimate.motion, 4);
       if (!without.is_valid || score(without) > score(estimate)) break;
       estimate = std::move(without);
     }

@@ -27,8 +27,7 @@ bool may_be_told(const Trials& trials, const Estimate& trial, size_t member, con
 
 /// A second law of dry friction, beside the one that was chosen where reversals show the difference.
 bool is_another_dry_friction(const Candidate& candidate, const std::vector<Member>& members) {
-  return is_dry_friction(candidate) &&
-         std::ranges::any_of(members, [](const Member& m) { return is_dry_friction(*m.candidate); });
+  return is_dry_friction(candidate) && has_dry_friction(members);
 }
 
 /// Beside next to no noise the arithmetic of the diagram has effects too.
