@@ -2,10 +2,12 @@
 #pragma once
 #include <dlfcn.h>
 #include <cstdlib>
+#include <filesystem>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
+#include "tests/engine/diagram/diagram_folder.h"
 #include "where.h"
 
 namespace loopwright::hw {
@@ -15,13 +17,25 @@ inline std::string emulator_library(const std::string& name = "hil_emulator") {
   return LOOPWRIGHT_BINARY "/lib/lib" + name + ".so";
 }
 
+/// A copy of the emulator's library that this process and its children alone load. The product names other
+/// processes that have the library loaded: with the copy, those of tests that run at the same time are none.
+inline const std::string& own_emulator_library() {
+  static const DiagramFolder folder;
+  static const std::string copy = [] {
+    const std::string path = folder.path("libhil_emulator.so");
+    std::filesystem::copy_file(emulator_library(), path);
+    return path;
+  }();
+  return copy;
+}
+
 class EmulatedCard {
  public:
   /// Loads the library, sets HIL_LIBRARY to it and starts a new world in virtual time.
-  explicit EmulatedCard(const std::string& name = "hil_emulator") {
-    setenv("HIL_LIBRARY", emulator_library(name).c_str(), 1);
+  explicit EmulatedCard(const std::string& path = emulator_library()) {
+    setenv("HIL_LIBRARY", path.c_str(), 1);
     unsetenv("HIL_EMU"), unsetenv("HIL_EMU_SHARED");
-    void* library = dlopen(emulator_library(name).c_str(), RTLD_NOW | RTLD_LOCAL);
+    void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!library) throw std::runtime_error(dlerror());
     set_ = reinterpret_cast<int (*)(const char*, double)>(dlsym(library, "hil_emu_set"));
     get_ = reinterpret_cast<double (*)(const char*)>(dlsym(library, "hil_emu_get"));

@@ -47,7 +47,7 @@ class Quanser : public testing::Test {
       if (const Status status = cycle(); !status.ok()) return status.code;
     return Code::ok;
   }
-  EmulatedCard card;
+  EmulatedCard card{own_emulator_library()};
   std::unique_ptr<IoDevice> device;
   Sample sample;
 };
@@ -161,7 +161,7 @@ TEST_F(Quanser, NamesAreGivenOfProcessesThatHaveTheLibraryLoaded) {
     _exit(0);
   }
   close(to_child[0]);
-  const auto processes = quanser::processes_with(emulator_library());
+  const auto processes = quanser::processes_with(own_emulator_library());
   close(to_child[1]);
   waitpid(child, nullptr, 0);
   EXPECT_THAT(processes, testing::Contains(HasSubstr(std::to_string(child) + " (")));
@@ -247,7 +247,7 @@ TEST_F(Quanser, TheComputersClockNeedsNoTask) {
 // ---- libraries ----
 
 TEST_F(Quanser, ALibraryWithNothingButTheNeedfulServesADeviceThatAsksForNoMore) {
-  EmulatedCard old("hil_emulator_required");
+  EmulatedCard old(emulator_library("hil_emulator_required"));
   begin(R"({"watchdog": {"timeout": 0}})");
   EXPECT_EQ(first_failure(5), Code::ok);
   EXPECT_EQ(device->stop(), OutputsSafe::confirmed);

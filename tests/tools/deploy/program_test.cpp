@@ -23,7 +23,7 @@ const std::string conventional = LOOPWRIGHT_SOURCE "/diagrams/linear_motor/conve
 class DeployProgram : public testing::Test {
  protected:
   void SetUp() override {
-    setenv("HIL_LIBRARY", hw::emulator_library().c_str(), 1);
+    setenv("HIL_LIBRARY", hw::own_emulator_library().c_str(), 1);
     unsetenv("HIL_EMU"), unsetenv("HIL_EMU_SHARED");
   }
   void TearDown() override { unsetenv("HIL_EMU"), unsetenv("HIL_EMU_SHARED"); }
@@ -174,10 +174,10 @@ TEST_F(DeployProgram, CheckProbeAndDeployNameTheCodeThatADeviceFileLoads) {
   const Outcome checked = loopwright_program({"check", conventional, "--variant", "stage=quanser", "--set",
                                               "stage.device=" + folder_.path("device.json")});
   EXPECT_EQ(checked.code, 0);
-  const std::string named = "loads and runs the code of " + hw::emulator_library() + " (HIL_LIBRARY)";
+  const std::string named = "loads and runs the code of " + hw::own_emulator_library() + " (HIL_LIBRARY)";
   EXPECT_THAT(checked.out, AllOf(HasSubstr(named), HasSubstr("check does not load it")));
   const Outcome deployed = loopwright_program(arguments());
-  EXPECT_LT(deployed.err.find(named), deployed.err.find("library " + hw::emulator_library()));
+  EXPECT_LT(deployed.err.find(named), deployed.err.find("library " + hw::own_emulator_library()));
   EXPECT_THAT(loopwright_program({"probe", folder_.path("device.json")}).out, HasSubstr(named));
   setenv("HIL_LIBRARY", "/nowhere/libhil.so", 1);
   EXPECT_THAT(loopwright_program(arguments({"-q"})).err, HasSubstr("the code of /nowhere/libhil.so"));
