@@ -11,8 +11,9 @@ bool turns_at(const Path& path, size_t row) {
 }
 
 /// In motion after the start, and not beside a change of sign.
-bool has_certain_sign(const Path& path, const AxisRecord& record, size_t row) {
-  if (path.rests[row] || record.is_missing(row) || record.is_false(row)) return false;
+bool has_certain_sign(const Path& path, const Trial& trial, size_t row) {
+  const AxisRecord& record = trial.model->record();
+  if (path.rests[row] || trial.at_rest[row] || record.is_missing(row) || record.is_false(row)) return false;
   for (size_t near = row; near <= row + 1 + criteria::rows_of_a_turn; ++near)
     if (near >= criteria::rows_of_a_turn && turns_at(path, near - criteria::rows_of_a_turn)) return false;
   return true;
@@ -21,7 +22,7 @@ bool has_certain_sign(const Path& path, const AxisRecord& record, size_t row) {
 std::vector<char> with_reversals(const Trial& trial, const Path& path) {
   std::vector<char> rows = trial.usable;
   for (size_t k = trial.settled_from; k < std::min(path.samples(), rows.size()); ++k)
-    if (has_certain_sign(path, trial.model->record(), k)) rows[k] = 1;
+    if (has_certain_sign(path, trial, k)) rows[k] = 1;
   return rows;
 }
 

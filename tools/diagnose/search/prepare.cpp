@@ -108,12 +108,13 @@ void mark_usable(Trial& trial, const Path& path, bool is_map) {
                               : std::max(whole_count(std::ceil(criteria::settling_s / path.sample_time)),
                                          size_t(trial.pace.samples_to_correct));
   for (size_t k = 0; k < rows; ++k) {
-    since_rest = path.rests[k] ? 0 : since_rest + 1;
+    // The velocity of an axis that rests is guessed rightly. Where a force is missing, or friction holds it
+    // with nearly all that it has, the predictor drifts.
+    const bool rests = path.rests[k] || stays(record, k, trial.pace.rest_speed);
+    since_rest = rests ? 0 : since_rest + 1;
     trial.moving[k] = since_rest > trial.pace.samples_after_rest && !path.turns[k] &&
                       k >= trial.settled_from && !record.is_false(k);
-    // The velocity of an axis that rests is guessed rightly. Where a force is missing, the predictor drifts.
-    trial.at_rest[k] = (path.rests[k] || stays(record, k, trial.pace.rest_speed)) &&
-                       k >= size_t(trial.pace.samples_to_correct) && !record.is_false(k);
+    trial.at_rest[k] = rests && k >= size_t(trial.pace.samples_to_correct) && !record.is_false(k);
   }
   trial.usable = trial.moving;
 }
