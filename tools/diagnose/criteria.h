@@ -182,6 +182,9 @@ constexpr double least_gain_over_stacked_names_per_row = 0.02;
 constexpr double clearly_better = 3, same_law = 20;
 /// [-2 ln L] What a set that contains another one must explain beyond it to be an alternative.
 constexpr double least_gain_of_larger_set = 4;
+/// [reach of an alternative] Two statements of one law of motion lie closer together: the arithmetic and the
+/// noise that each lets through tell them apart, not the law. The one with fewer members stands.
+constexpr double reach_of_same_law = 4;
 /// [reach of an alternative] A promising set may lose so much on its own motion.
 constexpr double most_promised_loss = 20;
 /// [mean square] The search starts again from functions without a name.

@@ -12,6 +12,7 @@
 #include "tools/diagnose/search/remaining_force.h"
 #include "tools/diagnose/search/rivals.h"
 #include "tools/diagnose/search/spectrum.h"
+#include "tools/diagnose/search/velocity_laws.h"
 #include "tools/diagnose/search/whiteness.h"
 
 namespace loopwright::diagnosis {
@@ -129,7 +130,7 @@ std::optional<Estimate> same_law_by_fewer(Trials& trials, Rivals& rivals, const 
     Estimate other = rivals.fitted(swap);
     // Beside no noise the arithmetic of a law decides how well it predicts.
     const bool leaves_nothing = other.is_valid && is_negligible(trials, other.members);
-    if (!leaves_nothing && !rivals.loss_of(swap, other)) continue;
+    if (!leaves_nothing && !rivals.loss_of(swap, other, reach_of_same_law)) continue;
     const size_t needed = size_t(std::ranges::count_if(weigh_all(trials, other), [&](const Weight& weight) {
       return material(trials, other, weight) >= 1;
     }));
@@ -257,7 +258,8 @@ void add_late_shapes(const Trials& trials, Conclusion& result, Rivals& rivals,
 /// Computes the alternatives, and from them the probability of each member.
 void ask_rivals(const Trials& trials, Conclusion& result, Evidence& evidence,
                 const std::vector<Proposal>& exchanges, const std::vector<Candidate>& candidates,
-                Rivals& rivals, const FrictionAtReversals& at_reversals, double n) {
+                const std::vector<Shape>& shapes, Rivals& rivals, const FrictionAtReversals& at_reversals,
+                double n) {
   const double reach = rivals.reach();
   // Far from its operating point the loss predicted by a linearization may be wrong by a hundred.
   const double far = std::max(100.0, 3 * reach);
@@ -269,6 +271,7 @@ void ask_rivals(const Trials& trials, Conclusion& result, Evidence& evidence,
   result.other_sets = other_sets(rivals, members, several);
   std::vector<Proposal> swaps = shape_swaps(members, candidates);
   std::ranges::move(law_swaps(members, candidates, trials), std::back_inserter(swaps));
+  std::ranges::move(velocity_law_swaps(trials, result.estimate, shapes), std::back_inserter(swaps));
   std::vector<Proposal> near = swaps;
   for (const Proposal& p : exchanges)
     if (p.gain > -far && !contains(swaps, p)) near.push_back(p);
@@ -369,7 +372,7 @@ Conclusion concluded(Trials& trials, const std::vector<Candidate>& candidates,
       result.trail.push_back("with the noise known, more is seen");
   }
   if (!instead) {
-    ask_rivals(trials, result, evidence, exchanges, candidates, rivals, at_reversals, n);
+    ask_rivals(trials, result, evidence, exchanges, candidates, shapes, rivals, at_reversals, n);
     std::ranges::move(alike_in_one_direction(trials, estimate, candidates),
                       std::back_inserter(result.other_sets));
     if (rounds > 0 && (instead = rivals.better(unexplained(result.portmanteau_beside_counts()))))
