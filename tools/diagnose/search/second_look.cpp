@@ -17,11 +17,18 @@ bool is_blurred(const Trials& trials, const Member& member) {
 
 namespace {
 
-/// Loads that fly leave rows out, and what stands at the end of its range stands for something else.
+/// Whether all rows count that count without it: a load that flies leaves rows out, except where it is a
+/// state of the predictor.
+bool leaves_no_row_out(const Estimate& trial, const Candidate& candidate) {
+  return !candidate.flies || trial.fitted->front().flying == &candidate;
+}
+
+/// What stands at the end of its range stands for something else.
 bool may_be_told(const Trials& trials, const Estimate& trial, size_t member, const Weight& weight) {
   const Candidate& candidate = *trial.members[member].candidate;
-  return !candidate.is_unknown && !candidate.flies && !is_at_limit(trial.members[member]) &&
-         !is_blurred(trials, trial.members[member]) && !spoils_balance(trials, trial, member, weight) &&
+  return !candidate.is_unknown && leaves_no_row_out(trial, candidate) &&
+         !is_at_limit(trial.members[member]) && !is_blurred(trials, trial.members[member]) &&
+         !spoils_balance(trials, trial, member, weight) &&
          !is_feigned_by_noise(trials, trial.members, member);
 }
 
