@@ -80,4 +80,25 @@ std::vector<SiteCandidate> JudgedFits::candidates(const SiteHypothesis& at) {
   return list;
 }
 
+void JudgedFits::forget_rivals_of(size_t term) {
+  std::erase_if(result_.rivals, [&](const SiteRival& r) { return r.of == term; });
+  for (SiteRival& r : result_.rivals) r.of -= r.of > term;
+}
+
+bool JudgedFits::remove_idle(SiteHypothesis& at) {
+  bool is_any_removed = false;
+  for (size_t t = at.terms.size(); t-- > 0;) {
+    SiteHypothesis rest = without(at, t);
+    fitter_.refine(rest, first_steps);
+    if (rest.scaled_objective - at.scaled_objective >= criteria::far_from_idle * gain_needed()) continue;
+    fitter_.refine(rest, further_steps + 1);
+    fitter_.fit_noise(rest);
+    if (rest.objective - at.objective >= gain_needed()) continue;
+    tell("- " + describe(model(), at.terms[t]), rest);
+    forget_rivals_of(t);
+    at = std::move(rest), is_any_removed = true;
+  }
+  return is_any_removed;
+}
+
 }  // namespace loopwright::diagnosis

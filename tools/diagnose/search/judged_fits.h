@@ -30,6 +30,11 @@ class JudgedFits {
   /// strong term bends the parameters that are fitted without it.
   std::vector<SiteCandidate> candidates(const SiteHypothesis& at);
 
+  /// Leaves out terms without which the likelihood hardly falls; whether there were any.
+  bool remove_idle(SiteHypothesis& at);
+  /// Of a term that is left out; the places of later ones move.
+  void forget_rivals_of(size_t term);
+
   SiteFitter& fitter_;
   SiteSearchResult result_;
   double readings_ = 0;

@@ -4,6 +4,7 @@
 #include <utility>
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/beyond_start.h"
+#include "tools/diagnose/search/function_in_names.h"
 #include "tools/diagnose/search/judged_fits.h"
 #include "tools/diagnose/search/late_input.h"
 #include "tools/diagnose/search/moved_parameters.h"
@@ -104,6 +105,7 @@ class SiteSearch : JudgedFits {
     remove_idle(at);
     progress_("deciding which parameters moved", begin_ + 0.3);
     decide_parameters(at);
+    exchange_again(at);
     if (stated && whole_criterion(*stated) < whole_criterion(at) - least_exchange) {
       at = *stated;
       tell("as it was before parameters were free", at);
@@ -111,11 +113,13 @@ class SiteSearch : JudgedFits {
     }
     if (remove_idle(at)) decide_parameters(at);
     if (leave_out_detail(at)) decide_parameters(at);
-    compare_levels(at);
-    compare_with_parameters_of_same_response(at);
-    compare_with_stated_parameters(at);
-    declare_offsets_of_sensors(at);
-    compare_with_one_parameter(at);
+    do {
+      compare_levels(at);
+      compare_with_parameters_of_same_response(at);
+      compare_with_stated_parameters(at);
+      declare_offsets_of_sensors(at);
+      compare_with_one_parameter(at);
+    } while (exchange_again(at) || name_function(at));
     if (errors_ == ErrorsOf::predictions) at = without_idle_disturbances(fitter_, std::move(at));
     result_.found = std::move(at);
     return std::exchange(result_, std::move(before));
@@ -158,32 +162,20 @@ class SiteSearch : JudgedFits {
   void merge_stacked_names(SiteHypothesis& at, size_t fewest) {
     for (const StackedNames& names : stacked_names(fitter_, at, fewest)) {
       if (fewest > 1 && are_usual_together(at, names) && !cancel(fitter_, at, names)) continue;
-      const auto function = with_function(fitter_, at, names, [&](const auto& h) { return criterion(h); });
+      const auto judged = [&](const auto& h) { return criterion(h); };
+      const auto function = with_function(fitter_, at, names, judged);
       if (!function) continue;
       tell("in the place of " + std::to_string(names.terms.size()) +
                " names: " + describe(model(), function->terms.back()),
            *function);
-      if (!stands_for(names, at, *function)) continue;
+      const double needed = std::max(least_gain_of_unknown, least_gain_of_unknown_per_reading * readings_);
+      const bool is_better = judged(*function) < judged(at) - needed;
+      if (!is_better && !explains_as_much(fitter_, at, names, *function)) continue;
       at = *function;
       result_.rivals.clear();
       return merge_stacked_names(at, fewest);
     }
   }
-  /// Whether the function is better than the names, or explains nearly as much as names that are unusual
-  /// together.
-  bool stands_for(const StackedNames& names, const SiteHypothesis& at, const SiteHypothesis& function) {
-    const double needed = std::max(least_gain_of_unknown, least_gain_of_unknown_per_reading * readings_);
-    if (criterion(function) < criterion(at) - needed) return true;
-    const auto& range = function.terms.back().nonlinear;
-    const bool are_usual = are_usual_together(at, names) && !cancel(fitter_, at, names);
-    if (names.terms.size() < 2 || are_usual || are_periods(at, names, range[1] - range[0])) return false;
-    SiteHypothesis nothing = without(at, names);
-    fitter_.refine(nothing, 6);
-    fitter_.fit_noise(nothing);
-    const double gained = nothing.objective - at.objective;
-    return nothing.objective - function.objective > criteria::least_share_of_function * gained;
-  }
-
   /// In the criterion: a worse term is no rival.
   double most_of_rival() const {
     return std::max(rival_within, criteria::least_gain_of_term_per_reading * readings_);
@@ -191,6 +183,7 @@ class SiteSearch : JudgedFits {
 
   /// Each term is replaced by the best other one in its place.
   void exchange(SiteHypothesis& at) {
+    exchanged_beside_ = at.is_free;
     for (size_t t = 0; t < at.terms.size() && !is_spent(criteria::work_with_rivals); ++t) {
       const SiteTerm term = at.terms[t];
       const SiteHypothesis rest = without(at, t);
@@ -213,6 +206,31 @@ class SiteSearch : JudgedFits {
     }
   }
 
+  /// Parameters that are free hide how terms differ: those that are decided show it. Whether a term is
+  /// another one now.
+  bool exchange_again(SiteHypothesis& at) {
+    if (at.terms.empty() || at.is_free == exchanged_beside_) return false;
+    result_.rivals.clear();
+    const double before = criterion(at);
+    exchange(at);
+    if (criterion(at) == before) return false;
+    result_.parameter_rivals.clear(), remove_idle(at), decide_parameters(at);
+    return true;
+  }
+
+  /// Whether two names are better than a function without one.
+  bool name_function(SiteHypothesis& at) {
+    if (is_spent(criteria::work_with_rivals)) return false;
+    const double before = criterion(at);
+    for (SiteHypothesis& named :
+         function_in_names(fitter_, at, [&](const auto&h, auto l) { return fits(h, l); })) {
+      tell("in the place of the function: " + describe(model(), named.terms.back()), named);
+      if (named.objective < at.objective && criterion(named) < criterion(at) - least_exchange)
+        take(at, named, "names do better");
+    }
+    return criterion(at) != before;
+  }
+
   void add_unknown(SiteHypothesis& at) {
     if (is_spent(criteria::work_with_rivals)) return;
     const std::vector<SiteCandidate> ranked = rank_terms(fitter_, at, unknown_functions().first(1));
@@ -228,29 +246,6 @@ class SiteSearch : JudgedFits {
     at = tried.front();
     while (const std::optional<size_t> constant = add_constant_to_function(at)) forget_rivals_of(*constant);
     result_.steps.push_back(at);
-  }
-
-  /// Of a term that is left out; the places of later ones move.
-  void forget_rivals_of(size_t term) {
-    std::erase_if(result_.rivals, [&](const SiteRival& r) { return r.of == term; });
-    for (SiteRival& r : result_.rivals) r.of -= r.of > term;
-  }
-
-  /// Terms without which the likelihood hardly falls.
-  bool remove_idle(SiteHypothesis& at) {
-    bool is_any_removed = false;
-    for (size_t t = at.terms.size(); t-- > 0;) {
-      SiteHypothesis rest = without(at, t);
-      fitter_.refine(rest, first_steps);
-      if (rest.scaled_objective - at.scaled_objective >= criteria::far_from_idle * gain_needed()) continue;
-      fitter_.refine(rest, further_steps + 1);
-      fitter_.fit_noise(rest);
-      if (rest.objective - at.objective >= gain_needed()) continue;
-      tell("- " + describe(model(), at.terms[t]), rest);
-      forget_rivals_of(t);
-      at = std::move(rest), is_any_removed = true;
-    }
-    return is_any_removed;
   }
 
   /// Beside parameters that were bent, a function may have seemed more than a detail of its law.
@@ -383,6 +378,7 @@ class SiteSearch : JudgedFits {
 
   const std::function<void(const char*, double)>& progress_;
   std::vector<SiteHypothesis> single_;  ///< see with_one_parameter()
+  std::vector<bool> exchanged_beside_;  ///< the parameters that were free then
   double begin_ = 0.2;
   const ErrorsOf errors_;
   const std::vector<SlowNoise> disturbances_;

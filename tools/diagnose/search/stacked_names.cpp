@@ -96,6 +96,18 @@ bool are_periods(const SiteHypothesis& at, const StackedNames& names, double ran
   });
 }
 
+bool explains_as_much(SiteFitter& fitter, const SiteHypothesis& at, const StackedNames& names,
+                      const SiteHypothesis& function) {
+  const auto& range = function.terms.back().nonlinear;
+  const bool are_usual = are_usual_together(at, names) && !cancel(fitter, at, names);
+  if (names.terms.size() < 2 || are_usual || are_periods(at, names, range[1] - range[0])) return false;
+  SiteHypothesis nothing = without(at, names);
+  fitter.refine(nothing, 6);
+  fitter.fit_noise(nothing);
+  const double gained = nothing.objective - at.objective;
+  return nothing.objective - function.objective > criteria::least_share_of_function * gained;
+}
+
 bool is_detail_of_named_law(SiteFitter& fitter, SiteHypothesis h) {
   SitePass pass;
   if (!fitter.pass(h, true, pass)) return false;

@@ -24,6 +24,9 @@ SiteHypothesis without(const SiteHypothesis& at, const StackedNames& names);
 bool are_usual_together(const SiteHypothesis& at, const StackedNames& names);
 /// Whether one of them is much larger than what they make together: each then says nothing by itself.
 bool cancel(SiteFitter& fitter, SiteHypothesis at, const StackedNames& names);
+/// Whether the function explains nearly as much as names that are unusual together.
+bool explains_as_much(SiteFitter& fitter, const SiteHypothesis& at, const StackedNames& names,
+                      const SiteHypothesis& function);
 /// Periods that each repeat often within the range of the signal.
 bool are_periods(const SiteHypothesis& at, const StackedNames& names, double range);
 
