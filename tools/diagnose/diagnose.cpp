@@ -294,7 +294,7 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
       why = hidden_by_controller(effect);
     return why.empty() ? cannot_be_added(effect) : why;
   };
-  const Catalogue catalogue = make_catalogue(folders, units, sizes, why_not);
+  const Catalogue catalogue = make_catalogue(folders, units, sizes, why_not, has_uneven_rows(motion.paths));
   std::vector<InverseDynamics> inverse;
   for (Trial& trial : trials.list) inverse.push_back(inverse_dynamics(trial));
   trials.inverse = &inverse;

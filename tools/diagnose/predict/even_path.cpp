@@ -5,13 +5,13 @@
 #include "tools/experiment/even_grid.h"
 
 namespace loopwright::diagnosis {
-EvenPath::EvenPath(const Path& path) : edges_(edges_of(path.duration)) {
-  const size_t rows = std::max<size_t>(1, whole_count(std::ceil(edges_.back())));
-  for (size_t i = 0; i <= rows; ++i) even_edges_.push_back(double(i));
+EvenPath::EvenPath(const Path& path, int parts) : edges_(edges_of(path.duration)) {
+  const size_t rows = std::max<size_t>(1, whole_count(std::ceil(edges_.back() * parts)));
+  for (size_t i = 0; i <= rows; ++i) even_edges_.push_back(double(i) / parts);
   for (size_t i = 0, row = 0; i < rows; ++i) {
-    const auto distance = [&](size_t k) { return std::abs(double(i) - edges_[k]); };
+    const auto distance = [&](size_t k) { return std::abs(even_edges_[i] - edges_[k]); };
     while (row + 1 < path.samples() && distance(row + 1) < distance(row)) ++row;
-    const double later = (double(i) - edges_[row]) * path.sample_time;
+    const double later = (even_edges_[i] - edges_[row]) * path.sample_time;
     const double v = path.velocity[row], a = path.acceleration[row];
     position_.push_back(path.position[row] + (v + 0.5 * a * later) * later);
     velocity_.push_back(v + a * later);

@@ -83,13 +83,19 @@ class Remembered {
 /// So many shapes at a time are a grid, of which only the best are run again.
 constexpr size_t least_grid = 8;
 
+/// Steps of a sample time in which an effect at the input runs along rows at uneven times. A held command
+/// changes where a row begins: what comes late by a part of a row is known as exactly as that instant is.
+constexpr int parts_of_uneven_rows = 8;
+
 /// An effect with the indices of its parameters.
 struct Compiled {
   std::shared_ptr<const EffectPlan> plan;
-  std::vector<size_t> linear, nonlinear;  // in EffectPlan::fitted
+  std::shared_ptr<const EffectPlan> in_parts;  ///< the same in parts of a sample time; null: no row needs it
+  std::vector<size_t> linear, nonlinear;       // in EffectPlan::fitted
   Acts acts;
   Remembered remembered;
-  std::map<size_t, std::unique_ptr<EffectRun>> runs;  // by the number of sets that was asked for
+  /// By the plan, and by the number of sets that was asked for.
+  std::map<std::pair<const EffectPlan*, size_t>, std::unique_ptr<EffectRun>> runs;
 
   /// Runs only the shapes that are not cached.
   std::vector<Columns> columns(const Path& path, const std::vector<std::vector<double>>& shapes) {
@@ -117,12 +123,14 @@ struct Compiled {
     signals.velocity = path.velocity, signals.acceleration = path.acceleration;
     signals.input = path.input, signals.force = path.force, signals.velocity_bow = path.velocity_bow;
     std::optional<EvenPath> even;
-    if (acts == Acts::force && plan->remembers && !path.duration.empty())
-      even.emplace(path), signals = even->signals();
+    const bool is_uneven = plan->remembers && !path.duration.empty(), is_in_parts = is_uneven && in_parts;
+    if (is_in_parts || (is_uneven && acts == Acts::force))
+      even.emplace(path, is_in_parts ? parts_of_uneven_rows : 1), signals = even->signals();
     const size_t rows = even ? even->rows() : path.samples(), per_shape = std::max<size_t>(1, linear.size());
     const size_t wanted = shapes.size() * per_shape;
     std::vector<Columns> result(shapes.size());
-    EffectRun& run = run_for(wanted, shapes.size() >= least_grid);
+    const bool is_coarse = shapes.size() >= least_grid && plan->coarser;
+    EffectRun& run = run_for(is_in_parts ? in_parts : is_coarse ? plan->coarser : plan, wanted);
     const size_t lanes = size_t(run.lanes());
     for (size_t first = 0; first < wanted; first += lanes) {
       std::vector<EffectRun::Output> outputs(std::min(lanes, wanted - first));
@@ -143,9 +151,9 @@ struct Compiled {
     }
     return result;
   }
-  EffectRun& run_for(size_t sets, bool is_grid) {
-    std::unique_ptr<EffectRun>& run = runs[sets];
-    if (!run) run = std::make_unique<EffectRun>(is_grid && plan->coarser ? plan->coarser : plan, int(sets));
+  EffectRun& run_for(const std::shared_ptr<const EffectPlan>& which, size_t sets) {
+    std::unique_ptr<EffectRun>& run = runs[{which.get(), sets}];
+    if (!run) run = std::make_unique<EffectRun>(which, int(sets));
     return *run;
   }
   std::vector<double> fitted_of(const Member& member) const {
@@ -178,9 +186,10 @@ struct Compiled {
   }
 };
 
-Candidate candidate_of(const Effect& effect, std::shared_ptr<const EffectPlan> plan) {
+Candidate candidate_of(const Effect& effect, std::shared_ptr<const EffectPlan> plan,
+                       std::shared_ptr<const EffectPlan> in_parts) {
   auto compiled = std::make_shared<Compiled>();
-  compiled->plan = std::move(plan), compiled->acts = acts(effect);
+  compiled->plan = std::move(plan), compiled->in_parts = std::move(in_parts), compiled->acts = acts(effect);
   Candidate candidate;
   candidate.name = effect.name, candidate.form = effect.form, candidate.acts = compiled->acts;
   candidate.stage = stage(effect);
@@ -306,6 +315,10 @@ RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
   return sizes;
 }
 
+bool has_uneven_rows(const std::vector<std::shared_ptr<const Path>>& paths) {
+  return std::ranges::any_of(paths, [](const auto& path) { return !path->duration.empty(); });
+}
+
 std::string not_in_a_map(const Effect& effect) {
   const Excitation& needs = effect.needs;
   const bool needs_motion = needs.speeds > 1 || needs.accelerations > 0 || needs.passes > 1 ||
@@ -333,8 +346,10 @@ std::string hidden_by_controller(const Effect& effect) {
 }
 
 Catalogue make_catalogue(const std::vector<std::string>& folders, const MachineUnits& units,
-                         const RecordSizes& sizes, const WhyNot& why_not) {
+                         const RecordSizes& sizes, const WhyNot& why_not, bool rows_are_uneven) {
   Problems problems;
+  RecordSizes in_parts = sizes;
+  in_parts.sample_time /= parts_of_uneven_rows;
   Catalogue catalogue;
   for (Effect& effect : load_catalogue(folders, problems)) {
     std::string why = unknown_number(effect, sizes);
@@ -342,7 +357,10 @@ Catalogue make_catalogue(const std::vector<std::string>& folders, const MachineU
     if (!why.empty()) {
       leave_out(catalogue.left_out, effect.name, std::move(why));
     } else if (auto plan = compile_effect(effect, units, sizes, problems)) {
-      catalogue.candidates.push_back(candidate_of(effect, std::move(plan)));
+      const bool needs_parts = rows_are_uneven && plan->remembers && acts(effect) == Acts::input;
+      catalogue.candidates.push_back(
+          candidate_of(effect, std::move(plan),
+                       needs_parts ? compile_effect(effect, units, in_parts, problems) : nullptr));
       catalogue.effects.push_back(std::move(effect));
     }
   }

@@ -23,6 +23,9 @@ using WhyNot = std::function<std::string(const Effect&)>;
 /// Why a map of balances contains no information about an effect; empty: it contains some.
 std::string not_in_a_map(const Effect& effect);
 
+/// Whether samples of one of them differ in length.
+bool has_uneven_rows(const std::vector<std::shared_ptr<const Path>>& paths);
+
 /// Why noise of the recorded input hides an effect; empty: it does not. When a noisy input acts cannot be
 /// told.
 std::string hidden_by_input_noise(const Effect& effect);
@@ -32,8 +35,8 @@ std::string hidden_by_input_noise(const Effect& effect);
 std::string hidden_by_controller(const Effect& effect);
 
 /// Effects that cannot be added, and effects whose numbers cannot be computed for these records, are left
-/// out. Throws InputError with every problem of the effect files.
+/// out. `rows_are_uneven`: see has_uneven_rows(). Throws InputError with every problem of the effect files.
 Catalogue make_catalogue(const std::vector<std::string>& folders, const MachineUnits& units,
-                         const RecordSizes& sizes, const WhyNot& why_not);
+                         const RecordSizes& sizes, const WhyNot& why_not, bool rows_are_uneven);
 
 }  // namespace loopwright::diagnosis
