@@ -60,6 +60,8 @@ class Generator(unittest.TestCase):
     def test_a_motion_that_runs_away_within_a_step_is_drawn_again(self):
         with tempfile.TemporaryDirectory() as folder:
             scenario.generate(900460, folder)  # whose first draw has a cube that pushes
+        with tempfile.TemporaryDirectory() as folder:
+            scenario.generate(900820, folder)  # whose first draw does so where the filter begins
 
     def test_a_seed_always_gives_the_same_files(self):
         texts = []

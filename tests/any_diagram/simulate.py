@@ -168,7 +168,10 @@ class Filter:
         motion.ports.noise = dict(zip(self.slow, x[own:]))
         for site, size in (more or {}).items():
             motion.ports.noise[site] = motion.ports.noise.get(site, 0.0) + size
-        there = motion.flow(list(map(float, x[:own])), u)
+        try:
+            there = motion.flow(list(map(float, x[:own])), u)
+        except OverflowError:  # within the step
+            raise Diverged from None
         motion.ports.noise = {}
         return np.array([*there, *(s.kept * d for s, d in zip(self.slow.values(), x[own:]))])
 
