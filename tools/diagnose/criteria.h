@@ -232,6 +232,9 @@ constexpr double least_rest_s = 0.1;
 constexpr double least_freedom = 0.4, most_freedom = 3;
 /// [s] Enough for a deviation, too little to correct all of it; and enough to average the encoder's steps.
 constexpr double deviation_s = 6e-3, glance_s = 36e-3;
+/// [counts] That the slowest motion makes within the rows that tell it from a rest: one of them more or less is
+/// the sensor's.
+constexpr double counts_of_a_rest = 4;
 
 // Impacts of a load that flies through a gap.
 

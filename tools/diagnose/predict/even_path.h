@@ -8,10 +8,11 @@
 
 namespace loopwright::diagnosis {
 
-/// The signals of a path at even instants, each from the row nearest to it. `parts`: of a sample time, from
-/// one instant to the next.
+/// The signals of a path at even instants, each from the row nearest to
+/// it.
 class EvenPath {
  public:
+  /// `parts`: instants in a sample time.
   explicit EvenPath(const Path& path, int parts = 1);
 
   size_t rows() const { return position_.size(); }

@@ -83,8 +83,8 @@ class Remembered {
 /// So many shapes at a time are a grid, of which only the best are run again.
 constexpr size_t least_grid = 8;
 
-/// Steps of a sample time in which an effect at the input runs along rows at uneven times. A held command
-/// changes where a row begins: what comes late by a part of a row is known as exactly as that instant is.
+/// Steps of a sample time in which a delay or a lag of the input runs along rows at uneven times. A held
+/// command changes where a row begins: that instant is known to one of these parts then.
 constexpr int parts_of_uneven_rows = 8;
 
 /// An effect with the indices of its parameters.
@@ -348,8 +348,8 @@ std::string hidden_by_controller(const Effect& effect) {
 Catalogue make_catalogue(const std::vector<std::string>& folders, const MachineUnits& units,
                          const RecordSizes& sizes, const WhyNot& why_not, bool rows_are_uneven) {
   Problems problems;
-  RecordSizes in_parts = sizes;
-  in_parts.sample_time /= parts_of_uneven_rows;
+  RecordSizes sizes_in_parts = sizes;
+  sizes_in_parts.sample_time /= parts_of_uneven_rows;
   Catalogue catalogue;
   for (Effect& effect : load_catalogue(folders, problems)) {
     std::string why = unknown_number(effect, sizes);
@@ -357,10 +357,10 @@ Catalogue make_catalogue(const std::vector<std::string>& folders, const MachineU
     if (!why.empty()) {
       leave_out(catalogue.left_out, effect.name, std::move(why));
     } else if (auto plan = compile_effect(effect, units, sizes, problems)) {
-      const bool needs_parts = rows_are_uneven && plan->remembers && acts(effect) == Acts::input;
+      const bool needs_parts = rows_are_uneven && plan->remembers && is_late(effect);
       catalogue.candidates.push_back(
           candidate_of(effect, std::move(plan),
-                       needs_parts ? compile_effect(effect, units, in_parts, problems) : nullptr));
+                       needs_parts ? compile_effect(effect, units, sizes_in_parts, problems) : nullptr));
       catalogue.effects.push_back(std::move(effect));
     }
   }

@@ -1,22 +1,11 @@
 /// After the search: noise and parameters by maximum likelihood, material members, alternatives.
 #pragma once
 #include "tools/diagnose/criteria.h"
-#include "tools/diagnose/search/evidence.h"
+#include "tools/diagnose/search/alternatives.h"
 #include "tools/diagnose/search/second_look.h"
 #include "tools/diagnose/search/weight.h"
 
 namespace loopwright::diagnosis {
-
-struct Substitute {
-  const Candidate* candidate = nullptr;
-  double loss = 0;  ///< how much worse the criterion is with it; negative: better
-};
-
-/// Members that others could jointly replace, two for one or two or one for two.
-struct OtherSet {
-  std::vector<const Candidate*> replaced, by;
-  double loss = 0;  ///< how much worse the criterion is with it
-};
 
 struct Conclusion {
   Estimate estimate;

@@ -7,10 +7,13 @@ namespace loopwright::diagnosis {
 std::vector<SiteHypothesis> function_in_names(SiteFitter& fitter, const SiteHypothesis& found,
                                               const FitsOfCandidates& fits) {
   constexpr size_t distortions = 2, beside_each = 2;
+  constexpr int steps_without = 3;  // Gauss-Newton
   const auto is_function = [](const SiteTerm& term) { return is_unknown_function(*term.shape); };
   const auto last = std::find_if(found.terms.rbegin(), found.terms.rend(), is_function);
   if (last == found.terms.rend()) return {};
-  const SiteHypothesis rest = without(found, size_t(found.terms.rend() - last) - 1);
+  SiteHypothesis rest = without(found, size_t(found.terms.rend() - last) - 1);
+  fitter.refine(rest, steps_without);  // what candidates gain counts from there
+  fitter.fit_noise(rest);
   std::vector<SiteCandidate> ranked = rank_terms(fitter, rest, fitter.shapes());
   std::erase_if(ranked, [](const SiteCandidate& c) { return c.term.shape->of != TermShape::Of::own; });
   ranked.resize(std::min(distortions, ranked.size()));

@@ -4,9 +4,9 @@
 
 namespace loopwright::diagnosis {
 
-/// A distortion of a signal and a constant, say: each leaves much by itself, so that a search that adds one at
-/// a time takes a function in their place. The last function without a name in a hypothesis is replaced by
-/// each of the best distortions and the best term beside it. Empty: there is no such function.
+/// A distortion of a signal and a constant, say: each leaves much by itself, so that a search that adds one
+/// at a time takes a function in their place. The last function without a name in a hypothesis is replaced by
+/// each of the best distortions and a term beside it. Empty: there is no such function.
 std::vector<SiteHypothesis> function_in_names(SiteFitter& fitter, const SiteHypothesis& found,
                                               const FitsOfCandidates& fits);
 

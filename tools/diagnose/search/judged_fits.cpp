@@ -5,6 +5,7 @@
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/search/moved_parameters.h"
 #include "tools/diagnose/search/site_screening.h"
+#include "tools/diagnose/search/stacked_names.h"
 
 namespace loopwright::diagnosis {
 namespace {
@@ -99,6 +100,18 @@ bool JudgedFits::remove_idle(SiteHypothesis& at) {
     at = std::move(rest), is_any_removed = true;
   }
   return is_any_removed;
+}
+
+bool JudgedFits::leave_out_detail(SiteHypothesis& at) {
+  if (at.terms.empty() || !is_unknown_function(*at.terms.back().shape) ||
+      !is_detail_of_named_law(fitter_, at))
+    return false;
+  at.terms.pop_back();
+  forget_rivals_of(at.terms.size());
+  fitter_.refine(at, further_steps + 1);
+  fitter_.fit_noise(at);
+  tell("without the function, a detail of its law", at);
+  return true;
 }
 
 }  // namespace loopwright::diagnosis

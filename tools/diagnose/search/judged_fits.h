@@ -1,5 +1,5 @@
-/// What all steps of a search at the sites share: real fits of candidates, and the criterion that judges
-/// them.
+/// What all steps of a search at the sites share: real fits of candidates, the criterion that judges them,
+/// and leaving out what it does not need.
 #pragma once
 #include <span>
 #include <string>
@@ -32,6 +32,9 @@ class JudgedFits {
 
   /// Leaves out terms without which the likelihood hardly falls; whether there were any.
   bool remove_idle(SiteHypothesis& at);
+  /// Leaves out a function that is a detail of a named law, and may have seemed more beside parameters that
+  /// were bent; whether there was one.
+  bool leave_out_detail(SiteHypothesis& at);
   /// Of a term that is left out; the places of later ones move.
   void forget_rivals_of(size_t term);
 

@@ -86,14 +86,22 @@ bool shorten(Pace& pace) {
          pace.samples_after_rest < before.samples_after_rest;
 }
 
-/// Whether the measured position stays where it is for some time about a row: it moves less than at the speed
-/// that counts as rest.
-bool stays(const AxisRecord& record, size_t row, double rest_speed) {
+/// [rows] On either side of a row, within which a motion slower than this speed shows as a rest; 0: the
+/// counts are too coarse to show it in time.
+size_t reach_of_a_rest(const AxisRecord& record, double rest_speed) {
   const MeasuredPort* position = record.find("position");
-  const size_t reach =
-      std::max<size_t>(2, whole_count(std::round(criteria::deviation_s / record.sample_time)));
-  if (!position || record.is_map || row < reach || row + reach >= record.rows()) return false;
-  const double* at = position->value.data() + row;
+  if (!position || record.is_map || !(rest_speed > 0)) return 0;
+  const double of_counts = criteria::counts_of_a_rest * position->resolution / (2 * rest_speed);
+  if (of_counts > criteria::glance_s) return 0;
+  return std::max<size_t>(
+      2, whole_count(std::round(std::max(criteria::deviation_s, of_counts) / record.sample_time)));
+}
+
+/// Whether the measured position stays where it is about a row: it moves less than at the speed that counts
+/// as rest.
+bool stays(const AxisRecord& record, size_t row, double rest_speed, size_t reach) {
+  if (reach == 0 || row < reach || row + reach >= record.rows()) return false;
+  const double* at = record.find("position")->value.data() + row;
   const auto [low, high] = std::minmax_element(at - reach, at + reach + 1);
   return *high - *low <= rest_speed * double(2 * reach) * record.sample_time;
 }
@@ -104,13 +112,15 @@ void mark_usable(Trial& trial, const Path& path, bool is_map) {
   const size_t rows = path.samples();
   trial.moving.assign(rows, 1), trial.at_rest.assign(rows, 0);
   int since_rest = trial.pace.samples_after_rest;
+  const double rest_speed = trial.pace.rest_speed;
+  const size_t reach = reach_of_a_rest(record, rest_speed);
   trial.settled_from = is_map ? 1
                               : std::max(whole_count(std::ceil(criteria::settling_s / path.sample_time)),
                                          size_t(trial.pace.samples_to_correct));
   for (size_t k = 0; k < rows; ++k) {
     // The velocity of an axis that rests is guessed rightly. Where a force is missing, or friction holds it
     // with nearly all that it has, the predictor drifts.
-    const bool rests = path.rests[k] || stays(record, k, trial.pace.rest_speed);
+    const bool rests = path.rests[k] || stays(record, k, rest_speed, reach);
     since_rest = rests ? 0 : since_rest + 1;
     trial.moving[k] = since_rest > trial.pace.samples_after_rest && !path.turns[k] &&
                       k >= trial.settled_from && !record.is_false(k);

@@ -19,7 +19,8 @@ Estimate Rivals::fitted(const Proposal& proposal) const {
                      criterion_of(estimate_) + criteria::most_promised_loss * reach_ - price);
 }
 
-std::optional<double> Rivals::loss_of(const Proposal& proposal, const Estimate& other, double reaches) const {
+std::optional<double> Rivals::loss_of(const Proposal& proposal, const Estimate& other,
+                                      double most_reaches) const {
   if (!other.is_valid) return {};
   size_t before = 0, now = 0;
   for (size_t m : proposal.removed) before += parameters_of(*estimate_.members[m].candidate);
@@ -27,7 +28,7 @@ std::optional<double> Rivals::loss_of(const Proposal& proposal, const Estimate& 
   const auto left = [](const Estimate& e) { return e.profile + e.against_at_rest; };
   if (now > before && left(other) > left(estimate_) - criteria::least_gain_of_larger_set) return {};
   const double loss = criterion_of(other) - criterion_of(estimate_);
-  return loss < reaches * reach_ ? std::optional(loss) : std::nullopt;
+  return loss < most_reaches * reach_ ? std::optional(loss) : std::nullopt;
 }
 
 std::optional<double> Rivals::loss_of(const Proposal& proposal) {

@@ -28,9 +28,10 @@ class Rivals {
   bool is_spent() const { return trials_.work->is_spent(criteria::work_with_rivals); }
   /// With a proposal applied and all parameters fitted, as long as it may come within reach.
   Estimate fitted(const Proposal& proposal) const;
-  /// How much worse its criterion is; empty: beyond so many times the reach. A larger set that contains this
-  /// one as a special case is always close, so it must explain more to be a rival.
-  std::optional<double> loss_of(const Proposal& proposal, const Estimate& other, double reaches = 1) const;
+  /// How much worse its criterion is; empty: beyond `most_reaches` times the reach. A larger set that
+  /// contains this one as a special case is always close, so it must explain more to be a rival.
+  std::optional<double> loss_of(const Proposal& proposal, const Estimate& other,
+                                double most_reaches = 1) const;
   std::optional<double> loss_of(const Proposal& proposal);
   /// Another law of dry friction, against which the rows after reversals speak.
   bool is_refuted(const Proposal& proposal, const Estimate& other) const;

@@ -20,7 +20,8 @@ namespace {
 /// Whether all rows count that count without it: a load that flies leaves rows out, except where it is a
 /// state of the predictor.
 bool leaves_no_row_out(const Estimate& trial, const Candidate& candidate) {
-  return !candidate.flies || trial.fitted->front().flying == &candidate;
+  return !candidate.flies ||
+         std::ranges::all_of(*trial.fitted, [&](const Fitted& f) { return f.flying == &candidate; });
 }
 
 /// What stands at the end of its range stands for something else.

@@ -22,6 +22,7 @@ namespace loopwright::diagnosis {
 namespace {
 
 constexpr size_t most_terms = 5;
+constexpr int most_changes = 3;  // of an answer whose parameters are decided
 /// In the criterion: what an added term and an exchange must gain, and within what a rival is declared.
 constexpr double least_improvement = 10, least_exchange = 3, rival_within = 10;
 using criteria::least_gain_of_unknown, criteria::least_gain_of_unknown_per_reading;
@@ -109,17 +110,18 @@ class SiteSearch : JudgedFits {
     if (stated && whole_criterion(*stated) < whole_criterion(at) - least_exchange) {
       at = *stated;
       tell("as it was before parameters were free", at);
-      result_.rivals.clear(), result_.parameter_rivals.clear();
+      result_.rivals.clear(), result_.parameter_rivals.clear(), exchanged_beside_.clear();
     }
     if (remove_idle(at)) decide_parameters(at);
     if (leave_out_detail(at)) decide_parameters(at);
-    do {
+    for (int left = most_changes;; --left) {
       compare_levels(at);
       compare_with_parameters_of_same_response(at);
       compare_with_stated_parameters(at);
       declare_offsets_of_sensors(at);
       compare_with_one_parameter(at);
-    } while (exchange_again(at) || name_function(at));
+      if (left == 0 || (!exchange_again(at) && !name_function(at))) break;
+    }
     if (errors_ == ErrorsOf::predictions) at = without_idle_disturbances(fitter_, std::move(at));
     result_.found = std::move(at);
     return std::exchange(result_, std::move(before));
@@ -206,29 +208,35 @@ class SiteSearch : JudgedFits {
     }
   }
 
-  /// Parameters that are free hide how terms differ: those that are decided show it. Whether a term is
-  /// another one now.
+  /// Parameters that are free hide how terms differ: they are compared once more beside those that are
+  /// decided. Whether another one does better.
   bool exchange_again(SiteHypothesis& at) {
-    if (at.terms.empty() || at.is_free == exchanged_beside_) return false;
-    result_.rivals.clear();
+    if (at.terms.empty() || at.is_free == exchanged_beside_ || is_spent(criteria::work_with_rivals))
+      return false;
+    std::vector<SiteRival> known = std::exchange(result_.rivals, {});
     const double before = criterion(at);
     exchange(at);
-    if (criterion(at) == before) return false;
-    result_.parameter_rivals.clear(), remove_idle(at), decide_parameters(at);
-    return true;
+    if (criterion(at) < before) return decide_again(at);
+    if (is_spent(criteria::work_with_rivals)) result_.rivals = std::move(known);  // not all were asked
+    return false;
   }
 
-  /// Whether two names are better than a function without one.
+  /// Puts two names in the place of a function without one, where they explain more with fewer numbers. Names
+  /// that explain less are no reason: sums of laws resemble any function.
   bool name_function(SiteHypothesis& at) {
-    if (is_spent(criteria::work_with_rivals)) return false;
+    if (at.terms.size() >= most_terms || is_spent(criteria::work_with_rivals)) return false;
     const double before = criterion(at);
-    for (SiteHypothesis& named :
-         function_in_names(fitter_, at, [&](const auto&h, auto l) { return fits(h, l); })) {
+    const auto fit = [&](const auto& h, auto list) { return fits(h, list); };
+    for (const SiteHypothesis& named : function_in_names(fitter_, at, fit)) {
       tell("in the place of the function: " + describe(model(), named.terms.back()), named);
       if (named.objective < at.objective && criterion(named) < criterion(at) - least_exchange)
         take(at, named, "names do better");
     }
-    return criterion(at) != before;
+    return criterion(at) < before && decide_again(at);
+  }
+  bool decide_again(SiteHypothesis& at) {
+    result_.parameter_rivals.clear(), remove_idle(at), decide_parameters(at);
+    return true;
   }
 
   void add_unknown(SiteHypothesis& at) {
@@ -248,19 +256,6 @@ class SiteSearch : JudgedFits {
     result_.steps.push_back(at);
   }
 
-  /// Beside parameters that were bent, a function may have seemed more than a detail of its law.
-  bool leave_out_detail(SiteHypothesis& at) {
-    if (at.terms.empty() || !is_unknown_function(*at.terms.back().shape) ||
-        !is_detail_of_named_law(fitter_, at))
-      return false;
-    at.terms.pop_back();
-    forget_rivals_of(at.terms.size());
-    fitter_.refine(at, further_steps + 1);
-    fitter_.fit_noise(at);
-    tell("without the function, a detail of its law", at);
-    return true;
-  }
-
   void decide_parameters(SiteHypothesis& at) {
     std::vector<MovedParameters> choices = moved_parameters(fitter_, at, readings_);
     if (choices.empty()) return;
@@ -277,6 +272,7 @@ class SiteSearch : JudgedFits {
     at = other;
     tell(what, at);
     result_.rivals.clear(), result_.parameter_rivals.clear(), result_.steps.push_back(at);
+    exchanged_beside_.clear();
   }
 
   /// A level at the edge of the record is a name for a constant and a proportion.

@@ -1,6 +1,7 @@
 #include "tools/diagnose/search/velocity_laws.h"
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace loopwright::diagnosis {
 namespace {
@@ -10,7 +11,13 @@ constexpr double far_from_grid = 8;       // times as near a shape may come betw
 /// Steps of its own parameters from there, which are speeds: factors.
 constexpr double refinements[] = {1.2, 1.1, 1.05, 1.025};
 
-bool is_law(const Candidate& candidate) { return candidate.is_of_velocity && !candidate.is_unknown; }
+bool is_law(const Candidate& candidate) {
+  return candidate.is_of_velocity && !candidate.is_unknown && !candidate.amplitude_is_one;
+}
+
+bool is_in_range(const CandidateParameter& range, double value) {
+  return value >= range.low && value <= range.high;
+}
 
 /// The rows at which sums are compared.
 std::vector<std::vector<size_t>> compared_rows(const Trials& trials) {
@@ -22,6 +29,11 @@ std::vector<std::vector<size_t>> compared_rows(const Trials& trials) {
       if (trials.list[t].usable[k] && seen++ % every == 0) rows[t].push_back(k);
   return rows;
 }
+
+struct Law {
+  const Candidate* candidate;
+  std::vector<std::vector<double>> points;  ///< of its grid
+};
 
 /// A law in place of a member.
 struct Swap {
@@ -49,12 +61,13 @@ class Sum {
   }
   bool is_of_several() const { return laws_ > 1 && count_ > 0; }
 
-  /// The nearest sum with a law in place of a member, of the points of its grid that `shapes` holds.
-  Swap nearest(std::span<const Shape> shapes, size_t removed) const {
+  /// The nearest sum with a law in place of a member, of the points of its grid.
+  Swap nearest(const Law& law, size_t removed) const {
     const Eigen::MatrixXd others = without(removed);
+    const auto at = values(*law.candidate, law.points);
     Swap best;
-    for (const Shape& shape : shapes)
-      keep_nearer(best, shape.candidate, shape.nonlinear, values(shape.columns), others);
+    for (size_t p = 0; p < law.points.size(); ++p)
+      keep_nearer(best, law.candidate, law.points[p], at[p], others);
     return best;
   }
   /// Between the points of the grid.
@@ -70,16 +83,19 @@ class Sum {
         for (size_t p = 0; p < 2; ++p) keep_nearer(swap, swap.candidate, points[p], at[p], others);
       }
   }
-  Proposal proposal(const Swap& swap, size_t removed) const {
-    Member added{swap.candidate, std::vector<double>(swap.candidate->linear.size()), swap.nonlinear};
-    const auto own = swap.amplitudes.begin() + std::ptrdiff_t(added.linear.size());
-    std::copy(swap.amplitudes.begin(), own, added.linear.begin());
+  /// Empty: an amplitude of it is outside its range, where no fit could begin.
+  std::optional<Proposal> proposal(const Swap& swap, size_t removed) const {
+    Proposal result{{removed}, {{swap.candidate, {}, swap.nonlinear}}, {}, 0};
+    auto next = swap.amplitudes.begin();
+    for (const CandidateParameter& range : swap.candidate->linear) {
+      if (!is_in_range(range, *next)) return {};
+      result.added.front().linear.push_back(*next++);
+    }
     std::vector<Member> rest = members_;
     rest.erase(rest.begin() + std::ptrdiff_t(removed));
-    Proposal result{{removed}, {std::move(added)}, {}, 0};
-    auto next = own;
     for (const FreeParameter& p : free_parameters(rest)) {
       const bool changes = p.is_linear && is_law(*rest[p.member].candidate);
+      if (changes && !is_in_range(range_of(rest, p), *next)) return {};
       result.step.push_back(changes ? *next++ - value_of(rest, p) : 0);
     }
     return result;
@@ -121,7 +137,7 @@ class Sum {
     all << own, others;
     Swap swap{candidate, nonlinear, all.colPivHouseholderQr().solve(force_)};
     swap.apart = (force_ - all * swap.amplitudes).norm() / std::sqrt(double(count_));
-    if (!best.candidate || swap.apart < best.apart) best = std::move(swap);
+    if (!best.candidate || !(best.apart <= swap.apart)) best = std::move(swap);
   }
 
   const std::vector<Member>& members_;
@@ -132,17 +148,15 @@ class Sum {
   std::vector<Eigen::MatrixXd> of_each_;
   Eigen::VectorXd force_;
 };
-/// The shapes of each law that is no member.
-std::vector<std::span<const Shape>> other_laws(const std::vector<Shape>& shapes,
-                                               const std::vector<Member>& members) {
-  std::vector<std::span<const Shape>> laws;
-  for (auto first = shapes.begin(); first != shapes.end();) {
-    const Candidate* candidate = first->candidate;
-    const auto end =
-        std::find_if(first, shapes.end(), [&](const Shape& s) { return s.candidate != candidate; });
-    if (is_law(*candidate) && std::ranges::find(members, candidate, &Member::candidate) == members.end())
-      laws.emplace_back(first, end);
-    first = end;
+/// Those that are no members.
+std::vector<Law> other_laws(const std::vector<Shape>& shapes, const std::vector<Member>& members) {
+  std::vector<Law> laws;
+  for (const Shape& shape : shapes) {
+    if (!is_law(*shape.candidate) ||
+        std::ranges::find(members, shape.candidate, &Member::candidate) != members.end())
+      continue;
+    if (laws.empty() || laws.back().candidate != shape.candidate) laws.push_back({shape.candidate, {}});
+    laws.back().points.push_back(shape.nonlinear);
   }
   return laws;
 }
@@ -153,14 +167,17 @@ std::vector<Proposal> velocity_law_swaps(const Trials& trials, const Estimate& e
                                          const std::vector<Shape>& shapes) {
   const Sum sum(trials, estimate);
   if (!sum.is_of_several()) return {};
-  const double most = estimate.noise.white;
+  const auto laws = other_laws(shapes, estimate.members);
+  const double most_apart = estimate.noise.white;
   std::vector<std::pair<double, Proposal>> list;
   for (size_t m = 0; m < estimate.members.size(); ++m) {
     if (!is_law(*estimate.members[m].candidate)) continue;
-    for (const auto& law : other_laws(shapes, estimate.members)) {
+    for (const Law& law : laws) {
       Swap swap = sum.nearest(law, m);
-      if (swap.apart < far_from_grid * most) sum.refine(swap, m);
-      if (swap.apart < most) list.emplace_back(swap.apart, sum.proposal(swap, m));
+      if (swap.apart < far_from_grid * most_apart) sum.refine(swap, m);
+      if (!(swap.apart < most_apart)) continue;
+      if (std::optional<Proposal> proposal = sum.proposal(swap, m))
+        list.emplace_back(swap.apart, std::move(*proposal));
     }
   }
   std::ranges::stable_sort(list, {}, &std::pair<double, Proposal>::first);

@@ -1,0 +1,83 @@
+#include "tools/diagnose/search/alternatives.h"
+#include <algorithm>
+#include <set>
+#include "tools/diagnose/criteria.h"
+#include "tools/diagnose/search/remaining_force.h"
+
+namespace loopwright::diagnosis {
+namespace {
+
+void add_if_closer(std::vector<Substitute>& list, const Substitute& other) {
+  const auto same = std::ranges::find(list, other.candidate, &Substitute::candidate);
+  if (same == list.end())
+    list.push_back(other);
+  else
+    same->loss = std::min(same->loss, other.loss);
+}
+
+}  // namespace
+
+std::vector<Substitute> substitutes_of(Rivals& rivals, size_t member, const Candidate& present,
+                                       const std::vector<Proposal>& exchanges, double nothing) {
+  std::vector<Substitute> list;
+  for (const Proposal& proposal : exchanges) {
+    const bool is_one_for_one = proposal.removed == std::vector<size_t>{member} && proposal.added.size() == 1;
+    if (!is_one_for_one || list.size() >= 3) continue;
+    const auto loss = rivals.loss_of(proposal);
+    const Candidate& other = *proposal.added.front().candidate;
+    // The effect itself from another start may become the better rival, but is no other effect.
+    if (loss && *loss < nothing && &other != &present) add_if_closer(list, {&other, *loss});
+  }
+  std::ranges::stable_sort(list, {}, &Substitute::loss);
+  return list;
+}
+
+void add_if_new(std::vector<Substitute>& list, const Candidate* candidate) {
+  if (std::ranges::find(list, candidate, &Substitute::candidate) == list.end())
+    list.push_back({candidate, 0});
+}
+
+void add_simpler_friction(std::vector<Substitute>& list, const Trials& trials, Rivals& rivals,
+                          const Estimate& estimate, size_t member, const std::vector<Proposal>& exchanges) {
+  const Candidate& shaped = *estimate.members[member].candidate;
+  if (!trials.inverse || !is_dry_friction(shaped)) return;
+  const auto is_simpler = [&](const Proposal& p) {
+    if (p.removed != std::vector<size_t>{member} || p.added.size() != 1) return false;
+    const Candidate& other = *p.added.front().candidate;
+    return is_dry_friction(other) && parameters_of(other) < parameters_of(shaped);
+  };
+  const double left = residual_size(trials, *trials.inverse, estimate.members).fitted;
+  for (const Proposal& proposal : exchanges) {
+    if (!is_simpler(proposal) || rivals.is_spent()) continue;
+    const Estimate other = rivals.fitted(proposal);
+    if (!other.is_valid) continue;
+    const double with_other = residual_size(trials, *trials.inverse, other.members).fitted;
+    if (with_other <= criteria::same_balance * left && !rivals.is_refuted(proposal, other))
+      add_if_new(list, proposal.added.front().candidate);
+  }
+}
+
+std::vector<OtherSet> other_sets(Rivals& rivals, const std::vector<Member>& members,
+                                 const std::vector<Proposal>& proposals) {
+  constexpr size_t most_tried = 5, most_told = 3;
+  std::vector<OtherSet> list;
+  std::set<std::multiset<std::string>> tried;
+  for (const Proposal& proposal : proposals) {
+    if (tried.size() >= most_tried) break;
+    OtherSet other;
+    std::multiset<std::string> names;
+    for (size_t m : proposal.removed) other.replaced.push_back(members[m].candidate);
+    for (const Member& m : proposal.added) other.by.push_back(m.candidate), names.insert(m.candidate->name);
+    const bool is_one_for_one = other.replaced.size() == 1 && other.by.size() == 1;
+    const bool comes_back = std::ranges::any_of(
+        other.replaced, [&](const Candidate* c) { return names.contains(c->name) || c->is_unknown; });
+    for (const Candidate* c : other.replaced) names.insert("without " + c->name);
+    if (is_one_for_one || comes_back || !tried.insert(names).second) continue;
+    if (const auto loss = rivals.loss_of(proposal)) other.loss = *loss, list.push_back(std::move(other));
+  }
+  std::ranges::stable_sort(list, {}, &OtherSet::loss);
+  if (list.size() > most_told) list.resize(most_told);
+  return list;
+}
+
+}  // namespace loopwright::diagnosis
