@@ -91,6 +91,7 @@ class SiteSearch : JudgedFits {
     SiteSearchResult before = result_;
     begin_ = progress;
     add_terms(at);
+    if (name_function(at)) add_terms(at);
     std::optional<SiteHypothesis> stated;
     if (at.free_parameters() == 0) {
       stated = at;
@@ -120,7 +121,7 @@ class SiteSearch : JudgedFits {
       compare_with_stated_parameters(at);
       declare_offsets_of_sensors(at);
       compare_with_one_parameter(at);
-      if (left == 0 || (!exchange_again(at) && !name_function(at))) break;
+      if (left == 0 || !(exchange_again(at) || (name_function(at) && decide_again(at)))) break;
     }
     if (errors_ == ErrorsOf::predictions) at = without_idle_disturbances(fitter_, std::move(at));
     result_.found = std::move(at);
@@ -232,7 +233,7 @@ class SiteSearch : JudgedFits {
       if (named.objective < at.objective && criterion(named) < criterion(at) - least_exchange)
         take(at, named, "names do better");
     }
-    return criterion(at) < before && decide_again(at);
+    return criterion(at) < before;
   }
   bool decide_again(SiteHypothesis& at) {
     result_.parameter_rivals.clear(), remove_idle(at), decide_parameters(at);
