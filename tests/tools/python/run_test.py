@@ -221,5 +221,6 @@ def test_a_run_costs_little_more_than_the_simulation(common_job):
         begin = time.perf_counter()
         wall = diagram.run().statistics["wall_s"]
         ratios.append((time.perf_counter() - begin) / wall)
-    # The bar is 1.1; a median far above it would be a copy of the columns or a second load. Timings belong to benchmarks.
-    assert np.median(ratios) < 2
+    # The bar is 1.1; the least of them far above it would be a copy of the columns or a second load, whatever else the computer
+    # does. Timings belong to benchmarks.
+    assert np.min(ratios) < 2
