@@ -7,7 +7,7 @@ namespace loopwright::diagnosis {
 namespace {
 
 constexpr size_t most_velocities = 2000;  // of all records, evenly spaced in the rows that count
-constexpr double far_from_grid = 8;       // times as near a shape may come between the points of the grid
+constexpr double far_from_grid = 8;       // a shape comes so many times nearer between the points of the grid
 /// Steps of its own parameters from there, which are speeds: factors.
 constexpr double refinements[] = {1.2, 1.1, 1.05, 1.025};
 
@@ -148,6 +148,7 @@ class Sum {
   std::vector<Eigen::MatrixXd> of_each_;
   Eigen::VectorXd force_;
 };
+
 /// Those that are no members.
 std::vector<Law> other_laws(const std::vector<Shape>& shapes, const std::vector<Member>& members) {
   std::vector<Law> laws;
