@@ -65,7 +65,7 @@ bool is_beat_of_counts(const Weight& weight) {
 
 SecondLook look_again(Trials& trials, const Estimate& estimate, double portmanteau, const Evidence& evidence,
                       size_t catalogue) {
-  constexpr size_t most_tried = 3;
+  constexpr size_t most_tried = 5;  // of something small, several laws say the same
   constexpr int iterations = 8;
   SecondLook result;
   // In noise that is assumed, or errors that are not white, small effects are the errors of the model.
