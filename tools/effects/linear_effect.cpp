@@ -160,31 +160,55 @@ const std::string& EffectSample::decide(const std::vector<double>& states, const
   return decided_;
 }
 
-std::vector<double> EffectSample::against(const Body& body, const std::vector<double>& states,
-                                          const GivenSignals& given) {
+int EffectSample::steps() const {
+  const int64_t step = std::min(plan_->plan.step_ticks, sample_ticks_);
+  return sample_ticks_ % step == 0 ? int(sample_ticks_ / step) : 0;
+}
+
+double EffectSample::push_body(const Body& body, double free_acceleration, int64_t ticks, bool is_start,
+                               GivenSignals& now, double push) {
   constexpr int rounds = 2;  // the force of a step and the acceleration in it depend on each other
   using enum GivenSignals::Index;
+  const int64_t begins = run_.now().tick;
+  const double step = plan_->sizes.sample_time * double(ticks) / double(sample_ticks_);
+  before_.assign(run_.states().begin(), run_.states().end());
+  for (int round = 0; round < rounds; ++round) {
+    if (round > 0) std::ranges::copy(before_, run_.states().begin()), run_.move_to(begins);
+    now.value[acceleration] = now.value[velocity_slope] = free_acceleration - push / body.inertia;
+    give(now);
+    evaluate();
+    if (round == 0) note_decisions(is_start);
+    run_.integrate(ticks);
+    const double consumed =
+        run_.number(plan_->integral) - before_[size_t(plan_->integral - plan_->plan.signals)];
+    push = consumed / step - body.added_inertia * now[acceleration];
+  }
+  const double gain = free_acceleration - push / body.inertia;
+  now.value[position] += step * (now[velocity] + 0.5 * step * gain), now.value[velocity] += step * gain;
+  return push;
+}
+
+void EffectSample::step_against(const Body& body, double free_acceleration, Instant& instant) {
+  using enum GivenSignals::Index;
+  GivenSignals now;
+  now.value[position] = instant.position, now.value[velocity] = instant.velocity;
+  set_states(instant.states);
+  instant.push = push_body(body, free_acceleration, std::min(plan_->plan.step_ticks, sample_ticks_), true,
+                           now, instant.push);
+  instant.position = now[position], instant.velocity = now[velocity];
+  for (size_t i = 0; i < states_.size(); ++i) instant.states[i] = run_.states()[states_[i]];
+}
+
+std::vector<double> EffectSample::against(const Body& body, const std::vector<double>& states,
+                                          const GivenSignals& given) {
   GivenSignals now = given;
-  const double free = given[acceleration], period = plan_->sizes.sample_time;
-  double momentum = 0, moment = 0, push = 0;  // push: mean force on the body over the last step
+  const double period = plan_->sizes.sample_time;
+  double momentum = 0, moment = 0, push = 0;
   set_states(states);
   for (int64_t left = sample_ticks_; left > 0;) {
-    const int64_t passed = std::min(plan_->plan.step_ticks, left), begins = run_.now().tick;
+    const int64_t passed = std::min(plan_->plan.step_ticks, left);
     const double step = period * double(passed) / double(sample_ticks_);
-    const std::vector<double> before(run_.states().begin(), run_.states().end());
-    for (int round = 0; round < rounds; ++round) {
-      if (round > 0) std::ranges::copy(before, run_.states().begin()), run_.move_to(begins);
-      now.value[acceleration] = now.value[velocity_slope] = free - push / body.inertia;
-      give(now);
-      evaluate();
-      if (round == 0) note_decisions(left == sample_ticks_);
-      run_.integrate(passed);
-      const double consumed =
-          run_.number(plan_->integral) - before[size_t(plan_->integral - plan_->plan.signals)];
-      push = consumed / step - body.added_inertia * now[acceleration];
-    }
-    const double gain = free - push / body.inertia;
-    now.value[position] += step * (now[velocity] + 0.5 * step * gain), now.value[velocity] += step * gain;
+    push = push_body(body, given[GivenSignals::acceleration], passed, left == sample_ticks_, now, push);
     momentum += push * step;
     // ∫ (u - ½) f du: the push of each step acts at its middle.
     moment += push * (double(sample_ticks_ - left) + 0.5 * double(passed)) / double(sample_ticks_) * step;

@@ -64,6 +64,16 @@ class EffectSample {
   };
   /// The states after a sample, then mean and slope of the force on the body.
   std::vector<double> against(const Body& body, const std::vector<double>& states, const GivenSignals& given);
+  /// Both between two steps of a sample.
+  struct Instant {
+    std::vector<double> states;
+    double position = 0, velocity = 0;
+    double push = 0;  ///< mean force on the body over the step before, by which the next one begins
+  };
+  /// One step of against(); decided() is what the blocks decide at its start.
+  void step_against(const Body& body, double free_acceleration, Instant& instant);
+  /// Equal steps in a sample; 0 if the last one is shorter.
+  int steps() const;
   /// By superposition; valid for linear effects.
   SampleMap map();
   /// What the blocks decide at an instant: the bytes of their modes.
@@ -84,6 +94,10 @@ class EffectSample {
     size_t size;
   };
   void note_decisions(bool is_start);
+  /// From the present states. `now`: at the start of the step, then at its end. Returns the mean force on the
+  /// body over it, from that over the step before.
+  double push_body(const Body& body, double free_acceleration, int64_t ticks, bool is_start,
+                   GivenSignals& now, double push);
   void evaluate();
   void set_states(const std::vector<double>& states);
   void give(const GivenSignals& given);
@@ -93,6 +107,7 @@ class EffectSample {
   std::shared_ptr<const EffectPlan> plan_;
   Run<double> run_;
   std::vector<double*> bound_, since_;
+  std::vector<double> before_;  // states at the start of a step
   std::vector<Wire> wires_;
   std::vector<size_t> states_;  // without the integral
   std::vector<Mode> modes_;

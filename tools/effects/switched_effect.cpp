@@ -31,6 +31,14 @@ std::vector<double> SwitchedSample::start(double position, double velocity) {
   return sample_.states();
 }
 
+void SwitchedSample::set_body(const EffectSample::Body& body) {
+  body_ = body;
+  steps_.reset();
+  if (sample_.steps() > 0)
+    steps_.emplace(sample_, body, plan_->sizes.sample_time,
+                   differences(small_share * plan_->sizes.top_speed));
+}
+
 std::vector<double> SwitchedSample::integrated(const std::vector<double>& states, const GivenSignals& given) {
   return body_ ? sample_.against(*body_, states, given) : sample_.from(states, given);
 }
@@ -103,12 +111,13 @@ bool SwitchedSample::follow(const Mode& mode, const std::vector<double>& states,
 
 const std::vector<double>& SwitchedSample::from(const std::vector<double>& states,
                                                 const GivenSignals& given) {
-  followed_ = nullptr;
+  followed_ = nullptr, in_steps_ = false;
   const auto mode = modes_.find(sample_.decide(states, given));
   if (mode != modes_.end() && follow(mode->second, states, given)) {
     followed_ = &mode->second;
     return result_;
   }
+  if (mode != modes_.end() && steps_ && (in_steps_ = steps_->follow(states, given, result_))) return result_;
   result_ = integrated(states, given);
   if (mode != modes_.end() || sample_.decided_anew()) return result_;
   const std::string decided = sample_.decided();
@@ -122,7 +131,11 @@ const std::vector<double>& SwitchedSample::from(const std::vector<double>& state
 
 uint32_t SwitchedSample::map_of(const std::vector<double>& states, const GivenSignals& given) {
   if (followed_) return followed_->map;
-  differ(states, given, result_, small_share * plan_->sizes.top_speed, maps_.emplace_back());
+  SampleMap& map = maps_.emplace_back();
+  if (in_steps_)
+    steps_->differentiate(map);
+  else
+    differ(states, given, result_, small_share * plan_->sizes.top_speed, map);
   return uint32_t(maps_.size() - 1);
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 #include "tools/effects/linear_effect.h"
+#include "tools/effects/step_maps.h"
 
 namespace loopwright {
 
@@ -15,6 +16,8 @@ class SwitchedSample {
  public:
   /// `fitted`: all its parameters in SI.
   SwitchedSample(std::shared_ptr<const EffectPlan> plan, const std::vector<double>& fitted);
+  SwitchedSample(const SwitchedSample&) = delete;  // its steps refer to its blocks
+  SwitchedSample& operator=(const SwitchedSample&) = delete;
 
   /// Its states at the start of a motion.
   std::vector<double> start(double position, double velocity);
@@ -25,7 +28,7 @@ class SwitchedSample {
   const std::vector<Follows>& follows() const { return follows_; }
   /// The body against which it acts; its added inertia is that of the effect. Without one it is moved as the
   /// given signals say.
-  void set_body(const EffectSample::Body& body) { body_ = body; }
+  void set_body(const EffectSample::Body& body);
   /// The states after a sample, then mean and slope of the force: see EffectSample::from() and against().
   const std::vector<double>& from(const std::vector<double>& states, const GivenSignals& given);
   /// Index in maps() of the derivatives of the sample that was asked for last. Samples in which nothing is
@@ -69,10 +72,12 @@ class SwitchedSample {
   std::vector<double> fitted_;
   EffectSample sample_;
   std::optional<EffectSample::Body> body_;
+  std::optional<StepMaps> steps_;  // against the body
   std::vector<Follows> follows_;
   std::vector<SampleMap> maps_;
   std::map<std::string, Mode> modes_;
-  const Mode* followed_ = nullptr;  // that of the last sample; null: it was integrated
+  const Mode* followed_ = nullptr;  // that of the last sample; null: something was decided anew
+  bool in_steps_ = false;           // by whose maps the last sample went
   std::vector<double> result_, ends_;
 };
 
