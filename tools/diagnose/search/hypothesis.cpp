@@ -4,6 +4,7 @@
 #include <numbers>
 #include <tuple>
 #include "tools/diagnose/predict/flying_load.h"
+#include "tools/diagnose/predict/in_parallel.h"
 #include "tools/diagnose/predict/linear_load.h"
 #include "tools/diagnose/search/input_chain.h"
 
@@ -110,6 +111,30 @@ const Member* flying_member(const std::vector<Member>& members, const AxisModel&
   return flies == members.end() ? nullptr : &*flies;
 }
 
+/// of_input() beside of_member(m) of all others. Members of one candidate share the runs of its blocks, and
+/// come one after the other.
+template <class Input, class Each>
+void beside_each_other(const std::vector<Member>& members, Input&& of_input, Each&& of_member) {
+  std::vector<std::vector<size_t>> groups;
+  for (size_t m = 0; m < members.size(); ++m) {
+    if (members[m].candidate->acts == Acts::input) continue;
+    const auto same = std::ranges::find_if(groups, [&](const std::vector<size_t>& group) {
+      return members[group.front()].candidate == members[m].candidate;
+    });
+    if (same == groups.end())
+      groups.push_back({m});
+    else
+      same->push_back(m);
+  }
+  const bool changes_input =
+      std::ranges::any_of(members, [](const Member& m) { return m.candidate->acts == Acts::input; });
+  if (!changes_input) of_input();
+  in_parallel(groups.size() + changes_input, [&](size_t i) {
+    if (i == groups.size()) return of_input();
+    for (const size_t m : groups[i]) of_member(m);
+  });
+}
+
 std::vector<double> slope_of(const AxisRecord& record, size_t rows) {
   std::vector<double> slope = record.input_slope;
   if (!slope.empty()) slope.resize(rows);
@@ -182,22 +207,27 @@ Drives drives_of(const std::vector<Member>& members, const Path& path, const std
                  const Member* without) {
   Drives drives;
   drives.along = &path;
-  ChangedInput changed = InputChain(path, raw_input).through(members);
+  ChangedInput changed;
+  std::vector<Columns> columns(members.size());
+  beside_each_other(
+      members, [&] { changed = InputChain(path, raw_input).through(members); },
+      [&](size_t m) {
+        if (&members[m] != without) columns[m] = members[m].candidate->columns(path, members[m].nonlinear);
+      });
   drives.input = std::move(changed.mean), drives.input_slope = std::move(changed.slope);
   drives.force.assign(raw_input.size(), 0.0);
   double inertia = added_inertia(members);
   if (without) inertia -= without->candidate->added_inertia(*without);
   if (inertia != 0)
     for (size_t k = 0; k < drives.force.size(); ++k) drives.force[k] = -inertia * path.acceleration[k];
-  for (const Member& member : members) {
-    const Candidate& candidate = *member.candidate;
-    if (&member == without) continue;
-    if (candidate.acts == Acts::force)
-      add_columns(member, candidate.columns(path, member.nonlinear), drives.force, drives.force_slope);
-    if (candidate.acts != Acts::sensor) continue;
+  for (size_t m = 0; m < members.size(); ++m) {
+    const Acts acts = members[m].candidate->acts;
+    if (&members[m] == without) continue;
+    if (acts == Acts::force) add_columns(members[m], columns[m], drives.force, drives.force_slope);
+    if (acts != Acts::sensor) continue;
     std::vector<double> no_slope;
     drives.sensor.resize(raw_input.size(), 0.0);
-    add_columns(member, candidate.columns(path, member.nonlinear), drives.sensor, no_slope);
+    add_columns(members[m], columns[m], drives.sensor, no_slope);
   }
   return drives;
 }
@@ -270,20 +300,27 @@ Sensitivity sensitivity(const std::vector<Member>& members, const Path& path, co
   Sensitivity result;
   const std::vector<FreeParameter> free = free_parameters(members);
   result.columns.resize(free.size());
-  InputChain chain(path, raw_input);
+  Columns of_inputs;
+  std::vector<Columns> of_members(members.size());
+  beside_each_other(
+      members,
+      [&] {
+        InputChain chain(path, raw_input);
+        for (const FreeParameter& parameter : free)
+          if (members[parameter.member].candidate->acts == Acts::input)
+            of_inputs.push_back(input_derivative(members, parameter, chain));
+      },
+      [&](size_t m) {
+        of_members[m] = members[m].candidate == fitted.flying ? flying_derivatives(members[m], fitted)
+                                                              : derivatives(members[m], path);
+      });
   for (const Acts acts : {Acts::force, Acts::input, Acts::sensor}) {
-    Columns columns;
+    Columns columns = acts == Acts::input ? std::move(of_inputs) : Columns{};
     std::vector<size_t> places;
     for (size_t i = 0; i < free.size(); ++i)
-      if (members[free[i].member].candidate->acts == acts) {
-        places.push_back(i);
-        if (acts == Acts::input) columns.push_back(input_derivative(members, free[i], chain));
-      }
-    for (const Member& member : members)
-      if (acts != Acts::input && member.candidate->acts == acts)
-        std::ranges::move(member.candidate == fitted.flying ? flying_derivatives(member, fitted)
-                                                            : derivatives(member, path),
-                          std::back_inserter(columns));
+      if (members[free[i].member].candidate->acts == acts) places.push_back(i);
+    for (size_t m = 0; m < members.size(); ++m)
+      if (members[m].candidate->acts == acts) std::ranges::move(of_members[m], std::back_inserter(columns));
     auto response = responses(fitted.axis, fitted.gains, path, acts, pointers(columns));
     for (size_t i = 0; i < places.size(); ++i) result.columns[places[i]] = std::move(response[i]);
   }
