@@ -151,6 +151,59 @@ TEST(SwitchedEffect, TheMapOfASampleIsItsDerivative) {
   EXPECT_NEAR(map.columns[1][2], (fast.mean - slow.mean) / (2 * by), 0.01 * flank_damping);
 }
 
+/// Flying and pushing on either flank are known.
+struct KnownBacklash : Backlash {
+  KnownBacklash() {
+    for (const double way : {0.0, gap, -gap}) from({0.1, 0.2}, {{0.1 + way, 0.2, 0, 0, 0, 0, 0}});
+  }
+};
+
+struct DecidesAnew {
+  const char* what;
+  double x, v, free, load_x, load_v;
+};
+constexpr DecidesAnew decides_anew[] = {
+    {"touches", 0.3 + gap / 2 - 1e-5, 0.2, 0, 0.3, 0.18},
+    {"leaves", 0.3 + gap / 2 + 4e-6, 0.2, -20, 0.3, 0.2 + 4e-3},
+    {"touches the other flank", -0.1 - gap / 2 + 8e-6, -0.1, 3, -0.1, -0.08},
+};
+
+TEST(SwitchedEffect, ASampleThatDecidesAnewIsTheProductOfItsSteps) {
+  for (const DecidesAnew& s : decides_anew) {
+    const std::vector<double> states{s.load_x, s.load_v};
+    const GivenSignals given{{s.x, s.v, s.free, s.free, 0, 0, 0}};
+    Backlash unknown;  // integrates, because it knows no mode
+    KnownBacklash known;
+    const std::vector<double> expected = unknown.from(states, given);
+    const std::vector<double> result = known.from(states, given);
+    const double force = std::abs(expected[2]);
+    EXPECT_NEAR(result[0], expected[0], 1e-6 * force * sample_time * sample_time / load) << s.what;
+    EXPECT_NEAR(result[1], expected[1], 1e-6 * force * sample_time / load) << s.what;
+    EXPECT_NEAR(result[2], expected[2], 1e-6 * force) << s.what;
+    EXPECT_NEAR(result[3], expected[3], 1e-5 * force) << s.what;
+  }
+}
+
+TEST(SwitchedEffect, TheDerivativeOfASampleInWhichTheLoadLeavesIsThatOfTheMotion) {
+  const DecidesAnew& s = decides_anew[1];
+  const std::vector<double> states{s.load_x, s.load_v};
+  const GivenSignals given{{s.x, s.v, s.free, s.free, 0, 0, 0}};
+  KnownBacklash sample;
+  sample.from(states, given);
+  const SampleMap& map = sample.maps()[sample.map_of(states, given)];
+  const auto slope = [&](double by, double x, double v, double free) {
+    const Happens low = integrated(s.x - x, s.v - v, s.free - free, s.load_x, s.load_v),
+                  high = integrated(s.x + x, s.v + v, s.free + free, s.load_x, s.load_v);
+    return (high.mean - low.mean) / (2 * by);
+  };
+  const double by_position = slope(1e-8, 1e-8, 0, 0), by_velocity = slope(1e-5, 0, 1e-5, 0),
+               by_acceleration = slope(1e-2, 0, 0, 1e-2);
+  EXPECT_NEAR(map.columns[2 + GivenSignals::position][2], by_position, 0.05 * std::abs(by_position));
+  EXPECT_NEAR(map.columns[2 + GivenSignals::velocity][2], by_velocity, 0.05 * std::abs(by_velocity));
+  EXPECT_NEAR(map.columns[2 + GivenSignals::acceleration][2], by_acceleration,
+              0.05 * std::abs(by_acceleration));
+}
+
 TEST(SwitchedEffect, SamplesOfOneModeShareTheirMap) {
   Backlash sample;
   const auto map_at = [&](double x, double load_x) {
