@@ -36,6 +36,9 @@ constexpr double least_rows = 200;
 /// [rows] Of a longer record, sampled faster than necessary, several rows become one of at most this length
 /// [s]: the search runs hundreds of shapes along all of them.
 constexpr double most_rows = 120000, thinned_sample_s = 2e-3;
+/// [variance] Mean square of the changes from row to row, 2 for noise alone, above which a measured position
+/// shows no motion: one of fewer than five rows a period.
+constexpr double changes_of_noise = 1.6;
 /// [rows] On both sides of a change of sign, where the sign of dry friction is not certain.
 constexpr size_t rows_of_a_turn = 1;
 /// [mean square of the whitened errors] A law explains the rows after the reversals. Where an axis sticks, or

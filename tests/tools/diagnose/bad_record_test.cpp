@@ -42,6 +42,28 @@ TEST(BadRecord, MillimetresTakenForMetresAreTold) {
   EXPECT_TRUE(d.effects.empty());
 }
 
+TEST(BadRecord, ASensorThatNeverChangesIsRejected) {
+  try {
+    spoilt([](auto&, auto& position) { std::ranges::fill(position, 0.5); });
+    FAIL() << "a machine that does not answer its input is explained by any dead band";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("never changes"));
+  }
+}
+
+TEST(BadRecord, ASensorThatShowsNoiseAloneGivesNoVerdict) {
+  const Diagnosis d = spoilt([](auto&, auto& position) {
+    uint64_t bits = 1;
+    for (double& x : position) {
+      bits = bits * 6364136223846793005u + 1442695040888963407u;
+      x = 0.5 + 1e-7 * double(bits >> 62);  // 0 to 3 counts
+    }
+  });
+  EXPECT_THAT(d.findings, finds("from row to row as much as over the whole record"));
+  EXPECT_TRUE(d.effects.empty());
+  EXPECT_EQ(d.verdict, Verdict::unexplained);
+}
+
 TEST(BadRecord, ColumnsThatAreNotSynchronousAreTold) {
   const Diagnosis d =
       spoilt([](auto& force, auto&) { std::rotate(force.begin(), force.end() - 30, force.end()); });

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/record/dead_sensor.h"
 #include "tools/experiment/even_grid.h"
 #include "tools/experiment/false_readings.h"
 
@@ -106,8 +107,9 @@ void take_rows_of_sensors(AxisRecord& record, Problems& problems) {
   thin(record, rows.every);
 }
 
-/// Means over `rows` rows about each one; of an even number, the one that is left over lies behind it. Without
-/// weights, so that no reading counts in two rows that stand for several: its noise would be seen in both.
+/// Means over `rows` rows about each one; of an even number, the one that is left over lies behind it.
+/// Without weights, so that no reading counts in two rows that stand for several: its noise would be seen in
+/// both.
 std::vector<double> means_about(const std::vector<double>& values, size_t rows) {
   const auto before = std::ptrdiff_t((rows - 1) / 2), after = std::ptrdiff_t(rows / 2),
              size = std::ptrdiff_t(values.size());
@@ -282,6 +284,7 @@ AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Prob
       const std::vector<Number> numbers = plan.find(signal.port);
       if (numbers.size() != 1 || numbers[0] != wanted || record.find(role)) continue;
       const loopwright::Column& column = *experiment.data.find(signal.port);
+      if (!record.is_map) reject_if_constant(signal, column, problems);
       const auto written = parse_unit(signal.unit);  // rad, not 1
       const std::string unit = written && written->scale == 1 ? signal.unit : column.unit;
       record.measured.push_back(

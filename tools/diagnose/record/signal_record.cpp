@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include "models/real/whole.h"
+#include "tools/diagnose/record/dead_sensor.h"
 #include "tools/diagnose/record/shorten.h"
 #include "tools/experiment/false_readings.h"
 
@@ -21,10 +22,6 @@ double median_step(const std::vector<double>& time) {
   const auto middle = steps.begin() + std::ptrdiff_t(steps.size() / 2);
   std::ranges::nth_element(steps, middle);
   return *middle;
-}
-
-bool changes(const std::vector<double>& values) {
-  return std::ranges::any_of(values, [&](double v) { return std::isfinite(v) && v != values.front(); });
 }
 
 }  // namespace
@@ -46,12 +43,7 @@ SignalRecord read_signal_record(const Experiment& experiment, Problems& problems
   for (const RecordedSignal& compared : experiment.compared) {
     const Column* column = experiment.data.find(compared.port);
     if (!column) continue;
-    if (!changes(column->values)) {
-      auto& p = problems.error(compared.place, compared.pointer, "",
-                               fmt::format("the measured \"{}\" never changes", compared.column));
-      p.expected = "a signal that shows how the diagram answers its inputs";
-      continue;
-    }
+    reject_if_constant(compared, *column, problems);
     record.outputs.push_back({compared.port, column->unit, compared.resolution, column->values});
     for (const size_t row : false_readings(column->values)) {
       record.outputs.back().value[row] = std::numeric_limits<double>::quiet_NaN();

@@ -4,6 +4,7 @@
 #include <iterator>
 #include "tools/compare/excitation.h"
 #include "tools/diagnose/criteria.h"
+#include "tools/diagnose/record/dead_sensor.h"
 #include "tools/diagnose/verdict/verdict.h"
 
 namespace loopwright::diagnosis {
@@ -100,6 +101,13 @@ std::vector<RecordFinding> look_at_records(const Trials& trials,
       findings.push_back(
           {fmt::format("the {} is read less often than what else is measured of the axis", role),
            "it was left out: readings of two rates do not count together here"});
+  for (const Trial& trial : trials.list)
+    if (const MeasuredPort* position = trial.model->record().find("position");
+        position && !trial.model->record().is_map && is_noise_alone(position->value))
+      findings.push_back({"the measured position changes from row to row as much as over the whole record",
+                          "the sensor shows noise and no motion, and no effect can be named: see that it is "
+                          "connected, and that its column belongs to this record",
+                          true});
   if (balances_forces(trials, inverse))
     std::ranges::move(faults_in_balance(trials, inverse), std::back_inserter(findings));
   else
