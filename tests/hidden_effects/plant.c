@@ -95,7 +95,9 @@ static void slope(const Plant* plant, const double s[STATES], double t, Held hel
   if (p->lag_s > 0) ds[LAG] = (held.input_n - s[LAG]) / p->lag_s;
   if (p->dahl_n != 0) ds[DAHL] = (v - fabs(v) * s[DAHL]) / p->dahl_distance_m;
   if (p->load_kg > 0) {
-    const double drag = p->load_damping_n_s_per_m * s[LOAD_VELOCITY];
+    const double speed = s[LOAD_VELOCITY];
+    const double drag =
+        p->load_damping_n_s_per_m * speed + p->load_friction_n * speed / sqrt(speed * speed + 2.5e-7);
     ds[LOAD_POSITION] = s[LOAD_VELOCITY];
     const double push = p->motor_at_load ? drive(p, s, t, held.input_n, held.noise_n) : 0;
     ds[LOAD_VELOCITY] = (plant_coupling_force(p, s) - drag + push) / p->load_kg;

@@ -42,6 +42,7 @@ typedef struct {
   double stop_n_per_m, stop_m;  ///< elastic, at the high end
   /// A load of this mass, part of the total mass, is driven through a gap or a spring.
   double load_kg, load_damping_n_s_per_m;
+  double load_friction_n;  ///< dry friction of the load itself, smooth below half a millimetre per second
   double gap_m;  ///< total free travel; < 0: no gap, a spring joins carriage and load
   double coupling_n_per_m, coupling_n_s_per_m;
   /// The motor and its noise push the load, and the spring the carriage: the encoder is on the driven side.

@@ -235,8 +235,8 @@ constexpr double least_rest_s = 0.1;
 constexpr double least_freedom = 0.4, most_freedom = 3;
 /// [s] Enough for a deviation, too little to correct all of it; and enough to average the encoder's steps.
 constexpr double deviation_s = 6e-3, glance_s = 36e-3;
-/// [counts] That the slowest motion makes within the rows that tell it from a rest: one of them more or less is
-/// the sensor's.
+/// [counts] That the slowest motion makes within the rows that tell it from a rest: one of them more or less
+/// is the sensor's.
 constexpr double counts_of_a_rest = 4;
 
 // Impacts of a load that flies through a gap.
@@ -277,8 +277,13 @@ constexpr double most_strokes = 10;
 constexpr double worse_deviations = 3;
 /// [mean square error] A smaller worsening has no consequence: the parameters' own uncertainty makes as much.
 constexpr double least_worsening = 0.01;
-/// [noise floor of compare; that of the estimated noise] Above it the residual force is no noise.
-constexpr double most_over_floor = 1.25, far_over_noise = 5;
+/// [noise floor of compare; that of the estimated noise, and the same beside impacts] Above it the residual
+/// force is no noise. Impacts that are predicted a moment too late leave up to 5 times the noise; a load with
+/// dry friction of its own, which a load of the catalogue has not, 6 to 12 times.
+constexpr double most_over_floor = 1.25, far_over_noise = 5, far_over_noise_beside_impacts = 6;
+/// [input, rms] Of which something must be left: laws that take away nearly all of it follow a machine that
+/// does not answer, because its sensor is dead, its drive off, or its time has another unit.
+constexpr double least_input_left = 0.02;
 /// [numbers] Smooth functions of the motion and lines, as compare fits them, have so many levels. They follow
 /// that share of the noise of a record that has one independent value in each memory of the slow force.
 constexpr double levels_of_smooth_functions = 134;

@@ -1,5 +1,7 @@
 // Records that cannot support a verdict are named, with the consequence.
 #include <gmock/gmock.h>
+#include <fstream>
+#include <sstream>
 #include "tests/tools/diagnose/diagnosed_plant.h"
 #include "tests/tools/diagnose/flawed_axis.h"
 #include "tests/tools/diagnose/hidden_axis.h"
@@ -62,6 +64,41 @@ TEST(BadRecord, ASensorThatShowsNoiseAloneGivesNoVerdict) {
   EXPECT_THAT(d.findings, finds("from row to row as much as over the whole record"));
   EXPECT_TRUE(d.effects.empty());
   EXPECT_EQ(d.verdict, Verdict::unexplained);
+}
+
+TEST(BadRecord, MillisecondsTakenForSecondsAreNoDeadBand) {
+  Truth truth;
+  truth.duration_s = 6;
+  const RecordedAxis axis(truth);
+  std::stringstream read, written;
+  read << std::ifstream(axis.file("train.csv")).rdbuf();
+  std::string line;
+  std::getline(read, line), written << line << '\n';
+  while (std::getline(read, line)) {
+    const size_t end = line.find(',');
+    written << 1000 * std::stod(line.substr(0, end)) << line.substr(end) << '\n';
+  }
+  std::ofstream(axis.file("train.csv")) << written.str();
+  const Diagnosis d = diagnose(axis.diagram(), {axis.experiment()});
+  EXPECT_NE(name_of(d.verdict), "explained") << to_text(d);
+  EXPECT_NE(name_of(d.verdict), "nothing_missing") << to_text(d);
+  EXPECT_THAT(d.contradictions, Contains(HasSubstr("takes nearly all of the input away"))) << to_text(d);
+}
+
+TEST(BadRecord, ARoleThatIsNotGivenIsSaid) {
+  const RecordedAxis axis{Truth{}};
+  std::stringstream read;
+  read << std::ifstream(axis.experiment()).rdbuf();
+  std::string text = read.str();
+  const std::string role = R"("velocity": "mass.velocity", )";
+  text.erase(text.find(role), role.size());
+  std::ofstream(axis.experiment()) << text;
+  try {
+    diagnose(axis.diagram(), {axis.experiment()});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("no role \"velocity\""));
+  }
 }
 
 TEST(BadRecord, ColumnsThatAreNotSynchronousAreTold) {

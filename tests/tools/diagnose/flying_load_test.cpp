@@ -50,5 +50,15 @@ TEST(FlyingLoad, MassGapAndContactAreThoseOfThePlant) {
   EXPECT_NEAR(value_of(found, "contact_damping") / ratio, 1, 0.1);
 }
 
+/// The catalogue holds a load by viscous friction alone. With dry friction it is another one, with another
+/// gap.
+TEST(FlyingLoad, WithDryFrictionOfItsOwnIsNotExplained) {
+  HiddenAxis axis;
+  Physics truth = with_backlash(axis);
+  truth.load_friction_n = 0.3;
+  const Diagnosis found = diagnose(axis.diagram(), {axis.record("held_load", truth, many_strokes())}, {});
+  EXPECT_EQ(name_of(found.verdict), "partly_explained") << to_text(found);
+}
+
 }  // namespace
 }  // namespace loopwright::flying_load_test

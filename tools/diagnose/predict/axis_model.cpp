@@ -159,6 +159,11 @@ AxisModel::AxisModel(const std::string& path, const std::string& experiment_path
   keep_seen_states(linear);
   nominal_inertia_ = linear.inertia, nominal_damping_ = linear.damping;
   if (std::isfinite(nominal_inertia_) && nominal_inertia_ > 0) return;
+  if (velocity_ < 0) {
+    problems.error(force_place, "/roles", "", "no role \"velocity\"").expected =
+        "\"roles\": {\"velocity\": the port of the axis' velocity, measured or not, …}";
+    throw InputError(std::move(problems));
+  }
   auto& p = problems.error(force_place, "/roles/force", "", "a force there does not accelerate the axis");
   p.expected = "the output of the Sum whose force moves the roles \"velocity\" and \"position\"";
   p.found = fmt::format("an inertia of {:.3g}", nominal_inertia_);

@@ -102,7 +102,7 @@ inline bool is_at_limit(const Member& member) {
   for (size_t i = 0; i < member.linear.size() && !candidate.amplitude_is_one; ++i)
     if (candidate.linear[i].ends_at(member.linear[i])) return true;
   for (size_t i = 0; i < member.nonlinear.size(); ++i)
-    if (candidate.nonlinear[i].ends_at(member.nonlinear[i])) return true;
+    if (member.is_free(i) && candidate.nonlinear[i].ends_at(member.nonlinear[i])) return true;
   return false;
 }
 

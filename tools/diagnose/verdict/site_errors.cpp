@@ -74,4 +74,22 @@ SiteErrors errors_of(SiteFitter& fitter, SiteHypothesis h) {
   return errors;
 }
 
+std::optional<size_t> missed_output(const SiteErrors& errors, const SiteNoise& noise, double times) {
+  for (size_t j = 0; j < errors.simulated.size() && !errors.diverges; ++j)
+    if (errors.simulated[j] > times * noise.measurement[j]) return j;
+  return {};
+}
+
+bool is_exact(const SiteErrors& errors, const SignalRecord& record) {
+  if (errors.diverges) return false;
+  for (size_t j = 0; j < errors.simulated.size(); ++j) {
+    double sum = 0, square = 0, count = 0;
+    for (const double y : record.outputs[j].value)
+      if (!std::isnan(y)) sum += y, square += y * y, ++count;
+    const double spread = std::sqrt(std::max(0.0, square / count - sum * sum / (count * count)));
+    if (!(errors.simulated[j] < criteria::error_of_arithmetic * spread)) return false;
+  }
+  return true;
+}
+
 }  // namespace loopwright::diagnosis

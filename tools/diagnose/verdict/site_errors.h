@@ -1,5 +1,6 @@
 /// How well a hypothesis about a diagram predicts and simulates.
 #pragma once
+#include <optional>
 #include "tools/diagnose/search/site_fit.h"
 
 namespace loopwright::diagnosis {
@@ -17,5 +18,11 @@ struct SiteErrors {
 /// Over the whole record. The simulation begins anew from the filtered states ten times, over the held-out
 /// rows if there are any. Of an answer by simulation all errors are those of simulation_errors().
 SiteErrors errors_of(SiteFitter& whole_record, SiteHypothesis hypothesis);
+
+/// The first output that the simulation misses by more than so many times the noise of its sensor.
+std::optional<size_t> missed_output(const SiteErrors& errors, const SiteNoise& noise, double times);
+
+/// Whether the simulation misses the record by no more than the arithmetic does.
+bool is_exact(const SiteErrors& errors, const SignalRecord& record);
 
 }  // namespace loopwright::diagnosis

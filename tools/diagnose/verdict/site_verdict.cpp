@@ -231,17 +231,18 @@ class Telling {
     return true;
   }
 
-  /// The output that a simulation misses by more than its sensor's noise can; nothing if there is none.
   std::optional<size_t> missed_by_far() const {
-    if (errors_.diverges) return {};
-    for (size_t j = 0; j < errors_.simulated.size(); ++j)
-      if (errors_.simulated[j] > criteria::far_simulation * found_.noise.measurement[j]) return j;
-    return {};
+    return missed_output(errors_, found_.noise, criteria::far_simulation);
   }
   /// Many changes at once, with which a simulation still misses the record by far, follow it without its
   /// cause.
   bool are_many_changes_in_vain() {
     const size_t changes = result_.effects.size() + result_.moved_parameters.size();
+    if (changes >= criteria::most_changes) {
+      result_.findings.push_back({fmt::format("{} changes at once", changes),
+                                  "they may stand for one effect that nothing here names", true, false});
+      return true;
+    }
     const std::optional<size_t> missed = missed_by_far();
     if (changes < criteria::many_changes || !missed) return false;
     const double ratio = errors_.simulated[*missed] / found_.noise.measurement[*missed];
@@ -251,6 +252,17 @@ class Telling {
              changes, model_.record().outputs[*missed].port, ratio),
          "they may stand for one effect that nothing here names", true, false});
     return true;
+  }
+
+  /// What a simulation needs noise in the states for.
+  void tell_missed_noise() {
+    const std::optional<size_t> missed = missed_output(errors_, found_.noise, criteria::notable_simulation);
+    if (!missed) return;
+    result_.findings.push_back(
+        {fmt::format("with what was found a simulation misses {} by {:.2g} times the noise of its sensor",
+                     model_.record().outputs[*missed].port,
+                     errors_.simulated[*missed] / found_.noise.measurement[*missed]),
+         "the rest is taken for noise inside the plant; it may also be an effect that bends what was found"});
   }
 
   /// Terms none of whose coefficients the record tells from zero: together with others they do what one law
@@ -297,19 +309,6 @@ class Telling {
     return !contradicted.empty();
   }
 
-  /// Whether the simulation misses the record by no more than the arithmetic does.
-  bool is_exact() const {
-    if (errors_.diverges) return false;
-    for (size_t j = 0; j < errors_.simulated.size(); ++j) {
-      double sum = 0, square = 0, count = 0;
-      for (double y : model_.record().outputs[j].value)
-        if (!std::isnan(y)) sum += y, square += y * y, ++count;
-      const double spread = std::sqrt(std::max(0.0, square / count - sum * sum / (count * count)));
-      if (!(errors_.simulated[j] < criteria::error_of_arithmetic * spread)) return false;
-    }
-    return true;
-  }
-
   /// Tells the slow disturbances of the answer. Whether they are small enough to be noise.
   bool are_disturbances_small() {
     const std::vector<Disturbance> list = disturbances_of(fitted_, found_);
@@ -336,7 +335,8 @@ class Telling {
         (names && search_.second_opinion && search_.second_opinion->is_open() && missed_by_far()) ||
         has_untold_terms() || are_many_changes_in_vain() || has_contradicted_terms() ||
         has_cancelling_names() || (names && is_input_questioned_);
-    const bool is_nothing = !names && (is_left_out_ || is_exact());
+    if (names) tell_missed_noise();
+    const bool is_nothing = !names && (is_left_out_ || is_exact(errors_, model_.record()));
     const bool misses_held_out =
         result_.holds_out && !errors_.diverges &&
         result_.held_out_mean_square > criteria::most_held_out * std::max(1.0, result_.mean_square);

@@ -68,20 +68,31 @@ bool is_noise_inflated(const Trials& trials, const std::vector<Member>& members,
 }
 
 /// Between the readings of a slower sensor several names can share one law: dry friction and drags that
-/// cancel. Where noise_floor() of compare says nothing of that, the noise that was estimated does. A record
-/// with few rows between its turns is not asked otherwise, because its smoothed motion is not that of the
-/// axis.
+/// cancel. Where noise_floor() of compare says nothing of that, the noise that was estimated does. Nor does
+/// it beside impacts, where a load that is not held as the catalogue has it leaves forces between them. A
+/// record with few rows between its turns is not asked otherwise, because its smoothed motion is not that of
+/// the axis.
 std::string force_far_above_noise(const Trials& trials, const std::vector<Member>& members,
                                   const Diagnosis& diagnosis) {
   const double left = diagnosis.steps.back().force_rmse, floor = diagnosis.noise_floor;
   const auto is_read_too_seldom = [](const Trial& t) { return t.model->record().acts_between_readings; };
-  const bool is_asked = std::ranges::any_of(trials.list, is_read_too_seldom) && !may_be_doubtful(members) &&
-                        std::ranges::none_of(members, is_own_load);
+  const bool has_impacts = may_be_doubtful(members);
+  const bool is_asked = has_impacts || (std::ranges::any_of(trials.list, is_read_too_seldom) &&
+                                        std::ranges::none_of(members, is_own_load));
+  const double most = has_impacts ? criteria::far_over_noise_beside_impacts : criteria::far_over_noise;
   const double excess = std::sqrt(std::max(0.0, left * left - floor * floor));
-  if (!is_asked || left <= criteria::far_over_noise * floor ||
-      excess <= criteria::least_excess * trials.force_rms)
-    return {};
+  if (!is_asked || left <= most * floor || excess <= criteria::least_excess * trials.force_rms) return {};
   return fmt::format("the residual force is {:.1f} times what the estimated noise leaves", left / floor);
+}
+
+/// Whether laws of the input leave next to nothing of it.
+bool is_input_taken_away(const Trials& trials, const std::vector<Fitted>& fitted) {
+  double recorded = 0, left = 0;
+  for (size_t t = 0; t < fitted.size(); ++t) {
+    for (const double u : trials.list[t].input) recorded += u * u;
+    for (const double u : fitted[t].prediction.path.input) left += u * u;
+  }
+  return left < std::pow(criteria::least_input_left, 2) * recorded;
 }
 
 }  // namespace
@@ -103,6 +114,10 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
     diagnosis.contradictions.push_back(std::move(why));
   else if (why = force_far_above_noise(trials, e.members, diagnosis); !why.empty())
     diagnosis.contradictions.push_back(std::move(why));
+  if (is_input_taken_away(trials, *e.fitted))
+    diagnosis.contradictions.push_back(
+        "what is named takes nearly all of the input away: see that sensor and drive were on, and that time "
+        "and input have the units that are stated");
   if (diagnosis.simulation_diverged)
     diagnosis.contradictions.push_back("the diagram with these effects diverges when it is simulated");
   else if (diagnosis.simulation_is_worse)
