@@ -1,4 +1,5 @@
-// A search that ends at its limit of work says so, and ends there again.
+// A search that ends at its limit of work says so, and ends there again, on every machine.
+#include <Eigen/Dense>
 #include <algorithm>
 #include "tests/tools/diagnose/recorded_axis.h"
 #include "tools/diagnose/diagnose.h"
@@ -45,6 +46,13 @@ TEST(Work, AnOrdinaryRecordIsFarFromTheLimit) {
   EXPECT_FALSE(tells_of_the_limit(diagnosis));
   ASSERT_EQ(diagnosis.effects.size(), 1u);
   EXPECT_EQ(diagnosis.effects.front().name, "coulomb_friction");
+}
+
+/// Eigen would ask the processor: the same record then had other answers on another machine.
+TEST(Work, SumsAreCutAlikeWhateverTheCachesOfTheProcessor) {
+  EXPECT_EQ(Eigen::l1CacheSize(), 48 << 10);
+  EXPECT_EQ(Eigen::l2CacheSize(), 2 << 20);
+  EXPECT_EQ(Eigen::l3CacheSize(), 100 << 20);
 }
 
 }  // namespace
