@@ -94,8 +94,8 @@ class EffectSample {
     size_t size;
   };
   void note_decisions(bool is_start);
-  /// From the present states. `now`: at the start of the step, then at its end. Returns the mean force on the
-  /// body over it, from that over the step before.
+  /// A step from the present states, the first of a sample if `is_start`. `now`: at its start, then at its
+  /// end. Returns the mean force on the body over it, from that over the step before.
   double push_body(const Body& body, double free_acceleration, int64_t ticks, bool is_start,
                    GivenSignals& now, double push);
   void evaluate();

@@ -23,12 +23,9 @@ template <class Vector> class MeanAndSlope {
 
 }  // namespace
 
-StepMaps::StepMaps(EffectSample& sample, const EffectSample::Body& body, double sample_time,
+StepMaps::StepMaps(EffectSample& sample, const EffectSample::Body& body,
                    const std::vector<double>& differences)
-    : sample_(sample),
-      body_(body),
-      sample_time_(sample_time),
-      states_(Eigen::Index(differences.size()) - GivenSignals::count) {
+    : sample_(sample), body_(body), states_(Eigen::Index(differences.size()) - GivenSignals::count) {
   using enum GivenSignals::Index;
   const auto of_signal = [&](GivenSignals::Index i) { return differences[size_t(states_) + i]; };
   differences_.resize(states_ + 4);

@@ -15,8 +15,7 @@ namespace loopwright {
 class StepMaps {
  public:
   /// `differences`: of the states and given signals, zero if the effect does not depend on one.
-  StepMaps(EffectSample& sample, const EffectSample::Body& body, double sample_time,
-           const std::vector<double>& differences);
+  StepMaps(EffectSample& sample, const EffectSample::Body& body, const std::vector<double>& differences);
 
   /// The states after a sample, then mean and slope of the force on the body. False if a decision of a step
   /// that is not known yet hangs on the differences.
@@ -25,19 +24,19 @@ class StepMaps {
   void differentiate(SampleMap& map);
 
  private:
-  /// of a step: z' = to + slopes (z - from), with z the states, position, velocity, mean force over the step
+  /// Of a step: z' = to + slopes (z - from), with z the states, position, velocity, mean force over the step
   /// before, and free acceleration, of which the last does not change.
   struct StepMap {
     Eigen::VectorXd from, to;
     Eigen::MatrixXd slopes;
   };
+  /// Null if a decision hangs on the differences.
   const StepMap* map_at(const Eigen::VectorXd& z, const GivenSignals& given);
   /// z after a step that is integrated, and whether the blocks decide so at its start.
   bool integrate(const Eigen::VectorXd& z, const std::string& decided, Eigen::VectorXd& next);
 
   EffectSample& sample_;
   EffectSample::Body body_;
-  double sample_time_;
   Eigen::Index states_;
   Eigen::VectorXd differences_, z_, next_;
   EffectSample::Instant instant_;

@@ -34,9 +34,7 @@ std::vector<double> SwitchedSample::start(double position, double velocity) {
 void SwitchedSample::set_body(const EffectSample::Body& body) {
   body_ = body;
   steps_.reset();
-  if (sample_.steps() > 0)
-    steps_.emplace(sample_, body, plan_->sizes.sample_time,
-                   differences(small_share * plan_->sizes.top_speed));
+  if (sample_.steps() > 0) steps_.emplace(sample_, body, differences(small_share * plan_->sizes.top_speed));
 }
 
 std::vector<double> SwitchedSample::integrated(const std::vector<double>& states, const GivenSignals& given) {

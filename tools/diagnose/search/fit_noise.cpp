@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 #include "tools/diagnose/criteria.h"
-#include "tools/diagnose/predict/same_sums.h"
+#include "tools/diagnose/predict/same_sums.h"  // for the whole program
 #include "tools/diagnose/search/maximum_likelihood.h"
 
 namespace loopwright::diagnosis {
