@@ -1,7 +1,8 @@
 #!/bin/bash
 # Sets up, builds and runs all tests: optimized, then the tests of file readers and hardware under sanitizers.
-#   tools/test.sh            everything
-#   tools/test.sh --quick    without the sanitizers
+#   tools/test.sh                everything but the judgements
+#   tools/test.sh --quick        without the sanitizers
+#   tools/test.sh --judgements   with the tests that take half a minute or more each
 # Prints the time of each part at the end. Measured data is searched in $LOOPWRIGHT_DATA (default ../shared/data); tests
 # that need it report when it is absent.
 set -euo pipefail
@@ -11,7 +12,8 @@ quick=
 case ${1-} in
   '') ;;
   --quick) quick=1 ;;
-  *) sed -n '2,6s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
+  --judgements) export LOOPWRIGHT_JUDGEMENTS=1 ;;
+  *) sed -n '2,7s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
 esac
 
 export LOOPWRIGHT_DATA=${LOOPWRIGHT_DATA:-$PWD/../shared/data}

@@ -1,6 +1,7 @@
 // Which path a diagnosis takes, and how the answer about any diagram is written.
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
+#include "tests/judgement.h"
 #include "tests/tools/diagnose/diagnosed.h"
 #include "tests/tools/diagnose/plants.h"
 #include "tests/tools/diagnose/recorded_axis.h"
@@ -38,6 +39,7 @@ Truth axis_with_friction() {
 }
 
 TEST(AnyDiagramAnswer, RolesDecideWhichPathADiagnosisTakes) {
+  IS_A_JUDGEMENT();
   const RecordedAxis axis(axis_with_friction());
   const Diagnosis of_axis = diagnose(axis.diagram(), {axis.experiment()});
   EXPECT_TRUE(of_axis.has_roles);

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include "engine/plan/plan.h"
+#include "tests/judgement.h"
 #include "tests/tools/diagnose/diagnosed.h"
 #include "tests/tools/diagnose/plants.h"
 #include "tools/compare/compare.h"
@@ -107,9 +108,13 @@ TEST(AnyDiagramImproved, ALateInputStandsBesideWhatItReads) {
   EXPECT_NEAR(w.simulated({.set = {{"with_delay_at_amplifier", "0"}}}), w.simulated_before(),
               1e-6 * w.simulated_before());
 }
-TEST(AnyDiagramImproved, ALagOfTheInputIsAnActuator) {
+TEST(AnyDiagramImproved, ALagOfAnAmplifierIsAnActuator) {
+  IS_A_JUDGEMENT();
   const Written w(lagging_motor(3e-3, 61));
   ASSERT_THAT(names(w.answer), ElementsAre("lag")) << to_text(w.answer);
+  EXPECT_EQ(w.answer.effects[0].site, "amplifier.u");
+  EXPECT_EQ(w.answer.verdict, Verdict::explained);
+  EXPECT_NEAR(w.answer.effects[0].parameters.at(0).value, 3e-3, 0.005 * 3e-3);
   expect_all_units(w.answer.improved);
   EXPECT_EQ(w.blocks()["lag_at_amplifier"]["type"], "ActuatorLag");
   EXPECT_LT(w.simulated(), 0.2 * w.simulated_before());

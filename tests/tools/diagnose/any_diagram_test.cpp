@@ -1,5 +1,6 @@
 // What a diagram of any kind lacks, found without roles.
 #include <memory>
+#include "tests/judgement.h"
 #include "tests/tools/diagnose/diagnosed_plant.h"
 
 namespace loopwright::any_diagram_test {
@@ -75,6 +76,7 @@ TEST(AnyDiagram, DryFrictionOfAMotorIsFoundAtItsTorques) {
   expect_explained(d);
 }
 TEST(AnyDiagram, AParameterThatIsHardlyOffBesideATermMayStandForSomethingSmall) {
+  IS_A_JUDGEMENT();
   Motor m;
   m.resistance *= 1.01, m.torque = [](double speed, double) { return 0.01 * std::tanh(speed / 0.5); };
   const Diagnosis d = diagnosed(motor(m, 26));

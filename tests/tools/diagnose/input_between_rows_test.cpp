@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <cmath>
 #include <numbers>
+#include "tests/judgement.h"
 #include "tests/tools/diagnose/diagnosed_plant.h"
 #include "tools/compare/compare.h"
 
@@ -49,6 +50,7 @@ TEST(InputBetweenRows, AHeldInputThatIsReadAsLinesIsTold) {
 }
 /// What was found beside a wrong statement may stand for it.
 TEST(InputBetweenRows, NothingIsExplainedBesideAStatementThatTheRecordContradicts) {
+  IS_A_JUDGEMENT();
   Plant plant = shaken(BetweenRows::hold, BetweenRows::linear);
   plant.rate = oscillator({.stiffness = 240}, 41).rate;
   const Diagnosis d = diagnosed(plant);
@@ -56,6 +58,7 @@ TEST(InputBetweenRows, NothingIsExplainedBesideAStatementThatTheRecordContradict
   EXPECT_EQ(d.verdict, Verdict::partly_explained) << to_text(d);
 }
 TEST(InputBetweenRows, ASmoothInputThatIsReadOtherwiseIsTold) {
+  IS_A_JUDGEMENT();
   for (const BetweenRows says : {BetweenRows::hold, BetweenRows::linear}) {
     const Diagnosis d = diagnosed(shaken_fast(says));
     EXPECT_THAT(findings(d), Contains(HasSubstr(R"("interpolation": "band_limited")"))) << to_text(d);

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <cstdlib>
 #include <fstream>
+#include "tests/judgement.h"
 #include "tests/tools/diagnose/diagnosed.h"
 #include "tests/tools/diagnose/hidden_axis.h"
 #include "tools/compare/several.h"
@@ -192,6 +193,7 @@ class WithoutRoles : public testing::Test {
 };
 
 TEST_F(WithoutRoles, APayloadTellsAGainFromAMass) {
+  IS_A_JUDGEMENT();
   axis.truth.gain = -0.05, axis.truth.coulomb_n = 0.3;
   const Diagnosis d = axis.diagnosed(records());
   ASSERT_THAT(names(d), ElementsAre("sign")) << to_text(d);
@@ -202,6 +204,7 @@ TEST_F(WithoutRoles, APayloadTellsAGainFromAMass) {
 }
 
 TEST_F(WithoutRoles, AMassThatAllRecordsLackIsThatOfTheCarriage) {
+  IS_A_JUDGEMENT();
   axis.truth.added_mass_kg = 0.06, axis.truth.coulomb_n = 0.3;
   const Diagnosis d = axis.diagnosed(records());
   ASSERT_THAT(names(d), ElementsAre("sign")) << to_text(d);

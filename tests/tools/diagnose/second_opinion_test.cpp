@@ -1,6 +1,7 @@
 // Where a state is not measured, noise in it could explain anything: answers by simulation.
 #include <gmock/gmock.h>
 #include <cmath>
+#include "tests/judgement.h"
 #include "tests/tools/diagnose/diagnosed_plant.h"
 #include "tools/diagnose/predict/site_filter.h"
 #include "tools/diagnose/search/site_simulation.h"
@@ -71,6 +72,7 @@ TEST(SecondOpinion, ASimulationBeginsWithTheStatesThatFitBest) {
 }
 
 TEST(MeasuredTanks, OverflowOfTheUpperTankIsNamedAtIt) {
+  IS_A_JUDGEMENT();
   setenv("LOOPWRIGHT_DATA", LOOPWRIGHT_SOURCE "/../shared/data", 0);
   if (!std::filesystem::exists(std::string(std::getenv("LOOPWRIGHT_DATA")) + "/cascaded_tanks/tanks_est.csv"))
     GTEST_SKIP() << "no cascaded_tanks/tanks_est.csv below $LOOPWRIGHT_DATA";

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fstream>
 #include "tests/engine/diagram/diagram_folder.h"
+#include "tests/judgement.h"
 #include "tests/tools/diagnose/diagnosed.h"
 #include "tests/tools/diagnose/plants.h"
 #include "tools/compare/compare.h"
@@ -46,6 +47,7 @@ TEST(SiteEffectFile, AWeirIsNamedOnceItsFileIsThere) {
   EXPECT_LT(compare(d.improved, files.experiment(), {}).signals.front().rmse, 0.3 * before);
 }
 TEST(SiteEffectFile, InThePlaceOfTheCatalogueNoOtherShapeIsNamed) {
+  IS_A_JUDGEMENT();
   const RecordedPlant files(tanks_with_weir());
   DiagramFolder own;
   own.with("steep.json",

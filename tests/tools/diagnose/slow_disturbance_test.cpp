@@ -1,6 +1,7 @@
 // Disturbances that are alike for many rows: noise while they are small, and never an effect.
 #include <gmock/gmock.h>
 #include <cmath>
+#include "tests/judgement.h"
 #include "tests/tools/diagnose/diagnosed_plant.h"
 
 namespace loopwright::slow_disturbance_test {
@@ -37,6 +38,7 @@ TEST(SlowDisturbance, ACleanMotorBesideItLacksNothing) {
 }
 
 TEST(SlowDisturbance, DryFrictionBesideItIsNamedWithItsSize) {
+  IS_A_JUDGEMENT();
   Motor m;
   m.torque = [](double speed, double) { return 0.01 * std::tanh(speed / 0.5); };
   const Diagnosis d = diagnosed(disturbed_motor(m, 0.02, 22));

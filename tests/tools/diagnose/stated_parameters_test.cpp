@@ -1,6 +1,7 @@
 // What the record does not determine stays as the diagram states it.
 #include <gmock/gmock.h>
 #include <cmath>
+#include "tests/judgement.h"
 #include "tests/tools/diagnose/diagnosed_plant.h"
 #include "tools/diagnose/search/site_fit.h"
 
@@ -51,6 +52,7 @@ TEST_F(CommonScale, ReturnsToWhatIsStated) {
 /// Two coupled tanks of which one is measured: a leak bends the parameters that were fitted before it was
 /// tried, and beside these another law is found first.
 TEST(StatedParameters, OneLawInThePlaceOfParametersIsTheAnswerIfItExplainsMore) {
+  IS_A_JUDGEMENT();
   Plant plant;
   plant.diagram = R"json({"loopwright": 1, "title": "Two coupled tanks",
   "parameters": {"A": {"value": 0.015, "unit": "m^2"}, "kp": {"value": 4e-5, "unit": "m^3/(V*s)"},
