@@ -68,6 +68,7 @@ TEST(AnyDiagram, AParameterAtTheEdgeOfWhatRunsDoesNotHoldTheOthers) {
   expect_explained(d);
 }
 TEST(AnyDiagram, DryFrictionOfAMotorIsFoundAtItsTorques) {
+  IS_A_JUDGEMENT();
   Motor m;
   m.torque = [](double speed, double) { return 0.01 * std::tanh(speed / 0.5); };
   const Diagnosis d = diagnosed(motor(m, 3));
@@ -219,6 +220,7 @@ TEST(AnyDiagram, ALimitOfAValveBesideADragIsFoundBeforeFreeGainsHideIt) {
 
 /// In one direction dry friction and a constant torque are the same. Each record has states of its own.
 TEST(AnyDiagram, RecordsOfBothDirectionsTogetherTellDryFrictionFromAConstantTorque) {
+  IS_A_JUDGEMENT();
   Motor m;
   m.torque = [](double speed, double) { return 0.008 * std::tanh(speed / 0.5) + 0.003; };
   std::vector<std::unique_ptr<RecordedPlant>> records;
