@@ -78,10 +78,12 @@ constexpr double far_simulation = 5;
 constexpr size_t many_changes = 5;
 /// So many name nothing, however well they follow the record.
 constexpr size_t most_changes = 6;
-/// [noise of the sensor] A simulation that misses its signal by more follows it with the help of noise in the
-/// states, which may be that or an effect: it is told. What explains all of a record without such noise
-/// misses it by 1.0 to 1.1.
+/// [noise of the sensor] A simulation that misses its signal by more needs noise in the states: it is told.
+/// What explains all of a record without such noise misses it by 1.0 to 1.1.
 constexpr double notable_simulation = 1.3;
+/// [variance that noise in the states makes likely] A mean square of ten simulations that is larger comes by
+/// chance once in a thousand times (χ² of ten degrees of freedom): it is an effect.
+constexpr double most_noise_of_simulations = 3;
 /// [spread of the signal] A diagram that misses a signal by more is no plant that can be simulated by itself.
 constexpr double runaway_simulation = 10;
 /// [variances] Squares by which a term changes the predictions of held-out rows: from so many on, chance lets

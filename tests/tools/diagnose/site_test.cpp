@@ -174,6 +174,38 @@ TEST(SiteFilter, ErrorsOfARightDiagramAreWhiteAtTheTrueNoise) {
   EXPECT_NEAR(square / double(e.size()), 1, 0.08);
   EXPECT_NEAR(next / square, 0, 0.06);
 }
+
+/// Mean squares of simulations that begin anew every 125 rows, and what is expected of them. Not in units of
+/// the sensor's noise, which is a small part of them.
+struct MeanSquares {
+  double simulated = 0, expected = 0;
+};
+MeanSquares simulated_with_noise(double torque_noise) {
+  constexpr size_t from = 125, length = 125;
+  constexpr uint64_t records = 8;
+  MeanSquares mean;
+  for (uint64_t seed = 1; seed <= records; ++seed) {
+    Plant plant = oscillator({}, seed);
+    plant.process_noise = {torque_noise};
+    Passed p(plant);
+    p.noise.process = {torque_noise}, p.noise.measurement = {2e-5};
+    EXPECT_TRUE(p.filter.run(p.pass.rows, p.noise, false, p.pass));
+    std::vector<double> variance((p.pass.rows - from) * p.pass.outputs), error(length);
+    p.filter.expect_of_simulations(p.pass, from, length, variance);
+    for (size_t begin = from; begin + length <= p.pass.rows; begin += length) {
+      EXPECT_TRUE(p.filter.simulate(p.pass, begin, begin + length, error));
+      for (size_t k = 0; k < length; ++k)
+        mean.simulated += error[k] * error[k], mean.expected += variance[begin - from + k];
+    }
+  }
+  return mean;
+}
+TEST(SiteFilter, SimulationsMissAsMuchAsTheNoiseOfTheStatesMakesLikely) {
+  const MeanSquares noisy = simulated_with_noise(0.05), little = simulated_with_noise(1e-4);
+  EXPECT_NEAR(noisy.simulated / noisy.expected, 1, 0.2);
+  EXPECT_NEAR(little.simulated / little.expected, 1, 0.05);
+  EXPECT_GT(noisy.expected, 10 * little.expected);
+}
 TEST(SiteModel, ASettingOfTheDiagramChangesAllBlocksThatReadIt) {
   const RecordedPlant files(motor({}, 6));
   const SiteModel model(files.diagram(), {files.experiment()}, {});

@@ -146,6 +146,11 @@ double SiteFilter::initial_variance(const SiteNoise& noise, size_t state) const 
   return squared(initial_deviation * state_scale_[state]);
 }
 
+void SiteFilter::begin_covariance(const SiteNoise& noise) {
+  P_.setZero();
+  for (Eigen::Index i = 0; i < P_.rows(); ++i) P_(i, i) = initial_variance(noise, size_t(i));
+}
+
 void SiteFilter::add_slow_errors(const SiteNoise& noise) {
   for (size_t j = 0; j < noise.slow.size(); ++j)
     if (const int output = noise.slow[j].output; output >= 0)
@@ -275,9 +280,7 @@ bool SiteFilter::run(size_t rows, const SiteNoise& noise, bool with_columns, Sit
   for (size_t row = 0; row < rows; ++row) {
     if (record_.begins_at(row)) {
       begin_at(row);
-      P_.setZero();
-      for (size_t i = 0; i < pass.states; ++i)
-        P_(Eigen::Index(i), Eigen::Index(i)) = initial_variance(noise, i);
+      begin_covariance(noise);
     }
     end_ = {row, x_};  // until the row is left
     if (!correct(row, noise, pass)) return false;

@@ -90,6 +90,10 @@ class SiteFilter {
   /// Without any correction from row `from` on, starting from the filtered state there: y - h, NaN where
   /// there is no reading.
   bool simulate(const SitePass& pass, size_t from, size_t to, std::span<double> error);
+  /// Variances of the errors of simulations that begin anew every `length` rows, if nothing but the noise of
+  /// the pass is missing; from row `from` to the end. Linearized about the pass; what it has learned of slow
+  /// noise is forgotten where a simulation begins.
+  void expect_of_simulations(const SitePass& pass, size_t from, size_t length, std::span<double> variance);
   /// The same from the initial states that fit these rows best.
   bool simulate_freely(size_t from, size_t to, std::span<double> error);
   /// -2 ln L of another noise, linearized about the pass.
@@ -115,6 +119,8 @@ class SiteFilter {
   /// x_ at the beginning of a record.
   void begin_at(size_t row);
   double initial_variance(const SiteNoise& noise, size_t state) const;
+  /// P_ there.
+  void begin_covariance(const SiteNoise& noise);
   /// Of x_, to y_.
   void add_slow_errors(const SiteNoise& noise);
   /// Lets the disturbances of x_ act over the flows that follow, or none.

@@ -63,6 +63,36 @@ bool SiteFilter::simulate(const SitePass& pass, size_t from, size_t to, std::spa
   return true;
 }
 
+void SiteFilter::expect_of_simulations(const SitePass& pass, size_t from, size_t length,
+                                       std::span<double> variance) {
+  const auto n = Eigen::Index(pass.states);
+  Eigen::MatrixXd simulated(n, n);  // covariance of the states without corrections; P_ is that with them
+  for (size_t row = 0; row < pass.rows; ++row) {
+    if (record_.begins_at(row)) begin_covariance(pass.noise);
+    for (size_t j = 0; j < pass.outputs; ++j) {
+      const size_t at = row * pass.outputs + j;
+      gain_.noalias() = P_ * ConstMap(&pass.C[at * pass.states], n);
+      P_.noalias() -= gain_ * ConstMap(&pass.gain[at * pass.states], n).transpose();
+    }
+    if (row >= from) {
+      if ((row - from) % length == 0 || record_.begins_at(row)) {
+        simulated = P_;
+        for (size_t j = 0; j < pass.noise.slow.size(); ++j) {
+          const auto i = Eigen::Index(model_states_ + j);
+          simulated.row(i).setZero(), simulated.col(i).setZero();
+          simulated(i, i) = squared(pass.noise.slow[j].size);
+        }
+      }
+      for (size_t j = 0; j < pass.outputs; ++j) {
+        const ConstMap C(&pass.C[(row * pass.outputs + j) * pass.states], n);
+        variance[(row - from) * pass.outputs + j] = C.dot(simulated * C) + squared(pass.noise.measurement[j]);
+      }
+      P_.swap(simulated), predict_covariance(pass, row, pass.noise), P_.swap(simulated);
+    }
+    predict_covariance(pass, row, pass.noise);
+  }
+}
+
 bool SiteFilter::simulate_from(const Eigen::VectorXd& initial, size_t from, size_t to,
                                std::span<double> error) {
   model_.put_modes_back(from, start_modes_.data());

@@ -27,6 +27,7 @@ void use_simulation(SiteFitter& fitter, const SiteHypothesis& h, SiteErrors& err
   errors.predicted = simulation->fitted, errors.simulated = simulation->judged();
   errors.held_out = simulation->held_out.empty() ? errors.held_out : simulation->held_out;
   errors.noise = h.noise.measurement;
+  errors.expected_simulated = errors.noise;
   for (const SlowNoise& slow : h.noise.slow)
     errors.leaves_slow_error |= slow.size > h.noise.measurement[size_t(slow.output)];
 }
@@ -62,22 +63,35 @@ SiteErrors errors_of(SiteFitter& fitter, SiteHypothesis h) {
   errors.mean_square = all.mean(), errors.held_out_mean_square = all_held_out.mean();
   const size_t first = fitted < rows ? fitted : rows / criteria::settling_part,
                length = (rows - first) / criteria::simulations_of_any_diagram + 1;
-  std::vector<MeanSquare> simulated(pass.outputs);
-  std::vector<double> e;
+  std::vector<MeanSquare> simulated(pass.outputs), expected(pass.outputs);
+  std::vector<double> e, variance((rows - first) * pass.outputs);
+  fitter.filter().expect_of_simulations(pass, first, length, variance);
   for (size_t from = first; from < rows; from += length) {
     const size_t to = std::min(rows, from + length);
     e.resize((to - from) * pass.outputs);
     if (!fitter.filter().simulate(pass, from, to, e)) errors.diverges = true;
-    for (size_t i = 0; i < e.size(); ++i) simulated[i % pass.outputs].add(e[i] * e[i]);
+    for (size_t i = 0; i < e.size(); ++i) {
+      simulated[i % pass.outputs].add(e[i] * e[i]);
+      if (std::isfinite(e[i])) expected[i % pass.outputs].add(variance[(from - first) * pass.outputs + i]);
+    }
   }
   for (const MeanSquare& s : simulated) errors.simulated.push_back(s.root());
+  for (const MeanSquare& s : expected) errors.expected_simulated.push_back(s.root());
   return errors;
 }
 
 std::optional<size_t> missed_output(const SiteErrors& errors, const SiteNoise& noise, double times) {
+  std::optional<size_t> worst;
   for (size_t j = 0; j < errors.simulated.size() && !errors.diverges; ++j)
-    if (errors.simulated[j] > times * noise.measurement[j]) return j;
-  return {};
+    if (const double miss = errors.simulated[j] / noise.measurement[j]; miss > times) worst = j, times = miss;
+  return worst;
+}
+
+double explained_by_noise(const SiteErrors& errors, const SiteNoise& noise, size_t output) {
+  const double of_sensor = squared(noise.measurement[output]),
+               of_states = std::max(0.0, squared(errors.expected_simulated[output]) - of_sensor);
+  return std::sqrt(squared(criteria::notable_simulation) * of_sensor +
+                   criteria::most_noise_of_simulations * of_states);
 }
 
 bool is_exact(const SiteErrors& errors, const SignalRecord& record) {

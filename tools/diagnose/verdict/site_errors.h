@@ -8,7 +8,8 @@ namespace loopwright::diagnosis {
 struct SiteErrors {
   bool diverges = false;
   std::vector<double> predicted, held_out;           ///< rms for each output, one sample ahead
-  std::vector<double> simulated;                     ///< rms for each output, see simulated_rows
+  std::vector<double> simulated;                     ///< rms for each output, see errors_of()
+  std::vector<double> expected_simulated;            ///< the same, if nothing but noise were left
   double mean_square = 0, held_out_mean_square = 0;  ///< of the whitened errors
   double portmanteau = 0;          ///< n Σ ρ² over 40 lags, the worst output; 40 when white
   std::vector<double> noise;       ///< rms for each output, if nothing but noise were left
@@ -19,8 +20,11 @@ struct SiteErrors {
 /// rows if there are any. Of an answer by simulation all errors are those of simulation_errors().
 SiteErrors errors_of(SiteFitter& whole_record, SiteHypothesis hypothesis);
 
-/// The first output that the simulation misses by more than so many times the noise of its sensor.
+/// The output that the simulation misses worst, if by more than so many times the noise of its sensor.
 std::optional<size_t> missed_output(const SiteErrors& errors, const SiteNoise& noise, double times);
+
+/// rms error of an output's simulation, which the noise of its sensor and of the states explains at most.
+double explained_by_noise(const SiteErrors& errors, const SiteNoise& noise, size_t output);
 
 /// Whether the simulation misses the record by no more than the arithmetic does.
 bool is_exact(const SiteErrors& errors, const SignalRecord& record);

@@ -12,6 +12,7 @@
 #include "tools/diagnose/verdict/alike_sites.h"
 #include "tools/diagnose/verdict/held_out_terms.h"
 #include "tools/diagnose/verdict/site_additions.h"
+#include "tools/diagnose/verdict/site_covariance.h"
 #include "tools/diagnose/verdict/site_errors.h"
 #include "tools/diagnose/verdict/site_inputs.h"
 #include "tools/diagnose/verdict/site_plots.h"
@@ -19,32 +20,6 @@
 
 namespace loopwright::diagnosis {
 namespace {
-
-/// Of all fitted numbers, in the order of fitted_numbers(); infinite for those that the record does not tell.
-Eigen::MatrixXd covariance_of(SiteFitter& fitter, SiteHypothesis h) {
-  SitePass pass;
-  const Eigen::Index count = Eigen::Index(size_of(h));
-  const Eigen::MatrixXd untold =
-      Eigen::VectorXd::Constant(count, std::numeric_limits<double>::infinity()).asDiagonal();
-  if (count == 0 || !fitter.pass(h, false, pass)) return untold;
-  const Eigen::MatrixXd readings = fitter.jacobian(h, pass);
-  const double scale = std::sqrt(pass.squares / double(pass.readings));
-  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(readings.rows() + count, count);
-  J.topRows(readings.rows()) = readings / scale;
-  const std::vector<FittedNumber> numbers = fitted_numbers(h);
-  for (Eigen::Index i = 0; i < count; ++i)  // what is stated counts too, as in the fit
-    if (numbers[size_t(i)].kind == FittedNumber::Kind::factor)
-      J(readings.rows() + i, i) = 1 / criteria::deviation_of_stated_parameter;
-  Eigen::VectorXd norm = J.colwise().norm().transpose();
-  for (double& size : norm)
-    if (!(size > 0)) size = 1;
-  const Eigen::MatrixXd unit = J * norm.cwiseInverse().asDiagonal();
-  const Eigen::MatrixXd inverse = (unit.transpose() * unit).completeOrthogonalDecomposition().pseudoInverse();
-  Eigen::MatrixXd covariance = norm.cwiseInverse().asDiagonal() * inverse * norm.cwiseInverse().asDiagonal();
-  for (Eigen::Index i = 0; i < count; ++i)
-    if (!(J.col(i).norm() > 0)) covariance(i, i) = std::numeric_limits<double>::infinity();
-  return covariance;
-}
 
 class Telling {
  public:
@@ -254,15 +229,26 @@ class Telling {
     return true;
   }
 
-  /// What a simulation needs noise in the states for.
-  void tell_missed_noise() {
-    const std::optional<size_t> missed = missed_output(errors_, found_.noise, criteria::notable_simulation);
-    if (!missed) return;
+  /// Tells what a simulation needs noise in the states for. Whether it misses more than that noise explains.
+  bool misses_more_than_noise() {
+    std::optional<size_t> worst;
+    double most = 0;  // [of what noise explains]
+    for (size_t j = 0; j < errors_.simulated.size() && !errors_.diverges; ++j) {
+      const double missed = errors_.simulated[j] / found_.noise.measurement[j],
+                   share = errors_.simulated[j] / explained_by_noise(errors_, found_.noise, j);
+      if (missed > criteria::notable_simulation && share > most) worst = j, most = share;
+    }
+    if (!worst) return false;
+    const double sensor = found_.noise.measurement[*worst];
     result_.findings.push_back(
-        {fmt::format("with what was found a simulation misses {} by {:.2g} times the noise of its sensor",
-                     model_.record().outputs[*missed].port,
-                     errors_.simulated[*missed] / found_.noise.measurement[*missed]),
-         "the rest is taken for noise inside the plant; it may also be an effect that bends what was found"});
+        {fmt::format("with what was found a simulation misses {} by {:.2g} times the noise of its sensor, of "
+                     "which noise inside the plant makes {:.2g} likely",
+                     model_.record().outputs[*worst].port, errors_.simulated[*worst] / sensor,
+                     errors_.expected_simulated[*worst] / sensor),
+         most > 1 ? "an effect that nothing here names may bend what was found"
+                  : "it is taken for that noise; it may also be an effect that bends what was found",
+         most > 1, false});
+    return most > 1;
   }
 
   /// Terms none of whose coefficients the record tells from zero: together with others they do what one law
@@ -335,7 +321,7 @@ class Telling {
         (names && search_.second_opinion && search_.second_opinion->is_open() && missed_by_far()) ||
         has_untold_terms() || are_many_changes_in_vain() || has_contradicted_terms() ||
         has_cancelling_names() || (names && is_input_questioned_);
-    if (names) tell_missed_noise();
+    const bool is_bent = names && misses_more_than_noise();
     const bool is_nothing = !names && (is_left_out_ || is_exact(errors_, model_.record()));
     const bool misses_held_out =
         result_.holds_out && !errors_.diverges &&
@@ -356,7 +342,7 @@ class Telling {
       result_.verdict = Verdict::nothing_missing;
     else if (worse || (!names && (!is_white || misses_held_out)))
       result_.verdict = Verdict::unexplained;
-    else if (!is_white || has_unknown || is_open || misses_held_out || may_stand_for_an_effect())
+    else if (!is_white || has_unknown || is_open || is_bent || misses_held_out || may_stand_for_an_effect())
       result_.verdict = Verdict::partly_explained;
     else
       result_.verdict = names ? Verdict::explained : Verdict::nothing_missing;
