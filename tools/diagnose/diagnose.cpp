@@ -384,10 +384,10 @@ bool have_roles(const std::vector<std::string>& experiments) {
 Diagnosis diagnose(const std::string& diagram, const std::vector<std::string>& experiments,
                    const DiagnoseOptions& options) {
   try {
-    Diagnosis result = have_roles(experiments) ? diagnose_to_the_end(diagram, experiments, options)
-                                               : diagnose_any_diagram(diagram, experiments, options);
-    std::ranges::move(doubts_about_time(diagram, experiments, options.load),
-                      std::back_inserter(result.findings));
+    const bool has_roles = have_roles(experiments);
+    std::vector<RecordFinding> doubts = doubts_about_time(diagram, experiments, options.load, has_roles);
+    Diagnosis result = (has_roles ? diagnose_to_the_end : diagnose_any_diagram)(diagram, experiments, options);
+    std::ranges::move(doubts, std::back_inserter(result.findings));
     return result;
   } catch (const Interrupted&) {
     Diagnosis result;

@@ -232,7 +232,7 @@ class Loader {
     result_->time_column = time->name;
     if (!result_->is_map) {
       result_->time = check_time(*time, problems_, {}, names_data.place);
-      check_start(*time, names_data);
+      check_ends(*time, names_data);
       check_lost(data, place);
     }
     // Compared and driven where the samples were taken, not where a coarse clock put them: RecordedColumn,
@@ -258,11 +258,11 @@ class Loader {
       return problems_.error(place, pointer, "", std::move(message));
     };
   }
-  void check_start(const Column& time, const Value::Member& member) {
+  void check_ends(const Column& time, const Value::Member& member) {
+    if (time.values.size() == 1) reader_.error(member, "one row: a record of a motion has two or more");
     if (time.values.empty() || time.values.front() >= 0) return;
     auto& p = reader_.error(member, "the recorded times begin before zero");
-    p.found = fmt::format("{} s", time.values.front());
-    p.hint = "shift the time column so that it begins at zero";
+    p.found = fmt::format("{} s", time.values.front()), p.hint = "shift them so that they begin at zero";
   }
   void add_column(const Recording& data, RecordedSignal& signal) {
     if (signal.column.empty()) return;  // already reported

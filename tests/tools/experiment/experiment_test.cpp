@@ -253,9 +253,14 @@ TEST_F(Experiments, TimesThatRepeatAreAnError) {
   expect_refusal({"error:"});
 }
 
+TEST_F(Experiments, OneRowIsNoRecordOfAMotion) {
+  folder.with("data.csv", "t,F,x_mm\n0,1,1\n");
+  expect_refusal({"error: one row"});
+}
+
 TEST_F(Experiments, TimesBeforeZeroAreAnErrorWithAdvice) {
   folder.with("data.csv", "t,F,x_mm\n-0.1,1,1\n0,1,1\n0.1,1,1\n");
-  expect_refusal({"begin before zero", "shift the time column"});
+  expect_refusal({"begin before zero", "shift them"});
 }
 
 TEST_F(Experiments, AMissingDataFileSaysWhereItWasLookedFor) {

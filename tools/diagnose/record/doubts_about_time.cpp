@@ -5,7 +5,7 @@ namespace loopwright::diagnosis {
 
 std::vector<RecordFinding> doubts_about_time(const std::string& diagram,
                                              const std::vector<std::string>& experiments,
-                                             const LoadOptions& options) {
+                                             const LoadOptions& options, bool is_axis) {
   Problems problems;
   for (const std::string& path : experiments) {
     const auto experiment = load_experiment(path, problems);
@@ -15,9 +15,14 @@ std::vector<RecordFinding> doubts_about_time(const std::string& diagram,
       check_unit_of_time(*plan, *experiment, problems);
   }
   std::vector<RecordFinding> findings;
-  for (const Problem& problem : problems.list())
-    if (problem.severity == Problem::Severity::warning && problem.pointer == time_of_rows)
-      findings.push_back({problem.message, problem.hint, false, false});
+  Problems doubts;
+  for (Problem problem : problems.list()) {
+    if (problem.severity != Problem::Severity::warning || problem.pointer != time_of_rows) continue;
+    findings.push_back({problem.message, problem.hint, false, false});
+    problem.severity = Problem::Severity::error;
+    doubts.add(std::move(problem));
+  }
+  if (is_axis && doubts.has_errors()) throw InputError(std::move(doubts));
   return findings;
 }
 

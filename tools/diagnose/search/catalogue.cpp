@@ -305,12 +305,14 @@ RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
     sizes.top_speed = *top;
   }
   sizes.lowest_position = low, sizes.highest_position = high, sizes.stroke = high - low;
-  sizes.force_level = std::sqrt(squared_force / std::max(count, 1.0));
   sizes.input_level = std::sqrt(squared_input / std::max(count, 1.0));
   // Of records with masses of their own the least counts: what an effect takes away must be there in each.
   sizes.machine_mass = std::ranges::min(models, {}, &AxisModel::nominal_inertia)->nominal_inertia();
   sizes.machine_damping =
       std::max(0.0, std::ranges::min(models, {}, &AxisModel::nominal_damping)->nominal_damping());
+  // An axis that coasts is driven by nothing: what slows it down is seen by what it does to its mass.
+  sizes.force_level = squared_force > 0 ? std::sqrt(squared_force / std::max(count, 1.0))
+                                        : sizes.machine_mass * sizes.top_acceleration;
   sizes.sample_time = paths.front()->sample_time;
   return sizes;
 }
