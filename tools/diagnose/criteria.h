@@ -331,6 +331,9 @@ constexpr double ridge = 1e-3;
 
 /// [s] Speeds and accelerations are differences over such times.
 constexpr double speed_span_s = 10e-3, acceleration_span_s = 40e-3;
+/// [force that accelerates the mass most] An axis whose driving force is smaller (rms) coasts: the force that
+/// slows it down is the size of forces then.
+constexpr double least_driving_share = 0.1;
 /// [s] The remainder is averaged over such times, and its dependence tested on blocks of the second length.
 constexpr double remainder_mean_s = 10e-3, remainder_block_s = 1.25;
 

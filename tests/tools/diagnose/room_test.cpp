@@ -80,6 +80,22 @@ TEST(Room, AnOrdinaryAxisHasRoomForTheWholeCatalogue) {
   EXPECT_THAT(not_looked_for(d), IsEmpty());
 }
 
+/// Pushed once, then slowed down by friction alone: the usual way to measure that.
+TEST(Room, IsThereForFrictionThatTheInputDoesNotOvercome) {
+  HiddenMachine machine;
+  machine.has_controller = false;
+  HiddenAxis axis(machine);
+  Physics truth = axis.nominal();
+  truth.coulomb_n = 0.15;
+  WantedMotion coasting;
+  coasting.initial_speed = 0.8;
+  coasting.rest(1);
+  const Diagnosis d = diagnose(axis.diagram(), {axis.record("record", truth, coasting)});
+  EXPECT_THAT(not_looked_for(d), Not(Contains("coulomb_friction")));
+  ASSERT_THAT(names(d), ElementsAre("coulomb_friction")) << to_text(d);
+  expect_parameter(d.effects[0], "level", 0.15, 0.05, "N");
+}
+
 /// The effect file that docs/effects.md shows.
 void write_bump(const std::string& path) {
   std::ifstream in(LOOPWRIGHT_SOURCE "/docs/effects.md");

@@ -310,9 +310,10 @@ RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
   sizes.machine_mass = std::ranges::min(models, {}, &AxisModel::nominal_inertia)->nominal_inertia();
   sizes.machine_damping =
       std::max(0.0, std::ranges::min(models, {}, &AxisModel::nominal_damping)->nominal_damping());
-  // An axis that coasts is driven by nothing: what slows it down is seen by what it does to its mass.
-  sizes.force_level = squared_force > 0 ? std::sqrt(squared_force / std::max(count, 1.0))
-                                        : sizes.machine_mass * sizes.top_acceleration;
+  sizes.force_level = std::sqrt(squared_force / std::max(count, 1.0));
+  // An axis that coasts is hardly driven: what slows it down is seen by what it does to its mass.
+  const double inertial = sizes.machine_mass * sizes.top_acceleration;
+  if (sizes.force_level < criteria::least_driving_share * inertial) sizes.force_level = inertial;
   sizes.sample_time = paths.front()->sample_time;
   return sizes;
 }
