@@ -1,7 +1,6 @@
 #include "tools/diagnose/diagnose.h"
 #include <fmt/format.h>
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include "tools/diagnose/any_diagram.h"
 #include "tools/diagnose/criteria.h"
@@ -385,9 +384,10 @@ Diagnosis diagnose(const std::string& diagram, const std::vector<std::string>& e
                    const DiagnoseOptions& options) {
   try {
     const bool has_roles = have_roles(experiments);
-    std::vector<RecordFinding> doubts = doubts_about_time(diagram, experiments, options.load, has_roles);
-    Diagnosis result = (has_roles ? diagnose_to_the_end : diagnose_any_diagram)(diagram, experiments, options);
-    std::ranges::move(doubts, std::back_inserter(result.findings));
+    const auto doubts = doubts_about_time(diagram, experiments, options.load, has_roles);
+    Diagnosis result = has_roles ? diagnose_to_the_end(diagram, experiments, options)
+                                 : diagnose_any_diagram(diagram, experiments, options);
+    result.findings.insert(result.findings.end(), doubts.begin(), doubts.end());
     return result;
   } catch (const Interrupted&) {
     Diagnosis result;
