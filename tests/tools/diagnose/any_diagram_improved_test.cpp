@@ -11,6 +11,7 @@
 namespace loopwright::any_diagram_improved_test {
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -117,6 +118,17 @@ TEST(AnyDiagramImproved, ALagOfAnAmplifierIsAnActuator) {
   EXPECT_NEAR(w.answer.effects[0].parameters.at(0).value, 3e-3, 0.005 * 3e-3);
   expect_all_units(w.answer.improved);
   EXPECT_EQ(w.blocks()["lag_at_amplifier"]["type"], "ActuatorLag");
+  EXPECT_LT(w.simulated(), 0.2 * w.simulated_before());
+}
+TEST(AnyDiagramImproved, ATermAtAPortThatIsDrivenStandsBesideWhatDrivesIt) {
+  const Written w(
+      heated_plate([](double t, double) { return 6e-10 * (std::pow(t, 4) - std::pow(293.15, 4)); }, 7));
+  ASSERT_THAT(names(w.answer), Contains("radiation")) << to_text(w.answer);
+  EXPECT_THAT(w.answer.moved_parameters, IsEmpty()) << to_text(w.answer);
+  EXPECT_EQ(w.answer.effects[0].site, "plate.heat");
+  EXPECT_EQ(w.answer.verdict, Verdict::explained) << to_text(w.answer);
+  ASSERT_EQ(w.answer.improved_experiments.size(), 1u);
+  expect_all_units(w.answer.improved);
   EXPECT_LT(w.simulated(), 0.2 * w.simulated_before());
 }
 TEST(AnyDiagramImproved, ACouplingActsOnBothSides) {

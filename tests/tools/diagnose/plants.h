@@ -103,6 +103,29 @@ inline Plant thermal(const Thermal& m, uint64_t seed) {
   return plant;
 }
 
+/// A heated plate. The experiment drives its port: no Sum stands before it.
+inline Plant heated_plate(const Law& lost, uint64_t seed) {
+  Plant plant;
+  plant.diagram = R"json({"loopwright": 1, "title": "A plate",
+  "parameters": {"loss": {"value": 0.5, "unit": "W/K"}},
+  "solver": {"method": "rk4", "step": 0.1, "stop": 1},
+  "blocks": {
+    "heater": {"type": "Constant", "value": {"value": 0, "unit": "W"}},
+    "plate":  {"type": "ThermalNode", "capacity": {"value": 220, "unit": "J/K"}, "conductance": "=loss",
+               "in": {"heat": "heater.y"}}
+  }})json";
+  plant.drive = R"("plate.heat": {"column": "u", "unit": "W"})";
+  plant.compare = R"("plate.temperature": {"column": "y0", "unit": "K"})";
+  plant.rate = [lost](const Numbers& x, double u, const Numbers& w) {
+    return Numbers{(u + w[0] - 0.5 * (x[0] - 293.15) - lost(x[0], 0)) / 220};
+  };
+  plant.outputs = [](const Numbers& x) { return x; };
+  plant.input = [steps = random_steps(180, seed)](double t) { return 60 + 60 * steps(t); };
+  plant.initial = {293.15}, plant.process_noise = {0.2}, plant.measurement_noise = {0.02};
+  plant.sample_time = 2, plant.rows = 1800, plant.seed = seed;
+  return plant;
+}
+
 /// Two tanks, one above the other; both levels are measured.
 struct Tanks {
   double first_outlet = 0.006, second_outlet = 0.005;

@@ -38,6 +38,15 @@ TEST(Sites, ADifferenceThatOnlyAGainReadsIsNoSiteOfItsOwn) {
               testing::UnorderedElementsAre("heat1.sum", "heat2.sum", "flow.y", "heater.u"));
 }
 
+TEST(Sites, ABodyThatIsDrivenItselfHasOneForTermsBesideThatForDistortions) {
+  const RecordedPlant files(heated_plate(nothing, 1));
+  const SiteModel model(files.diagram(), {files.experiment()}, {});
+  std::vector<Site::Kind> kinds;
+  for (const Site& site : model.sites())
+    if (site.name == "plate.heat") kinds.push_back(site.kind);
+  EXPECT_THAT(kinds, testing::UnorderedElementsAre(Site::Kind::input, Site::Kind::wire));
+}
+
 TEST(Sites, SensorsAreLookedAtOnlyIfTheExperimentNamesThem) {
   const RecordedPlant files(motor({}, 1));
   const auto searched_sensors = [&](const std::string& experiment) {

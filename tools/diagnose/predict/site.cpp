@@ -145,13 +145,16 @@ class Rewriter {
     const auto redirect = [&](Wire& wire) {
       if (wire.source == port) wire.source = sum;
     };
-    for (BlockEntry& reader : copy_->blocks)
+    const auto redirect_of = [&](BlockEntry& reader) {
       for (PortWires& in : reader.in) std::ranges::for_each(in.wires, redirect);
+    };
+    std::ranges::for_each(copy_->blocks, redirect_of);
+    std::for_each(added_.begin(), added_.end() - 1, redirect_of);  // sites before inputs, but not the new sum
     for (DiagramOutput& output : copy_->outputs) redirect(output.source);
   }
 
   /// The input of a block with states, if no other site covers it: neither a Sum feeds it nor a state, whose
-  /// wire is kinematics, nor a port that is a site itself.
+  /// wire is kinematics, nor a port that is a site itself; nor does a recorded input enter a filter there.
   void at_input(const BlockEntry& block, const PortInfo& input) {
     BlockEntry& reader = copy_of(block.name);
     const auto port = std::ranges::find(reader.in, input.name, &PortWires::port);
@@ -168,10 +171,13 @@ class Rewriter {
     if (source < 0 || number >= plan_.signals) return;
     const std::string& type = plan_.blocks[size_t(source)].type->info.type;
     const std::string& path = plan_.blocks[size_t(source)].path;
-    if (type == "Sum" || path.starts_with("recorded_")) return;
+    const bool is_driven = path.starts_with("recorded_");
+    if (type == "Sum" || (is_driven && is_filter(block))) return;
     const std::string own = port->wires[0].source;
-    if (own.starts_with("sum term at ")) return;  // the source is a site
-    const std::string term = provide(Site::Kind::wire, name, plan_.name_of(number), block.place);
+    if (!is_driven && own.starts_with("sum term at ")) return;  // the source is a site
+    // Distortions of what is recorded have their site where it enters: here is what depends on other signals.
+    const std::string term =
+        provide(Site::Kind::wire, name, is_driven ? "" : plan_.name_of(number), block.place);
     port->wires[0].source = sum_of(own, term, block.place);
   }
 
