@@ -281,10 +281,6 @@ constexpr double least_worsening = 0.01;
 /// force is no noise. Impacts that are predicted a moment too late leave up to 5 times the noise; a load with
 /// dry friction of its own, which a load of the catalogue has not, 6 to 12 times.
 constexpr double most_over_floor = 1.25, far_over_noise = 5, far_over_noise_beside_impacts = 6;
-/// [noise floor of the estimated noise; mean square of the residual force] More force than this, of which one
-/// variable explains so much, is an effect that was taken for noise. Right answers leave up to 1.8 times the
-/// noise, and where the position is measured behind a spring up to 3.5 times, which depends on nothing.
-constexpr double notable_over_noise = 2.5, notable_dependence = 0.3;
 /// [input, rms] Of which something must be left: laws that take away nearly all of it follow a machine that
 /// does not answer, because its sensor is dead, its drive off, or its time has another unit.
 constexpr double least_input_left = 0.02;

@@ -85,25 +85,6 @@ std::string force_far_above_noise(const Trials& trials, const std::vector<Member
   return fmt::format("the residual force is {:.1f} times what the estimated noise leaves", left / floor);
 }
 
-/// A force that is left and depends on one variable, though the errors are white with the noise that was
-/// estimated: that noise then stands for an effect.
-std::string force_taken_for_noise(Trials& trials, const std::vector<InverseDynamics>& inverse,
-                                  const std::vector<Member>& members, const Motion& motion,
-                                  const Noise& tight, const Diagnosis& diagnosis) {
-  const double left = diagnosis.steps.back().force_rmse, floor = diagnosis.noise_floor;
-  const double excess = std::sqrt(std::max(0.0, left * left - floor * floor));
-  if (trials.has_map() || may_be_doubtful(members) || !balances_forces(trials, inverse) ||
-      left <= criteria::notable_over_noise * floor || excess <= criteria::least_excess * trials.force_rms)
-    return {};
-  const Estimate seen = fit_members(trials, members, tight, motion, 0);
-  const std::vector<RemainderShare> shares = dependence_of(trials, *seen.fitted);
-  if (shares.empty() || shares.front().share < criteria::notable_dependence) return {};
-  return fmt::format(
-      "the residual force is {:.1f} times what the estimated noise leaves, and {} explains {:.0f} % of what "
-      "is slow in it",
-      left / floor, shares.front().variable, 100 * shares.front().share);
-}
-
 /// Whether laws of the input leave next to nothing of it.
 bool is_input_taken_away(const Trials& trials, const std::vector<Fitted>& fitted) {
   double recorded = 0, left = 0;
@@ -132,8 +113,6 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
   if (std::string why = force_above_noise(trials, inverse, e.members, repeating); !why.empty())
     diagnosis.contradictions.push_back(std::move(why));
   else if (why = force_far_above_noise(trials, e.members, diagnosis); !why.empty())
-    diagnosis.contradictions.push_back(std::move(why));
-  else if (why = force_taken_for_noise(trials, inverse, e.members, motion, tight, diagnosis); !why.empty())
     diagnosis.contradictions.push_back(std::move(why));
   if (is_input_taken_away(trials, *e.fitted))
     diagnosis.contradictions.push_back(
