@@ -80,7 +80,7 @@ TEST(Room, AnOrdinaryAxisHasRoomForTheWholeCatalogue) {
   EXPECT_THAT(not_looked_for(d), IsEmpty());
 }
 
-/// Pushed once, then slowed down by friction alone: the usual way to measure that.
+/// Pushed once, then slowed down by friction alone: the ranges of effects do not follow from the input then.
 TEST(Room, IsThereForFrictionThatTheInputDoesNotOvercome) {
   HiddenMachine machine;
   machine.has_controller = false;
@@ -91,9 +91,9 @@ TEST(Room, IsThereForFrictionThatTheInputDoesNotOvercome) {
   coasting.initial_speed = 0.8;
   coasting.rest(1);
   const Diagnosis d = diagnose(axis.diagram(), {axis.record("record", truth, coasting)});
-  EXPECT_THAT(not_looked_for(d), Not(Contains("coulomb_friction")));
-  ASSERT_THAT(names(d), ElementsAre("coulomb_friction")) << to_text(d);
-  expect_parameter(d.effects[0], "level", 0.15, 0.05, "N");
+  EXPECT_THAT(not_looked_for(d), Not(Contains("coulomb_friction"))) << to_text(d);
+  EXPECT_THAT(not_looked_for(d), Not(Contains("viscous_friction")));
+  EXPECT_EQ(d.verdict, Verdict::unexplained);  // 0.8 s of one speed are too little for a name
 }
 
 /// The effect file that docs/effects.md shows.
