@@ -66,19 +66,34 @@ TEST(BadRecord, ASensorThatShowsNoiseAloneGivesNoVerdict) {
   EXPECT_EQ(d.verdict, Verdict::unexplained);
 }
 
-TEST(BadRecord, MillisecondsTakenForSecondsAreNoDeadBand) {
-  Truth truth;
-  truth.duration_s = 6;
-  const RecordedAxis axis(truth);
+void scale_times(const RecordedAxis& axis, double factor) {
   std::stringstream read, written;
   read << std::ifstream(axis.file("train.csv")).rdbuf();
   std::string line;
   std::getline(read, line), written << line << '\n';
   while (std::getline(read, line)) {
     const size_t end = line.find(',');
-    written << 1000 * std::stod(line.substr(0, end)) << line.substr(end) << '\n';
+    written << factor * std::stod(line.substr(0, end)) << line.substr(end) << '\n';
   }
   std::ofstream(axis.file("train.csv")) << written.str();
+}
+
+TEST(BadRecord, RowsThatAreThousandsOfStepsApartAreRefused) {
+  const RecordedAxis axis{Truth{}};
+  scale_times(axis, 1e4);
+  try {
+    diagnose(axis.diagram(), {axis.experiment()});
+    FAIL() << "no motion can be followed from one such row to the next";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("steps of the diagram's solver"));
+  }
+}
+
+TEST(BadRecord, MillisecondsTakenForSecondsAreNoDeadBand) {
+  Truth truth;
+  truth.duration_s = 6;
+  const RecordedAxis axis(truth);
+  scale_times(axis, 1e3);
   const Diagnosis d = diagnose(axis.diagram(), {axis.experiment()});
   EXPECT_NE(name_of(d.verdict), "explained") << to_text(d);
   EXPECT_NE(name_of(d.verdict), "nothing_missing") << to_text(d);
