@@ -1,5 +1,6 @@
 """The plants of the benchmark, against what their equations must satisfy."""
 
+import dataclasses
 import json
 import math
 import pathlib
@@ -56,6 +57,18 @@ class Generator(unittest.TestCase):
                 for other in others:
                     at_the_same_port = other.site == unnamed.site
                     self.assertFalse(at_the_same_port and (other.law == "constant" or other.names == unnamed.names), (unnamed, other))
+
+    def test_dry_friction_changes_its_side_as_finely_as_its_width_asks_for(self):
+        plant = next(make() for make in scenario.PLANTS if make.__name__ == "hysteretic")
+        p = {n: v for n, (v, _) in plant.parameters.items()}
+        place = next(q for q in plant.places if q.law == "sign")
+        friction, motions = simulate.Hidden(place, 2e-3, -30.0), []
+        for substeps in (plant.substeps, 64 * plant.substeps):
+            finer = dataclasses.replace(plant, substeps=substeps, rows=300)
+            motions.append(simulate.run(finer, p, [friction], plant.drive(random.Random(1)), None))
+        coarse, fine = ([x[0] for x in motion.x] for motion in motions)
+        error = math.sqrt(sum((a - b) ** 2 for a, b in zip(coarse, fine)) / len(fine))
+        self.assertLess(error, 1e-4 * math.sqrt(sum(b * b for b in fine) / len(fine)))
 
     def test_a_motion_that_runs_away_within_a_step_is_drawn_again(self):
         with tempfile.TemporaryDirectory() as folder:

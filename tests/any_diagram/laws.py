@@ -16,6 +16,7 @@ class Law:
     draw: Callable = lambda values, random: 0.0
     rate: Callable = None  # of a law with memory: z' = rate(z, s, q)
     is_distortion: bool = False  # phi(s, q) is added to the signal s itself, at its own size
+    has_front: bool = False  # it changes its side while s goes through zero, within some q
 
 
 def rms(values):
@@ -46,7 +47,7 @@ def bump(s, q):
 LAWS = {
     "constant": Law(lambda s, q: 1.0, ("constant",)),
     "linear": Law(lambda s, q: s, ("linear",)),
-    "sign": Law(lambda s, q: math.tanh(s / q), ("sign",), lambda v, r: 0.01 * rms(v)),
+    "sign": Law(lambda s, q: math.tanh(s / q), ("sign",), lambda v, r: 0.01 * rms(v), has_front=True),
     "signed_square": Law(lambda s, q: s * abs(s), ("signed_square",)),
     "square": Law(lambda s, q: s * s, ("square",)),
     "cube": Law(lambda s, q: s**3, ("cube",)),

@@ -8,6 +8,8 @@ import numpy as np
 from laws import LAWS
 
 MOST_STATE = 1e9  # of any state, in its unit: more is a divergence
+REACH_OF_FRONT = 4  # [q] beyond it a tanh(s/q) is constant within a thousandth
+STEPS_AT_FRONT = 16  # [of a step] where a law changes its side: dry friction does so within less than a step
 
 
 @dataclasses.dataclass
@@ -55,6 +57,7 @@ class Motion:
         self.plant, self.p, self.hidden, self.substeps = plant, p, list(hidden), substeps
         self.ports = Ports(self.hidden)
         self.with_memory = [e for e in self.hidden if e.memory >= 0]
+        self.with_front = [e for e in self.hidden if e.law.has_front]
 
     def initial(self):
         return [*self.plant.initial, *(0.0 for _ in self.with_memory)]
@@ -69,12 +72,27 @@ class Motion:
     def flow(self, x, u):
         h = self.plant.sample_time / self.substeps
         for _ in range(self.substeps):
-            a = self.rate(x, u)
-            b = self.rate([s + h / 2 * r for s, r in zip(x, a)], u)
-            c = self.rate([s + h / 2 * r for s, r in zip(x, b)], u)
-            d = self.rate([s + h * r for s, r in zip(x, c)], u)
-            x = [s + h / 6 * (i + 2 * j + 2 * k + l) for s, i, j, k, l in zip(x, a, b, c, d)]
+            there = self.step(x, u, h)
+            if self.meets_front(x, there, u):
+                there = x
+                for _ in range(STEPS_AT_FRONT):
+                    there = self.step(there, u, h / STEPS_AT_FRONT)
+            x = there
         return x
+
+    def step(self, x, u, h):
+        a = self.rate(x, u)
+        b = self.rate([s + h / 2 * r for s, r in zip(x, a)], u)
+        c = self.rate([s + h / 2 * r for s, r in zip(x, b)], u)
+        d = self.rate([s + h * r for s, r in zip(x, c)], u)
+        return [s + h / 6 * (i + 2 * j + 2 * k + l) for s, i, j, k, l in zip(x, a, b, c, d)]
+
+    def meets_front(self, x, there, u):
+        for e in self.with_front:
+            begin, end = e.place.signal(x, u), e.place.signal(there, u)
+            if begin * end <= 0 or min(abs(begin), abs(end)) < REACH_OF_FRONT * e.q:
+                return True
+        return False
 
 
 @dataclasses.dataclass

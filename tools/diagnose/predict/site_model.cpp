@@ -42,11 +42,14 @@ void SiteModel::use(std::span<const double> factors, std::span<const SiteTerm> t
   for (const OwnRun& own : runs_) set_parameters(own.parameters, factors);
   for (SiteSignal& signal : signals_)
     signal.terms.clear(), signal.held = signal.ramp = 0, signal.remembering = -1;
+  fronts_.clear();
   if (std::exchange(is_late_, false)) draw_all_lines();
   for (const SiteTerm& term : terms) {
     if (term.shape->of != TermShape::Of::past) {
       SiteSignal& signal = signals_[size_t(term.site)];
       if (term.shape->remembered) signal.remembering = int(signal.terms.size());
+      if (term.shape->has_front && output_of_sensor(term.site) < 0)
+        fronts_.push_back({Front(term.nonlinear[0]), size_t(term.site), signal.terms.size()});
       signal.terms.emplace_back(term, term.variable < 0 ? SiteVariable{} : variables_[size_t(term.variable)]);
       continue;
     }
@@ -103,9 +106,48 @@ void SiteModel::put_modes_back(size_t row, const char* from) {
     std::memcpy(&signal.memory, std::exchange(from, from + sizeof signal.memory), sizeof signal.memory);
 }
 
+double SiteModel::longest_step(double length, int stage) {
+  double longest = length;
+  for (auto& [front, site, term] : fronts_) {
+    const SiteSignal& signal = signals_[site];
+    const double now = signal.terms[term].second.at(signal.numbers);
+    if (stage == 0) front.begins(now);
+    if (stage == 1) front.goes(now, length);
+    if (stage == 2) front.bends(now, length);
+    if (stage == 1 || stage == 2) longest = std::min(longest, front.longest_step());
+  }
+  return longest;
+}
+
+double SiteModel::step(Run<double>& run, double t, double most, double* states) {
+  constexpr double notably_shorter = 0.999;
+  const size_t n = size_t(plan_->states);
+  work_.add(4, Work::of_a_block * double(plan_->blocks.size()));
+  const bool begins_well = run.derivatives_at(t, states, slope_[0].data());
+  for (SiteSignal& signal : signals_) signal.go_on(t);
+  longest_step(most, 0);
+  bool good = begins_well;
+  double h = most;
+  for (int k = 1; k < 4; ++k) {
+    const double part = k == 3 ? h : 0.5 * h;
+    for (size_t i = 0; i < n; ++i) stage_[i] = states[i] + part * slope_[k - 1][i];
+    good &= run.derivatives_at(t + part, stage_.data(), slope_[k].data());
+    if (const double shorter = longest_step(h, k); shorter < notably_shorter * h) {
+      h = shorter, k = 0, good = begins_well;
+      continue;
+    }
+    if (k == 2)  // in the middle of the step
+      for (SiteSignal& signal : signals_) signal.go_on(t + part);
+  }
+  for (SiteSignal& signal : signals_) signal.go_on(t + h);
+  for (size_t i = 0; i < n; ++i)
+    states[i] += h / 6 * (slope_[0][i] + 2 * (slope_[1][i] + slope_[2][i]) + slope_[3][i]);
+  return good && !run.failed() ? h : 0;
+}
+
 bool SiteModel::flow(size_t row, const double* from, double* to, double* middle) {
+  constexpr double nothing_left = 1e-9;
   Run<double>& run = *driven_at(row).run;
-  work_.add(size_t(substeps_), 4 * Work::of_a_block * double(plan_->blocks.size()));
   const size_t n = size_t(plan_->states);
   const double begin = record_.time[row], h = record_.step(row) / substeps_;
   std::copy_n(from, n, to);
@@ -117,21 +159,13 @@ bool SiteModel::flow(size_t row, const double* from, double* to, double* middle)
       std::ranges::copy(run.states(), to);  // it may have jumped
       run.reuse_signals();
     }
-    bool good = run.derivatives_at(t, to, slope_[0].data());
-    for (SiteSignal& signal : signals_) signal.go_on(t);
-    for (int k = 1; k < 4; ++k) {
-      const double part = k == 3 ? h : 0.5 * h;
-      for (size_t i = 0; i < n; ++i) stage_[i] = to[i] + part * slope_[k - 1][i];
-      good &= run.derivatives_at(t + part, stage_.data(), slope_[k].data());
-      if (k == 2)  // in the middle of the step
-        for (SiteSignal& signal : signals_) signal.go_on(t + part);
-    }
-    for (SiteSignal& signal : signals_) signal.go_on(t + h);
-    for (size_t i = 0; i < n; ++i)
-      to[i] += h / 6 * (slope_[0][i] + 2 * (slope_[1][i] + slope_[2][i]) + slope_[3][i]);
-    if (!good || run.failed()) {
-      run.restored(run.now());
-      return false;
+    for (double done = 0; h - done > nothing_left * h;) {
+      const double length = this->step(run, t + done, h - done, to);
+      if (length == 0) {
+        run.restored(run.now());
+        return false;
+      }
+      done += length;
     }
     if (middle && 2 * (step + 1) == substeps_) std::copy_n(to, n, middle);
   }

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <vector>
+#include "tools/diagnose/predict/front.h"
 #include "tools/diagnose/predict/model_parameter.h"
 #include "tools/diagnose/predict/site.h"
 #include "tools/diagnose/predict/work.h"
@@ -158,6 +159,10 @@ class SiteModel {
   struct Input {
     double *value, *slope, *since;
   };
+  struct FrontOfTerm {
+    Front front;
+    size_t site, term;
+  };
   /// The diagram with the values of one record, or of all records alike.
   struct OwnRun {
     std::shared_ptr<const Plan> plan;
@@ -187,6 +192,12 @@ class SiteModel {
   /// The same, with the inputs of the row.
   OwnRun& driven_at(size_t row);
   void draw_all_lines();
+  /// Of a step of this length, after its slope at the begin (0), the first (1) and the second (2) in its
+  /// middle.
+  double longest_step(double length, int stage);
+  /// One step of the method of Runge and Kutta, shorter where a front is on its way. Its length; 0 if the
+  /// model is not finite.
+  double step(Run<double>& run, double t, double most, double* states);
 
   SignalRecord record_;
   std::shared_ptr<const Plan> plan_;  // of the first record; its numbers are those of every one
@@ -194,6 +205,7 @@ class SiteModel {
   std::vector<Site> sites_;
   const OwnRun* is_read_ = nullptr;  // by the signals
   std::vector<SiteSignal> signals_;  // one for each site; its blocks point to it
+  std::vector<FrontOfTerm> fronts_;  // of the terms in use
   std::vector<SiteVariable> variables_;
   std::vector<ModelParameter> parameters_;  // as the first record has them
   std::vector<Nearness> nearness_;

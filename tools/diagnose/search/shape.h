@@ -56,6 +56,9 @@ struct TermShape {
   std::function<double(double before, double from, double to, double time, const double* p)> remembered =
       nullptr;
 
+  /// Its first own parameter is the width within which it changes its side where the signal is zero.
+  bool has_front = false;
+
   bool has_coefficients() const { return of != Of::own && of != Of::past; }
   int nonlinear_count() const { return int(nonlinear[0] != "") + int(nonlinear[1] != ""); }
 };

@@ -12,7 +12,7 @@ namespace {
 
 /// A period that repeats less often within the range of its signal is no pattern yet.
 constexpr double fewest_repeats = 3;
-constexpr int refinements = 4;
+constexpr int steps_of_refining = 4;
 
 enum class LawOfFriction { dry, viscous, drag, none };
 LawOfFriction law_of(const TermShape& shape) {
@@ -147,9 +147,9 @@ std::optional<SiteHypothesis> with_function(SiteFitter& fitter, const SiteHypoth
     trial.terms.push_back(candidate.term);
     while (add_constant_to_function(trial)) {
     }
-    fitter.refine(trial, refinements);
+    fitter.refine(trial, steps_of_refining);
     fitter.fit_noise(trial);
-    fitter.refine(trial, refinements);
+    fitter.refine(trial, steps_of_refining);
     if (!std::isfinite(trial.objective)) continue;
     if (best && criterion(*best) <= criterion(trial)) break;  // finer ones cost more still
     best = std::move(trial);
