@@ -77,12 +77,13 @@ constexpr double much_worse_opinion = 5;
 constexpr double far_simulation = 5;
 constexpr size_t many_changes = 5;
 /// So many name nothing, however well they follow the record.
-constexpr size_t most_changes = 6;
+constexpr size_t too_many_changes = 6;
 /// [noise of the sensor] A simulation that misses its signal by more needs noise in the states: it is told.
 /// What explains all of a record without such noise misses it by 1.0 to 1.1.
 constexpr double notable_simulation = 1.3;
-/// [variance that noise in the states makes likely] A mean square of ten simulations that is larger comes by
-/// chance once in a thousand times (χ² of ten degrees of freedom): it is an effect.
+/// [variance that noise in the states makes likely] A mean square of ten simulations that is larger is an
+/// effect: it comes by chance once in a thousand times (χ² of ten degrees of freedom), and once in a hundred
+/// where noise is so slow that few of them are independent.
 constexpr double most_noise_of_simulations = 3;
 /// [spread of the signal] A diagram that misses a signal by more is no plant that can be simulated by itself.
 constexpr double runaway_simulation = 10;

@@ -5,6 +5,9 @@
 namespace loopwright {
 namespace {
 
+/// [of a state] A smaller change is lost in its digits, as that of a position far from zero.
+constexpr double least_difference = 1.5e-8;
+
 /// Mean of the force over a sample and its slope, from its means over equal steps: ∫ (u - ½) f du, in which
 /// the force of a step acts at its middle.
 template <class Vector> class MeanAndSlope {
@@ -69,7 +72,8 @@ const StepMaps::StepMap* StepMaps::map_at(const Eigen::VectorXd& z, const GivenS
       map.slopes.col(c) = (there - map.to) / by;
       return true;
     };
-    if (!differ(differences_[c]) && !differ(-differences_[c])) return nullptr;
+    const double by = std::max(differences_[c], least_difference * std::abs(z[c]));
+    if (!differ(by) && !differ(-by)) return nullptr;
   }
   return &maps_.emplace(decided, std::move(map)).first->second;
 }

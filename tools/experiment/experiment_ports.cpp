@@ -59,16 +59,18 @@ std::string hint_at_unit(const Experiment& experiment, std::string_view unit) {
 }
 
 /// The same of a diagram without samples, whose rows are far more steps of its solver apart than anyone
-/// needs.
-void check_against_steps(const Plan& plan, const Experiment& experiment, Problems& problems) {
+/// needs. Whether no motion of an axis can be followed from one to the next, however stiff its diagram is.
+bool check_against_steps(const Plan& plan, const Experiment& experiment, Problems& problems) {
   constexpr double most_steps = 2000;  // in a row; an accurate simulation has some tens
+  constexpr double longest_row = 0.5;  // s, of logs of axes
   const double step = plan.clock.time(plan.step_ticks), row = experiment.time.sample_time;
-  if (plan.step_ticks <= 0 || !plan.steps_between_samples || row <= most_steps * step) return;
+  if (plan.step_ticks <= 0 || !plan.steps_between_samples || row <= most_steps * step) return false;
   problems
       .warning(experiment.place, std::string(time_of_rows), "",
                fmt::format("the rows are {:.6g} s apart, which is {:.0f} steps of the diagram's solver", row,
                            row / step))
       .hint = hint_at_unit(experiment, "ms");
+  return row > longest_row;
 }
 
 /// A constant in place of a recorded column, whether that exists or not.
@@ -112,9 +114,7 @@ LoadOptions with_drives(const std::string& diagram, const Experiment& experiment
 
 }  // namespace
 
-/// Rows that are a thousand samples of the diagram apart, to a hundredth of that, while no sample time is
-/// near them: such a time is rather in ms than in s. It may also be a slow log, so that this is no error.
-void check_unit_of_time(const Plan& plan, const Experiment& experiment, Problems& problems) {
+bool check_unit_of_time(const Plan& plan, const Experiment& experiment, Problems& problems) {
   constexpr double near = 20, alike = 0.01;  // times; of the factor
   struct Scale {
     double factor;
@@ -122,7 +122,7 @@ void check_unit_of_time(const Plan& plan, const Experiment& experiment, Problems
   };
   constexpr Scale scales[] = {{1e3, "ms"}, {1e6, "us"}, {1e9, "ns"}, {1e-3, "s"}, {1e-6, "s"}};
   const double step = experiment.time.sample_time;
-  if (step <= 0) return;
+  if (step <= 0) return false;
   const Scale* found = nullptr;
   double sample_time = 0;
   bool is_sampled = false;
@@ -130,17 +130,18 @@ void check_unit_of_time(const Plan& plan, const Experiment& experiment, Problems
     if (block.sample_time <= 0) continue;
     is_sampled = true;
     const double ratio = step / block.sample_time;
-    if (ratio < near && ratio > 1 / near) return;
+    if (ratio < near && ratio > 1 / near) return false;
     for (const Scale& scale : scales)
       if (std::abs(ratio / scale.factor - 1) < alike) found = &scale, sample_time = block.sample_time;
   }
   if (!is_sampled) return check_against_steps(plan, experiment, problems);
-  if (!found) return;
+  if (!found) return false;
   auto& p = problems.warning(
       experiment.place, std::string(time_of_rows), "",
       fmt::format("the rows are {:.6g} s apart, and the diagram has samples of {:.6g} s", step, sample_time));
   p.hint = found->factor > 1 ? hint_at_unit(experiment, found->unit)
                              : fmt::format("is the unit of the time \"{}\" right?", experiment.time_column);
+  return found->factor > 1;
 }
 
 Plan logging(const Plan& plan, const Experiment& experiment, Problems& problems) {

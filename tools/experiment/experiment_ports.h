@@ -11,9 +11,11 @@ namespace loopwright {
 Plan logging(const Plan& plan, const Experiment& experiment, Problems& problems);
 
 /// A warning at this place of the experiment if rows and samples are a thousand times apart, or rows many steps
-/// of the solver of a diagram without samples: such a time is rather in ms than in s.
+/// of the solver of a diagram without samples: such a time is rather in ms than in s, but it may be a slow log.
+/// Whether rows are a thousand samples apart, to a hundredth of that, and no sample time is near them, or so
+/// many steps and more than half a second: nobody logs an axis so.
 constexpr std::string_view time_of_rows = "/data";
-void check_unit_of_time(const Plan& plan, const Experiment& experiment, Problems& problems);
+bool check_unit_of_time(const Plan& plan, const Experiment& experiment, Problems& problems);
 
 /// The experiment with its compared columns in the units of their ports: hertz become radians per second, and
 /// vice versa. Incompatible units are left unchanged; logging() reports them.

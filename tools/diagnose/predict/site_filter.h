@@ -88,12 +88,14 @@ class SiteFilter {
   /// The errors of the model's present parameters and terms with gains and variances of another pass.
   bool run_frozen(const SitePass& gains, std::span<double> error);
   /// Without any correction from row `from` on, starting from the filtered state there: y - h, NaN where
-  /// there is no reading.
-  bool simulate(const SitePass& pass, size_t from, size_t to, std::span<double> error);
+  /// there is no reading. Where the filter `settles`, there is no error: it begins after that.
+  bool simulate(const SitePass& pass, const std::vector<bool>& settles, size_t from, size_t to,
+                std::span<double> error);
   /// Variances of the errors of simulations that begin anew every `length` rows, if nothing but the noise of
   /// the pass is missing; from row `from` to the end. Linearized about the pass; what it has learned of slow
   /// noise is forgotten where a simulation begins.
-  void expect_of_simulations(const SitePass& pass, size_t from, size_t length, std::span<double> variance);
+  void expect_of_simulations(const SitePass& pass, const std::vector<bool>& settles, size_t from,
+                             size_t length, std::span<double> variance);
   /// The same from the initial states that fit these rows best.
   bool simulate_freely(size_t from, size_t to, std::span<double> error);
   /// -2 ln L of another noise, linearized about the pass.

@@ -48,9 +48,15 @@ double SiteFilter::deviation_at(const SitePass& pass, size_t row, const SiteNois
   return std::isfinite(size) ? noise.process[index] * longer * size / site_scale_[site] : 0;
 }
 
-bool SiteFilter::simulate(const SitePass& pass, size_t from, size_t to, std::span<double> error) {
+bool SiteFilter::simulate(const SitePass& pass, const std::vector<bool>& settles, size_t from, size_t to,
+                          std::span<double> error) {
   for (size_t row = from; row < to; ++row) {
-    if (row == from || record_.begins_at(row)) {
+    if (settles[row]) {
+      std::fill_n(&error[(row - from) * pass.outputs], pass.outputs,
+                  std::numeric_limits<double>::quiet_NaN());
+      continue;
+    }
+    if (row == from || settles[row - 1] || record_.begins_at(row)) {
       x_ = ConstMap(&pass.filtered[row * pass.states], Eigen::Index(pass.states));
       model_.put_modes_back(row, &pass.modes[row * model_.mode_bytes()]);
     }
@@ -63,8 +69,8 @@ bool SiteFilter::simulate(const SitePass& pass, size_t from, size_t to, std::spa
   return true;
 }
 
-void SiteFilter::expect_of_simulations(const SitePass& pass, size_t from, size_t length,
-                                       std::span<double> variance) {
+void SiteFilter::expect_of_simulations(const SitePass& pass, const std::vector<bool>& settles, size_t from,
+                                       size_t length, std::span<double> variance) {
   const auto n = Eigen::Index(pass.states);
   Eigen::MatrixXd simulated(n, n);  // covariance of the states without corrections; P_ is that with them
   for (size_t row = 0; row < pass.rows; ++row) {
@@ -75,13 +81,12 @@ void SiteFilter::expect_of_simulations(const SitePass& pass, size_t from, size_t
       P_.noalias() -= gain_ * ConstMap(&pass.gain[at * pass.states], n).transpose();
     }
     if (row >= from) {
-      if ((row - from) % length == 0 || record_.begins_at(row)) {
-        simulated = P_;
-        for (size_t j = 0; j < pass.noise.slow.size(); ++j) {
-          const auto i = Eigen::Index(model_states_ + j);
-          simulated.row(i).setZero(), simulated.col(i).setZero();
-          simulated(i, i) = squared(pass.noise.slow[j].size);
-        }
+      if ((row - from) % length == 0 || settles[row] || record_.begins_at(row)) {
+        simulated = P_;  // what is slow is simulated as zero: its error is itself
+        const auto slow = Eigen::Index(pass.noise.slow.size());
+        simulated.bottomRightCorner(slow, slow).setZero();
+        for (Eigen::Index j = 0; j < slow; ++j)
+          simulated(n - slow + j, n - slow + j) = squared(pass.noise.slow[size_t(j)].size);
       }
       for (size_t j = 0; j < pass.outputs; ++j) {
         const ConstMap C(&pass.C[(row * pass.outputs + j) * pass.states], n);

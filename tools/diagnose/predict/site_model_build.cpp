@@ -108,10 +108,10 @@ void limit_search(std::vector<Site>& sites, const std::vector<Wire>& wanted_site
   KnownNames names;
   for (Site& site : sites) site.is_searched = false, names.add(site.name);
   for (const Wire& wanted : wanted_sites) {
-    const auto found = std::ranges::find(sites, wanted.source, &Site::name);
-    if (found != sites.end())
-      found->is_searched = true;
-    else
+    bool is_known = false;  // a port that is driven directly has two: of its input, and of what is added
+    for (Site& site : sites)
+      if (site.name == wanted.source) site.is_searched = is_known = true;
+    if (!is_known)
       names.explain(problems.error(wanted.place, "/sites", "", "nothing can be missing there"),
                     wanted.source);
   }

@@ -276,6 +276,7 @@ RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
                      const std::vector<const AxisModel*>& models) {
   RecordSizes sizes;
   double squared_force = 0, squared_input = 0, count = 0, low = 1e300, high = -1e300;
+  double squared_inertial = 0, accelerations = 0;
   std::vector<double> speeds;
   for (size_t i = 0; i < paths.size(); ++i) {
     const Path& path = *paths[i];
@@ -290,10 +291,13 @@ RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
     }
     const size_t half =
         std::max<size_t>(1, whole_count(std::round(criteria::acceleration_span_s / 2 / path.sample_time)));
-    for (size_t k = half; k + half < path.samples(); k += std::max<size_t>(1, half / 4))
-      sizes.top_acceleration =
-          std::max(sizes.top_acceleration, std::abs(path.velocity[k + half] - path.velocity[k - half]) /
-                                               (2 * double(half) * path.sample_time));
+    for (size_t k = half; k + half < path.samples(); k += std::max<size_t>(1, half / 4)) {
+      const double acceleration = std::abs(path.velocity[k + half] - path.velocity[k - half]) /
+                                  (2 * double(half) * path.sample_time);
+      sizes.top_acceleration = std::max(sizes.top_acceleration, acceleration);
+      if (path.rests[k] || double(k - half) * path.sample_time < criteria::speed_span_s) continue;
+      squared_inertial += std::pow(models[i]->nominal_inertia() * acceleration, 2), accelerations += 1;
+    }
     sizes.duration = std::max(sizes.duration, double(path.samples()) * path.sample_time);
     if (const MeasuredPort* position = models[i]->record().find("position"))
       sizes.resolution = std::max(sizes.resolution, position->resolution);
@@ -312,7 +316,7 @@ RecordSizes sizes_of(const std::vector<std::shared_ptr<const Path>>& paths,
       std::max(0.0, std::ranges::min(models, {}, &AxisModel::nominal_damping)->nominal_damping());
   sizes.force_level = std::sqrt(squared_force / std::max(count, 1.0));
   // An axis that coasts is hardly driven: what slows it down is seen by what it does to its mass.
-  const double inertial = sizes.machine_mass * sizes.top_acceleration;
+  const double inertial = std::sqrt(squared_inertial / std::max(accelerations, 1.0));
   if (sizes.force_level < criteria::least_driving_share * inertial) sizes.force_level = inertial;
   sizes.sample_time = paths.front()->sample_time;
   return sizes;

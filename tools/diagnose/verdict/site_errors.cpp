@@ -28,8 +28,22 @@ void use_simulation(SiteFitter& fitter, const SiteHypothesis& h, SiteErrors& err
   errors.held_out = simulation->held_out.empty() ? errors.held_out : simulation->held_out;
   errors.noise = h.noise.measurement;
   errors.expected_simulated = errors.noise;
-  for (const SlowNoise& slow : h.noise.slow)
-    errors.leaves_slow_error |= slow.size > h.noise.measurement[size_t(slow.output)];
+  for (const SlowNoise& slow : h.noise.slow) {
+    const auto output = size_t(slow.output);
+    errors.leaves_slow_error |= slow.size > h.noise.measurement[output];
+    errors.expected_simulated[output] = std::hypot(errors.expected_simulated[output], slow.size);
+  }
+}
+
+/// Rows in which the filter still learns where a record, or its part that is held out, begins.
+std::vector<bool> settling_rows(const SignalRecord& record) {
+  std::vector<bool> settles(record.rows());
+  for (size_t from = 0, to = 0; from < record.rows(); from = to) {
+    do ++to;
+    while (to < record.rows() && !record.begins_at(to));
+    std::fill_n(settles.begin() + std::ptrdiff_t(from), (to - from) / criteria::settling_part, true);
+  }
+  return settles;
 }
 
 }  // namespace
@@ -65,11 +79,12 @@ SiteErrors errors_of(SiteFitter& fitter, SiteHypothesis h) {
                length = (rows - first) / criteria::simulations_of_any_diagram + 1;
   std::vector<MeanSquare> simulated(pass.outputs), expected(pass.outputs);
   std::vector<double> e, variance((rows - first) * pass.outputs);
-  fitter.filter().expect_of_simulations(pass, first, length, variance);
+  const std::vector<bool> settles = settling_rows(record);
+  fitter.filter().expect_of_simulations(pass, settles, first, length, variance);
   for (size_t from = first; from < rows; from += length) {
     const size_t to = std::min(rows, from + length);
     e.resize((to - from) * pass.outputs);
-    if (!fitter.filter().simulate(pass, from, to, e)) errors.diverges = true;
+    if (!fitter.filter().simulate(pass, settles, from, to, e)) errors.diverges = true;
     for (size_t i = 0; i < e.size(); ++i) {
       simulated[i % pass.outputs].add(e[i] * e[i]);
       if (std::isfinite(e[i])) expected[i % pass.outputs].add(variance[(from - first) * pass.outputs + i]);

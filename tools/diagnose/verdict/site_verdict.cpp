@@ -209,22 +209,23 @@ class Telling {
   std::optional<size_t> missed_by_far() const {
     return missed_output(errors_, found_.noise, criteria::far_simulation);
   }
+  size_t changes() const { return result_.effects.size() + result_.moved_parameters.size(); }
+  bool are_too_many_changes() {
+    if (changes() < criteria::too_many_changes) return false;
+    result_.findings.push_back({fmt::format("{} changes at once", changes()),
+                                "they may stand for one effect that nothing here names", true, false});
+    return true;
+  }
   /// Many changes at once, with which a simulation still misses the record by far, follow it without its
   /// cause.
   bool are_many_changes_in_vain() {
-    const size_t changes = result_.effects.size() + result_.moved_parameters.size();
-    if (changes >= criteria::most_changes) {
-      result_.findings.push_back({fmt::format("{} changes at once", changes),
-                                  "they may stand for one effect that nothing here names", true, false});
-      return true;
-    }
     const std::optional<size_t> missed = missed_by_far();
-    if (changes < criteria::many_changes || !missed) return false;
+    if (changes() < criteria::many_changes || !missed) return false;
     const double ratio = errors_.simulated[*missed] / found_.noise.measurement[*missed];
     result_.findings.push_back(
         {fmt::format(
              "with {} changes at once a simulation still misses {} by {:.0f} times the noise of its sensor",
-             changes, model_.record().outputs[*missed].port, ratio),
+             changes(), model_.record().outputs[*missed].port, ratio),
          "they may stand for one effect that nothing here names", true, false});
     return true;
   }
@@ -319,7 +320,7 @@ class Telling {
     const bool worse = names && simulates_worse();
     const bool is_open =
         (names && search_.second_opinion && search_.second_opinion->is_open() && missed_by_far()) ||
-        has_untold_terms() || are_many_changes_in_vain() || has_contradicted_terms() ||
+        has_untold_terms() || are_too_many_changes() || are_many_changes_in_vain() || has_contradicted_terms() ||
         has_cancelling_names() || (names && is_input_questioned_);
     const bool is_bent = names && misses_more_than_noise();
     const bool is_nothing = !names && (is_left_out_ || is_exact(errors_, model_.record()));

@@ -73,7 +73,8 @@ bool is_noise_inflated(const Trials& trials, const std::vector<Member>& members,
 /// record with few rows between its turns is not asked otherwise, because its smoothed motion is not that of
 /// the axis.
 std::string force_far_above_noise(const Trials& trials, const std::vector<Member>& members,
-                                  const Diagnosis& diagnosis) {
+                                  const std::vector<InverseDynamics>& inverse, const Diagnosis& diagnosis) {
+  if (!balances_forces(trials, inverse)) return {};
   const double left = diagnosis.steps.back().force_rmse, floor = diagnosis.noise_floor;
   const auto is_read_too_seldom = [](const Trial& t) { return t.model->record().acts_between_readings; };
   const bool has_impacts = may_be_doubtful(members);
@@ -89,8 +90,9 @@ std::string force_far_above_noise(const Trials& trials, const std::vector<Member
 bool is_input_taken_away(const Trials& trials, const std::vector<Fitted>& fitted) {
   double recorded = 0, left = 0;
   for (size_t t = 0; t < fitted.size(); ++t) {
-    for (const double u : trials.list[t].input) recorded += u * u;
-    for (const double u : fitted[t].prediction.path.input) left += u * u;
+    const std::vector<double>& kept = fitted[t].prediction.path.input;  // of the fitted rows
+    for (size_t k = 0; k < kept.size(); ++k)
+      recorded += trials.list[t].input[k] * trials.list[t].input[k], left += kept[k] * kept[k];
   }
   return left < std::pow(criteria::least_input_left, 2) * recorded;
 }
@@ -112,7 +114,7 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
   const double repeating = is_counted ? diagnosis.noise_floor : 0;
   if (std::string why = force_above_noise(trials, inverse, e.members, repeating); !why.empty())
     diagnosis.contradictions.push_back(std::move(why));
-  else if (why = force_far_above_noise(trials, e.members, diagnosis); !why.empty())
+  else if (why = force_far_above_noise(trials, e.members, inverse, diagnosis); !why.empty())
     diagnosis.contradictions.push_back(std::move(why));
   if (is_input_taken_away(trials, *e.fitted))
     diagnosis.contradictions.push_back(
