@@ -6,6 +6,7 @@
 #include <span>
 #include "engine/diagram/in_memory.h"
 #include "models/real/whole.h"
+#include "tools/experiment/balances.h"
 #include "tools/experiment/experiment_ports.h"
 
 namespace loopwright {

@@ -4,6 +4,7 @@
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/improvement.h"
 #include "tools/diagnose/predict/divergence.h"
+#include "tools/diagnose/search/leaps_of_input.h"
 #include "tools/diagnose/search/own_shapes.h"
 #include "tools/diagnose/search/site_opinion.h"
 #include "tools/diagnose/verdict/plots.h"
@@ -78,6 +79,8 @@ Diagnosis diagnose_any_diagram(const std::string& diagram, const std::vector<std
   if (model.record().shortened) result.findings.push_back(*model.record().shortened);
   if (const size_t count = model.record().false_readings; count > 0)
     result.findings.push_back(readings_are_false(count, "they count as missing"));
+  if (const size_t count = take_unfelt_leaps_away(fitter); count > 0)
+    result.findings.push_back(inputs_leap(count));
   const auto found = search_with_second_opinion(fitter, progress);
   if (is_interrupted()) {
     result.was_interrupted = true;

@@ -121,6 +121,9 @@ constexpr double most_portmanteau_per_row = 1;
 /// The same of the squares of the errors, [rows] and at least: rattling loads have 0.5 to 1.8 a row, right
 /// answers 0.42 at most.
 constexpr double most_bursts_per_row = 0.45, least_bursts = 500;
+/// [portmanteau] That counts alone would make, of a record in which nothing is named: from so much on they
+/// may have made all of it, if the force that remains is not material.
+constexpr double least_share_of_counts = 0.33;
 /// [noise force] That coarse counts leave of what they feign.
 constexpr double calmer_force = 0.1;
 /// [what counts add] A line of their beat that is a fifth stronger adds half as much again.
@@ -209,6 +212,17 @@ constexpr double same_motion = 0.01;
 constexpr double most_held_out = 1.5;
 /// [probability] Of an effect that ranks among the certain ones.
 constexpr double sure = 0.9;
+
+// Two sensors of one axis: see record/two_sensors.h.
+
+/// [s] A stretch whose way both tell: longer than what a tachometer's filter delays, shorter than most
+/// strokes.
+constexpr double way_s = 0.05;
+/// [stretches] Fewer tell nothing.
+constexpr size_t least_ways = 20;
+/// [of 1; standard errors] By which the velocity must differ from the rate of the position: sensors are
+/// better.
+constexpr double least_ratio_of_sensors = 0.01, sure_ratio = 6;
 
 // Work: see predict/work.h.
 

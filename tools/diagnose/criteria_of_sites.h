@@ -13,6 +13,8 @@ constexpr double most_averaged_away = 0.15;
 constexpr double most_missing_of_means = 0.2;
 /// n Σ ρ² over 40 lags is near 40 when nothing is left; the largest of a thousand records is below this.
 constexpr double most_portmanteau_of_any_diagram = 120;
+/// [resolution / √12] What counts and a little noise leave of predictions and simulations.
+constexpr double most_error_of_counts = 1.1;
 /// Of a term to the signal at its site, root mean squares. Interpolation between the rows, and steps of the
 /// integration, leave this much on a record without noise.
 constexpr double least_share_of_site = 1e-3;

@@ -8,6 +8,7 @@
 #include "tools/diagnose/search/catalogue.h"
 #include "tools/diagnose/search/conclude.h"
 #include "tools/diagnose/search/doubt.h"
+#include "tools/diagnose/search/leaps_of_input.h"
 #include "tools/diagnose/search/noisy_input.h"
 #include "tools/diagnose/search/remaining_force.h"
 #include "tools/diagnose/verdict/acceptance.h"
@@ -261,10 +262,6 @@ void tell_errors(const Trials& trials, const Conclusion& conclusion, const Inqui
   result.measurement_noise = noise.measurement;
 }
 
-bool controller_may_know_more(const AxisModel* model) {
-  return model->record().acts_between_readings || !model->record().left_out.empty();
-}
-
 /// `input_noise`: see AxisModel.
 Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std::string>& experiments,
                               const DiagnoseOptions& options,
@@ -275,6 +272,9 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   progress("reading the records", 0);
   Motion motion;
   Trials trials = prepare(diagram, experiments, options.load, motion, input_noise);
+  if (!input_noise && does_not_feel_leaps(diagram, experiments, options.load, trials, motion))
+    return diagnose_to_the_end(diagram, experiments, options, InputNoise{.without_leaps = true});
+  const bool is_smoothed = input_noise && input_noise->rows > 0;
   trials.interrupt = options.interrupt;
   const double most_work = options.most_work.value_or(criteria::most_work);
   *trials.work = Work(most_work);
@@ -288,8 +288,9 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   const WhyNot cannot_be_added = attachable(diagram, experiments, options.load, units, sizes);
   const auto why_not = [&](const Effect& effect) {
     std::string why = trials.has_map() ? not_in_a_map(effect) : std::string();
-    if (why.empty() && input_noise) why = hidden_by_input_noise(effect);
-    if (why.empty() && std::ranges::any_of(models, controller_may_know_more))
+    if (why.empty() && is_smoothed) why = hidden_by_input_noise(effect);
+    if (why.empty() && std::ranges::any_of(
+                           models, [](const AxisModel* m) { return m->record().controller_may_know_more(); }))
       why = hidden_by_controller(effect);
     return why.empty() ? cannot_be_added(effect) : why;
   };
@@ -314,7 +315,7 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
       accept(conclusion_from(inquiry, result.findings), trials, inverse, improver, options.load,
              catalogue.candidates.size(),
              [&](const Conclusion& c, size_t member) { return inquiry.without(c, member); });
-  if (input_noise)
+  if (is_smoothed)
     result.findings.push_back(input_is_noisy(trials, *input_noise));
   else if (const auto noise =
                noise_instead_of_late_input(trials, accepted.conclusion.estimate, catalogue.candidates.size()))

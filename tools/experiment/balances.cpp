@@ -48,6 +48,14 @@ std::vector<Stand> stands_of(const std::vector<double>& position, double resolut
 
 }  // namespace
 
+void reject_map(const Experiment& experiment, Problems& problems) {
+  if (!experiment.is_map) return;
+  auto& p = problems.error(experiment.map_place, "/rows", "",
+                           "a map of balances has no time that a run could follow");
+  p.expected = "\"rows\": \"samples\"";
+  p.hint = "`loopwright diagnose` reads maps";
+}
+
 void gather_balances(Experiment& experiment, Problems& problems) {
   const RecordedSignal* position = position_of(experiment);
   const auto reject = [&](std::string message) -> Problem& {

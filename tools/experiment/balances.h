@@ -4,6 +4,9 @@
 
 namespace loopwright {
 
+/// Reports a problem if the experiment is a map of balances, which no simulation in time can follow.
+void reject_map(const Experiment& experiment, Problems& problems);
+
 /// Joins the rows of each stand into one, their mean. A new stand begins when the role "position" has moved
 /// by more than three of its resolutions from where the stand began; without a resolution every row is a
 /// stand. A stand with less than half the usual number of rows is dropped, because the axis only passed

@@ -14,6 +14,7 @@
 #include "hw/realtime/deploy.h"
 #include "tools/experiment/balances.h"
 #include "tools/experiment/data_file.h"
+#include "tools/experiment/impossible_values.h"
 #include "tools/experiment/experiment_shape.h"
 #include "tools/experiment/signal_figures.h"
 
@@ -331,6 +332,7 @@ bool has_excerpt(const Experiment& experiment) {
 std::shared_ptr<const Experiment> read_experiment(const std::string& path, Problems& problems) {
   Problems own;
   const auto experiment = Loader(path, own).run();
+  if (experiment) reject_impossible_values(*experiment, own);
   for (const Problem& problem : own.list()) problems.add(problem);
   return experiment;
 }
@@ -347,14 +349,6 @@ std::vector<std::shared_ptr<const Experiment>> load_experiments(const std::vecto
   std::vector<std::shared_ptr<const Experiment>> list;
   for (const std::string& path : paths) list.push_back(load_experiment(path, problems));
   return list;
-}
-
-void reject_map(const Experiment& experiment, Problems& problems) {
-  if (!experiment.is_map) return;
-  auto& p = problems.error(experiment.map_place, "/rows", "",
-                           "a map of balances has no time that a run could follow");
-  p.expected = "\"rows\": \"samples\"";
-  p.hint = "`loopwright diagnose` reads maps";
 }
 
 LoadOptions with_own_values(const Experiment& experiment, LoadOptions options) {

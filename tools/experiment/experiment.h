@@ -58,8 +58,6 @@ std::vector<std::shared_ptr<const Experiment>> load_experiments(const std::vecto
 /// With errors the result contains what could be read, ports without columns; null if nothing could be read.
 std::shared_ptr<const Experiment> read_experiment(const std::string& path, Problems& problems);
 
-/// Reports a problem if the experiment is a map of balances, which no simulation in time can follow.
-void reject_map(const Experiment& experiment, Problems& problems);
 
 /// Load options with the values that this record is known to have; what `--set` states of the same does not
 /// count.

@@ -46,8 +46,10 @@ void add_stale(std::span<const double> value, std::vector<size_t>& rows) {
   }
 }
 
-/// Out and back: the second differences of the neighbours are half as large, and of the other sign.
-void add_leaps(std::span<const double> value, std::vector<size_t>& rows) {
+}  // namespace
+
+std::vector<size_t> leaps_out_and_back(std::span<const double> value) {
+  std::vector<size_t> rows;
   constexpr double least_share = 0.25, most_share = 0.75;  // about a half
   const auto second = [&](size_t k) { return value[k + 1] - 2 * value[k] + value[k - 1]; };
   for (const size_t row : outliers(value)) {
@@ -58,13 +60,12 @@ void add_leaps(std::span<const double> value, std::vector<size_t>& rows) {
     };
     if (is_half(row - 1) && is_half(row + 1)) rows.push_back(row);
   }
+  return rows;
 }
 
-}  // namespace
-
 std::vector<size_t> false_readings(std::span<const double> value) {
-  std::vector<size_t> rows;
-  add_stale(value, rows), add_leaps(value, rows);
+  std::vector<size_t> rows = leaps_out_and_back(value);
+  add_stale(value, rows);
   std::ranges::sort(rows);
   rows.erase(std::ranges::unique(rows).begin(), rows.end());
   return rows;

@@ -10,6 +10,10 @@ namespace loopwright {
 /// row, and single rows that leap out and back. Ascending. A step of one count is no proof: four are.
 std::vector<size_t> false_readings(std::span<const double> value);
 
+/// Single rows far out of line whose neighbours on both sides are in line: the second differences there are
+/// half as large, and of the other sign. A sensor read falsely; a command may well do so. Ascending.
+std::vector<size_t> leaps_out_and_back(std::span<const double> value);
+
 /// The readings of these rows become those of the cubic through the two nearest other rows on either side.
 /// `at`: where the rows lie, in any unit. Rows without two on either side keep theirs.
 void replace_readings(std::span<const double> at, std::span<double> value, std::span<const size_t> rows);

@@ -5,6 +5,7 @@
 #include <set>
 #include "engine/json/reader.h"
 #include "models/real/whole.h"
+#include "tools/experiment/balances.h"
 #include "tools/experiment/experiment_ports.h"
 #include "tools/experiment/repeated_records.h"
 

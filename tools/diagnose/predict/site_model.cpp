@@ -64,6 +64,11 @@ void SiteModel::suppose_between_rows(size_t input, BetweenRows between) {
   draw_all_lines();
 }
 
+void SiteModel::suppose_input(size_t input, std::vector<double> values) {
+  record_.inputs[input].value = std::move(values);
+  draw_all_lines();
+}
+
 void SiteModel::draw_all_lines() {
   for (size_t i = 0; i < lines_.size(); ++i) lines_[i] = lines_of(record_, record_.inputs[i]);
 }

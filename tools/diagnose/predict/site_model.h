@@ -129,6 +129,9 @@ class SiteModel {
   /// What a recorded input does between its rows, in the place of what the experiment states.
   void suppose_between_rows(size_t input, BetweenRows between);
 
+  /// Other values of a recorded input in the place of those of the experiment.
+  void suppose_input(size_t input, std::vector<double> values);
+
   /// Steps of the integration in a sample.
   int substeps() const { return substeps_; }
   void set_substeps(int count) { substeps_ = count; }

@@ -7,6 +7,7 @@
 #include "tools/compare/machine.h"
 #include "tools/diagnose/predict/axis_model.h"
 #include "tools/diagnose/predict/site_model.h"
+#include "tools/experiment/balances.h"
 #include "tools/experiment/experiment_ports.h"
 
 namespace loopwright::diagnosis {

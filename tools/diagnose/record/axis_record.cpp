@@ -138,12 +138,32 @@ void take_means(AxisRecord& record, size_t rows) {
   }
 }
 
-/// A device that gives an old value now and then says nothing of the machine.
-void replace_false_readings(AxisRecord& record) {
-  if (record.is_map) return;
+/// Where the rows lie, in samples.
+std::vector<double> places_of_rows(const AxisRecord& record) {
   std::vector<double> at(record.rows());
   for (size_t k = 1; k < at.size(); ++k)
     at[k] = at[k - 1] + (record.duration.empty() ? 1 : record.duration[k - 1]);
+  return at;
+}
+
+/// They become what their neighbours say, where they are to go.
+void look_for_leaps_of_input(AxisRecord& record, bool are_to_go) {
+  if (record.is_map) return;
+  std::vector<size_t> rows = leaps_out_and_back(record.input);
+  record.input_leaps = rows.size(), record.leaps_are_taken_away = are_to_go && !rows.empty();
+  if (!record.leaps_are_taken_away) return;
+  const std::vector<double> at = places_of_rows(record);
+  replace_readings(at, record.input, rows);
+  if (record.input_slope.empty()) return;
+  for (size_t i = 0, count = rows.size(); i < count; ++i) rows.push_back(rows[i] - 1);  // it leads there
+  std::ranges::sort(rows);
+  replace_readings(at, record.input_slope, rows);
+}
+
+/// A device that gives an old value now and then says nothing of the machine.
+void replace_false_readings(AxisRecord& record) {
+  if (record.is_map) return;
+  const std::vector<double> at = places_of_rows(record);
   for (MeasuredPort& port : record.measured) {
     const std::vector<size_t> rows = false_readings(port.value);
     replace_readings(at, port.value, rows);
@@ -199,6 +219,7 @@ std::vector<double> mean_over_rows(const std::vector<double>& values, double row
 }
 
 void take_away(AxisRecord& record, const InputNoise& noise) {
+  if (noise.rows == 0) return;
   for (std::vector<double>* values : {&record.input, &record.input_slope}) {
     const std::vector<double> mean = mean_over_rows(*values, noise.rows);
     for (size_t k = 0; k < values->size(); ++k) (*values)[k] -= noise.share * ((*values)[k] - mean[k]);
@@ -259,7 +280,7 @@ Experiment cut_open(const Experiment& experiment, const Plan& plan, Problems& pr
 }
 
 AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Problems& problems,
-                            size_t rows_in_one) {
+                            size_t rows_in_one, bool without_input_leaps) {
   AxisRecord record;
   record.title = experiment.title, record.path = experiment.path, record.place = experiment.place;
   const std::vector<double>& time = experiment.data.columns.front().values;
@@ -293,6 +314,7 @@ AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Prob
   }
   take_rows_of_sensors(record, problems);
   replace_false_readings(record);
+  look_for_leaps_of_input(record, without_input_leaps);
   if (rows_in_one == 0) rows_in_one = rows_for_one(record);
   if (rows_in_one > 1 && !record.is_map && record.duration.empty())
     take_means(record, rows_in_one), thin(record, rows_in_one);

@@ -39,6 +39,8 @@ struct AxisRecord {
   /// predictor does not correct itself by them. Empty: none.
   std::vector<char> false_rows;
   size_t false_readings = 0;  ///< of all sensors
+  size_t input_leaps = 0;     ///< single values of the input that leap out and back
+  bool leaps_are_taken_away = false;
   bool is_thinned = false;    ///< several recorded rows are one
   size_t rows_in_one = 1;     ///< of these, means over so many stand for them
   /// Role of a sensor that is read less often than the other one, and left out; empty: none.
@@ -49,6 +51,7 @@ struct AxisRecord {
   size_t held_out_from = 0;  ///< first row held out of the identification; rows() without hold-out
 
   size_t rows() const { return input.size(); }
+  bool controller_may_know_more() const { return acts_between_readings || !left_out.empty(); }
   bool is_missing(size_t row) const { return !missing.empty() && missing[row]; }
   bool is_false(size_t row) const { return !false_rows.empty() && false_rows[row]; }
   const MeasuredPort* find(std::string_view role) const {
@@ -66,6 +69,7 @@ MeasuredMotion measured_motion(const AxisRecord& record);
 /// some rows on both sides.
 struct InputNoise {
   double rows = 0, share = 0;
+  bool without_leaps = false;  ///< nor does it feel single values that leap out and back
 };
 /// Means of each row with those about it, or with those after it alone, with weights that fall to 37 % over
 /// `rows`. About a row they are neither delayed nor advanced.
@@ -77,7 +81,7 @@ void take_away(AxisRecord& record, const InputNoise& noise);
 /// The columns of the roles, on a uniform grid: see EvenGrid. Problems: missing roles or columns, units that
 /// differ from the diagram's. `rows_in_one` become one; 0: as many as its length asks for.
 AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Problems& problems,
-                            size_t rows_in_one = 0);
+                            size_t rows_in_one = 0, bool without_input_leaps = false);
 
 /// The experiment with the axis cut open at its input: only the measured input drives the diagram.
 Experiment cut_open(const Experiment& experiment, const Plan& plan, Problems& problems);

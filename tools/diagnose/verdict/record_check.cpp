@@ -5,6 +5,7 @@
 #include "tools/compare/excitation.h"
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/record/dead_sensor.h"
+#include "tools/diagnose/record/two_sensors.h"
 #include "tools/diagnose/verdict/verdict.h"
 
 namespace loopwright::diagnosis {
@@ -29,6 +30,14 @@ RecordFinding readings_are_false(size_t count, std::string consequence) {
                                : "{} readings are not those of their rows: they repeat the one before "
                                  "while the signal moves on, or leap out and back";
   return {fmt::format(fmt::runtime(text), count), std::move(consequence)};
+}
+
+RecordFinding inputs_leap(size_t count) {
+  return {fmt::format("{} of a recorded input {} out and back, and the machine does not feel {}",
+                      count == 1 ? "1 value" : fmt::format("{} values", count), count == 1 ? "leaps" : "leap",
+                      count == 1 ? "it" : "them"),
+          "what the neighbours say was taken instead; if the command was given so, see that drive and record "
+          "have the same clock"};
 }
 
 RecordFinding ended_at_limit(double most_work) {
@@ -96,6 +105,11 @@ std::vector<RecordFinding> look_at_records(const Trials& trials,
   std::vector<RecordFinding> findings;
   if (const size_t count = false_readings(trials); count > 0)
     findings.push_back(readings_are_false(count, "what their neighbours say was taken instead"));
+  size_t leaps = 0;
+  for (const Trial& trial : trials.list)
+    if (const AxisRecord& record = trial.model->record(); record.leaps_are_taken_away)
+      leaps += record.input_leaps;
+  if (leaps > 0) findings.push_back(inputs_leap(leaps));
   for (const Trial& trial : trials.list)
     if (const std::string& role = trial.model->record().left_out; !role.empty())
       findings.push_back(
@@ -108,6 +122,13 @@ std::vector<RecordFinding> look_at_records(const Trials& trials,
                           "the sensor shows noise and no motion, and no effect can be named: see that it is "
                           "connected, and that its column belongs to this record",
                           true});
+  for (const Trial& trial : trials.list)
+    if (const std::optional<double> ratio = velocity_over_rate(trial.model->record()))
+      findings.push_back(
+          {fmt::format("the measured velocity is {:.4g} times the rate of the measured position", *ratio),
+           "one of the two has another scale or unit than is stated, or is filtered: what is "
+           "named may stand for that",
+           true});
   if (balances_forces(trials, inverse))
     std::ranges::move(faults_in_balance(trials, inverse), std::back_inserter(findings));
   else

@@ -86,6 +86,17 @@ std::string force_far_above_noise(const Trials& trials, const std::vector<Member
   return fmt::format("the residual force is {:.1f} times what the estimated noise leaves", left / floor);
 }
 
+/// Whether the counts of the sensor may have made all that the predictions leave, and no force that matters
+/// remains. What counts make is computed for one course of the noise: that of the record may make more.
+bool is_made_by_counts(const Trials& trials, const Conclusion& conclusion, const Diagnosis& diagnosis) {
+  const double left = diagnosis.steps.back().force_rmse, floor = diagnosis.noise_floor;
+  const double rows = double(fitted_numbers(trials)) / double(trials.ports());
+  return conclusion.estimate.members.empty() && conclusion.is_remainder_noise &&
+         conclusion.counts_portmanteau > criteria::least_share_of_counts * conclusion.portmanteau &&
+         conclusion.portmanteau_beside_counts() < criteria::most_portmanteau_per_row * rows &&
+         left * left - floor * floor < std::pow(criteria::least_excess * trials.force_rms, 2);
+}
+
 /// Whether laws of the input leave next to nothing of it.
 bool is_input_taken_away(const Trials& trials, const std::vector<Fitted>& fitted) {
   double recorded = 0, left = 0;
@@ -109,7 +120,7 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
   const bool is_left = !std::ranges::all_of(diagnosis.refused, &RefusedEffect::is_blurred) &&
                        e.members.empty() && !conclusion.is_negligible &&
                        conclusion.portmanteau > criteria::most_portmanteau;
-  bool is_not_white = is_left || !conclusion.is_white();
+  bool is_not_white = is_left || !(conclusion.is_white() || is_made_by_counts(trials, conclusion, diagnosis));
   const bool is_counted = conclusion.counts_portmanteau > criteria::most_portmanteau_of_counted;
   const double repeating = is_counted ? diagnosis.noise_floor : 0;
   if (std::string why = force_above_noise(trials, inverse, e.members, repeating); !why.empty())
@@ -150,6 +161,11 @@ void judge(Trials& trials, const Conclusion& conclusion, const Motion& motion, c
         "holds it though something should");
   if (is_not_white && diagnosis.contradictions.empty() && !conclusion.is_remainder_noise)
     diagnosis.contradictions.push_back("a slow force remains that is more than noise");
+  else if (is_not_white && diagnosis.contradictions.empty())
+    diagnosis.contradictions.push_back(fmt::format(
+        "the errors of the predictions are no noise: n Σ ρ² over {} lags is {:.0f}, of which the counts "
+        "of the sensor make {:.0f}",
+        criteria::portmanteau_lags, conclusion.portmanteau, conclusion.counts_portmanteau));
   is_not_white |= !diagnosis.contradictions.empty();
   if (is_not_white || has_unknown) {
     std::vector<Member> named;
