@@ -80,7 +80,7 @@ Diagnosis diagnose_any_diagram(const std::string& diagram, const std::vector<std
   if (const size_t count = model.record().false_readings; count > 0)
     result.findings.push_back(readings_are_false(count, "they count as missing"));
   if (const size_t count = take_unfelt_leaps_away(fitter); count > 0)
-    result.findings.push_back(inputs_leap(count));
+    result.findings.push_back(inputs_are_not_felt(count));
   const auto found = search_with_second_opinion(fitter, progress);
   if (is_interrupted()) {
     result.was_interrupted = true;

@@ -272,8 +272,9 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   progress("reading the records", 0);
   Motion motion;
   Trials trials = prepare(diagram, experiments, options.load, motion, input_noise);
-  if (!input_noise && does_not_feel_leaps(diagram, experiments, options.load, trials, motion))
-    return diagnose_to_the_end(diagram, experiments, options, InputNoise{.without_leaps = true});
+  if (const auto leaps =
+          input_noise ? std::nullopt : unfelt_leaps(diagram, experiments, options.load, trials))
+    return diagnose_to_the_end(diagram, experiments, options, InputNoise{.leaps = *leaps});
   const bool is_smoothed = input_noise && input_noise->rows > 0;
   trials.interrupt = options.interrupt;
   const double most_work = options.most_work.value_or(criteria::most_work);

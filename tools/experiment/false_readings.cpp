@@ -48,17 +48,32 @@ void add_stale(std::span<const double> value, std::vector<size_t>& rows) {
 
 }  // namespace
 
-std::vector<size_t> leaps_out_and_back(std::span<const double> value) {
+std::vector<size_t> leaps_out_and_back(std::span<const double> value, double factor) {
   std::vector<size_t> rows;
   constexpr double least_share = 0.25, most_share = 0.75;  // about a half
   const auto second = [&](size_t k) { return value[k + 1] - 2 * value[k] + value[k - 1]; };
-  for (const size_t row : outliers(value)) {
+  for (const size_t row : outliers(value, factor)) {
     if (row < 2 || row + 2 >= value.size()) continue;
     const auto is_half = [&](size_t k) {
       const double share = -second(k) / second(row);
       return share > least_share && share < most_share;
     };
     if (is_half(row - 1) && is_half(row + 1)) rows.push_back(row);
+  }
+  return rows;
+}
+
+std::vector<size_t> single_zeros(std::span<const double> value) {
+  constexpr double least_size = 3;  // [noise of the signal]
+  std::vector<double> at(value.size());
+  std::iota(at.begin(), at.end(), 0.0);
+  const double least = least_size * noise_of(at, value);
+  std::vector<size_t> rows;
+  for (size_t k = 2; k + 2 < value.size(); ++k) {
+    if (value[k] != 0) continue;
+    const double side = value[k - 1] < 0 ? -1 : 1;
+    const auto is_beyond = [&](size_t row) { return side * value[row] > least; };
+    if (is_beyond(k - 2) && is_beyond(k - 1) && is_beyond(k + 1) && is_beyond(k + 2)) rows.push_back(k);
   }
   return rows;
 }

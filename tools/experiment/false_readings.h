@@ -11,8 +11,12 @@ namespace loopwright {
 std::vector<size_t> false_readings(std::span<const double> value);
 
 /// Single rows far out of line whose neighbours on both sides are in line: the second differences there are
-/// half as large, and of the other sign. A sensor read falsely; a command may well do so. Ascending.
-std::vector<size_t> leaps_out_and_back(std::span<const double> value);
+/// half as large, and of the other sign. They exceed what nineteen of twenty rows have by a factor. A sensor
+/// read falsely; a command may well do so. Ascending.
+std::vector<size_t> leaps_out_and_back(std::span<const double> value, double factor = 20);
+
+/// Single rows of zero among others of one sign beyond the noise: a device that was not ready. Ascending.
+std::vector<size_t> single_zeros(std::span<const double> value);
 
 /// The readings of these rows become those of the cubic through the two nearest other rows on either side.
 /// `at`: where the rows lie, in any unit. Rows without two on either side keep theirs.

@@ -52,7 +52,7 @@ double noise_of(std::span<const double> at, std::span<const double> value) {
   return roughness(at, value) / median_of_normal;
 }
 
-std::vector<size_t> outliers(std::span<const double> value) {
+std::vector<size_t> outliers(std::span<const double> value, double factor) {
   std::vector<double> leap;
   for (size_t k = 1; k + 1 < value.size(); ++k)
     leap.push_back(std::abs(value[k + 1] - 2 * value[k] + value[k - 1]));
@@ -63,7 +63,7 @@ std::vector<size_t> outliers(std::span<const double> value) {
   std::ranges::nth_element(sorted, sorted.begin() + ptrdiff_t(near_top));
   const double usual = sorted[near_top];
   for (size_t i = 1; i + 1 < leap.size(); ++i)
-    if (leap[i] > 20 * usual + 1e-300 && leap[i] > 1.5 * leap[i - 1] && leap[i] > 1.5 * leap[i + 1])
+    if (leap[i] > factor * usual + 1e-300 && leap[i] > 1.5 * leap[i - 1] && leap[i] > 1.5 * leap[i + 1])
       rows.push_back(i + 1);
   return rows;
 }

@@ -21,8 +21,9 @@ double roughness(std::span<const double> at, std::span<const double> value);
 /// itself changes within two rows counts as noise.
 double noise_of(std::span<const double> at, std::span<const double> value);
 
-/// Rows where the second difference has a peak that its neighbours do not have: single wrong samples.
-std::vector<size_t> outliers(std::span<const double> value);
+/// Rows where the second difference has a peak that its neighbours do not have: single wrong samples. It
+/// exceeds what nineteen of twenty rows have by a factor.
+std::vector<size_t> outliers(std::span<const double> value, double factor = 20);
 
 /// Number of rows after which a signal on an even grid repeats, over at least a third of the record; 0: it
 /// does not repeat.

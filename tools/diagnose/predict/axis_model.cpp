@@ -121,7 +121,7 @@ AxisModel::AxisModel(const std::string& path, const std::string& experiment_path
   for (const Plan* known : {static_cast<const Plan*>(changed.get()), whole_plan.get()})
     if (const Number number = number_of(*known, force_port); number >= 0 && !force_unit)
       force_unit = known->unit_of(number);
-  record_ = read_axis_record(cut, *changed, problems, rows_in_one, noise && noise->without_leaps);
+  record_ = read_axis_record(cut, *changed, problems, rows_in_one, noise ? noise->leaps : InputLeaps::felt);
   if (problems.has_errors()) throw InputError(std::move(problems));
   if (noise) take_away(record_, *noise);
   input_ = number_of(*changed, role(cut, "input").first);

@@ -146,12 +146,13 @@ std::vector<double> places_of_rows(const AxisRecord& record) {
   return at;
 }
 
-/// They become what their neighbours say, where they are to go.
-void look_for_leaps_of_input(AxisRecord& record, bool are_to_go) {
+/// Those that are not felt become what their neighbours say.
+void take_leaps_away(AxisRecord& record, InputLeaps leaps) {
   if (record.is_map) return;
-  std::vector<size_t> rows = leaps_out_and_back(record.input);
-  record.input_leaps = rows.size(), record.leaps_are_taken_away = are_to_go && !rows.empty();
-  if (!record.leaps_are_taken_away) return;
+  std::vector<size_t> rows =
+      unfelt_rows(record.input, leaps == InputLeaps::felt ? InputLeaps::unfelt : leaps);
+  record.leaps = leaps, record.input_leaps = rows.size();
+  if (leaps == InputLeaps::felt) return;
   const std::vector<double> at = places_of_rows(record);
   replace_readings(at, record.input, rows);
   if (record.input_slope.empty()) return;
@@ -218,6 +219,17 @@ std::vector<double> mean_over_rows(const std::vector<double>& values, double row
   return means;
 }
 
+std::vector<size_t> unfelt_rows(std::span<const double> input, InputLeaps leaps) {
+  constexpr double near = 5;  // [usual second difference] the records decide whether they are felt
+  if (leaps == InputLeaps::felt) return {};
+  if (leaps == InputLeaps::far_unfelt) return leaps_out_and_back(input);
+  std::vector<size_t> rows = leaps_out_and_back(input, near);
+  std::ranges::copy(single_zeros(input), std::back_inserter(rows));
+  std::ranges::sort(rows);
+  rows.erase(std::ranges::unique(rows).begin(), rows.end());
+  return rows;
+}
+
 void take_away(AxisRecord& record, const InputNoise& noise) {
   if (noise.rows == 0) return;
   for (std::vector<double>* values : {&record.input, &record.input_slope}) {
@@ -280,7 +292,7 @@ Experiment cut_open(const Experiment& experiment, const Plan& plan, Problems& pr
 }
 
 AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Problems& problems,
-                            size_t rows_in_one, bool without_input_leaps) {
+                            size_t rows_in_one, InputLeaps leaps) {
   AxisRecord record;
   record.title = experiment.title, record.path = experiment.path, record.place = experiment.place;
   const std::vector<double>& time = experiment.data.columns.front().values;
@@ -314,7 +326,7 @@ AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Prob
   }
   take_rows_of_sensors(record, problems);
   replace_false_readings(record);
-  look_for_leaps_of_input(record, without_input_leaps);
+  take_leaps_away(record, leaps);
   if (rows_in_one == 0) rows_in_one = rows_for_one(record);
   if (rows_in_one > 1 && !record.is_map && record.duration.empty())
     take_means(record, rows_in_one), thin(record, rows_in_one);

@@ -2,12 +2,18 @@
 /// position and velocity.
 #pragma once
 #include <array>
+#include <span>
 #include <string>
 #include <vector>
 #include "engine/plan/plan.h"
 #include "tools/compare/machine.h"
 
 namespace loopwright::diagnosis {
+
+/// Which single values of a recorded input the machine does not feel: none; those far out of line; or also
+/// those nearer, and zeros.
+enum class InputLeaps { felt, far_unfelt, unfelt };
+std::vector<size_t> unfelt_rows(std::span<const double> input, InputLeaps leaps);
 
 /// A measured port.
 struct MeasuredPort {
@@ -39,10 +45,10 @@ struct AxisRecord {
   /// predictor does not correct itself by them. Empty: none.
   std::vector<char> false_rows;
   size_t false_readings = 0;  ///< of all sensors
-  size_t input_leaps = 0;     ///< single values of the input that leap out and back
-  bool leaps_are_taken_away = false;
-  bool is_thinned = false;    ///< several recorded rows are one
-  size_t rows_in_one = 1;     ///< of these, means over so many stand for them
+  InputLeaps leaps = InputLeaps::felt;
+  size_t input_leaps = 0;   ///< values of the input that are out of line, or were and were taken away
+  bool is_thinned = false;  ///< several recorded rows are one
+  size_t rows_in_one = 1;   ///< of these, means over so many stand for them
   /// Role of a sensor that is read less often than the other one, and left out; empty: none.
   std::string left_out;
   /// The input changes while the sensor is not read: a controller then answers to what the record does not
@@ -69,7 +75,7 @@ MeasuredMotion measured_motion(const AxisRecord& record);
 /// some rows on both sides.
 struct InputNoise {
   double rows = 0, share = 0;
-  bool without_leaps = false;  ///< nor does it feel single values that leap out and back
+  InputLeaps leaps = InputLeaps::felt;
 };
 /// Means of each row with those about it, or with those after it alone, with weights that fall to 37 % over
 /// `rows`. About a row they are neither delayed nor advanced.
@@ -81,7 +87,7 @@ void take_away(AxisRecord& record, const InputNoise& noise);
 /// The columns of the roles, on a uniform grid: see EvenGrid. Problems: missing roles or columns, units that
 /// differ from the diagram's. `rows_in_one` become one; 0: as many as its length asks for.
 AxisRecord read_axis_record(const Experiment& experiment, const Plan& plan, Problems& problems,
-                            size_t rows_in_one = 0, bool without_input_leaps = false);
+                            size_t rows_in_one = 0, InputLeaps leaps = InputLeaps::felt);
 
 /// The experiment with the axis cut open at its input: only the measured input drives the diagram.
 Experiment cut_open(const Experiment& experiment, const Plan& plan, Problems& problems);

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <limits>
 #include "tools/diagnose/criteria.h"
-#include "tools/diagnose/search/maximum_likelihood.h"
 #include "tools/diagnose/search/prepare.h"
 #include "tools/diagnose/search/site_start.h"
 #include "tools/experiment/false_readings.h"
@@ -10,21 +9,30 @@
 namespace loopwright::diagnosis {
 namespace {
 
-/// -2 ln L of the diagram as it is, with the best noise.
-double nominal_misfit(Trials& trials, const Motion& motion) {
-  const Estimate nominal = with_own_noise(trials, fit_members(trials, {}, trials.noise, motion, 1), 1);
-  return nominal.is_valid ? nominal.profile : std::numeric_limits<double>::infinity();
+constexpr double impossible = std::numeric_limits<double>::infinity();
+constexpr InputLeaps unfelt[] = {InputLeaps::far_unfelt, InputLeaps::unfelt};
+
+/// -2 ln L of the diagram as it is, over rows that count in both trials.
+double misfit(Trials& trials, const Trials& other) {
+  std::vector<std::vector<char>> usable;
+  for (size_t t = 0; t < trials.list.size(); ++t) {
+    std::vector<char>& own = trials.list[t].usable;
+    usable.push_back(own);
+    for (size_t k = 0; k < own.size(); ++k) own[k] = own[k] && other.list[t].usable[k];
+  }
+  const double value = profile(trials, run_members(trials, {}, {}, trials.noise));
+  for (size_t t = 0; t < trials.list.size(); ++t) trials.list[t].usable = usable[t];
+  return std::isfinite(value) ? value : impossible;
 }
-double nominal_misfit(SiteFitter& fitter) {
+double misfit(SiteFitter& fitter) {
   SiteHypothesis nominal;
-  return start_from_stated(fitter, ErrorsOf::predictions, {}, nominal)
-             ? nominal.objective
-             : std::numeric_limits<double>::infinity();
+  return start_from_stated(fitter, ErrorsOf::predictions, {}, nominal) ? nominal.objective : impossible;
 }
 
 /// Within one record: where another begins, every signal leaps.
-std::vector<size_t> leaps_within_records(const SignalRecord& record, const std::vector<double>& value) {
-  std::vector<size_t> rows = leaps_out_and_back(value);
+std::vector<size_t> rows_within_records(const SignalRecord& record, const std::vector<double>& value,
+                                        InputLeaps leaps) {
+  std::vector<size_t> rows = unfelt_rows(value, leaps);
   std::erase_if(rows, [&](size_t row) {
     return record.begins_at(row - 1) || record.begins_at(row) || record.begins_at(row + 1) ||
            record.begins_at(row + 2);
@@ -34,34 +42,51 @@ std::vector<size_t> leaps_within_records(const SignalRecord& record, const std::
 
 }  // namespace
 
-bool does_not_feel_leaps(const std::string& diagram, const std::vector<std::string>& experiments,
-                         const LoadOptions& options, Trials& trials, const Motion& motion) {
-  const auto leaps = [](const Trial& trial) { return trial.model->record().input_leaps > 0; };
-  if (std::ranges::none_of(trials.list, leaps)) return false;
-  Motion other_motion;
-  Trials without = prepare(diagram, experiments, options, other_motion, InputNoise{.without_leaps = true});
-  return nominal_misfit(trials, motion) - nominal_misfit(without, other_motion) >
-         criteria::least_gain_of_other_input;
+size_t input_leaps(const Trials& trials) {
+  size_t count = 0;
+  for (const Trial& trial : trials.list) count += trial.model->record().input_leaps;
+  return count;
+}
+
+std::optional<InputLeaps> unfelt_leaps(const std::string& diagram,
+                                       const std::vector<std::string>& experiments,
+                                       const LoadOptions& options, Trials& trials) {
+  std::optional<InputLeaps> best;
+  double most = criteria::least_gain_of_other_input;
+  for (const InputLeaps leaps : unfelt) {
+    if (input_leaps(trials) == 0) break;
+    Motion motion;
+    Trials without = prepare(diagram, experiments, options, motion, InputNoise{.leaps = leaps});
+    if (input_leaps(without) == 0) continue;
+    const double gain = misfit(trials, without) - misfit(without, trials);
+    if (!(gain > most)) continue;
+    best = leaps, most = gain + criteria::least_gain_of_other_input;
+  }
+  return best;
 }
 
 size_t take_unfelt_leaps_away(SiteFitter& fitter) {
   SiteModel& model = fitter.model();
   const SignalRecord& record = model.record();
   size_t count = 0;
-  double misfit = std::numeric_limits<double>::quiet_NaN();
+  std::optional<double> least;
   for (size_t i = 0; i < record.inputs.size(); ++i) {
     const std::vector<double> recorded = record.inputs[i].value;
-    const std::vector<size_t> rows = leaps_within_records(record, recorded);
-    if (rows.empty()) continue;
-    if (count == 0) misfit = nominal_misfit(fitter);
-    std::vector<double> changed = recorded;
-    replace_readings(record.time, changed, rows);
-    model.suppose_input(i, changed);
-    const double without = nominal_misfit(fitter);
-    if (misfit - without > criteria::least_gain_of_other_input)
-      count += rows.size(), misfit = without;
-    else
-      model.suppose_input(i, recorded);
+    std::vector<double> best = recorded;
+    size_t taken = 0;
+    for (const InputLeaps leaps : unfelt) {
+      const std::vector<size_t> rows = rows_within_records(record, recorded, leaps);
+      if (rows.empty()) continue;
+      if (!least) least = misfit(fitter);
+      std::vector<double> changed = recorded;
+      replace_readings(record.time, changed, rows);
+      model.suppose_input(i, changed);
+      const double without = misfit(fitter);
+      if (*least - without > criteria::least_gain_of_other_input)
+        least = without, best = std::move(changed), taken = rows.size();
+    }
+    model.suppose_input(i, best);
+    count += taken;
   }
   return count;
 }

@@ -118,9 +118,7 @@ std::optional<InputNoise> noise_instead_of_late_input(Trials& trials, const Esti
   if (!gains_early && loss(by->about) >= of_late) return {};
   const Member& smoothing = by->about.members.back();
   if (smoothing.linear[0] < criteria::least_unfelt_share) return {};
-  const auto is_without_leaps = [](const Trial& t) { return t.model->record().leaps_are_taken_away; };
-  return InputNoise{smoothing.nonlinear[0], smoothing.linear[0],
-                    std::ranges::any_of(trials.list, is_without_leaps)};
+  return InputNoise{smoothing.nonlinear[0], smoothing.linear[0], trials.list.front().model->record().leaps};
 }
 
 bool measure_position(const Trials& trials) {

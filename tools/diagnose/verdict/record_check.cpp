@@ -6,6 +6,7 @@
 #include "tools/diagnose/criteria.h"
 #include "tools/diagnose/record/dead_sensor.h"
 #include "tools/diagnose/record/two_sensors.h"
+#include "tools/diagnose/search/leaps_of_input.h"
 #include "tools/diagnose/verdict/verdict.h"
 
 namespace loopwright::diagnosis {
@@ -32,12 +33,13 @@ RecordFinding readings_are_false(size_t count, std::string consequence) {
   return {fmt::format(fmt::runtime(text), count), std::move(consequence)};
 }
 
-RecordFinding inputs_leap(size_t count) {
-  return {fmt::format("{} of a recorded input {} out and back, and the machine does not feel {}",
-                      count == 1 ? "1 value" : fmt::format("{} values", count), count == 1 ? "leaps" : "leap",
-                      count == 1 ? "it" : "them"),
-          "what the neighbours say was taken instead; if the command was given so, see that drive and record "
-          "have the same clock"};
+RecordFinding inputs_are_not_felt(size_t count) {
+  return {count == 1
+              ? "1 value of a recorded input is out of line, and the machine does not feel it"
+              : fmt::format("{} values of recorded inputs are out of line, and the machine does not feel "
+                            "them",
+                            count),
+          "what the neighbours say was taken instead"};
 }
 
 RecordFinding ended_at_limit(double most_work) {
@@ -105,11 +107,8 @@ std::vector<RecordFinding> look_at_records(const Trials& trials,
   std::vector<RecordFinding> findings;
   if (const size_t count = false_readings(trials); count > 0)
     findings.push_back(readings_are_false(count, "what their neighbours say was taken instead"));
-  size_t leaps = 0;
-  for (const Trial& trial : trials.list)
-    if (const AxisRecord& record = trial.model->record(); record.leaps_are_taken_away)
-      leaps += record.input_leaps;
-  if (leaps > 0) findings.push_back(inputs_leap(leaps));
+  if (trials.list.front().model->record().leaps != InputLeaps::felt)
+    findings.push_back(inputs_are_not_felt(input_leaps(trials)));
   for (const Trial& trial : trials.list)
     if (const std::string& role = trial.model->record().left_out; !role.empty())
       findings.push_back(

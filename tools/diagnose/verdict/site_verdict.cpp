@@ -320,8 +320,8 @@ class Telling {
     const bool worse = names && simulates_worse();
     const bool is_open =
         (names && search_.second_opinion && search_.second_opinion->is_open() && missed_by_far()) ||
-        has_untold_terms() || are_too_many_changes() || are_many_changes_in_vain() || has_contradicted_terms() ||
-        has_cancelling_names() || (names && is_input_questioned_);
+        has_untold_terms() || are_too_many_changes() || are_many_changes_in_vain() ||
+        has_contradicted_terms() || has_cancelling_names() || (names && is_input_questioned_);
     const bool is_bent = names && misses_more_than_noise();
     const bool is_nothing = !names && (is_left_out_ || is_exact(errors_, model_.record()));
     const bool misses_held_out =

@@ -19,7 +19,7 @@ RecordFinding readings_are_false(size_t count, std::string consequence);
 RecordFinding ended_at_limit(double most_work);
 /// Noise was taken away from the recorded input: see noise_instead_of_late_input().
 /// Values of recorded inputs that were taken away because the machine does not feel them.
-RecordFinding inputs_leap(size_t count);
+RecordFinding inputs_are_not_felt(size_t count);
 RecordFinding input_is_noisy(const Trials& trials, const InputNoise& noise);
 
 /// Verdict, remainder and its variables, the latter along `motion`. `tight` is the noise of the search: with
