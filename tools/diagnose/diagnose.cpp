@@ -290,9 +290,8 @@ Diagnosis diagnose_to_the_end(const std::string& diagram, const std::vector<std:
   const auto why_not = [&](const Effect& effect) {
     std::string why = trials.has_map() ? not_in_a_map(effect) : std::string();
     if (why.empty() && is_smoothed) why = hidden_by_input_noise(effect);
-    if (why.empty() && std::ranges::any_of(
-                           models, [](const AxisModel* m) { return m->record().controller_may_know_more(); }))
-      why = hidden_by_controller(effect);
+    const auto knows_more = [](const AxisModel* m) { return m->record().controller_may_know_more(); };
+    if (why.empty() && std::ranges::any_of(models, knows_more)) why = hidden_by_controller(effect);
     return why.empty() ? cannot_be_added(effect) : why;
   };
   const Catalogue catalogue = make_catalogue(folders, units, sizes, why_not, has_uneven_rows(motion.paths));

@@ -243,5 +243,15 @@ TEST(AnyDiagram, RecordsOfBothDirectionsTogetherTellDryFrictionFromAConstantTorq
   EXPECT_EQ(d.experiments.size(), 2u);
 }
 
+/// The errors of rounding follow each other where the signal is slow.
+TEST(AnyDiagram, CountsOfASlowSignalAreNoSignOfAnythingMissing) {
+  Plant plant = heated_plate(nothing, 5);
+  plant.outputs = [](const Numbers& x) { return Numbers{std::round(x[0] / 0.25) * 0.25}; };
+  plant.measurement_noise = {1e-9};
+  plant.compare = R"("plate.temperature": {"column": "y0", "unit": "K", "resolution": 0.25})";
+  const Diagnosis d = diagnosed(plant);
+  EXPECT_EQ(name_of(d.verdict), "nothing_missing") << to_text(d);
+}
+
 }  // namespace
 }  // namespace loopwright::any_diagram_test

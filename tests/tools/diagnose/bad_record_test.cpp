@@ -53,6 +53,54 @@ TEST(BadRecord, ASensorThatNeverChangesIsRejected) {
   }
 }
 
+Truth with_coulomb_friction() {
+  Truth truth;
+  truth.duration_s = 8;
+  truth.force = [](double, double v, double) { return 0.3 * std::tanh(v / 1e-3); };
+  return truth;
+}
+Diagnosis with_spoilt_command(const std::function<void(std::vector<double>&)>& how) {
+  RecordedAxis axis(with_coulomb_friction());
+  axis.spoil([&](auto& force, auto&) { how(force); });
+  return diagnose(axis.diagram(), {axis.experiment()});
+}
+void expect_coulomb_friction(const Diagnosis& d) {
+  EXPECT_EQ(name_of(d.verdict), "explained") << to_text(d);
+  ASSERT_EQ(d.effects.size(), 1u) << to_text(d);
+  EXPECT_EQ(d.effects[0].name, "coulomb_friction");
+  EXPECT_NEAR(d.effects[0].parameters[0].value, 0.3, 0.01);
+}
+
+TEST(BadRecord, ValuesOfACommandThatTheMachineDoesNotFeelAreTakenAway) {
+  for (const double spike : {20.0, 32767.0}) {
+    const Diagnosis d = with_spoilt_command([&](std::vector<double>& force) {
+      for (size_t k : {1500u, 3000u, 4400u}) force[k] = spike;
+    });
+    EXPECT_THAT(d.findings, finds("3 values of recorded inputs are out of line")) << spike;
+    expect_coulomb_friction(d);
+  }
+}
+TEST(BadRecord, ZerosOfADeviceThatWasNotReadyAreTakenAway) {
+  size_t zeros = 0;
+  const Diagnosis d = with_spoilt_command([&](std::vector<double>& force) {
+    for (size_t k = 300; k < force.size(); k += 130)
+      if (std::abs(force[k]) > 0.5) force[k] = 0, ++zeros;
+  });
+  EXPECT_GT(zeros, 10u);
+  EXPECT_THAT(d.findings, finds("of recorded inputs are out of line"));
+  expect_coulomb_friction(d);
+}
+TEST(BadRecord, PulsesThatTheMachineFeelsAreACommand) {
+  HiddenAxis axis;
+  WantedMotion wanted = there_and_back(0.3, 0.4);
+  wanted.added_force.assign(wanted.position.size(), 0.0);
+  for (size_t k = 700; k + 10 < wanted.position.size(); k += 900) wanted.added_force[k] = 15;
+  const std::string record = axis.record("pulses", axis.nominal(), wanted);
+  const Diagnosis d = diagnose(axis.diagram(), {record});
+  EXPECT_THAT(d.findings, Not(finds("out of line"))) << to_text(d);
+  EXPECT_EQ(name_of(d.verdict), "nothing_missing") << to_text(d);
+}
+
 TEST(BadRecord, ASensorThatShowsNoiseAloneGivesNoVerdict) {
   const Diagnosis d = spoilt([](auto&, auto& position) {
     uint64_t bits = 1;
@@ -87,6 +135,15 @@ TEST(BadRecord, RowsThatAreThousandsOfStepsApartAreRefused) {
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("steps of the diagram's solver"));
   }
+}
+
+TEST(BadRecord, AStiffDiagramOfAnAxisMayHaveShortSteps) {
+  Truth truth;
+  truth.duration_s = 6;
+  const RecordedAxis axis(truth);
+  DiagnoseOptions options;
+  options.load.set.emplace_back("solver.step", "4e-7");  // 2500 in a row
+  EXPECT_EQ(name_of(diagnose(axis.diagram(), {axis.experiment()}, options).verdict), "nothing_missing");
 }
 
 TEST(BadRecord, MillisecondsTakenForSecondsAreNoDeadBand) {

@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 #include "tests/tools/diagnose/plants.h"
 #include "tools/diagnose/predict/site_filter.h"
+#include "tools/diagnose/search/site_start.h"
+#include "tools/diagnose/verdict/site_errors.h"
 
 namespace loopwright::diagnosis::site_test {
 namespace {
@@ -45,6 +47,14 @@ TEST(Sites, ABodyThatIsDrivenItselfHasOneForTermsBesideThatForDistortions) {
   for (const Site& site : model.sites())
     if (site.name == "plate.heat") kinds.push_back(site.kind);
   EXPECT_THAT(kinds, testing::UnorderedElementsAre(Site::Kind::input, Site::Kind::wire));
+}
+
+TEST(Sites, BothOfOneNameAreLookedAtIfTheExperimentNamesIt) {
+  Plant plant = heated_plate(nothing, 1);
+  plant.more = R"("sites": ["plate.heat"])";
+  const RecordedPlant files(plant);
+  const SiteModel model(files.diagram(), {files.experiment()}, {});
+  for (const Site& site : model.sites()) EXPECT_EQ(site.is_searched, site.name == "plate.heat") << site.name;
 }
 
 TEST(Sites, SensorsAreLookedAtOnlyIfTheExperimentNamesThem) {
@@ -200,9 +210,10 @@ MeanSquares simulated_with_noise(double torque_noise) {
     p.noise.process = {torque_noise}, p.noise.measurement = {2e-5};
     EXPECT_TRUE(p.filter.run(p.pass.rows, p.noise, false, p.pass));
     std::vector<double> variance((p.pass.rows - from) * p.pass.outputs), error(length);
-    p.filter.expect_of_simulations(p.pass, from, length, variance);
+    const std::vector<bool> settles(p.pass.rows);
+    p.filter.expect_of_simulations(p.pass, settles, from, length, variance);
     for (size_t begin = from; begin + length <= p.pass.rows; begin += length) {
-      EXPECT_TRUE(p.filter.simulate(p.pass, begin, begin + length, error));
+      EXPECT_TRUE(p.filter.simulate(p.pass, settles, begin, begin + length, error));
       for (size_t k = 0; k < length; ++k)
         mean.simulated += error[k] * error[k], mean.expected += variance[begin - from + k];
     }
@@ -214,6 +225,18 @@ TEST(SiteFilter, SimulationsMissAsMuchAsTheNoiseOfTheStatesMakesLikely) {
   EXPECT_NEAR(noisy.simulated / noisy.expected, 1, 0.2);
   EXPECT_NEAR(little.simulated / little.expected, 1, 0.05);
   EXPECT_GT(noisy.expected, 10 * little.expected);
+}
+/// Where a record begins, nobody knows its speed yet: what the filter then expects says nothing of the noise.
+TEST(SiteFilter, SimulationsOfSeveralRecordsBeginWhereTheFilterHasSettled) {
+  const RecordedPlant first(oscillator({}, 1)), second(oscillator({}, 2));
+  SiteModel model(first.diagram(), {first.experiment(), second.experiment()}, {});
+  SiteFilter filter(model);
+  SiteFitter fitter(filter, model.record().held_out_from, [] { return false; });
+  SiteHypothesis nominal;
+  ASSERT_TRUE(start_from_stated(fitter, ErrorsOf::predictions, {}, nominal));
+  const SiteErrors errors = errors_of(fitter, nominal);
+  EXPECT_LT(errors.simulated[0], 2 * errors.expected_simulated[0]);
+  EXPECT_GT(errors.simulated[0], 0.5 * errors.expected_simulated[0]);
 }
 TEST(SiteModel, ASettingOfTheDiagramChangesAllBlocksThatReadIt) {
   const RecordedPlant files(motor({}, 6));

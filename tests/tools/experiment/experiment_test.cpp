@@ -201,6 +201,15 @@ TEST_F(Experiments, RowsThousandsOfStepsApartAreAWarningWithoutSamples) {
   EXPECT_FALSE(has(warnings("clock", 0.1), "apart")) << "a slow log";
 }
 
+TEST_F(Experiments, ANumberThatNoSensorGivesIsRefusedWithItsTime) {
+  folder.with("data.csv", "t,F,x_mm\n0,1,0\n0.1,3.4e38,1\n0.2,1,2\n0.3,1,3\n0.4,-3.4e38,4\n");
+  folder.with("e.json",
+              R"({"loopwright": 1, "data": "data.csv", "drive": {"stage.force": {"column": "F", "unit": "N"}},
+      "compare": {"stage.position": {"column": "x_mm", "unit": "mm"}}})");
+  expect_refusal({"e.json:1:", "column \"F\": no sensor gives 3.4e+38",
+                  "found: 2 such values, the first at 0.1 s", "leave a cell empty"});
+}
+
 TEST_F(Experiments, AResolutionMayHaveAUnitOfItsOwn) {
   const auto resolution = [&](const std::string& text) {
     folder.experiment(drive,

@@ -53,6 +53,22 @@ TEST(FalseReadings, CountsRestAndBlowsAreNone) {
   EXPECT_THAT(false_readings(begins), IsEmpty());
 }
 
+TEST(FalseReadings, ACommandLeapsAlsoLessFarAndToZero) {
+  std::vector<double> value = swing(100);
+  for (size_t k = 0; k < value.size(); ++k) value[k] += k % 2 ? 0.1 : -0.1;
+  value[450] += 4;
+  value[800] = 0;
+  EXPECT_THAT(leaps_out_and_back(value), ElementsAre(800));
+  EXPECT_THAT(leaps_out_and_back(value, 5), ElementsAre(450, 800));
+  EXPECT_THAT(single_zeros(value), ElementsAre(800));
+  std::vector<double> crossing = swing(100);
+  crossing[314] = 0;  // where it is near zero
+  std::vector<double> pulses(500, 0.0);
+  for (size_t k = 0; k < 500; k += 2) pulses[k] = 10;
+  EXPECT_THAT(single_zeros(crossing), IsEmpty());
+  EXPECT_THAT(single_zeros(pulses), IsEmpty());
+}
+
 TEST(FalseReadings, WithoutNeighboursOneKeepsItsValue) {
   std::vector<double> value{1, 2, 3, 4, 5};
   const std::vector<size_t> rows{1, 4};
