@@ -164,11 +164,12 @@ TEST(SiteFilter, ARelayIsAsItWasAfterFlowsThatWereOnlyTried) {
   ASSERT_TRUE(p.filter.run_frozen(p.pass, errors));
   for (size_t k = 0; k < errors.size(); ++k) ASSERT_NEAR(errors[k], p.pass.error[k], 1e-12) << k;
   constexpr size_t length = 50;
+  const std::vector<bool> settles(p.pass.rows);
   for (size_t from = 100; from + length < p.pass.rows; from += 100) {
     std::vector<double> once(length), again(length), whole(p.pass.rows);
-    ASSERT_TRUE(p.filter.simulate(p.pass, from, from + length, once));
-    ASSERT_TRUE(p.filter.simulate(p.pass, 0, p.pass.rows - from, whole));
-    ASSERT_TRUE(p.filter.simulate(p.pass, from, from + length, again));
+    ASSERT_TRUE(p.filter.simulate(p.pass, settles, from, from + length, once));
+    ASSERT_TRUE(p.filter.simulate(p.pass, settles, 0, p.pass.rows - from, whole));
+    ASSERT_TRUE(p.filter.simulate(p.pass, settles, from, from + length, again));
     ASSERT_EQ(once, again) << from;
   }
 }

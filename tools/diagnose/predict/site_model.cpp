@@ -124,7 +124,7 @@ double SiteModel::longest_step(double length, int stage) {
   return longest;
 }
 
-double SiteModel::step(Run<double>& run, double t, double most, double* states) {
+double SiteModel::step(Run<double>& run, double t, double most, bool ends_at_fronts, double* states) {
   constexpr double notably_shorter = 0.999;
   const size_t n = size_t(plan_->states);
   work_.add(4, Work::of_a_block * double(plan_->blocks.size()));
@@ -137,7 +137,7 @@ double SiteModel::step(Run<double>& run, double t, double most, double* states) 
     const double part = k == 3 ? h : 0.5 * h;
     for (size_t i = 0; i < n; ++i) stage_[i] = states[i] + part * slope_[k - 1][i];
     good &= run.derivatives_at(t + part, stage_.data(), slope_[k].data());
-    if (const double shorter = longest_step(h, k); shorter < notably_shorter * h) {
+    if (const double shorter = longest_step(h, k); ends_at_fronts && shorter < notably_shorter * h) {
       h = shorter, k = 0, good = begins_well;
       continue;
     }
@@ -152,10 +152,12 @@ double SiteModel::step(Run<double>& run, double t, double most, double* states) 
 
 bool SiteModel::flow(size_t row, const double* from, double* to, double* middle) {
   constexpr double nothing_left = 1e-9;
+  constexpr int most_parts = 16;  // in a sample; a front needs six, one that holds a state any number
   Run<double>& run = *driven_at(row).run;
   const size_t n = size_t(plan_->states);
   const double begin = record_.time[row], h = record_.step(row) / substeps_;
   std::copy_n(from, n, to);
+  int parts = 0;
   for (int step = 0; step < substeps_; ++step) {
     const double t = begin + step * h;
     if (has_decisions_) {
@@ -165,12 +167,12 @@ bool SiteModel::flow(size_t row, const double* from, double* to, double* middle)
       run.reuse_signals();
     }
     for (double done = 0; h - done > nothing_left * h;) {
-      const double length = this->step(run, t + done, h - done, to);
+      const double length = this->step(run, t + done, h - done, parts < most_parts, to);
       if (length == 0) {
         run.restored(run.now());
         return false;
       }
-      done += length;
+      done += length, parts += done < h;
     }
     if (middle && 2 * (step + 1) == substeps_) std::copy_n(to, n, middle);
   }

@@ -200,7 +200,7 @@ class SiteModel {
   double longest_step(double length, int stage);
   /// One step of the method of Runge and Kutta, shorter where a front is on its way. Its length; 0 if the
   /// model is not finite.
-  double step(Run<double>& run, double t, double most, double* states);
+  double step(Run<double>& run, double t, double most, bool ends_at_fronts, double* states);
 
   SignalRecord record_;
   std::shared_ptr<const Plan> plan_;  // of the first record; its numbers are those of every one
