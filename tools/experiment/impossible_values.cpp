@@ -25,7 +25,7 @@ void reject_impossible_values(const Experiment& experiment, Problems& problems) 
       p.found = fmt::format("{} such values, the first at {:.6g} s",
                             std::ranges::count_if(column->values, is_impossible),
                             experiment.data.columns.front().values[row]);
-      p.hint = "leave a cell empty where there was no reading";
+      p.hint = "leave out the rows without a reading";
     }
 }
 

@@ -207,7 +207,7 @@ TEST_F(Experiments, ANumberThatNoSensorGivesIsRefusedWithItsTime) {
               R"({"loopwright": 1, "data": "data.csv", "drive": {"stage.force": {"column": "F", "unit": "N"}},
       "compare": {"stage.position": {"column": "x_mm", "unit": "mm"}}})");
   expect_refusal({"e.json:1:", "column \"F\": no sensor gives 3.4e+38",
-                  "found: 2 such values, the first at 0.1 s", "leave a cell empty"});
+                  "found: 2 such values, the first at 0.1 s", "leave out the rows"});
 }
 
 TEST_F(Experiments, AResolutionMayHaveAUnitOfItsOwn) {
