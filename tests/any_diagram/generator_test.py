@@ -70,6 +70,13 @@ class Generator(unittest.TestCase):
         error = math.sqrt(sum((a - b) ** 2 for a, b in zip(coarse, fine)) / len(fine))
         self.assertLess(error, 1e-4 * math.sqrt(sum(b * b for b in fine) / len(fine)))
 
+    def test_a_dead_zone_that_is_never_entered_is_a_constant(self):
+        plant = next(make() for make in scenario.PLANTS if make.__name__ == "tanks")
+        place = next(q for q in plant.places if q.law == "dead_zone")
+        for least, names in ((1.5, {("balance1.sum", "constant", ""), ("pump.u", "constant", "")}), (0.5, set()), (-2.0, set())):
+            record = simulate.Record([], [], [], {"pump.u": [least, 3.0, 2.0]})
+            self.assertEqual(set(scenario.constants_beside_zero(plant, simulate.Hidden(place, 0.9, 1.0), record)), names)
+
     def test_a_motion_that_runs_away_within_a_step_is_drawn_again(self):
         with tempfile.TemporaryDirectory() as folder:
             scenario.generate(900460, folder)  # whose first draw has a cube that pushes

@@ -117,6 +117,14 @@ def experiment(plant):
             "hold_out": {"fraction": HELD_OUT}}
 
 
+def constants_beside_zero(plant, effect, record):
+    """A dead zone that its signal never enters is a constant, at any port where a constant is the same."""
+    values, port = record.sites[effect.place.site], effect.place.site
+    if effect.place.law != "dead_zone" or min(values) < 0 < max(values) or min(map(abs, values)) <= effect.q:
+        return []
+    return [(site, "constant", "") for place in plant.places if place.law == "constant" and port in place.sites for site in place.sites]
+
+
 def truth_of(seed, plant, kind, p, stated, hidden, noise, sensor, slow, record):
     fitted = int(round(plant.rows * (1 - HELD_OUT)))
     moved = {name: stated[name] / p[name] - 1 for name in p if stated[name] != p[name]}
@@ -124,7 +132,7 @@ def truth_of(seed, plant, kind, p, stated, hidden, noise, sensor, slow, record):
     gained = simulate.gains(filter_, p, hidden, moved, [n for n in p if n not in plant.fixed + plant.anchor], fitted) if hidden or moved else []
     site_rms = {e.place.site: rms(record.sites[e.place.site]) for e in hidden}
     return {"seed": seed, "plant": plant.kind, "class": kind,
-            "effects": [{"law": e.place.law, "shapes": e.law.shapes, "sites": e.place.sites, "variables": e.place.names, "also": e.place.also,
+            "effects": [{"law": e.place.law, "shapes": e.law.shapes, "sites": e.place.sites, "variables": e.place.names, "also": [*e.place.also, *constants_beside_zero(plant, e, record)],
                          "q": e.q, "size": e.size, "site_rms": site_rms[e.place.site], "gain": g, "counts": g >= LEAST_GAIN}
                         for e, g in zip(hidden, gained)],
             "parameters": [{"name": n, "stated": stated[n], "true": p[n], "gain": g, "counts": g >= LEAST_GAIN}

@@ -253,5 +253,20 @@ TEST(AnyDiagram, CountsOfASlowSignalAreNoSignOfAnythingMissing) {
   EXPECT_EQ(name_of(d.verdict), "nothing_missing") << to_text(d);
 }
 
+/// The pump is driven by 1.5 to 6.5 V: nobody sees where its dead zone ends.
+TEST(AnyDiagram, ADeadZoneThatIsNeverEnteredIsDeclaredBesideAConstant) {
+  Plant plant = tanks({}, 9);
+  plant.rate = [rate = plant.rate](const Numbers& x, double u, const Numbers& w) {
+    return rate(x, u - 0.9, w);
+  };
+  plant.rows = 1200;
+  const Diagnosis d = diagnosed(plant);
+  ASSERT_EQ(d.effects.size(), 1u) << to_text(d);
+  std::vector<std::string> declared = d.effects[0].alternatives;
+  declared.push_back(terms(d)[0]);
+  EXPECT_THAT(declared, testing::Contains(testing::HasSubstr("dead_zone(pump.u)"))) << to_text(d);
+  EXPECT_THAT(declared, testing::Contains(testing::HasSubstr("constant"))) << to_text(d);
+}
+
 }  // namespace
 }  // namespace loopwright::any_diagram_test

@@ -1,10 +1,64 @@
 #include "tools/diagnose/verdict/alike_sites.h"
 #include <fmt/format.h>
+#include <algorithm>
 #include <cmath>
 #include "models/random/philox.h"
 #include "tools/diagnose/criteria.h"
 
 namespace loopwright::diagnosis {
+namespace {
+
+const TermShape& shape_of(std::string_view name) {
+  return *std::ranges::find(named_shapes(), name, &TermShape::name);
+}
+
+/// What is nearest to zero, with its sign, if all are on one side of it; otherwise zero.
+double nearest_of_one_side(const std::vector<double>& values) {
+  const auto [low, high] = std::ranges::minmax(values);
+  return low > 0 ? low : std::min(high, 0.0);
+}
+
+/// The whitened errors that a constant at the site makes.
+Eigen::VectorXd response_to_constant(SiteFitter& fitter, const SitePass& pass, int site) {
+  const std::vector<double> one(pass.rows, 1.0);
+  Eigen::VectorXd column(Eigen::Index(pass.error.size()));
+  fitter.filter().respond(pass, site, one, one, one, {column.data(), pass.error.size()});
+  return column;
+}
+
+}  // namespace
+
+std::vector<SiteTerm> same_beside_zero(SiteFitter& fitter, SiteHypothesis h, size_t term) {
+  const SiteTerm found = h.terms[term];
+  const bool is_constant = found.shape->name == "constant", is_dead_zone = found.shape->name == "dead_zone";
+  std::vector<SiteTerm> list;
+  SitePass pass;
+  if ((!is_constant && !is_dead_zone) || !fitter.pass(h, true, pass)) return list;
+  const SiteModel& model = fitter.model();
+  for (int site = 0; site < int(model.sites().size()); ++site) {
+    const int input = model.input_of(site);
+    const double nearest = input < 0 ? 0 : nearest_of_one_side(model.record().inputs[size_t(input)].value);
+    if (nearest == 0) continue;
+    SiteTerm same;
+    same.site = site;
+    if (is_dead_zone && site == found.site && found.nonlinear[0] < std::abs(nearest)) {
+      same.shape = &shape_of("constant"), same.coefficient[0] = std::copysign(found.nonlinear[0], -nearest);
+      list.push_back(same);
+    }
+    if (!is_constant) continue;
+    const Eigen::VectorXd there = response_to_constant(fitter, pass, found.site),
+                          here = response_to_constant(fitter, pass, site);
+    const double product = here.dot(there);
+    if (!(std::abs(product) > criteria::alike_responses * here.norm() * there.norm())) continue;
+    const double half_width = -found.coefficient[0] * product / here.squaredNorm() * (nearest < 0 ? -1 : 1);
+    if (!(half_width > 0) || half_width >= std::abs(nearest)) continue;
+    same.shape = &shape_of("dead_zone"), same.variable = model.own_variable(site);
+    same.nonlinear[0] = half_width;
+    list.push_back(same);
+  }
+  return list;
+}
+
 std::vector<std::string> alike_sites(SiteFitter& fitter, SiteHypothesis h) {
   std::vector<std::string> sentences;
   SitePass pass;

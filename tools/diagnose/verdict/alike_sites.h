@@ -10,4 +10,8 @@ namespace loopwright::diagnosis {
 /// no term shows.
 std::vector<std::string> alike_sites(SiteFitter& fitter, SiteHypothesis hypothesis);
 
+/// What does the same as a term because a recorded input never comes near zero: a dead zone of the input that
+/// is never entered is a constant, and the other way round.
+std::vector<SiteTerm> same_beside_zero(SiteFitter& fitter, SiteHypothesis hypothesis, size_t term);
+
 }  // namespace loopwright::diagnosis

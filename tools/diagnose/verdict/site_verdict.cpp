@@ -80,6 +80,10 @@ class Telling {
       }
       for (const SiteRival& rival : search_.rivals)
         if (rival.of == place_[t]) effect.alternatives.push_back(describe(model_, rival.term));
+      for (const SiteTerm& same : same_beside_zero(fitted_, found_, t))
+        if (const std::string text = describe(model_, same);
+            std::ranges::find(effect.alternatives, text) == effect.alternatives.end())
+          effect.alternatives.push_back(text);
       if (has_path) {
         effect.force_rms = size_of_term(model_, pass, term);
         effect.is_optional =
