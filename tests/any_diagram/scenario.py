@@ -132,7 +132,8 @@ def truth_of(seed, plant, kind, p, stated, hidden, noise, sensor, slow, record):
     gained = simulate.gains(filter_, p, hidden, moved, [n for n in p if n not in plant.fixed + plant.anchor], fitted) if hidden or moved else []
     site_rms = {e.place.site: rms(record.sites[e.place.site]) for e in hidden}
     return {"seed": seed, "plant": plant.kind, "class": kind,
-            "effects": [{"law": e.place.law, "shapes": e.law.shapes, "sites": e.place.sites, "variables": e.place.names, "also": [*e.place.also, *constants_beside_zero(plant, e, record)],
+            "effects": [{"law": e.place.law, "shapes": e.law.shapes, "sites": e.place.sites, "variables": e.place.names,
+                         "also": [*e.place.also, *constants_beside_zero(plant, e, record)],
                          "q": e.q, "size": e.size, "site_rms": site_rms[e.place.site], "gain": g, "counts": g >= LEAST_GAIN}
                         for e, g in zip(hidden, gained)],
             "parameters": [{"name": n, "stated": stated[n], "true": p[n], "gain": g, "counts": g >= LEAST_GAIN}
